@@ -1,0 +1,1 @@
+"""Thermo-mechanical finite elements of a rolling tyre."""

@@ -1,0 +1,91 @@
+"""The base of every file a person writes: validated, immutable, with errors that name file and field."""
+
+from __future__ import annotations
+
+import tomllib
+from collections.abc import Mapping
+from pathlib import Path
+from typing import Annotated, Any, ClassVar, Self
+
+from pydantic import BaseModel, ConfigDict, Field, ValidationError, model_validator
+
+from tyrefem.errors import InputError, nearest
+from tyrefem.quantity import Unit
+
+Text = Annotated[str, Field(min_length=1)]
+Length = Annotated[float, Unit("m")]
+PositiveLength = Annotated[float, Unit("m", gt=0)]
+Thickness = Annotated[float, Unit("m", ge=0)]
+Temperature = Annotated[float, Unit("degC")]
+FilmCoefficient = Annotated[float, Unit("W/m**2/K", ge=0)]
+
+
+class Card(BaseModel):
+    """A table of a TOML file. Unknown keys are refused with the nearest spelling."""
+
+    model_config = ConfigDict(frozen=True, extra="forbid", arbitrary_types_allowed=True)
+    kind: ClassVar[str] = "card"
+
+    @model_validator(mode="before")
+    @classmethod
+    def _known_keys(cls, data: Any) -> Any:
+        if not isinstance(data, Mapping):
+            raise InputError(f"must be a table of keys, not {data!r:.60}")
+        allowed = {field.alias or name for name, field in cls.model_fields.items()}
+        for key in data:
+            if key not in allowed:
+                raise InputError(f"unknown key '{key}'{nearest(str(key), allowed)}")
+        return data
+
+    @classmethod
+    def check(cls, data: Any, file: str | Path | None = None) -> Self:
+        """Validate plain data; the first thing wrong becomes one `InputError`."""
+        try:
+            return cls.model_validate(data)
+        except ValidationError as error:
+            raise _one_error(error, file) from None
+
+
+def _one_error(error: ValidationError, file: str | Path | None) -> InputError:
+    first = error.errors(include_url=False)[0]
+    field = ".".join(str(part) for part in first["loc"])
+    cause = first.get("ctx", {}).get("error")
+    if isinstance(cause, InputError):
+        return cause.within(field=field or None, file=file)
+    message = str(cause) if cause is not None else first["msg"]
+    if first["type"] == "missing":
+        message = "missing; this field is required"
+    elif first["type"] == "string_type":
+        message = f"must be text, not {first['input']!r:.60}"
+    elif first["type"] == "union_tag_invalid":
+        tags = [tag.strip().strip("'") for tag in first["ctx"]["expected_tags"].split(",")]
+        message = f"unknown law '{first['ctx']['tag']}'{nearest(str(first['ctx']['tag']), tags)}"
+        field = f"{field}.law"
+    elif first["type"] == "union_tag_not_found":
+        message = "missing key 'law'"
+    elif first["type"] == "literal_error":
+        message = f"{first['input']!r:.60} is not allowed; allowed: {first['ctx']['expected']}"
+    return InputError(message, field=field or None, file=file)
+
+
+def read_toml(path: str | Path) -> dict[str, Any]:
+    """A TOML file as plain data; a file that is not TOML is an `InputError` with the line."""
+    path = Path(path)
+    try:
+        return tomllib.loads(path.read_text(encoding="utf-8"))
+    except tomllib.TOMLDecodeError as error:
+        raise InputError(f"not valid TOML: {error}", file=path) from None
+    except UnicodeDecodeError:
+        raise InputError("not a text file in UTF-8", file=path) from None
+    except OSError as error:
+        raise InputError(f"cannot be read: {error.strerror or error}", file=path) from None
+
+
+def merged(base: Mapping[str, Any], changes: Mapping[str, Any]) -> dict[str, Any]:
+    """``base`` with ``changes`` laid over it, tables merged key by key, everything else replaced."""
+    result = dict(base)
+    for key, value in changes.items():
+        below = result.get(key)
+        both = isinstance(below, Mapping) and isinstance(value, Mapping)
+        result[key] = merged(below, value) if both else value
+    return result

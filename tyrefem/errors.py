@@ -1,0 +1,47 @@
+"""Errors that a user can act on: one sentence that names the file, the field and what is allowed."""
+
+from __future__ import annotations
+
+import difflib
+from collections.abc import Iterable
+from pathlib import Path
+
+
+class InputError(ValueError):
+    """Bad input from a person: a file, a field, a unit, a number outside its range.
+
+    Parameters
+    ----------
+    message : what is wrong and what is allowed.
+    field : dotted name of the field, e.g. ``drive.speed``.
+    file : the file it was read from.
+
+    >>> print(InputError("must be positive", field="drive.speed", file="study.toml"))
+    study.toml: drive.speed: must be positive
+    """
+
+    def __init__(self, message: str, *, field: str | None = None, file: str | Path | None = None) -> None:
+        self.message, self.field, self.file = message, field, file
+        super().__init__(": ".join(str(part) for part in (file, field, message) if part))
+
+    def within(self, *, field: str | None = None, file: str | Path | None = None) -> InputError:
+        """The same error, placed in an enclosing field and file."""
+        joined = ".".join(part for part in (field, self.field) if part)
+        return InputError(self.message, field=joined or None, file=self.file or file)
+
+
+class MissingLibraryError(InputError):
+    """A feature needs a library that this machine does not have or cannot load."""
+
+
+def nearest(word: str, allowed: Iterable[str]) -> str:
+    """`"; did you mean 'x'?"` for the closest allowed word, or the list of what is allowed.
+
+    >>> nearest("carcas", ["carcass", "tread"])
+    "; did you mean 'carcass'? Allowed: carcass, tread"
+    """
+    names = sorted(map(str, allowed))
+    close = difflib.get_close_matches(word, names, n=1, cutoff=0.5)
+    hint = f"; did you mean '{close[0]}'?" if close else ";"
+    listing = ", ".join(names[:20]) + (", ..." if len(names) > 20 else "")
+    return f"{hint} Allowed: {listing}" if close else f"; allowed: {listing}"

@@ -1,0 +1,90 @@
+"""Find a section, material or study by name or path: explicit path, the user's folders, the shipped library."""
+
+from __future__ import annotations
+
+import os
+from collections.abc import Iterator, Mapping
+from pathlib import Path
+from typing import Any
+
+from tyrefem.cards import merged, read_toml
+from tyrefem.errors import InputError, nearest
+
+FOLDERS = {"section": "geometry", "material": "materials", "study": "studies"}
+#: Environment variable with the user's own library folders, separated as in PATH.
+SEARCH_PATH = "TYREFEM_PATH"
+
+
+def shipped() -> Path:
+    """The folder that holds the shipped ``geometry``, ``materials`` and ``studies``."""
+    package = Path(__file__).resolve().parent
+    installed = package / "shipped"
+    return installed if installed.is_dir() else package.parent
+
+
+def roots(near: Path | None = None) -> Iterator[Path]:
+    """Library folders in the order they are searched: beside the study, the user's, the shipped one."""
+    if near is not None:
+        yield near
+        yield near.parent
+        yield near.parent.parent
+    for folder in filter(None, os.environ.get(SEARCH_PATH, "").split(os.pathsep)):
+        yield Path(folder).expanduser()
+    yield shipped()
+
+
+def names(kind: str, near: Path | None = None) -> dict[str, Path]:
+    """Every card of a kind that can be found by name, with its file; earlier folders win.
+
+    >>> "nasa-tread" in names("material")
+    True
+    """
+    pattern = "*/study.toml" if kind == "study" else "*.toml"
+    found: dict[str, Path] = {}
+    for root in roots(near):
+        for path in sorted((root / FOLDERS[kind]).glob(pattern)):
+            found.setdefault(path.parent.name if kind == "study" else path.stem, path)
+    return found
+
+
+def find(kind: str, name: str, near: Path | None = None) -> Path:
+    """The file of a card: ``name`` is a path, or the name of a card in one of the library folders.
+
+    Raises
+    ------
+    InputError : nothing by that path or name; says the nearest name.
+    """
+    path = Path(name).expanduser()
+    looks_like_path = path.suffix == ".toml" or os.sep in name or name in (".", "..")
+    if looks_like_path:
+        options = [path] if path.is_absolute() or near is None else [near / path, path]
+        for option in options:
+            if kind == "study" and option.is_dir():
+                option = option / "study.toml"
+            if option.is_file():
+                return option
+        raise InputError(f"no {kind} file '{name}'")
+    known = names(kind, near)
+    if name in known:
+        return known[name]
+    if kind == "study" and (path / "study.toml").is_file():
+        return path / "study.toml"
+    raise InputError(f"no {kind} named '{name}'{nearest(name, known)}")
+
+
+def load(kind: str, reference: object, near: Path | None = None) -> tuple[dict[str, Any], Path, str]:
+    """Plain data, file and name of a referenced card.
+
+    ``reference`` is a name or path, or a table ``{base = NAME, ...}`` whose other keys are laid over that card.
+    """
+    changes: Mapping[str, Any] = {}
+    if isinstance(reference, Mapping):
+        if not isinstance(reference.get("base"), str):
+            raise InputError(f"needs 'base', the name of a {kind} card", field="base")
+        changes = {key: value for key, value in reference.items() if key != "base"}
+        reference = reference["base"]
+    if not isinstance(reference, str) or not reference:
+        raise InputError(f"{reference!r} is not the name or path of a {kind} card")
+    path = find(kind, reference, near)
+    name = path.parent.name if kind == "study" else path.stem
+    return merged(read_toml(path), changes), path, name

@@ -1,0 +1,159 @@
+"""Units at the boundary: ``"4 kN"`` becomes ``4000.0`` once, when a person's file or argument is read.
+
+Inside the package every number is an SI float; temperatures are degC and temperature differences kelvin.
+"""
+
+from __future__ import annotations
+
+import functools
+import math
+import re
+from dataclasses import dataclass
+from typing import TYPE_CHECKING, Any
+
+from tyrefem.errors import InputError
+
+if TYPE_CHECKING:
+    import pint
+    from pydantic import GetCoreSchemaHandler
+    from pydantic_core import CoreSchema
+
+_NUMBER = re.compile(r"^\s*([-+]?(?:\d+\.?\d*|\.\d+)(?:[eE][-+]?\d+)?)\s*(.*?)\s*$", re.DOTALL)
+_EXAMPLES = {
+    "m": "'0.6 in' or '15 mm'",
+    "m/s": "'20 mph' or '9 m/s'",
+    "N": "'2700 lbf' or '12 kN'",
+    "N/m": "'200 N/mm'",
+    "Pa": "'83 psi' or '5.7 bar'",
+    "s": "'600 s' or '10 min'",
+    "degC": "'25 degC', '77 degF' or '298 K'",
+    "delta_degC": "'0.5 delta_degC' or '0.5 K'",
+    "1": "'0.2' or '20 %'",
+    "rad": "'35 deg'",
+}
+
+
+@functools.cache
+def registry() -> pint.UnitRegistry[Any]:
+    """The one pint registry, kept in pint's own disk cache where that can be written."""
+    import pint
+
+    try:
+        return pint.UnitRegistry(cache_folder=":auto:", autoconvert_offset_to_baseunit=False)
+    except OSError:
+        return pint.UnitRegistry(autoconvert_offset_to_baseunit=False)
+
+
+def parse(value: object, unit: str) -> float:
+    """The SI value (in ``unit``) of a quantity that a person wrote.
+
+    Parameters
+    ----------
+    value : text such as ``"20 mph"``, a pint quantity, or a bare number where ``unit`` is ``"1"``.
+    unit : what is wanted; ``"degC"`` for a temperature, ``"delta_degC"`` for a difference of temperatures.
+
+    Raises
+    ------
+    InputError : no unit, an unknown or wrong unit, not a finite number.
+
+    >>> round(parse("20 mph", "m/s"), 4)
+    8.9408
+    >>> parse("77 degF", "degC")
+    25.0
+    >>> parse("5 K", "delta_degC")
+    5.0
+    """
+    wanted = f"a quantity like {_EXAMPLES[unit]}" if unit in _EXAMPLES else f"a quantity in {unit}"
+    magnitude, text = _split(value, unit, wanted)
+    if not math.isfinite(magnitude):
+        raise InputError(f"{value!r} is not a finite number; expected {wanted}")
+    if not text:
+        if unit != "1":
+            raise InputError(f"{value!r} has no unit; expected {wanted}")
+        return magnitude
+    result = _convert(magnitude, text, unit, value, wanted)
+    if not math.isfinite(result):
+        raise InputError(f"{value!r} is too large to be a number; expected {wanted}")
+    return result
+
+
+def _split(value: object, unit: str, wanted: str) -> tuple[float, str]:
+    if isinstance(value, bool) or value is None:
+        raise InputError(f"{value!r} is not {wanted}")
+    if isinstance(value, int | float):
+        return float(value), ""
+    if hasattr(value, "magnitude") and hasattr(value, "units"):
+        return float(value.magnitude), str(value.units)
+    match = _NUMBER.match(value) if isinstance(value, str) else None
+    if match is None:
+        raise InputError(f"{value!r} is not {wanted}")
+    return float(match[1]), match[2]
+
+
+def _convert(magnitude: float, text: str, unit: str, value: object, wanted: str) -> float:
+    units = registry()
+    if len(text) > 60:
+        raise InputError(f"{text[:60]!r}... is not a unit; expected {wanted}")
+    try:
+        given = units.parse_units(text)
+    except Exception as error:  # pint raises many kinds for text that is not a unit
+        raise InputError(f"unknown unit '{text}' in {value!r}; expected {wanted}") from error
+    if unit == "delta_degC" and str(given) in ("degree_Celsius", "degree_Fahrenheit"):
+        difference = "delta_degC" if "Celsius" in str(given) else "delta_degF"
+        raise InputError(
+            f"{value!r} is a temperature, but a difference of temperatures is wanted: write '{difference}'"
+        )
+    if unit == "degC" and "delta" in str(given):
+        raise InputError(f"{value!r} is a difference of temperatures, but a temperature is wanted: 'degC'")
+    target = "dimensionless" if unit == "1" else unit
+    try:
+        result = float(units.Quantity(magnitude, given).to(target).magnitude)
+    except Exception as error:  # dimensionality or offset units: the same advice to the user
+        raise InputError(f"'{text}' is not a unit of this quantity ({value!r}); expected {wanted}") from error
+    if unit == "degC":
+        if result < -273.15 - 1e-9:
+            raise InputError(f"{value!r} is below absolute zero")
+        return round(result, 10)
+    return result
+
+
+def convert(value: float, unit: str, to: str) -> float:
+    """An SI number in another unit, for showing it to a person.
+
+    >>> round(convert(0.0254, "m", "in"), 6)
+    1.0
+    """
+    units = registry()
+    return float(units.Quantity(value, unit).to(to).magnitude)
+
+
+@dataclass(frozen=True)
+class Unit:
+    """Annotation of a card's field: text with a unit in, SI float out, within bounds.
+
+    ``Annotated[float, Unit("m", gt=0)]`` accepts ``"0.6 in"`` and holds ``0.01524``.
+    """
+
+    unit: str
+    gt: float | None = None
+    ge: float | None = None
+    lt: float | None = None
+    le: float | None = None
+
+    def __call__(self, value: object) -> float:
+        number = parse(value, self.unit)
+        shown = "" if self.unit == "1" else f" {self.unit}"
+        for bound, holds, words in (
+            (self.gt, self.gt is None or number > self.gt, "more than"),
+            (self.ge, self.ge is None or number >= self.ge, "at least"),
+            (self.lt, self.lt is None or number < self.lt, "less than"),
+            (self.le, self.le is None or number <= self.le, "at most"),
+        ):
+            if not holds:
+                raise InputError(f"{value!r} is out of range: must be {words} {bound:g}{shown}")
+        return number
+
+    def __get_pydantic_core_schema__(self, source: Any, handler: GetCoreSchemaHandler) -> CoreSchema:
+        from pydantic_core import core_schema
+
+        return core_schema.no_info_plain_validator_function(self)
