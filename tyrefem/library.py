@@ -1,4 +1,4 @@
-"""Find a section, material or study by name or path: explicit path, the user's folders, the shipped library."""
+"""Find a section, material or study: explicit path, the user's folders, the shipped library."""
 
 from __future__ import annotations
 
@@ -75,7 +75,8 @@ def find(kind: str, name: str, near: Path | None = None) -> Path:
 def load(kind: str, reference: object, near: Path | None = None) -> tuple[dict[str, Any], Path, str]:
     """Plain data, file and name of a referenced card.
 
-    ``reference`` is a name or path, or a table ``{base = NAME, ...}`` whose other keys are laid over that card.
+    ``reference`` is a name or path, or a table ``{base = NAME, ...}`` whose other keys are laid
+    over that card.
     """
     changes: Mapping[str, Any] = {}
     if isinstance(reference, Mapping):

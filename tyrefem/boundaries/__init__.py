@@ -1,0 +1,79 @@
+"""What the tyre gives its heat to: road, outside air, contained air, rim. One class per law, found by existing.
+
+A law is a `Law` subclass in a module of this package; its ``law`` key in a study's ``[boundaries]`` picks it.
+"""
+
+from __future__ import annotations
+
+import functools
+import importlib
+import pkgutil
+from collections.abc import Mapping
+from dataclasses import dataclass
+from typing import Any, ClassVar, get_args
+
+from pydantic import GetCoreSchemaHandler
+from pydantic_core import CoreSchema, core_schema
+
+from tyrefem.cards import Card
+from tyrefem.errors import InputError, nearest
+
+#: 1 cal/(cm2 s K), in which the report gives its film coefficients, in W/m2/K.
+CAL = 41840.0
+
+
+class Law(Card):
+    """A boundary law. Subclasses name their ``side`` and carry ``law: Literal["name"]``."""
+
+    side: ClassVar[str] = ""
+
+
+@dataclass(frozen=True)
+class Contact:
+    """The tread point's contact with the road: speed m/s, footprint length m, tread W/m/K and J/m3/K."""
+
+    speed: float
+    footprint_length: float
+    conductivity: float
+    heat_capacity: float
+
+
+@functools.cache
+def laws(side: str) -> dict[str, type[Law]]:
+    """Every law of a side, by name.
+
+    >>> sorted(laws("road"))
+    ['cattani', 'constant']
+    """
+    for module in pkgutil.iter_modules(__path__):
+        importlib.import_module(f"{__name__}.{module.name}")
+    found: dict[str, type[Law]] = {}
+    stack = list(Law.__subclasses__())
+    while stack:
+        law = stack.pop()
+        stack.extend(law.__subclasses__())
+        if law.side == side and "law" in law.model_fields:
+            found[get_args(law.model_fields["law"].annotation)[0]] = law
+    return found
+
+
+@dataclass(frozen=True)
+class LawOf:
+    """Annotation of a study's boundary: a table whose ``law`` names one of a side's laws."""
+
+    side: str
+    default: str
+
+    def __call__(self, value: Any) -> Law:
+        known = laws(self.side)
+        if isinstance(value, str):
+            value = {"law": value}
+        if not isinstance(value, Mapping):
+            raise InputError(f"must be a table with a law, not {value!r:.40}; allowed: {', '.join(sorted(known))}")
+        name = value.get("law", self.default)
+        if name not in known:
+            raise InputError(f"unknown law {name!r:.40}{nearest(str(name), known)}", field="law")
+        return known[name].check({"law": name, **value})
+
+    def __get_pydantic_core_schema__(self, source: Any, handler: GetCoreSchemaHandler) -> CoreSchema:
+        return core_schema.no_info_plain_validator_function(self)

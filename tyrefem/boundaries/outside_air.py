@@ -1,0 +1,78 @@
+"""The air outside the tyre."""
+
+from __future__ import annotations
+
+import itertools
+from abc import abstractmethod
+from typing import Annotated, Any, ClassVar, Literal
+
+import numpy as np
+from pydantic import model_validator
+
+from tyrefem.boundaries import CAL, Law
+from tyrefem.cards import FilmCoefficient
+from tyrefem.errors import InputError
+from tyrefem.quantity import Unit
+
+
+class OutsideAirLaw(Law):
+    """Film from the outer surface to the ambient, as a function of speed."""
+
+    side: ClassVar[str] = "outside_air"
+
+    @abstractmethod
+    def film(self, speed: float) -> float:
+        """h, W/m2/K, at a speed in m/s."""
+
+
+class Nasa(OutsideAirLaw):
+    """h = 1.3e-4 + 4e-7 V[cm/s] cal/(cm2 s K) = 5.44 + 1.674 V[m/s] W/m2/K (Clark & Dodge 1980, appendix I)."""
+
+    law: Literal["nasa"]
+    at_rest: FilmCoefficient = 1.3e-4 * CAL
+    per_speed: Annotated[float, Unit("W*s/m**3/K", ge=0)] = 4e-7 * CAL * 100
+
+    def film(self, speed: float) -> float:
+        """h, W/m2/K, at a speed in m/s."""
+        return self.at_rest + self.per_speed * speed
+
+
+class Constant(OutsideAirLaw):
+    """The same film at every speed."""
+
+    law: Literal["constant"]
+    coefficient: FilmCoefficient
+
+    def film(self, speed: float) -> float:
+        """h, W/m2/K, at a speed in m/s."""
+        return self.coefficient
+
+
+class Table(OutsideAirLaw):
+    """Rows ``[speed, film]``; linear between rows, constant beyond the ends."""
+
+    law: Literal["table"]
+    table: list[list[Any]]
+
+    @model_validator(mode="after")
+    def _rising(self) -> Table:
+        self._columns()
+        return self
+
+    def _columns(self) -> tuple[list[float], list[float]]:
+        speeds, films = [], []
+        for number, row in enumerate(self.table):
+            try:
+                if not isinstance(row, list | tuple) or len(row) != 2:
+                    raise InputError("a row is [speed, film coefficient]")
+                speeds.append(Unit("m/s", ge=0)(row[0]))
+                films.append(Unit("W/m**2/K", ge=0)(row[1]))
+            except InputError as error:
+                raise error.within(field=f"table.{number}") from None
+        if len(speeds) < 2 or any(b <= a for a, b in itertools.pairwise(speeds)):
+            raise InputError("needs two or more rows whose speeds rise without duplicates", field="table")
+        return speeds, films
+
+    def film(self, speed: float) -> float:
+        """h, W/m2/K, at a speed in m/s."""
+        return float(np.interp(speed, *self._columns()))

@@ -1,0 +1,53 @@
+"""The rim under the bead: held at a temperature, or a lumped body with its own heat capacity."""
+
+from __future__ import annotations
+
+from typing import Annotated, ClassVar, Literal
+
+from tyrefem.boundaries import CAL, Law
+from tyrefem.cards import FilmCoefficient, Temperature
+from tyrefem.quantity import Unit
+
+
+class RimLaw(Law):
+    """Film between bead and flange, in series with a contact resistance: 1/h = 1/h_f + R_c.
+
+    The report takes h_f = 0.5 cal/(cm2 s K) = 20920 W/m2/K and neglects the contact resistance as unknown.
+    """
+
+    side: ClassVar[str] = "rim"
+    film: FilmCoefficient = 0.5 * CAL
+    contact_resistance: Annotated[float, Unit("m**2*K/W", ge=0)] = 0.0
+    #: Rim temperature (at the start, for a lumped rim); the drive's where not given.
+    temperature: Temperature | None = None
+
+    @property
+    def total_film(self) -> float:
+        """The film with the contact resistance in series, W/m2/K."""
+        return 1 / (1 / self.film + self.contact_resistance) if self.film > 0 else 0.0
+
+
+class Fixed(RimLaw):
+    """A rim of constant (or driven) temperature, as in the report."""
+
+    law: Literal["fixed"]
+
+
+class Lumped(RimLaw):
+    """A rim of one temperature: C dT/dt = heat from the beads - UA (T - ambient) + heat from the contained air.
+
+    ``mass`` and ``cooling`` are of the whole wheel. The report's aluminium: 962 J/kg/K.
+    """
+
+    law: Literal["lumped"]
+    mass: Annotated[float, Unit("kg", gt=0)]
+    specific_heat: Annotated[float, Unit("J/kg/K", gt=0)] = 0.23 * 4184.0
+    #: Conductance to the ambient.
+    cooling: Annotated[float, Unit("W/K", ge=0)]
+    #: Conductance to the contained air through the rim's well.
+    air: Annotated[float, Unit("W/K", ge=0)] = 0.0
+
+    @property
+    def heat_capacity(self) -> float:
+        """J/K of the whole wheel."""
+        return self.mass * self.specific_heat

@@ -1,0 +1,59 @@
+"""The road under the tread, averaged over the revolution."""
+
+from __future__ import annotations
+
+import math
+from abc import abstractmethod
+from typing import Annotated, ClassVar, Literal
+
+from tyrefem.boundaries import CAL, Contact, Law
+from tyrefem.cards import FilmCoefficient, Temperature
+from tyrefem.quantity import Unit
+
+
+class RoadLaw(Law):
+    """Film between tread and road during contact.
+
+    On a cross-section the road acts for f = L / (2 pi r_r) of the revolution: f H_c to the road's temperature and
+    (1 - f) h_air to the ambient (Cattani et al. 2023; Clark & Dodge 1980, appendix I). At standstill no point of the
+    tread represents the whole ring, and the road takes nothing.
+    """
+
+    side: ClassVar[str] = "road"
+    #: Road temperature; the ambient where neither this nor the drive says.
+    temperature: Temperature | None = None
+    #: Fraction of the revolution on the road, in place of the footprint's.
+    fraction: Annotated[float, Unit("1", ge=0, le=1)] | None = None
+
+    @abstractmethod
+    def film(self, contact: Contact) -> float:
+        """H_c during contact, W/m2/K."""
+
+
+class Constant(RoadLaw):
+    """One film at every speed: the report's 0.25 cal/(cm2 s K) = 10460 W/m2/K."""
+
+    law: Literal["constant"]
+    coefficient: FilmCoefficient = 0.25 * CAL
+
+    def film(self, contact: Contact) -> float:
+        """H_c during contact, W/m2/K."""
+        return self.coefficient
+
+
+class Cattani(RoadLaw):
+    """H_c = sqrt(lambda C v / L): mean over the contact of a triangular profile (Cattani et al. 2023, eq 12).
+
+    lambda and C are the tread card's at 25 degC unless given here.
+    """
+
+    law: Literal["cattani"]
+    conductivity: Annotated[float, Unit("W/m/K", gt=0)] | None = None
+    heat_capacity: Annotated[float, Unit("J/m**3/K", gt=0)] | None = None
+
+    def film(self, contact: Contact) -> float:
+        """H_c during contact, W/m2/K."""
+        if contact.footprint_length <= 0:
+            return 0.0
+        product = (self.conductivity or contact.conductivity) * (self.heat_capacity or contact.heat_capacity)
+        return math.sqrt(product * contact.speed / contact.footprint_length)

@@ -1,0 +1,207 @@
+"""A comparison of computed and measured histories: table, residuals, one honest line, files."""
+
+from __future__ import annotations
+
+import json
+import math
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass
+from functools import cached_property
+from pathlib import Path
+from typing import TYPE_CHECKING, Any
+
+from tyrefem.compare.history import ALL, History
+from tyrefem.compare.judgement import COLUMNS, row
+
+if TYPE_CHECKING:
+    import pandas as pd
+
+
+@dataclass(frozen=True, eq=False)
+class Comparison:
+    """Deviations of a study from measurements.
+
+    Parameters
+    ----------
+    study : the study's name.
+    table : one row per run, sensor and phase (and phase "all"): ``n, bias_K, rms_K, largest_K`` at ``at_s``,
+        the uncertainties ``u_num_K, u_input_K, u_data_K, u_val_K`` of the mean and ``u_reading_K`` of single
+        readings, ``beyond`` and ``verdict``.
+    residuals : one row per reading: ``run, time_s, sensor, phase, measured_degC, computed_degC, error_K`` and
+        ``u_val_K``, the standard validation uncertainty of that reading.
+    inputs : one row per run, sensor, phase and uncertain input ``key``: ``relative_sd`` and ``change_K``,
+        the change of the mean when that input is one standard deviation higher.
+    curves : run -> computed readings at the saved times (``time_s``, degC).
+    notes : what was left out, in sentences; those beginning with "ERROR" also stand in the summary.
+    k : coverage factor.
+    """
+
+    study: str
+    table: pd.DataFrame
+    residuals: pd.DataFrame
+    inputs: pd.DataFrame
+    curves: Mapping[str, pd.DataFrame]
+    notes: tuple[str, ...] = ()
+    k: float = 2.0
+
+    @property
+    def bias_K(self) -> float:
+        """Mean deviation over all readings."""
+        return float(self.residuals["error_K"].mean())
+
+    @property
+    def rms_K(self) -> float:
+        """Root mean square deviation over all readings."""
+        return _rms(self.residuals)
+
+    @cached_property
+    def by_sensor(self) -> pd.Series:
+        """Root mean square deviation (K) of each sensor over all runs, worst first."""
+        groups = self.residuals.groupby("sensor", sort=False)["error_K"]
+        squares = groups.agg(lambda errors: math.sqrt(float((errors**2).mean())))
+        return squares.sort_values(ascending=False, kind="stable")
+
+    def part(self, *, hold_out: bool) -> pd.DataFrame:
+        """The residuals of the held-out runs, or of the others."""
+        marked = self.table.loc[self.table["hold_out"] == hold_out, "run"].unique()
+        return self.residuals[self.residuals["run"].isin(marked)]
+
+    @property
+    def summary(self) -> str:
+        """One line: overall deviation, worst sensor, and how much of it is beyond the uncertainty."""
+        runs, sensors = self.residuals["run"].nunique(), self.residuals["sensor"].nunique()
+        count = f"{_plural(runs, 'run')}, {_plural(sensors, 'sensor')}, {_plural(len(self.residuals), 'reading')}"
+        overall = f"computed - measured {self.bias_K:+.2f} K on average, {self.rms_K:.2f} K rms"
+        fitted, held = self.part(hold_out=False), self.part(hold_out=True)
+        if len(held):
+            parts = [f"held out {held['error_K'].mean():+.2f}, {_rms(held):.2f} K rms"]
+            if len(fitted):
+                parts.insert(0, f"fitted {fitted['error_K'].mean():+.2f}, {_rms(fitted):.2f} K rms")
+            overall += f" ({'; '.join(parts)})"
+        whole = self.table["phase"] == ALL
+        beyond = self.table["beyond"]
+        judged = (
+            f"beyond validation uncertainty (k = {self.k:g}): {int((beyond & whole).sum())} of "
+            f"{int(whole.sum())} sensor histories, {int((beyond & ~whole).sum())} of "
+            f"{int((~whole).sum())} sensor phases"
+        )
+        worst = f"worst sensor {self.by_sensor.index[0]}: {self.by_sensor.iloc[0]:.2f} K rms"
+        errors = "".join(f"{note}. " for note in self.notes if note.startswith("ERROR"))
+        return f"{errors}{self.study}: {count}: {overall}; {worst}; {judged}."
+
+    def to_dict(self) -> dict[str, Any]:
+        """Everything but the single readings as plain data for JSON; NaN becomes null."""
+        parts = {
+            name: {"bias_K": float(part["error_K"].mean()), "rms_K": _rms(part), "n": len(part)}
+            for name, part in (
+                ("overall", self.residuals),
+                ("fitted", self.part(hold_out=False)),
+                ("held_out", self.part(hold_out=True)),
+            )
+            if len(part)
+        }
+        data = {
+            "study": self.study,
+            "summary": self.summary,
+            "notes": list(self.notes),
+            "k": self.k,
+            **parts,
+            "rms_by_sensor_K": {str(name): float(value) for name, value in self.by_sensor.items()},
+            "rows": self.table.to_dict(orient="records"),
+            "inputs": self.inputs.to_dict(orient="records"),
+        }
+        plain: dict[str, Any] = _plain(data)
+        return plain
+
+    def save(self, folder: str | Path) -> Path:
+        """Write tables, pictures and a self-contained page into a folder; returns the page.
+
+        ``comparison.csv``, ``residuals.csv``, ``comparison.json``, ``histories-<run>.png``, ``deviations.png``,
+        ``comparison.html``. Each file is complete or not there.
+
+        Raises
+        ------
+        InputError : the folder cannot be written.
+        """
+        from tyrefem.compare.page import page
+        from tyrefem.compare.pictures import pictures
+        from tyrefem.output import atomic_folder
+
+        folder = Path(folder)
+        with atomic_folder(folder) as temporary:
+            self.table.to_csv(temporary / "comparison.csv", index=False, lineterminator="\n")
+            self.residuals.to_csv(temporary / "residuals.csv", index=False, lineterminator="\n")
+            text = json.dumps(self.to_dict(), indent=1, ensure_ascii=False, allow_nan=False)
+            (temporary / "comparison.json").write_text(text + "\n", encoding="utf-8")
+            drawn = pictures(self)
+            for name, picture in drawn.items():
+                (temporary / name).write_bytes(picture)
+            (temporary / "comparison.html").write_text(page(self, drawn), encoding="utf-8")
+        return folder / "comparison.html"
+
+
+def comparison_of(
+    study: str,
+    histories: Sequence[History],
+    *,
+    curves: Mapping[str, pd.DataFrame],
+    relative_sd: Mapping[str, float],
+    notes: tuple[str, ...] = (),
+    k: float = 2.0,
+) -> Comparison:
+    """The comparison that follows from paired histories."""
+    import pandas as pd
+
+    rows, inputs = [], []
+    for history in histories:
+        for phase, mask in history.stretches():
+            values, changes = row(history, phase, mask, k)
+            rows.append(values)
+            inputs += [
+                (history.run, history.sensor, phase, key, relative_sd[key], change) for key, change in changes.items()
+            ]
+    residuals = pd.concat(
+        [
+            pd.DataFrame(
+                {
+                    "run": one.run,
+                    "time_s": one.times,
+                    "sensor": one.sensor,
+                    "phase": one.phases,
+                    "measured_degC": one.measured,
+                    "computed_degC": one.computed,
+                    "error_K": one.error,
+                    "u_val_K": one.reading_uncertainty,
+                }
+            )
+            for one in histories
+        ],
+        ignore_index=True,
+    )
+    return Comparison(
+        study=study,
+        table=pd.DataFrame(rows, columns=list(COLUMNS)),
+        residuals=residuals,
+        inputs=pd.DataFrame(inputs, columns=["run", "sensor", "phase", "key", "relative_sd", "change_K"]),
+        curves=dict(curves),
+        notes=notes,
+        k=k,
+    )
+
+
+def _rms(residuals: pd.DataFrame) -> float:
+    return math.sqrt(float((residuals["error_K"] ** 2).mean()))
+
+
+def _plural(number: int, noun: str) -> str:
+    return f"{number:,} {noun}{'' if number == 1 else 's'}"
+
+
+def _plain(value: Any) -> Any:
+    if isinstance(value, Mapping):
+        return {str(key): _plain(below) for key, below in value.items()}
+    if isinstance(value, list | tuple):
+        return [_plain(below) for below in value]
+    if hasattr(value, "item"):
+        value = value.item()
+    return None if isinstance(value, float) and not math.isfinite(value) else value

@@ -1,0 +1,150 @@
+"""Pictures of a comparison: histories as small multiples, and a map of the deviations."""
+
+from __future__ import annotations
+
+import io
+import math
+import re
+from typing import TYPE_CHECKING, Any
+
+import numpy as np
+
+from tyrefem.compare.history import ALL
+
+if TYPE_CHECKING:
+    import pandas as pd
+    from matplotlib.axes import Axes
+    from matplotlib.figure import Figure
+
+    from tyrefem.compare.comparison import Comparison
+
+COMPUTED, MEASURED, BEYOND, QUIET = "#1f5a96", "#d1600a", "#a4161a", "#666666"
+#: More points than this per panel are thinned out in the picture (never in the tables).
+MOST_POINTS = 400
+
+
+def pictures(comparison: Comparison) -> dict[str, bytes]:
+    """File name -> PNG: ``deviations.png``, then ``histories-<run>.png`` for each run."""
+    drawn = {"deviations.png": _png(deviations(comparison))}
+    for run in comparison.residuals["run"].unique():
+        name = re.sub(r"[^\w.-]+", "-", str(run)).strip("-.") or "run"
+        file, again = f"histories-{name}.png", 2
+        while file in drawn:
+            file, again = f"histories-{name}-{again}.png", again + 1
+        drawn[file] = _png(histories(comparison, run))
+    return drawn
+
+
+def histories(comparison: Comparison, run: str) -> Figure:
+    """One panel per sensor: measured points, the computed line, and a band of k u_val of a reading around it."""
+    from matplotlib.figure import Figure
+
+    residuals = comparison.residuals[comparison.residuals["run"] == run]
+    sensors = list(residuals["sensor"].unique())
+    columns = min(3, len(sensors))
+    rows = math.ceil(len(sensors) / columns)
+    figure = Figure(figsize=(max(3.6 * columns, 5.0), 2.5 * rows + 1.0), layout="constrained")
+    grid = figure.subplots(rows, columns, sharex=True, sharey=True, squeeze=False)
+    divisor, unit = (60.0, "min") if residuals["time_s"].max() > 600.0 else (1.0, "s")
+    axes = list(grid.flat)
+    for panel, sensor in zip(axes, sensors, strict=False):
+        part = residuals[residuals["sensor"] == sensor]
+        _history(panel, part, comparison, run, sensor, divisor)
+    for panel in axes[len(sensors) :]:
+        panel.set_axis_off()
+    for column in range(columns):
+        lowest = axes[max(i for i in range(len(sensors)) if i % columns == column)]
+        lowest.set_xlabel(f"time [{unit}]")
+        lowest.tick_params(labelbottom=True)
+    for line in grid:
+        line[0].set_ylabel("temperature [°C]")
+    handles, labels = axes[0].get_legend_handles_labels()
+    figure.legend(handles, labels, loc="outside lower center", ncols=3, frameon=False, fontsize=9)
+    figure.suptitle(f"{_plain(comparison.study)}: run {_plain(run)}", fontsize=11)
+    return figure
+
+
+def _history(panel: Axes, part: pd.DataFrame, comparison: Comparison, run: str, sensor: str, divisor: float) -> None:
+    times = part["time_s"].to_numpy() / divisor
+    computed = part["computed_degC"].to_numpy()
+    band = comparison.k * part["u_val_K"].to_numpy()
+    label = f"computed ± {comparison.k:g} u_val of a reading"
+    panel.fill_between(times, computed - band, computed + band, color=COMPUTED, alpha=0.2, lw=0, label=label)
+    curve = comparison.curves[run]
+    panel.plot(curve["time_s"] / divisor, curve[sensor], color=COMPUTED, lw=1.4, label="computed")
+    step = max(1, math.ceil(len(times) / MOST_POINTS))
+    shown = slice(None, None, step)
+    panel.plot(
+        times[shown], part["measured_degC"].to_numpy()[shown], ".", color=MEASURED, ms=4, label="measured", zorder=3
+    )
+    row = _rows(comparison, run, sensor, ALL).iloc[0]
+    color = BEYOND if row["beyond"] else "black"
+    verdict = "beyond" if row["beyond"] else "within"
+    panel.set_title(
+        f"{_plain(sensor)}: {row['bias_K']:+.2f} K, rms {row['rms_K']:.2f} K, {verdict}", fontsize=9, color=color
+    )
+    starts = part.groupby("phase", sort=False)["time_s"].min() / divisor
+    for phase, start in list(starts.items())[1:]:
+        panel.axvline(start, color=QUIET, lw=0.6, ls=":")
+        panel.annotate(
+            _plain(phase), (start, 0.02), xycoords=("data", "axes fraction"), fontsize=7, color=QUIET,
+            xytext=(2, 0), textcoords="offset points",
+        )  # fmt: skip
+    panel.grid(alpha=0.25, lw=0.5)
+
+
+def deviations(comparison: Comparison) -> Figure:
+    """A map: sensors down, runs and their phases across; colour and upper number the mean, lower the rms."""
+    from matplotlib.figure import Figure
+
+    table = comparison.table
+    sensors = list(table["sensor"].unique())
+    columns = list(table[["run", "phase"]].drop_duplicates().itertuples(index=False, name=None))
+    bias = np.full((len(sensors), len(columns)), np.nan)
+    width, height = 0.85 * len(columns) + 3.0, 0.42 * len(sensors) + 2.0
+    figure = Figure(figsize=(max(width, 5.5), height), layout="constrained")
+    axes = figure.subplots()
+    largest = max(float(table["bias_K"].abs().max()), 1e-9)
+    for cell in table.to_dict(orient="records"):
+        i, j = sensors.index(cell["sensor"]), columns.index((cell["run"], cell["phase"]))
+        bias[i, j] = cell["bias_K"]
+        _cell(axes, j, i, cell, dark=abs(cell["bias_K"]) > 0.7 * largest)
+    image = axes.imshow(bias, cmap="RdBu_r", vmin=-largest, vmax=largest, aspect="auto")
+    axes.set_yticks(range(len(sensors)), [_plain(sensor) for sensor in sensors], fontsize=9)
+    names = [f"{_plain(run)}\n{_plain(phase)}" for run, phase in columns]
+    axes.set_xticks(range(len(columns)), names, fontsize=8, rotation=90 if len(columns) > 12 else 30, ha="right")
+    axes.set_title(
+        f"computed - measured: mean (rms) in K; boxed = beyond {comparison.k:g} u_val", fontsize=10, loc="left"
+    )
+    figure.colorbar(image, ax=axes, label="mean deviation [K]", fraction=0.05)
+    return figure
+
+
+def _cell(axes: Axes, column: int, row: int, cell: Any, *, dark: bool) -> None:
+    from matplotlib.patches import Rectangle
+
+    axes.text(
+        column, row, f"{cell['bias_K']:+.1f}\n({cell['rms_K']:.1f})", ha="center", va="center", fontsize=7.5,
+        color="white" if dark else "black", fontweight="bold" if cell["beyond"] else "normal",
+    )  # fmt: skip
+    if cell["beyond"]:
+        axes.add_patch(Rectangle((column - 0.47, row - 0.46), 0.94, 0.92, fill=False, edgecolor="black", lw=1.4))
+
+
+def _rows(comparison: Comparison, run: str, sensor: str, phase: str) -> pd.DataFrame:
+    table = comparison.table
+    return table[(table["run"] == run) & (table["sensor"] == sensor) & (table["phase"] == phase)]
+
+
+def _plain(text: object) -> str:
+    """Text as it stands: a dollar sign would start a formula."""
+    return str(text).replace("$", r"\$")
+
+
+def _png(figure: Figure) -> bytes:
+    from matplotlib.backends.backend_agg import FigureCanvasAgg
+
+    FigureCanvasAgg(figure)
+    stream = io.BytesIO()
+    figure.savefig(stream, format="png", dpi=110)
+    return stream.getvalue()

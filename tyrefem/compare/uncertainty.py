@@ -1,0 +1,94 @@
+"""The validation uncertainty of a mean deviation, in the manner of ASME V&V 20."""
+
+from __future__ import annotations
+
+import math
+from dataclasses import dataclass
+
+import numpy as np
+from numpy.typing import NDArray
+
+from tyrefem.compare.history import Array, History
+
+
+def effective_number(errors: Array) -> float:
+    """How many independent readings a series of correlated ones is worth.
+
+    n_eff = n (1 - r1) / (1 + r1), 1 <= n_eff <= n, with r1 the lag-1 autocorrelation about the mean. A
+    deviation that drifts is correlated too, so n_eff errs on the small side.
+
+    Parameters
+    ----------
+    errors : (n,) K, in the order of time.
+
+    Source: Zwiers & von Storch, J. Climate 8 (1995) 336-351.
+
+    >>> effective_number(np.array([1.0, -1.0, 1.0, -1.0]))
+    4.0
+    >>> round(effective_number(np.array([1.0, 1.0, -1.0, -1.0])), 3)    # r1 = 1/4
+    2.4
+    """
+    number = len(errors)
+    centred = errors - errors.mean()
+    variance = float(centred @ centred)
+    # Below rounding the scatter carries no information on correlation.
+    if number < 2 or variance <= number * (1e-12 * (1.0 + float(np.abs(errors).max()))) ** 2:
+        return float(number)
+    correlation = float(centred[:-1] @ centred[1:]) / variance
+    return float(np.clip(number * (1.0 - correlation) / (1.0 + correlation), 1.0, number))
+
+
+@dataclass(frozen=True)
+class Uncertainty:
+    """Standard uncertainties (K) of the mean deviation over n readings.
+
+    u_val^2 = u_num^2 + u_input^2 + u_D^2
+
+    Parameters
+    ----------
+    n_effective : independent readings.
+    numerical : u_num, time steps and mesh together.
+    inputs : dotted key -> change of the mean (K) when that input is one sd higher.
+    noise, accuracy, position : the parts of u_D.
+
+    Source: ASME V&V 20-2009, Standard for Verification and Validation in Computational Fluid Dynamics and
+    Heat Transfer.
+
+    >>> u = Uncertainty(4.0, numerical=0.3, inputs={"k": 0.4, "h": -1.2}, noise=1.0, accuracy=0.0, position=0.0)
+    >>> round(u.input, 4), u.data, round(u.validation, 4)     # sqrt(0.09 + 1.6 + 0.25)
+    (1.2649, 0.5, 1.3928)
+    """
+
+    n_effective: float
+    numerical: float
+    inputs: dict[str, float]
+    noise: float
+    accuracy: float
+    position: float
+
+    @property
+    def input(self) -> float:
+        """u_input, root sum of squares over the inputs."""
+        return math.hypot(*self.inputs.values())
+
+    @property
+    def data(self) -> float:
+        """u_D; noise averages out with the number of independent readings, the rest does not."""
+        return math.hypot(self.noise / math.sqrt(self.n_effective), self.accuracy, self.position)
+
+    @property
+    def validation(self) -> float:
+        """u_val."""
+        return math.hypot(self.numerical, self.input, self.data)
+
+
+def uncertainty(history: History, mask: NDArray[np.bool_]) -> Uncertainty:
+    """The uncertainties of the mean deviation over the masked readings of a history."""
+    return Uncertainty(
+        n_effective=effective_number(history.error[mask]),
+        numerical=history.numerical,
+        inputs={key: float(change[mask].mean()) for key, change in history.changes.items()},
+        noise=history.noise,
+        accuracy=history.accuracy,
+        position=history.position_sd * float(history.gradient[mask].mean()),
+    )

@@ -1,0 +1,83 @@
+"""One temperature field of a conduction problem."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from dataclasses import dataclass
+from typing import Any
+
+import numpy as np
+from numpy.typing import ArrayLike, NDArray
+
+from tyrefem.conduction.conditions import Material
+from tyrefem.conduction.operators import Operators
+from tyrefem.conduction.points import located
+from tyrefem.errors import InputError, nearest
+
+Array = NDArray[Any]
+
+
+@dataclass(frozen=True)
+class Field:
+    """Temperatures of the body and its reservoirs at one time.
+
+    Attributes
+    ----------
+    values : (n,) degC at the unknowns; points : (2, n) their places; mesh : the scikit-fem mesh.
+    reservoirs : name -> degC.
+    generated : source subdomain -> W; lost : boundary -> W, positive outwards.
+    time : s, or None for a steady field.
+    """
+
+    operators: Operators
+    materials: Mapping[str, Material]
+    values: Array
+    reservoirs: Mapping[str, float]
+    generated: Mapping[str, float]
+    lost: Mapping[str, float]
+    time: float | None = None
+
+    @property
+    def mesh(self) -> Any:
+        """The scikit-fem mesh."""
+        return self.operators.mesh
+
+    @property
+    def points(self) -> Array:
+        """Places of the unknowns, (2, n)."""
+        return self.operators.points
+
+    def at(self, points: ArrayLike) -> Array:
+        """Temperatures at points (n_points, 2), degC; InputError names a point outside the mesh."""
+        return located(self.operators, points).value() @ self.values
+
+    def flux_at(self, points: ArrayLike) -> Array:
+        """Heat flux -k grad T at points, (n_points, 2), W/m2, from the element that holds each point."""
+        place = located(self.operators, points)
+        slope = np.stack([g @ self.values for g in place.gradient()])
+        T = place.value() @ self.values
+        x = np.asarray(self.operators.basis.mapping.F(place.local[:, :, None], tind=place.elements))[:, :, 0]
+        flux = np.empty((T.size, 2))
+        for name, material in self.materials.items():
+            here = np.flatnonzero(np.isin(place.elements, self.operators.elements(name)))
+            if not here.size:
+                continue
+            k = material.conductivity(T[here]) if callable(material.conductivity) else material.conductivity
+            k1, k2 = k if isinstance(k, (tuple, list)) else (k, k)
+            d = np.array([[1.0], [0.0]]) if material.direction is None else np.asarray(material.direction(x[:, here]))
+            along = d[0] * slope[0, here] + d[1] * slope[1, here]
+            across = -d[1] * slope[0, here] + d[0] * slope[1, here]
+            flux[here, 0] = -(d[0] * k1 * along - d[1] * k2 * across)
+            flux[here, 1] = -(d[1] * k1 * along + d[0] * k2 * across)
+        return flux
+
+    def flux_through(self, boundary: str) -> float:
+        """Heat leaving through a boundary, W (full ring, or per metre of depth).
+
+        It is the discrete balance's own flux: the condition's integral, or for `Fixed` the reaction, so that
+        generated = stored + lost closes to rounding. An insulated boundary gives 0.
+        """
+        known = self.operators.mesh.boundaries or {}
+        if boundary not in known:
+            raise InputError(f"unknown boundary {boundary!r}{nearest(boundary, known)}", field="boundary")
+        return float(self.lost.get(boundary, 0.0))

@@ -1,0 +1,260 @@
+"""Finite-element operators of one mesh: assembled once, then combined by numbers only."""
+
+from __future__ import annotations
+
+from collections import OrderedDict
+from collections.abc import Callable
+from typing import Any
+
+import numpy as np
+import skfem
+from numpy.typing import NDArray
+from scipy.sparse import csr_matrix
+
+from tyrefem.conduction.factor import Ordering
+from tyrefem.errors import InputError, nearest
+
+Array = NDArray[Any]
+
+_ELEMENTS = {
+    ("tri", "P1"): skfem.ElementTriP1,
+    ("tri", "P2"): skfem.ElementTriP2,
+    ("quad", "P1"): skfem.ElementQuad1,
+    ("quad", "P2"): skfem.ElementQuad2,
+}
+_RECENT: OrderedDict[tuple[int, str, bool], Operators] = OrderedDict()
+
+
+class Operators:
+    """Mass, conduction and surface operators of a mesh, all on one sparsity pattern.
+
+    Every operator is an array of values on the common CSR pattern, so K = sum k_i K_i + sum h_j R_j is a sum of
+    arrays. In axisymmetry the volume element is 2 pi r dr dz: energies and powers are those of the full ring.
+
+    Parameters
+    ----------
+    mesh : scikit-fem triangle or quadrilateral mesh with named subdomains and boundaries.
+    element : "P1" (linear, bilinear) or "P2" (quadratic, biquadratic).
+    axisymmetric : coordinates are (r, z); otherwise (x, y) and one metre of depth.
+
+    Raises InputError for an unknown element, an unsupported mesh or a negative radius.
+    """
+
+    def __init__(self, mesh: Any, element: str = "P1", axisymmetric: bool = True) -> None:
+        shape = {"MeshTri": "tri", "MeshQua": "quad"}.get(type(mesh).__name__[:7])
+        if shape is None:
+            raise InputError(f"a {type(mesh).__name__} is not supported; use MeshTri or MeshQuad", field="mesh")
+        if element not in ("P1", "P2"):
+            raise InputError(f"unknown element {element!r}{nearest(str(element), ['P1', 'P2'])}", field="element")
+        if axisymmetric and mesh.p[0].min() < -1e-12 * np.ptp(mesh.p, axis=1).max():
+            raise InputError(f"radius is negative: {mesh.p[0].min():.6g} m", field="mesh")
+        self.mesh, self.element, self.axisymmetric = mesh, element, axisymmetric
+        self.skfem_element = _ELEMENTS[shape, element]()
+        self.intorder = 3 if element == "P1" else 5
+        self.basis = skfem.Basis(mesh, self.skfem_element, intorder=self.intorder)
+        self.size = int(self.basis.N)
+        self.points: Array = self.basis.doflocs
+        self.element_dofs: Array = self.basis.element_dofs
+        self._phi = np.stack([np.broadcast_to(b[0].value, self.basis.dx.shape) for b in self.basis.basis])
+        self._grad = np.stack([b[0].grad for b in self.basis.basis])
+        self.x: Array = np.asarray(self.basis.global_coordinates().value)
+        self.weight: Array = self.basis.dx * (2 * np.pi * self.x[0] if axisymmetric else 1.0)
+        self._pattern()
+        self._kept: dict[Any, Any] = {}
+
+    def _pattern(self) -> None:
+        n, dofs = self.size, self.element_dofs.astype(np.int64)
+        keys = dofs[:, None, :] * n + dofs[None, :, :]
+        unique, self._place = np.unique(keys.reshape(-1), return_inverse=True)
+        self._place = self._place.reshape(keys.shape)
+        self._keys = unique
+        self.indices = (unique % n).astype(np.int32)
+        self.indptr = np.concatenate(([0], np.cumsum(np.bincount(unique // n, minlength=n)))).astype(np.int32)
+
+    def _once(self, key: Any, make: Callable[[], Any]) -> Any:
+        if key not in self._kept:
+            self._kept[key] = make()
+        return self._kept[key]
+
+    @property
+    def nnz(self) -> int:
+        """Number of stored values of every operator."""
+        return int(self.indices.size)
+
+    def matrix(self, data: Array) -> csr_matrix:
+        """Values on the common pattern as a sparse matrix (n, n)."""
+        return csr_matrix((data, self.indices, self.indptr), (self.size, self.size))
+
+    def elements(self, name: str) -> Array:
+        """Element numbers of a named subdomain."""
+        subdomains = self.mesh.subdomains or {}
+        if name not in subdomains:
+            raise InputError(f"unknown region {name!r}{nearest(name, subdomains)}", field="regions")
+        return np.asarray(subdomains[name], dtype=np.int64)
+
+    def dofs(self, name: str) -> Array:
+        """Unknowns of a named subdomain, increasing."""
+        return self._once(("dofs", name), lambda: np.unique(self.element_dofs[:, self.elements(name)]))
+
+    def nodes(self, name: str) -> Array:
+        """Points (2, n) of a named subdomain: the same array object at every call."""
+        return self._once(("nodes", name), lambda: np.ascontiguousarray(self.points[:, self.dofs(name)]))
+
+    def _gather(self, elements: Array, local: Array) -> Array:
+        place = self._place[:, :, elements]
+        return np.bincount(place.reshape(-1), weights=local.reshape(-1), minlength=self.nnz)
+
+    def mass(self, name: str) -> Array:
+        """Values of the integral of v u over a subdomain."""
+
+        def make() -> Array:
+            e = self.elements(name)
+            phi, w = self._phi[:, e], self.weight[e]
+            return self._gather(e, np.einsum("ieq,jeq->ije", phi * w, phi, optimize=True))
+
+        return self._once(("mass", name), make)
+
+    def directed_gradients(self, name: str, direction: Callable[..., Any] | None) -> tuple[Array, Array]:
+        """Shape-function slopes along and across `direction` at the quadrature points, (n_local, n_el, n_q)."""
+        e = self.elements(name)
+        grad = self._grad[:, :, e]
+        if direction is None:
+            return grad[:, 0], grad[:, 1]
+        x = self.x[:, e]
+        d = np.asarray(direction(x.reshape(2, -1)), dtype=float)
+        if d.shape != (2, x[0].size) or not np.allclose(np.hypot(*d), 1.0, atol=1e-6):
+            raise InputError("direction must return unit vectors of shape (2, n)", field=f"regions.{name}")
+        d = d.reshape(x.shape)
+        return d[0] * grad[:, 0] + d[1] * grad[:, 1], -d[1] * grad[:, 0] + d[0] * grad[:, 1]
+
+    def conduction(self, name: str, direction: Callable[..., Any] | None) -> tuple[Array, Array]:
+        """Values of the integrals of v,1 u,1 and v,2 u,2 (along, across `direction`) over a subdomain."""
+
+        def make() -> tuple[Array, Array]:
+            e = self.elements(name)
+            w = self.weight[e]
+            first, second = (
+                self._gather(e, np.einsum("ieq,jeq->ije", g * w, g, optimize=True))
+                for g in self.directed_gradients(name, direction)
+            )
+            return first, second
+
+        return self._once(("conduction", name, direction), make)
+
+    def source(self, name: str) -> csr_matrix:
+        """Nodal source (W/m3 at `nodes(name)`) to nodal load (W): consistent mass, (n, n_nodes)."""
+        return self._once(("source", name), lambda: self.matrix(self.mass(name)).tocsc()[:, self.dofs(name)].tocsr())
+
+    def quadrature(self, name: str, direction: Callable[..., Any] | None = None) -> Quadrature:
+        """Quadrature of a region for coefficients that depend on temperature."""
+        return self._once(("quadrature", name, direction), lambda: Quadrature(self, name, direction))
+
+    def surface(self, name: str) -> Surface:
+        """Quadrature of a named boundary."""
+        return self._once(("surface", name), lambda: Surface(self, name))
+
+    def ordering(self, free: Array) -> Ordering:
+        """Elimination order for the given free unknowns."""
+        hint = None
+        if self.element == "P2":
+            hint = self._once(("hint",), self._hint)
+        key = ("ordering", free.tobytes())
+        return self._once(key, lambda: Ordering(self.indptr, self.indices, free, hint))
+
+    def _hint(self) -> Array:
+        """Order every unknown by its element's corner nodes: the quadratic graph alone orders badly."""
+        linear = operators(self.mesh, "P1", self.axisymmetric)
+        order = linear.ordering(np.arange(linear.size)).order
+        place = np.empty(linear.size)
+        place[order] = np.arange(linear.size)
+        corner = place[linear.element_dofs]
+        total, count = np.zeros(self.size), np.zeros(self.size)
+        weights = np.abs(self.skfem_element.doflocs[:, None, :] - linear.skfem_element.doflocs[None]).max(2) < 0.75
+        for i, row in enumerate(weights):
+            near = corner[row] if row.any() else corner
+            np.add.at(total, self.element_dofs[i], near.mean(axis=0))
+            np.add.at(count, self.element_dofs[i], 1.0)
+        return total / count
+
+
+class Quadrature:
+    """Values and slopes of a field at a region's quadrature points, and the way back to operator values."""
+
+    def __init__(self, ops: Operators, name: str, direction: Callable[..., Any] | None) -> None:
+        e = ops.elements(name)
+        self.weight = ops.weight[e].reshape(-1)
+        dofs = ops.element_dofs[:, e]
+        n_local, n_q = dofs.shape[0], ops.weight.shape[1]
+        columns = np.repeat(dofs.T[:, None, :], n_q, axis=1).reshape(-1)
+        rows = np.arange(0, columns.size + 1, n_local)
+
+        def at_points(local: Array) -> csr_matrix:
+            return csr_matrix((np.moveaxis(local, 0, -1).reshape(-1), columns, rows), (rows.size - 1, ops.size))
+
+        phi = ops._phi[:, e]
+        slopes = ops.directed_gradients(name, direction)
+        self.value = at_points(phi)
+        self.slopes = tuple(at_points(g) for g in slopes)
+        self.value_t = self.value.T.tocsr()
+        self.slopes_t = tuple(g.T.tocsr() for g in self.slopes)
+        place = ops._place[:, :, e]
+        q = np.broadcast_to(np.arange(self.weight.size).reshape(e.size, n_q), (n_local, n_local, e.size, n_q))
+        where = np.broadcast_to(place[..., None], q.shape).reshape(-1)
+
+        def scatter(local: Array) -> csr_matrix:
+            product = local[:, None] * local[None] * ops.weight[e]
+            return csr_matrix((product.reshape(-1), (where, q.reshape(-1))), (ops.nnz, self.weight.size))
+
+        self.mass = scatter(phi)
+        self.conduction = tuple(scatter(g) for g in slopes)
+
+
+class Surface:
+    """Quadrature of a named boundary: points x (2, n_q), weights, and the trace of the unknowns there."""
+
+    def __init__(self, ops: Operators, name: str) -> None:
+        boundaries = ops.mesh.boundaries or {}
+        if name not in boundaries:
+            raise InputError(f"unknown boundary {name!r}{nearest(name, boundaries)}", field="boundaries")
+        facets = np.asarray(boundaries[name], dtype=np.int64)
+        if facets.size == 0:
+            raise InputError(f"boundary {name!r} has no facets", field="boundaries")
+        basis = skfem.FacetBasis(ops.mesh, ops.skfem_element, facets=facets, intorder=ops.intorder)
+        x = np.asarray(basis.global_coordinates().value)
+        self.name, self.x = name, np.ascontiguousarray(x.reshape(2, -1))
+        self.weight = (basis.dx * (2 * np.pi * x[0] if ops.axisymmetric else 1.0)).reshape(-1)
+        self.area = float(self.weight.sum())
+        phi = np.stack([np.broadcast_to(b[0].value, basis.dx.shape) for b in basis.basis])
+        dofs = np.broadcast_to(basis.element_dofs[:, :, None], phi.shape)
+        q = np.broadcast_to(np.arange(self.weight.size).reshape(basis.dx.shape), phi.shape)
+        used = np.abs(phi) > 1e-12
+        self.dofs, column = np.unique(dofs[used], return_inverse=True)
+        shape = (self.weight.size, self.dofs.size)
+        self.trace = csr_matrix((phi[used], (q[used], column)), shape)
+        self.trace_t = self.trace.T.tocsr()
+        self.row = self.trace_t @ self.weight
+        self.points = np.ascontiguousarray(ops.points[:, self.dofs])
+        self._keys, self._size = ops._keys, ops.size
+
+    def exchange(self, weighted: Array) -> tuple[Array, Array]:
+        """Positions and values on the common pattern of the integral of h v u, given h times the weights."""
+        product = (self.trace_t.multiply(weighted) @ self.trace).tocoo()
+        keys = self.dofs[product.row].astype(np.int64) * self._size + self.dofs[product.col]
+        return np.searchsorted(self._keys, keys), product.data
+
+
+def operators(mesh: Any, element: str = "P1", axisymmetric: bool = True) -> Operators:
+    """The operators of a mesh, shared by every problem on the same mesh object.
+
+    >>> mesh = skfem.MeshTri().refined(2)
+    >>> operators(mesh, "P1", False) is operators(mesh, "P1", False)
+    True
+    """
+    key = (id(mesh), element, axisymmetric)
+    found = _RECENT.get(key)
+    if found is None or found.mesh is not mesh:
+        found = _RECENT[key] = Operators(mesh, element, axisymmetric)
+    _RECENT.move_to_end(key)
+    while len(_RECENT) > 6:
+        _RECENT.popitem(last=False)
+    return found

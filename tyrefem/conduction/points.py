@@ -1,0 +1,119 @@
+"""Find the elements that hold given points, and evaluate a finite-element field there."""
+
+from __future__ import annotations
+
+from typing import Any
+
+import numpy as np
+from numpy.typing import ArrayLike, NDArray
+from scipy.sparse import csr_matrix
+
+from tyrefem.conduction.operators import Operators
+from tyrefem.errors import InputError
+
+Array = NDArray[Any]
+
+_SNAP = 1e-9
+
+
+def as_points(points: ArrayLike) -> Array:
+    """Points as an array (n, 2); one pair counts as one point."""
+    array = np.asarray(points, dtype=float)
+    if array.ndim == 1 and array.size == 2:
+        array = array[None]
+    if array.ndim != 2 or array.shape[1] != 2 or not np.isfinite(array).all():
+        raise InputError(f"wanted finite pairs of coordinates, (n, 2); got shape {array.shape}", field="points")
+    return array
+
+
+class Located:
+    """Element and reference coordinates of points in a mesh.
+
+    Raises InputError for a point further outside than 1e-9 of the mesh's size, naming it and its distance.
+    """
+
+    def __init__(self, ops: Operators, points: Array) -> None:
+        self.ops = ops
+        mesh = ops.mesh
+        corners = mesh.p[:, mesh.t[: 3 if "Tri" in type(mesh).__name__ else 4]]
+        mapped = mesh.p[:, mesh.dofs.element_dofs] if mesh.p.shape[1] > mesh.nvertices else corners
+        low, high = mapped.min(axis=1), mapped.max(axis=1)
+        size = float(np.ptp(mesh.p, axis=1).max())
+        curved = mapped.shape[1] > corners.shape[1]
+        margin = (0.1 * (high - low).max(axis=0) if curved else 0.0) + _SNAP * size
+        self.elements = np.empty(len(points), dtype=np.int64)
+        self.local = np.empty((2, len(points)))
+        for i, point in enumerate(points):
+            near = np.flatnonzero(
+                np.all((low <= point[:, None] + margin) & (high >= point[:, None] - margin), axis=0)
+            )
+            found = self._inside(point, near, size) if near.size else None
+            if found is None:
+                raise InputError(
+                    f"point ({point[0]:.6g}, {point[1]:.6g}) m lies {distance(ops, point):.3g} m outside the mesh",
+                    field="points",
+                )
+            self.elements[i], self.local[:, i] = found
+
+    def _inside(self, point: Array, near: Array, size: float) -> tuple[int, Array] | None:
+        mapping = self.ops.basis.mapping
+        target = np.broadcast_to(point[:, None, None], (2, near.size, 1))
+        X = np.full((2, near.size, 1), 1 / 3 if self.ops.skfem_element.refdom.nnodes == 3 else 0.5)
+        for _ in range(30):
+            gap = target - mapping.F(X, tind=near)
+            step = np.einsum("ijkl,jkl->ikl", mapping.invDF(X, tind=near), gap)
+            X = np.clip(X + step, -2.0, 3.0)
+            if np.max(np.abs(step)) < 1e-14:
+                break
+        if self.ops.skfem_element.refdom.nnodes == 3:
+            total = X.sum(axis=0)
+            inside = np.clip(X, 0.0, None)
+            over = np.clip(inside.sum(axis=0), 1.0, None)
+            inside = np.where(total > 1.0, inside / over, inside)
+        else:
+            inside = np.clip(X, 0.0, 1.0)
+        miss = np.hypot(*(target - mapping.F(inside, tind=near)))[:, 0]
+        best = int(np.argmin(miss))
+        return (int(near[best]), inside[:, best, 0]) if miss[best] <= _SNAP * size else None
+
+    def value(self) -> csr_matrix:
+        """Matrix (n_points, n) from unknowns to values."""
+        return self._matrix(0)[0]
+
+    def gradient(self) -> tuple[csr_matrix, csr_matrix]:
+        """Matrices (n_points, n) from unknowns to the two slopes."""
+        first, second = self._matrix(1)
+        return first, second
+
+    def _matrix(self, order: int) -> list[csr_matrix]:
+        ops, n = self.ops, self.elements.size
+        X = self.local[:, :, None]
+        columns = ops.element_dofs[:, self.elements]
+        values = []
+        for i in range(columns.shape[0]):
+            shape = ops.skfem_element.gbasis(ops.basis.mapping, X, i, tind=self.elements)[0]
+            values.append(np.asarray(shape.grad)[:, :, 0] if order else np.asarray(shape.value)[None, ..., 0])
+        stacked = np.stack([np.broadcast_to(v, (v.shape[0], n)) for v in values], axis=-1)
+        rows = np.arange(0, columns.size + 1, columns.shape[0])
+        return [csr_matrix((v.reshape(-1), columns.T.reshape(-1), rows), (n, ops.size)) for v in stacked]
+
+
+def distance(ops: Operators, point: Array) -> float:
+    """Distance from a point to the boundary of the mesh (straight facets), m."""
+    mesh = ops.mesh
+    ends = mesh.p[:, mesh.facets[:, mesh.boundary_facets()]]
+    a, along = ends[:, 0], ends[:, 1] - ends[:, 0]
+    part = np.clip(((point[:, None] - a) * along).sum(0) / (along**2).sum(0), 0.0, 1.0)
+    return float(np.min(np.hypot(*(point[:, None] - a - part * along))))
+
+
+def located(ops: Operators, points: ArrayLike) -> Located:
+    """The located points, remembered on the operators for the latest few sets."""
+    array = as_points(points)
+    store = ops._kept.setdefault("located", {})
+    key = array.tobytes()
+    if key not in store:
+        if len(store) >= 8:
+            store.pop(next(iter(store)))
+        store[key] = Located(ops, array)
+    return store[key]  # type: ignore[no-any-return]

@@ -1,0 +1,236 @@
+"""One step of the linearly implicit Rosenbrock-W method ROS34PW2 for the heat balance."""
+
+from __future__ import annotations
+
+from collections import OrderedDict
+from typing import Any
+
+import numpy as np
+from numpy.typing import NDArray
+
+from tyrefem.conduction.balance import HeatBalance
+from tyrefem.conduction.loads import State
+
+Array = NDArray[Any]
+
+# Rang & Angermann, BIT 45 (2005) 761-787, ROS34PW2: order 3 for any Jacobian approximation, L-stable.
+GAMMA = 0.435866521508459
+ALPHA = np.array(
+    [
+        [0.0, 0.0, 0.0, 0.0],
+        [0.87173304301691801, 0.0, 0.0, 0.0],
+        [0.84457060015369423, -0.11299064236484185, 0.0, 0.0],
+        [0.0, 0.0, 1.0, 0.0],
+    ]
+)
+LOWER = np.array(
+    [
+        [GAMMA, 0.0, 0.0, 0.0],
+        [-0.87173304301691801, GAMMA, 0.0, 0.0],
+        [-0.90338057013044082, 0.054180672388095326, GAMMA, 0.0],
+        [0.24212380706095346, -1.2232505839045147, 0.54526025533510214, GAMMA],
+    ]
+)
+WEIGHT = np.array([0.24212380706095346, -1.2232505839045147, 1.5452602553351020, GAMMA])
+EMBEDDED = np.array([0.37810903145819369, -0.096042292212423178, 0.5, 0.2179332607542295])
+NODE, SHIFT = ALPHA.sum(axis=1), LOWER.sum(axis=1)
+
+
+def _dense_weights() -> Array:
+    """b(theta) = W @ (theta, theta^2, theta^3): the third-order conditions of the partial step, solved.
+
+    sum b = theta, sum b alpha = theta^2/2, sum b gamma = 0, sum b beta beta = theta^3/6; b(1) is WEIGHT.
+    """
+    beta = ALPHA + LOWER
+    conditions = np.array([np.ones(4), NODE, SHIFT, beta @ beta.sum(axis=1)])
+    right = np.array([[1, 0, 0], [0, 1 / 2, 0], [0, 0, 0], [0, 0, 1 / 6]])
+    return np.linalg.solve(conditions, right)
+
+
+DENSE = _dense_weights()
+
+
+class StageMatrix:
+    """M + gamma h S with the reservoirs bordering it, factored once and reduced to their few unknowns."""
+
+    def __init__(self, balance: HeatBalance, h: float) -> None:
+        b, free, fixed = balance, balance.fixed.free, balance.fixed.dofs
+        gh = GAMMA * h
+        data = b.M_data + gh * b.S_data
+        self.ordering = b.ops.ordering(free)
+        self.factor = self.ordering.factor(data)
+        self.all_free = self.ordering.all_free
+        self.free, self.fixed = free, fixed
+        self.to_fixed = (b.M_fixed + gh * b.S_fixed).T.tocsr()[free] if fixed.size else None
+        self.m = b.B.shape[1]
+        self.solves = 0
+        if self.m:
+            border = gh * b.B
+            self.border_fixed = border[fixed]
+            self.E = self.factor.solve(border[free])
+            self.solves += self.m
+            self.schur = np.diag(b.C) + gh * b.D - border[free].T @ self.E
+
+    def solve(self, ru: Array, rg: Array, k_fixed: Array, ku: Array, kg: Array) -> None:
+        """Solve one stage in place: ku (n,), kg (m,), the rates at fixed unknowns being given."""
+        right = ru if self.all_free else ru[self.free]
+        if self.to_fixed is not None:
+            right = right - self.to_fixed @ k_fixed
+        if self.m:
+            if self.to_fixed is not None:
+                rg = rg + self.border_fixed.T @ k_fixed
+            kg[:] = np.linalg.solve(self.schur, rg + self.E.T @ right)
+        solution = self.factor.solve(right)
+        self.solves += 1
+        if self.m:
+            solution += self.E @ kg
+        if self.all_free:
+            ku[:] = solution
+        else:
+            ku[self.free], ku[self.fixed] = solution, k_fixed
+
+
+class Step:
+    """The stages of one step from state y at t, and everything that follows from them."""
+
+    def __init__(self, balance: HeatBalance, t: float, h: float, y: State) -> None:
+        n, m, ledger = y.u.size, y.g.size, len(balance.entries)
+        self.balance, self.t, self.h, self.y = balance, t, h, y
+        self.ku, self.kg, self.P = np.zeros((4, n)), np.zeros((4, m)), np.zeros((4, ledger))
+
+    def run(self, matrix: StageMatrix, first: float, last: float) -> float:
+        """Compute the stages with data seen only from `first` to `last`; return the error estimate, K."""
+        b, t, h, y = self.balance, self.t, self.h, self.y
+        ku, kg, gh = self.ku, self.kg, GAMMA * h
+        fixed = b.fixed.dofs
+        start = min(max(t, first), last)
+        later = min(start + 1e-3 * h, last)
+        slope = b.time_slope(start, y, later - start)
+        fixed_slope = np.zeros(fixed.size)
+        if fixed.size and not b.fixed.constant:
+            fixed_slope = (b.fixed(later) - b.fixed(start)) / (later - start)
+        k_fixed = np.zeros(0)
+        for i in range(4):
+            ti = min(max(t + NODE[i] * h, first), last)
+            U = State(y.u + h * (ALPHA[i, :i] @ ku[:i]), y.g + h * (ALPHA[i, :i] @ kg[:i])) if i else y
+            b.settle(ti, U.u, U.g)
+            W = State(h * (LOWER[i, :i] @ ku[:i]), h * (LOWER[i, :i] @ kg[:i]))
+            V = State(U.u + W.u, U.g + W.g)
+            G, Gg, P = b.remainder(ti, U)
+            if b.variable_capacity:
+                rate = self._rate(ti, U, G, b.B @ U.g, max(ti - (later - start), first), later - start)
+                ru = b.M @ rate - b.S @ W.u + b.B @ W.g
+            else:
+                ru = G - b.S @ V.u
+                if b.reservoirs:
+                    ru += b.B @ V.g
+            rg = Gg + b.B.T @ V.u - b.D @ V.g
+            if b.variable_reservoirs:
+                true = Gg + b.B.T @ U.u - b.D @ U.g
+                rg[b.massive] += true[b.massive] * (b.C / np.where(b.C, b.reservoir_capacity(U.g), 1) - 1)[b.massive]
+            if slope is not None:
+                factor = h * SHIFT[i]
+                ru += factor * slope[0]
+                rg += factor * slope[1]
+                P += factor * slope[2]
+                G = G + factor * slope[0]
+            if fixed.size:
+                target = b.fixed(ti) + h * SHIFT[i] * fixed_slope
+                k_fixed = (target - V.u[fixed]) / gh
+            matrix.solve(ru, rg, k_fixed, ku[i], kg[i])
+            V.u += gh * ku[i]
+            V.g += gh * kg[i]
+            b.add_linear_powers(V, P)
+            if fixed.size and not b.variable_capacity:
+                r = b.M_fixed @ ku[i] + b.S_fixed @ V.u - b.B[fixed] @ V.g - G[fixed]
+                for slot, part in b.fixed.parts:
+                    P[slot] = r[part].sum()
+            elif fixed.size:
+                P += b.reaction(ti, U, rate)
+            self.P[i] = P
+        difference = h * ((WEIGHT - EMBEDDED) @ ku)
+        error = float(np.max(np.abs(difference[b.fixed.free]), initial=0.0))
+        if b.massive.size:
+            error = max(error, float(np.max(np.abs(h * ((WEIGHT - EMBEDDED) @ kg))[b.massive])))
+        return error if np.isfinite(error) else np.inf
+
+    def _rate(self, t: float, U: State, G: Array, border: Array, before: float, dt: float) -> Array:
+        """du/dt with the true M(U), by conjugate gradients scaled with the diagonal."""
+        b = self.balance
+        M, free, fixed = b.ops.matrix(b.mass(U.u)), b.fixed.free, b.fixed.dofs
+        rate = np.zeros(U.u.size)
+        right = G - b.S @ U.u + border
+        if fixed.size:
+            rate[fixed] = (b.fixed(before + dt) - b.fixed(before)) / dt if not b.fixed.constant else 0.0
+            right = right - M @ rate
+            M = M[free][:, free]
+        rate[free] = conjugate_gradients(M, right[free])
+        return rate
+
+    def at(self, theta: float) -> State:
+        """The state at t + theta h, by the method's own continuous extension."""
+        if theta >= 1.0:
+            weights = WEIGHT
+        else:
+            weights = DENSE @ np.array([theta, theta**2, theta**3])
+        state = State(self.y.u + self.h * (weights @ self.ku), self.y.g + self.h * (weights @ self.kg))
+        return state
+
+    def energies(self, theta: float) -> Array:
+        """Energy of every ledger entry from t to t + theta h, J; closes with `at` to rounding."""
+        weights = WEIGHT if theta >= 1.0 else DENSE @ np.array([theta, theta**2, theta**3])
+        return self.h * (weights @ self.P)
+
+    def slope(self, theta: float) -> Array:
+        """du/dt at t + theta h."""
+        return (DENSE @ np.array([1.0, 2 * theta, 3 * theta**2])) @ self.ku
+
+
+def conjugate_gradients(M: Any, right: Array, tolerance: float = 1e-11) -> Array:
+    """Solve a mass matrix, well conditioned once scaled by its diagonal."""
+    scale = 1.0 / M.diagonal()
+    x = scale * right
+    r = right - M @ x
+    z = scale * r
+    p, rz = z.copy(), float(r @ z)
+    goal = tolerance**2 * float(right @ (scale * right))
+    for _ in range(500):
+        if rz <= goal:
+            break
+        q = M @ p
+        a = rz / float(p @ q)
+        x += a * p
+        r -= a * q
+        z = scale * r
+        rz, old = float(r @ z), rz
+        p = z + (rz / old) * p
+    return x
+
+
+class StageMatrices:
+    """The few most recent factored stage matrices, by step size."""
+
+    def __init__(self, keep: int = 6) -> None:
+        self._kept: OrderedDict[tuple[int, float], StageMatrix] = OrderedDict()
+        self._keep, self.factorisations, self._past_solves = keep, 0, 0
+
+    def get(self, balance: HeatBalance, h: float) -> StageMatrix:
+        """The matrix of a step size, factored now if need be."""
+        key = (balance.version, h)
+        if key not in self._kept:
+            for old in [k for k in self._kept if k[0] != balance.version]:
+                self._drop(old)
+            self._kept[key] = StageMatrix(balance, h)
+            self.factorisations += 1
+        self._kept.move_to_end(key)
+        while len(self._kept) > self._keep:
+            self._drop(next(iter(self._kept)))
+        return self._kept[key]
+
+    def _drop(self, key: tuple[int, float]) -> None:
+        self._past_solves += self._kept.pop(key).solves
+
+    @property
+    def solves(self) -> int:
+        """Linear solves so far."""
+        return self._past_solves + sum(matrix.solves for matrix in self._kept.values())

@@ -1,0 +1,95 @@
+"""Steady states of the heat balance by Newton's method."""
+
+from __future__ import annotations
+
+import numpy as np
+from scipy.sparse import bmat, csr_matrix, diags
+from scipy.sparse.linalg import splu
+
+from tyrefem.conduction.balance import HeatBalance
+from tyrefem.conduction.conditions import Film
+from tyrefem.conduction.errors import SolverError
+from tyrefem.conduction.loads import FilmLoad, RadiationLoad, SourceLoad, State
+
+_MOST = 60
+_BUMP = 1e-4
+
+
+def solve_steady(balance: HeatBalance, y: State, t: float, tolerance: float = 1e-9) -> State:
+    """Solve 0 = -S u + B g + G(t, u) from a first guess; `tolerance` is the last correction in K.
+
+    Raises SolverError if Newton's method with step halving does not converge.
+    """
+    fixed, free = balance.fixed.dofs, balance.fixed.free
+    y = State(y.u.copy(), y.g.copy())
+    y.u[fixed] = balance.fixed(t)
+    balance.freeze(t, y)
+    residual = _residual(balance, t, y)
+    scale = max(float(np.max(np.abs(residual))), 1e-30)
+    for _ in range(_MOST):
+        du, dg = _correction(balance, t, y, residual)
+        size = max(float(np.max(np.abs(du), initial=0)), float(np.max(np.abs(dg), initial=0)))
+        if not np.isfinite(size):
+            raise SolverError("the steady problem is singular: no temperature balances its sources and sinks")
+        best, part = np.linalg.norm(residual), 1.0
+        while True:
+            trial = State(y.u.copy(), y.g + part * dg)
+            trial.u[free] += part * du
+            left = _residual(balance, t, trial)
+            now = np.linalg.norm(left)
+            if (np.isfinite(now) and now <= (1 - 1e-4 * part) * best) or now <= 1e-12 * scale * left.size:
+                break
+            if size * part <= tolerance:
+                break
+            part *= 0.5
+            if part < 1e-6:
+                raise SolverError(f"no steady state found: the heat residual stays at {best:.3g} W")
+        y, residual = trial, left
+        if part * size <= tolerance:
+            return y
+    raise SolverError(f"no steady state after {_MOST} iterations; the last correction was {size:.3g} K")
+
+
+def _residual(balance: HeatBalance, t: float, y: State) -> np.ndarray:
+    with np.errstate(over="ignore", invalid="ignore"):
+        G, Gg, _ = balance.remainder(t, y)
+    ru = G - balance.S @ y.u + balance.B @ y.g
+    rg = Gg + balance.B.T @ y.u - balance.D @ y.g
+    return np.concatenate((ru[balance.fixed.free], rg))
+
+
+def _correction(balance: HeatBalance, t: float, y: State, residual: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
+    """Newton's correction; slopes of user functions by differences in T."""
+    balance.freeze(t, y)
+    J = balance.S
+    for load in balance.conduction:
+        k, bumped = load.values(y.u), load.values(y.u + _BUMP)
+        for slope, back, a, b in zip(load.q.slopes, load.q.slopes_t, k, bumped, strict=True):
+            J = J + back @ diags(load.q.weight * (b - a) / _BUMP * (slope @ y.u)) @ load.q.value
+    for load in balance.loads:
+        if isinstance(load, SourceLoad) and not load.static:
+            dq = (load.at_nodes(t, y.u + _BUMP) - load.at_nodes(t, y.u - _BUMP)) / (2 * _BUMP)
+            block = (load.matrix @ diags(dq)).tocsc()
+            columns = csr_matrix(
+                (np.ones(load.dofs.size), (np.arange(load.dofs.size), load.dofs)), (load.dofs.size, y.u.size)
+            )
+            J = J - block @ columns
+    free = balance.fixed.free
+    J = J.tocsr()[free][:, free]
+    if y.g.size:
+        B = csr_matrix(balance.B[free])
+        J = bmat([[J, -B], [-B.T, csr_matrix(balance.D)]])
+    try:
+        step = splu(J.tocsc()).solve(residual)
+    except RuntimeError as error:
+        raise SolverError("the steady problem is singular: some part has no way to lose heat") from error
+    return step[: free.size], step[free.size :]
+
+
+def anchored(balance: HeatBalance, films: list[tuple[FilmLoad, Film]], outside: set[int], t: float) -> bool:
+    """Whether a given temperature acts on the body: fixed, through a film or radiation, or by a reservoir."""
+    if balance.fixed.dofs.size or any(isinstance(load, RadiationLoad) and load.factor > 0 for load in balance.loads):
+        return True
+    return any(
+        np.max(load.h(t)) > 0 and (load.reservoir is None or load.reservoir in outside) for load, _ in films
+    )

@@ -1,0 +1,159 @@
+"""Adaptive time integration of the heat balance, phase by phase."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Callable
+from typing import Any
+
+import numpy as np
+from numpy.typing import NDArray
+
+from tyrefem.conduction.balance import HeatBalance
+from tyrefem.conduction.budget import Tally
+from tyrefem.conduction.errors import SolverError
+from tyrefem.conduction.history import Peak
+from tyrefem.conduction.loads import State
+from tyrefem.conduction.rosenbrock import StageMatrices, Step
+
+Array = NDArray[Any]
+
+# Local error allowed per kelvin of tolerance, set so that the global error stays within the tolerance.
+_SHARE = 0.3
+_RUNG = 2.0 ** (1 / 3)
+
+
+class Integration:
+    """One run from times[0] to times[-1]; `run` may be interrupted and leaves what was finished.
+
+    The data are taken as continuous between breakpoints: each phase sees its own limits from inside.
+    """
+
+    def __init__(
+        self,
+        balance: HeatBalance,
+        times: Array,
+        y: State,
+        tolerance: float,
+        breakpoints: Array,
+        max_step: float,
+        tally: Tally,
+    ) -> None:
+        self.balance, self.times, self.y, self.tally = balance, times, y, tally
+        self.goal, self.max_step = _SHARE * tolerance, max_step
+        inner = breakpoints[(breakpoints > times[0]) & (breakpoints < times[-1])]
+        self.ends = np.unique(np.concatenate((times[:1], inner, times[-1:])))
+        self.matrices = StageMatrices()
+        self.accepted = self.rejected = 0
+        self.values: list[Array] = []
+        self.gas: list[Array] = []
+        self.energy = np.zeros(len(balance.entries))
+        self.stored = np.zeros(len(balance.capacities))
+        self.kept = np.zeros(y.g.size)
+        regions = [None, *(c.dofs for c in balance.capacities.values())]
+        self._regions = regions
+        self._peaks = [(-math.inf, 0, 0.0)] * len(regions)
+
+    def run(self, progress: Callable[[float], None] | None) -> None:
+        """Integrate phase after phase."""
+        for first, last in zip(self.ends[:-1], self.ends[1:], strict=True):
+            self._phase(float(first), float(last), progress)
+
+    def _phase(self, first: float, last: float, progress: Callable[[float], None] | None) -> None:
+        b = self.balance
+        inside = max(1e-10 * (last - first), 4 * np.spacing(max(abs(first), abs(last))))
+        low, high = first + inside, last - inside
+        self._jump(low)
+        b.settle(low, self.y.u, self.y.g)
+        b.freeze(low, self.y)
+        self._look(first)
+        t, h = first, self._first_step(low, last - first)
+        while t < last:
+            h = self._rung(min(h, self.max_step))
+            remaining = last - t
+            h_now = remaining if h >= remaining * (1 - 1e-9) else min(h, 0.5 * remaining) if 2 * h > remaining else h
+            step = Step(b, t, h_now, self.y)
+            error = step.run(self.matrices.get(b, h_now), low, high)
+            factor = 0.9 * (self.goal / max(error, 1e-30)) ** (1 / 3)
+            if error > self.goal:
+                self.rejected += 1
+                h = h_now * max(0.1, min(factor, 0.8)) if math.isfinite(error) else 0.1 * h_now
+                if h < 1e-13 * max(abs(t), last - first):
+                    raise SolverError(f"the time step vanished at t = {t:.6g} s (error estimate {error:.3g} K)")
+                continue
+            h = max(h, h_now) if h_now < h and factor >= 1 else h_now * min(4.0, factor)
+            t_new = last if h_now == remaining else t + h_now
+            self._accept(step, t, t_new, min(t_new, high))
+            t = t_new
+            if progress is not None:
+                progress(t)
+            if t < last and b.stale(min(max(t, low), high), self.y):
+                b.freeze(min(max(t, low), high), self.y)
+
+    @staticmethod
+    def _rung(h: float) -> float:
+        """The step of the geometric ladder just below h, so that factors are met again."""
+        return _RUNG ** math.floor(math.log(h) / math.log(_RUNG) + 1e-9)
+
+    def _jump(self, t: float) -> None:
+        """Bring the prescribed nodes to their value at the start of a phase and book the heat of the jump."""
+        b = self.balance
+        target = b.fixed(t)
+        for slot, part in b.fixed.parts:
+            before, nodes = self.y.u.copy(), b.fixed.dofs[part]
+            self.y.u[nodes] = target[part]
+            heat = b.stored(before, self.y.u)
+            self.stored += heat
+            self.energy[slot] += heat.sum()
+
+    def _first_step(self, t: float, span: float) -> float:
+        b = self.balance
+        G, Gg, _ = b.remainder(t, self.y)
+        rate = (G - b.S @ self.y.u + b.B @ self.y.g) / (b.M @ np.ones(G.size))
+        fastest = float(np.max(np.abs(rate[b.fixed.free]), initial=0.0))
+        return min(span, 30 * self.goal / fastest if fastest > 0 else span)
+
+    def _accept(self, step: Step, t: float, t_new: float, seen: float) -> None:
+        b, n = self.balance, len(self.values)
+        due = np.searchsorted(self.times, t_new, side="right")
+        end = step.at(1.0)
+        b.settle(seen, end.u, end.g)
+        for i in range(n, due):
+            theta = (self.times[i] - t) / step.h if self.times[i] < t_new else 1.0
+            self._output(step, theta, end if theta >= 1.0 else None, seen)
+        self.energy += step.energies(1.0)
+        self.stored += b.stored(step.y.u, end.u)
+        self.kept += b.reservoir_stored(step.y.g, end.g)
+        self.y = end
+        self.accepted += 1
+        self._look(t_new)
+
+    def _output(self, step: Step, theta: float, end: State | None, seen: float) -> None:
+        b = self.balance
+        y = end if end is not None else step.at(theta)
+        t = min(step.t + theta * step.h, seen)
+        if end is None and theta > 0:
+            b.settle(t, y.u, y.g)
+        slope = step.slope(theta)
+        self.values.append(y.u.copy())
+        self.gas.append(y.g.copy())
+        self.tally.record(
+            self.energy + step.energies(theta),
+            b.powers(t, y, slope),
+            self.stored + b.stored(step.y.u, y.u),
+            b.storing(y.u, slope),
+            self.kept + b.reservoir_stored(step.y.g, y.g),
+        )
+
+    def _look(self, t: float) -> None:
+        """Remember the hottest points."""
+        for j, dofs in enumerate(self._regions):
+            u = self.y.u if dofs is None else self.y.u[dofs]
+            i = int(np.argmax(u))
+            if u[i] > self._peaks[j][0]:
+                self._peaks[j] = (float(u[i]), i if dofs is None else int(dofs[i]), t)
+
+    def peaks(self) -> list[Peak]:
+        """Hottest point of the body, then of every region."""
+        x = self.balance.ops.points
+        return [Peak(T, (float(x[0, i]), float(x[1, i])), t) for T, i, t in self._peaks]

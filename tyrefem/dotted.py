@@ -1,0 +1,137 @@
+"""Change one value of a study by its dotted name: ``drive.speed``, ``section.crown_radius``, ``sensors.crown.s``."""
+
+from __future__ import annotations
+
+import copy
+import re
+from collections.abc import Mapping
+from typing import Any
+
+from tyrefem import library
+from tyrefem.errors import InputError, nearest
+
+#: Tables whose text value is a reference to a card: changing something below it lays the change over the card.
+_REFERENCES = {"section": "section", "materials.*": "material"}
+_AMOUNT = re.compile(r"^\s*([-+]?(?:\d+\.?\d*|\.\d+)(?:[eE][-+]?\d+)?)(.*)$", re.DOTALL)
+
+
+def changed(data: Mapping[str, Any], key: str, value: Any) -> dict[str, Any]:
+    """Plain data with the value at a dotted name replaced (the original is left alone).
+
+    >>> changed({"section": "nasa"}, "section.crown_radius", "3 in")
+    {'section': {'base': 'nasa', 'parameters': {'crown_radius': '3 in'}}}
+    """
+    parts = _parts(data, key)
+    result: dict[str, Any] = copy.deepcopy(dict(data))
+    _refuse_overridden(result, parts)
+    place: Any = result
+    for depth, part in enumerate(parts[:-1]):
+        place = _step(place, part, ".".join(parts[: depth + 1]), parts[: depth + 1])
+    last = parts[-1]
+    if isinstance(place, list):
+        place[_index(place, last, key)] = value
+    else:
+        place[last] = value
+        _drop_rivals(parts, place)
+    return result
+
+
+def _parts(data: Mapping[str, Any], key: str) -> list[str]:
+    parts = [part.strip().replace("-", "_") if i == 0 else part.strip() for i, part in enumerate(key.split("."))]
+    if not all(parts):
+        raise InputError(f"'{key}' is not a dotted name such as drive.speed")
+    if parts[0] == "section" and len(parts) == 2 and parts[1] != "base":
+        return _section_parts(parts[1])
+    return parts
+
+
+def _section_parts(name: str) -> list[str]:
+    """``section.crown_radius`` means the section's parameter of that name, ``section.cord_angle`` its rating."""
+    from tyrefem.section.card import RatingCard, SectionCard
+
+    if name in SectionCard.model_fields:
+        return ["section", name]
+    return ["section", "rating" if name in RatingCard.model_fields else "parameters", name]
+
+
+def _step(place: Any, part: str, so_far: str, path: list[str]) -> Any:
+    if isinstance(place, list):
+        return place[_index(place, part, so_far)]
+    below = place.get(part)
+    reference = so_far in _REFERENCES or (path[0] == "materials" and len(path) == 2)
+    if reference and isinstance(below, str):
+        below = place[part] = {"base": below}
+    elif below is None:
+        below = place[part] = {}
+    elif not isinstance(below, dict | list):
+        raise InputError(f"'{so_far}' is a value, not a table: nothing below it can be set", field=so_far)
+    return below
+
+
+def _index(entries: list[Any], part: str, so_far: str) -> int:
+    names = [str(entry.get("name", "")) if isinstance(entry, dict) else "" for entry in entries]
+    if part in names:
+        return names.index(part)
+    if part.isdigit() and int(part) < len(entries):
+        return int(part)
+    allowed = [name or str(number) for number, name in enumerate(names)]
+    raise InputError(f"no entry '{part}'{nearest(part, allowed)}", field=so_far)
+
+
+def _refuse_overridden(data: Mapping[str, Any], parts: list[str]) -> None:
+    drive = data.get("drive")
+    if parts[0] != "drive" or len(parts) < 2 or not isinstance(drive, Mapping):
+        return
+    phases = drive.get("phases")
+    if isinstance(phases, list) and phases and all(isinstance(p, Mapping) and parts[1] in p for p in phases):
+        names = [str(p.get("name", number)) for number, p in enumerate(phases)]
+        raise InputError(
+            f"every phase sets its own '{parts[1]}': name the phase, e.g. drive.phases.{names[0]}.{parts[1]} "
+            f"(phases: {', '.join(names)})",
+            field=".".join(parts),
+        )
+
+
+def _drop_rivals(parts: list[str], place: dict[str, Any]) -> None:
+    """Load and deflection say the same thing: setting one drops the other; so do a sensor's two ways of placing."""
+    rivals = {"load": ["deflection"], "deflection": ["load"]} if parts[0] == "drive" else {}
+    if parts[0] == "sensors":
+        rivals = {"at": ["s", "depth"], "s": ["at"], "depth": ["at"]}
+    for rival in rivals.get(parts[-1], []):
+        place.pop(rival, None)
+
+
+def value_at(data: Mapping[str, Any], key: str, near: Any = None) -> Any:
+    """The value at a dotted name, looked up through the cards that the study refers to."""
+    place: Any = data
+    parts = _parts(data, key)
+    for depth, part in enumerate(parts):
+        reference = (depth == 1 and parts[0] == "section") or (depth == 2 and parts[0] == "materials")
+        if reference:
+            place, _, _ = library.load("section" if depth == 1 else "material", place, near)
+        if isinstance(place, list):
+            place = place[_index(place, part, key)]
+        elif isinstance(place, Mapping) and part in place:
+            place = place[part]
+        else:
+            allowed = list(place) if isinstance(place, Mapping) else []
+            raise InputError(f"not set in the study or its cards{nearest(part, allowed)}", field=key)
+    return place
+
+
+def scaled(value: Any, factor: float) -> Any:
+    """A quantity as written, its number times a factor.
+
+    >>> scaled("20 mph", 1.5)
+    '30 mph'
+    """
+    if isinstance(value, bool):
+        raise InputError(f"{value!r} is not a number that can be scaled")
+    if isinstance(value, int | float):
+        return value * factor
+    if isinstance(value, list):
+        return [scaled(entry, factor) for entry in value]
+    match = _AMOUNT.match(value) if isinstance(value, str) else None
+    if match is None:
+        raise InputError(f"{value!r} is not a number that can be scaled")
+    return f"{float(match[1]) * factor:.12g}{match[2]}"

@@ -1,0 +1,162 @@
+"""The drive: phases of speed, load, pressure and surroundings, each constant or a ramp."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Mapping
+from dataclasses import dataclass
+from typing import Annotated, Any, ClassVar
+
+from pydantic import GetCoreSchemaHandler, model_validator
+from pydantic_core import CoreSchema, core_schema
+
+from tyrefem.cards import Card, Temperature, Text
+from tyrefem.errors import InputError, nearest
+from tyrefem.quantity import Unit
+
+
+@dataclass(frozen=True)
+class Ramp:
+    """A quantity during a phase: from ``start`` to ``end``, linear in time. SI.
+
+    >>> Ramp(0.0, 10.0).at(0.25)
+    2.5
+    """
+
+    start: float
+    end: float
+
+    @property
+    def constant(self) -> bool:
+        """Does it stay the same?"""
+        return self.start == self.end
+
+    def at(self, fraction: float) -> float:
+        """The value at a fraction of the phase."""
+        return self.start + (self.end - self.start) * fraction
+
+
+@dataclass(frozen=True)
+class RampOf:
+    """Annotation of a drive quantity: ``"20 mph"``, or ``{ from = "0 mph", to = "150 mph" }``."""
+
+    unit: Unit
+
+    def __call__(self, value: Any) -> Ramp:
+        if not isinstance(value, Mapping):
+            number = self.unit(value)
+            return Ramp(number, number)
+        for key in value:
+            if key not in ("from", "to"):
+                raise InputError(f"unknown key '{key}'{nearest(str(key), ['from', 'to'])}")
+        if set(value) != {"from", "to"}:
+            raise InputError("a ramp needs both 'from' and 'to'")
+        ends = []
+        for key in ("from", "to"):
+            try:
+                ends.append(self.unit(value[key]))
+            except InputError as error:
+                raise error.within(field=key) from None
+        return Ramp(*ends)
+
+    def __get_pydantic_core_schema__(self, source: Any, handler: GetCoreSchemaHandler) -> CoreSchema:
+        return core_schema.no_info_plain_validator_function(self)
+
+
+#: Fastest wheel speed accepted, m/s: the land-speed record is 341 m/s.
+FASTEST = 400.0
+
+
+class Phase(Card):
+    """A stretch of the drive. Keys left out come from the study's ``[drive]`` table."""
+
+    name: Text = "rolling"
+    duration: Annotated[float, Unit("s", gt=0, le=1e7)]
+    speed: Annotated[Ramp, RampOf(Unit("m/s", ge=0, le=FASTEST))]
+    load: Annotated[Ramp, RampOf(Unit("N", ge=0))] | None = None
+    deflection: Annotated[Ramp, RampOf(Unit("m", ge=0))] | None = None
+    pressure: Annotated[Ramp, RampOf(Unit("Pa", ge=0, le=1e7))]
+    ambient: Annotated[Ramp, RampOf(Unit("degC", le=2000))] = Ramp(25.0, 25.0)
+    road_temperature: Annotated[Ramp, RampOf(Unit("degC", le=2000))] | None = None
+    rim_temperature: Annotated[Ramp, RampOf(Unit("degC", le=2000))] | None = None
+    drum_diameter: Annotated[float, Unit("m", gt=0)] = math.inf
+
+    @model_validator(mode="after")
+    def _one_of_load_and_deflection(self) -> Phase:
+        if (self.load is None) == (self.deflection is None):
+            raise InputError("give exactly one of 'load' and 'deflection'")
+        return self
+
+    @property
+    def changes_load(self) -> bool:
+        """Does the strain cycle change during the phase?"""
+        ramps = [self.load, self.deflection, self.pressure]
+        return any(ramp is not None and not ramp.constant for ramp in ramps)
+
+
+class Drive(Card):
+    """The whole drive: ``phases`` in their order, starting at ``initial`` temperature."""
+
+    kind: ClassVar[str] = "drive"
+    initial: Temperature
+    phases: tuple[Phase, ...]
+
+    @model_validator(mode="before")
+    @classmethod
+    def _spread_defaults(cls, data: Any) -> Any:
+        if not isinstance(data, Mapping):
+            return data
+        defaults = {key: value for key, value in data.items() if key not in ("phases", "initial")}
+        phases = data.get("phases", [{}])
+        if not isinstance(phases, list) or not phases:
+            raise InputError("must be a list of at least one phase", field="phases")
+        filled = [cls._filled(defaults, phase, number, len(phases)) for number, phase in enumerate(phases)]
+        initial = data.get("initial", _start_of(filled[0].get("ambient", "25 degC")))
+        return {"initial": initial, "phases": filled}
+
+    @staticmethod
+    def _filled(defaults: Mapping[str, Any], phase: Any, number: int, count: int) -> dict[str, Any]:
+        if not isinstance(phase, Mapping):
+            raise InputError("must be a table of keys", field=f"phases.{number}")
+        drop = {"load"} if "deflection" in phase else {"deflection"} if "load" in phase else set()
+        own = {"name": f"phase {number + 1}" if count > 1 else "rolling"}
+        return own | {key: value for key, value in defaults.items() if key not in drop} | dict(phase)
+
+    @model_validator(mode="after")
+    def _distinct_names(self) -> Drive:
+        names = [phase.name for phase in self.phases]
+        repeated = {name for name in names if names.count(name) > 1}
+        if repeated:
+            raise InputError(f"two phases are named '{repeated.pop()}'", field="phases")
+        return self
+
+    @property
+    def starts(self) -> tuple[float, ...]:
+        """Start of each phase, s."""
+        total, result = 0.0, []
+        for phase in self.phases:
+            result.append(total)
+            total += phase.duration
+        return tuple(result)
+
+    @property
+    def end(self) -> float:
+        """End of the drive, s."""
+        return sum(phase.duration for phase in self.phases)
+
+    def locate(self, time: float) -> tuple[int, float]:
+        """Number of the phase at a time, and the fraction of it that has passed."""
+        starts = self.starts
+        number = max((i for i, start in enumerate(starts) if start <= time), default=0)
+        fraction = (time - starts[number]) / self.phases[number].duration
+        return number, min(max(fraction, 0.0), 1.0)
+
+    def value(self, quantity: str, time: float) -> float | None:
+        """A phase's quantity (``speed``, ``ambient``...) at a time, SI; None where the drive does not say."""
+        number, fraction = self.locate(time)
+        ramp = getattr(self.phases[number], quantity)
+        return None if ramp is None else ramp.at(fraction)
+
+
+def _start_of(value: Any) -> Any:
+    return value.get("from") if isinstance(value, Mapping) else value

@@ -1,0 +1,145 @@
+"""Load and pressure to deflection, footprint and the fraction of a revolution on the road."""
+
+from __future__ import annotations
+
+import math
+from dataclasses import dataclass
+from typing import Annotated, Literal, Protocol
+
+from tyrefem.cards import Card, Text
+from tyrefem.errors import InputError
+from tyrefem.quantity import Unit
+
+#: TR R-64, type VII tyres, static: C_z.
+TYPE_VII = 0.02
+
+
+class TrR64(Card):
+    """Load-deflection of NASA TR R-64 (Smiley & Horne 1958), quoted from memory of the report.
+
+    F / ((p + 0.08 p_rated) w sqrt(w d)) = 0.96 u + 0.216 u^2 / C_z    for u = D/w <= 10 C_z / 3,
+                                         = 2.4 (u - C_z)               beyond.
+    """
+
+    law: Literal["tr-r-64"] = "tr-r-64"
+    shape_factor: Annotated[float, Unit("1", gt=0, lt=0.2)] = TYPE_VII
+    source: Text = "NASA TR R-64, static, type VII, C_z = 0.02 (quoted from memory)"
+
+    def _scale(self, pressure: float, tyre: Rating) -> float:
+        return (pressure + 0.08 * tyre.pressure) * tyre.width * math.sqrt(tyre.width * tyre.diameter)
+
+    def load(self, deflection: float, pressure: float, tyre: Rating) -> float:
+        """Vertical load, N."""
+        u, c = deflection / tyre.width, self.shape_factor
+        shape = 0.96 * u + 0.216 * u * u / c if u <= 10 * c / 3 else 2.4 * (u - c)
+        return shape * self._scale(pressure, tyre)
+
+    def deflection(self, load: float, pressure: float, tyre: Rating) -> float:
+        """Deflection, m: the closed-form inverse of the two branches."""
+        f, c = load / self._scale(pressure, tyre), self.shape_factor
+        if f <= 2.4 * (10 * c / 3 - c):
+            a = 0.216 / c
+            return tyre.width * (-0.96 + math.sqrt(0.96**2 + 4 * a * f)) / (2 * a)
+        return tyre.width * (f / 2.4 + c)
+
+
+class VerticalStiffness(Card):
+    """A measured vertical stiffness: D = F / k."""
+
+    law: Literal["vertical-stiffness"]
+    stiffness: Annotated[float, Unit("N/m", gt=0)]
+    source: Text
+
+    def load(self, deflection: float, pressure: float, tyre: Rating) -> float:
+        """Vertical load, N."""
+        return self.stiffness * deflection
+
+    def deflection(self, load: float, pressure: float, tyre: Rating) -> float:
+        """Deflection, m."""
+        return load / self.stiffness
+
+
+class Rating(Protocol):
+    """What a load-deflection law needs of the tyre: nominal width and diameter (m), rated pressure (Pa)."""
+
+    @property
+    def width(self) -> float:
+        """w, m."""
+
+    @property
+    def diameter(self) -> float:
+        """d, m."""
+
+    @property
+    def pressure(self) -> float:
+        """p_rated, Pa."""
+
+
+@dataclass(frozen=True)
+class LoadCase:
+    """One load on the tyre: everything the strain cycle depends on. SI units.
+
+    ``drum_diameter`` is ``inf`` on a flat road.
+    """
+
+    load: float
+    deflection: float
+    pressure: float
+    outer_radius: float
+    drum_diameter: float = math.inf
+
+    @property
+    def rolling_radius(self) -> float:
+        """r_r = r_0 - D/3 (Clark & Dodge 1980, eq 26)."""
+        return self.outer_radius - self.deflection / 3
+
+    @property
+    def footprint_length(self) -> float:
+        """1.7 d sqrt(D/d - (D/d)^2) (TR R-64), shortened by sqrt(1/(1 + d/d_drum)) on a drum.
+
+        The drum's factor is the Hertz contact of two cylinders at equal deflection: an estimate.
+        """
+        d = 2 * self.outer_radius
+        x = self.deflection / d
+        return 1.7 * d * math.sqrt(max(x - x * x, 0.0)) / math.sqrt(1 + d / self.drum_diameter)
+
+    @property
+    def road_fraction(self) -> float:
+        """Fraction of a revolution that a tread point spends on the road: L / (2 pi r_r)."""
+        return self.footprint_length / (2 * math.pi * self.rolling_radius)
+
+    def contact_time(self, speed: float) -> float:
+        """Seconds that a tread point stays on the road at a speed in m/s."""
+        return self.footprint_length / speed if speed > 0 else math.inf
+
+
+def load_case(
+    law: TrR64 | VerticalStiffness,
+    rating: Rating,
+    *,
+    outer_radius: float,
+    pressure: float,
+    load: float | None = None,
+    deflection: float | None = None,
+    drum_diameter: float = math.inf,
+) -> LoadCase:
+    """A load case from a load or from a deflection, the other found by the law.
+
+    Raises
+    ------
+    InputError : the deflection exceeds half the outer radius, which no tyre survives.
+    """
+    if deflection is None:
+        load = load or 0.0
+        deflection = law.deflection(load, pressure, rating) if load > 0 else 0.0
+        field = "load"
+    else:
+        load = law.load(deflection, pressure, rating)
+        field = "deflection"
+    if not 0 <= deflection < outer_radius / 2:
+        raise InputError(
+            f"{load:.4g} N at {pressure / 1e3:.4g} kPa deflects the tyre by {deflection * 1e3:.4g} mm; "
+            f"allowed: 0 to {outer_radius * 500:.4g} mm (half its outer radius)",
+            field=field,
+        )
+    return LoadCase(load, deflection, pressure, outer_radius, drum_diameter)

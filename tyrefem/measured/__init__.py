@@ -1,0 +1,6 @@
+"""Measured temperature histories, read as loggers write them."""
+
+from tyrefem.measured.run import MeasuredRun
+from tyrefem.measured.table import read_table
+
+__all__ = ["MeasuredRun", "read_table"]

@@ -1,0 +1,140 @@
+"""A logger's file as numbered rows of cells: encoding, comments and delimiter recognised."""
+
+from __future__ import annotations
+
+import csv
+import re
+from dataclasses import dataclass
+from pathlib import Path
+
+from tyrefem.errors import InputError
+from tyrefem.measured.heading import is_time, parts
+
+#: Above this size a table is a mistake (a video, a raw waveform): 5 million rows of 10 sensors fit in.
+LARGEST_BYTES = 400_000_000
+#: How many lines of free text a logger may write above its heading.
+LONGEST_PREAMBLE = 100
+DELIMITERS = "\t;,"
+_CONTROL = re.compile("[\x00-\x08\x0e-\x1f]")
+_COMMENT = re.compile(r'^[\s"]*(?:#|//)')
+
+
+@dataclass(frozen=True)
+class Lines:
+    """The heading and the rows of a table, with their line numbers in the file (counted from 1)."""
+
+    comments: tuple[str, ...]
+    heading: tuple[str, ...]
+    heading_line: int
+    rows: list[list[str]]
+    numbers: list[int]
+
+
+def decode(path: Path) -> str:
+    """The text of a file: UTF-8 with or without mark, UTF-16 with mark, else Latin-1.
+
+    Raises
+    ------
+    InputError : no such file, a folder, empty, far too large, not text.
+    """
+    try:
+        if path.stat().st_size > LARGEST_BYTES:
+            raise InputError(f"larger than {LARGEST_BYTES // 10**6} MB; thin the table out", file=path)
+        data = path.read_bytes()
+    except (OSError, ValueError) as error:
+        if isinstance(error, InputError):
+            raise
+        raise InputError(f"cannot be read: {getattr(error, 'strerror', None) or error}", file=path) from None
+    if data.startswith((b"PK\x03\x04", b"\xd0\xcf\x11\xe0")):
+        raise InputError("is a spreadsheet or archive, not text: save the sheet as CSV", file=path)
+    try:
+        marked = data.startswith((b"\xff\xfe", b"\xfe\xff"))
+        text = data.decode("utf-16" if marked else "utf-8-sig")
+    except UnicodeDecodeError:
+        text = data.decode("latin-1")
+    binary = _CONTROL.search(text)
+    if binary:
+        line = text.count("\n", 0, binary.start()) + 1
+        raise InputError(f"is not a text file (control character in line {line}): a CSV is wanted", file=path)
+    if not text.strip():
+        raise InputError("is empty", file=path)
+    return text
+
+
+def split(path: Path) -> Lines:
+    """The cells of a table. Blank lines, and lines that begin with ``#`` or ``//``, are no rows.
+
+    A line that begins with ``;`` is a row (in a semicolon table its first cell is empty), not a comment.
+    Up to 100 lines of free text may stand before the heading, the first line with a time column.
+
+    Raises
+    ------
+    InputError : what `decode` raises; no time column; rows longer or shorter than the heading.
+    """
+    lines = re.split("\r\n|\r|\n", decode(path))
+    comments, content = [], []
+    for number, line in enumerate(lines, 1):
+        if _COMMENT.match(line):
+            comments.append(_COMMENT.sub("", line).strip(DELIMITERS + ' "'))
+        elif line.strip(DELIMITERS + ' "'):
+            content.append((number, line))
+    if not content:
+        raise InputError("has only comments, no heading and no readings", file=path)
+    position, delimiter = _heading(content, path)
+    number, line = content[position]
+    heading = tuple(_without_trailing_empty(_cells(line, delimiter, number, path)))
+    rows, numbers = _rows(content[position + 1 :], delimiter, heading, path)
+    preamble = [text.strip(DELIMITERS + ' "') for _, text in content[:position]]
+    return Lines((*preamble, *comments), heading, number, rows, numbers)
+
+
+def _heading(content: list[tuple[int, str]], path: Path) -> tuple[int, str]:
+    """Place and delimiter of the first line with a time column, one with a unit before one without."""
+    without_unit = None
+    for position, (number, line) in enumerate(content[:LONGEST_PREAMBLE]):
+        for delimiter in DELIMITERS:
+            times = [cell for cell in _cells(line, delimiter, number, path, strict=False) if is_time(cell)]
+            if any(parts(cell)[1] for cell in times):
+                return position, delimiter
+            if times and without_unit is None:
+                without_unit = position, delimiter
+    if without_unit is not None:
+        return without_unit
+    number, line = content[0]
+    raise InputError(
+        f"line {number}: no time column in {line.strip()[:60]!r}; the heading must have "
+        "'time [s]' (or [min], [h], [ms]) and one column per sensor, like 'crown [degC]'",
+        file=path,
+    )
+
+
+def _rows(
+    content: list[tuple[int, str]], delimiter: str, heading: tuple[str, ...], path: Path
+) -> tuple[list[list[str]], list[int]]:
+    width = len(heading)
+    rows, numbers = [], []
+    for number, line in content:
+        cells = _cells(line, delimiter, number, path)
+        if len(cells) > width and not any(cells[width:]):
+            cells = cells[:width]
+        if len(cells) != width:
+            hint = " (decimal commas need ';' between the columns)" if delimiter == "," else ""
+            raise InputError(f"line {number}: {len(cells)} cells, but the heading has {width}{hint}", file=path)
+        rows.append(cells)
+        numbers.append(number)
+    return rows, numbers
+
+
+def _cells(line: str, delimiter: str, number: int, path: Path, *, strict: bool = True) -> list[str]:
+    if '"' not in line:
+        return [cell.strip() for cell in line.split(delimiter)]
+    try:
+        found = next(csv.reader([line], delimiter=delimiter, skipinitialspace=True, strict=strict), [])
+    except csv.Error as error:
+        raise InputError(f"line {number}: quotes do not match ({error})", file=path) from None
+    return [cell.strip() for cell in found]
+
+
+def _without_trailing_empty(cells: list[str]) -> list[str]:
+    last = max(index for index, cell in enumerate(cells) if cell)
+    return cells[: last + 1]

@@ -1,0 +1,66 @@
+"""One measured run: the histories of its sensors on one clock."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass, replace
+from pathlib import Path
+from typing import TYPE_CHECKING
+
+import numpy as np
+from numpy.typing import NDArray
+
+if TYPE_CHECKING:
+    import pandas as pd
+
+
+@dataclass(frozen=True, eq=False)
+class MeasuredRun:
+    """Temperatures of all sensors in one run.
+
+    Parameters
+    ----------
+    name : the run's name: its ``run`` cell, else the file's name without suffix.
+    times : (n,) s, strictly increasing.
+    temperatures : (n, sensors) degC, one column per sensor; NaN = no reading.
+    file : where it was read from, None for data made in memory.
+    comments : comment and preamble lines of the file, without their mark.
+    """
+
+    name: str
+    times: NDArray[np.float64]
+    temperatures: pd.DataFrame
+    file: Path | None = None
+    comments: tuple[str, ...] = ()
+
+    @property
+    def sensors(self) -> tuple[str, ...]:
+        """Names of the sensors, in the order of the columns."""
+        return tuple(map(str, self.temperatures.columns))
+
+    def shifted(self, seconds: float) -> MeasuredRun:
+        """The same run with ``seconds`` added to its clock."""
+        return replace(self, times=self.times + seconds) if seconds else self
+
+    def write(self, path: str | Path) -> Path:
+        """Write as a table that `read_table` reads back, to the last bit.
+
+        >>> import pandas as pd, tempfile
+        >>> from tyrefem.measured import read_table
+        >>> run = MeasuredRun("heat", np.array([0.0, 0.1]), pd.DataFrame({"crown": [25.0, np.nan]}))
+        >>> file = run.write(tempfile.mkdtemp() + "/heat.csv")
+        >>> print(file.read_text().strip())
+        time [s],crown [degC]
+        0.0,25.0
+        0.1,
+        >>> read_table(file)[0].times.tolist()
+        [0.0, 0.1]
+        """
+        from tyrefem.output import atomic_path
+
+        table = self.temperatures.rename(columns=lambda name: f"{name} [degC]")
+        table = table.reset_index(drop=True)
+        table.insert(0, "time [s]", self.times)
+        with atomic_path(path) as temporary, temporary.open("w", encoding="utf-8", newline="") as stream:
+            stream.writelines(f"# {comment}\n" for comment in self.comments)
+            table.to_csv(stream, index=False, lineterminator="\n")
+        return Path(path)

@@ -1,0 +1,101 @@
+"""A mesh of a section: a scikit-fem mesh with names, and what it was made from."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from functools import cached_property
+from typing import Any
+
+import numpy as np
+from numpy.typing import NDArray
+
+from tyrefem.section.section import Section
+
+Array = NDArray[np.float64]
+
+
+@dataclass(frozen=True)
+class TyreMesh:
+    """A mesh of a section in (r, z) [m].
+
+    Parameters
+    ----------
+    mesh : scikit-fem ``MeshQuad`` or ``MeshTri``; ``mesh.subdomains`` are the section's regions,
+        ``mesh.boundaries`` its boundaries.
+    section : what was meshed.
+    mesher : ``"mapped"``, ``"gmsh"`` or ``"file"``.
+    size : largest edge along the meridian that was asked for [m].
+    cell : ``"quad"`` or ``"tri"``.
+    """
+
+    mesh: Any
+    section: Section
+    mesher: str
+    size: float
+    cell: str
+
+    @property
+    def n_nodes(self) -> int:
+        """Number of nodes."""
+        return int(self.mesh.p.shape[1])
+
+    @property
+    def n_elements(self) -> int:
+        """Number of elements."""
+        return int(self.mesh.t.shape[1])
+
+    @cached_property
+    def _corners(self) -> Array:
+        """Corner points of the elements, (n_corners, n_elements, 2)."""
+        return np.asarray(self.mesh.p.T[self.mesh.t])
+
+    @cached_property
+    def element_areas(self) -> Array:
+        """Signed area of every element [m2]."""
+        return polygon_areas(self._corners)
+
+    def area(self, region: str) -> float:
+        """Area of a region of the mesh [m2]."""
+        return float(self.element_areas[self.mesh.subdomains[region]].sum())
+
+    def volume(self, region: str) -> float:
+        """Volume of the ring of a region of the mesh, exact for its straight-sided elements [m3]."""
+        corners = self._corners[:, self.mesh.subdomains[region]]
+        total = 0.0
+        for k in range(1, len(corners) - 1):
+            triangle = corners[[0, k, k + 1]]
+            total += float((polygon_areas(triangle) * triangle[..., 0].mean(axis=0)).sum())
+        return 2 * np.pi * total
+
+    @cached_property
+    def quality(self) -> dict[str, float]:
+        """Smallest scaled Jacobian (1: right angles) and largest edge ratio over the elements."""
+        corners = self._corners
+        edges = np.roll(corners, -1, axis=0) - corners
+        lengths = np.linalg.norm(edges, axis=-1)
+        before = np.roll(edges, 1, axis=0)
+        sines = before[..., 0] * edges[..., 1] - before[..., 1] * edges[..., 0]
+        sines = sines / (lengths * np.roll(lengths, 1, axis=0))
+        return {
+            "scaled_jacobian": float((sines * np.sign(self.element_areas)).min()),
+            "edge_ratio": float((lengths.max(axis=0) / lengths.min(axis=0)).max()),
+        }
+
+    def summary(self) -> dict[str, Any]:
+        """Counts, sizes and quality, for reports."""
+        return {
+            "mesher": self.mesher,
+            "cell": self.cell,
+            "size_m": self.size,
+            "nodes": self.n_nodes,
+            "elements": self.n_elements,
+            "half": self.section.half,
+            **self.quality,
+        }
+
+
+def polygon_areas(corners: Array) -> Array:
+    """Signed areas of polygons with corners (n_corners, n, 2), anticlockwise positive."""
+    after = np.roll(corners, -1, axis=0)
+    cross = corners[..., 0] * after[..., 1] - corners[..., 1] * after[..., 0]
+    return np.asarray(cross.sum(axis=0) / 2)

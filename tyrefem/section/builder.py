@@ -1,0 +1,209 @@
+"""From a section's card to the section: solves for what the card gives indirectly."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from pathlib import Path
+
+import numpy as np
+
+from tyrefem.errors import InputError
+from tyrefem.library import load as load_card
+from tyrefem.section.card import LayerCard, PartCard, SectionCard
+from tyrefem.section.division import Division
+from tyrefem.section.layer import Layer, Rating
+from tyrefem.section.line import Line, TwoArcs
+from tyrefem.section.profile import Profile
+from tyrefem.section.section import Section
+from tyrefem.section.spline import SplineLine
+
+
+def load(reference: object, *, near: Path | None = None, half: bool = True) -> Section:
+    """The section of a name, a path, or a table ``{base = NAME, parameters = {...}}``.
+
+    Raises
+    ------
+    InputError : no such section, a bad field, or a section that cannot be built; with file and field.
+
+    >>> section = load({"base": "nasa-22x5.5-8pr", "parameters": {"crown_radius": "3.6 in"}})
+    >>> round(section.line.crown_radius, 5)
+    0.09144
+    """
+    data, path, name = load_card("section", reference, near)
+    card = SectionCard.check(data, file=path)
+    try:
+        return build(card, name=name, half=half)
+    except InputError as error:
+        raise error.within(file=path) from None
+
+
+def build(card: SectionCard, *, name: str | None = None, half: bool = True) -> Section:
+    """The section of a validated card."""
+    if card.line.form == "points":
+        return _on_points(card, name or card.title, half)
+    return _on_two_arcs(card, name or card.title, half)
+
+
+def _on_points(card: SectionCard, name: str, half: bool) -> Section:
+    parameters = card.parameters
+    assert card.line.points is not None and parameters.shoulder_s is not None
+    section = _section(card, name, half, SplineLine(card.line.points, parameters.shoulder_s))
+    if parameters.outer_diameter is None:
+        return section
+    # The points keep their shape; the whole line moves along r until the diameter is right.
+    shift = (parameters.outer_diameter - section.outer_diameter) / 2
+    moved = tuple((r + shift, z) for r, z in card.line.points)
+    return _section(card, name, half, SplineLine(moved, parameters.shoulder_s))
+
+
+def _on_two_arcs(card: SectionCard, name: str, half: bool) -> Section:
+    parameters = card.parameters
+
+    def with_shoulder(x: float) -> Section:
+        assert parameters.crown_radius and parameters.sidewall_radius and parameters.meridian_length
+        outside = _crown_outer_offset(card, parameters.meridian_length, x)
+        line = TwoArcs(
+            _crown_midline_radius(card, outside),
+            parameters.crown_radius,
+            parameters.sidewall_radius,
+            x,
+            parameters.meridian_length,
+        )
+        return _section(card, name, half, line)
+
+    if parameters.overall_width is None:
+        assert parameters.shoulder_fraction is not None
+        return with_shoulder(parameters.shoulder_fraction * parameters.nominal_width / 2)
+    return _with_width(parameters.overall_width, parameters.crown_radius or 0.0, with_shoulder)
+
+
+def _crown_outer_offset(card: SectionCard, length: float, shoulder_x: float) -> float:
+    """Distance from the meridian to the outer face at the crown."""
+    crown = [_profile(layer, card, length, _shoulder_s(card, shoulder_x))(0.0) for layer in card.layers]
+    faces = np.concatenate([[0.0], np.cumsum(crown)])
+    names = [layer.name for layer in card.layers]
+    depth = {"inner": faces[0], "outer": faces[-1], "total": faces[-1] / 2}
+    depth |= {name: (faces[i] + faces[i + 1]) / 2 for i, name in enumerate(names)}
+    return float(faces[-1] - depth.get(card.line.reference, 0.0))
+
+
+def _shoulder_s(card: SectionCard, x: float) -> float:
+    radius = card.parameters.crown_radius or 0.0
+    return radius * float(np.arcsin(min(x / radius, 1.0)))
+
+
+def _crown_midline_radius(card: SectionCard, outside: float) -> float:
+    given, diameter = card.parameters.crown_midline_radius, card.parameters.outer_diameter
+    if given is None:
+        assert diameter is not None
+        if diameter / 2 <= outside:
+            raise InputError("is less than the crown is thick", field="parameters.outer_diameter")
+        return diameter / 2 - outside
+    if diameter is not None and abs(diameter / 2 - outside - given) > 1e-6:
+        raise InputError(
+            f"disagrees with outer_diameter, which makes it {diameter / 2 - outside:.6g} m; change outer_diameter"
+            f" to {2 * (given + outside):.6g} m, or give only one of the two",
+            field="parameters.crown_midline_radius",
+        )
+    return given
+
+
+def _with_width(width: float, crown_radius: float, with_shoulder: Callable[[float], Section]) -> Section:
+    """The section whose shoulder lies where the overall width comes out as asked."""
+    from scipy.optimize import brentq
+
+    reached: list[tuple[float, float]] = []
+    reason = ""
+    for x in np.linspace(0.02, 0.995, 40) * crown_radius:
+        try:
+            reached.append((float(x), with_shoulder(float(x)).overall_width))
+        except InputError as error:
+            reason = f" ({error.message})"
+    for (x0, width0), (x1, width1) in zip(reached[:-1], reached[1:], strict=True):
+        if (width0 - width) * (width1 - width) <= 0:
+            try:
+                x = brentq(lambda x: with_shoulder(x).overall_width - width, x0, x1, xtol=1e-13)
+            except InputError as error:
+                raise InputError(error.message, field="parameters.overall_width") from None
+            return with_shoulder(float(x))
+    if not reached:
+        raise InputError(f"no shoulder gives a possible section{reason}", field="parameters.overall_width")
+    widths = [w for _, w in reached]
+    raise InputError(
+        f"{width:.6g} m cannot be reached by moving the shoulder: with these radii the section is between"
+        f" {min(widths):.6g} m and {max(widths):.6g} m wide; change sidewall_radius or meridian_length as well",
+        field="parameters.overall_width",
+    )
+
+
+def _section(card: SectionCard, name: str, half: bool, line: Line) -> Section:
+    marks = {"shoulder": line.shoulder_s}
+    for mark, back in (("bead_start", card.parameters.bead_length), ("rim_start", card.parameters.rim_length)):
+        if back is not None:
+            marks[mark] = line.length - back
+    layers = tuple(
+        Layer(
+            layer.name,
+            _profile(layer, card, line.length, line.shoulder_s, f"layers.{index}"),
+            _division(layer.regions, marks, line.length, f"layers.{index}.regions"),
+        )
+        for index, layer in enumerate(card.layers)
+    )
+    rating = None
+    if card.rating is not None:
+        rating = Rating(**{key: value for key, value in card.rating if key != "source"})
+    return Section(
+        name=name,
+        line=line,
+        layers=layers,
+        reference=card.line.reference,
+        outer=_division(card.boundaries, marks, line.length, "boundaries"),
+        rating=rating,
+        nominal_width=card.parameters.nominal_width,
+        inner_volume=card.parameters.inner_volume,
+        half=half,
+    )
+
+
+def _division(parts: tuple[PartCard, ...], marks: dict[str, float], length: float, field: str) -> Division:
+    ends = []
+    for index, part in enumerate(parts):
+        here = f"{field}.{index}.to"
+        last = index == len(parts) - 1
+        if last and part.to is not None:
+            raise InputError("the last part goes on to the end of the section: leave 'to' out", field=here)
+        if not last and part.to is None:
+            raise InputError("missing; every part but the last needs it", field=here)
+        if isinstance(part.to, str) and part.to not in marks:
+            needed = part.to.replace("_start", "_length")
+            raise InputError(f"'{part.to}' needs parameters.{needed}", field=here)
+        ends.append(length if part.to is None else marks[part.to] if isinstance(part.to, str) else part.to)
+    try:
+        return Division(tuple(part.name for part in parts), tuple(ends))
+    except InputError as error:
+        raise error.within(field=field) from None
+
+
+def _profile(layer: LayerCard, card: SectionCard, length: float, shoulder_s: float, field: str = "layers") -> Profile:
+    """The layer's thickness: table stretched to the meridian, each entry scaled by its region's factor."""
+    stations = np.asarray(layer.s)
+    if layer.stretch and stations[-1] > 0:
+        stations = stations * (length / stations[-1])
+    try:
+        Profile(tuple(stations), layer.thickness)
+    except InputError as error:
+        raise error.within(field=f"{field}.thickness") from None
+    if stations[0] > 1e-9 or stations[-1] < length - 1e-9:
+        raise InputError(
+            f"the table runs from {stations[0]:.4g} to {stations[-1]:.4g} m, but the section from 0 to {length:.4g} m",
+            field=f"{field}.s",
+        )
+    marks = {"shoulder": shoulder_s}
+    for mark, back in (("bead_start", card.parameters.bead_length), ("rim_start", card.parameters.rim_length)):
+        marks[mark] = length - (back or 0.0)
+    ends = [marks[part.to] if isinstance(part.to, str) else part.to or length for part in layer.regions]
+    names = np.asarray([part.name for part in layer.regions])
+    which = names[np.minimum(np.searchsorted(ends, stations - 1e-12), len(names) - 1)]
+    scale = card.parameters.thickness_scale
+    values = np.asarray(layer.thickness) * [scale.get(str(name), 1.0) for name in which]
+    return Profile(tuple(stations.tolist()), tuple(values.tolist()), layer.interpolation)

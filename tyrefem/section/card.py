@@ -1,0 +1,174 @@
+"""The file of a section, ``geometry/NAME.toml``, as a validated card."""
+
+from __future__ import annotations
+
+from typing import Annotated, Any, ClassVar, Literal
+
+from pydantic import BeforeValidator, Field, model_validator
+
+from tyrefem.cards import Card, PositiveLength, Text
+from tyrefem.errors import InputError, nearest
+from tyrefem.quantity import Unit, parse
+
+MARKS = ("shoulder", "bead_start", "rim_start")
+
+
+def _lengths(value: Any) -> tuple[float, ...]:
+    """``["0 in", "0.3 in"]``, or ``{unit = "in", values = [0, 0.3]}``."""
+    unit = ""
+    if isinstance(value, dict):
+        if set(value) != {"unit", "values"} or not isinstance(value["unit"], str):
+            raise InputError("a table of numbers needs the two keys 'unit' and 'values'")
+        unit, value = " " + value["unit"], value["values"]
+        if isinstance(value, list | tuple) and not all(_is_number(item) for item in value):
+            raise InputError("'values' must be a list of numbers; their unit stands in 'unit'")
+    if not isinstance(value, list | tuple) or not value:
+        raise InputError("must be a list like ['0 in', '0.3 in'] or { unit = 'in', values = [0, 0.3] }")
+    return tuple(parse(f"{item!r}{unit}" if unit else item, "m") for item in value)
+
+
+def _is_number(value: object) -> bool:
+    return isinstance(value, int | float) and not isinstance(value, bool)
+
+
+def _points(value: Any) -> tuple[tuple[float, float], ...]:
+    """``{unit = "mm", values = [[r, z], ...]}`` or ``[["280 mm", "0 mm"], ...]``."""
+    pairs = value.get("values") if isinstance(value, dict) else value
+    if not isinstance(pairs, list | tuple) or not all(isinstance(p, list | tuple) and len(p) == 2 for p in pairs):
+        raise InputError("must be pairs [r, z]: { unit = 'mm', values = [[280, 0], [278, 20], ...] }")
+    flat = [number for pair in pairs for number in pair]
+    numbers = _lengths({**value, "values": flat} if isinstance(value, dict) else flat)
+    return tuple(zip(numbers[::2], numbers[1::2], strict=True))
+
+
+def _end(value: Any) -> float | str:
+    """A mark's name, or a length along the meridian."""
+    if isinstance(value, str) and value.replace("_", "").isalpha():
+        if value not in MARKS:
+            raise InputError(f"no mark '{value}'{nearest(value, MARKS)}; or a length like '2.2 in'")
+        return value
+    return Unit("m", gt=0)(value)
+
+
+Lengths = Annotated[tuple[float, ...], BeforeValidator(_lengths)]
+Points = Annotated[tuple[tuple[float, float], ...], BeforeValidator(_points)]
+End = Annotated[float | str, BeforeValidator(_end)]
+Fraction = Annotated[float, Unit("1", gt=0, lt=2)]
+Scale = Annotated[float, Unit("1", gt=0)]
+
+
+class PartCard(Card):
+    """A named part of the meridian, from where the one before ends up to ``to``; the last has no ``to``."""
+
+    name: Text
+    to: End | None = None
+
+
+class LineCard(Card):
+    """How the meridian is drawn, and where it lies across the thickness."""
+
+    form: Annotated[Literal["two-arcs", "points"], Field(alias="kind")]
+    reference: Text
+    points: Points | None = None
+    source: Text
+
+
+class LayerCard(Card):
+    """A layer's thickness at stations along the meridian, and its regions.
+
+    With ``stretch`` the table is for a meridian that ends at its last station, and follows ``meridian_length``.
+    """
+
+    name: Text
+    s: Lengths
+    thickness: Lengths
+    interpolation: Literal["linear", "pchip"] = "linear"
+    stretch: bool = False
+    regions: Annotated[tuple[PartCard, ...], Field(min_length=1)]
+    source: Text
+
+
+class ParametersCard(Card):
+    """The named numbers of a section: what a design study changes."""
+
+    nominal_width: PositiveLength
+    outer_diameter: PositiveLength | None = None
+    crown_midline_radius: PositiveLength | None = None
+    overall_width: PositiveLength | None = None
+    shoulder_fraction: Fraction | None = None
+    shoulder_s: PositiveLength | None = None
+    crown_radius: PositiveLength | None = None
+    sidewall_radius: PositiveLength | None = None
+    meridian_length: PositiveLength | None = None
+    bead_length: PositiveLength | None = None
+    rim_length: PositiveLength | None = None
+    inner_volume: Annotated[float, Unit("m**3", gt=0)] | None = None
+    thickness_scale: dict[str, Scale] = {}  # noqa: RUF012
+    source: Text
+
+
+class RatingCard(Card):
+    """Rated load and pressure, nominal size, cords and bead wire."""
+
+    width: PositiveLength
+    diameter: PositiveLength
+    load: Annotated[float, Unit("N", gt=0)]
+    pressure: Annotated[float, Unit("Pa", gt=0)]
+    cord_angle: Annotated[float, Unit("rad", gt=0, lt=1.5707)]
+    bead_wire_area: Annotated[float, Unit("m**2", gt=0)]
+    bead_bundles: Annotated[int, Field(ge=1, le=20)]
+    source: Text
+
+
+class SectionCard(Card):
+    """A section file: a line, named parameters, layers from the inside to the outside, boundaries, the rating.
+
+    >>> from tyrefem.library import load
+    >>> card = SectionCard.check(load("section", "nasa-22x5.5-8pr")[0])
+    >>> [layer.name for layer in card.layers], round(card.parameters.crown_radius / 0.0254, 3)
+    (['carcass', 'rubber'], 3.482)
+    """
+
+    kind: ClassVar[str] = "section"
+
+    title: Text
+    line: LineCard
+    parameters: ParametersCard
+    layers: Annotated[tuple[LayerCard, ...], Field(min_length=1)]
+    boundaries: Annotated[tuple[PartCard, ...], Field(min_length=1)]
+    rating: RatingCard | None = None
+
+    @model_validator(mode="after")
+    def _one_way(self) -> SectionCard:
+        """Each number is given in one way, and what the kind of line needs is there."""
+        given = {name for name, value in self.parameters if value is not None}
+        needs, refuses = _BY_KIND[self.line.form]
+        for name in sorted(needs - given):
+            raise InputError(f"missing; a '{self.line.form}' line needs it", field=f"parameters.{name}")
+        for name in sorted(refuses & given):
+            raise InputError(f"a '{self.line.form}' line does not take it", field=f"parameters.{name}")
+        if self.line.form == "points" and self.line.points is None:
+            raise InputError("missing; a 'points' line needs it", field="line.points")
+        if self.line.form == "two-arcs":
+            if self.line.points is not None:
+                raise InputError("a 'two-arcs' line does not take it", field="line.points")
+            if not given & {"outer_diameter", "crown_midline_radius"}:
+                raise InputError("missing; give it or crown_midline_radius", field="parameters.outer_diameter")
+            if not given & {"shoulder_fraction", "overall_width"}:
+                raise InputError("missing; give it or overall_width", field="parameters.shoulder_fraction")
+        regions = {part.name for layer in self.layers for part in layer.regions}
+        for name in self.parameters.thickness_scale:
+            if name not in regions:
+                message = f"no region '{name}'{nearest(name, regions)}"
+                raise InputError(message, field="parameters.thickness_scale")
+        return self
+
+
+_BY_KIND = {
+    "two-arcs": ({"crown_radius", "sidewall_radius", "meridian_length"}, {"shoulder_s"}),
+    "points": (
+        {"shoulder_s"},
+        {"crown_radius", "sidewall_radius", "meridian_length", "crown_midline_radius", "shoulder_fraction"}
+        | {"overall_width"},
+    ),
+}

@@ -1,0 +1,80 @@
+"""Polygons of regions and polylines of boundaries, for drawing and for meshing."""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING
+
+import numpy as np
+from numpy.typing import NDArray
+
+if TYPE_CHECKING:
+    from tyrefem.section.section import Section
+
+Array = NDArray[np.float64]
+_MIRROR = np.array([1.0, -1.0])
+
+
+def stations(section: Section, start: float, end: float, spacing: float) -> Array:
+    """Stations from start to end no further apart than ``spacing``, every kink of the geometry among them."""
+    knots = np.unique([start, *(s for s in section.breaks if start + 1e-9 < s < end - 1e-9), end])
+    runs = [
+        np.linspace(a, b, max(2, int(np.ceil((b - a) / spacing - 1e-9)) + 1))[:-1]
+        for a, b in zip(knots[:-1], knots[1:], strict=True)
+    ]
+    return np.concatenate([*runs, knots[-1:]])
+
+
+def face(section: Section, index: int, s: Array) -> Array:
+    """Points of the inner face (index 0) or of a layer's outer face (index 1, 2, ...), shape (n, 2)."""
+    y = section.interfaces(s)[index]
+    return np.asarray(section.line.position(s) + y[..., None] * section.line.normal(s))
+
+
+def region_outlines(section: Section, region: str, spacing: float) -> list[Array]:
+    """Closed polygons of a region, one per connected piece of a layer."""
+    polygons = []
+    for piece in section.pieces:
+        if piece.region != region:
+            continue
+        spans = [(piece.start, piece.end)]
+        if not section.half:
+            spans = [(-piece.end, piece.end)] if piece.start == 0 else [*spans, (-piece.end, -piece.start)]
+        for start, end in spans:
+            s = _signed_stations(section, start, end, spacing)
+            inner, outer = face(section, piece.layer, s), face(section, piece.layer + 1, s)
+            polygons.append(np.concatenate([outer, inner[::-1], outer[:1]]))
+    return polygons
+
+
+def boundary_lines(section: Section, name: str, spacing: float) -> list[Array]:
+    """Open polylines of a boundary."""
+    length, n = section.line.length, len(section.layers)
+    end_face = section.place(length, section.interfaces(length) - section.interfaces(length)[0])
+    if name == "symmetry":
+        return [section.place(0.0, section.interfaces(0.0) - section.interfaces(0.0)[0])]
+    if name == "contained_air":
+        start = 0.0 if section.half else -length
+        return [face(section, 0, _signed_stations(section, start, length, spacing))]
+    lines = []
+    for part, start, end in section.outer.parts():
+        if part != name:
+            continue
+        line = face(section, n, stations(section, start, end, spacing))
+        if end == section.outer.ends[-1]:
+            line = np.concatenate([line, end_face[-2::-1]])
+        if not section.half and start == 0:
+            lines.append(np.concatenate([line[:0:-1] * _MIRROR, line]))
+            continue
+        lines.append(line)
+        if not section.half:
+            lines.append(line * _MIRROR)
+    return lines
+
+
+def _signed_stations(section: Section, start: float, end: float, spacing: float) -> Array:
+    if start >= 0:
+        return stations(section, start, end, spacing)
+    if end <= 0:
+        return -stations(section, -end, -start, spacing)[::-1]
+    left = -stations(section, 0.0, -start, spacing)[::-1]
+    return np.concatenate([left[:-1], stations(section, 0.0, end, spacing)])

@@ -1,0 +1,287 @@
+"""The cross-section of a tyre: a meridian, layers along it, named regions and boundaries."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass, replace
+from functools import cached_property
+from typing import Any
+
+import numpy as np
+from numpy.typing import ArrayLike, NDArray
+
+from tyrefem.errors import InputError, nearest
+from tyrefem.section import measures, outlines
+from tyrefem.section.division import Division
+from tyrefem.section.layer import Layer, Piece, Rating
+from tyrefem.section.line import Line
+
+Array = NDArray[np.float64]
+#: Readings of the reference line that are not the midline of a layer.
+READINGS = ("total", "inner", "outer")
+
+
+@dataclass(frozen=True)
+class Section:
+    """An axisymmetric cross-section in (r, z) [m], r from the wheel's axis, z from the mid plane.
+
+    A place is (s, depth): ``s`` along the meridian from the crown, negative on the other side, and ``depth`` from
+    the inner surface along the meridian's normal. With y the distance from the meridian and kappa its curvature,
+    an area element is (1 + kappa y) ds dy.
+
+    Parameters
+    ----------
+    name : what the section is called.
+    line : the meridian.
+    layers : from the inside to the outside.
+    reference : where the meridian lies: mid-thickness of the layer of this name, or of the whole (``"total"``),
+        or on the ``"inner"`` or ``"outer"`` face.
+    outer : boundaries along the outer face; the end face at the bead takes the last one.
+    rating : rated load and pressure, bead wire; None where unknown.
+    nominal_width : w of the report's shear formula and of the shoulder [m].
+    inner_volume : measured air volume of the whole tyre [m3]; None: from the geometry.
+    half : only z >= 0, with the boundary ``symmetry`` at the mid plane.
+
+    Raises
+    ------
+    InputError : the layers cannot be laid along this line (folding, crossing, below the axis).
+
+    >>> from tyrefem.section import load
+    >>> section = load("nasa-22x5.5-8pr")
+    >>> section.regions
+    ('carcass', 'bead', 'tread', 'sidewall')
+    >>> point = section.place(0.05, 0.004)
+    >>> s, depth = section.locate(point)
+    >>> round(float(s), 9), round(float(depth), 9), str(section.region_at(s, depth))
+    (0.05, 0.004, 'carcass')
+    >>> section.as_full().volume("tread") / section.volume("tread")
+    2.0
+    """
+
+    name: str
+    line: Line
+    layers: tuple[Layer, ...]
+    reference: str
+    outer: Division
+    rating: Rating | None
+    nominal_width: float
+    inner_volume: float | None = None
+    half: bool = True
+
+    def __post_init__(self) -> None:
+        from tyrefem.section.possible import check_possible
+
+        check_possible(self)
+
+    # Names
+
+    @property
+    def regions(self) -> tuple[str, ...]:
+        """Names of the regions, from the inside to the outside."""
+        return tuple(dict.fromkeys(piece.region for piece in self.pieces))
+
+    @property
+    def boundaries(self) -> tuple[str, ...]:
+        """Names of the boundaries."""
+        names = ("contained_air", *dict.fromkeys(self.outer.names))
+        return (*names, "symmetry") if self.half else names
+
+    @cached_property
+    def pieces(self) -> tuple[Piece, ...]:
+        """Parts of layers between stations on the side z >= 0, each of one region."""
+        return tuple(
+            Piece(index, start, end, name)
+            for index, layer in enumerate(self.layers)
+            for name, start, end in layer.regions.parts()
+        )
+
+    @cached_property
+    def breaks(self) -> tuple[float, ...]:
+        """Stations that a mesh or an integral must not step over: names change, or the geometry has a kink [m]."""
+        stations = {0.0, self.line.length, self.line.shoulder_s, *self.line.breaks, *self.outer.ends}
+        for layer in self.layers:
+            stations.update(layer.regions.ends, layer.thickness.s)
+        merged: list[float] = []
+        for s in sorted(s for s in stations if 0 <= s <= self.line.length):
+            if not merged or s - merged[-1] > 1e-9:
+                merged.append(s)
+        return tuple(merged)
+
+    @cached_property
+    def marks(self) -> tuple[float, ...]:
+        """Stations where a region or a boundary changes its name, and the shoulder [m]."""
+        ends = {self.line.shoulder_s, *self.outer.ends[:-1]}
+        for layer in self.layers:
+            ends.update(layer.regions.ends[:-1])
+        return tuple(s for s in self.breaks if any(abs(s - end) < 1e-9 for end in ends))
+
+    def require_region(self, name: str) -> None:
+        """Raise `InputError` unless ``name`` is a region."""
+        if name not in self.regions:
+            raise InputError(f"section '{self.name}' has no region '{name}'{nearest(name, self.regions)}")
+
+    # Places
+
+    def _x(self, s: ArrayLike) -> Array:
+        """Stations as the section knows them: a half section folds the other side over."""
+        s = np.asarray(s, dtype=float)
+        return np.abs(s) if self.half else s
+
+    def interfaces(self, s: ArrayLike) -> Array:
+        """Distance from the meridian to the inner face, each layer's outer face in turn: (n_layers + 1, ...) [m]."""
+        s = np.asarray(s, dtype=float)
+        rises = np.stack([layer.thickness(s) for layer in self.layers])
+        faces = np.concatenate([np.zeros((1, *s.shape)), np.cumsum(rises, axis=0)])
+        return np.asarray(faces - self._reference_depth(faces))
+
+    def interface_slopes(self, s: ArrayLike) -> Array:
+        """d/ds of `interfaces`, same shape."""
+        s = np.asarray(s, dtype=float)
+        rises = np.stack([layer.thickness.slope(s) for layer in self.layers])
+        faces = np.concatenate([np.zeros((1, *s.shape)), np.cumsum(rises, axis=0)])
+        return np.asarray(faces - self._reference_depth(faces))
+
+    def _reference_depth(self, faces: Array) -> Array:
+        if self.reference == "inner":
+            return np.asarray(faces[0])
+        if self.reference == "outer":
+            return np.asarray(faces[-1])
+        if self.reference == "total":
+            return np.asarray(faces[-1] / 2)
+        index = self._layer_index(self.reference)
+        return np.asarray((faces[index] + faces[index + 1]) / 2)
+
+    def _layer_index(self, name: str) -> int:
+        names = [layer.name for layer in self.layers]
+        if name not in names:
+            raise InputError(f"section '{self.name}' has no layer '{name}'{nearest(name, names)}")
+        return names.index(name)
+
+    def thickness(self, name: str, s: ArrayLike) -> Array:
+        """Thickness of a layer at ``s``; or of a region, zero where it is absent [m]. A layer's name goes first."""
+        s = self._x(s)
+        for layer in self.layers:
+            if layer.name == name:
+                return layer.thickness(s)
+        self.require_region(name)
+        parts = [np.where(layer.regions.at(s) == name, layer.thickness(s), 0.0) for layer in self.layers]
+        return np.asarray(np.sum(parts, axis=0))
+
+    def total_thickness(self, s: ArrayLike) -> Array:
+        """Thickness of all layers at ``s`` [m]."""
+        faces = self.interfaces(self._x(s))
+        return np.asarray(faces[-1] - faces[0])
+
+    def place(self, s: ArrayLike, depth: ArrayLike) -> Array:
+        """(r, z) of places ``s``, ``depth`` from the inner surface, shape (..., 2) [m]."""
+        s, depth = np.broadcast_arrays(self._x(s), np.asarray(depth, dtype=float))
+        y = self.interfaces(s)[0] + depth
+        return np.asarray(self.line.position(s) + y[..., None] * self.line.normal(s))
+
+    def locate(self, points: ArrayLike) -> tuple[Array, Array]:
+        """(s, depth) of points (..., 2), the inverse of `place`; also for points somewhat outside.
+
+        A half section folds points with z < 0 over, so ``s`` is never negative there.
+        """
+        s, y = self.line.nearest(points)
+        s = self._x(s)
+        return s, y - self.interfaces(s)[0]
+
+    def clamp(self, s: ArrayLike, depth: ArrayLike, margin: float = 0.0) -> tuple[Array, Array]:
+        """The nearest (s, depth) inside the rubber, at least ``margin`` [m] from its surface."""
+        s = np.clip(np.asarray(s, dtype=float), -self.line.length + margin, self.line.length - margin)
+        total = self.total_thickness(s)
+        low = np.minimum(margin, total / 2)
+        return s, np.clip(np.asarray(depth, dtype=float), low, total - low)
+
+    def midline_offset(self, place: ArrayLike, depth: ArrayLike | None = None) -> Array:
+        """Signed distance from the carcass midline, outwards positive [m].
+
+        ``midline_offset(s, depth)``, or ``midline_offset(points)`` with points (..., 2). The carcass is the layer
+        with the region ``carcass``; without one, the distance is from the meridian.
+        """
+        s, depth = self.locate(place) if depth is None else (self._x(place), np.asarray(depth, dtype=float))
+        faces = self.interfaces(s)
+        return np.asarray(faces[0] + depth - self.carcass_offset(s))
+
+    def carcass_offset(self, s: ArrayLike) -> Array:
+        """Distance of the carcass midline from the meridian, outwards positive [m]; zero if the line is the midline."""
+        s = self._x(s)
+        for index, layer in enumerate(self.layers):
+            if "carcass" in layer.regions.names:
+                faces = self.interfaces(s)
+                return np.asarray((faces[index] + faces[index + 1]) / 2)
+        return np.zeros_like(s)
+
+    def region_at(self, s: ArrayLike, depth: ArrayLike) -> NDArray[np.str_]:
+        """The region at (s, depth), same shape; beyond the surface, that of the nearest layer."""
+        s, depth = np.broadcast_arrays(self._x(s), np.asarray(depth, dtype=float))
+        faces = self.interfaces(s)
+        index = sum(
+            (np.asarray(depth > faces[k] - faces[0]).astype(int) for k in range(1, len(self.layers))),
+            start=np.zeros(s.shape, dtype=int),
+        )
+        return np.asarray(np.choose(index, [layer.regions.at(s) for layer in self.layers]))
+
+    def contains(self, points: ArrayLike, tolerance: float = 1e-9) -> NDArray[np.bool_]:
+        """Whether points (..., 2) lie in the section, its surface included."""
+        points = np.asarray(points, dtype=float)
+        s, depth = self.locate(points)
+        inside = (np.abs(s) <= self.line.length + tolerance) & (depth >= -tolerance)
+        inside &= depth <= self.total_thickness(s) + tolerance
+        return inside & (points[..., 1] >= -tolerance) if self.half else inside
+
+    # Shape
+
+    def outline(self, region: str, spacing: float = 5e-4) -> list[Array]:
+        """Closed polygons (n, 2) of a region, anticlockwise in (r, z), the first point repeated at the end."""
+        self.require_region(region)
+        return outlines.region_outlines(self, region, spacing)
+
+    def boundary_line(self, name: str, spacing: float = 5e-4) -> list[Array]:
+        """Open polylines (n, 2) of a boundary; the end face at the bead belongs to the last of the outer face."""
+        if name not in self.boundaries:
+            raise InputError(f"section '{self.name}' has no boundary '{name}'{nearest(name, self.boundaries)}")
+        return outlines.boundary_lines(self, name, spacing)
+
+    def area(self, region: str | None = None) -> float:
+        """Area of a region, or of the section [m2]; of the half that is there, if half."""
+        return measures.area(self, region)
+
+    def volume(self, region: str | None = None) -> float:
+        """Volume of the ring of a region, or of the section: the integral of 2 pi r dA [m3]."""
+        return measures.volume(self, region)
+
+    def inner_surface_area(self) -> float:
+        """Area of the inner surface of revolution [m2]; of the half that is there, if half."""
+        return measures.inner_surface_area(self)
+
+    def gas_volume(self) -> float:
+        """Air inside the tyre, closed by a cylinder from bead to bead [m3]; half of it, if half.
+
+        A measured ``inner_volume`` replaces the computed one.
+        """
+        if self.inner_volume is not None:
+            return self.inner_volume / 2 if self.half else self.inner_volume
+        return measures.gas_volume(self)
+
+    @cached_property
+    def overall_width(self) -> float:
+        """Largest width of the whole tyre [m]."""
+        return measures.overall_width(self)
+
+    @cached_property
+    def outer_diameter(self) -> float:
+        """Diameter over the crown [m]."""
+        return 2 * float(self.line.position(0.0)[0] + self.interfaces(0.0)[-1])
+
+    def as_full(self) -> Section:
+        """The whole section, from bead to bead."""
+        return replace(self, half=False)
+
+    def as_half(self) -> Section:
+        """The half z >= 0."""
+        return replace(self, half=True)
+
+    def summary(self) -> dict[str, Any]:
+        """The numbers a person asks for first, SI; areas and volumes of the half that is there, if half."""
+        return measures.summary(self)

@@ -1,0 +1,258 @@
+"""Strain-energy density of the NASA report: two arcs, barrel deformation (Clark & Dodge 1980, eqs 2-19).
+
+A material point goes once per revolution from the inflated section to the section under the footprint's centre, as if
+the whole tyre were pressed in a barrel ("axisymmetric"); the energy of that change is what the loss works on.
+"""
+
+from __future__ import annotations
+
+import functools
+import math
+from dataclasses import dataclass
+from typing import Any
+
+import numpy as np
+from numpy.typing import NDArray
+
+from tyrefem.errors import InputError
+from tyrefem.loading import LoadCase
+from tyrefem.strain import Zone
+from tyrefem.strain.cord_rubber import BiasPlies
+from tyrefem.strain.deflected import DeflectedArcs, deflected_sidewall, through
+
+Array = NDArray[np.float64]
+#: sqrt(2) exp(-1/2): steepest slope of the Gaussian that the hoop force is assumed to follow (D2, D3).
+STEEPEST_SLOPE = math.sqrt(2.0) * math.exp(-0.5)
+#: 1.25 p0 mean contact pressure at the footprint's centre, and 1.5 on energy for its shape (appendix E), as in eq 11.
+CONTACT_PRESSURE = 1.5
+
+
+@dataclass(frozen=True)
+class Stiffness:
+    """What the strain energy needs of the materials. SI."""
+
+    carcass: BiasPlies
+    ply_shear_modulus: float
+    tread_shear_modulus: float
+    sidewall_shear_modulus: float
+    bead_modulus: float
+    bead_wire_area: float
+
+
+@dataclass(frozen=True)
+class Strains:
+    """Strain cycle at points: hoop and meridional strain, meridional stress change (Pa), membrane shear force (N/m).
+
+    ``radius`` is that of the midline at the points, m, where the plies' stiffness is taken.
+    """
+
+    radius: Array
+    hoop: Array
+    meridional: Array
+    stress: Array
+    shear_force: Array
+    carcass_thickness: Array
+
+
+@dataclass(frozen=True, eq=False)
+class Arcs:
+    """The strain cycle of one load case on one section (SI units).
+
+    Below the deflection that flattens the whole crown, where the report's arcs do not apply, strains are those at that
+    deflection times D over it (linear elasticity; an estimate), so that U falls to zero with the square of the load.
+    """
+
+    section: Any
+    stiffness: Stiffness
+    case: LoadCase
+    drum_term: bool = True
+
+    def __post_init__(self) -> None:
+        if not hasattr(self.section.line, "sidewall_radius"):
+            raise InputError(
+                "the strain law 'arcs' needs a section whose reference line is 'two-arcs'",
+                field="mechanics.strain",
+            )
+
+    @property
+    def zones(self) -> tuple[Zone, ...]:
+        """Regions I to V of the report."""
+        shoulder = self.section.line.shoulder_s
+        return (
+            Zone("I", "carcass", "carcass under the tread", 0.0, shoulder),
+            Zone("II", "tread", "tread rubber"),
+            Zone("III", "carcass", "sidewall carcass", shoulder),
+            Zone("IV", "sidewall", "sidewall rubber"),
+            Zone("V", "bead", "bead"),
+        )
+
+    # -- geometry ----------------------------------------------------------------------------------------------
+
+    @functools.cached_property
+    def full_flattening(self) -> float:
+        """Smallest deflection, m, that flattens the crown and shortens the sidewall's chord."""
+        line = self.section.line
+        (xc, yc), (xb, yb) = line.shoulder, line.bead
+        inflated = math.hypot(xc - xb, yc - yb)
+        across = line.shoulder_s - xb
+        lowest = yb + math.sqrt(max(inflated**2 - across**2, 0.0))
+        return float(max(line.crown_midline_radius - yc, line.crown_midline_radius - lowest) * (1 + 1e-6))
+
+    @property
+    def _scale(self) -> float:
+        return min(self.case.deflection / self.full_flattening, 1.0)
+
+    @property
+    def _deflection(self) -> float:
+        return max(self.case.deflection, self.full_flattening)
+
+    @functools.cached_property
+    def inflated(self) -> DeflectedArcs:
+        """The sidewall arc before deflection."""
+        line = self.section.line
+        return through(line.shoulder, line.bead, line.sidewall_radius)
+
+    @functools.cached_property
+    def deflected(self) -> DeflectedArcs:
+        """The sidewall arc under the footprint's centre."""
+        line = self.section.line
+        s = np.linspace(line.shoulder_s, line.length, 101)
+        stiffness = self._carcass_thickness(s) * self.stiffness.carcass.meridional(line.position(s)[:, 0])
+        compliance = float(np.trapezoid(1 / stiffness, s) / (line.length - line.shoulder_s))
+        return deflected_sidewall(line, self._deflection, compliance, self.case.pressure)
+
+    def _carcass_thickness(self, s: Array) -> Array:
+        return np.asarray(self.section.thickness("carcass", s))
+
+    # -- membrane forces ---------------------------------------------------------------------------------------
+
+    def _membrane_change(self, inflated_radius: Array, deflected_radius: Array) -> Array:
+        """N_phi,B - N_phi,A = p0/2 [R_f (1 + b_f/z_f) - R_1 (1 + b_i/z_i)], N/m (14, F2, F3)."""
+        after = self.deflected.radius * (1 + self.deflected.centre_radius / deflected_radius)
+        before = self.inflated.radius * (1 + self.inflated.centre_radius / inflated_radius)
+        return np.asarray(self.case.pressure / 2 * (after - before))
+
+    @functools.cached_property
+    def _shoulder_change(self) -> float:
+        line = self.section.line
+        return float(
+            self._membrane_change(np.array(line.shoulder[1]), np.array(line.crown_midline_radius - self._deflection))
+        )
+
+    @functools.cached_property
+    def _cot2_integral(self) -> tuple[Array, Array]:
+        s = np.linspace(0.0, self.section.line.length, 401)
+        cot2 = self.stiffness.carcass.cot2(self.section.line.position(s)[:, 0])
+        return s, np.concatenate([[0.0], np.cumsum((cot2[1:] + cot2[:-1]) / 2 * np.diff(s))])
+
+    def _shear_force(self, s: Array, membrane_change: Array) -> Array:
+        """N = (0.858/w) (N_phi,A - N_phi,B) int cot^2(alpha) ds from the crown (D5)."""
+        return np.asarray(
+            STEEPEST_SLOPE / self.section.rating.width * -membrane_change * np.interp(s, *self._cot2_integral)
+        )
+
+    # -- strains -----------------------------------------------------------------------------------------------
+
+    def strains(self, zone: str, points: Array) -> Strains:
+        """Strain cycle at points (2, n) of zones I to IV."""
+        s, depth = self.section.locate(np.asarray(points).T)
+        s = np.minimum(np.abs(s), self.section.line.length)
+        y = np.asarray(self.section.midline_offset(s, depth))
+        at_crown = zone in ("I", "II")
+        return (self._crown if at_crown else self._sidewall)(s, y, np.asarray(points).T)
+
+    def _crown(self, s: Array, y: Array, _points: Array) -> Strains:
+        plies, line, case = self.stiffness.carcass, self.section.line, self.case
+        s = np.minimum(s, line.shoulder_s)
+        radius = line.position(s)[:, 0]
+        drum = 2 / case.drum_diameter if self.drum_term else 0.0
+        hoop = -self._deflection / radius - y * (1 / radius + drum)
+        modulus = plies.meridional(radius)
+        thickness = self._carcass_thickness(s)
+        membrane = np.full_like(s, self._shoulder_change)
+        stress = membrane / thickness - modulus * y / line.crown_radius
+        return self._strains(s, radius, hoop, stress, membrane, thickness)
+
+    def _sidewall(self, s: Array, y: Array, points: Array) -> Strains:
+        plies, line = self.stiffness.carcass, self.section.line
+        s = np.maximum(s, line.shoulder_s)
+        radius = line.position(s)[:, 0]
+        fraction = (s - line.shoulder_s) / (line.length - line.shoulder_s)
+        # A half section's points, or the mirrored half's: either way the side with z >= 0.
+        offset = np.sum((np.abs(points) - line.position(s)) * line.normal(s), axis=1)
+        before, _ = self.inflated.place(fraction, offset)
+        after, _ = self.deflected.place(fraction, offset)
+        hoop = (after - before) / before
+        midline_after, _ = self.deflected.place(fraction, np.zeros_like(s))
+        membrane = self._membrane_change(radius, midline_after)
+        thickness = self._carcass_thickness(s)
+        bending = plies.meridional(radius) * y * (1 / self.deflected.radius - 1 / line.sidewall_radius)
+        return self._strains(s, radius, hoop, membrane / thickness + bending, membrane, thickness)
+
+    def _strains(
+        self, s: Array, radius: Array, hoop: Array, stress: Array, membrane: Array, thickness: Array
+    ) -> Strains:
+        plies, k = self.stiffness.carcass, self._scale
+        meridional = plies.poisson_term * stress / plies.meridional(radius) - plies.poisson(radius) * hoop
+        shear = self._shear_force(s, membrane)
+        return Strains(radius, k * hoop, k * meridional, k * stress, k * shear, thickness)
+
+    # -- energies ----------------------------------------------------------------------------------------------
+
+    def energy_density(self, zone: str, points: Array) -> Array:
+        """U, J/m3, at points (2, n) of a zone.
+
+        I, III: 1/2 [E_theta e_theta^2 + c_a s_phi^2/E_phi] + 1/2 N^2/(h_c^2 G_pt)   (c_b = 0; 2-9, 13-17)
+        II: G (e_phi^2 + e_theta^2 + e_y^2), e_y = -1.5 p0/E_r - 0.5 (e_phi + e_theta)   (10-12)
+        IV: G (e_phi^2 + e_theta^2)   (18);  V: 1/2 (T_f - T_i)^2/(A_B E_B), spread over the region   (19)
+        """
+        points = np.asarray(points, dtype=float)
+        if self.case.deflection <= 0:
+            return np.zeros(points.shape[1])
+        if zone == "V":
+            return np.full(points.shape[1], self.bead_energy / self._bead_area)
+        strains = self.strains(zone, points)
+        if zone in ("I", "III"):
+            return self._carcass_energy(strains)
+        return self._rubber_energy(zone, strains)
+
+    def _carcass_energy(self, strains: Strains) -> Array:
+        plies = self.stiffness.carcass
+        stretch = plies.circumferential(strains.radius) * strains.hoop**2
+        stress = plies.poisson_term * strains.stress**2 / plies.meridional(strains.radius)
+        shear = strains.shear_force**2 / (strains.carcass_thickness**2 * self.stiffness.ply_shear_modulus)
+        return np.asarray((stretch + stress + shear) / 2)
+
+    def _rubber_energy(self, zone: str, strains: Strains) -> Array:
+        if zone == "IV":
+            return np.asarray(self.stiffness.sidewall_shear_modulus * (strains.meridional**2 + strains.hoop**2))
+        modulus = self.stiffness.tread_shear_modulus
+        contact = CONTACT_PRESSURE * self.case.pressure / (3 * modulus) * self._scale
+        through_thickness = -contact - 0.5 * (strains.meridional + strains.hoop)
+        return np.asarray(modulus * (strains.meridional**2 + strains.hoop**2 + through_thickness**2))
+
+    @functools.cached_property
+    def bead_tension_change(self) -> float:
+        """T_f - T_i, N, of the bead bundle: T = N_phi sin(beta) R_R (B1-B5)."""
+        line, p0 = self.section.line, self.case.pressure
+        rim_radius = line.bead[1]
+        before, after = self.inflated, self.deflected
+        cos_before = (before.centre_radius - rim_radius) / before.radius
+        crown_drop = line.crown_radius * (1 - math.cos(line.shoulder_s / line.crown_radius))
+        cos_after = (2 * before.radius * cos_before - (self._deflection - crown_drop)) / (2 * after.radius)
+
+        def tension(arc: DeflectedArcs, cosine: float) -> float:
+            force = p0 / 2 * arc.radius * (1 + arc.centre_radius / rim_radius)
+            return force * math.sqrt(max(1 - cosine * cosine, 0.0)) * rim_radius
+
+        return self._scale * (tension(after, cos_after) - tension(before, cos_before))
+
+    @property
+    def bead_energy(self) -> float:
+        """Energy change of one bead bundle, J per metre of its length (19)."""
+        return 0.5 * self.bead_tension_change**2 / (self.stiffness.bead_wire_area * self.stiffness.bead_modulus)
+
+    @functools.cached_property
+    def _bead_area(self) -> float:
+        sides = 1 if self.section.half else 2
+        return float(self.section.area("bead")) / sides

@@ -1,0 +1,104 @@
+"""The two circular arcs before and after deflection (Clark & Dodge 1980, appendices A and B)."""
+
+from __future__ import annotations
+
+import math
+from dataclasses import dataclass
+from typing import Any
+
+import numpy as np
+from numpy.typing import NDArray
+from scipy.optimize import brentq
+
+from tyrefem.errors import InputError
+
+Array = NDArray[np.float64]
+
+
+@dataclass(frozen=True)
+class DeflectedArcs:
+    """Sidewall arc of the inflated (i) and of the deflected (f) section. Lengths in m.
+
+    ``centre`` is the arc's centre (axial x, radius b), ``radius`` its radius R, ``start`` the polar angle of the
+    shoulder seen from the centre (from the outward axial direction towards the tread), ``turn`` the angle from
+    shoulder to bead.
+    """
+
+    radius: float
+    centre_axial: float
+    centre_radius: float
+    start: float
+    turn: float
+
+    def place(self, fraction: Array, offset: Array) -> tuple[Array, Array]:
+        """(r, x) of points at a fraction of the arc from the shoulder, ``offset`` outwards of it."""
+        polar = self.start - np.asarray(fraction) * self.turn
+        reach = self.radius + np.asarray(offset)
+        return self.centre_radius + reach * np.sin(polar), self.centre_axial + reach * np.cos(polar)
+
+
+def through(shoulder: tuple[float, float], bead: tuple[float, float], radius: float) -> DeflectedArcs:
+    """The arc of a radius from shoulder to bead, bulging outwards; points are (axial x, radius y)."""
+    (xs, ys), (xb, yb) = shoulder, bead
+    half = math.hypot(xs - xb, ys - yb) / 2
+    height = math.sqrt(max(radius * radius - half * half, 0.0))
+    along = ((xs - xb) / (2 * half), (ys - yb) / (2 * half))
+    centre = ((xs + xb) / 2 - height * along[1], (ys + yb) / 2 + height * along[0])
+    start = math.atan2(ys - centre[1], xs - centre[0])
+    return DeflectedArcs(radius, centre[0], centre[1], start, 2 * math.asin(min(half / radius, 1.0)))
+
+
+def deflected_sidewall(line: Any, deflection: float, membrane_compliance: float, pressure: float) -> DeflectedArcs:
+    """The sidewall arc under a deflection D that flattens the whole crown.
+
+    The shoulder moves to (S_c, y_m - D); the arc shortens with its tension,
+    S_f = S_L (1 + p0 (R_f - R_1) C),  R_f sin(S_f / (2 R_f)) = H_f / 2,  R_f < R_1                   (A6-A9)
+
+    Parameters
+    ----------
+    line : the two-arc reference line.
+    deflection, pressure : D in m, p0 gauge in Pa.
+    membrane_compliance : C = mean of 1/(h_c E_phi) over the sidewall, m/N.
+
+    Raises
+    ------
+    InputError : no such arc: the sidewall cannot reach (the deflection is impossible for this section).
+    """
+    (_, yc), bead = line.shoulder, line.bead
+    length = line.length - line.shoulder_s
+    shoulder = (line.shoulder_s, line.crown_midline_radius - deflection)
+    chord = math.hypot(shoulder[0] - bead[0], shoulder[1] - bead[1])
+
+    def stretched(radius: float) -> float:
+        return length * (1 + pressure * (radius - line.sidewall_radius) * membrane_compliance)
+
+    def gap(radius: float) -> float:
+        return 2 * radius * math.sin(stretched(radius) / (2 * radius)) - chord
+
+    # From R_1 downwards the arc closes up; the first sign change is the wanted root.
+    radii = np.linspace(line.sidewall_radius, 0.25 * line.sidewall_radius, 400)
+    radii = radii[[0 < stretched(r) / r < 2 * math.pi for r in radii]]
+    values = [gap(r) for r in radii]
+    for upper, lower, above, below in zip(radii, radii[1:], values, values[1:], strict=False):
+        if above >= 0 >= below and shoulder[1] > bead[1]:
+            radius = brentq(gap, lower, upper, xtol=1e-14, rtol=1e-14)
+            return (
+                through(shoulder, bead, radius)
+                if stretched(radius) / radius < math.pi
+                else _major(shoulder, bead, radius)
+            )
+    raise InputError(
+        f"a deflection of {deflection * 1e3:.1f} mm is impossible for this section: with the crown flattened the "
+        f"shoulder is {(shoulder[1] - bead[1]) * 1e3:.1f} mm above the bead, and no sidewall arc of "
+        f"{length * 1e3:.1f} mm tighter than {line.sidewall_radius * 1e3:.1f} mm joins them "
+        f"(it must flatten the crown, more than {(line.crown_midline_radius - yc) * 1e3:.1f} mm, and not bottom)",
+        field="deflection",
+    )
+
+
+def _major(shoulder: tuple[float, float], bead: tuple[float, float], radius: float) -> DeflectedArcs:
+    """The arc that turns by more than half a circle: its centre lies beyond the chord."""
+    minor = through(shoulder, bead, radius)
+    cx, cy = (shoulder[0] + bead[0]) - minor.centre_axial, (shoulder[1] + bead[1]) - minor.centre_radius
+    start = math.atan2(shoulder[1] - cy, shoulder[0] - cx)
+    return DeflectedArcs(radius, cx, cy, start, 2 * math.pi - minor.turn)

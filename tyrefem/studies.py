@@ -1,0 +1,237 @@
+"""A study: one immutable description of a tyre and its drive, and what can be asked of it."""
+
+from __future__ import annotations
+
+import copy
+import functools
+from collections.abc import Mapping
+from dataclasses import dataclass, field, replace
+from pathlib import Path
+from typing import TYPE_CHECKING, Any
+
+from tyrefem import library
+from tyrefem.dotted import changed, scaled, value_at
+from tyrefem.errors import InputError
+from tyrefem.materials import MaterialCard
+from tyrefem.study_card import REGIONS, MeasuredEntry, Sensor, StudyCard
+
+if TYPE_CHECKING:
+    from collections.abc import Callable
+
+    from tyrefem.campaign import Campaign
+    from tyrefem.compare import Comparison
+    from tyrefem.meshing import TyreMesh
+    from tyrefem.result import Result
+    from tyrefem.section import Section
+
+    Progress = Callable[[float], None]
+
+
+@dataclass(frozen=True, eq=False)
+class Study:
+    """A tyre, its materials, drive, boundaries and sensors. Made by `study`; changed by `replace`.
+
+    ``data`` is the file as written (units in the text); ``card`` the same, validated, in SI.
+
+    >>> faster = study("nasa-22x5.5-8pr").replace({"drive.speed": "25 mph"})
+    >>> faster.data["drive"]["speed"]
+    '25 mph'
+    """
+
+    name: str
+    data: Mapping[str, Any]
+    file: Path | None = None
+    #: Folder that relative references (cards, tables) start from.
+    folder: Path | None = None
+    card: StudyCard = field(init=False, repr=False)
+
+    def __post_init__(self) -> None:
+        object.__setattr__(self, "card", StudyCard.check(self.data, self.file))
+        _ = self.section, self.materials
+        self._check_sensors()
+
+    # -- what it is made of ------------------------------------------------------------------------------------------
+
+    @functools.cached_property
+    def section(self) -> Section:
+        """The tyre's section, half or full as the mesh table says."""
+        from tyrefem.section import load
+
+        full = self.card.mesh.section == "full"
+        try:
+            built = load(self.data["section"], near=self.folder)
+        except InputError as error:
+            raise error if error.file else error.within(field="section", file=self.file) from None
+        return built.as_full() if full else built
+
+    @functools.cached_property
+    def materials(self) -> dict[str, MaterialCard]:
+        """Region -> material card."""
+        found = {}
+        for region in REGIONS:
+            try:
+                data, path, _ = library.load("material", self.data["materials"][region], self.folder)
+                found[region] = MaterialCard.check(data, path)
+            except InputError as error:
+                raise error if error.file else error.within(field=f"materials.{region}", file=self.file) from None
+        return found
+
+    @property
+    def title(self) -> str:
+        """One line for people."""
+        return self.card.title
+
+    @property
+    def sensors(self) -> Mapping[str, Sensor]:
+        """Thermocouples by name."""
+        return self.card.sensors
+
+    @property
+    def measured(self) -> tuple[MeasuredEntry, ...]:
+        """The study's measured tables, their paths made whole."""
+        folder = self.folder or Path()
+        entries = self.card.measured
+        return tuple(entry.model_copy(update={"table": folder / entry.table}) for entry in entries)
+
+    @property
+    def tolerance(self) -> float:
+        """Time-integration error aimed at, K."""
+        return self.card.numerics.tolerance
+
+    @property
+    def numerical_sd(self) -> float:
+        """Standard deviation of a reading left by the mesh, K."""
+        return self.card.numerics.mesh_sd
+
+    @functools.cached_property
+    def uncertainty(self) -> dict[str, float]:
+        """Dotted name of an uncertain number -> relative standard deviation, from the cards and the study."""
+        found: dict[str, float] = {}
+        for region, card in self.materials.items():
+            for name in ("conductivity", "specific_heat", "loss_tangent"):
+                entry = getattr(card, name)
+                for key in ("value", "along", "across"):
+                    if entry.relative_sd and getattr(entry, key, None) is not None:
+                        found[f"materials.{region}.{name}.{key}"] = entry.relative_sd
+        return found | self.card.uncertainty
+
+    def _check_sensors(self) -> None:
+        for name, sensor in self.sensors.items():
+            try:
+                self.section_place(sensor)
+            except InputError as error:
+                raise error.within(field=f"sensors.{name}", file=self.file) from None
+
+    def section_place(self, sensor: Sensor) -> tuple[float, float]:
+        """(r, z) of a sensor, m; refuses one outside the rubber."""
+        section = self.section
+        if sensor.at is not None:
+            r, z = sensor.at
+            if not section.contains([[r, z]])[0]:
+                s, depth = section.locate([[r, z]])
+                raise InputError(
+                    f"at (r, z) = ({r * 1e3:.1f}, {z * 1e3:.1f}) mm the sensor is outside the rubber; the nearest "
+                    f"meridian point is s = {float(s[0]) * 1e3:.1f} mm, where the rubber is "
+                    f"{float(section.total_thickness(s)[0]) * 1e3:.1f} mm thick (depth there "
+                    f"{float(depth[0]) * 1e3:.1f} mm)"
+                )
+            return float(r), float(z)
+        assert sensor.s is not None
+        assert sensor.depth is not None
+        length = section.line.length
+        lowest = 0.0 if section.half else -length
+        if not lowest <= sensor.s <= length:
+            raise InputError(
+                f"s = {sensor.s * 1e3:.1f} mm is off the section; allowed: {lowest * 1e3:.1f} to {length * 1e3:.1f} mm"
+            )
+        thickness = float(section.total_thickness([sensor.s])[0])
+        if sensor.depth > thickness * (1 + 1e-9):
+            raise InputError(
+                f"depth = {sensor.depth * 1e3:.2f} mm is outside the rubber, which is {thickness * 1e3:.2f} mm thick "
+                f"at s = {sensor.s * 1e3:.1f} mm"
+            )
+        r, z = section.place([sensor.s], [min(sensor.depth, thickness)])[0]
+        return float(r), float(z)
+
+    # -- change ------------------------------------------------------------------------------------------------------
+
+    def replace(self, changes: Mapping[str, Any]) -> Study:
+        """A new study with values changed by dotted names; units as text, as in a file.
+
+        Raises
+        ------
+        InputError : unknown name (says the nearest), or a value that is not allowed.
+        """
+        data: dict[str, Any] = copy.deepcopy(dict(self.data))
+        for key, value in changes.items():
+            data = changed(data, key, value)
+        return replace(self, data=data)
+
+    def scaled(self, key: str, factor: float) -> Study:
+        """A new study with the number at a dotted name times a factor."""
+        return self.replace({key: scaled(value_at(self.data, key, self.folder), factor)})
+
+    def with_drive(self, changes: Mapping[str, Any]) -> Study:
+        """A new study with other values in its ``[drive]`` table."""
+        return self.replace({f"drive.{key}": value for key, value in changes.items()})
+
+    def save(self, path: str | Path) -> Path:
+        """Write the study as a TOML file that runs as it is."""
+        import tomli_w
+
+        from tyrefem.output import atomic_path
+
+        with atomic_path(Path(path)) as temporary:
+            temporary.write_text(tomli_w.dumps(dict(self.data)), encoding="utf-8")
+        return Path(path)
+
+    # -- work --------------------------------------------------------------------------------------------------------
+
+    def mesh(self) -> TyreMesh:
+        """The section's mesh, as the study's ``[mesh]`` table asks."""
+        from tyrefem import meshing
+
+        choice = self.card.mesh
+        if choice.file is not None:
+            return meshing.from_file((self.folder or Path()) / choice.file, self.section)
+        return meshing.build(self.section, mesher=choice.mesher, size=choice.size, cell=choice.cell)
+
+    def run(self, progress: Progress | None = None) -> Result:
+        """Simulate the drive. ``progress`` is called with the time (s) after every step."""
+        from tyrefem.rolling import run
+
+        return run(self, progress)
+
+    def compare(self, table: str | Path | None = None, result: Result | None = None) -> Comparison:
+        """Deviation from measured tables: the one given, or the study's own."""
+        from tyrefem.compare import compare
+
+        return compare(self, table, result)
+
+    @property
+    def is_campaign(self) -> bool:
+        """Does it name a table of cases?"""
+        return self.card.cases is not None
+
+    def campaign(self) -> Campaign:
+        """The cases of the study's table, each a study of its own."""
+        from tyrefem.campaign import Campaign
+
+        return Campaign.of(self)
+
+
+def study(name: str | Path, changes: Mapping[str, Any] | None = None) -> Study:
+    """The study of a name or path, with values changed by dotted names.
+
+    Raises
+    ------
+    InputError : no such study, or something wrong in it or in a card it names: file, field, what is allowed.
+    """
+    from tyrefem.cards import read_toml
+
+    path = library.find("study", str(name))
+    found_name = path.parent.name if path.name == "study.toml" else path.stem
+    data = read_toml(path)
+    for key, value in (changes or {}).items():
+        data = changed(data, key, value)
+    return Study(found_name, data, path, path.parent.resolve())

@@ -1,0 +1,146 @@
+"""The study file: what `tyrefem.study` validates. Every key can be changed by its dotted name."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from typing import Annotated, Any, ClassVar, Literal
+
+from pydantic import Field, model_validator
+
+from tyrefem.boundaries import LawOf
+from tyrefem.boundaries.contained_air import ContainedAirLaw
+from tyrefem.boundaries.outside_air import OutsideAirLaw
+from tyrefem.boundaries.rim import RimLaw
+from tyrefem.boundaries.road import RoadLaw
+from tyrefem.cards import Card, Text
+from tyrefem.drive import Drive
+from tyrefem.errors import InputError, nearest
+from tyrefem.loading import TrR64, VerticalStiffness
+from tyrefem.quantity import Unit
+
+
+class MeshChoice(Card):
+    """How the section is meshed. ``file`` takes a user's own mesh with named groups in place of a mesher."""
+
+    mesher: Literal["mapped", "gmsh"] = "mapped"
+    size: Annotated[float, Unit("m", gt=1e-4, lt=0.5)] = 2e-3
+    cell: Literal["quad", "tri"] = "quad"
+    element: Literal["P1", "P2"] = "P1"
+    section: Literal["half", "full"] = "half"
+    file: str | None = None
+
+
+class Mechanics(Card):
+    """How the strain cycle is found.
+
+    ``loss_convention``: ``nasa``, W = pi U tan d (eq 25, where U stands for E' e0^2), or ``sinusoid``,
+    W = 2 pi U tan d with U = E' e0^2 / 2. ``poisson_term`` is c_a = 1 - nu_pt nu_tp (eq 7a), 0.75 an estimate.
+    """
+
+    strain: Literal["arcs"] = "arcs"
+    load_law: Annotated[TrR64 | VerticalStiffness, Field(discriminator="law")] = TrR64()
+    loss_convention: Literal["nasa", "sinusoid"] = "nasa"
+    poisson_term: Annotated[float, Unit("1", ge=0, le=1)] = 0.75
+    membrane_shear: bool = True
+
+
+class Boundaries(Card):
+    """Where the heat goes: one law per side."""
+
+    road: Annotated[RoadLaw, LawOf("road", "constant")] = Field(default_factory=lambda: LawOf("road", "constant")({}))
+    outside_air: Annotated[OutsideAirLaw, LawOf("outside_air", "nasa")] = Field(
+        default_factory=lambda: LawOf("outside_air", "nasa")({})
+    )
+    contained_air: Annotated[ContainedAirLaw, LawOf("contained_air", "gas")] = Field(
+        default_factory=lambda: LawOf("contained_air", "gas")({})
+    )
+    rim: Annotated[RimLaw, LawOf("rim", "fixed")] = Field(default_factory=lambda: LawOf("rim", "fixed")({}))
+
+
+class Sensor(Card):
+    """A thermocouple: ``s`` along the meridian from the crown and ``depth`` from the inner surface, or ``at = [r, z]``.
+
+    ``lag`` is its first-order time constant, ``noise`` the standard deviation of a reading, ``accuracy`` that of its
+    calibration, ``position_sd`` that of its place (defaults: estimates for a hand-drilled thermocouple).
+    """
+
+    s: Annotated[float, Unit("m")] | None = None
+    depth: Annotated[float, Unit("m", ge=0)] | None = None
+    at: tuple[Annotated[float, Unit("m", gt=0)], Annotated[float, Unit("m")]] | None = None
+    position_sd: Annotated[float, Unit("m", ge=0)] = 1e-3
+    lag: Annotated[float, Unit("s", ge=0)] = 0.0
+    noise: Annotated[float, Unit("delta_degC", ge=0)] = 0.5
+    accuracy: Annotated[float, Unit("delta_degC", ge=0)] = 1.0
+
+    @model_validator(mode="after")
+    def _one_place(self) -> Sensor:
+        along = self.s is not None or self.depth is not None
+        if along == (self.at is not None) or (along and (self.s is None or self.depth is None)):
+            raise InputError("give either 's' and 'depth', or 'at = [r, z]'")
+        return self
+
+
+class Output(Card):
+    """What is kept: readings ``every`` so often, and ``fields`` full temperature fields spread over the drive."""
+
+    every: Annotated[float, Unit("s", gt=0)] = 5.0
+    fields: Annotated[int, Field(ge=2, le=10_000)] = 13
+
+
+class Numerics(Card):
+    """``tolerance``: time-integration error aimed at; ``mesh_sd``: standard deviation left by the mesh (an estimate)."""
+
+    tolerance: Annotated[float, Unit("delta_degC", gt=0, le=10)] = 0.01
+    mesh_sd: Annotated[float, Unit("delta_degC", ge=0)] = 0.1
+
+
+class MeasuredEntry(Card):
+    """A measured table: the file, which run of it, the drive of that run, and whether it is held out of any fit."""
+
+    table: Text
+    run: Text | None = None
+    drive: dict[str, Any] = Field(default_factory=dict)
+    hold_out: bool = False
+    noise: Annotated[float, Unit("delta_degC", gt=0)] | None = None
+    time_offset: Annotated[float, Unit("s")] = 0.0
+
+
+REGIONS = ("carcass", "tread", "sidewall", "bead")
+
+
+class StudyCard(Card):
+    """A study.toml, its references to other cards not yet followed."""
+
+    kind: ClassVar[str] = "study"
+    title: Text
+    section: Any
+    materials: dict[str, Any]
+    drive: Drive
+    mesh: MeshChoice = MeshChoice()
+    mechanics: Mechanics = Mechanics()
+    boundaries: Boundaries = Field(default_factory=Boundaries)
+    sensors: dict[str, Sensor] = Field(default_factory=dict)
+    output: Output = Output()
+    numerics: Numerics = Numerics()
+    uncertainty: dict[str, Annotated[float, Unit("1", gt=0, lt=1)]] = Field(default_factory=dict)
+    measured: tuple[MeasuredEntry, ...] = ()
+    cases: Text | None = None
+
+    @model_validator(mode="before")
+    @classmethod
+    def _measured_and_regions(cls, data: Any) -> Any:
+        if isinstance(data, Mapping) and isinstance(data.get("materials"), Mapping):
+            for region in data["materials"]:
+                if region not in REGIONS:
+                    raise InputError(f"unknown region '{region}'{nearest(region, REGIONS)}", field="materials")
+            missing = [region for region in REGIONS if region not in data["materials"]]
+            if missing:
+                raise InputError(f"no material card for region '{missing[0]}'", field="materials")
+        return data
+
+    @model_validator(mode="after")
+    def _sensor_names(self) -> StudyCard:
+        for name in self.sensors:
+            if name in ("time_s", "contained-air", "rim") or not name.strip():
+                raise InputError(f"'{name}' is a name that readings already use", field="sensors")
+        return self
