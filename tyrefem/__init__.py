@@ -27,7 +27,7 @@ _WHERE = {
     "Fixed": "conduction",
     "Reservoir": "conduction",
 }
-__all__ = [*_WHERE, "__version__"]  # noqa: PLE0604
+__all__ = [*_WHERE, "__version__"]
 
 
 def __getattr__(name: str) -> Any:

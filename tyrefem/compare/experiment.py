@@ -11,8 +11,8 @@ from tyrefem.compare.interface import MeasuredEntry, StudyLike
 from tyrefem.errors import InputError, nearest
 from tyrefem.measured import MeasuredRun, read_table
 
-#: The gas temperature: computed with the sensors, measured like one, but at no place in the rubber.
-CONTAINED_AIR = "contained-air"
+#: Temperatures that are computed with the sensors and measured like them, but at no place in the rubber.
+OUTSIDE_THE_RUBBER = ("contained-air", "rim")
 Table = str | Path | MeasuredRun | Sequence[MeasuredRun]
 
 
@@ -61,7 +61,7 @@ def experiments(
     own = list(study.measured) if table is None else []
     runs: Sequence[MeasuredRun] = ()
     if isinstance(table, str | Path):
-        own = [entry for entry in study.measured if entry.table.absolute() == Path(table).absolute()]
+        own = [entry for entry in study.measured if Path(entry.table).absolute() == Path(table).absolute()]
         runs = () if own else read_table(table, rename=rename, ignore=ignored)
     elif table is not None:
         runs = [table] if isinstance(table, MeasuredRun) else table
@@ -88,7 +88,7 @@ def _of_entry(entry: MeasuredEntry, ignore: tuple[str, ...], rename: Mapping[str
 
 def _matched(run: MeasuredRun, study: StudyLike) -> Experiment:
     for entry in study.measured:
-        if run.name == (entry.run or entry.table.stem):
+        if run.name == (entry.run or Path(entry.table).stem):
             shifted = run.shifted(entry.time_offset)
             return Experiment(shifted, dict(entry.drive), entry.noise, entry.hold_out)
     return Experiment(run)
@@ -102,7 +102,7 @@ def _without(one: Experiment, ignore: tuple[str, ...]) -> Experiment:
 
 
 def _known_sensors(run: MeasuredRun, study: StudyLike) -> None:
-    allowed = {*study.sensors, CONTAINED_AIR}
+    allowed = {*study.sensors, *OUTSIDE_THE_RUBBER}
     for sensor in run.sensors:
         if sensor not in allowed:
             raise InputError(

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Iterable, Mapping, Sequence
+from concurrent.futures import Executor
 
 from tyrefem.compare.comparison import Comparison, comparison_of
 from tyrefem.compare.experiment import Experiment, Table, experiments
@@ -20,6 +21,7 @@ def compare(
     ignore: Iterable[str] = (),
     rename: Mapping[str, str] | None = None,
     k: float = 2.0,
+    executor: Executor | None = None,
 ) -> Comparison:
     """Deviations between a study and measured temperature histories, E = computed - measured.
 
@@ -33,6 +35,7 @@ def compare(
     inputs : run the study again with each quantity of ``study.uncertainty`` one standard deviation higher.
     ignore : columns of the table to leave out. ``rename`` : column name -> sensor name.
     k : coverage factor of the verdict; 2 for about 95 %.
+    executor : runs the simulations side by side (`concurrent.futures.ProcessPoolExecutor` or alike).
 
     Raises
     ------
@@ -44,13 +47,10 @@ def compare(
         raise InputError(f"the coverage factor k must be more than 0 and less than 100, not {k!r}")
     planned = experiments(study, table, ignore=ignore, rename=rename)
     keys = dict(study.uncertainty) if inputs else {}
-    solved: dict[str, tuple[ResultLike, dict[str, ResultLike]]] = {}
+    solved = _solved(study, planned, result, keys, executor)
     found, curves, notes = [], {}, []
     for experiment in planned:
-        drive = repr(sorted(experiment.drive.items()))
-        if drive not in solved:
-            solved[drive] = _simulated(study, experiment, result, single=len(planned) == 1, keys=keys)
-        computed, perturbed = solved[drive]
+        computed, perturbed = solved[_drive(experiment)]
         own, outside = histories(experiment, study, computed, perturbed)
         found += own
         curves[experiment.name] = computed.readings
@@ -61,17 +61,44 @@ def compare(
     return comparison_of(study.name, found, curves=curves, relative_sd=keys, notes=tuple(notes), k=k)
 
 
-def _simulated(
-    study: StudyLike, experiment: Experiment, result: ResultLike | None, *, single: bool, keys: Mapping[str, float]
-) -> tuple[ResultLike, dict[str, ResultLike]]:
-    """The result at a run's drive, and the results with each uncertain input one sd higher."""
-    driven = study.with_drive(dict(experiment.drive)) if experiment.drive else study
-    if result is not None and (not experiment.drive or (single and result.study is not study)):
-        computed = result
-        driven = result.study if hasattr(result.study, "scaled") else driven
-    else:
-        computed = driven.run()
-    return computed, {key: driven.scaled(key, 1.0 + sd).run() for key, sd in keys.items()}
+def _drive(experiment: Experiment) -> str:
+    """Experiments at the same drive share their simulations."""
+    return repr(sorted(experiment.drive.items()))
+
+
+def _run(study: StudyLike) -> ResultLike:
+    return study.run()
+
+
+def _solved(
+    study: StudyLike,
+    planned: Sequence[Experiment],
+    result: ResultLike | None,
+    keys: Mapping[str, float],
+    executor: Executor | None,
+) -> dict[str, tuple[ResultLike, dict[str, ResultLike]]]:
+    """Drive -> its result, and its results with each uncertain input one sd higher."""
+    known: dict[str, ResultLike] = {}
+    studies: dict[tuple[str, str | None], StudyLike] = {}
+    for experiment in planned:
+        drive = _drive(experiment)
+        if drive in known or (drive, None) in studies:
+            continue
+        driven = study.with_drive(dict(experiment.drive)) if experiment.drive else study
+        amended = result is not None and len(planned) == 1 and result.study is not study
+        if result is not None and (not experiment.drive or amended):
+            known[drive] = result
+            driven = result.study
+        else:
+            studies[drive, None] = driven
+        studies |= {(drive, key): driven.scaled(key, 1.0 + sd) for key, sd in keys.items()}
+    each = executor.map if executor is not None else map
+    results = dict(zip(studies, each(_run, studies.values()), strict=True))
+    drives = dict.fromkeys(map(_drive, planned))
+    return {
+        drive: (known.get(drive) or results[drive, None], {key: results[drive, key] for key in keys})
+        for drive in drives
+    }
 
 
 def _outside(experiment: Experiment, computed: ResultLike, outside: int) -> list[str]:

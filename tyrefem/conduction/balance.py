@@ -7,91 +7,17 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
-from tyrefem.conduction.conditions import Material, Reservoir, is_number
-from tyrefem.conduction.loads import (
-    Datum,
-    ExchangeLoad,
-    FilmLoad,
-    Linear,
-    Load,
-    PowerLoad,
-    State,
-    VariableConduction,
-)
+from tyrefem.conduction.capacity import GAUSS, Capacity
+from tyrefem.conduction.conditions import Material, Reservoir
+from tyrefem.conduction.datum import Datum
+from tyrefem.conduction.fixed_nodes import FixedNodes
+from tyrefem.conduction.loads import Linear, Load, State, VariableConduction
 from tyrefem.conduction.operators import Operators, Surface
+from tyrefem.conduction.reservoir_loads import ExchangeLoad, PowerLoad
+from tyrefem.conduction.surface_loads import FilmLoad
 from tyrefem.errors import InputError
 
 Array = NDArray[Any]
-
-_GAUSS_X, _GAUSS_W = np.polynomial.legendre.leggauss(5)
-
-
-class Capacity:
-    """Volumetric heat capacity of one region, constant or a function of temperature."""
-
-    def __init__(self, ops: Operators, name: str, material: Material) -> None:
-        self.name, self.dofs = name, ops.dofs(name)
-        self.constant = is_number(material.heat_capacity)
-        self.c = material.heat_capacity
-        if self.constant:
-            self.data = ops.mass(name) * float(material.heat_capacity)  # type: ignore[arg-type]
-            self.row = ops.matrix(self.data) @ np.ones(ops.size)
-        else:
-            self.q = ops.quadrature(name, material.direction)
-
-    def values(self, T: Array) -> Array:
-        """c at quadrature temperatures."""
-        c = np.broadcast_to(np.asarray(self.c(T), dtype=float), T.shape)  # type: ignore[operator]
-        if not np.min(c) > 0:
-            where = f"between {T.min():.6g} and {T.max():.6g} degC"
-            raise InputError(f"is not positive {where}", field=f"regions.{self.name}.heat_capacity")
-        return c
-
-    def mass(self, u: Array) -> Array:
-        """Operator values of the integral of c v u."""
-        return self.data if self.constant else self.q.mass @ self.values(self.q.value @ u)
-
-    def stored(self, before: Array, after: Array) -> float:
-        """Heat taken up from one temperature field to another, J."""
-        if self.constant:
-            return float(self.row @ (after - before))
-        T0, T1 = self.q.value @ before, self.q.value @ after
-        mean = sum(
-            w / 2 * self.values(T0 + (x + 1) / 2 * (T1 - T0)) for x, w in zip(_GAUSS_X, _GAUSS_W, strict=True)
-        )
-        return float(self.q.weight @ (mean * (T1 - T0)))
-
-    def rate(self, u: Array, slope: Array) -> float:
-        """Heat stored per second at temperature rate `slope`, W."""
-        if self.constant:
-            return float(self.row @ slope)
-        return float(self.q.weight @ (self.values(self.q.value @ u) * (self.q.value @ slope)))
-
-
-class FixedNodes:
-    """Prescribed unknowns: the first boundary that names a node owns it."""
-
-    def __init__(self, size: int, fixed: list[tuple[int, Surface, Datum]]) -> None:
-        owner = np.full(size, -1)
-        self._data: list[tuple[int, Datum, Array]] = []
-        for slot, surface, value in fixed:
-            mine = owner[surface.dofs] < 0
-            owner[surface.dofs[mine]] = slot
-            self._data.append((slot, value, mine))
-        parts = [surface.dofs[mine] for (_, surface, _), (_, _, mine) in zip(fixed, self._data, strict=True)]
-        self.dofs = np.concatenate(parts) if parts else np.zeros(0, np.int64)
-        self.free = np.flatnonzero(owner < 0)
-        ends = np.cumsum([0, *(part.size for part in parts)])
-        self.parts = [
-            (slot, slice(a, b)) for (slot, _, _), a, b in zip(self._data, ends[:-1], ends[1:], strict=True)
-        ]
-        self.constant = all(value.constant for _, value, _ in self._data)
-
-    def __call__(self, t: float) -> Array:
-        """Prescribed temperatures at time t, in the order of `dofs`."""
-        if not self._data:
-            return np.zeros(0)
-        return np.concatenate([np.broadcast_to(value(t), mine.shape)[mine] for _, value, mine in self._data])
 
 
 class HeatBalance:
@@ -147,8 +73,7 @@ class HeatBalance:
         """Heat taken up by every reservoir between two temperatures, J."""
         if not self.variable_reservoirs:
             return self.reservoir_capacity(after) * (after - before)
-        steps = [before + (x + 1) / 2 * (after - before) for x in _GAUSS_X]
-        mean = sum(w / 2 * self.reservoir_capacity(g) for g, w in zip(steps, _GAUSS_W, strict=True))
+        mean = sum(w / 2 * self.reservoir_capacity(before + (x + 1) / 2 * (after - before)) for x, w in GAUSS)
         return np.asarray(mean * (after - before))
 
     def mass(self, u: Array) -> Array:

@@ -45,19 +45,17 @@ class Ordering:
         self._indptr = np.concatenate(([0], np.cumsum(counts))).astype(np.int32)
         self._indices = columns.astype(np.int32)
         graph = csr_matrix((np.ones(kept.size, np.int8), self._indices, self._indptr), (free.size,) * 2)
-        orders = [reverse_cuthill_mckee(graph, symmetric_mode=True)]
+        orders: list[Array] = [reverse_cuthill_mckee(graph, symmetric_mode=True)]
         if hint is not None:
             orders.append(np.argsort(hint[free], kind="stable"))
-        bands = []
+        bands: list[tuple[int, int, Array]] = []
         for order in orders:
             place = np.empty(free.size, np.int64)
             place[order] = np.arange(free.size)
             bands.append((int(np.max(place[rows] - place[columns], initial=0)), len(bands), place))
         width, best, place = min(bands, key=lambda band: band[:2])
         self.order, self.width = orders[best], width
-        banded = free.size * (
-            _FLOP * width**2 + _SOLVES_PER_FACTOR * 16 * _BYTE * (width + 1)
-        )
+        banded = free.size * (_FLOP * width**2 + _SOLVES_PER_FACTOR * 16 * _BYTE * (width + 1))
         self.banded = banded < free.size * (_SPARSE_FACTOR + _SOLVES_PER_FACTOR * _SPARSE_SOLVE)
         if self.banded:
             lower = place[rows] >= place[columns]
@@ -89,7 +87,7 @@ class Factor:
         self.ordering = ordering
         if ordering.banded:
             band = ordering.band(data)
-            pbtrf, self._pbtrs = get_lapack_funcs(("pbtrf", "pbtrs"), (band,))
+            pbtrf, self._pbtrs = tuple(get_lapack_funcs(("pbtrf", "pbtrs"), (band,)))  # type: ignore[arg-type]
             self._band, info = pbtrf(band, lower=1, overwrite_ab=1)
             if info != 0:
                 raise np.linalg.LinAlgError("the conduction matrix is not positive definite")

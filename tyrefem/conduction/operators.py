@@ -12,6 +12,7 @@ from numpy.typing import NDArray
 from scipy.sparse import csr_matrix
 
 from tyrefem.conduction.factor import Ordering
+from tyrefem.conduction.quadrature import Quadrature, Surface
 from tyrefem.errors import InputError, nearest
 
 Array = NDArray[Any]
@@ -55,9 +56,9 @@ class Operators:
         self.size = int(self.basis.N)
         self.points: Array = self.basis.doflocs
         self.element_dofs: Array = self.basis.element_dofs
-        self._phi = np.stack([np.broadcast_to(b[0].value, self.basis.dx.shape) for b in self.basis.basis])
+        self._phi = np.stack([np.broadcast_to(np.asarray(b[0]), self.basis.dx.shape) for b in self.basis.basis])
         self._grad = np.stack([b[0].grad for b in self.basis.basis])
-        self.x: Array = np.asarray(self.basis.global_coordinates().value)
+        self.x: Array = np.asarray(self.basis.global_coordinates())
         self.weight: Array = self.basis.dx * (2 * np.pi * self.x[0] if axisymmetric else 1.0)
         self._pattern()
         self._kept: dict[Any, Any] = {}
@@ -84,6 +85,16 @@ class Operators:
     def matrix(self, data: Array) -> csr_matrix:
         """Values on the common pattern as a sparse matrix (n, n)."""
         return csr_matrix((data, self.indices, self.indptr), (self.size, self.size))
+
+    def mean_weight(self) -> Array:
+        """Weights (n,) whose product with the unknowns is the volume mean."""
+
+        def make() -> Array:
+            load = np.einsum("ieq,eq->ie", self._phi, self.weight)
+            row = np.bincount(self.element_dofs.reshape(-1), weights=load.reshape(-1), minlength=self.size)
+            return row / row.sum()
+
+        return self._once("mean", make)
 
     def elements(self, name: str) -> Array:
         """Element numbers of a named subdomain."""
@@ -163,7 +174,7 @@ class Operators:
 
     def _hint(self) -> Array:
         """Order every unknown by its element's corner nodes: the quadratic graph alone orders badly."""
-        linear = operators(self.mesh, "P1", self.axisymmetric)
+        linear = operators_of(self.mesh, "P1", self.axisymmetric)
         order = linear.ordering(np.arange(linear.size)).order
         place = np.empty(linear.size)
         place[order] = np.arange(linear.size)
@@ -177,77 +188,12 @@ class Operators:
         return total / count
 
 
-class Quadrature:
-    """Values and slopes of a field at a region's quadrature points, and the way back to operator values."""
-
-    def __init__(self, ops: Operators, name: str, direction: Callable[..., Any] | None) -> None:
-        e = ops.elements(name)
-        self.weight = ops.weight[e].reshape(-1)
-        dofs = ops.element_dofs[:, e]
-        n_local, n_q = dofs.shape[0], ops.weight.shape[1]
-        columns = np.repeat(dofs.T[:, None, :], n_q, axis=1).reshape(-1)
-        rows = np.arange(0, columns.size + 1, n_local)
-
-        def at_points(local: Array) -> csr_matrix:
-            return csr_matrix((np.moveaxis(local, 0, -1).reshape(-1), columns, rows), (rows.size - 1, ops.size))
-
-        phi = ops._phi[:, e]
-        slopes = ops.directed_gradients(name, direction)
-        self.value = at_points(phi)
-        self.slopes = tuple(at_points(g) for g in slopes)
-        self.value_t = self.value.T.tocsr()
-        self.slopes_t = tuple(g.T.tocsr() for g in self.slopes)
-        place = ops._place[:, :, e]
-        q = np.broadcast_to(np.arange(self.weight.size).reshape(e.size, n_q), (n_local, n_local, e.size, n_q))
-        where = np.broadcast_to(place[..., None], q.shape).reshape(-1)
-
-        def scatter(local: Array) -> csr_matrix:
-            product = local[:, None] * local[None] * ops.weight[e]
-            return csr_matrix((product.reshape(-1), (where, q.reshape(-1))), (ops.nnz, self.weight.size))
-
-        self.mass = scatter(phi)
-        self.conduction = tuple(scatter(g) for g in slopes)
-
-
-class Surface:
-    """Quadrature of a named boundary: points x (2, n_q), weights, and the trace of the unknowns there."""
-
-    def __init__(self, ops: Operators, name: str) -> None:
-        boundaries = ops.mesh.boundaries or {}
-        if name not in boundaries:
-            raise InputError(f"unknown boundary {name!r}{nearest(name, boundaries)}", field="boundaries")
-        facets = np.asarray(boundaries[name], dtype=np.int64)
-        if facets.size == 0:
-            raise InputError(f"boundary {name!r} has no facets", field="boundaries")
-        basis = skfem.FacetBasis(ops.mesh, ops.skfem_element, facets=facets, intorder=ops.intorder)
-        x = np.asarray(basis.global_coordinates().value)
-        self.name, self.x = name, np.ascontiguousarray(x.reshape(2, -1))
-        self.weight = (basis.dx * (2 * np.pi * x[0] if ops.axisymmetric else 1.0)).reshape(-1)
-        self.area = float(self.weight.sum())
-        phi = np.stack([np.broadcast_to(b[0].value, basis.dx.shape) for b in basis.basis])
-        dofs = np.broadcast_to(basis.element_dofs[:, :, None], phi.shape)
-        q = np.broadcast_to(np.arange(self.weight.size).reshape(basis.dx.shape), phi.shape)
-        used = np.abs(phi) > 1e-12
-        self.dofs, column = np.unique(dofs[used], return_inverse=True)
-        shape = (self.weight.size, self.dofs.size)
-        self.trace = csr_matrix((phi[used], (q[used], column)), shape)
-        self.trace_t = self.trace.T.tocsr()
-        self.row = self.trace_t @ self.weight
-        self.points = np.ascontiguousarray(ops.points[:, self.dofs])
-        self._keys, self._size = ops._keys, ops.size
-
-    def exchange(self, weighted: Array) -> tuple[Array, Array]:
-        """Positions and values on the common pattern of the integral of h v u, given h times the weights."""
-        product = (self.trace_t.multiply(weighted) @ self.trace).tocoo()
-        keys = self.dofs[product.row].astype(np.int64) * self._size + self.dofs[product.col]
-        return np.searchsorted(self._keys, keys), product.data
-
-
-def operators(mesh: Any, element: str = "P1", axisymmetric: bool = True) -> Operators:
+def operators_of(mesh: Any, element: str = "P1", axisymmetric: bool = True) -> Operators:
     """The operators of a mesh, shared by every problem on the same mesh object.
 
+    >>> import skfem
     >>> mesh = skfem.MeshTri().refined(2)
-    >>> operators(mesh, "P1", False) is operators(mesh, "P1", False)
+    >>> operators_of(mesh, "P1", False) is operators_of(mesh, "P1", False)
     True
     """
     key = (id(mesh), element, axisymmetric)

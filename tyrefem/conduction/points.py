@@ -44,9 +44,7 @@ class Located:
         self.elements = np.empty(len(points), dtype=np.int64)
         self.local = np.empty((2, len(points)))
         for i, point in enumerate(points):
-            near = np.flatnonzero(
-                np.all((low <= point[:, None] + margin) & (high >= point[:, None] - margin), axis=0)
-            )
+            near = np.flatnonzero(np.all((low <= point[:, None] + margin) & (high >= point[:, None] - margin), axis=0))
             found = self._inside(point, near, size) if near.size else None
             if found is None:
                 raise InputError(
@@ -92,7 +90,7 @@ class Located:
         values = []
         for i in range(columns.shape[0]):
             shape = ops.skfem_element.gbasis(ops.basis.mapping, X, i, tind=self.elements)[0]
-            values.append(np.asarray(shape.grad)[:, :, 0] if order else np.asarray(shape.value)[None, ..., 0])
+            values.append(np.asarray(shape.grad)[:, :, 0] if order else np.asarray(shape)[None, ..., 0])
         stacked = np.stack([np.broadcast_to(v, (v.shape[0], n)) for v in values], axis=-1)
         rows = np.arange(0, columns.size + 1, columns.shape[0])
         return [csr_matrix((v.reshape(-1), columns.T.reshape(-1), rows), (n, ops.size)) for v in stacked]
@@ -116,4 +114,4 @@ def located(ops: Operators, points: ArrayLike) -> Located:
         if len(store) >= 8:
             store.pop(next(iter(store)))
         store[key] = Located(ops, array)
-    return store[key]  # type: ignore[no-any-return]
+    return store[key]

@@ -169,12 +169,8 @@ class Step:
 
     def at(self, theta: float) -> State:
         """The state at t + theta h, by the method's own continuous extension."""
-        if theta >= 1.0:
-            weights = WEIGHT
-        else:
-            weights = DENSE @ np.array([theta, theta**2, theta**3])
-        state = State(self.y.u + self.h * (weights @ self.ku), self.y.g + self.h * (weights @ self.kg))
-        return state
+        weights = WEIGHT if theta >= 1.0 else DENSE @ np.array([theta, theta**2, theta**3])
+        return State(self.y.u + self.h * (weights @ self.ku), self.y.g + self.h * (weights @ self.kg))
 
     def energies(self, theta: float) -> Array:
         """Energy of every ledger entry from t to t + theta h, J; closes with `at` to rounding."""

@@ -2,14 +2,16 @@
 
 from __future__ import annotations
 
+from typing import Any
+
 import numpy as np
 from scipy.sparse import bmat, csr_matrix, diags
 from scipy.sparse.linalg import splu
 
 from tyrefem.conduction.balance import HeatBalance
-from tyrefem.conduction.conditions import Film
 from tyrefem.conduction.errors import SolverError
-from tyrefem.conduction.loads import FilmLoad, RadiationLoad, SourceLoad, State
+from tyrefem.conduction.loads import SourceLoad, State
+from tyrefem.conduction.surface_loads import FilmLoad, RadiationLoad
 
 _MOST = 60
 _BUMP = 1e-4
@@ -61,11 +63,11 @@ def _residual(balance: HeatBalance, t: float, y: State) -> np.ndarray:
 def _correction(balance: HeatBalance, t: float, y: State, residual: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
     """Newton's correction; slopes of user functions by differences in T."""
     balance.freeze(t, y)
-    J = balance.S
-    for load in balance.conduction:
-        k, bumped = load.values(y.u), load.values(y.u + _BUMP)
-        for slope, back, a, b in zip(load.q.slopes, load.q.slopes_t, k, bumped, strict=True):
-            J = J + back @ diags(load.q.weight * (b - a) / _BUMP * (slope @ y.u)) @ load.q.value
+    J: Any = balance.S
+    for region in balance.conduction:
+        k, bumped = region.values(y.u), region.values(y.u + _BUMP)
+        for slope, back, a, b in zip(region.q.slopes, region.q.slopes_t, k, bumped, strict=True):
+            J = J + back @ diags(region.q.weight * (b - a) / _BUMP * (slope @ y.u)) @ region.q.value
     for load in balance.loads:
         if isinstance(load, SourceLoad) and not load.static:
             dq = (load.at_nodes(t, y.u + _BUMP) - load.at_nodes(t, y.u - _BUMP)) / (2 * _BUMP)
@@ -86,10 +88,16 @@ def _correction(balance: HeatBalance, t: float, y: State, residual: np.ndarray) 
     return step[: free.size], step[free.size :]
 
 
-def anchored(balance: HeatBalance, films: list[tuple[FilmLoad, Film]], outside: set[int], t: float) -> bool:
-    """Whether a given temperature acts on the body: fixed, through a film or radiation, or by a reservoir."""
-    if balance.fixed.dofs.size or any(isinstance(load, RadiationLoad) and load.factor > 0 for load in balance.loads):
+def anchored(balance: HeatBalance, outside: set[int], t: float) -> bool:
+    """Whether a given temperature holds the body: fixed, by a film or radiation, or through a reservoir.
+
+    `outside` numbers the reservoirs that exchange heat, directly or in a chain, with a given temperature.
+    """
+    if balance.fixed.dofs.size:
         return True
-    return any(
-        np.max(load.h(t)) > 0 and (load.reservoir is None or load.reservoir in outside) for load, _ in films
-    )
+    for load in balance.loads:
+        if isinstance(load, RadiationLoad) and load.factor > 0:
+            return True
+        if isinstance(load, FilmLoad) and np.max(load.h(t)) > 0 and load.reservoir in (None, *outside):
+            return True
+    return False

@@ -20,7 +20,7 @@ Array = NDArray[Any]
 
 # Local error allowed per kelvin of tolerance, set so that the global error stays within the tolerance.
 _SHARE = 0.3
-_RUNG = 2.0 ** (1 / 3)
+_RUNG = 2.0**0.5
 
 
 class Integration:
@@ -108,7 +108,7 @@ class Integration:
 
     def _first_step(self, t: float, span: float) -> float:
         b = self.balance
-        G, Gg, _ = b.remainder(t, self.y)
+        G, _, _ = b.remainder(t, self.y)
         rate = (G - b.S @ self.y.u + b.B @ self.y.g) / (b.M @ np.ones(G.size))
         fastest = float(np.max(np.abs(rate[b.fixed.free]), initial=0.0))
         return min(span, 30 * self.goal / fastest if fastest > 0 else span)

@@ -9,6 +9,8 @@ from pathlib import Path
 import numpy as np
 import pandas as pd
 
+from tyrefem.measured import MeasuredRun
+
 RISES = {"crown": 40.0, "shoulder": 60.0, "contained-air": 15.0}
 AMBIENT, TAU = 25.0, 300.0
 
@@ -89,3 +91,13 @@ class Result:
         times = self.readings["time_s"]
         held = {name: np.full(len(times), self.study.gradient) for name in self.study.sensors}
         return pd.DataFrame({"time_s": times, **held, "contained-air": np.nan})
+
+
+def measured_from(study, times, *, name="run-1", bias=0.0, noise=0.0, delay=0.0, sensors=("crown", "shoulder")):
+    """The run that a study would give, with a bias (computed - measured), noise, and a late clock."""
+    rng = np.random.default_rng(7)
+    times = np.asarray(times, dtype=float)
+    frame = pd.DataFrame(
+        {one: study.at(one, times - delay) - bias + noise * rng.normal(size=len(times)) for one in sensors}
+    )
+    return MeasuredRun(name, times, frame)

@@ -1,0 +1,29 @@
+"""Transient and steady heat conduction on any named mesh, with a closing heat budget."""
+
+from __future__ import annotations
+
+from tyrefem.conduction.budget import Budget
+from tyrefem.conduction.conditions import Film, Fixed, Flux, Material, Radiation, Reservoir
+from tyrefem.conduction.errors import SolverError
+from tyrefem.conduction.field import Field
+from tyrefem.conduction.history import History, Peak, Steps
+from tyrefem.conduction.operators import Operators, operators_of
+from tyrefem.conduction.problem import Conduction
+
+__all__ = [
+    "Budget",
+    "Conduction",
+    "Field",
+    "Film",
+    "Fixed",
+    "Flux",
+    "History",
+    "Material",
+    "Operators",
+    "Peak",
+    "Radiation",
+    "Reservoir",
+    "SolverError",
+    "Steps",
+    "operators_of",
+]

@@ -1,0 +1,221 @@
+"""The conduction problem a user states: mesh, materials, conditions, sources, reservoirs."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Mapping, Sequence
+from typing import Any
+
+import numpy as np
+from numpy.typing import ArrayLike, NDArray
+
+from tyrefem.conduction.balance import HeatBalance
+from tyrefem.conduction.budget import Tally
+from tyrefem.conduction.conditions import Condition, Film, Material, Reservoir, is_number
+from tyrefem.conduction.field import Field
+from tyrefem.conduction.history import History, Steps
+from tyrefem.conduction.loads import State
+from tyrefem.conduction.operators import operators_of
+from tyrefem.conduction.setup import balance_of, check_partition
+from tyrefem.conduction.steady import anchored, solve_steady
+from tyrefem.conduction.transient import Integration
+from tyrefem.errors import InputError, nearest
+
+Array = NDArray[Any]
+
+
+class Conduction:
+    """Heat conduction C dT/dt = div(k grad T) + q on a mesh with named subdomains and boundaries.
+
+    Parameters
+    ----------
+    mesh : scikit-fem triangle or quadrilateral mesh, coordinates (r, z) or (x, y) in m.
+    regions : subdomain -> `Material`; they must cover every element exactly once.
+    boundaries : boundary -> `Film`, `Flux`, `Radiation`, `Fixed`, or a list of them that add up.
+        Boundaries left out are insulated. A node of two `Fixed` boundaries takes the first one's value.
+    sources : subdomain (any) -> W/m3, a number or f(x, t, T) with x (2, n), T (n,) at its nodes; overlapping
+        subdomains add. x is the same array object at every call.
+    axisymmetric : coordinates (r, z) and the full ring; otherwise planar, one metre deep.
+    element : "P1" or "P2".
+    reservoirs : name -> `Reservoir`, coupled by films whose sink is that name.
+
+    Raises InputError for names, materials or conditions that do not fit the mesh.
+
+    >>> import numpy as np, skfem
+    >>> from tyrefem.conduction import Film, Fixed
+    >>> mesh = skfem.MeshQuad.init_tensor(np.linspace(0.30, 0.35, 21), np.linspace(0, 0.01, 3))
+    >>> mesh = mesh.with_subdomains({"wall": lambda x: x[0] > 0}).with_boundaries(
+    ...     {"inside": lambda x: x[0] < 0.3001, "outside": lambda x: x[0] > 0.3499})
+    >>> problem = Conduction(mesh, {"wall": Material(1.0, 2e6)},
+    ...                      {"inside": Fixed(100.0), "outside": Film(h=500.0, sink=17.034444)})
+    >>> field = problem.steady()
+    >>> field.at([(0.32, 0.005)]).round(2)
+    array([66.51])
+    >>> area = 2 * np.pi * 0.35 * 0.01
+    >>> round(field.flux_through("outside") / area, 1)
+    1482.8
+    """
+
+    def __init__(
+        self,
+        mesh: Any,
+        regions: Mapping[str, Material],
+        boundaries: Mapping[str, Condition | Sequence[Condition]] | None = None,
+        sources: Mapping[str, Any] | None = None,
+        *,
+        axisymmetric: bool = True,
+        element: str = "P1",
+        reservoirs: Mapping[str, Reservoir] | None = None,
+    ) -> None:
+        self.operators = operators_of(mesh, element, axisymmetric)
+        self.regions, self.sources = dict(regions), dict(sources or {})
+        self.reservoirs = dict(reservoirs or {})
+        self.boundaries: dict[str, list[Any]] = {
+            name: list(c) if isinstance(c, (list, tuple)) else [c] for name, c in (boundaries or {}).items()
+        }
+        check_partition(self.operators, self.regions)
+
+    @property
+    def mesh(self) -> Any:
+        """The scikit-fem mesh."""
+        return self.operators.mesh
+
+    def points(self, subdomain: str) -> Array:
+        """Points (2, n) where the source of a subdomain is evaluated (its nodes), always the same array."""
+        return self.operators.nodes(subdomain)
+
+    def _initial(self, balance: HeatBalance, initial: Any, t: float, given: Mapping[str, float] | None) -> State:
+        size = self.operators.size
+        before = dict(initial.reservoirs) if isinstance(initial, Field) else {}
+        values = initial.values if isinstance(initial, Field) else initial
+        u = np.array(values, dtype=float)
+        if u.shape not in ((), (size,)) or not np.isfinite(u).all():
+            raise InputError(f"must be a finite number or array ({size},), not {u.shape}", field="initial")
+        u = np.full(size, float(u)) if u.ndim == 0 else u
+        weight = self.operators.mean_weight()
+        for name in given or {}:
+            if name not in self.reservoirs:
+                raise InputError(
+                    f"unknown reservoir {name!r}{nearest(name, self.reservoirs)}", field="reservoirs_initial"
+                )
+        g = np.empty(len(self.reservoirs))
+        for i, (name, reservoir) in enumerate(self.reservoirs.items()):
+            own = reservoir.initial if reservoir.initial is not None else float(weight @ u)
+            g[i] = {name: own, **before, **(given or {})}[name]
+        y = State(u, g)
+        balance.settle(t, y.u, y.g)
+        return y
+
+    def steady(self, initial: Any = 25.0, *, time: float = 0.0) -> Field:
+        """The steady temperature field with the data of one time.
+
+        Parameters
+        ----------
+        initial : first guess, degC: number, array (n,) or `Field`.
+        time : s, where functions of time are evaluated.
+
+        Raises InputError if nothing fixes the temperature level, SolverError without convergence.
+        """
+        balance = balance_of(self.operators, self.regions, self.boundaries, self.sources, self.reservoirs)
+        outside = self._held_reservoirs()
+        if not anchored(balance, outside, time):
+            raise InputError("a steady problem needs a Fixed, Film or Radiation boundary", field="boundaries")
+        y = solve_steady(balance, self._initial(balance, initial, time, None), time)
+        power = balance.powers(time, y, np.zeros(y.u.size))
+        generated: dict[str, float] = {}
+        lost: dict[str, float] = {}
+        for (kind, name, _), W in zip(balance.entries, power, strict=True):
+            if kind == "source":
+                generated[name] = generated.get(name, 0.0) + float(W)
+            elif kind == "boundary":
+                lost[name] = lost.get(name, 0.0) - float(W)
+        return Field(self.operators, self.regions, y.u, self._named(y.g), generated, lost)
+
+    def _held_reservoirs(self) -> set[int]:
+        names = list(self.reservoirs)
+        links = [
+            (name, other)
+            for name, r in self.reservoirs.items()
+            for conductance, other in r.exchanges
+            if callable(conductance) or conductance > 0
+        ]
+        held = {name for name, other in links if not isinstance(other, str)}
+        for _ in names:
+            held |= {a for a, b in links if b in held} | {b for a, b in links if a in held and isinstance(b, str)}
+        return {names.index(name) for name in held}
+
+    def _named(self, g: Array) -> dict[str, float]:
+        return {name: float(T) for name, T in zip(self.reservoirs, g, strict=True)}
+
+    def transient(
+        self,
+        times: ArrayLike,
+        initial: Any = 25.0,
+        tolerance: float = 0.01,
+        *,
+        breakpoints: Sequence[float] | Array = (),
+        progress: Callable[[float], None] | None = None,
+        max_step: float | None = None,
+        reservoirs_initial: Mapping[str, float] | None = None,
+    ) -> History:
+        """Integrate from times[0] to times[-1] with error control.
+
+        Parameters
+        ----------
+        times : s, strictly increasing, at least two; the first is the initial time.
+        initial : degC: number, array (n,) or `Field` (with its reservoirs).
+        tolerance : K, aimed at as the largest error in time of any nodal temperature at any time.
+        breakpoints : times where data jump; steps end there, data are seen from the left before and the right after.
+        progress : called with t after every accepted step. max_step : s.
+        reservoirs_initial : name -> degC, over the reservoirs' own.
+
+        Raises InputError for bad times, tolerance or initial values, SolverError if the step vanishes. A
+        KeyboardInterrupt returns the finished part, `interrupted` being True.
+        """
+        when = np.array(times, dtype=float)
+        if when.ndim != 1 or when.size < 2 or not np.isfinite(when).all() or np.any(np.diff(when) <= 0):
+            raise InputError("must be at least two finite, strictly increasing times", field="times")
+        if not (is_number(tolerance) and np.isfinite(tolerance) and tolerance > 0):
+            raise InputError(f"must be positive, not {tolerance!r}", field="tolerance")
+        jumps = np.asarray(breakpoints, dtype=float)
+        if jumps.ndim != 1 or not np.isfinite(jumps).all():
+            raise InputError("must be finite times", field="breakpoints")
+        if max_step is not None and not max_step > 0:
+            raise InputError(f"must be positive, not {max_step!r}", field="max_step")
+        balance = balance_of(self.operators, self.regions, self.boundaries, self.sources, self.reservoirs)
+        names = list(self.reservoirs)
+        into = {
+            (name, i): c.sink
+            for name, conditions in self.boundaries.items()
+            for i, c in enumerate(conditions)
+            if isinstance(c, Film) and isinstance(c.sink, str)
+        }
+        between: dict[tuple[str, int], tuple[str, str | None]] = {(name, -1): (name, None) for name in names}
+        for name, r in self.reservoirs.items():
+            for i, (_, other) in enumerate(r.exchanges):
+                between[name, i] = (name, other if isinstance(other, str) else None)
+        tally = Tally(balance.entries, list(self.regions), names, into, between)
+        y = self._initial(balance, initial, float(when[0]), reservoirs_initial)
+        run = Integration(balance, when, y, float(tolerance), jumps, max_step or np.inf, tally)
+        interrupted = False
+        try:
+            run.run(progress)
+        except KeyboardInterrupt:
+            interrupted = True
+        done = len(tally.kept)
+        if not done:
+            raise KeyboardInterrupt
+        when = when[:done]
+        gas = np.array(run.gas[:done])
+        peaks = run.peaks()
+        return History(
+            operators=self.operators,
+            materials=self.regions,
+            times=when,
+            values=np.array(run.values[:done]),
+            reservoirs={name: gas[:, i] for i, name in enumerate(names)},
+            budget=tally.budget(when),
+            maximum=peaks[0],
+            region_maximum=dict(zip(self.regions, peaks[1:], strict=True)),
+            steps=Steps(run.accepted, run.rejected, run.matrices.factorisations, run.matrices.solves),
+            interrupted=interrupted,
+        )

@@ -1,0 +1,84 @@
+"""Quadrature of regions and surfaces for data that vary in place or with temperature."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from typing import TYPE_CHECKING, Any
+
+import numpy as np
+import skfem
+from numpy.typing import NDArray
+from scipy.sparse import csr_matrix
+
+from tyrefem.errors import InputError, nearest
+
+if TYPE_CHECKING:
+    from tyrefem.conduction.operators import Operators
+
+Array = NDArray[Any]
+
+
+class Quadrature:
+    """Values and slopes of a field at a region's quadrature points, and the way back to operator values."""
+
+    def __init__(self, ops: Operators, name: str, direction: Callable[..., Any] | None) -> None:
+        e = ops.elements(name)
+        self.weight = ops.weight[e].reshape(-1)
+        dofs = ops.element_dofs[:, e]
+        n_local, n_q = dofs.shape[0], ops.weight.shape[1]
+        columns = np.repeat(dofs.T[:, None, :], n_q, axis=1).reshape(-1)
+        rows = np.arange(0, columns.size + 1, n_local)
+
+        def at_points(local: Array) -> csr_matrix:
+            return csr_matrix((np.moveaxis(local, 0, -1).reshape(-1), columns, rows), (rows.size - 1, ops.size))
+
+        phi = ops._phi[:, e]
+        slopes = ops.directed_gradients(name, direction)
+        self.value = at_points(phi)
+        self.slopes = tuple(at_points(g) for g in slopes)
+        self.value_t = self.value.T.tocsr()
+        self.slopes_t = tuple(g.T.tocsr() for g in self.slopes)
+        place = ops._place[:, :, e]
+        q = np.broadcast_to(np.arange(self.weight.size).reshape(e.size, n_q), (n_local, n_local, e.size, n_q))
+        where = np.broadcast_to(place[..., None], q.shape).reshape(-1)
+
+        def scatter(local: Array) -> csr_matrix:
+            product = local[:, None] * local[None] * ops.weight[e]
+            return csr_matrix((product.reshape(-1), (where, q.reshape(-1))), (ops.nnz, self.weight.size))
+
+        self.mass = scatter(phi)
+        self.conduction = tuple(scatter(g) for g in slopes)
+
+
+class Surface:
+    """Quadrature of a named boundary: points x (2, n_q), weights, and the trace of the unknowns there."""
+
+    def __init__(self, ops: Operators, name: str) -> None:
+        boundaries = ops.mesh.boundaries or {}
+        if name not in boundaries:
+            raise InputError(f"unknown boundary {name!r}{nearest(name, boundaries)}", field="boundaries")
+        facets = np.asarray(boundaries[name], dtype=np.int64)
+        if facets.size == 0:
+            raise InputError(f"boundary {name!r} has no facets", field="boundaries")
+        basis = skfem.FacetBasis(ops.mesh, ops.skfem_element, facets=facets, intorder=ops.intorder)
+        x = np.asarray(basis.global_coordinates())
+        self.name, self.x = name, np.ascontiguousarray(x.reshape(2, -1))
+        self.weight = (basis.dx * (2 * np.pi * x[0] if ops.axisymmetric else 1.0)).reshape(-1)
+        self.area = float(self.weight.sum())
+        phi = np.stack([np.broadcast_to(np.asarray(b[0]), basis.dx.shape) for b in basis.basis])
+        dofs = np.broadcast_to(basis.element_dofs[:, :, None], phi.shape)
+        q = np.broadcast_to(np.arange(self.weight.size).reshape(basis.dx.shape), phi.shape)
+        used = np.abs(phi) > 1e-12
+        self.dofs, column = np.unique(dofs[used], return_inverse=True)
+        shape = (self.weight.size, self.dofs.size)
+        self.trace = csr_matrix((phi[used], (q[used], column)), shape)
+        self.trace_t = self.trace.T.tocsr()
+        self.row = self.trace_t @ self.weight
+        self.points = np.ascontiguousarray(ops.points[:, self.dofs])
+        self._keys, self._size = ops._keys, ops.size
+
+    def exchange(self, weighted: Array) -> tuple[Array, Array]:
+        """Positions and values on the common pattern of the integral of h v u, given h times the weights."""
+        product = (self.trace_t.multiply(weighted) @ self.trace).tocoo()
+        keys = self.dofs[product.row].astype(np.int64) * self._size + self.dofs[product.col]
+        return np.searchsorted(self._keys, keys), product.data

@@ -1,0 +1,121 @@
+"""How films, fluxes and radiation act on the unknowns."""
+
+from __future__ import annotations
+
+from typing import Any
+
+import numpy as np
+from numpy.typing import NDArray
+
+from tyrefem.conduction.conditions import Film, Flux, Radiation
+from tyrefem.conduction.datum import Datum
+from tyrefem.conduction.loads import STALE, Linear, Load, State
+from tyrefem.conduction.operators import Surface
+
+Array = NDArray[Any]
+
+STEFAN_BOLTZMANN = 5.67e-8
+
+
+class FilmLoad(Load):
+    """h (sink - T), the sink a temperature or a reservoir."""
+
+    def __init__(self, surface: Surface, film: Film, field: str, reservoir: int | None) -> None:
+        self.s, self.reservoir = surface, reservoir
+        self.h = Datum(film.h, surface.x, f"{field}.h", low=0.0)
+        self.sink = Datum(0.0 if reservoir is not None else film.sink, surface.x, f"{field}.sink")
+        self.timed = not (self.h.constant and self.sink.constant)
+        self.static = not self.timed
+        self.h0: Any = 0.0
+
+    def freeze(self, t: float, y: State, linear: Linear) -> None:
+        self.h0 = self.h(t)
+        weighted = self.s.weight * self.h0
+        where, value = self.s.exchange(weighted)
+        np.add.at(linear.S, where, value)
+        self.row, self.total = self.s.trace_t @ weighted, float(weighted.sum())
+        if self.reservoir is not None:
+            linear.B[self.s.dofs, self.reservoir] += self.row
+            linear.D[self.reservoir, self.reservoir] += self.total
+
+    def stale(self, t: float, y: State) -> bool:
+        if self.h.constant:
+            return False
+        h = self.h(t)
+        return bool(np.max(np.abs(h - self.h0)) > STALE * max(np.max(h), np.max(self.h0)))
+
+    def remainder(self, t: float, y: State, G: Array, Gg: Array) -> float:
+        h, h0, s, r = self.h(t), self.h0, self.s, self.reservoir
+        same = h is h0 or (h == h0 if np.ndim(h) == np.ndim(h0) == 0 else np.array_equal(h, h0))
+        if r is not None:
+            if same:
+                return 0.0
+            load = s.trace_t @ (s.weight * (h - h0) * (y.g[r] - s.trace @ y.u[s.dofs]))
+        else:
+            sink = self.sink(t)
+            if same:
+                load = s.row * (h * sink) if np.ndim(h) == np.ndim(sink) == 0 else s.trace_t @ (s.weight * h * sink)
+            else:
+                load = s.trace_t @ (s.weight * (h * sink - (h - h0) * (s.trace @ y.u[s.dofs])))
+        G[s.dofs] += load
+        power = float(load.sum())
+        if r is not None:
+            Gg[r] -= power
+        return power
+
+    def linear_power(self, y: State) -> float:
+        back = 0.0 if self.reservoir is None else self.total * y.g[self.reservoir]
+        return float(back - self.row @ y.u[self.s.dofs])
+
+    def coupling(self, t: float, u: Array) -> tuple[float, float]:
+        """Integrals of h T and of h over the surface now, W and W/K."""
+        weighted = self.s.weight * self.h(t)
+        return float(weighted @ (self.s.trace @ u[self.s.dofs])), float(weighted.sum())
+
+
+class FluxLoad(Load):
+    """A given flux into the body."""
+
+    def __init__(self, surface: Surface, flux: Flux, field: str) -> None:
+        self.s, self.q = surface, Datum(flux.q, surface.x, f"{field}.q")
+        self.static = self.q.constant
+        self.timed = not self.static
+
+    def remainder(self, t: float, y: State, G: Array, Gg: Array) -> float:
+        q = self.q(t)
+        load = self.s.row * q if np.ndim(q) == 0 else self.s.trace_t @ (self.s.weight * q)
+        G[self.s.dofs] += load
+        return float(load.sum())
+
+
+class RadiationLoad(Load):
+    """eps sigma (Ts^4 - T^4); its frozen part is 4 eps sigma T^3 at the temperature of the last freeze."""
+
+    def __init__(self, surface: Surface, radiation: Radiation, field: str) -> None:
+        self.s, self.factor = surface, STEFAN_BOLTZMANN * float(radiation.emissivity)
+        self.surroundings = Datum(radiation.surroundings, surface.x, f"{field}.surroundings", low=-273.15)
+        self.timed = not self.surroundings.constant
+
+    def slopes(self, t: float, y: State) -> Array:
+        """Quadrature values of -dq/dT."""
+        return 4 * self.factor * (self.s.trace @ y.u[self.s.dofs] + 273.15) ** 3
+
+    def freeze(self, t: float, y: State, linear: Linear) -> None:
+        self.h0 = self.slopes(t, y)
+        weighted = self.s.weight * self.h0
+        where, value = self.s.exchange(weighted)
+        np.add.at(linear.S, where, value)
+        self.row = self.s.trace_t @ weighted
+
+    def stale(self, t: float, y: State) -> bool:
+        return bool(np.any(np.abs(self.slopes(t, y) - self.h0) > STALE * self.h0))
+
+    def remainder(self, t: float, y: State, G: Array, Gg: Array) -> float:
+        T = self.s.trace @ y.u[self.s.dofs]
+        q = self.factor * ((self.surroundings(t) + 273.15) ** 4 - (T + 273.15) ** 4)
+        load = self.s.trace_t @ (self.s.weight * (q + self.h0 * T))
+        G[self.s.dofs] += load
+        return float(load.sum())
+
+    def linear_power(self, y: State) -> float:
+        return float(-self.row @ y.u[self.s.dofs])

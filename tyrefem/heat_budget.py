@@ -1,0 +1,114 @@
+"""The heat budget of a run of the whole tyre: generated = stored + lost, in J and W."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from dataclasses import dataclass
+from typing import TYPE_CHECKING, Any
+
+import numpy as np
+from numpy.typing import NDArray
+
+if TYPE_CHECKING:
+    import pandas as pd
+
+    from tyrefem.conduction.budget import Budget
+
+Array = NDArray[np.float64]
+
+
+@dataclass(frozen=True, eq=False)
+class HeatBudget:
+    """Heat of the whole tyre (a half section's is doubled).
+
+    Body: sum generated = sum stored + sum lost. Lumped bodies: received from the tyre = stored + passed on.
+
+    Attributes
+    ----------
+    times : (n,) s. ``energies``, ``powers`` : (kind, name) -> (n,) J since the start, and W; kinds are
+        ``generated`` (by strain zone), ``stored`` (by region), ``lost`` (by boundary), ``lumped`` (gas, rim; J only).
+    residual : (n,) J, generated - stored - lost. ``imbalance`` : largest residual over the largest throughput.
+    """
+
+    times: Array
+    energies: Mapping[tuple[str, str], Array]
+    powers: Mapping[tuple[str, str], Array]
+    residual: Array
+    imbalance: float
+
+    def total(self, kind: str) -> float:
+        """Energy of a kind at the end, J."""
+        return float(sum(series[-1] for (k, _), series in self.energies.items() if k == kind))
+
+    def power(self, kind: str) -> Array:
+        """Power of a kind over time, (n,) W."""
+        return np.asarray(
+            sum((series for (k, _), series in self.powers.items() if k == kind), np.zeros(len(self.times)))
+        )
+
+    @property
+    def table(self) -> pd.DataFrame:
+        """One row per entry: ``kind``, ``name``, ``energy_J`` and ``power_W`` at the end, ``share`` of generated."""
+        import pandas as pd
+
+        generated = self.total("generated")
+        rows = []
+        for (kind, name), series in self.energies.items():
+            power = self.powers.get((kind, name))
+            rows.append(
+                {
+                    "kind": kind,
+                    "name": name,
+                    "energy_J": float(series[-1]),
+                    "power_W": float("nan") if power is None else float(power[-1]),
+                    "share": float(series[-1]) / generated if generated > 0 else float("nan"),
+                }
+            )
+        return pd.DataFrame(rows)
+
+    @property
+    def series(self) -> pd.DataFrame:
+        """Powers over time: ``time_s`` and one column ``kind:name_W`` each."""
+        import pandas as pd
+
+        columns: dict[str, Any] = {"time_s": self.times}
+        columns |= {f"{kind}:{name}_W": series for (kind, name), series in self.powers.items()}
+        return pd.DataFrame(columns)
+
+    def to_dict(self) -> dict[str, Any]:
+        """JSON-ready: energies and final powers by kind and name, and how well the budget closes."""
+        found: dict[str, Any] = {"imbalance": self.imbalance, "residual_J": float(self.residual[-1])}
+        for row in self.table.to_dict("records"):
+            entry = {"energy_J": row["energy_J"]}
+            if row["kind"] != "lumped":
+                entry["power_W"] = row["power_W"]
+            found.setdefault(row["kind"], {})[row["name"]] = entry
+        return found
+
+
+#: What the conditions on a boundary are called in the budget, by (boundary, number of the condition).
+NAMES = {("road", 0): "road contact", ("road", 1): "air at the tread", ("outside_air", 0): "outside air"}
+
+
+def whole_tyre(budget: Budget, zone_titles: Mapping[str, str], half: bool) -> HeatBudget:
+    """The budget of a section as that of the whole tyre."""
+    factor = 2.0 if half else 1.0
+    energies: dict[tuple[str, str], Array] = {}
+    powers: dict[tuple[str, str], Array] = {}
+
+    def add(kind: str, name: str, energy: Array, power: Array | None) -> None:
+        energies[kind, name] = factor * np.asarray(energy)
+        if power is not None:
+            powers[kind, name] = factor * np.asarray(power)
+
+    for zone, energy in budget.generated.items():
+        add("generated", zone_titles.get(zone, zone), energy, budget.generated_power[zone])
+    for region, energy in budget.stored.items():
+        add("stored", region, energy, budget.stored_power[region])
+    for key, energy in budget.lost_by_condition.items():
+        name = NAMES.get(key, key[0].replace("_", " "))
+        add("lost", name, energy, budget.lost_power_by_condition[key])
+    for reservoir, energy in budget.reservoir_stored.items():
+        add("lumped", f"{reservoir}: stored", energy, None)
+        add("lumped", f"{reservoir}: passed on", -budget.reservoir_gained[reservoir], None)
+    return HeatBudget(budget.times, energies, powers, factor * budget.residual, budget.imbalance)

@@ -1,0 +1,277 @@
+"""What a run found: readings, extremes, heat budget, rolling resistance; and how to write and show it."""
+
+from __future__ import annotations
+
+import functools
+from dataclasses import dataclass
+from pathlib import Path
+from typing import TYPE_CHECKING, Any
+
+import numpy as np
+from numpy.typing import ArrayLike, NDArray
+
+from tyrefem.boundaries.contained_air import ATMOSPHERE, KELVIN
+from tyrefem.heat_budget import HeatBudget, whole_tyre
+from tyrefem.sensors import lagged
+
+if TYPE_CHECKING:
+    import pandas as pd
+
+    from tyrefem.conduction.history import History
+    from tyrefem.rolling import RollingTyre
+    from tyrefem.studies import Study
+
+Array = NDArray[np.float64]
+GAS, RIM = "contained-air", "rim"
+
+
+@dataclass(frozen=True)
+class PhaseState:
+    """A phase of the drive as it was simulated; mechanical quantities at its end. SI units, degC."""
+
+    name: str
+    start: float
+    end: float
+    speed: float
+    load: float
+    pressure: float
+    deflection: float
+    footprint_length: float
+    road_fraction: float
+    road_film: float
+    air_film: float
+
+
+@dataclass(frozen=True)
+class RollingResistance:
+    """Drag from hysteresis, F = (total heat) / v, N, and coefficient F / F_z.
+
+    ``force`` and ``coefficient`` are at the end of the last rolling phase; ``cold_*`` at that phase's load with every
+    point at the drive's initial temperature. All zero for a tyre that never rolls.
+    """
+
+    force: float
+    coefficient: float
+    cold_force: float
+    cold_coefficient: float
+
+
+@dataclass(frozen=True, eq=False)
+class Result:
+    """A finished (or interrupted) run of a study."""
+
+    study: Study
+    tyre: RollingTyre
+    history: History
+    #: Times of the temperature fields that are written out, s.
+    field_times: Array
+    #: Wall time of the run, s.
+    wall_time: float
+
+    # -- temperatures ------------------------------------------------------------------------------------------------
+
+    @property
+    def times(self) -> Array:
+        """Times of the readings, (n,) s."""
+        return np.asarray(self.history.times)
+
+    def at(self, points: ArrayLike) -> Array:
+        """Temperatures at points (n_points, 2) in (r, z), m: (n_times, n_points), degC."""
+        return np.asarray(self.history.at(points))
+
+    @functools.cached_property
+    def sensor_places(self) -> dict[str, tuple[float, float]]:
+        """(r, z) of every sensor, m."""
+        return {name: self.study.section_place(sensor) for name, sensor in self.study.sensors.items()}
+
+    def _inside(self, points: ArrayLike) -> Array:
+        """Points moved by the sag of straight-sided elements at most, so that a surface point is in the mesh."""
+        section = self.study.section
+        s, depth = section.locate(np.asarray(points, dtype=float).reshape(-1, 2))
+        return np.asarray(section.place(*section.clamp(s, depth, self.tyre.mesh.size**2 / 0.1)))
+
+    @functools.cached_property
+    def readings(self) -> pd.DataFrame:
+        """``time_s``, one column per sensor (lag applied), the contained air, and a lumped rim; degC."""
+        import pandas as pd
+
+        columns: dict[str, Any] = {"time_s": self.times}
+        if self.sensor_places:
+            temperatures = self.at(self._inside(list(self.sensor_places.values())))
+            for column, (name, sensor) in enumerate(self.study.sensors.items()):
+                columns[name] = lagged(self.times, temperatures[:, column], sensor.lag)
+        return pd.DataFrame(columns | {GAS: self.gas_temperature} | self._rim_column())
+
+    def _rim_column(self) -> dict[str, Array]:
+        return {RIM: np.asarray(self.history.reservoirs[RIM])} if RIM in self.history.reservoirs else {}
+
+    @functools.cached_property
+    def gas_temperature(self) -> Array:
+        """Contained-air temperature, (n_times,) degC."""
+        if GAS in self.history.reservoirs:
+            return np.asarray(self.history.reservoirs[GAS])
+        return np.full(len(self.times), self.study.card.boundaries.contained_air.temperature)  # type: ignore[attr-defined]
+
+    @functools.cached_property
+    def gas_pressure(self) -> Array:
+        """Contained-air gauge pressure following its temperature at constant volume, (n_times,) Pa.
+
+        p + p_atm = (p_phase + p_atm) T / T_start, p_phase being the drive's (cold) pressure.
+        """
+        cold = np.array([self.study.card.drive.value("pressure", t) for t in self.times])
+        start = self.gas_temperature[0] + KELVIN
+        return np.asarray((cold + ATMOSPHERE) * (self.gas_temperature + KELVIN) / start - ATMOSPHERE)
+
+    @functools.cached_property
+    def gradient_at_sensors(self) -> pd.DataFrame:
+        """|grad T| at every sensor, K/m, shaped as `readings`; 0 for lumped temperatures.
+
+        Central differences over +-0.5 mm along the meridian and the depth, kept inside the rubber.
+        """
+        import pandas as pd
+
+        table = self.readings * 0.0
+        table["time_s"] = self.times
+        if not self.sensor_places:
+            return table
+        section, step = self.study.section, 5e-4
+        s, depth = section.locate(np.array(list(self.sensor_places.values())))
+        squares = np.zeros((len(self.times), len(s)))
+        for ds, dd in ((step, 0.0), (0.0, step)):
+            ends = [self._inside(section.place(s + sign * ds, depth + sign * dd)) for sign in (1, -1)]
+            apart = np.linalg.norm(ends[0] - ends[1], axis=1)
+            squares += ((self.at(ends[0]) - self.at(ends[1])) / apart) ** 2
+        gradients = pd.DataFrame(np.sqrt(squares), columns=list(self.sensor_places))
+        table[list(self.sensor_places)] = gradients
+        return table
+
+    @functools.cached_property
+    def extremes(self) -> pd.DataFrame:
+        """Highest temperature of every region over the whole run, with place and time."""
+        import pandas as pd
+
+        rows = []
+        peaks = {"tyre": self.history.maximum} | dict(self.history.region_maximum)
+        for region, peak in peaks.items():
+            s, depth = self.study.section.locate(np.array([peak.point]))
+            rows.append(
+                {
+                    "region": region,
+                    "temperature_degC": peak.temperature,
+                    "time_s": peak.time,
+                    "r_m": peak.point[0],
+                    "z_m": peak.point[1],
+                    "s_m": float(s[0]),
+                    "depth_m": float(depth[0]),
+                }
+            )
+        return pd.DataFrame(rows)
+
+    # -- heat --------------------------------------------------------------------------------------------------------
+
+    @functools.cached_property
+    def heat_budget(self) -> HeatBudget:
+        """W and J per region and boundary of the whole tyre; generated = stored + lost."""
+        titles = {zone.name: zone.title for zone in self.tyre.schedule.zones}
+        return whole_tyre(self.history.budget, titles, self.study.section.half)
+
+    def heat_source(self, i: int) -> dict[str, tuple[Array, Array]]:
+        """Zone -> (nodes (2, n), q (n,) W/m3) at ``times[i]``, from the zone's side of its borders."""
+        field = self.history.field(i)
+        return {
+            zone: (nodes := self.tyre.problem.points(zone), source(nodes, self._just(i), self._nodal(field, zone)))
+            for zone, source in self.tyre.sources.items()
+        }
+
+    def _just(self, i: int) -> float:
+        """The time ``times[i]``, seen from before: at the end of a phase, that phase still counts."""
+        t = float(self.times[i])
+        return t - 1e-9 * max(t, 1.0) if i else t
+
+    def _nodal(self, field: Any, zone: str) -> Array:
+        return np.asarray(field.values[self.tyre.problem.operators.dofs(zone)])
+
+    @functools.cached_property
+    def rolling_resistance(self) -> RollingResistance:
+        """Force, N, and coefficient."""
+        drive, schedule = self.study.card.drive, self.tyre.schedule
+        power = self.heat_budget.power("generated")
+        for number in reversed(range(len(drive.phases))):
+            start, phase = drive.starts[number], drive.phases[number]
+            if phase.speed.end <= 0 or start >= self.times[-1]:
+                continue
+            i = int(np.searchsorted(self.times, min(start + phase.duration, self.times[-1]) - 1e-6))
+            t = self._just(i)
+            speed, load = self.tyre.speed(t), schedule.mean(lambda case: case.load, t)
+            cold = self._cold_power(t)
+            if load <= 0 or speed <= 0:
+                continue
+            return RollingResistance(power[i] / speed, power[i] / speed / load, cold / speed, cold / speed / load)
+        return RollingResistance(0.0, 0.0, 0.0, 0.0)
+
+    def _cold_power(self, t: float) -> float:
+        problem, initial = self.tyre.problem, self.study.card.drive.initial
+        total = 0.0
+        for zone, source in self.tyre.sources.items():
+            nodes = problem.points(zone)
+            q = source(nodes, t, np.full(nodes.shape[1], initial))
+            total += float((problem.operators.source(zone) @ q).sum())
+        return total * (2.0 if self.study.section.half else 1.0)
+
+    @functools.cached_property
+    def phases(self) -> tuple[PhaseState, ...]:
+        """The drive's phases as simulated."""
+        drive, schedule = self.study.card.drive, self.tyre.schedule
+        found = []
+        for start, phase in zip(drive.starts, drive.phases, strict=True):
+            end = start + phase.duration
+            t = end * (1 - 1e-12)
+            mean = functools.partial(schedule.mean, time=t)
+            found.append(
+                PhaseState(
+                    phase.name,
+                    start,
+                    end,
+                    self.tyre.speed(t),
+                    mean(lambda case: case.load),
+                    mean(lambda case: case.pressure),
+                    mean(lambda case: case.deflection),
+                    mean(lambda case: case.footprint_length),
+                    self.tyre.road_fraction(t),
+                    self.tyre.road_film(t),
+                    self.tyre.air_film(t),
+                )
+            )
+        return tuple(found)
+
+    # -- output ------------------------------------------------------------------------------------------------------
+
+    def summary(self) -> dict[str, Any]:
+        """What `summary.json` holds: inputs, versions, mesh, tolerance, and the numbers that matter."""
+        from tyrefem.summary import summary
+
+        return summary(self)
+
+    def to_vtk(self, folder: str | Path, *, revolved: bool = False) -> Path:
+        """Write ``<name>.pvd`` and a .vtu per saved time: regions, T, heat source, strain energy."""
+        from tyrefem.vtk import write_series
+
+        return write_series(self, Path(folder), revolved=revolved)
+
+    def plot(self, folder: str | Path) -> list[Path]:
+        """Write the standard pictures as PNG files."""
+        from tyrefem.plotting import write_pictures
+
+        return write_pictures(self, Path(folder))
+
+    def report(self, path: str | Path) -> Path:
+        """Write one self-contained HTML report."""
+        from tyrefem.report import write_report
+
+        return write_report(self, Path(path))
+
+    def save(self, folder: str | Path) -> Path:
+        """Write readings, extremes and heat budget as CSV, and ``summary.json``."""
+        from tyrefem.summary import write_tables
+
+        return write_tables(self, Path(folder))

@@ -1,0 +1,111 @@
+"""`summary.json` and the tables of a run: everything needed to read it, check it and run it again."""
+
+from __future__ import annotations
+
+import importlib.metadata
+import json
+import math
+import platform
+from dataclasses import asdict
+from pathlib import Path
+from typing import TYPE_CHECKING, Any
+
+import tyrefem
+from tyrefem.output import atomic_path
+
+if TYPE_CHECKING:
+    from tyrefem.result import Result
+
+
+def versions() -> dict[str, str]:
+    """Versions of this package, of Python and of the libraries that decide the numbers."""
+    found = {"tyrefem": tyrefem.__version__, "python": platform.python_version()}
+    return found | {name: importlib.metadata.version(name) for name in ("numpy", "scipy", "scikit-fem", "pint")}
+
+
+def summary(result: Result) -> dict[str, Any]:
+    """The run in numbers. SI units and degC, as the keys say."""
+    study, history = result.study, result.history
+    readings, peak = result.readings, result.extremes.iloc[0]
+    resistance = result.rolling_resistance
+    return {
+        "study": study.name,
+        "title": study.title,
+        "complete": not history.interrupted,
+        "hottest": {
+            "temperature_degC": peak.temperature_degC,
+            "time_s": peak.time_s,
+            "region": _hottest_region(result),
+            "r_m": peak.r_m,
+            "z_m": peak.z_m,
+            "s_m": peak.s_m,
+            "depth_m": peak.depth_m,
+        },
+        "rolling_resistance": {
+            "force_N": resistance.force,
+            "coefficient": resistance.coefficient,
+            "cold_force_N": resistance.cold_force,
+            "cold_coefficient": resistance.cold_coefficient,
+        },
+        "contained_air": {
+            "temperature_degC": float(result.gas_temperature[-1]),
+            "gauge_pressure_Pa": float(result.gas_pressure[-1]),
+        },
+        "sensors": {
+            name: {"end_degC": float(readings[name].iloc[-1]), "max_degC": float(readings[name].max())}
+            for name in study.sensors
+        },
+        "extremes": result.extremes.to_dict("records"),
+        "heat_budget": result.heat_budget.to_dict(),
+        "phases": [asdict(phase) for phase in result.phases],
+        "mesh": result.tyre.mesh.summary() | {"element": study.card.mesh.element},
+        "numerics": {"tolerance_K": study.tolerance, **asdict(history.steps)},
+        "section": study.section.summary(),
+        "wall_time_s": result.wall_time,
+        "versions": versions(),
+        "random_seed": None,
+        "input": dict(study.data),
+    }
+
+
+def _hottest_region(result: Result) -> str:
+    regions = result.extremes.iloc[1:]
+    return str(regions.loc[regions["temperature_degC"].idxmax(), "region"])
+
+
+def jsonable(value: Any) -> Any:
+    """Plain data that JSON can hold: numpy scalars made Python's, NaN and infinity made null."""
+    if isinstance(value, dict):
+        return {str(key): jsonable(entry) for key, entry in value.items()}
+    if isinstance(value, list | tuple):
+        return [jsonable(entry) for entry in value]
+    if hasattr(value, "tolist"):
+        return jsonable(value.tolist())
+    if isinstance(value, float) and not math.isfinite(value):
+        return None
+    return value if isinstance(value, str | int | float | bool | None) else str(value)
+
+
+def write_json(data: dict[str, Any], path: Path) -> Path:
+    """Write JSON whole or not at all."""
+    with atomic_path(path) as temporary:
+        temporary.write_text(json.dumps(jsonable(data), indent=1) + "\n", encoding="utf-8")
+    return path
+
+
+def write_tables(result: Result, folder: Path) -> Path:
+    """``readings.csv``, ``extremes.csv``, ``heat_budget.csv``, ``heat_power.csv``, ``study.toml``, ``summary.json``."""
+    folder.mkdir(parents=True, exist_ok=True)
+    readings = result.readings.rename(columns=lambda name: "time [s]" if name == "time_s" else f"{name} [degC]")
+    readings["contained-air pressure [kPa]"] = result.gas_pressure / 1e3
+    tables = {
+        "readings.csv": readings,
+        "extremes.csv": result.extremes,
+        "heat_budget.csv": result.heat_budget.table,
+        "heat_power.csv": result.heat_budget.series,
+    }
+    for name, table in tables.items():
+        with atomic_path(folder / name) as temporary:
+            table.to_csv(temporary, index=False, float_format="%.6g")
+    result.study.save(folder / "study.toml")
+    return write_json(summary(result), folder / "summary.json")
