@@ -52,7 +52,7 @@ def verdict(bias: float, rms: float, u_val: float, u_reading: float, k: float) -
     (True, 'model error of about 3.00 K rms that changes sign: the mean is within validation uncertainty')
     """
     if abs(bias) > k * u_val:
-        return True, f"model error of about {bias:+.2f} ± {k * u_val:.2f} K"
+        return True, f"model error of about {bias:+z.2f} ± {k * u_val:.2f} K"
     if rms > k * u_reading:
         changing = "that changes sign: the mean is within validation uncertainty"
         return True, f"model error of about {rms:.2f} K rms {changing}"

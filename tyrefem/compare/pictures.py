@@ -21,6 +21,8 @@ if TYPE_CHECKING:
 COMPUTED, MEASURED, BEYOND, QUIET = "#1f5a96", "#d1600a", "#a4161a", "#666666"
 #: More points than this per panel are thinned out in the picture (never in the tables).
 MOST_POINTS = 400
+#: More columns than this are not legible on a page.
+MOST_COLUMNS = 15
 
 
 def pictures(comparison: Comparison) -> dict[str, bytes]:
@@ -43,8 +45,13 @@ def histories(comparison: Comparison, run: str) -> Figure:
     sensors = list(residuals["sensor"].unique())
     columns = min(3, len(sensors))
     rows = math.ceil(len(sensors) / columns)
-    figure = Figure(figsize=(max(3.6 * columns, 5.0), 2.5 * rows + 1.0), layout="constrained")
-    grid = figure.subplots(rows, columns, sharex=True, sharey=True, squeeze=False)
+    # Margins in inches by hand: a layout engine would take longer than all the drawing.
+    width, height = max(3.6 * columns, 5.0) + 0.6, 2.5 * rows + 1.2
+    edges = {"left": 0.65 / width, "right": 1 - 0.1 / width, "bottom": 0.8 / height, "top": 1 - 0.65 / height}
+    figure = Figure(figsize=(width, height))
+    grid = figure.subplots(
+        rows, columns, sharex=True, sharey=True, squeeze=False, gridspec_kw={**edges, "hspace": 0.2, "wspace": 0.04}
+    )
     divisor, unit = (60.0, "min") if residuals["time_s"].max() > 600.0 else (1.0, "s")
     axes = list(grid.flat)
     for panel, sensor in zip(axes, sensors, strict=False):
@@ -59,8 +66,8 @@ def histories(comparison: Comparison, run: str) -> Figure:
     for line in grid:
         line[0].set_ylabel("temperature [°C]")
     handles, labels = axes[0].get_legend_handles_labels()
-    figure.legend(handles, labels, loc="outside lower center", ncols=3, frameon=False, fontsize=9)
-    figure.suptitle(f"{_plain(comparison.study)}: run {_plain(run)}", fontsize=11)
+    figure.legend(handles, labels, loc="lower center", ncols=3, frameon=False, fontsize=9)
+    figure.suptitle(f"{_plain(comparison.study)}: run {_plain(run)}", fontsize=11, y=1 - 0.1 / height, va="top")
     return figure
 
 
@@ -81,11 +88,12 @@ def _history(panel: Axes, part: pd.DataFrame, comparison: Comparison, run: str, 
     color = BEYOND if row["beyond"] else "black"
     verdict = "beyond" if row["beyond"] else "within"
     panel.set_title(
-        f"{_plain(sensor)}: {row['bias_K']:+.2f} K, rms {row['rms_K']:.2f} K, {verdict}", fontsize=9, color=color
+        f"{_plain(sensor)}: {row['bias_K']:+z.2f} K, rms {row['rms_K']:.2f} K, {verdict}", fontsize=9, color=color
     )
     starts = part.groupby("phase", sort=False)["time_s"].min() / divisor
-    for phase, start in list(starts.items())[1:]:
-        panel.axvline(start, color=QUIET, lw=0.6, ls=":")
+    for number, (phase, start) in enumerate(starts.items() if len(starts) > 1 else ()):
+        if number:
+            panel.axvline(start, color=QUIET, lw=0.6, ls=":")
         panel.annotate(
             _plain(phase), (start, 0.02), xycoords=("data", "axes fraction"), fontsize=7, color=QUIET,
             xytext=(2, 0), textcoords="offset points",
@@ -94,25 +102,36 @@ def _history(panel: Axes, part: pd.DataFrame, comparison: Comparison, run: str, 
 
 
 def deviations(comparison: Comparison) -> Figure:
-    """A map: sensors down, runs and their phases across; colour and upper number the mean, lower the rms."""
+    """A map: sensors down, runs and their phases across; colour and upper number the mean, lower the rms.
+
+    Phases are left out where they would make it wider than a page.
+    """
     from matplotlib.figure import Figure
 
     table = comparison.table
+    if len(table[["run", "phase"]].drop_duplicates()) > MOST_COLUMNS:
+        table = table[table["phase"] == ALL]
     sensors = list(table["sensor"].unique())
     columns = list(table[["run", "phase"]].drop_duplicates().itertuples(index=False, name=None))
     bias = np.full((len(sensors), len(columns)), np.nan)
     width, height = 0.85 * len(columns) + 3.0, 0.42 * len(sensors) + 2.0
     figure = Figure(figsize=(max(width, 5.5), height), layout="constrained")
     axes = figure.subplots()
-    largest = max(float(table["bias_K"].abs().max()), 1e-9)
+    # Noise alone shall not look like a fire: full colour is at least k u_val.
+    largest = max(float(table["bias_K"].abs().max()), comparison.k * float(table["u_val_K"].max()), 1.0)
     for cell in table.to_dict(orient="records"):
         i, j = sensors.index(cell["sensor"]), columns.index((cell["run"], cell["phase"]))
         bias[i, j] = cell["bias_K"]
-        _cell(axes, j, i, cell, dark=abs(cell["bias_K"]) > 0.7 * largest)
+        _cell(axes, j, i, cell, dark=abs(cell["bias_K"]) > 0.6 * largest)
     image = axes.imshow(bias, cmap="RdBu_r", vmin=-largest, vmax=largest, aspect="auto")
+    for j in range(1, len(columns)):
+        if columns[j][0] != columns[j - 1][0]:
+            axes.axvline(j - 0.5, color="white", lw=5, zorder=1)
     axes.set_yticks(range(len(sensors)), [_plain(sensor) for sensor in sensors], fontsize=9)
     names = [f"{_plain(run)}\n{_plain(phase)}" for run, phase in columns]
-    axes.set_xticks(range(len(columns)), names, fontsize=8, rotation=90 if len(columns) > 12 else 30, ha="right")
+    axes.set_xticks(
+        range(len(columns)), names, fontsize=8, rotation=90 if len(columns) > MOST_COLUMNS else 30, ha="right"
+    )
     axes.set_title(
         f"computed - measured: mean (rms) in K; boxed = beyond {comparison.k:g} u_val", fontsize=10, loc="left"
     )
@@ -124,11 +143,11 @@ def _cell(axes: Axes, column: int, row: int, cell: Any, *, dark: bool) -> None:
     from matplotlib.patches import Rectangle
 
     axes.text(
-        column, row, f"{cell['bias_K']:+.1f}\n({cell['rms_K']:.1f})", ha="center", va="center", fontsize=7.5,
+        column, row, f"{cell['bias_K']:+z.1f}\n({cell['rms_K']:.1f})", ha="center", va="center", fontsize=7.5,
         color="white" if dark else "black", fontweight="bold" if cell["beyond"] else "normal",
     )  # fmt: skip
     if cell["beyond"]:
-        axes.add_patch(Rectangle((column - 0.47, row - 0.46), 0.94, 0.92, fill=False, edgecolor="black", lw=1.4))
+        axes.add_patch(Rectangle((column - 0.44, row - 0.44), 0.88, 0.88, fill=False, edgecolor="black", lw=1.4))
 
 
 def _rows(comparison: Comparison, run: str, sensor: str, phase: str) -> pd.DataFrame:
@@ -144,7 +163,7 @@ def _plain(text: object) -> str:
 def _png(figure: Figure) -> bytes:
     from matplotlib.backends.backend_agg import FigureCanvasAgg
 
-    FigureCanvasAgg(figure)
     stream = io.BytesIO()
-    figure.savefig(stream, format="png", dpi=110)
+    figure.set_dpi(110)
+    FigureCanvasAgg(figure).print_png(stream)
     return stream.getvalue()

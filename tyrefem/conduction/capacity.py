@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from typing import Any
+from typing import Any, cast
 
 import numpy as np
 from numpy.typing import NDArray
@@ -22,7 +22,7 @@ class Capacity:
     def __init__(self, ops: Operators, name: str, material: Material) -> None:
         self.name, self.dofs = name, ops.dofs(name)
         self.constant = is_number(material.heat_capacity)
-        self.c: Any = material.heat_capacity
+        self.c = cast(Any, material.heat_capacity)
         if self.constant:
             self.data = ops.mass(name) * float(self.c)
             self.row = ops.matrix(self.data) @ np.ones(ops.size)

@@ -43,36 +43,44 @@ class Located:
         margin = (0.1 * (high - low).max(axis=0) if curved else 0.0) + _SNAP * size
         self.elements = np.empty(len(points), dtype=np.int64)
         self.local = np.empty((2, len(points)))
-        for i, point in enumerate(points):
-            near = np.flatnonzero(np.all((low <= point[:, None] + margin) & (high >= point[:, None] - margin), axis=0))
-            found = self._inside(point, near, size) if near.size else None
-            if found is None:
-                raise InputError(
-                    f"point ({point[0]:.6g}, {point[1]:.6g}) m lies {distance(ops, point):.3g} m outside the mesh",
-                    field="points",
-                )
-            self.elements[i], self.local[:, i] = found
+        chunk = max(1, 4_000_000 // low.shape[1])
+        for start in range(0, len(points), chunk):
+            self._locate(points, slice(start, min(start + chunk, len(points))), low - margin, high + margin, size)
 
-    def _inside(self, point: Array, near: Array, size: float) -> tuple[int, Array] | None:
-        mapping = self.ops.basis.mapping
-        target = np.broadcast_to(point[:, None, None], (2, near.size, 1))
-        X = np.full((2, near.size, 1), 1 / 3 if self.ops.skfem_element.refdom.nnodes == 3 else 0.5)
-        for _ in range(30):
-            gap = target - mapping.F(X, tind=near)
-            step = np.einsum("ijkl,jkl->ikl", mapping.invDF(X, tind=near), gap)
+    def _locate(self, points: Array, part: slice, low: Array, high: Array, size: float) -> None:
+        """Try every element whose box holds a point; keep the one that misses it least."""
+        x, y = points[part, :1], points[part, 1:]
+        boxed = (low[0] <= x) & (x <= high[0]) & (low[1] <= y) & (y <= high[1])
+        owner, elements = np.nonzero(boxed)
+        local, miss = self._nearest(points[part][owner], elements)
+        order = np.lexsort((miss, owner))
+        first = order[np.unique(owner[order], return_index=True)[1]]
+        hit = first[miss[first] <= _SNAP * size]
+        lost = np.setdiff1d(np.arange(len(x)), owner[hit])
+        if lost.size:
+            point = points[part][lost[0]]
+            raise InputError(
+                f"point ({point[0]:.6g}, {point[1]:.6g}) m lies {distance(self.ops, point):.3g} m outside the mesh",
+                field="points",
+            )
+        self.elements[part], self.local[:, part] = elements[hit], local[:, hit]
+
+    def _nearest(self, points: Array, elements: Array) -> tuple[Array, Array]:
+        """Reference coordinates of the nearest point of each element, and how far it misses, m."""
+        mapping, triangle = self.ops.basis.mapping, self.ops.skfem_element.refdom.nnodes == 3
+        target = points.T[:, :, None]
+        X = np.full(target.shape, 1 / 3 if triangle else 0.5)
+        for _ in range(30 if elements.size else 0):
+            gap = target - mapping.F(X, tind=elements)
+            step = np.einsum("ijkl,jkl->ikl", mapping.invDF(X, tind=elements), gap)
             X = np.clip(X + step, -2.0, 3.0)
-            if np.max(np.abs(step)) < 1e-14:
+            if np.max(np.abs(step)) < 1e-13:
                 break
-        if self.ops.skfem_element.refdom.nnodes == 3:
-            total = X.sum(axis=0)
-            inside = np.clip(X, 0.0, None)
-            over = np.clip(inside.sum(axis=0), 1.0, None)
-            inside = np.where(total > 1.0, inside / over, inside)
-        else:
-            inside = np.clip(X, 0.0, 1.0)
-        miss = np.hypot(*(target - mapping.F(inside, tind=near)))[:, 0]
-        best = int(np.argmin(miss))
-        return (int(near[best]), inside[:, best, 0]) if miss[best] <= _SNAP * size else None
+        inside = np.clip(X, 0.0, None if triangle else 1.0)
+        if triangle:
+            inside = inside / np.clip(inside.sum(axis=0), 1.0, None)
+        miss = np.hypot(*(target - mapping.F(inside, tind=elements)))[:, 0] if elements.size else np.zeros(0)
+        return inside[:, :, 0], miss
 
     def value(self) -> csr_matrix:
         """Matrix (n_points, n) from unknowns to values."""

@@ -74,10 +74,8 @@ def read_table(
             file=file,
         )
     readings = {one.name: _readings(one, cells[one.column], lines, file) for one in sensors}
-    names = [file.stem] * len(times) if run_column is None else _run_names(cells[run_column], lines, file)
     runs = []
-    for name in dict.fromkeys(names):
-        rows = np.flatnonzero(np.array(names, dtype=object) == name)
+    for name, rows in _rows_of_runs(None if run_column is None else cells[run_column], lines, file).items():
         _increasing(times[rows], [lines.numbers[row] for row in rows], name, file)
         held = {sensor: values[rows] for sensor, values in readings.items() if np.isfinite(values[rows]).any()}
         if not held:
@@ -141,11 +139,16 @@ def _readings(one: Heading, cells: Sequence[str], lines: Lines, file: Path) -> N
     return degC
 
 
-def _run_names(cells: Sequence[str], lines: Lines, file: Path) -> list[str]:
-    for cell, line in zip(cells, lines.numbers, strict=True):
+def _rows_of_runs(cells: Sequence[str] | None, lines: Lines, file: Path) -> dict[str, NDArray[np.intp]]:
+    """Run -> its rows; a table without a run column is one run, named like the file."""
+    if cells is None:
+        return {file.stem: np.arange(len(lines.rows))}
+    found: dict[str, list[int]] = {}
+    for row, (cell, line) in enumerate(zip(cells, lines.numbers, strict=True)):
         if not cell:
             raise InputError(f"line {line}: the run column is empty", file=file)
-    return list(cells)
+        found.setdefault(cell, []).append(row)
+    return {name: np.array(rows) for name, rows in found.items()}
 
 
 def _increasing(times: NDArray[np.float64], lines: list[int], name: str, file: Path) -> None:

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from dataclasses import dataclass
+from itertools import pairwise
 
 import numpy as np
 from numpy.typing import NDArray
@@ -14,6 +15,8 @@ from tyrefem.section.section import Section
 Array = NDArray[np.float64]
 #: Edges on the outer face are this share of the size: the road's film cools it within millimetres.
 SURFACE_SHARE = 0.5
+#: Where one boundary gives way to another the surface temperature bends sharply: shorter still, growing away.
+CHANGE_SHARE, GROWTH = 0.25, 0.3
 
 
 @dataclass(frozen=True)
@@ -43,9 +46,9 @@ def make_blocks(section: Section, size: float, through: int) -> Blocks:
         def wanted(s: Array, i: int = i) -> Array:
             return _edge_length(section, i, s, size, through) / _stretch(section, i, s)
 
-        for k, (start, end) in enumerate(zip(spans[:-1], spans[1:], strict=True)):
+        for k, (start, end) in enumerate(pairwise(spans)):
             knots = np.unique([start, *(s for s in section.breaks if start + 1e-9 < s < end - 1e-9), end])
-            runs = [graded(a, b, wanted)[:-1] for a, b in zip(knots[:-1], knots[1:], strict=True)]
+            runs = [graded(a, b, wanted)[:-1] for a, b in pairwise(knots)]
             along[i, k] = face(section, i, np.concatenate([*runs, knots[-1:]]))
     across = {(i, k): _across(section, i, s, size, through) for i in range(n) for k, s in enumerate(spans)}
     for (i, k), points in across.items():
@@ -58,7 +61,11 @@ def make_blocks(section: Section, size: float, through: int) -> Blocks:
 def _edge_length(section: Section, i: int, s: Array, size: float, through: int) -> Array:
     """Wanted edge on face i: a layer on either side has room for ``through`` elements."""
     n = len(section.layers)
-    wanted = np.full_like(s, size * SURFACE_SHARE if i == n else size)
+    wanted = np.full_like(s, size)
+    if i == n:
+        changes = np.array([end for _, _, end in section.outer.parts()])
+        away = np.abs(np.asarray(s)[:, None] - changes).min(axis=1)
+        wanted = np.minimum(SURFACE_SHARE * size, CHANGE_SHARE * size + GROWTH * away)
     for layer in section.layers[max(i - 1, 0) : i + 1]:
         wanted = np.minimum(wanted, layer.thickness(s) / through)
     return np.asarray(wanted)
@@ -78,7 +85,7 @@ def _across(section: Section, i: int, s: float, size: float, through: int) -> Ar
     first, last = (float(_edge_length(section, j, at, size, through)[0]) for j in (i, i + 1))
 
     def wanted(y: Array) -> Array:
-        return np.minimum(size, np.minimum(first + 0.3 * (y - low), last + 0.3 * (high - y)))
+        return np.minimum(size, np.minimum(first + GROWTH * (y - low), last + GROWTH * (high - y)))
 
     y = graded(low, high, wanted, through)
     return np.asarray(section.line.position(s) + y[:, None] * section.line.normal(s))

@@ -34,7 +34,8 @@ def build(
 
     Raises
     ------
-    InputError : unknown mesher or cell, a size out of range; `MissingLibraryError` if gmsh cannot be loaded.
+    InputError : unknown mesher or cell, a size out of range or too coarse for the section.
+    MissingLibraryError : gmsh is asked for and cannot be loaded.
 
     >>> from tyrefem.section import load
     >>> tyre = build(load("nasa-22x5.5-8pr"), size=4e-3)
@@ -56,7 +57,8 @@ def build(
         raise InputError(f"{size:g} m would make more than {MOST_ELEMENTS:,} elements", field="size")
     if size > section.line.length / 4:
         raise InputError(
-            f"{size:g} m is too coarse: at most a quarter of the meridian, {section.line.length / 4:.3g} m", field="size"
+            f"{size:g} m is too coarse: at most a quarter of the meridian, {section.line.length / 4:.3g} m",
+            field="size",
         )
     if mesher == "mapped":
         from tyrefem.meshing.mapped import mapped_mesh
@@ -66,4 +68,7 @@ def build(
         from tyrefem.meshing.gmsh import gmsh_mesh
 
         mesh = gmsh_mesh(section, size, cell, int(through))
-    return TyreMesh(mesh, section, mesher, size, cell)
+    tyre = TyreMesh(mesh, section, mesher, size, cell)
+    if not tyre.quality["scaled_jacobian"] > 0:
+        raise InputError(f"elements of {size:g} m fold over in this section; choose a smaller size", field="size")
+    return tyre

@@ -3,7 +3,9 @@
 from __future__ import annotations
 
 import contextlib
+import threading
 from collections.abc import Iterator
+from itertools import pairwise
 from typing import Any
 
 import numpy as np
@@ -30,6 +32,8 @@ _BY_CELL = {
     "quad": {"Mesh.Algorithm": 8, "Mesh.RecombineAll": 1, "Mesh.SubdivisionAlgorithm": 1},
 }
 
+#: gmsh has one global model: threads take turns.
+_LOCK = threading.Lock()
 #: gmsh element types -> meshio cell, number of nodes.
 _CELLS = {1: ("line", 2), 2: ("triangle", 3), 3: ("quad", 4)}
 
@@ -47,7 +51,7 @@ def gmsh_mesh(section: Section, size: float, cell: str, through: int) -> Any:
     half = section.as_half()
     coarse = 2.0 if cell == "quad" else 1.0
     blocks = make_blocks(half, size * coarse, max(1, round(through / coarse)))
-    with _gmsh({**_OPTIONS, **_BY_CELL[cell]}) as pygmsh:
+    with _LOCK, _gmsh({**_OPTIONS, **_BY_CELL[cell]}) as pygmsh:
         try:
             _draw(pygmsh.geo.Geometry(), half, blocks).generate_mesh(dim=2)
             found = _extract()
@@ -67,7 +71,7 @@ def _draw(geometry: Any, section: Section, blocks: Blocks) -> Any:
             if place.tobytes() not in points:
                 points[place.tobytes()] = geometry.add_point((float(place[0]), float(place[1]), 0.0))
         nodes = [points[place.tobytes()] for place in side]
-        made = [geometry.add_line(a, b) for a, b in zip(nodes[:-1], nodes[1:], strict=True)]
+        made = [geometry.add_line(a, b) for a, b in pairwise(nodes)]
         for line in made:
             geometry.set_transfinite_curve(line, 2, "Progression", 1.0)
         return made

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from dataclasses import dataclass
+from itertools import pairwise
 
 import numpy as np
 from numpy.typing import NDArray
@@ -18,6 +19,8 @@ SURFACE_SHARE = 0.25
 CORE_SHARE = 1.5
 #: Longest edge along the meridian over the thinnest row.
 ASPECT = 10.0
+#: Growth of the gaps away from a place where one boundary gives way to another.
+GROWTH = 0.3
 
 
 @dataclass(frozen=True)
@@ -69,7 +72,7 @@ def _stations(section: Section, size: float, rows: list[int]) -> Array:
     changes = np.array([end for _, _, end in section.outer.parts()])
 
     def wanted(s: Array) -> Array:
-        rise = SURFACE_SHARE * size + 0.3 * np.abs(s[:, None] - changes).min(axis=1)
+        rise = SURFACE_SHARE * size + GROWTH * np.abs(s[:, None] - changes).min(axis=1)
         thin = np.full_like(s, size)
         for index, (layer, count) in enumerate(zip(section.layers, rows, strict=True)):
             thickness = layer.thickness(s)
@@ -80,5 +83,5 @@ def _stations(section: Section, size: float, rows: list[int]) -> Array:
         return np.minimum(np.minimum(size, rise), thin)
 
     knots = section.breaks
-    runs = [graded(a, b, wanted)[:-1] for a, b in zip(knots[:-1], knots[1:], strict=True)]
+    runs = [graded(a, b, wanted)[:-1] for a, b in pairwise(knots)]
     return np.concatenate([*runs, [length]])

@@ -131,7 +131,9 @@ def _required(wanted: Iterable[str], found: Mapping[str, Any], what: str) -> Non
     for name in wanted:
         if name not in found:
             hint = nearest(name, found) if found else "; it has no named groups of this kind"
-            raise InputError(f"the mesh has no {what} '{name}'{hint.replace('Allowed', 'Found').replace('allowed', 'found')}")
+            raise InputError(
+                f"the mesh has no {what} '{name}'{hint.replace('Allowed', 'Found').replace('allowed', 'found')}"
+            )
 
 
 def _one_each(

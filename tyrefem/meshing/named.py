@@ -12,9 +12,7 @@ Array = NDArray[np.float64]
 Indices = NDArray[np.int64]
 
 
-def named_mesh(
-    points: Array, elements: Indices, regions: Mapping[str, Indices], edges: Mapping[str, Indices]
-) -> Any:
+def named_mesh(points: Array, elements: Indices, regions: Mapping[str, Indices], edges: Mapping[str, Indices]) -> Any:
     """scikit-fem mesh from points (n, 2), elements (n, 3 or 4), element indices per region, node pairs per boundary.
 
     Elements that run clockwise are turned round; nodes that no element uses are dropped.
@@ -72,9 +70,7 @@ def mirrored(mesh: Any, symmetry: str = "symmetry") -> Any:
     on_plane[facet_nodes(mesh, symmetry).ravel()] = True
     image = np.where(on_plane, np.arange(n), n - 1 + np.cumsum(~on_plane))
     all_points = np.concatenate([points, points[~on_plane] * [1.0, -1.0]])
-    regions = {
-        name: np.concatenate([found, found + len(elements)]) for name, found in mesh.subdomains.items()
-    }
+    regions = {name: np.concatenate([found, found + len(elements)]) for name, found in mesh.subdomains.items()}
     edges = {}
     for name in mesh.boundaries:
         if name != symmetry:

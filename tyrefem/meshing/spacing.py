@@ -15,7 +15,7 @@ def graded(start: float, end: float, size: Callable[[Array], Array], least: int 
 
     The number of gaps is the integral of ds/size(s), rounded up; each gap holds an equal share of it.
 
-    >>> graded(0.0, 1.0, lambda s: np.full_like(s, 0.3)).tolist()
+    >>> graded(0.0, 1.0, lambda s: np.full_like(s, 0.3)).round(9).tolist()
     [0.0, 0.25, 0.5, 0.75, 1.0]
     """
     s = np.linspace(start, end, 400)

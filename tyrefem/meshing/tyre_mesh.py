@@ -2,13 +2,15 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+from collections.abc import Mapping
+from dataclasses import dataclass, replace
 from functools import cached_property
 from typing import Any
 
 import numpy as np
 from numpy.typing import NDArray
 
+from tyrefem.errors import InputError
 from tyrefem.section.section import Section
 
 Array = NDArray[np.float64]
@@ -66,6 +68,35 @@ class TyreMesh:
             triangle = corners[[0, k, k + 1]]
             total += float((polygon_areas(triangle) * triangle[..., 0].mean(axis=0)).sum())
         return 2 * np.pi * total
+
+    def elements_between(self, start: float, end: float, region: str | None = None) -> NDArray[np.int64]:
+        """Elements between two stations ``start < |s| < end`` of the meridian, of one region or of all.
+
+        Raises
+        ------
+        InputError : a station cuts through elements; stations of ``section.breaks`` never do.
+        """
+        s = np.abs(self.section.locate(self._corners)[0])
+        inside = (s > start - 1e-6) & (s < end + 1e-6)
+        middle = (s.mean(axis=0) > start) & (s.mean(axis=0) < end)
+        if not inside[:, middle].all():
+            raise InputError(f"the mesh has no line at s = {start:g} m or {end:g} m; elements would be cut")
+        chosen = np.flatnonzero(middle)
+        return chosen if region is None else np.intersect1d(chosen, self.mesh.subdomains[region])
+
+    def with_zones(self, zones: Mapping[str, tuple[str, float, float]]) -> TyreMesh:
+        """The same mesh with further subdomains: name -> (region, start, end) along the meridian.
+
+        >>> from tyrefem.section import load
+        >>> from tyrefem.meshing import build
+        >>> tyre = build(load("nasa-22x5.5-8pr"), size=4e-3)
+        >>> shoulder = tyre.section.line.shoulder_s
+        >>> zoned = tyre.with_zones({"under the tread": ("carcass", 0.0, shoulder)})
+        >>> len(zoned.mesh.subdomains["under the tread"]) < len(zoned.mesh.subdomains["carcass"])
+        True
+        """
+        found = {name: self.elements_between(start, end, region) for name, (region, start, end) in zones.items()}
+        return replace(self, mesh=self.mesh.with_subdomains(found))
 
     @cached_property
     def quality(self) -> dict[str, float]:

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Callable
+from itertools import pairwise
 from pathlib import Path
 
 import numpy as np
@@ -46,7 +47,8 @@ def build(card: SectionCard, *, name: str | None = None, half: bool = True) -> S
 
 def _on_points(card: SectionCard, name: str, half: bool) -> Section:
     parameters = card.parameters
-    assert card.line.points is not None and parameters.shoulder_s is not None
+    assert card.line.points is not None
+    assert parameters.shoulder_s is not None
     section = _section(card, name, half, SplineLine(card.line.points, parameters.shoulder_s))
     if parameters.outer_diameter is None:
         return section
@@ -60,7 +62,9 @@ def _on_two_arcs(card: SectionCard, name: str, half: bool) -> Section:
     parameters = card.parameters
 
     def with_shoulder(x: float) -> Section:
-        assert parameters.crown_radius and parameters.sidewall_radius and parameters.meridian_length
+        assert parameters.crown_radius is not None
+        assert parameters.sidewall_radius is not None
+        assert parameters.meridian_length is not None
         outside = _crown_outer_offset(card, parameters.meridian_length, x)
         line = TwoArcs(
             _crown_midline_radius(card, outside),
@@ -119,7 +123,7 @@ def _with_width(width: float, crown_radius: float, with_shoulder: Callable[[floa
             reached.append((float(x), with_shoulder(float(x)).overall_width))
         except InputError as error:
             reason = f" ({error.message})"
-    for (x0, width0), (x1, width1) in zip(reached[:-1], reached[1:], strict=True):
+    for (x0, width0), (x1, width1) in pairwise(reached):
         if (width0 - width) * (width1 - width) <= 0:
             try:
                 x = brentq(lambda x: with_shoulder(x).overall_width - width, x0, x1, xtol=1e-13)

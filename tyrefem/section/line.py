@@ -147,8 +147,8 @@ class TwoArcs:
 
     def curvature(self, s: ArrayLike) -> Array:
         """1/radius at ``s`` [1/m], positive where the centre lies inside the tyre."""
-        s = np.abs(np.asarray(s, dtype=float))
-        return np.where(s <= self.shoulder_s, 1 / self.crown_radius, 1 / self.sidewall_radius)
+        x = np.abs(np.asarray(s, dtype=float))
+        return np.where(x <= self.shoulder_s, 1 / self.crown_radius, 1 / self.sidewall_radius)
 
     def nearest(self, points: ArrayLike) -> tuple[Array, Array]:
         """Foot (s, y) of points (..., 2): arc length, and signed distance along the outward normal [m].

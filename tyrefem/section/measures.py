@@ -104,9 +104,7 @@ def overall_width(section: Section) -> float:
     for low, high in ((best - 1, best), (best, best + 1)):
         if low >= 0 and high < len(samples):
             bounds = (samples[low], samples[high])
-            found = minimize_scalar(
-                lambda s: -float(z(s)), bounds=bounds, method="bounded", options={"xatol": 1e-12}
-            )
+            found = minimize_scalar(lambda s: -float(z(s)), bounds=bounds, method="bounded", options={"xatol": 1e-12})
             widest = max(widest, -float(found.fun))
     return 2 * widest
 

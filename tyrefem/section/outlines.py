@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from itertools import pairwise
 from typing import TYPE_CHECKING
 
 import numpy as np
@@ -17,10 +18,7 @@ _MIRROR = np.array([1.0, -1.0])
 def stations(section: Section, start: float, end: float, spacing: float) -> Array:
     """Stations from start to end no further apart than ``spacing``, every kink of the geometry among them."""
     knots = np.unique([start, *(s for s in section.breaks if start + 1e-9 < s < end - 1e-9), end])
-    runs = [
-        np.linspace(a, b, max(2, int(np.ceil((b - a) / spacing - 1e-9)) + 1))[:-1]
-        for a, b in zip(knots[:-1], knots[1:], strict=True)
-    ]
+    runs = [np.linspace(a, b, max(2, int(np.ceil((b - a) / spacing - 1e-9)) + 1))[:-1] for a, b in pairwise(knots)]
     return np.concatenate([*runs, knots[-1:]])
 
 

@@ -7,7 +7,8 @@ from typing import TYPE_CHECKING
 import numpy as np
 from numpy.typing import NDArray
 
-from tyrefem.errors import InputError, nearest
+from tyrefem.errors import InputError
+from tyrefem.section.layup import Layup
 from tyrefem.section.outlines import face, stations
 
 if TYPE_CHECKING:
@@ -18,7 +19,8 @@ Array = NDArray[np.float64]
 
 def check_possible(section: Section) -> None:
     """Raise `InputError` with field and reason unless the section can be built."""
-    _names(section)
+    Layup(section.layers, section.reference)
+    _ends(section)
     length = section.line.length
     s = stations(section, 0.0, length, length / 300)
     _no_folding(section, np.concatenate([s, _both_sides(section.breaks)]))
@@ -31,22 +33,13 @@ def _both_sides(breaks: tuple[float, ...]) -> Array:
     return np.concatenate([inner * (1 - 1e-12), inner * (1 + 1e-12)])
 
 
-def _names(section: Section) -> None:
-    from tyrefem.section.section import READINGS
-
-    layers = [layer.name for layer in section.layers]
-    if not layers:
-        raise InputError("a section needs one layer or more", field="layers")
-    twice = {name for name in layers if layers.count(name) > 1} | (set(layers) & set(READINGS))
-    if twice:
-        raise InputError(f"layer name '{twice.pop()}' is taken", field="layers")
-    if section.reference not in (*layers, *READINGS):
-        hint = nearest(section.reference, (*layers, *READINGS))
-        raise InputError(f"no layer '{section.reference}'{hint}", field="line.reference")
+def _ends(section: Section) -> None:
     length = section.line.length
     for layer in section.layers:
         if abs(layer.regions.ends[-1] - length) > 1e-9:
-            raise InputError(f"regions of '{layer.name}' must end where the section ends, at {length:g} m", field="layers")
+            raise InputError(
+                f"regions of '{layer.name}' must end where the section ends, at {length:g} m", field="layers"
+            )
     if abs(section.outer.ends[-1] - length) > 1e-9:
         raise InputError(f"must end where the section ends, at {length:g} m", field="boundaries")
     taken = {"contained_air", "symmetry"} & set(section.outer.names)
@@ -61,8 +54,8 @@ def _no_folding(section: Section, s: Array) -> None:
         which, where = np.unravel_index(int(np.argmin(stretch)), stretch.shape)
         side = "inner" if faces[which, where] < 0 else "outer"
         raise InputError(
-            f"the {side} surface folds at s = {s[where]:.4g} m: it lies {abs(faces[which, where]):.3g} m from a meridian"
-            f" whose radius of curvature is {1 / abs(section.line.curvature(s)[where]):.3g} m",
+            f"the {side} surface folds at s = {s[where]:.4g} m: it lies {abs(faces[which, where]):.3g} m from a"
+            f" meridian whose radius of curvature is {1 / abs(section.line.curvature(s)[where]):.3g} m",
             field="layers",
         )
 

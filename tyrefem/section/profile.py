@@ -62,10 +62,10 @@ class Profile:
 
     def __call__(self, s: ArrayLike) -> Array:
         """The value at ``s`` (any shape) [m]."""
-        s = np.abs(np.asarray(s, dtype=float))
+        x = np.abs(np.asarray(s, dtype=float))
         if self.interpolation == "pchip":
-            return np.asarray(self._pchip[0](np.clip(s, self.s[0], self.s[-1])))
-        return np.asarray(np.interp(s, self.s, self.values))
+            return np.asarray(self._pchip[0](np.clip(x, self.s[0], self.s[-1])))
+        return np.asarray(np.interp(x, self.s, self.values))
 
     def slope(self, s: ArrayLike) -> Array:
         """d value/ds at ``s`` (any shape); at a kink, the slope towards larger ``|s|``."""

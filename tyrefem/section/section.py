@@ -13,11 +13,10 @@ from tyrefem.errors import InputError, nearest
 from tyrefem.section import measures, outlines
 from tyrefem.section.division import Division
 from tyrefem.section.layer import Layer, Piece, Rating
+from tyrefem.section.layup import Layup
 from tyrefem.section.line import Line
 
 Array = NDArray[np.float64]
-#: Readings of the reference line that are not the midline of a layer.
-READINGS = ("total", "inner", "outer")
 
 
 @dataclass(frozen=True)
@@ -74,6 +73,10 @@ class Section:
 
     # Names
 
+    @cached_property
+    def _layup(self) -> Layup:
+        return Layup(self.layers, self.reference)
+
     @property
     def regions(self) -> tuple[str, ...]:
         """Names of the regions, from the inside to the outside."""
@@ -128,33 +131,11 @@ class Section:
 
     def interfaces(self, s: ArrayLike) -> Array:
         """Distance from the meridian to the inner face, each layer's outer face in turn: (n_layers + 1, ...) [m]."""
-        s = np.asarray(s, dtype=float)
-        rises = np.stack([layer.thickness(s) for layer in self.layers])
-        faces = np.concatenate([np.zeros((1, *s.shape)), np.cumsum(rises, axis=0)])
-        return np.asarray(faces - self._reference_depth(faces))
+        return self._layup.faces(s)
 
     def interface_slopes(self, s: ArrayLike) -> Array:
         """d/ds of `interfaces`, same shape."""
-        s = np.asarray(s, dtype=float)
-        rises = np.stack([layer.thickness.slope(s) for layer in self.layers])
-        faces = np.concatenate([np.zeros((1, *s.shape)), np.cumsum(rises, axis=0)])
-        return np.asarray(faces - self._reference_depth(faces))
-
-    def _reference_depth(self, faces: Array) -> Array:
-        if self.reference == "inner":
-            return np.asarray(faces[0])
-        if self.reference == "outer":
-            return np.asarray(faces[-1])
-        if self.reference == "total":
-            return np.asarray(faces[-1] / 2)
-        index = self._layer_index(self.reference)
-        return np.asarray((faces[index] + faces[index + 1]) / 2)
-
-    def _layer_index(self, name: str) -> int:
-        names = [layer.name for layer in self.layers]
-        if name not in names:
-            raise InputError(f"section '{self.name}' has no layer '{name}'{nearest(name, names)}")
-        return names.index(name)
+        return self._layup.slopes(s)
 
     def thickness(self, name: str, s: ArrayLike) -> Array:
         """Thickness of a layer at ``s``; or of a region, zero where it is absent [m]. A layer's name goes first."""
@@ -188,10 +169,11 @@ class Section:
 
     def clamp(self, s: ArrayLike, depth: ArrayLike, margin: float = 0.0) -> tuple[Array, Array]:
         """The nearest (s, depth) inside the rubber, at least ``margin`` [m] from its surface."""
-        s = np.clip(np.asarray(s, dtype=float), -self.line.length + margin, self.line.length - margin)
-        total = self.total_thickness(s)
+        end = self.line.length - margin
+        inside = np.clip(np.asarray(s, dtype=float), -end, end)
+        total = self.total_thickness(inside)
         low = np.minimum(margin, total / 2)
-        return s, np.clip(np.asarray(depth, dtype=float), low, total - low)
+        return inside, np.clip(np.asarray(depth, dtype=float), low, total - low)
 
     def midline_offset(self, place: ArrayLike, depth: ArrayLike | None = None) -> Array:
         """Signed distance from the carcass midline, outwards positive [m].
@@ -206,11 +188,11 @@ class Section:
     def carcass_offset(self, s: ArrayLike) -> Array:
         """Distance of the carcass midline from the meridian, outwards positive [m]; zero if the line is the midline."""
         s = self._x(s)
-        for index, layer in enumerate(self.layers):
-            if "carcass" in layer.regions.names:
-                faces = self.interfaces(s)
-                return np.asarray((faces[index] + faces[index + 1]) / 2)
-        return np.zeros_like(s)
+        index = self._layup.carcass
+        if index is None:
+            return np.zeros_like(s)
+        faces = self.interfaces(s)
+        return np.asarray((faces[index] + faces[index + 1]) / 2)
 
     def region_at(self, s: ArrayLike, depth: ArrayLike) -> NDArray[np.str_]:
         """The region at (s, depth), same shape; beyond the surface, that of the nearest layer."""

@@ -1,0 +1,5 @@
+"""``python -m tyrefem``."""
+
+from tyrefem.cli import main
+
+main()

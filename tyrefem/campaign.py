@@ -1,0 +1,137 @@
+"""A campaign: one study, a table of cases, one table of answers."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Iterator
+from dataclasses import dataclass, replace
+from pathlib import Path
+from typing import TYPE_CHECKING, Any
+
+from tyrefem.cases import Case, read_cases
+from tyrefem.conduction import SolverError
+from tyrefem.errors import InputError
+from tyrefem.studies import Study
+from tyrefem.summary import versions, write_json, write_tables
+
+if TYPE_CHECKING:
+    import pandas as pd
+
+    from tyrefem.result import Result
+
+
+@dataclass(frozen=True, eq=False)
+class Campaign:
+    """The cases of a study, each a study of its own. Made by `Study.campaign`."""
+
+    study: Study
+    cases: tuple[Case, ...]
+
+    @classmethod
+    def of(cls, study: Study) -> Campaign:
+        """The campaign of a study that names a table of cases.
+
+        Raises
+        ------
+        InputError : the study names none, or the table or a case of it is wrong (file and line).
+        """
+        if study.card.cases is None:
+            raise InputError("the study has no 'cases' table", field="cases", file=study.file)
+        path = (study.folder or Path()) / study.card.cases
+        campaign = cls(study, read_cases(path))
+        for case in campaign.cases:
+            try:
+                campaign.case_study(case)
+            except InputError as error:
+                raise InputError(f"line {case.line}, case '{case.name}': {error}", file=path) from None
+        return campaign
+
+    def case_study(self, case: Case) -> Study:
+        """The study of one case."""
+        changed = self.study.replace(case.changes)
+        data = {key: value for key, value in changed.data.items() if key != "cases"}
+        data["title"] = f"{case.name}: {case.note}" if case.note else case.name
+        return replace(changed, name=case.name, data=data)
+
+    def runs(self, progress: Callable[[int, int], None] | None = None) -> Iterator[tuple[Case, Result | str]]:
+        """Run the cases in their order; a case that fails gives its reason in place of a result."""
+        for number, case in enumerate(self.cases):
+            try:
+                outcome: Result | str = self.case_study(case).run()
+            except (InputError, SolverError) as error:
+                outcome = str(error)
+            if progress is not None:
+                progress(number + 1, len(self.cases))
+            yield case, outcome
+
+
+def row(case: Case, outcome: Result | str) -> dict[str, Any]:
+    """One case as a row of the campaign's table; a failed case has only its name and ``failure``."""
+    if isinstance(outcome, str):
+        return {"case": case.name, "note": case.note, "failure": outcome}
+    phase, peak = outcome.phases[-1], outcome.extremes.iloc[0]
+    resistance, readings = outcome.rolling_resistance, outcome.readings
+    regions = {f"{entry.region}_max_degC": entry.temperature_degC for entry in outcome.extremes.iloc[1:].itertuples()}
+    return {
+        "case": case.name,
+        "note": case.note,
+        "load_N": phase.load,
+        "pressure_Pa": phase.pressure,
+        "speed_m_s": phase.speed,
+        "deflection_m": phase.deflection,
+        "road_fraction": phase.road_fraction,
+        "hottest_degC": peak.temperature_degC,
+        "hottest_s_m": peak.s_m,
+        "hottest_depth_m": peak.depth_m,
+        "hottest_time_s": peak.time_s,
+        **regions,
+        "rolling_resistance_N": resistance.force,
+        "rolling_resistance_coefficient": resistance.coefficient,
+        **{f"{name}_degC": float(readings[name].iloc[-1]) for name in readings.columns if name != "time_s"},
+        "heat_budget_imbalance": outcome.heat_budget.imbalance,
+        "failure": "",
+    }
+
+
+def run_campaign(
+    campaign: Campaign,
+    folder: Path,
+    progress: Callable[[int, int], None] | None = None,
+    each: Callable[[Result, Path], None] | None = None,
+) -> pd.DataFrame:
+    """Run a campaign into a folder: a folder per case, ``campaign.csv`` and ``summary.json``.
+
+    The table is written anew after every case, so that an interrupted campaign leaves what it finished.
+    ``each`` may write more of a case (pictures, VTK) into its folder.
+    """
+    import pandas as pd
+
+    from tyrefem.output import atomic_path
+
+    rows: list[dict[str, Any]] = []
+    for case, outcome in campaign.runs(progress):
+        if not isinstance(outcome, str):
+            write_tables(outcome, folder / "cases" / case.name)
+            if each is not None:
+                each(outcome, folder / "cases" / case.name)
+        rows.append(row(case, outcome))
+        table = pd.DataFrame(rows)
+        with atomic_path(folder / "campaign.csv") as temporary:
+            table.to_csv(temporary, index=False, float_format="%.6g")
+        done = len(rows) == len(campaign.cases)
+        write_json(_summary(campaign, table, done), folder / "summary.json")
+    return table
+
+
+def _summary(campaign: Campaign, table: pd.DataFrame, complete: bool) -> dict[str, Any]:
+    return {
+        "study": campaign.study.name,
+        "title": campaign.study.title,
+        "complete": complete,
+        "cases": table.to_dict("records"),
+        "failed": [entry["case"] for entry in table.to_dict("records") if entry.get("failure")],
+        "tolerance_K": campaign.study.tolerance,
+        "mesh": campaign.study.card.mesh.model_dump(),
+        "versions": versions(),
+        "random_seed": None,
+        "input": dict(campaign.study.data),
+    }

@@ -1,0 +1,73 @@
+"""What the commands share: ``--set``, names to complete, progress on a terminal, JSON on stdout."""
+
+from __future__ import annotations
+
+import sys
+import tomllib
+from collections.abc import Callable, Iterator
+from contextlib import contextmanager
+from pathlib import Path
+from typing import Annotated, Any
+
+import typer
+
+from tyrefem.errors import InputError
+
+
+def complete_studies(incomplete: str) -> list[str]:
+    """Names of studies for shell completion."""
+    from tyrefem import library
+
+    return [name for name in library.names("study", Path.cwd()) if name.startswith(incomplete)]
+
+
+StudyArgument = Annotated[
+    str, typer.Argument(metavar="STUDY", help="A study's name or path.", autocompletion=complete_studies)
+]
+SetOption = Annotated[
+    list[str] | None,
+    typer.Option("--set", metavar="KEY=VALUE", help="Change one value, e.g. drive.speed='25 mph'. Repeatable."),
+]
+JsonOption = Annotated[bool, typer.Option("--json", help="Print the result as JSON on stdout, nothing else.")]
+
+
+def settings(pairs: list[str] | None) -> dict[str, Any]:
+    """``KEY=VALUE`` arguments as changes; a value that is TOML (number, list, table) is taken as such.
+
+    >>> settings(["drive.speed=25 mph", "materials.tread.loss_tangent.value=0.25"])
+    {'drive.speed': '25 mph', 'materials.tread.loss_tangent.value': 0.25}
+    """
+    changes: dict[str, Any] = {}
+    for pair in pairs or []:
+        key, equals, text = pair.partition("=")
+        if not equals or not key.strip():
+            raise InputError(f"'{pair}' is not KEY=VALUE, e.g. drive.speed='25 mph'", field="--set")
+        try:
+            value = tomllib.loads(f"value = {text}")["value"]
+        except tomllib.TOMLDecodeError:
+            value = text
+        changes[key.strip()] = value if not isinstance(value, bool) or text in ("true", "false") else text
+    return changes
+
+
+@contextmanager
+def progress(description: str, total: float, *, quiet: bool = False) -> Iterator[Callable[[float], None]]:
+    """A function that takes how far the work is; draws a bar on a terminal, nothing in a pipe."""
+    if quiet or not sys.stderr.isatty():
+        yield lambda _done: None
+        return
+    from rich.console import Console
+    from rich.progress import Progress
+
+    with Progress(console=Console(stderr=True), transient=True) as bar:
+        task = bar.add_task(description, total=total)
+        yield lambda done: bar.update(task, completed=done)
+
+
+def print_json(data: dict[str, Any]) -> None:
+    """JSON on stdout."""
+    import json
+
+    from tyrefem.summary import jsonable
+
+    typer.echo(json.dumps(jsonable(data), indent=1))

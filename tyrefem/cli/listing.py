@@ -1,0 +1,53 @@
+"""`tyrefem list`: what can be named."""
+
+from __future__ import annotations
+
+from pathlib import Path
+from typing import Annotated
+
+import typer
+
+from tyrefem.errors import InputError, nearest
+
+KINDS = {"sections": "section", "materials": "material", "studies": "study"}
+
+
+def complete_kinds(incomplete: str) -> list[str]:
+    """Kinds for shell completion."""
+    return [kind for kind in [*KINDS, "laws"] if kind.startswith(incomplete)]
+
+
+def show_list(
+    kind: Annotated[
+        str, typer.Argument(help="sections, materials, studies or laws.", autocompletion=complete_kinds)
+    ] = "studies",
+) -> None:
+    """List sections, materials or studies by name, or the boundary laws."""
+    if kind == "laws":
+        _laws()
+        return
+    if kind not in KINDS:
+        raise InputError(f"no kind '{kind}'{nearest(kind, [*KINDS, 'laws'])}")
+    from tyrefem import library
+    from tyrefem.cards import read_toml
+
+    for name, path in sorted(library.names(KINDS[kind], Path.cwd()).items()):
+        try:
+            title = str(read_toml(path).get("title", ""))
+        except InputError as error:
+            title = f"(cannot be read: {error.message})"
+        typer.echo(f"{name:28} {title}")
+
+
+def _laws() -> None:
+    from tyrefem.boundaries import laws
+
+    for side in ("road", "outside_air", "contained_air", "rim"):
+        for name, law in sorted(laws(side).items()):
+            first = (law.__doc__ or "").strip().splitlines()[0]
+            typer.echo(f"{side:14} {name:10} {first}")
+
+
+def register(app: typer.Typer) -> None:
+    """Add the command."""
+    app.command(name="list")(show_list)

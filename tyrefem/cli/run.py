@@ -1,0 +1,102 @@
+"""`tyrefem run`: a study, or a campaign of cases, to a folder of results."""
+
+from __future__ import annotations
+
+from pathlib import Path
+from typing import TYPE_CHECKING, Annotated, Any
+
+import typer
+
+from tyrefem.cli.common import JsonOption, SetOption, StudyArgument, print_json, progress, settings
+
+if TYPE_CHECKING:
+    from tyrefem.result import Result
+    from tyrefem.studies import Study
+
+
+def run(
+    study: StudyArgument,
+    changes: SetOption = None,
+    out: Annotated[Path | None, typer.Option("--out", help="Folder for the results; default: results/STUDY.")] = None,
+    pictures: Annotated[bool, typer.Option(help="Draw the PNG pictures and the HTML report.")] = True,
+    vtk: Annotated[bool, typer.Option(help="Write the .pvd and .vtu files.")] = True,
+    revolved: Annotated[bool, typer.Option("--revolved", help="Write the VTK files of the whole ring too.")] = False,
+    as_json: JsonOption = False,
+) -> None:
+    """Simulate a study: temperatures, heat budget, rolling resistance, VTK, pictures and a report.
+
+    A study with a table of cases runs them all and writes one table.
+    """
+    from tyrefem.studies import study as load
+
+    found = load(study, settings(changes))
+    folder = out or Path("results") / found.name
+    if found.is_campaign:
+        _campaign(found, folder, pictures, as_json)
+    else:
+        _single(found, folder, pictures, vtk, revolved, as_json)
+
+
+def _single(study: Study, folder: Path, pictures: bool, vtk: bool, revolved: bool, as_json: bool) -> None:
+    with progress(study.name, study.card.drive.end, quiet=as_json) as step:
+        result = study.run(step)
+    result.save(folder)
+    if vtk:
+        result.to_vtk(folder / "vtk", revolved=revolved)
+    if pictures:
+        result.plot(folder / "pictures")
+        result.report(folder / "report.html")
+    if as_json:
+        print_json(result.summary())
+    else:
+        typer.echo(_words(result))
+        typer.echo(f"results in {folder}" + (f"; read {folder / 'report.html'}" if pictures else ""))
+    if result.history.interrupted:
+        raise KeyboardInterrupt
+
+
+def _words(result: Result) -> str:
+    peak, region = result.extremes.iloc[0], result.summary()["hottest"]["region"]
+    resistance, budget = result.rolling_resistance, result.heat_budget
+    lines = [
+        result.study.title,
+        f"  hottest point       {peak.temperature_degC:7.1f} degC in the {region}, {peak.s_m * 1e3:.0f} mm along the "
+        f"meridian, {peak.depth_m * 1e3:.1f} mm deep, at {peak.time_s:.0f} s",
+        f"  rolling resistance  {resistance.force:7.1f} N, coefficient {resistance.coefficient:.4f} "
+        f"(cold {resistance.cold_force:.1f} N, {resistance.cold_coefficient:.4f})",
+        f"  contained air       {result.gas_temperature[-1]:7.1f} degC, {result.gas_pressure[-1] / 1e3:.0f} kPa gauge",
+        f"  heat generated      {budget.total('generated') / 1e3:7.1f} kJ, stored {budget.total('stored') / 1e3:.1f} kJ, "
+        f"lost {budget.total('lost') / 1e3:.1f} kJ; closes to {budget.imbalance:.0e}",
+    ]
+    return "\n".join(lines)
+
+
+def _campaign(study: Study, folder: Path, pictures: bool, as_json: bool) -> None:
+    from tyrefem.campaign import run_campaign, write_campaign_report
+
+    campaign = study.campaign()
+
+    def each(result: Any, place: Path) -> None:
+        result.to_vtk(place / "vtk")
+
+    with progress(study.name, len(campaign.cases), quiet=as_json) as step:
+        table = run_campaign(campaign, folder, lambda done, _all: step(done), each if pictures else None)
+    if pictures:
+        write_campaign_report(campaign, table, folder / "report.html")
+    failed = table[table["failure"] != ""]
+    if as_json:
+        print_json({"study": study.name, "cases": table.to_dict("records")})
+    else:
+        shown = ["case", "hottest_degC", "rolling_resistance_coefficient", "contained-air_degC"]
+        typer.echo(study.title)
+        typer.echo(table[[name for name in shown if name in table]].to_string(index=False, float_format="%.4g"))
+        typer.echo(f"{len(table)} cases, {len(failed)} failed; table in {folder / 'campaign.csv'}")
+    for entry in failed.itertuples():
+        typer.echo(f"tyrefem: case {entry.case}: {entry.failure}", err=True)
+    if len(failed):
+        raise typer.Exit(1)
+
+
+def register(app: typer.Typer) -> None:
+    """Add the command."""
+    app.command()(run)

@@ -1,0 +1,119 @@
+"""`tyrefem show`: draw or print a section, material, study, mesh or strain cycle."""
+
+from __future__ import annotations
+
+from pathlib import Path
+from typing import Annotated, Any
+
+import typer
+
+from tyrefem.cli.common import SetOption, settings
+from tyrefem.errors import InputError, nearest
+
+KINDS = ("section", "material", "study", "mesh", "strain")
+
+
+def complete_kinds(incomplete: str) -> list[str]:
+    """Kinds for shell completion."""
+    return [kind for kind in KINDS if kind.startswith(incomplete)]
+
+
+def complete_names(context: typer.Context, incomplete: str) -> list[str]:
+    """Names of the kind already typed."""
+    from tyrefem import library
+
+    kind = context.params.get("kind", "study")
+    kind = kind if kind in library.FOLDERS else "study"
+    return [name for name in library.names(kind, Path.cwd()) if name.startswith(incomplete)]
+
+
+def show(
+    kind: Annotated[str, typer.Argument(help=", ".join(KINDS), autocompletion=complete_kinds)],
+    name: Annotated[str, typer.Argument(help="Name or path of the card.", autocompletion=complete_names)],
+    changes: SetOption = None,
+    out: Annotated[Path | None, typer.Option("--out", help="PNG to write; default: KIND-NAME.png.")] = None,
+) -> None:
+    """Show a card: `section`, `mesh` and `strain` are drawn to a PNG, `material` and `study` printed."""
+    if kind not in KINDS:
+        raise InputError(f"no kind '{kind}'{nearest(kind, KINDS)}")
+    values = settings(changes)
+    if kind in ("material", "study"):
+        _print(kind, name, values)
+        return
+    figure, facts = _SHOWN[kind](name, values)
+    path = out or Path(f"{kind}-{Path(name).stem if name.endswith('.toml') else Path(name).name}.png")
+    from tyrefem.output import atomic_path
+
+    with atomic_path(path) as temporary:
+        figure.savefig(temporary, format="png")
+    for key, value in facts.items():
+        typer.echo(f"{key:28} {value:.6g}" if isinstance(value, float) else f"{key:28} {value}")
+    typer.echo(f"drawn in {path}")
+
+
+def _section(name: str, values: dict[str, Any]) -> tuple[Any, dict[str, Any]]:
+    from tyrefem.dotted import changed
+    from tyrefem.plotting import section_figure
+    from tyrefem.section import load
+
+    data: dict[str, Any] = {"section": name}
+    for key, value in values.items():
+        data = changed(data, key if key.startswith("section.") else f"section.{key}", value)
+    section = load(data["section"])
+    return section_figure(section), section.summary()
+
+
+def _mesh(name: str, values: dict[str, Any]) -> tuple[Any, dict[str, Any]]:
+    from tyrefem.plotting import mesh_figure
+    from tyrefem.studies import study
+
+    tyre = study(name, values).mesh()
+    return mesh_figure(tyre), tyre.summary()
+
+
+def _strain(name: str, values: dict[str, Any]) -> tuple[Any, dict[str, Any]]:
+    from tyrefem.plotting import strain_figure
+    from tyrefem.rolling import RollingTyre
+    from tyrefem.studies import study
+
+    found = study(name, values)
+    case = RollingTyre(found).schedule.cases[0][-1]
+    facts = {
+        "load_N": case.load,
+        "pressure_Pa": case.pressure,
+        "deflection_m": case.deflection,
+        "rolling_radius_m": case.rolling_radius,
+        "footprint_length_m": case.footprint_length,
+        "road_fraction": case.road_fraction,
+    }
+    return strain_figure(found), facts
+
+
+_SHOWN = {"section": _section, "mesh": _mesh, "strain": _strain}
+
+
+def _print(kind: str, name: str, values: dict[str, Any]) -> None:
+    import tomli_w
+
+    from tyrefem import library
+    from tyrefem.dotted import changed
+    from tyrefem.materials import MaterialCard
+    from tyrefem.studies import study
+
+    data: dict[str, Any]
+    if kind == "study":
+        found = study(name, values)
+        data, path = dict(found.data), found.file
+    else:
+        data, file, _ = library.load("material", name, Path.cwd())
+        for key, value in values.items():
+            data = changed(data, key, value)
+        MaterialCard.check(data, file)
+        path = file
+    typer.echo(f"# {path}")
+    typer.echo(tomli_w.dumps(data), nl=False)
+
+
+def register(app: typer.Typer) -> None:
+    """Add the command."""
+    app.command()(show)

@@ -1,0 +1,142 @@
+"""One look for every picture: colours that survive colour blindness and grey print, sizes, units, saving."""
+
+from __future__ import annotations
+
+import io
+from typing import TYPE_CHECKING, Any
+
+import numpy as np
+from numpy.typing import ArrayLike, NDArray
+
+if TYPE_CHECKING:
+    from matplotlib.axes import Axes
+    from matplotlib.figure import Figure
+
+Array = NDArray[np.float64]
+
+#: Okabe & Ito (2008), distinguishable with every common colour blindness; the yellow is left out: too pale on white.
+PALETTE = ("#0072B2", "#D55E00", "#009E73", "#CC79A7", "#56B4E9", "#E69F00", "#000000", "#7F7F7F")
+DASHES: tuple[Any, ...] = ("-", (0, (5, 1.5)), (0, (1.2, 1.2)), (0, (6, 1.5, 1.2, 1.5)))
+#: Light fills of regions, by their order in the section.
+FILLS = ("#f3d9b1", "#bcd4e6", "#cfe3c4", "#e3cfe0", "#e0e0e0", "#f5efb8")
+INK, QUIET = "#1b1b1b", "#6a6a6a"
+GENERATED, STORED, LOST = "#D55E00", "#0072B2", "#009E73"
+#: Perceptually uniform; the second for quantities other than temperature.
+TEMPERATURE_MAP, ENERGY_MAP = "inferno", "viridis"
+DPI = 110
+FONT = 9.0
+
+
+def figure(width: float, height: float) -> Figure:
+    """An empty figure, inches, whose parts are laid out without overlap."""
+    from matplotlib.backends.backend_agg import FigureCanvasAgg
+    from matplotlib.figure import Figure
+
+    made = Figure(figsize=(width, height), dpi=DPI, layout="constrained", facecolor="white")
+    FigureCanvasAgg(made)
+    return made
+
+
+def png(drawn: Figure) -> bytes:
+    """The figure as a PNG file's bytes."""
+    stream = io.BytesIO()
+    drawn.savefig(stream, format="png", dpi=DPI, facecolor="white")
+    return stream.getvalue()
+
+
+def plain(text: object) -> str:
+    """Text as it stands: a dollar sign would start a formula.
+
+    >>> print(plain("cost $3"))
+    cost \\$3
+    """
+    return str(text).replace("$", r"\$")
+
+
+def short(text: object, length: int = 28) -> str:
+    """Text for a label, cut to a length that fits.
+
+    >>> short("a thermocouple with a very long name", 12)
+    'a thermocou…'
+    """
+    words = str(text)
+    return plain(words if len(words) <= length else words[: length - 1] + "…")
+
+
+def line_style(number: int) -> dict[str, Any]:
+    """Colour and dashes of the n-th line: the dashes change when the colours come round again."""
+    return {"color": PALETTE[number % len(PALETTE)], "ls": DASHES[number // len(PALETTE) % len(DASHES)]}
+
+
+def time_unit(last: float) -> tuple[float, str]:
+    """Divisor and unit in which times up to ``last`` seconds read well.
+
+    >>> time_unit(600.0), time_unit(3600.0), time_unit(1e5)
+    ((1.0, 's'), (60.0, 'min'), (3600.0, 'h'))
+    """
+    return (1.0, "s") if last <= 900 else (60.0, "min") if last <= 4 * 3600 else (3600.0, "h")
+
+
+def si(largest: float, unit: str) -> tuple[float, str]:
+    """Divisor and unit with the prefix that brings ``largest`` between 1 and 1000.
+
+    >>> si(539335.0, "J"), si(0.0, "W")
+    ((1000.0, 'kJ'), (1.0, 'W'))
+    """
+    size = abs(largest)
+    for factor, prefix in ((1e9, "G"), (1e6, "M"), (1e3, "k")):
+        if size >= factor:
+            return factor, prefix + unit
+    return 1.0, unit
+
+
+def tidy(axes: Axes, *, grid: bool = True) -> None:
+    """Readable ticks, no box where no data are."""
+    axes.tick_params(labelsize=FONT, colors=INK)
+    for side in ("top", "right"):
+        axes.spines[side].set_visible(False)
+    if grid:
+        axes.grid(alpha=0.3, lw=0.5)
+        axes.set_axisbelow(True)
+
+
+def title(drawn: Figure, first: str, second: str = "") -> None:
+    """Bold first line, and a second line for the numbers."""
+    text = plain_bold(first) + (f"\n{second}" if second else "")
+    drawn.suptitle(text, fontsize=FONT + 1.5, color=INK, linespacing=1.35)
+
+
+def plain_bold(text: str) -> str:
+    """A heading's text, cut to what fits on one line of a picture."""
+    return short(text, 96)
+
+
+def millimetres(points: ArrayLike) -> tuple[Array, Array]:
+    """(r, z) in m, shape (..., 2), as (horizontal, vertical) = (z, r) in mm."""
+    array = np.asarray(points, dtype=float)
+    return array[..., 1] * 1e3, array[..., 0] * 1e3
+
+
+def section_axes(axes: Axes) -> None:
+    """Equal scales, crown up, in mm."""
+    axes.set_aspect("equal")
+    axes.set_xlabel("axial position z [mm]", fontsize=FONT)
+    axes.set_ylabel("radius r [mm]", fontsize=FONT)
+    tidy(axes, grid=False)
+
+
+def phase_bands(axes: Axes, phases: list[tuple[str, float, float]], *, named: bool) -> None:
+    """Shade every other phase of a time axis; ``phases`` are (name, start, end) in the axis's unit."""
+    if len(phases) < 2:
+        return
+    low, high = phases[0][1], max(end for _, _, end in phases)
+    for number, (name, start, end) in enumerate(phases):
+        if number % 2:
+            axes.axvspan(start, end, color="#eef1f5", lw=0, zorder=0)
+        share = (end - start) / (high - low)
+        if named and share > 0.02:
+            upright = share < 0.012 * len(name) + 0.02
+            axes.annotate(
+                short(name, 22), ((start + end) / 2, 0.985), xycoords=("data", "axes fraction"), fontsize=FONT - 1.5,
+                color=QUIET, ha="center", va="top", rotation=90 if upright else 0,
+            )  # fmt: skip
