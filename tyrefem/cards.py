@@ -16,7 +16,7 @@ Text = Annotated[str, Field(min_length=1)]
 Length = Annotated[float, Unit("m")]
 PositiveLength = Annotated[float, Unit("m", gt=0)]
 Thickness = Annotated[float, Unit("m", ge=0)]
-Temperature = Annotated[float, Unit("degC")]
+Temperature = Annotated[float, Unit("degC", le=2000)]
 FilmCoefficient = Annotated[float, Unit("W/m**2/K", ge=0)]
 
 

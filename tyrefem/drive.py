@@ -2,7 +2,9 @@
 
 from __future__ import annotations
 
+import functools
 import math
+from bisect import bisect_right
 from collections.abc import Mapping
 from dataclasses import dataclass
 from typing import Annotated, Any, ClassVar
@@ -130,7 +132,7 @@ class Drive(Card):
             raise InputError(f"two phases are named '{repeated.pop()}'", field="phases")
         return self
 
-    @property
+    @functools.cached_property
     def starts(self) -> tuple[float, ...]:
         """Start of each phase, s."""
         total, result = 0.0, []
@@ -139,7 +141,7 @@ class Drive(Card):
             total += phase.duration
         return tuple(result)
 
-    @property
+    @functools.cached_property
     def end(self) -> float:
         """End of the drive, s."""
         return sum(phase.duration for phase in self.phases)
@@ -147,7 +149,7 @@ class Drive(Card):
     def locate(self, time: float) -> tuple[int, float]:
         """Number of the phase at a time, and the fraction of it that has passed."""
         starts = self.starts
-        number = max((i for i, start in enumerate(starts) if start <= time), default=0)
+        number = max(bisect_right(starts, time) - 1, 0)
         fraction = (time - starts[number]) / self.phases[number].duration
         return number, min(max(fraction, 0.0), 1.0)
 

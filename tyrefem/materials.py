@@ -172,7 +172,7 @@ class LossTangent(Sourced):
     law: Literal["exponential", "constant", "table"] = "exponential"
     value: Annotated[float, Unit("1", ge=0)] | None = None
     at: Temperature = 25.0
-    rate: Annotated[float, Unit("1/delta_degC")] | None = None
+    rate: Annotated[float, Unit("1/delta_degC", ge=-0.1, le=1)] | None = None
     table: list[list[Any]] | None = None
 
     @model_validator(mode="after")

@@ -81,7 +81,10 @@ def _split(value: object, unit: str, wanted: str) -> tuple[float, str]:
     if isinstance(value, bool) or value is None:
         raise InputError(f"{value!r} is not {wanted}")
     if isinstance(value, int | float):
-        return float(value), ""
+        try:
+            return float(value), ""
+        except OverflowError:
+            raise InputError(f"{str(value)[:20]}... is too large to be a number; expected {wanted}") from None
     if hasattr(value, "magnitude") and hasattr(value, "units"):
         return float(value.magnitude), str(value.units)
     match = _NUMBER.match(value) if isinstance(value, str) else None

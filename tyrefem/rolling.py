@@ -79,19 +79,27 @@ class RollingTyre:
             fractions = tuple(ramp_knots(phase.changes_load))
             try:
                 phase_cases = tuple(self._case(number, fraction) for fraction in fractions)
-                phase_cycles = tuple(Arcs(self.study.section, self.stiffness, case) for case in phase_cases)
-                for cycle in phase_cycles:
-                    if cycle.case.deflection > 0:
-                        _ = cycle.deflected
+                phase_cycles = tuple(self._cycle(case) for case in phase_cases)
             except InputError as error:
-                raise error.within(field=f"drive.phases.{phase.name}", file=self.study.file) from None
+                placed = error.within(field=f"drive.phases.{phase.name}", file=self.study.file)
+                raise self.study.as_written(placed) from None
             knots.append(fractions)
             cases.append(phase_cases)
             cycles.append(phase_cycles)
         return CycleSchedule(self.drive, tuple(knots), tuple(cases), tuple(cycles))
 
+    def _cycle(self, case: LoadCase) -> Arcs:
+        cycle = Arcs(self.study.section, self.stiffness, case)
+        try:
+            _ = cycle.deflected if case.deflection > 0 else None
+        except InputError as error:
+            given = f"{case.load:.4g} N at {case.pressure / 1e3:.4g} kPa: {error.message}"
+            raise InputError(given, field=error.field) from None
+        return cycle
+
     def _case(self, number: int, fraction: float) -> LoadCase:
         phase, section = self.drive.phases[number], self.study.section
+        assert section.rating is not None
         return load_case(
             self.study.card.mechanics.load_law,
             section.rating,
@@ -134,19 +142,18 @@ class RollingTyre:
             return law.fraction
         return self.schedule.mean(lambda case: case.road_fraction, t)
 
+    @functools.cached_property
+    def _tread(self) -> tuple[float, float]:
+        """Conductivity (through the thickness) and heat capacity of the tread at 25 degC: what meets the road."""
+        card = self.study.materials["tread"]
+        conductivity, capacity = card.conductivity.law(), card.heat_capacity()
+        k = conductivity(25.0) if callable(conductivity) else conductivity
+        return float(np.ravel(k)[-1]), float(capacity(25.0) if callable(capacity) else capacity)
+
     def road_film(self, t: float) -> float:
         """H_c during contact, W/m2/K."""
-        tread = self.study.materials["tread"]
-        conductivity = tread.conductivity.law()
-        k = conductivity(25.0) if callable(conductivity) else conductivity
-        capacity = tread.heat_capacity()
-        contact = Contact(
-            self.speed(t),
-            self.schedule.mean(lambda case: case.footprint_length, t),
-            float(np.min(k)),
-            float(capacity(25.0) if callable(capacity) else capacity),
-        )
-        return self.study.card.boundaries.road.film(contact)
+        length = self.schedule.mean(lambda case: case.footprint_length, t)
+        return self.study.card.boundaries.road.film(Contact(self.speed(t), length, *self._tread))
 
     def air_film(self, t: float) -> float:
         """Outside film, W/m2/K."""
@@ -179,16 +186,14 @@ class RollingTyre:
         laws = self.study.card.boundaries
         gas = GAS if self._gas_capacity is not None else laws.contained_air.temperature  # type: ignore[attr-defined]
 
-        def air(_x: Any, t: float) -> float:
-            return self.ambient(t)
-
-        rim = RIM if isinstance(laws.rim, Lumped) else lambda _x, t: self.rim_temperature(t)
+        rim = RIM if isinstance(laws.rim, Lumped) else _of_time(self.rim_temperature)
+        air = _of_time(self.ambient)
         return {
             "road": [
-                Film(lambda _x, t: self.road_fraction(t) * self.road_film(t), lambda _x, t: self.road_temperature(t)),
-                Film(lambda _x, t: (1 - self.road_fraction(t)) * self.air_film(t), air),
+                Film(_of_time(lambda t: self.road_fraction(t) * self.road_film(t)), _of_time(self.road_temperature)),
+                Film(_of_time(lambda t: (1 - self.road_fraction(t)) * self.air_film(t)), air),
             ],
-            "outside_air": Film(lambda _x, t: self.air_film(t), air),
+            "outside_air": Film(_of_time(self.air_film), air),
             "contained_air": Film(laws.contained_air.film, gas),
             "rim": Film(laws.rim.total_film, rim),
         }
@@ -237,6 +242,12 @@ class RollingTyre:
             element=self.study.card.mesh.element,
             reservoirs=self._reservoirs(),
         )
+
+
+def _of_time(law: Callable[[float], float]) -> Callable[[Any, float], float]:
+    """A datum f(x, t) that does not vary in space; the solver asks several times for the same few times."""
+    remembered = functools.lru_cache(maxsize=16)(law)
+    return lambda _x, t: remembered(t)
 
 
 def _modulus(card: MaterialCard, region: str, name: str) -> float:

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import copy
 import functools
+import re
 from collections.abc import Mapping
 from dataclasses import dataclass, field, replace
 from pathlib import Path
@@ -46,9 +47,20 @@ class Study:
     card: StudyCard = field(init=False, repr=False)
 
     def __post_init__(self) -> None:
-        object.__setattr__(self, "card", StudyCard.check(self.data, self.file))
+        try:
+            object.__setattr__(self, "card", StudyCard.check(self.data, self.file))
+        except InputError as error:
+            raise self.as_written(error) from None
         _ = self.section, self.materials
         self._check_sensors()
+
+    def as_written(self, error: InputError) -> InputError:
+        """The error in the file's own words: a drive without phases has no ``drive.phases.0``."""
+        drive = self.data.get("drive")
+        if isinstance(drive, Mapping) and "phases" not in drive and error.field:
+            field = re.sub(r"^drive\.phases\.(0|rolling)", "drive", error.field)
+            return InputError(error.message, field=field, file=error.file)
+        return error
 
     # -- what it is made of ------------------------------------------------------------------------------------------
 
@@ -202,11 +214,11 @@ class Study:
 
         return run(self, progress)
 
-    def compare(self, table: str | Path | None = None, result: Result | None = None) -> Comparison:
-        """Deviation from measured tables: the one given, or the study's own."""
+    def compare(self, table: Any = None, result: Result | None = None, **options: Any) -> Comparison:
+        """Deviation from measured tables: the one given, or the study's own. Options: see `tyrefem.compare.compare`."""
         from tyrefem.compare import compare
 
-        return compare(self, table, result)
+        return compare(self, table, result, **options)
 
     @property
     def is_campaign(self) -> bool:

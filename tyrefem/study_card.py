@@ -88,7 +88,7 @@ class Output(Card):
 
 
 class Numerics(Card):
-    """``tolerance``: time-integration error aimed at; ``mesh_sd``: standard deviation left by the mesh (an estimate)."""
+    """``tolerance``: time-integration error aimed at; ``mesh_sd``: standard deviation left by the mesh (estimate)."""
 
     tolerance: Annotated[float, Unit("delta_degC", gt=0, le=10)] = 0.01
     mesh_sd: Annotated[float, Unit("delta_degC", ge=0)] = 0.1
@@ -132,7 +132,7 @@ class StudyCard(Card):
         if isinstance(data, Mapping) and isinstance(data.get("materials"), Mapping):
             for region in data["materials"]:
                 if region not in REGIONS:
-                    raise InputError(f"unknown region '{region}'{nearest(region, REGIONS)}", field="materials")
+                    raise InputError(f"unknown region '{region}'{nearest(str(region), REGIONS)}", field="materials")
             missing = [region for region in REGIONS if region not in data["materials"]]
             if missing:
                 raise InputError(f"no material card for region '{missing[0]}'", field="materials")

@@ -69,8 +69,8 @@ def summary(result: Result) -> dict[str, Any]:
 
 
 def _hottest_region(result: Result) -> str:
-    regions = result.extremes.iloc[1:]
-    return str(regions.loc[regions["temperature_degC"].idxmax(), "region"])
+    peaks = result.history.region_maximum
+    return max(peaks, key=lambda region: peaks[region].temperature)
 
 
 def jsonable(value: Any) -> Any:

@@ -74,6 +74,8 @@ def test_by_hand(study):
     assert found["u_reading_K"] == pytest.approx(math.sqrt(0.25 + 1.44 + 0.25 + 0.04 + 41.0))
     changes = comparison.inputs[comparison.inputs.phase == "all"].set_index("key").change_K
     assert changes.to_dict() == pytest.approx({"heat": 4.0, "air": 5.0})
+    assert comparison.by_input["crown"].to_dict() == pytest.approx({"air": 5.0, "heat": 4.0})
+    assert list(comparison.by_input.index) == ["air", "heat"]
     assert found["verdict"] == WITHIN
 
     blunt = compare(study, run, inputs=False)

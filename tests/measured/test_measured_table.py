@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import re
+from pathlib import Path
 
 import numpy as np
 import pandas as pd
@@ -236,3 +237,12 @@ def read_or_refused(tmp_path_factory, content):
         readings = run.temperatures.to_numpy()
         assert np.all(np.isnan(readings) | (np.abs(readings - 863.425) <= 1136.575 + 1e-6))
         assert np.isfinite(readings).any(axis=0).all()
+
+
+def test_the_table_in_the_documentation_can_be_read(tmp_path):
+    text = (Path(__file__).parents[2] / "docs" / "validation.md").read_text(encoding="utf-8")
+    (run,) = read_table(table(tmp_path, text.split("```")[1].strip()))
+    assert run.name == "20-mph"
+    assert run.times.tolist() == [0.0, 60.0]
+    assert run.temperatures["crown-inner"].tolist() == pytest.approx([25.0, 52.5 / 1.8])
+    assert run.temperatures["shoulder"].isna().tolist() == [False, True]

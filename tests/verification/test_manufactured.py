@@ -28,14 +28,16 @@ def distorted(n: int, cls: type):
     x, y = mesh.p
     bump = 0.08 * np.sin(np.pi * x) * np.sin(np.pi * y)
     small = 1e-9
-    return type(mesh)(np.stack([0.5 + x + bump, y - bump]), mesh.t).with_subdomains(
-        {"body": np.arange(mesh.t.shape[1])}
-    ).with_boundaries(
-        {
-            "inside": lambda p: p[0] < 0.5 + small,
-            "outside": lambda p: p[0] > 1.5 - small,
-            "top": lambda p: p[1] > 1 - small,
-        }
+    return (
+        type(mesh)(np.stack([0.5 + x + bump, y - bump]), mesh.t)
+        .with_subdomains({"body": np.arange(mesh.t.shape[1])})
+        .with_boundaries(
+            {
+                "inside": lambda p: p[0] < 0.5 + small,
+                "outside": lambda p: p[0] > 1.5 - small,
+                "top": lambda p: p[1] > 1 - small,
+            }
+        )
     )
 
 

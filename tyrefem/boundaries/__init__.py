@@ -64,14 +64,14 @@ class LawOf:
     side: str
     default: str
 
-    def __call__(self, value: Any) -> Law:
+    def __call__(self, value: Any) -> Any:
         known = laws(self.side)
         if isinstance(value, str):
             value = {"law": value}
         if not isinstance(value, Mapping):
             raise InputError(f"must be a table with a law, not {value!r:.40}; allowed: {', '.join(sorted(known))}")
         name = value.get("law", self.default)
-        if name not in known:
+        if not isinstance(name, str) or name not in known:
             raise InputError(f"unknown law {name!r:.40}{nearest(str(name), known)}", field="law")
         return known[name].check({"law": name, **value})
 

@@ -73,13 +73,13 @@ def main(arguments: list[str] | None = None) -> Any:
 
 def _other(error: Exception) -> int:
     """Usage errors of the parser, and a solver that cannot go on; anything else is a defect and shows itself."""
-    import click
-
-    if isinstance(error, click.exceptions.Abort):
+    if isinstance(error, typer.Abort):
         return fail("interrupted", 130)
-    if isinstance(error, click.ClickException):
-        error.show()
-        return error.exit_code
     if type(error).__name__ == "SolverError":
         return fail(f"no solution: {error}", 1)
+    # The parser's usage errors: the class lives in click or inside typer, depending on typer's version.
+    show, code = getattr(error, "show", None), getattr(error, "exit_code", None)
+    if callable(show) and isinstance(code, int):
+        show()
+        return code
     raise error

@@ -19,27 +19,27 @@ def compare(
     out: Annotated[Path | None, typer.Option("--out", help="Folder; default: results/STUDY-compare.")] = None,
     ignore: Annotated[list[str] | None, typer.Option(help="A column of the table to leave out. Repeatable.")] = None,
     inputs: Annotated[
-        bool | None, typer.Option(help="Propagate the cards' uncertainties into the validation uncertainty.")
-    ] = None,
+        bool, typer.Option(help="Propagate the cards' uncertainties into the validation uncertainty.")
+    ] = True,
+    k: Annotated[float, typer.Option("-k", min=0.1, help="Coverage factor of the validation uncertainty.")] = 2.0,
     as_json: JsonOption = False,
 ) -> None:
     """Compare a study with measured tables: deviation per sensor, run and phase, against the validation uncertainty."""
-    from tyrefem.compare import compare as compared
     from tyrefem.studies import study as load
 
     found = load(study, settings(changes))
-    comparison = compared(found, table, ignore=tuple(ignore or ()), inputs=inputs)
+    comparison = found.compare(table, ignore=tuple(ignore or ()), inputs=inputs, k=k)
     folder = out or Path("results") / f"{found.name}-compare"
     comparison.save(folder)
     if as_json:
         print_json(comparison.to_dict())
         return
-    shown = comparison.table.drop(
-        columns=[c for c in comparison.table.columns if c.startswith("u_") and c != "u_val_K"]
-    )
-    typer.echo(shown.to_string(index=False, float_format="%.3g", max_colwidth=40))
+    columns = ["run", "sensor", "phase", "n", "bias_K", "rms_K", "largest_K", "at_s", "u_val_K", "beyond"]
+    typer.echo(comparison.table[columns].to_string(index=False, float_format="%.3g"))
     typer.echo(comparison.summary)
-    typer.echo(f"results in {folder}")
+    for note in comparison.notes:
+        typer.echo(f"note: {note}")
+    typer.echo(f"results in {folder}; read {folder / 'comparison.html'}")
 
 
 def register(app: typer.Typer) -> None:

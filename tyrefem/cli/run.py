@@ -65,8 +65,9 @@ def _words(result: Result) -> str:
         f"  rolling resistance  {resistance.force:7.1f} N, coefficient {resistance.coefficient:.4f} "
         f"(cold {resistance.cold_force:.1f} N, {resistance.cold_coefficient:.4f})",
         f"  contained air       {result.gas_temperature[-1]:7.1f} degC, {result.gas_pressure[-1] / 1e3:.0f} kPa gauge",
-        f"  heat generated      {budget.total('generated') / 1e3:7.1f} kJ, stored {budget.total('stored') / 1e3:.1f} kJ, "
-        f"lost {budget.total('lost') / 1e3:.1f} kJ; closes to {budget.imbalance:.0e}",
+        f"  heat generated      {budget.total('generated') / 1e3:7.1f} kJ, stored "
+        f"{budget.total('stored') / 1e3:.1f} kJ, lost {budget.total('lost') / 1e3:.1f} kJ; "
+        f"closes to {budget.imbalance:.0e}",
     ]
     return "\n".join(lines)
 

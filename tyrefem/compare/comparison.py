@@ -61,6 +61,21 @@ class Comparison:
         squares = groups.agg(lambda errors: math.sqrt(float((errors**2).mean())))
         return squares.sort_values(ascending=False, kind="stable")
 
+    @property
+    def has_phases(self) -> bool:
+        """Whether any run has readings in more than one phase of its drive."""
+        phases = self.table[self.table["phase"] != ALL].groupby("run")["phase"].nunique()
+        return bool((phases > 1).any())
+
+    @cached_property
+    def by_input(self) -> pd.DataFrame:
+        """Change (K) of each sensor's mean with each uncertain input, rms over the runs; strongest input first."""
+        whole = self.inputs[self.inputs["phase"] == ALL]
+        squares = whole.assign(square=whole["change_K"] ** 2)
+        changes = squares.pivot_table(index="key", columns="sensor", values="square", sort=False) ** 0.5
+        strongest = (changes**2).sum(axis="columns").sort_values(ascending=False, kind="stable").index
+        return changes.loc[strongest]
+
     def part(self, *, hold_out: bool) -> pd.DataFrame:
         """The residuals of the held-out runs, or of the others."""
         marked = self.table.loc[self.table["hold_out"] == hold_out, "run"].unique()
@@ -82,9 +97,10 @@ class Comparison:
         beyond = self.table["beyond"]
         judged = (
             f"beyond validation uncertainty (k = {self.k:g}): {int((beyond & whole).sum())} of "
-            f"{int(whole.sum())} sensor histories, {int((beyond & ~whole).sum())} of "
-            f"{int((~whole).sum())} sensor phases"
+            f"{int(whole.sum())} sensor histories"
         )
+        if self.has_phases:
+            judged += f", {int((beyond & ~whole).sum())} of {int((~whole).sum())} sensor phases"
         worst = f"worst sensor {self.by_sensor.index[0]}: {self.by_sensor.iloc[0]:.2f} K rms"
         errors = "".join(f"{note}. " for note in self.notes if note.startswith("ERROR"))
         return f"{errors}{self.study}: {count}: {overall}; {worst}; {judged}."

@@ -24,7 +24,7 @@ def page(comparison: Comparison, pictures: Mapping[str, bytes]) -> str:
     records = comparison.table.to_dict(orient="records")
     embedded = {name: base64.b64encode(png).decode("ascii") for name, png in pictures.items()}
     whole = [record for record in records if record["phase"] == ALL]
-    inputs = comparison.inputs[comparison.inputs["phase"] == ALL].to_dict(orient="records")
+    relative_sd = dict(zip(comparison.inputs["key"], comparison.inputs["relative_sd"], strict=True))
     return environment.get_template("page.html").render(
-        comparison=comparison, whole=whole, records=records, inputs=inputs, pictures=embedded
+        comparison=comparison, whole=whole, records=records, relative_sd=relative_sd, pictures=embedded
     )

@@ -104,18 +104,18 @@ def _history(panel: Axes, part: pd.DataFrame, comparison: Comparison, run: str, 
 def deviations(comparison: Comparison) -> Figure:
     """A map: sensors down, runs and their phases across; colour and upper number the mean, lower the rms.
 
-    Phases are left out where they would make it wider than a page.
+    Phases are left out where a run has but one, or where they would make the map wider than a page.
     """
     from matplotlib.figure import Figure
 
     table = comparison.table
-    if len(table[["run", "phase"]].drop_duplicates()) > MOST_COLUMNS:
+    if not comparison.has_phases or len(table[["run", "phase"]].drop_duplicates()) > MOST_COLUMNS:
         table = table[table["phase"] == ALL]
     sensors = list(table["sensor"].unique())
     columns = list(table[["run", "phase"]].drop_duplicates().itertuples(index=False, name=None))
     bias = np.full((len(sensors), len(columns)), np.nan)
     width, height = 0.85 * len(columns) + 3.0, 0.42 * len(sensors) + 2.0
-    figure = Figure(figsize=(max(width, 5.5), height), layout="constrained")
+    figure = Figure(figsize=(max(width, 7.0), height), layout="constrained")
     axes = figure.subplots()
     # Noise alone shall not look like a fire: full colour is at least k u_val.
     largest = max(float(table["bias_K"].abs().max()), comparison.k * float(table["u_val_K"].max()), 1.0)

@@ -94,11 +94,8 @@ def _solved(
         studies |= {(drive, key): driven.scaled(key, 1.0 + sd) for key, sd in keys.items()}
     each = executor.map if executor is not None else map
     results = dict(zip(studies, each(_run, studies.values()), strict=True))
-    drives = dict.fromkeys(map(_drive, planned))
-    return {
-        drive: (known.get(drive) or results[drive, None], {key: results[drive, key] for key in keys})
-        for drive in drives
-    }
+    known |= {drive: found for (drive, key), found in results.items() if key is None}
+    return {drive: (computed, {key: results[drive, key] for key in keys}) for drive, computed in known.items()}
 
 
 def _outside(experiment: Experiment, computed: ResultLike, outside: int) -> list[str]:

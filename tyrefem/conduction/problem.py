@@ -73,6 +73,7 @@ class Conduction:
             name: list(c) if isinstance(c, (list, tuple)) else [c] for name, c in (boundaries or {}).items()
         }
         check_partition(self.operators, self.regions)
+        self._balance()  # Looks up every name now, so that a wrong one is reported where it was written.
 
     @property
     def mesh(self) -> Any:
@@ -82,6 +83,9 @@ class Conduction:
     def points(self, subdomain: str) -> Array:
         """Points (2, n) where the source of a subdomain is evaluated (its nodes), always the same array."""
         return self.operators.nodes(subdomain)
+
+    def _balance(self) -> HeatBalance:
+        return balance_of(self.operators, self.regions, self.boundaries, self.sources, self.reservoirs)
 
     def _initial(self, balance: HeatBalance, initial: Any, t: float, given: Mapping[str, float] | None) -> State:
         size = self.operators.size
@@ -115,7 +119,7 @@ class Conduction:
 
         Raises InputError if nothing fixes the temperature level, SolverError without convergence.
         """
-        balance = balance_of(self.operators, self.regions, self.boundaries, self.sources, self.reservoirs)
+        balance = self._balance()
         outside = self._held_reservoirs()
         if not anchored(balance, outside, time):
             raise InputError("a steady problem needs a Fixed, Film or Radiation boundary", field="boundaries")
@@ -181,7 +185,7 @@ class Conduction:
             raise InputError("must be finite times", field="breakpoints")
         if max_step is not None and not max_step > 0:
             raise InputError(f"must be positive, not {max_step!r}", field="max_step")
-        balance = balance_of(self.operators, self.regions, self.boundaries, self.sources, self.reservoirs)
+        balance = self._balance()
         names = list(self.reservoirs)
         into = {
             (name, i): c.sink

@@ -12,6 +12,7 @@ from tyrefem.conduction.balance import HeatBalance
 from tyrefem.conduction.errors import SolverError
 from tyrefem.conduction.loads import SourceLoad, State
 from tyrefem.conduction.surface_loads import FilmLoad, RadiationLoad
+from tyrefem.errors import InputError
 
 _MOST = 60
 _BUMP = 1e-4
@@ -31,30 +32,38 @@ def solve_steady(balance: HeatBalance, y: State, t: float, tolerance: float = 1e
     for _ in range(_MOST):
         du, dg = _correction(balance, t, y, residual)
         size = max(float(np.max(np.abs(du), initial=0)), float(np.max(np.abs(dg), initial=0)))
-        if not np.isfinite(size):
+        if not size < 1e9:
             raise SolverError("the steady problem is singular: no temperature balances its sources and sinks")
-        best, part = np.linalg.norm(residual), 1.0
+        best, part = float(np.linalg.norm(residual)), 1.0
         while True:
             trial = State(y.u.copy(), y.g + part * dg)
             trial.u[free] += part * du
-            left = _residual(balance, t, trial)
-            now = np.linalg.norm(left)
-            if (np.isfinite(now) and now <= (1 - 1e-4 * part) * best) or now <= 1e-12 * scale * left.size:
-                break
-            if size * part <= tolerance:
+            left, now = _try(balance, t, trial)
+            if now <= max((1 - 1e-4 * part) * best, 1e-13 * scale * left.size) or (size <= tolerance and now < np.inf):
                 break
             part *= 0.5
             if part < 1e-6:
+                if size < 1e-6:
+                    return y
                 raise SolverError(f"no steady state found: the heat residual stays at {best:.3g} W")
         y, residual = trial, left
-        if part * size <= tolerance:
+        if size <= tolerance:
             return y
     raise SolverError(f"no steady state after {_MOST} iterations; the last correction was {size:.3g} K")
 
 
+def _try(balance: HeatBalance, t: float, y: State) -> tuple[np.ndarray, float]:
+    """Residual and its norm; infinite where a user's function cannot be evaluated."""
+    try:
+        with np.errstate(over="ignore", invalid="ignore"):
+            residual = _residual(balance, t, y)
+            return residual, float(np.linalg.norm(residual))
+    except InputError:
+        return np.zeros(0), np.inf
+
+
 def _residual(balance: HeatBalance, t: float, y: State) -> np.ndarray:
-    with np.errstate(over="ignore", invalid="ignore"):
-        G, Gg, _ = balance.remainder(t, y)
+    G, Gg, _ = balance.remainder(t, y)
     ru = G - balance.S @ y.u + balance.B @ y.g
     rg = Gg + balance.B.T @ y.u - balance.D @ y.g
     return np.concatenate((ru[balance.fixed.free], rg))

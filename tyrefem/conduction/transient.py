@@ -14,7 +14,8 @@ from tyrefem.conduction.budget import Tally
 from tyrefem.conduction.errors import SolverError
 from tyrefem.conduction.history import Peak
 from tyrefem.conduction.loads import State
-from tyrefem.conduction.rosenbrock import StageMatrices, Step
+from tyrefem.conduction.rosenbrock import Step
+from tyrefem.conduction.stage_matrix import StageMatrices
 
 Array = NDArray[Any]
 

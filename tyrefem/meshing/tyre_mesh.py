@@ -77,9 +77,10 @@ class TyreMesh:
         InputError : a station cuts through elements; stations of ``section.breaks`` never do.
         """
         s = np.abs(self.section.locate(self._corners)[0])
-        inside = (s > start - 1e-6) & (s < end + 1e-6)
         middle = (s.mean(axis=0) > start) & (s.mean(axis=0) < end)
-        if not inside[:, middle].all():
+        inside = (s > start - 1e-6) & (s < end + 1e-6)
+        outside = (s < start + 1e-6) | (s > end - 1e-6)
+        if not np.where(middle, inside, outside).all():
             raise InputError(f"the mesh has no line at s = {start:g} m or {end:g} m; elements would be cut")
         chosen = np.flatnonzero(middle)
         return chosen if region is None else np.intersect1d(chosen, self.mesh.subdomains[region])

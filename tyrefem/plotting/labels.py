@@ -58,35 +58,62 @@ def column(
     ----------
     low, high : the column's ends, in data units. gap : height of a line of text, in data units; where the labels
         do not fit, text and gap shrink together.
-    align : "left", "right", or "center": leaders then leave from the side their point is on.
+    align : "left" or "right": the side of the text that is at ``x``, from which the leaders start.
     """
     if not labels:
         return
-    count = len(labels)
-    gap_now = min(gap, (high - low) / max(count - 1, 1))
-    size = max(FONT * min(1.0, gap_now / gap), 5.0)
+    gap_now = min(gap, (high - low) / max(len(labels) - 1, 1))
+    size = max(FONT * min(1.0, gap_now / gap), 4.0)
     # Their order is given, so each wants to be no higher than the one before.
     wanted = np.minimum.accumulate([min(max(label.y, low), high) for label in labels])
     places = -spread(-wanted, gap_now)
     places += max(low - places.min(), 0.0)
     places -= max(places.max() - high, 0.0)
+    nearer = 0.25 * gap * (1 if align == "right" else -1)
     for label, y in zip(labels, places, strict=True):
-        side = {"left": 0.0, "right": 1.0}.get(align, 1.0 if label.x >= x else 0.0)
-        axes.annotate(
-            label.text, (label.x, label.y), (x, float(y)), fontsize=size, ha=align, va="center", color=label.color,
-            fontweight="bold" if label.bold else "normal", zorder=6, annotation_clip=False,
-            arrowprops=_leader(side, label.color),
+        _write(axes, label, x, float(y), size, align)
+    _leaders(axes, [((x + nearer, float(y)), (label.x, label.y)) for label, y in zip(labels, places, strict=True)])
+
+
+def _write(axes: Axes, label: Label, x: float, y: float, size: float, align: str) -> None:
+    text = axes.text(
+        x, y, label.text, fontsize=size, ha=align, va="center", color=label.color,
+        fontweight="bold" if label.bold else "normal", zorder=6,
+    )  # fmt: skip
+    text.set_in_layout(False)
+
+
+def _leaders(axes: Axes, lines: list[Any], colors: Sequence[str] = (INK,)) -> None:
+    """Thin lines with a pale edge, to be seen on every colour."""
+    from matplotlib.collections import LineCollection
+
+    axes.add_collection(LineCollection(lines, colors="white", lw=2.0, alpha=0.55, zorder=5), autolim=False)
+    axes.add_collection(LineCollection(lines, colors=list(colors), lw=0.7, zorder=5), autolim=False)
+
+
+def line_ends(axes: Axes, labels: Sequence[Label], *, room: float, size: float = FONT) -> None:
+    """Names of lines to the right of their ends, in the lines' colours, apart where lines end together.
+
+    ``room``: inches of paper right of the axes that the names may take.
+    """
+    if not labels:
+        return
+    figure = axes.figure
+    box = axes.get_position()
+    width, height = (float(v) for v in figure.get_size_inches())
+    low, high = axes.get_ylim()
+    per_inch = (high - low) / (box.height * height)
+    gap = min(1.35 * size / 72 * per_inch, (high - low) / len(labels))
+    ordered = sorted(labels, key=lambda label: label.y)
+    places = spread([label.y for label in ordered], gap)
+    places += max(low - places.min(), 0.0)
+    places -= max(places.max() - high, 0.0)
+    inch = (axes.get_xlim()[1] - axes.get_xlim()[0]) / (box.width * width)
+    longest = max(len(label.text) for label in labels)
+    size = min(size, size * (room - 0.25) / (longest * 0.0073 * size))
+    for label, y in zip(ordered, places, strict=True):
+        axes.plot(
+            [label.x, label.x + 0.2 * inch], [label.y, float(y)], color=label.color, lw=0.7, clip_on=False, zorder=5,
+            scalex=False, scaley=False,
         )  # fmt: skip
-
-
-def _leader(side: float, color: str) -> dict[str, Any]:
-    return {"arrowstyle": "-", "lw": 0.7, "color": color, "relpos": (side, 0.5), "shrinkA": 1.0, "shrinkB": 2.5}
-
-
-def line_ends(axes: Axes, labels: Sequence[Label], x: float, *, gap: float) -> None:
-    """Names of lines at their right ends, in the lines' colours, moved apart where lines end together."""
-    for label, y in zip(labels, spread([label.y for label in labels], gap), strict=True):
-        axes.annotate(
-            label.text, (label.x, label.y), (x, float(y)), fontsize=FONT, va="center", color=label.color,
-            annotation_clip=False, arrowprops=_leader(0.0, label.color),
-        )  # fmt: skip
+        _write(axes, label, label.x + 0.24 * inch, float(y), size, "left")

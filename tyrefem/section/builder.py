@@ -2,7 +2,8 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable
+from collections.abc import Callable, Mapping
+from dataclasses import replace
 from itertools import pairwise
 from pathlib import Path
 
@@ -13,6 +14,7 @@ from tyrefem.library import load as load_card
 from tyrefem.section.card import LayerCard, PartCard, SectionCard
 from tyrefem.section.division import Division
 from tyrefem.section.layer import Layer, Rating
+from tyrefem.section.layup import Layup
 from tyrefem.section.line import Line, TwoArcs
 from tyrefem.section.profile import Profile
 from tyrefem.section.section import Section
@@ -49,54 +51,38 @@ def _on_points(card: SectionCard, name: str, half: bool) -> Section:
     parameters = card.parameters
     assert card.line.points is not None
     assert parameters.shoulder_s is not None
-    section = _section(card, name, half, SplineLine(card.line.points, parameters.shoulder_s))
-    if parameters.outer_diameter is None:
-        return section
-    # The points keep their shape; the whole line moves along r until the diameter is right.
-    shift = (parameters.outer_diameter - section.outer_diameter) / 2
-    moved = tuple((r + shift, z) for r, z in card.line.points)
-    return _section(card, name, half, SplineLine(moved, parameters.shoulder_s))
+    line = SplineLine(card.line.points, parameters.shoulder_s)
+    if parameters.outer_diameter is not None:
+        # The points keep their shape; the whole line moves along r until the diameter is right.
+        outside = Layup(_layers(card, line), card.line.reference).faces(0.0)[-1]
+        shift = parameters.outer_diameter / 2 - float(outside) - card.line.points[0][0]
+        line = SplineLine(tuple((r + shift, z) for r, z in card.line.points), parameters.shoulder_s)
+    return _section(card, name, half, line)
 
 
 def _on_two_arcs(card: SectionCard, name: str, half: bool) -> Section:
     parameters = card.parameters
+    assert parameters.crown_radius is not None
+    assert parameters.sidewall_radius is not None
+    assert parameters.meridian_length is not None
+    arcs = (parameters.crown_radius, parameters.sidewall_radius)
+    length = parameters.meridian_length
 
     def with_shoulder(x: float) -> Section:
-        assert parameters.crown_radius is not None
-        assert parameters.sidewall_radius is not None
-        assert parameters.meridian_length is not None
-        outside = _crown_outer_offset(card, parameters.meridian_length, x)
-        line = TwoArcs(
-            _crown_midline_radius(card, outside),
-            parameters.crown_radius,
-            parameters.sidewall_radius,
-            x,
-            parameters.meridian_length,
-        )
+        # The layers depend on lengths along the arcs only, so the arcs may first be drawn about the axis.
+        line = TwoArcs(0.0, *arcs, x, length)
+        outside = Layup(_layers(card, line), card.line.reference).faces(0.0)[-1]
+        line = replace(line, crown_midline_radius=_crown_midline_radius(card, float(outside)))
         return _section(card, name, half, line)
 
     if parameters.overall_width is None:
         assert parameters.shoulder_fraction is not None
         return with_shoulder(parameters.shoulder_fraction * parameters.nominal_width / 2)
-    return _with_width(parameters.overall_width, parameters.crown_radius or 0.0, with_shoulder)
-
-
-def _crown_outer_offset(card: SectionCard, length: float, shoulder_x: float) -> float:
-    """Distance from the meridian to the outer face at the crown."""
-    crown = [_profile(layer, card, length, _shoulder_s(card, shoulder_x))(0.0) for layer in card.layers]
-    faces = np.concatenate([[0.0], np.cumsum(crown)])
-    names = [layer.name for layer in card.layers]
-    depth = {"inner": faces[0], "outer": faces[-1], "total": faces[-1] / 2}
-    depth |= {name: (faces[i] + faces[i + 1]) / 2 for i, name in enumerate(names)}
-    return float(faces[-1] - depth.get(card.line.reference, 0.0))
-
-
-def _shoulder_s(card: SectionCard, x: float) -> float:
-    radius = card.parameters.crown_radius or 0.0
-    return radius * float(np.arcsin(min(x / radius, 1.0)))
+    return _with_width(parameters.overall_width, parameters.crown_radius, with_shoulder)
 
 
 def _crown_midline_radius(card: SectionCard, outside: float) -> float:
+    """y_m from the diameter, ``outside`` being the distance from the meridian to the tread at the crown."""
     given, diameter = card.parameters.crown_midline_radius, card.parameters.outer_diameter
     if given is None:
         assert diameter is not None
@@ -141,32 +127,39 @@ def _with_width(width: float, crown_radius: float, with_shoulder: Callable[[floa
 
 
 def _section(card: SectionCard, name: str, half: bool, line: Line) -> Section:
-    marks = {"shoulder": line.shoulder_s}
-    for mark, back in (("bead_start", card.parameters.bead_length), ("rim_start", card.parameters.rim_length)):
-        if back is not None:
-            marks[mark] = line.length - back
-    layers = tuple(
-        Layer(
-            layer.name,
-            _profile(layer, card, line.length, line.shoulder_s, f"layers.{index}"),
-            _division(layer.regions, marks, line.length, f"layers.{index}.regions"),
-        )
-        for index, layer in enumerate(card.layers)
-    )
     rating = None
     if card.rating is not None:
         rating = Rating(**{key: value for key, value in card.rating if key != "source"})
     return Section(
         name=name,
         line=line,
-        layers=layers,
+        layers=_layers(card, line),
         reference=card.line.reference,
-        outer=_division(card.boundaries, marks, line.length, "boundaries"),
+        outer=_division(card.boundaries, _marks(card, line), line.length, "boundaries"),
         rating=rating,
         nominal_width=card.parameters.nominal_width,
         inner_volume=card.parameters.inner_volume,
         half=half,
     )
+
+
+def _marks(card: SectionCard, line: Line) -> dict[str, float]:
+    """Named stations along the meridian."""
+    back = {"bead_start": card.parameters.bead_length, "rim_start": card.parameters.rim_length}
+    return {
+        "shoulder": line.shoulder_s,
+        **{mark: line.length - length for mark, length in back.items() if length is not None},
+    }
+
+
+def _layers(card: SectionCard, line: Line) -> tuple[Layer, ...]:
+    marks, layers = _marks(card, line), []
+    for index, layer in enumerate(card.layers):
+        field = f"layers.{index}"
+        regions = _division(layer.regions, marks, line.length, f"{field}.regions")
+        profile = _profile(layer, regions, card.parameters.thickness_scale, line.length, field)
+        layers.append(Layer(layer.name, profile, regions))
+    return tuple(layers)
 
 
 def _division(parts: tuple[PartCard, ...], marks: dict[str, float], length: float, field: str) -> Division:
@@ -188,13 +181,16 @@ def _division(parts: tuple[PartCard, ...], marks: dict[str, float], length: floa
         raise error.within(field=field) from None
 
 
-def _profile(layer: LayerCard, card: SectionCard, length: float, shoulder_s: float, field: str = "layers") -> Profile:
-    """The layer's thickness: table stretched to the meridian, each entry scaled by its region's factor."""
+def _profile(layer: LayerCard, regions: Division, scale: Mapping[str, float], length: float, field: str) -> Profile:
+    """The layer's thickness: table stretched to the meridian, each entry times its region's factor."""
     stations = np.asarray(layer.s)
     if layer.stretch and stations[-1] > 0:
         stations = stations * (length / stations[-1])
+    names = regions.at(stations)
     try:
-        Profile(tuple(stations), layer.thickness)
+        profile = Profile(tuple(stations.tolist()), layer.thickness, layer.interpolation)
+        values = np.asarray(profile.values) * [scale.get(str(name), 1.0) for name in names]
+        profile = replace(profile, values=tuple(values.tolist()))
     except InputError as error:
         raise error.within(field=f"{field}.thickness") from None
     if stations[0] > 1e-9 or stations[-1] < length - 1e-9:
@@ -202,12 +198,4 @@ def _profile(layer: LayerCard, card: SectionCard, length: float, shoulder_s: flo
             f"the table runs from {stations[0]:.4g} to {stations[-1]:.4g} m, but the section from 0 to {length:.4g} m",
             field=f"{field}.s",
         )
-    marks = {"shoulder": shoulder_s}
-    for mark, back in (("bead_start", card.parameters.bead_length), ("rim_start", card.parameters.rim_length)):
-        marks[mark] = length - (back or 0.0)
-    ends = [marks[part.to] if isinstance(part.to, str) else part.to or length for part in layer.regions]
-    names = np.asarray([part.name for part in layer.regions])
-    which = names[np.minimum(np.searchsorted(ends, stations - 1e-12), len(names) - 1)]
-    scale = card.parameters.thickness_scale
-    values = np.asarray(layer.thickness) * [scale.get(str(name), 1.0) for name in which]
-    return Profile(tuple(stations.tolist()), tuple(values.tolist()), layer.interpolation)
+    return profile

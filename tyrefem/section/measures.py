@@ -90,23 +90,18 @@ def gas_volume(section: Section) -> float:
 
 def overall_width(section: Section) -> float:
     """Twice the largest z of the outer face [m]."""
-    from scipy.optimize import minimize_scalar
 
-    def z(s: Array | float) -> Array:
+    def z(s: Array) -> Array:
         y = section.interfaces(s)[-1]
         return np.asarray(section.line.position(s)[..., 1] + y * section.line.normal(s)[..., 1])
 
     samples = np.unique(np.concatenate([np.linspace(0, section.line.length, 400), section.breaks]))
-    values = z(samples)
-    best = int(np.argmax(values))
-    widest = float(values[best])
-    # Either side of the best sample on its own: a kink of the thickness may lie between.
-    for low, high in ((best - 1, best), (best, best + 1)):
-        if low >= 0 and high < len(samples):
-            bounds = (samples[low], samples[high])
-            found = minimize_scalar(lambda s: -float(z(s)), bounds=bounds, method="bounded", options={"xatol": 1e-12})
-            widest = max(widest, -float(found.fun))
-    return 2 * widest
+    for _ in range(6):
+        best = int(np.argmax(z(samples)))
+        low, high = samples[max(best - 1, 0)], samples[min(best + 1, len(samples) - 1)]
+        # The best sample stays one of them: it may be a kink of the thickness.
+        samples = np.unique(np.concatenate([np.linspace(low, high, 60), samples[[best]]]))
+    return 2 * float(z(samples).max())
 
 
 def summary(section: Section) -> dict[str, Any]:

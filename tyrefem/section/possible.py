@@ -22,7 +22,7 @@ def check_possible(section: Section) -> None:
     Layup(section.layers, section.reference)
     _ends(section)
     length = section.line.length
-    s = stations(section, 0.0, length, length / 300)
+    s = stations(section, 0.0, length, length / 120)
     _no_folding(section, np.concatenate([s, _both_sides(section.breaks)]))
     _apart(section, s)
 
@@ -70,7 +70,7 @@ def _apart(section: Section, s: Array) -> None:
         )
     for which, points in (("inner", inner), ("outer", outer)):
         if points[1:, 1].min() <= 0:
-            at = s[1 + int(np.argmin(points[1:, 1]))]
+            at = s[1 + int(np.argmax(points[1:, 1] <= 0))]
             raise InputError(
                 f"the {which} surface crosses the mid plane at s = {at:.4g} m and would meet the other side",
                 field="parameters",

@@ -62,9 +62,9 @@ class SplineLine:
 
         points = np.asarray(self.points, dtype=float)
         chord = np.concatenate([[0.0], np.cumsum(np.linalg.norm(np.diff(points, axis=0), axis=1))])
-        # Symmetry at the crown: r' = 0 and z'' = 0; at the bead the curvature is left free (second derivative 0).
-        ends_r: Any = ((1, 0.0), (2, 0.0))
-        ends_z: Any = ((2, 0.0), (2, 0.0))
+        # Symmetry at the crown: r' = 0 and z'' = 0; at the bead the last piece goes on smoothly.
+        ends_r: Any = ((1, 0.0), "not-a-knot")
+        ends_z: Any = ((2, 0.0), "not-a-knot")
         r = CubicSpline(chord, points[:, 0], bc_type=ends_r)
         z = CubicSpline(chord, points[:, 1], bc_type=ends_z)
         return chord, r, z

@@ -1,0 +1,201 @@
+"""What a user may state, and what the error says when it does not fit."""
+
+from __future__ import annotations
+
+import numpy as np
+import pytest
+import skfem
+
+from tyrefem.conduction import Conduction, Film, Fixed, Flux, Material, Radiation, Reservoir, SolverError
+from tyrefem.conduction.factor import Ordering
+from tyrefem.errors import InputError
+
+RUBBER = Material(conductivity=0.21, heat_capacity=2.09e6)
+
+
+def square(n: int = 6, cls: type = skfem.MeshTri):
+    mesh = cls.init_tensor(np.linspace(0.1, 1.1, n + 1), np.linspace(0, 1, n + 1))
+    return mesh.with_subdomains(
+        {
+            "carcass": lambda x: x[0] < 0.6,
+            "tread": lambda x: x[0] > 0.6,
+            "all": lambda x: x[0] > 0,
+        }
+    ).with_boundaries({"inside": lambda x: x[0] < 0.1001, "outside": lambda x: x[0] > 1.0999})
+
+
+REGIONS = {"carcass": RUBBER, "tread": RUBBER}
+MESH = square()
+
+
+@pytest.mark.parametrize(
+    ("change", "message"),
+    [
+        ({"regions": {"carcas": RUBBER, "tread": RUBBER}}, "did you mean 'carcass'"),
+        ({"regions": {"carcass": RUBBER}}, r"36 elements belong to no region \(in all, tread\)"),
+        ({"regions": {**REGIONS, "all": RUBBER}}, "region 'all' shares 72 elements with carcass, tread"),
+        ({"regions": {"carcass": RUBBER, "tread": 0.2}}, "must be a Material"),
+        ({"boundaries": {"outsid": Film(1.0, 2.0)}}, "did you mean 'outside'"),
+        ({"boundaries": {"outside": 20.0}}, "must be a Film, Flux, Radiation or Fixed"),
+        ({"boundaries": {"outside": Film(1.0, "air")}}, "unknown reservoir 'air'"),
+        ({"sources": {"trad": 1.0}}, "did you mean 'tread'"),
+        ({"sources": {"tread": "hot"}}, "must be a number or f"),
+        ({"element": "P3"}, "unknown element 'P3'"),
+        ({"reservoirs": {"gas": Reservoir(1.0, exchanges=((1.0, "rmi"),)), "rim": Reservoir(1.0)}}, "'rim'"),
+    ],
+)
+def test_problems_that_do_not_fit_the_mesh(change: dict, message: str) -> None:
+    with pytest.raises(InputError, match=message):
+        Conduction(**{"mesh": MESH, "regions": REGIONS, "boundaries": {}, **change})
+
+
+@pytest.mark.parametrize(
+    "make",
+    [
+        lambda: Material(-0.2, 2e6),
+        lambda: Material(0.2, 0.0),
+        lambda: Material((1.0, 2.0, 3.0), 2e6),
+        lambda: Material("rubber", 2e6),
+        lambda: Film(-1.0, 25.0),
+        lambda: Film(float("nan"), 25.0),
+        lambda: Flux(float("inf")),
+        lambda: Radiation(1.2, 25.0),
+        lambda: Radiation(0.9, -300.0),
+        lambda: Fixed(None),
+        lambda: Reservoir(-1.0),
+    ],
+)
+def test_impossible_numbers_are_refused(make) -> None:
+    with pytest.raises(InputError):
+        make()
+
+
+@pytest.mark.parametrize("times", [[0.0], [0.0, 0.0], [1.0, 0.5], [0.0, np.nan], [[0.0, 1.0]]])
+def test_bad_times_are_refused(times) -> None:
+    with pytest.raises(InputError, match="strictly increasing"):
+        Conduction(MESH, REGIONS).transient(times)
+
+
+def test_bad_run_arguments_are_refused() -> None:
+    problem = Conduction(MESH, REGIONS)
+    for arguments in (
+        {"tolerance": 0.0},
+        {"initial": np.zeros(3)},
+        {"initial": np.nan},
+        {"max_step": -1.0},
+        {"breakpoints": [np.inf]},
+    ):
+        with pytest.raises(InputError):
+            problem.transient([0.0, 1.0], **arguments)
+
+
+def test_functions_returning_nonsense_are_named() -> None:
+    wrong_shape = Conduction(MESH, REGIONS, {"outside": Film(lambda x, t: np.ones(2), 25.0)})
+    with pytest.raises(InputError, match=r"boundaries.outside.h: the function returned shape \(2,\)"):
+        wrong_shape.transient([0, 1])
+    not_finite = Conduction(MESH, REGIONS, {}, {"tread": lambda x, t, T: T * np.nan})
+    with pytest.raises(InputError, match=r"sources\.tread"):
+        not_finite.transient([0, 1])
+    negative = Conduction(MESH, {**REGIONS, "tread": Material(lambda T: -T, 2e6)}, {"outside": Fixed(50.0)})
+    with pytest.raises(InputError, match=r"regions.tread.conductivity: is not positive"):
+        negative.steady()
+
+
+def test_steady_problem_without_a_sink_is_refused() -> None:
+    with pytest.raises(InputError, match="needs a Fixed, Film or Radiation"):
+        Conduction(MESH, REGIONS, {"outside": Flux(10.0)}).steady()
+    floating = {"gas": Reservoir(5.0)}
+    with pytest.raises(InputError, match="needs a Fixed, Film or Radiation"):
+        Conduction(MESH, REGIONS, {"inside": Film(5.0, "gas")}, reservoirs=floating).steady()
+
+
+def test_runaway_has_no_steady_state() -> None:
+    """A source growing faster with temperature than the films can carry away."""
+    problem = Conduction(MESH, REGIONS, {"outside": Film(1.0, 25.0)}, {"all": lambda x, t, T: 50 * np.exp(T / 20)})
+    with pytest.raises(SolverError):
+        problem.steady()
+
+
+def test_points_outside_are_named_with_their_distance() -> None:
+    field = Conduction(MESH, REGIONS, {"outside": Fixed(50.0)}).steady()
+    with pytest.raises(InputError, match=r"point \(1.3, 0.5\) m lies 0.2 m outside the mesh"):
+        field.at([(0.5, 0.5), (1.3, 0.5)])
+    assert field.at([(1.1 + 5e-10, 0.5)]) == pytest.approx([50.0])
+    with pytest.raises(InputError, match="finite pairs"):
+        field.at([(0.5, 0.5, 0.5)])
+    with pytest.raises(InputError, match="did you mean 'outside'"):
+        field.flux_through("outsid")
+
+
+@pytest.mark.parametrize("cls", [skfem.MeshTri, skfem.MeshQuad])
+@pytest.mark.parametrize("element", ["P1", "P2"])
+def test_interpolation_reproduces_a_linear_field(element: str, cls: type) -> None:
+    mesh = square(5, cls)
+    x, y = mesh.p
+    bent = type(mesh)(np.stack([x + 0.1 * y, y + 0.2 * x]), mesh.t).with_subdomains(mesh.subdomains)
+    problem = Conduction(bent, {"all": Material((2.0, 3.0), 1e6)}, axisymmetric=False, element=element)
+    start = 5 + 3 * problem.points("all")[0] - 2 * problem.points("all")[1]
+    field = problem.transient([0.0, 1e-6], start).field(0)
+    a, b = np.random.default_rng(0).uniform(0, 1, (2, 50))
+    inside = np.column_stack([0.1 + a + 0.1 * b, b + 0.2 * (0.1 + a)])
+    assert field.at(inside) == pytest.approx(5 + 3 * inside[:, 0] - 2 * inside[:, 1], abs=1e-10)
+    assert field.flux_at(inside) == pytest.approx(np.tile([-6.0, 6.0], (50, 1)), abs=1e-8)
+    assert field.at(bent.p.T[:4]) == pytest.approx(5 + 3 * bent.p[0, :4] - 2 * bent.p[1, :4], abs=1e-10)
+
+
+def test_problems_on_one_mesh_share_their_operators() -> None:
+    first = Conduction(MESH, REGIONS, {"outside": Film(5.0, 20.0)}, {"tread": 1.0})
+    other = {"carcass": Material(9.0, 1e6), "tread": Material((1.0, 2.0), 1e6)}
+    second = Conduction(MESH, other, {"outside": Film(7.0, 20.0)}, {"tread": 2.0})
+    assert second.operators is first.operators
+    assert second.operators.mass("tread") is first.operators.mass("tread")
+    assert second.operators.surface("outside") is first.operators.surface("outside")
+    assert second.points("tread") is first.points("tread")
+
+
+def test_source_sees_the_same_points_at_every_call() -> None:
+    seen: set[int] = set()
+    sizes: set[tuple[int, ...]] = set()
+
+    def source(x, t, T):
+        seen.add(id(x))
+        sizes.add((*x.shape, *T.shape))
+        return 1e5 + 0 * T
+
+    problem = Conduction(MESH, REGIONS, {}, {"tread": source}, element="P2")
+    problem.transient([0, 10.0])
+    n = problem.points("tread").shape[1]
+    assert seen == {id(problem.points("tread"))}
+    assert sizes == {(2, n, n)}
+
+
+def test_interrupted_run_keeps_what_was_finished() -> None:
+    def stop(t: float) -> None:
+        if t > 250:
+            raise KeyboardInterrupt
+
+    problem = Conduction(MESH, REGIONS, {"outside": Film(50.0, 20.0)}, {"tread": 2e5})
+    whole = problem.transient(np.arange(0, 1001, 100.0), max_step=30.0)
+    part = problem.transient(np.arange(0, 1001, 100.0), max_step=30.0, progress=stop)
+    assert part.interrupted
+    assert not whole.interrupted
+    assert part.times.tolist() == [0.0, 100.0, 200.0]
+    assert part.values == pytest.approx(whole.values[:3], abs=1e-12)
+    assert part.budget.imbalance < 1e-9
+    assert part.field(-1).time == 200.0
+
+
+@pytest.mark.parametrize("shape", [(150, 4), (110, 110)], ids=["thin: banded", "square: sparse"])
+def test_factorisation_suits_the_shape_and_solves(shape: tuple[int, int]) -> None:
+    mesh = skfem.MeshTri.init_tensor(*(np.linspace(0.1, 1.1, n + 1) for n in shape))
+    mesh = mesh.with_subdomains({"body": np.arange(mesh.t.shape[1])})
+    problem = Conduction(mesh, {"body": RUBBER}, element="P2")
+    ops = problem.operators
+    free = np.arange(5, ops.size)
+    ordering = ops.ordering(free)
+    assert isinstance(ordering, Ordering)
+    assert ordering.banded == (shape[1] == 4)
+    data = ops.mass("body") + 0.01 * sum(ops.conduction("body", None))
+    x = np.random.default_rng(0).normal(size=free.size)
+    A = ops.matrix(data)[free][:, free]
+    assert ordering.factor(data).solve(A @ x) == pytest.approx(x, abs=1e-9)

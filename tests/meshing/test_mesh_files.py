@@ -1,0 +1,193 @@
+"""Meshes to files and back, and files that are refused."""
+
+from __future__ import annotations
+
+from pathlib import Path
+
+import meshio
+import numpy as np
+import pytest
+
+from tyrefem.errors import InputError
+from tyrefem.meshing import TyreMesh, build, read, read_for, write
+from tyrefem.section import Section, load
+
+
+@pytest.fixture(scope="module")
+def section() -> Section:
+    return load("nasa-22x5.5-8pr")
+
+
+@pytest.fixture(scope="module")
+def tyre(section: Section) -> TyreMesh:
+    return build(section, size=5e-3)
+
+
+def square(cell_sets: bool = True, **changes: object) -> meshio.Mesh:
+    """Two unit squares side by side in mm, named ``left`` and ``right``; the surface is ``skin``."""
+    points = np.array([[0, 0, 0], [1, 0, 0], [2, 0, 0], [0, 1, 0], [1, 1, 0], [2, 1, 0]], dtype=float)
+    quads = np.array([[0, 1, 4, 3], [1, 2, 5, 4]])
+    lines = np.array([[0, 1], [1, 2], [2, 5], [5, 4], [4, 3], [3, 0]])
+    sets = {"left": [[0], []], "right": [[1], []], "skin": [[], [0, 1, 2, 3, 4, 5]]}
+    sets |= changes.pop("sets", {})  # type: ignore[operator, arg-type]
+    arrays = {name: [np.array(part, dtype=int) for part in parts] for name, parts in sets.items()}
+    return meshio.Mesh(points, [("quad", quads), ("line", lines)], cell_sets=arrays if cell_sets else {}, **changes)
+
+
+def given(monkeypatch: pytest.MonkeyPatch, tmp_path: Path, mesh: meshio.Mesh) -> Path:
+    """A path that meshio reads as this mesh: for groups that meshio reads in formats it does not write."""
+    path = tmp_path / "given.med"
+    path.touch()
+    monkeypatch.setattr(meshio, "read", lambda _: mesh)
+    return path
+
+
+@pytest.mark.parametrize("suffix", [".msh", ".vtu", ".vtk"])
+@pytest.mark.parametrize("cell", ["quad", "tri"])
+@pytest.mark.parametrize("half", [True, False])
+def test_round_trip(section: Section, tmp_path: Path, suffix: str, cell: str, half: bool) -> None:
+    section = section if half else section.as_full()
+    tyre = build(section, size=5e-3, cell=cell)
+    back = read_for(section, write(tyre, tmp_path / f"tyre{suffix}"))
+    assert (back.mesher, back.cell, back.section) == ("file", cell, section)
+    assert np.allclose(back.mesh.p, tyre.mesh.p, atol=1e-15)
+    assert np.array_equal(back.mesh.t, tyre.mesh.t)
+    for name, found in tyre.mesh.subdomains.items():
+        assert np.array_equal(back.mesh.subdomains[name], found)
+    for name, found in tyre.mesh.boundaries.items():
+        assert np.array_equal(np.sort(back.mesh.boundaries[name]), np.sort(found))
+
+
+def test_units_and_axes(section: Section, tyre: TyreMesh, tmp_path: Path) -> None:
+    path = write(tyre, tmp_path / "tyre.msh")
+    found = meshio.read(path)
+    found.points = found.points[:, [1, 0, 2]] * 1e3
+    meshio.write(path, found, file_format="gmsh22")
+    back = read_for(section, path, axes="zr", unit="mm")
+    assert np.allclose(back.mesh.p, tyre.mesh.p, atol=1e-12)
+    assert back.element_areas.min() > 0
+    with pytest.raises(InputError, match=r"e\+05 times the area .*wrong unit"):
+        read_for(section, path, axes="zr")
+
+
+def test_names_of_the_file_may_differ(section: Section, tyre: TyreMesh, tmp_path: Path) -> None:
+    path = write(tyre, tmp_path / "tyre.msh")
+    path.write_bytes(path.read_bytes().replace(b'"tread"', b'"LAUFFLAECHE"'))
+    with pytest.raises(InputError, match=r"no region 'tread'.*LAUFFLAECHE") as error:
+        read_for(section, path)
+    assert error.value.file == path
+    back = read_for(section, path, names={"LAUFFLAECHE": "tread"})
+    assert back.area("tread") == pytest.approx(tyre.area("tread"))
+    with pytest.raises(InputError, match="did you mean 'LAUFFLAECHE'"):
+        read_for(section, path, names={"LAUFFLACHE": "tread"})
+
+
+def test_cell_sets_and_planar_millimetres(monkeypatch: pytest.MonkeyPatch, tmp_path: Path) -> None:
+    path = given(monkeypatch, tmp_path, square())
+    mesh = read(path, axes="xy", unit="mm", regions=["left", "right"], boundaries=["skin"])
+    assert mesh.p.max() == pytest.approx(2e-3)
+    assert mesh.subdomains["right"].tolist() == [1]
+    assert np.array_equal(np.sort(mesh.boundaries["skin"]), mesh.boundary_facets())
+
+
+def test_abaqus_element_sets(tmp_path: Path) -> None:
+    path = tmp_path / "square.inp"
+    path.write_text(
+        "*NODE\n1, 0., 0., 0.\n2, 1., 0., 0.\n3, 2., 0., 0.\n4, 0., 1., 0.\n5, 1., 1., 0.\n6, 2., 1., 0.\n"
+        "*ELEMENT, TYPE=CPS4, ELSET=LEFT\n1, 1, 2, 5, 4\n*ELEMENT, TYPE=CPS4, ELSET=RIGHT\n2, 2, 3, 6, 5\n"
+        "*NSET, NSET=SKIN\n1, 2, 3, 4, 5, 6\n"
+    )
+    mesh = read(path, unit="mm", regions=["LEFT", "RIGHT"], boundaries=["SKIN"])
+    assert mesh.t.shape[1] == 2
+    assert len(mesh.boundaries["SKIN"]) == 6
+
+
+def test_med_families(monkeypatch: pytest.MonkeyPatch, tmp_path: Path) -> None:
+    found = square(cell_sets=False, cell_data={"cell_tags": [np.array([-1, -2]), np.full(6, -3)]})
+    found.cell_tags = {-1: ["left"], -2: ["right"], -3: ["skin"]}
+    mesh = read(given(monkeypatch, tmp_path, found), regions=["left", "right"], boundaries=["skin"])
+    assert mesh.subdomains["left"].tolist() == [0]
+
+
+def test_quadratic_cells_are_read_by_their_corners(monkeypatch: pytest.MonkeyPatch, tmp_path: Path) -> None:
+    points = np.array([[0, 0], [1, 0], [0, 1], [0.5, 0], [0.5, 0.5], [0, 0.5]])
+    cells = [("triangle6", np.array([[0, 1, 2, 3, 4, 5]])), ("line3", np.array([[0, 1, 3], [1, 2, 4], [2, 0, 5]]))]
+    sets = {"body": [np.array([0]), np.array([], int)], "skin": [np.array([], int), np.array([0, 1, 2])]}
+    mesh = read(given(monkeypatch, tmp_path, meshio.Mesh(points, cells, cell_sets=sets)), boundaries=["skin"])
+    assert mesh.p.shape[1] == 3
+    assert len(mesh.boundaries["skin"]) == 3
+
+
+def test_lines_inside_the_body_are_no_boundary(monkeypatch: pytest.MonkeyPatch, tmp_path: Path) -> None:
+    found = square()
+    found.cells.append(meshio.CellBlock("line", np.array([[1, 4]])))
+    for parts in found.cell_sets.values():
+        parts.append(np.array([], dtype=int))
+    found.cell_sets["interface"] = [np.array([], int), np.array([], int), np.array([0])]
+    mesh = read(given(monkeypatch, tmp_path, found))
+    assert set(mesh.boundaries) == {"skin"}
+
+
+@pytest.mark.parametrize(
+    ("sets", "words"),
+    [
+        ({"right": [[], []]}, "1 of 2 elements belong to no region"),
+        ({"right": [[0, 1], []]}, "1 of 2 elements belong to more than one region"),
+        ({"skin": [[], [0, 1, 2, 3, 4]]}, "1 of 6 side.* belong to no boundary, one near r = 0 m, z = "),
+        ({"again": [[], [0]]}, "1 of 6 side.* belong to more than one boundary"),
+    ],
+)
+def test_every_part_needs_one_name(
+    monkeypatch: pytest.MonkeyPatch, tmp_path: Path, sets: dict[str, object], words: str
+) -> None:
+    with pytest.raises(InputError, match=words):
+        read(given(monkeypatch, tmp_path, square(sets=sets)))
+
+
+def test_missing_names_say_what_was_found(monkeypatch: pytest.MonkeyPatch, tmp_path: Path) -> None:
+    path = given(monkeypatch, tmp_path, square())
+    with pytest.raises(InputError, match="no boundary 'skim'; did you mean 'skin'"):
+        read(path, boundaries=["skim"])
+    with pytest.raises(InputError, match="no region 'tread'; found: left, right"):
+        read(path, regions=["tread"])
+
+
+def test_mixed_cells_are_refused(monkeypatch: pytest.MonkeyPatch, tmp_path: Path) -> None:
+    found = meshio.Mesh(np.eye(4, 3), [("quad", np.array([[0, 1, 2, 3]])), ("triangle", np.array([[0, 1, 2]]))])
+    with pytest.raises(InputError, match="all triangles or all quadrilaterals; found: quad, triangle"):
+        read(given(monkeypatch, tmp_path, found))
+
+
+@pytest.mark.parametrize(
+    ("name", "text", "words"),
+    [
+        ("tyre.msh", "not a mesh", "cannot be read as a mesh"),
+        ("tyre.xyz0", "", "cannot be read as a mesh"),
+        ("tyre.vtu", "<VTKFile", "cannot be read as a mesh"),
+    ],
+)
+def test_files_that_are_no_mesh(
+    tmp_path: Path, capfd: pytest.CaptureFixture[str], name: str, text: str, words: str
+) -> None:
+    path = tmp_path / name
+    path.write_text(text)
+    with pytest.raises(InputError, match=words) as error:
+        read(path)
+    assert error.value.file == path
+    assert capfd.readouterr().out == ""
+
+
+def test_bad_arguments(tyre: TyreMesh, tmp_path: Path) -> None:
+    with pytest.raises(InputError, match="no such mesh file"):
+        read(tmp_path / "nothing.msh")
+    path = write(tyre, tmp_path / "tyre.msh")
+    with pytest.raises(InputError, match="no axes 'rx'"):
+        read(path, axes="rx")
+    with pytest.raises(InputError, match="not a unit"):
+        read(path, unit="kg")
+    with pytest.raises(InputError, match="names cannot be kept"):
+        write(tyre, tmp_path / "tyre.stl")
+    with pytest.raises(InputError, match="cannot be written"):
+        write(tyre, tmp_path / "no such folder" / "tyre.msh")
+    with pytest.raises(InputError, match="overlap"):
+        write(tyre.with_zones({"zone": ("tread", 0.0, 0.06)}), tmp_path / "tyre.msh")

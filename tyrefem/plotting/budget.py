@@ -1,0 +1,148 @@
+"""The heat budget: what was generated, where it stayed and where it went, in J; and the powers over time."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from typing import TYPE_CHECKING
+
+from tyrefem.plotting.labels import Label, line_ends
+from tyrefem.plotting.style import (
+    FONT,
+    GENERATED,
+    INK,
+    LOST,
+    QUIET,
+    STORED,
+    TITLE,
+    add_axes,
+    figure,
+    line_style,
+    phase_bands,
+    plain,
+    si,
+    digits,
+    tidy,
+    time_unit,
+    title,
+)
+
+if TYPE_CHECKING:
+    from matplotlib.axes import Axes
+    from matplotlib.figure import Figure
+
+    from tyrefem.heat_budget import HeatBudget
+    from tyrefem.result import Result
+
+#: Mean width of a letter of the bars' names, inches.
+LETTER = 0.074
+KINDS = {"generated": GENERATED, "stored": STORED, "lost": LOST}
+WORDS = {"generated": "generated in", "stored": "stored in", "lost": "lost to"}
+
+
+@dataclass(frozen=True)
+class Bar:
+    """A step of the waterfall, from ``start`` to ``end``, J."""
+
+    kind: str
+    name: str
+    start: float
+    end: float
+
+    @property
+    def energy(self) -> float:
+        """J, as it counts in its kind."""
+        return self.end - self.start if self.kind == "generated" else self.start - self.end
+
+
+def waterfall(budget: HeatBudget) -> list[Bar]:
+    """Bars that rise with what is generated and fall with what is stored and lost; the last ends at the residual."""
+    bars, level = [], 0.0
+    for kind in KINDS:
+        sign = 1.0 if kind == "generated" else -1.0
+        for (k, name), series in budget.energies.items():
+            if k == kind:
+                after = level + sign * float(series[-1])
+                bars.append(Bar(kind, name, level, after))
+                level = after
+    return bars
+
+
+def budget_figure(result: Result) -> Figure:
+    """Left the waterfall of energies of the whole tyre, right the powers over time."""
+    budget = result.heat_budget
+    bars = waterfall(budget)
+    high = max(3.4, 0.24 * len(bars))
+    left = 0.25 + LETTER * max((len(_name(bar)) for bar in bars), default=0)
+    drawn = figure(left + 8.6, high + 0.55 + TITLE)
+    _energies(add_axes(drawn, left, 0.55, 3.0, high), bars, budget)
+    power = add_axes(drawn, left + 3.8, 0.55, 2.9, high)
+    divisor, _ = time_unit(float(budget.times[-1]))
+    phases = [(p.name, p.start / divisor, min(p.end, budget.times[-1]) / divisor) for p in result.phases]
+    phase_bands(power, [p for p in phases if p[1] < p[2]], named=True)
+    _powers(power, budget)
+    factor, unit = si(max(abs(budget.total(kind)) for kind in KINDS), "J")
+    form = digits(max(abs(budget.total(kind)) for kind in KINDS) / factor, 4)
+    numbers = [format(budget.total(kind) / factor, form) for kind in KINDS]
+    title(
+        drawn, result.study.title,
+        f"heat of the whole tyre: generated {numbers[0]} {unit} = stored {numbers[1]} + lost {numbers[2]}; "
+        f"closes to {budget.imbalance:.0e} of it",
+    )  # fmt: skip
+    return drawn
+
+
+def _name(bar: Bar) -> str:
+    return f"{WORDS[bar.kind]} {plain(bar.name)}"
+
+
+def _energies(axes: Axes, bars: list[Bar], budget: HeatBudget) -> None:
+    ends = [value for bar in bars for value in (bar.start, bar.end)] or [0.0]
+    factor, unit = si(max(map(abs, ends)), "J")
+    generated = budget.total("generated")
+    form = digits(max((abs(bar.energy) for bar in bars), default=0.0) / factor)
+    for row, bar in enumerate(bars):
+        axes.barh(row, (bar.end - bar.start) / factor, left=bar.start / factor, color=KINDS[bar.kind], height=0.72)
+        axes.plot([bar.end / factor] * 2, [row - 0.36, row + 1.36], color=QUIET, lw=0.6)
+        share = f" ({100 * bar.energy / generated:.1f} %)" if generated > 0 else ""
+        text = format(bar.energy / factor, form) + share
+        axes.annotate(
+            text, (max(bar.start, bar.end) / factor, row), xytext=(4, 0), textcoords="offset points", va="center",
+            fontsize=FONT - 0.5,
+        )  # fmt: skip
+    axes.set_yticks(range(len(bars)), [_name(bar) for bar in bars])
+    axes.set_ylim(len(bars) - 0.4, -0.6)
+    low, high = min(0.0, *ends) / factor, max(0.0, *ends) / factor
+    span = (high - low) or 1.0
+    axes.set_xlim(low - 0.02 * span, high + 0.36 * span)
+    axes.axvline(0.0, color=INK, lw=0.8)
+    axes.set_xlabel(f"heat [{unit}], share of the generated", fontsize=FONT)
+    tidy(axes)
+    axes.grid(visible=False, axis="y")
+    for tick, bar in zip(axes.get_yticklabels(), bars, strict=True):
+        tick.set_color(KINDS[bar.kind])
+
+
+def _powers(axes: Axes, budget: HeatBudget) -> None:
+    divisor, unit_t = time_unit(float(budget.times[-1]))
+    t = budget.times / divisor
+    curves = {kind: budget.power(kind) for kind in KINDS}
+    factor, unit = si(max(float(abs(curve).max()) for curve in curves.values()), "W")
+    form = digits(max(float(abs(curve).max()) for curve in curves.values()) / factor)
+    labels = []
+    for kind, curve in curves.items():
+        axes.plot(t, curve / factor, color=KINDS[kind], lw=2.0)
+        labels.append(Label(f"{kind} {curve[-1] / factor:{form}}", float(t[-1]), float(curve[-1] / factor), color=KINDS[kind]))
+    lost = [(name, series) for (kind, name), series in budget.powers.items() if kind == "lost"]
+    peak = max((float(abs(series).max()) for _, series in lost), default=0.0)
+    shown = [(name, series) for name, series in lost if float(abs(series).max()) > 0.02 * peak]
+    for number, (name, series) in enumerate(shown):
+        style = {**line_style(number), "color": QUIET, "ls": ("--", ":", "-.", (0, (1, 3)), (0, (6, 2, 1, 2)))[number % 5]}
+        axes.plot(t, series / factor, lw=1.2, **style)
+        text = f"to {plain(name)} {series[-1] / factor:{form}}"
+        labels.append(Label(text, float(t[-1]), float(series[-1] / factor), color=QUIET))
+    axes.axhline(0.0, color=INK, lw=0.8)
+    axes.set_xlim(0.0, max(float(t[-1]), 1e-9))
+    axes.set_xlabel(f"time [{unit_t}]", fontsize=FONT)
+    axes.set_ylabel(f"power [{unit}]", fontsize=FONT)
+    tidy(axes)
+    line_ends(axes, labels, room=1.6, size=FONT - 0.5)

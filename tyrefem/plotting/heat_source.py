@@ -1,0 +1,131 @@
+"""Where the heat comes from: strain energy per cycle and heat source on the section, zone by zone."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from typing import TYPE_CHECKING, Any
+
+import numpy as np
+from numpy.typing import NDArray
+
+from tyrefem.plotting.canvas import Canvas, canvas, draw_outlines
+from tyrefem.plotting.cells import triangles
+from tyrefem.plotting.labels import Label
+from tyrefem.plotting.style import ENERGY_MAP, digits, millimetres, si, temperature_map, time_unit, title
+
+if TYPE_CHECKING:
+    from matplotlib.figure import Figure
+
+    from tyrefem.result import Result
+
+Array = NDArray[np.float64]
+
+
+@dataclass(frozen=True)
+class ZoneHeat:
+    """A strain zone's triangles on its own nodes, and its values there: U in J/m3, q in W/m3; W of the whole tyre."""
+
+    name: str
+    title: str
+    points: Array
+    corners: NDArray[Any]
+    energy: Array
+    source: Array
+    power: float
+
+
+def rolling_time(result: Result) -> int | None:
+    """Number of the last reading time of the last phase that rolls under load; None where none does."""
+    times, drive = result.times, result.study.card.drive
+    for start, phase, state in reversed(list(zip(drive.starts, drive.phases, result.phases, strict=True))):
+        if phase.speed.end > 0 and state.deflection > 0 and start < times[-1]:
+            return int(np.searchsorted(times, min(start + phase.duration, times[-1]) - 1e-6))
+    return None
+
+
+def zone_heat(result: Result, i: int) -> list[ZoneHeat]:
+    """Every zone with its own values, so that the steps between zones stay sharp."""
+    operators = result.tyre.problem.operators
+    t = float(result.times[i]) * (1 - 1e-12)
+    sources = result.heat_source(i)
+    powers = result.heat_budget.powers
+    found = []
+    for zone in result.tyre.schedule.zones:
+        corners, _ = triangles(operators, operators.elements(zone.name))
+        numbers = np.full(operators.size, -1)
+        numbers[operators.dofs(zone.name)] = np.arange(len(operators.dofs(zone.name)))
+        nodes, source = sources[zone.name]
+        energy = result.tyre.sources[zone.name].energy_density(nodes, t)
+        power = float(powers["generated", zone.title][i])
+        found.append(ZoneHeat(zone.name, zone.title, nodes, numbers[corners], energy, source, power))
+    return found
+
+
+def heat_source_figure(result: Result) -> Figure:
+    """Left half: strain energy per cycle, J/m3; right half: heat source, W/m3, at the end of the last rolling phase."""
+    i = rolling_time(result)
+    zones = zone_heat(result, len(result.times) - 1 if i is None else i)
+    total = sum(zone.power for zone in zones)
+    energies, sources = [zone.energy for zone in zones], [zone.source for zone in zones]
+    factor_u, unit_u = si(max(float(u.max()) for u in energies), "J/m³")
+    factor_q, unit_q = si(max(float(q.max()) for q in sources), "W/m³")
+    rows = [_row(zone, total) for zone in zones]
+    names = [f"{zone.name}: {zone.title}" for zone in zones]
+    drawn = canvas(result.study.section, names, rows, bars=2)
+    top_u = max(float(u.max()) for u in energies) / factor_u or 1.0
+    top_q = max(float(q.max()) for q in sources) / factor_q or 1.0
+    left = right = None
+    for zone in zones:
+        left = _half(drawn, zone, zone.energy / factor_u, -1.0, ENERGY_MAP, top_u)
+        right = _half(drawn, zone, zone.source / factor_q, 1.0, temperature_map(), top_q)
+    draw_outlines(drawn.axes, result.study.section, color="#505050", width=0.7)
+    drawn.axes.plot([0, 0], [drawn.section.place(0.0, 0.0)[0] * 1e3, drawn.high], color="white", lw=2.5, zorder=4)
+    drawn.color_bar(left, f"strain energy per cycle U [{unit_u}]", side=-1.0)
+    drawn.color_bar(right, f"heat source q [{unit_q}]")
+    anchors = [_anchor(drawn, zone) for zone in zones]
+    order = sorted(range(len(zones)), key=lambda n: -anchors[n][1])
+    drawn.beside([Label(names[n], -anchors[n][0], anchors[n][1]) for n in order], -1.0)
+    drawn.beside([Label(rows[n], anchors[n][0], anchors[n][1]) for n in order], 1.0)
+    title(drawn.figure, result.study.title, _subtitle(result, i, total))
+    return drawn.figure
+
+
+def _row(zone: ZoneHeat, total: float) -> str:
+    factor, unit = si(total, "W")
+    share = f" ({100 * zone.power / total:.1f} %)" if total > 0 else ""
+    return f"{zone.power / factor:{digits(total / factor)}} {unit}{share}"
+
+
+def _subtitle(result: Result, i: int | None, total: float) -> str:
+    if i is None:
+        return "the tyre never rolls under load: no strain cycle, no heat"
+    divisor, unit = time_unit(float(result.times[-1]))
+    force = total / result.tyre.speed(float(result.times[i]) * (1 - 1e-12))
+    return (
+        f"left: strain energy per cycle; right: heat source after {result.times[i] / divisor:.4g} {unit}; "
+        f"the whole tyre makes {total:.4g} W = {force:.3g} N of drag times its speed"
+    )
+
+
+def _half(drawn: Canvas, zone: ZoneHeat, values: Array, sign: float, colours: Any, top: float) -> Any:
+    """One half of the picture; of a full section only the elements on that side."""
+    x, y = millimetres(zone.points.T)
+    corners = zone.corners
+    if drawn.section.half:
+        x = sign * x
+    else:
+        corners = corners[sign * x[corners].mean(axis=1) > 0]
+    return drawn.axes.tripcolor(
+        x, y, corners, values, shading="gouraud", cmap=colours, vmin=0.0, vmax=top, rasterized=True, zorder=1
+    )
+
+
+def _anchor(drawn: Canvas, zone: ZoneHeat) -> tuple[float, float]:
+    """The node with z >= 0 nearest to the middle of the zone's side there, mm."""
+    x, y = millimetres(zone.points.T)
+    here = np.flatnonzero(x >= 0)
+    s, depth = drawn.section.locate(zone.points.T[here])
+    middle = (s.min() + s.max()) / 2
+    away = np.abs(s - middle) + np.abs(depth - np.median(depth[np.abs(s - middle) < 3e-3]))
+    node = here[int(np.argmin(away))]
+    return float(x[node]), float(y[node])
