@@ -42,7 +42,9 @@ class Campaign:
             try:
                 campaign.case_study(case)
             except InputError as error:
-                raise InputError(f"line {case.line}, case '{case.name}': {error}", file=path) from None
+                own = error.file is None or error.file == study.file
+                reason = InputError(error.message, field=error.field) if own else error
+                raise InputError(f"line {case.line}, case '{case.name}': {reason}", file=path) from None
         return campaign
 
     def case_study(self, case: Case) -> Study:
@@ -53,15 +55,25 @@ class Campaign:
         return replace(changed, name=case.name, data=data)
 
     def runs(self, progress: Callable[[int, int], None] | None = None) -> Iterator[tuple[Case, Result | str]]:
-        """Run the cases in their order; a case that fails gives its reason in place of a result."""
+        """Run the cases in their order; a case that fails gives its reason in place of a result.
+
+        An interruption (Ctrl-C) yields the part of the case that is finished, then raises ``KeyboardInterrupt``.
+        """
         for number, case in enumerate(self.cases):
-            try:
-                outcome: Result | str = self.case_study(case).run()
-            except (InputError, SolverError) as error:
-                outcome = str(error)
+            outcome = self._outcome(case)
             if progress is not None:
                 progress(number + 1, len(self.cases))
             yield case, outcome
+            if not isinstance(outcome, str) and outcome.history.interrupted:
+                raise KeyboardInterrupt
+
+    def _outcome(self, case: Case) -> Result | str:
+        try:
+            return self.case_study(case).run()
+        except (InputError, SolverError) as error:
+            return str(error)
+        except Exception as error:  # one case's defect must not cost the others; it is named as what it is
+            return f"defect, please report: {type(error).__name__}: {error}"
 
 
 def row(case: Case, outcome: Result | str) -> dict[str, Any]:
@@ -70,16 +82,19 @@ def row(case: Case, outcome: Result | str) -> dict[str, Any]:
         return {"case": case.name, "note": case.note, "failure": outcome}
     phase, peak = outcome.phases[-1], outcome.extremes.iloc[0]
     resistance, readings = outcome.rolling_resistance, outcome.readings
+    hottest_region = outcome.extremes.iloc[1:].set_index("region")["temperature_degC"].idxmax()
     regions = {f"{entry.region}_max_degC": entry.temperature_degC for entry in outcome.extremes.iloc[1:].itertuples()}
     return {
         "case": case.name,
         "note": case.note,
+        "section": outcome.study.section.name,
         "load_N": phase.load,
         "pressure_Pa": phase.pressure,
         "speed_m_s": phase.speed,
         "deflection_m": phase.deflection,
         "road_fraction": phase.road_fraction,
         "hottest_degC": peak.temperature_degC,
+        "hottest_region": hottest_region,
         "hottest_s_m": peak.s_m,
         "hottest_depth_m": peak.depth_m,
         "hottest_time_s": peak.time_s,
@@ -88,7 +103,7 @@ def row(case: Case, outcome: Result | str) -> dict[str, Any]:
         "rolling_resistance_coefficient": resistance.coefficient,
         **{f"{name}_degC": float(readings[name].iloc[-1]) for name in readings.columns if name != "time_s"},
         "heat_budget_imbalance": outcome.heat_budget.imbalance,
-        "failure": "",
+        "failure": f"interrupted at {outcome.times[-1]:g} s" if outcome.history.interrupted else "",
     }
 
 
@@ -103,22 +118,37 @@ def run_campaign(
     The table is written anew after every case, so that an interrupted campaign leaves what it finished.
     ``each`` may write more of a case (pictures, VTK) into its folder.
     """
-    import pandas as pd
-
-    from tyrefem.output import atomic_path
-
     rows: list[dict[str, Any]] = []
+    # From the start on: an older campaign's table in this folder must not pass for this one's.
+    table = _write(campaign, rows, folder)
     for case, outcome in campaign.runs(progress):
         if not isinstance(outcome, str):
             write_tables(outcome, folder / "cases" / case.name)
             if each is not None:
                 each(outcome, folder / "cases" / case.name)
         rows.append(row(case, outcome))
-        table = pd.DataFrame(rows)
-        with atomic_path(folder / "campaign.csv") as temporary:
-            table.to_csv(temporary, index=False, float_format="%.6g")
-        done = len(rows) == len(campaign.cases)
-        write_json(_summary(campaign, table, done), folder / "summary.json")
+        table = _write(campaign, rows, folder)
+    return table
+
+
+def write_campaign_report(campaign: Campaign, table: pd.DataFrame, path: str | Path) -> Path:
+    """One self-contained HTML page: all cases in a table, two pictures, failed cases with their reasons."""
+    from tyrefem.campaign_report import write
+
+    return write(campaign, table, Path(path))
+
+
+def _write(campaign: Campaign, rows: list[dict[str, Any]], folder: Path) -> pd.DataFrame:
+    import pandas as pd
+
+    from tyrefem.output import atomic_path
+
+    names = dict.fromkeys(name for entry in rows for name in entry if name != "failure")
+    table = pd.DataFrame(rows, columns=[*(names or ("case", "note")), "failure"])
+    with atomic_path(folder / "campaign.csv") as temporary:
+        table.to_csv(temporary, index=False, float_format="%.6g")
+    stopped = len(rows) < len(campaign.cases) or rows[-1]["failure"].startswith("interrupted")
+    write_json(_summary(campaign, table, not stopped), folder / "summary.json")
     return table
 
 

@@ -9,6 +9,8 @@ from pathlib import Path
 from typing import Any
 
 from tyrefem.errors import InputError
+from tyrefem.measured.heading import is_time
+from tyrefem.measured.lines import decode
 
 _HEADING = re.compile(r"^\s*([^\[\]]+?)\s*(?:\[([^\[\]]*)\])?\s*$")
 #: Columns that are for people, not values of the study.
@@ -34,22 +36,24 @@ def read_cases(path: Path) -> tuple[Case, ...]:
     Raises
     ------
     InputError : unreadable, no ``name`` column, a row of another length, a name missing or given twice.
+
+    >>> import tempfile
+    >>> file = Path(tempfile.mkdtemp()) / "cases.csv"
+    >>> _ = file.write_text("name,drive.speed [mph],note\\nslow,20,as measured\\nfast,35,\\n")
+    >>> [case.changes for case in read_cases(file)]
+    [{'drive.speed': '20 mph'}, {'drive.speed': '35 mph'}]
     """
-    try:
-        text = path.read_text(encoding="utf-8-sig")
-    except OSError as error:
-        raise InputError(f"cannot be read: {error.strerror or error}", file=path) from None
-    except UnicodeDecodeError:
-        raise InputError("not a text file in UTF-8", file=path) from None
-    lines = [(number, line) for number, line in enumerate(text.splitlines(), 1) if line.strip()]
-    lines = [(number, line) for number, line in lines if not line.lstrip().startswith("#")]
+    lines = _content(path)
     if len(lines) < 2:
         raise InputError("needs a heading and at least one case", file=path)
-    rows = [(number, next(csv.reader([line], skipinitialspace=True))) for number, line in lines]
+    rows = [(number, _cells(line, number, path)) for number, line in lines]
     columns = [_heading(cell, path) for cell in rows[0][1]]
     names = [name for name, _ in columns]
-    if "name" not in names or len(set(names)) < len(names):
-        raise InputError("the heading needs a column 'name', and no column twice", file=path)
+    if "name" not in names:
+        raise InputError(f"line {rows[0][0]}: the heading has no column 'name'", file=path)
+    twice = next((name for name in names if names.count(name) > 1), None)
+    if twice is not None:
+        raise InputError(f"line {rows[0][0]}: the heading has column '{twice}' twice", file=path)
     cases = [_case(number, cells, columns, path) for number, cells in rows[1:]]
     seen: dict[str, int] = {}
     for case in cases:
@@ -57,6 +61,26 @@ def read_cases(path: Path) -> tuple[Case, ...]:
             raise InputError(f"case '{case.name}' stands in lines {seen[case.name]} and {case.line}", file=path)
         seen[case.name] = case.line
     return tuple(cases)
+
+
+def looks_like_cases(path: Path) -> bool:
+    """Is the first row of a CSV file the heading of a table of cases, not that of thermocouple histories?"""
+    lines = _content(path)
+    cells = [cell.strip() for cell in lines[0][1].split(",")] if lines else []
+    return "name" in cells and not any(is_time(cell) for cell in cells)
+
+
+def _content(path: Path) -> list[tuple[int, str]]:
+    """The lines that are neither blank nor comments, with their numbers in the file."""
+    lines = enumerate(re.split("\r\n|\r|\n", decode(path)), 1)
+    return [(number, line) for number, line in lines if line.strip() and not line.lstrip().startswith("#")]
+
+
+def _cells(line: str, number: int, path: Path) -> list[str]:
+    try:
+        return next(csv.reader([line], skipinitialspace=True, strict=True))
+    except csv.Error as error:
+        raise InputError(f"line {number}: quotes do not match ({error})", file=path) from None
 
 
 def _heading(cell: str, path: Path) -> tuple[str, str]:
@@ -71,7 +95,8 @@ def _case(number: int, cells: list[str], columns: list[tuple[str, str]], path: P
         raise InputError(f"line {number} has {len(cells)} cells, the heading {len(columns)}", file=path)
     values = {name: (cell.strip(), unit) for (name, unit), cell in zip(columns, cells, strict=True)}
     name = values["name"][0]
-    if not re.fullmatch(r"[\w.+-]+", name):
-        raise InputError(f"line {number}: '{name}' is no name; allowed: letters, digits, . + - _", file=path)
+    if not re.fullmatch(r"\w[\w.+-]{0,99}", name):
+        allowed = "allowed: a letter or digit, then letters, digits, . + - _, 100 at most"
+        raise InputError(f"line {number}: '{name}' is no name; {allowed}", file=path)
     changes = {key: f"{cell} {unit}".strip() for key, (cell, unit) in values.items() if key not in LABELS and cell}
     return Case(name, values.get("note", ("", ""))[0], changes, number)

@@ -12,6 +12,7 @@ from tyrefem.errors import InputError, nearest
 
 #: Tables whose text value is a reference to a card: changing something below it lays the change over the card.
 _REFERENCES = {"section": "section", "materials.*": "material"}
+_RIVALS = {"load": ["deflection"], "deflection": ["load"]}
 _AMOUNT = re.compile(r"^\s*([-+]?(?:\d+\.?\d*|\.\d+)(?:[eE][-+]?\d+)?)(.*)$", re.DOTALL)
 
 
@@ -83,18 +84,19 @@ def _refuse_overridden(data: Mapping[str, Any], parts: list[str]) -> None:
     if parts[0] != "drive" or len(parts) < 2 or not isinstance(drive, Mapping):
         return
     phases = drive.get("phases")
-    if isinstance(phases, list) and phases and all(isinstance(p, Mapping) and parts[1] in p for p in phases):
+    same = {parts[1], *_RIVALS.get(parts[1], ())}
+    if isinstance(phases, list) and phases and all(isinstance(p, Mapping) and same & set(p) for p in phases):
         names = [str(p.get("name", number)) for number, p in enumerate(phases)]
         raise InputError(
-            f"every phase sets its own '{parts[1]}': name the phase, e.g. drive.phases.{names[0]}.{parts[1]} "
-            f"(phases: {', '.join(names)})",
+            f"every phase sets its own '{' or '.join(sorted(same))}': name the phase, "
+            f"e.g. drive.phases.{names[0]}.{parts[1]} (phases: {', '.join(names)})",
             field=".".join(parts),
         )
 
 
 def _drop_rivals(parts: list[str], place: dict[str, Any]) -> None:
     """Load and deflection say the same thing: setting one drops the other; so do a sensor's two ways of placing."""
-    rivals = {"load": ["deflection"], "deflection": ["load"]} if parts[0] == "drive" else {}
+    rivals = _RIVALS if parts[0] == "drive" else {}
     if parts[0] == "sensors":
         rivals = {"at": ["s", "depth"], "s": ["at"], "depth": ["at"]}
     for rival in rivals.get(parts[-1], []):

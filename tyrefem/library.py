@@ -23,11 +23,12 @@ def shipped() -> Path:
 
 
 def roots(near: Path | None = None) -> Iterator[Path]:
-    """Library folders in the order they are searched: beside the study, the user's, the shipped one."""
+    """Library folders in the order they are searched: beside the study, here, the user's, the shipped one."""
     if near is not None:
         yield near
         yield near.parent
         yield near.parent.parent
+    yield Path()
     for folder in filter(None, os.environ.get(SEARCH_PATH, "").split(os.pathsep)):
         yield Path(folder).expanduser()
     yield shipped()
@@ -54,22 +55,29 @@ def find(kind: str, name: str, near: Path | None = None) -> Path:
     ------
     InputError : nothing by that path or name; says the nearest name.
     """
-    path = Path(name).expanduser()
+    path = _path(name)
     looks_like_path = path.suffix == ".toml" or os.sep in name or name in (".", "..")
     if looks_like_path:
         options = [path] if path.is_absolute() or near is None else [near / path, path]
         for option in options:
-            if kind == "study" and option.is_dir():
+            if kind == "study" and os.path.isdir(option):
                 option = option / "study.toml"
-            if option.is_file():
+            if os.path.isfile(option):
                 return option
         raise InputError(f"no {kind} file '{name}'")
     known = names(kind, near)
     if name in known:
         return known[name]
-    if kind == "study" and (path / "study.toml").is_file():
+    if kind == "study" and os.path.isfile(path / "study.toml"):
         return path / "study.toml"
     raise InputError(f"no {kind} named '{name}'{nearest(name, known)}")
+
+
+def _path(name: str) -> Path:
+    try:
+        return Path(name).expanduser()
+    except RuntimeError:  # "~nobody": no such user, so it is taken as it stands
+        return Path(name)
 
 
 def load(kind: str, reference: object, near: Path | None = None) -> tuple[dict[str, Any], Path, str]:

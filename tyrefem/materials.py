@@ -170,7 +170,7 @@ class LossTangent(Sourced):
     """
 
     law: Literal["exponential", "constant", "table"] = "exponential"
-    value: Annotated[float, Unit("1", ge=0)] | None = None
+    value: Annotated[float, Unit("1", ge=0, le=10)] | None = None
     at: Temperature = 25.0
     rate: Annotated[float, Unit("1/delta_degC", ge=-0.1, le=1)] | None = None
     table: list[list[Any]] | None = None

@@ -140,7 +140,8 @@ class Result:
         for ds, dd in ((step, 0.0), (0.0, step)):
             ends = [self._inside(section.place(s + sign * ds, depth + sign * dd)) for sign in (1, -1)]
             apart = np.linalg.norm(ends[0] - ends[1], axis=1)
-            squares += ((self.at(ends[0]) - self.at(ends[1])) / apart) ** 2
+            # At the crown of a half section both ends are the same point: the slope along it is zero there.
+            squares += ((self.at(ends[0]) - self.at(ends[1])) / np.where(apart > 0, apart, np.inf)) ** 2
         gradients = pd.DataFrame(np.sqrt(squares), columns=list(self.sensor_places))
         table[list(self.sensor_places)] = gradients
         return table

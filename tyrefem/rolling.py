@@ -23,7 +23,6 @@ from tyrefem.meshing import TyreMesh
 from tyrefem.result import Result
 from tyrefem.strain.arcs import Arcs, Stiffness
 from tyrefem.strain.cord_rubber import BiasPlies
-from tyrefem.strain.zones import with_zones
 from tyrefem.studies import Study
 
 Array = NDArray[np.float64]
@@ -164,7 +163,8 @@ class RollingTyre:
     @functools.cached_property
     def mesh(self) -> TyreMesh:
         """The mesh, with the strain zones added as named subdomains."""
-        return with_zones(self.study.mesh(), self.schedule.zones)
+        zones = self.schedule.zones
+        return self.study.mesh().with_zones({zone.name: (zone.region, zone.start, zone.end) for zone in zones})
 
     def _materials(self) -> dict[str, Material]:
         found = {}

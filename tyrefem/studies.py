@@ -204,9 +204,13 @@ class Study:
         from tyrefem import meshing
 
         choice = self.card.mesh
-        if choice.file is not None:
-            return meshing.from_file((self.folder or Path()) / choice.file, self.section)
-        return meshing.build(self.section, mesher=choice.mesher, size=choice.size, cell=choice.cell)
+        try:
+            if choice.file is not None:
+                path = (self.folder or Path()) / choice.file
+                return meshing.read_for(self.section, path, names=choice.names, axes=choice.axes, unit=choice.unit)
+            return meshing.build(self.section, mesher=choice.mesher, size=choice.size, cell=choice.cell)
+        except InputError as error:
+            raise error if error.file else error.within(field="mesh", file=self.file) from None
 
     def run(self, progress: Progress | None = None) -> Result:
         """Simulate the drive. ``progress`` is called with the time (s) after every step."""

@@ -20,14 +20,22 @@ from tyrefem.quantity import Unit
 
 
 class MeshChoice(Card):
-    """How the section is meshed. ``file`` takes a user's own mesh with named groups in place of a mesher."""
+    """How the section is meshed.
+
+    ``cell`` is quadrilaterals for the mapped mesher and triangles for gmsh where not given. ``file`` takes a user's
+    own mesh with named groups in place of a mesher: ``names`` maps the file's names to the section's, ``axes`` says
+    which coordinates are (r, z), ``unit`` their unit.
+    """
 
     mesher: Literal["mapped", "gmsh"] = "mapped"
-    size: Annotated[float, Unit("m", gt=1e-4, lt=0.5)] = 2e-3
-    cell: Literal["quad", "tri"] = "quad"
-    element: Literal["P1", "P2"] = "P1"
+    size: Annotated[float, Unit("m", gt=1e-4, lt=0.5)] = 3e-3
+    cell: Literal["quad", "tri"] | None = None
+    element: Literal["P1", "P2"] = "P2"
     section: Literal["half", "full"] = "half"
     file: str | None = None
+    names: dict[str, str] = Field(default_factory=dict)
+    axes: str = "rz"
+    unit: str = "m"
 
 
 class Mechanics(Card):
@@ -91,7 +99,7 @@ class Numerics(Card):
     """``tolerance``: time-integration error aimed at; ``mesh_sd``: standard deviation left by the mesh (estimate)."""
 
     tolerance: Annotated[float, Unit("delta_degC", gt=0, le=10)] = 0.01
-    mesh_sd: Annotated[float, Unit("delta_degC", ge=0)] = 0.1
+    mesh_sd: Annotated[float, Unit("delta_degC", ge=0)] = 0.05
 
 
 class MeasuredEntry(Card):

@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+import pickle
+
 import numpy as np
 import pytest
 import skfem
@@ -199,3 +201,25 @@ def test_factorisation_suits_the_shape_and_solves(shape: tuple[int, int]) -> Non
     x = np.random.default_rng(0).normal(size=free.size)
     A = ops.matrix(data)[free][:, free]
     assert ordering.factor(data).solve(A @ x) == pytest.approx(x, abs=1e-9)
+
+
+@pytest.mark.parametrize(("element", "close"), [("P1", 2e-2), ("P2", 1e-4)])
+def test_curved_triangles_hold_a_disc(element: str, close: float) -> None:
+    """T = 1 - x^2 - y^2 for a source of 4 W/m3 and k = 1; all of 4 pi W leaves through the rim."""
+    disc = skfem.MeshTri2.init_circle(3)
+    disc = disc.with_subdomains({"disc": np.arange(disc.t.shape[1])}).with_boundaries({"rim": disc.boundary_facets()})
+    body = {"disc": Material(1.0, 1.0)}
+    problem = Conduction(disc, body, {"rim": Fixed(0.0)}, {"disc": 4.0}, axisymmetric=False, element=element)
+    field = problem.steady()
+    edge = 0.9999 * np.array([np.cos(0.1), np.sin(0.1)])
+    assert field.at([(0, 0), (0.3, 0.4), edge]) == pytest.approx([1.0, 0.75, 1 - 0.9999**2], abs=close)
+    assert field.flux_through("rim") == pytest.approx(4 * np.pi, rel=1e-5)
+
+
+def test_results_survive_pickling() -> None:
+    """Runs come back from worker processes."""
+    problem = Conduction(MESH, REGIONS, {"outside": Film(5.0, 20.0)}, {"tread": 1e5})
+    history = problem.transient([0.0, 60.0])
+    copy = pickle.loads(pickle.dumps(history))
+    assert copy.at([(0.8, 0.3)]) == pytest.approx(history.at([(0.8, 0.3)]), abs=0)
+    assert copy.field(-1).flux_through("outside") == history.field(-1).flux_through("outside")

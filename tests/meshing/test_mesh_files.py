@@ -190,4 +190,4 @@ def test_bad_arguments(tyre: TyreMesh, tmp_path: Path) -> None:
     with pytest.raises(InputError, match="cannot be written"):
         write(tyre, tmp_path / "no such folder" / "tyre.msh")
     with pytest.raises(InputError, match="overlap"):
-        write(tyre.with_zones({"zone": ("tread", 0.0, 0.06)}), tmp_path / "tyre.msh")
+        write(tyre.with_zones({"zone": ("tread", 0.0, tyre.section.line.shoulder_s)}), tmp_path / "tyre.msh")

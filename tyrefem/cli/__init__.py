@@ -2,13 +2,15 @@
 
 from __future__ import annotations
 
+import contextlib
 import os
 import sys
-from typing import Annotated, Any
+from typing import Annotated
 
 import typer
 
 import tyrefem
+from tyrefem.cli.common import fail
 from tyrefem.errors import InputError
 
 app = typer.Typer(
@@ -46,40 +48,56 @@ def _register() -> None:
 _register()
 
 
-def fail(message: object, code: int = 2) -> int:
-    """One line on stderr."""
-    print(f"tyrefem: {message}", file=sys.stderr)
+def main(arguments: list[str] | None = None) -> int:
+    """Run a command line and give its exit code; without ``arguments`` take the process's own and end it.
+
+    0: done. 1: no solution, or a case of a campaign failed. 2: bad input, said in one line. 130: interrupted.
+    """
+    code = _guarded(arguments)
+    if arguments is None:
+        sys.exit(code)
     return code
 
 
-def main(arguments: list[str] | None = None) -> Any:
-    """Entry point. Bad input ends with exit code 2 and one line; an interruption with 130."""
+def _guarded(arguments: list[str] | None) -> int:
     try:
         code = app(args=arguments, standalone_mode=False)
     except InputError as error:
-        code = fail(error)
+        return fail(error)
     except KeyboardInterrupt:
-        code = fail("interrupted", 130)
+        return fail("interrupted", 130)
     except BrokenPipeError:
-        # The reader of our output went away: point stdout elsewhere so that Python's exit stays silent.
-        os.dup2(os.open(os.devnull, os.O_WRONLY), sys.stdout.fileno())
-        code = 0
+        return _reader_went_away()
+    except OSError as error:
+        return fail(": ".join(str(part) for part in (error.filename, error.strerror or error) if part))
+    except SystemExit as end:
+        return end.code if isinstance(end.code, int) else 0
     except Exception as error:
-        code = _other(error)
-    if arguments is not None:
-        return code
-    sys.exit(code if isinstance(code, int) else 0)
+        return _other(error)
+    return code if isinstance(code, int) else 0
+
+
+def _reader_went_away() -> int:
+    """As `head` does: point stdout elsewhere, so that Python's own flush at the end stays silent."""
+    with contextlib.suppress(OSError, ValueError):
+        os.dup2(os.open(os.devnull, os.O_WRONLY), sys.stdout.fileno())
+    return 0
 
 
 def _other(error: Exception) -> int:
     """Usage errors of the parser, and a solver that cannot go on; anything else is a defect and shows itself."""
     if isinstance(error, typer.Abort):
         return fail("interrupted", 130)
-    if type(error).__name__ == "SolverError":
+    name = type(error).__name__
+    if name == "SolverError":
         return fail(f"no solution: {error}", 1)
     # The parser's usage errors: the class lives in click or inside typer, depending on typer's version.
-    show, code = getattr(error, "show", None), getattr(error, "exit_code", None)
-    if callable(show) and isinstance(code, int):
-        show()
+    message, code = getattr(error, "format_message", None), getattr(error, "exit_code", None)
+    if not callable(message) or not isinstance(code, int):
+        raise error
+    if name == "NoArgsIsHelpError":
+        typer.echo(message())
         return code
-    raise error
+    context = getattr(error, "ctx", None)
+    command = context.command_path if context is not None else "tyrefem"
+    return fail(f"{message()} ('{command} --help' tells more)", code)

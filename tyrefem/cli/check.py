@@ -2,12 +2,16 @@
 
 from __future__ import annotations
 
+import os
 from pathlib import Path
-from typing import Annotated, Any
+from typing import TYPE_CHECKING, Annotated, Any
 
 import typer
 
 from tyrefem.errors import InputError
+
+if TYPE_CHECKING:
+    from tyrefem.studies import Study
 
 
 def check(
@@ -17,14 +21,20 @@ def check(
     path = Path(file)
     if path.is_dir():
         path = path / "study.toml"
-    if not path.exists():
+        if not path.is_file():
+            raise InputError("a folder without a study.toml", file=file)
+    if not os.path.lexists(path):
         raise InputError("no such file", file=file)
-    typer.echo(f"{path}: {_table(path) if path.suffix.lower() != '.toml' else _card(path)}")
+    typer.echo(f"{path}: {_card(path) if path.suffix.lower() == '.toml' else _table(path)}")
 
 
 def _table(path: Path) -> str:
+    from tyrefem.cases import looks_like_cases, read_cases
     from tyrefem.measured import read_table
 
+    if looks_like_cases(path):
+        cases = read_cases(path)
+        return f"a table of {len(cases)} case(s); 'tyrefem check' of the study that names it checks their values too"
     runs = read_table(path)
     sensors = sorted({sensor for run in runs for sensor in run.sensors})
     readings = sum(int(run.temperatures.notna().sum().sum()) for run in runs)
@@ -35,6 +45,8 @@ def _card(path: Path) -> str:
     from tyrefem.cards import read_toml
 
     data: dict[str, Any] = read_toml(path)
+    if not data:
+        raise InputError("is empty", file=path)
     if "layers" in data or "line" in data:
         from tyrefem.section import load
 
@@ -51,11 +63,23 @@ def _card(path: Path) -> str:
 
     found = study(str(path.resolve()))
     if found.is_campaign:
-        return f"a campaign of {len(found.campaign().cases)} cases"
+        campaign = found.campaign()
+        for case in campaign.cases:
+            _ = RollingTyre(campaign.case_study(case)).schedule
+        return f"a campaign of {len(campaign.cases)} cases"
     _ = RollingTyre(found).schedule
+    tables = _measured(found)
     return (
-        f"a study of {len(found.card.drive.phases)} phase(s), {found.card.drive.end:g} s, {len(found.sensors)} sensors"
+        f"a study of {len(found.card.drive.phases)} phase(s), {found.card.drive.end:g} s, "
+        f"{len(found.sensors)} sensors, {tables} measured run(s)"
     )
+
+
+def _measured(study: Study) -> int:
+    """How many runs the study's measured tables hold; each table is read."""
+    from tyrefem.measured import read_table
+
+    return sum(len(read_table(table)) for table in {entry.table for entry in study.measured})
 
 
 def register(app: typer.Typer) -> None:

@@ -2,7 +2,9 @@
 
 from __future__ import annotations
 
+import os
 import sys
+import tempfile
 import tomllib
 from collections.abc import Callable, Iterator
 from contextlib import contextmanager
@@ -14,11 +16,35 @@ import typer
 from tyrefem.errors import InputError
 
 
+def fail(message: object, code: int = 2) -> int:
+    """One line on stderr, whatever the message quotes from a file; gives back the exit code."""
+    printable = "".join(letter if letter.isprintable() else " " for letter in str(message))
+    print(f"tyrefem: {' '.join(printable.split())}", file=sys.stderr)
+    return code
+
+
+def writable_folder(folder: Path) -> Path:
+    """The folder, or an error before any work is done: a file in its place, or no right to write.
+
+    Nothing is made yet: a run that fails leaves no empty folder behind.
+    """
+    place = folder.absolute()
+    while not os.path.lexists(place):
+        place = place.parent
+    if not place.is_dir():
+        raise InputError("a file is in the place of this folder", file=place, field="--out")
+    try:
+        with tempfile.TemporaryFile(dir=place):
+            return folder
+    except OSError as error:
+        raise InputError(f"cannot be written: {error.strerror or error}", file=place, field="--out") from None
+
+
 def complete_studies(incomplete: str) -> list[str]:
     """Names of studies for shell completion."""
     from tyrefem import library
 
-    return [name for name in library.names("study", Path.cwd()) if name.startswith(incomplete)]
+    return [name for name in library.names("study") if name.startswith(incomplete)]
 
 
 StudyArgument = Annotated[
@@ -46,7 +72,7 @@ def settings(pairs: list[str] | None) -> dict[str, Any]:
             value = tomllib.loads(f"value = {text}")["value"]
         except tomllib.TOMLDecodeError:
             value = text
-        changes[key.strip()] = value if not isinstance(value, bool) or text in ("true", "false") else text
+        changes[key.strip()] = value
     return changes
 
 

@@ -7,7 +7,7 @@ from typing import Annotated
 
 import typer
 
-from tyrefem.cli.common import JsonOption, SetOption, StudyArgument, print_json, settings
+from tyrefem.cli.common import JsonOption, SetOption, StudyArgument, print_json, settings, writable_folder
 
 
 def compare(
@@ -28,8 +28,8 @@ def compare(
     from tyrefem.studies import study as load
 
     found = load(study, settings(changes))
+    folder = writable_folder(out or Path("results") / f"{found.name}-compare")
     comparison = found.compare(table, ignore=tuple(ignore or ()), inputs=inputs, k=k)
-    folder = out or Path("results") / f"{found.name}-compare"
     comparison.save(folder)
     if as_json:
         print_json(comparison.to_dict())

@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-from pathlib import Path
 from typing import Annotated
 
 import typer
@@ -31,7 +30,7 @@ def show_list(
     from tyrefem import library
     from tyrefem.cards import read_toml
 
-    for name, path in sorted(library.names(KINDS[kind], Path.cwd()).items()):
+    for name, path in sorted(library.names(KINDS[kind]).items()):
         try:
             title = str(read_toml(path).get("title", ""))
         except InputError as error:

@@ -2,13 +2,15 @@
 
 from __future__ import annotations
 
+import os
 import re
 import shutil
 from pathlib import Path
-from typing import Annotated
+from typing import Annotated, Any
 
 import typer
 
+from tyrefem.cli.common import writable_folder
 from tyrefem.cli.show import complete_names
 from tyrefem.errors import InputError, nearest
 
@@ -28,20 +30,36 @@ def new(
 
     if kind not in DEFAULTS:
         raise InputError(f"no kind '{kind}'{nearest(kind, DEFAULTS)}")
-    if not re.fullmatch(r"\w[\w.-]*", name):
-        raise InputError(f"'{name}' is no name for a card; allowed: letters, digits, . _ -")
-    source = library.find(kind, copy_of or DEFAULTS[kind], Path.cwd())
+    if not re.fullmatch(r"\w[\w.-]*", name) or name.endswith(".toml"):
+        raise InputError(f"'{name}' is no name for a card; allowed: letters, digits, . _ -, not '.toml' at the end")
+    source = library.find(kind, copy_of or DEFAULTS[kind])
     folder = Path(library.FOLDERS[kind])
     target = folder / name / "study.toml" if kind == "study" else folder / f"{name}.toml"
-    if target.exists() or (kind == "study" and target.parent.exists()):
+    if os.path.lexists(target) or (kind == "study" and os.path.lexists(target.parent)):
         raise InputError("exists already; nothing was written", file=target)
-    companions = [file for file in source.parent.glob("*.csv") if kind == "study"]
-    for file in [source, *companions]:
-        place = target if file == source else target.parent / file.name
+    writable_folder(target.parent)
+    files = {target: source} | {target.parent / name: source.parent / name for name in _companions(kind, source)}
+    for place, file in files.items():
         with atomic_path(place) as temporary:
             shutil.copyfile(file, temporary)
     typer.echo(f"{target} written, a copy of {source.parent.name if kind == 'study' else source.stem}")
     typer.echo(f"edit it, then: tyrefem check {target.parent if kind == 'study' else target}")
+
+
+def _companions(kind: str, source: Path) -> list[Path]:
+    """Files beside a study that it names: its tables and its mesh. A card further away stays where it is."""
+    from tyrefem.cards import read_toml
+
+    if kind != "study":
+        return []
+    data: dict[str, Any] = read_toml(source)
+    measured = data.get("measured")
+    named = [data.get("cases"), *(entry.get("table") for entry in measured or [] if isinstance(entry, dict))]
+    if isinstance(data.get("mesh"), dict):
+        named.append(data["mesh"].get("file"))
+    names = [Path(name) for name in dict.fromkeys(named) if isinstance(name, str)]
+    inside = [name for name in names if not name.is_absolute() and ".." not in name.parts]
+    return [name for name in inside if (source.parent / name).is_file()]
 
 
 def register(app: typer.Typer) -> None:

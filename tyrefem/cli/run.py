@@ -3,11 +3,20 @@
 from __future__ import annotations
 
 from pathlib import Path
-from typing import TYPE_CHECKING, Annotated, Any
+from typing import TYPE_CHECKING, Annotated
 
 import typer
 
-from tyrefem.cli.common import JsonOption, SetOption, StudyArgument, print_json, progress, settings
+from tyrefem.cli.common import (
+    JsonOption,
+    SetOption,
+    StudyArgument,
+    fail,
+    print_json,
+    progress,
+    settings,
+    writable_folder,
+)
 
 if TYPE_CHECKING:
     from tyrefem.result import Result
@@ -30,9 +39,9 @@ def run(
     from tyrefem.studies import study as load
 
     found = load(study, settings(changes))
-    folder = out or Path("results") / found.name
+    folder = writable_folder(out or Path("results") / found.name)
     if found.is_campaign:
-        _campaign(found, folder, pictures, as_json)
+        _campaign(found, folder, pictures, vtk, revolved, as_json)
     else:
         _single(found, folder, pictures, vtk, revolved, as_json)
 
@@ -52,7 +61,7 @@ def _single(study: Study, folder: Path, pictures: bool, vtk: bool, revolved: boo
         typer.echo(_words(result))
         typer.echo(f"results in {folder}" + (f"; read {folder / 'report.html'}" if pictures else ""))
     if result.history.interrupted:
-        raise KeyboardInterrupt
+        raise typer.Exit(fail(f"interrupted at {result.times[-1]:g} s; what is finished is in {folder}", 130))
 
 
 def _words(result: Result) -> str:
@@ -72,16 +81,22 @@ def _words(result: Result) -> str:
     return "\n".join(lines)
 
 
-def _campaign(study: Study, folder: Path, pictures: bool, as_json: bool) -> None:
+def _campaign(study: Study, folder: Path, pictures: bool, vtk: bool, revolved: bool, as_json: bool) -> None:
     from tyrefem.campaign import run_campaign, write_campaign_report
 
     campaign = study.campaign()
 
-    def each(result: Any, place: Path) -> None:
-        result.to_vtk(place / "vtk")
+    def each(result: Result, place: Path) -> None:
+        if vtk:
+            result.to_vtk(place / "vtk", revolved=revolved)
+        if pictures:
+            result.report(place / "report.html")
 
-    with progress(study.name, len(campaign.cases), quiet=as_json) as step:
-        table = run_campaign(campaign, folder, lambda done, _all: step(done), each if pictures else None)
+    try:
+        with progress(study.name, len(campaign.cases), quiet=as_json) as step:
+            table = run_campaign(campaign, folder, lambda done, _all: step(done), each)
+    except KeyboardInterrupt:
+        raise typer.Exit(fail(f"interrupted; finished cases are in {folder / 'campaign.csv'}", 130)) from None
     if pictures:
         write_campaign_report(campaign, table, folder / "report.html")
     failed = table[table["failure"] != ""]
@@ -92,8 +107,10 @@ def _campaign(study: Study, folder: Path, pictures: bool, as_json: bool) -> None
         typer.echo(study.title)
         typer.echo(table[[name for name in shown if name in table]].to_string(index=False, float_format="%.4g"))
         typer.echo(f"{len(table)} cases, {len(failed)} failed; table in {folder / 'campaign.csv'}")
+        if pictures:
+            typer.echo(f"results in {folder}; read {folder / 'report.html'}")
     for entry in failed.itertuples():
-        typer.echo(f"tyrefem: case {entry.case}: {entry.failure}", err=True)
+        fail(f"case {entry.case}: {entry.failure}")
     if len(failed):
         raise typer.Exit(1)
 

@@ -24,7 +24,7 @@ def complete_names(context: typer.Context, incomplete: str) -> list[str]:
 
     kind = context.params.get("kind", "study")
     kind = kind if kind in library.FOLDERS else "study"
-    return [name for name in library.names(kind, Path.cwd()) if name.startswith(incomplete)]
+    return [name for name in library.names(kind) if name.startswith(incomplete)]
 
 
 def show(
@@ -105,7 +105,7 @@ def _print(kind: str, name: str, values: dict[str, Any]) -> None:
         found = study(name, values)
         data, path = dict(found.data), found.file
     else:
-        data, file, _ = library.load("material", name, Path.cwd())
+        data, file, _ = library.load("material", name)
         for key, value in values.items():
             data = changed(data, key, value)
         MaterialCard.check(data, file)

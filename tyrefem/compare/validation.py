@@ -2,14 +2,19 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterable, Mapping, Sequence
+from collections.abc import Callable, Iterable, Mapping, Sequence
 from concurrent.futures import Executor
+from dataclasses import dataclass
+from typing import TYPE_CHECKING
 
 from tyrefem.compare.comparison import Comparison, comparison_of
 from tyrefem.compare.experiment import Experiment, Table, experiments
 from tyrefem.compare.history import histories
-from tyrefem.compare.interface import ResultLike, StudyLike
+from tyrefem.compare.interface import PhaseLike, ResultLike, StudyLike
 from tyrefem.errors import InputError
+
+if TYPE_CHECKING:
+    import pandas as pd
 
 
 def compare(
@@ -22,6 +27,7 @@ def compare(
     rename: Mapping[str, str] | None = None,
     k: float = 2.0,
     executor: Executor | None = None,
+    progress: Callable[[int, int], None] | None = None,
 ) -> Comparison:
     """Deviations between a study and measured temperature histories, E = computed - measured.
 
@@ -36,6 +42,7 @@ def compare(
     ignore : columns of the table to leave out. ``rename`` : column name -> sensor name.
     k : coverage factor of the verdict; 2 for about 95 %.
     executor : runs the simulations side by side (`concurrent.futures.ProcessPoolExecutor` or alike).
+    progress : called with (simulations done, simulations in all) after each.
 
     Raises
     ------
@@ -47,7 +54,7 @@ def compare(
         raise InputError(f"the coverage factor k must be more than 0 and less than 100, not {k!r}")
     planned = experiments(study, table, ignore=ignore, rename=rename)
     keys = dict(study.uncertainty) if inputs else {}
-    solved = _solved(study, planned, result, keys, executor)
+    solved = _solved(study, planned, result, keys, executor, progress)
     found, curves, notes = [], {}, []
     for experiment in planned:
         computed, perturbed = solved[_drive(experiment)]
@@ -66,8 +73,19 @@ def _drive(experiment: Experiment) -> str:
     return repr(sorted(experiment.drive.items()))
 
 
+@dataclass(frozen=True, eq=False)
+class Computed:
+    """What a comparison needs of a result; unlike a result, small enough to come from another process."""
+
+    study: StudyLike
+    readings: pd.DataFrame
+    gradient_at_sensors: pd.DataFrame
+    phases: Sequence[PhaseLike]
+
+
 def _run(study: StudyLike) -> ResultLike:
-    return study.run()
+    result = study.run()
+    return Computed(study, result.readings, result.gradient_at_sensors, result.phases)
 
 
 def _solved(
@@ -76,6 +94,7 @@ def _solved(
     result: ResultLike | None,
     keys: Mapping[str, float],
     executor: Executor | None,
+    progress: Callable[[int, int], None] | None,
 ) -> dict[str, tuple[ResultLike, dict[str, ResultLike]]]:
     """Drive -> its result, and its results with each uncertain input one sd higher."""
     known: dict[str, ResultLike] = {}
@@ -93,7 +112,11 @@ def _solved(
             studies[drive, None] = driven
         studies |= {(drive, key): driven.scaled(key, 1.0 + sd) for key, sd in keys.items()}
     each = executor.map if executor is not None else map
-    results = dict(zip(studies, each(_run, studies.values()), strict=True))
+    results: dict[tuple[str, str | None], ResultLike] = {}
+    for what, computed in zip(studies, each(_run, studies.values()), strict=True):
+        results[what] = computed
+        if progress is not None:
+            progress(len(results), len(studies))
     known |= {drive: found for (drive, key), found in results.items() if key is None}
     return {drive: (computed, {key: results[drive, key] for key in keys}) for drive, computed in known.items()}
 

@@ -16,6 +16,8 @@ Array = NDArray[Any]
 class Budget:
     """Energies (J) since the first time and powers (W) at `times`; every array is (n_times,).
 
+    At a breakpoint the powers are those just before it, at the first time those just after.
+
     Attributes
     ----------
     generated, generated_power : by source subdomain.
@@ -86,7 +88,7 @@ class Tally:
         n = len(times)
 
         def table(rows: list[Array], width: int) -> Array:
-            return np.array(rows).reshape(n, width)
+            return np.array(rows[:n]).reshape(n, width)
 
         energy, power = (table(rows, len(self.entries)) for rows in (self.energy, self.power))
         stored, storing = (table(rows, len(self.regions)) for rows in (self.stored, self.storing))

@@ -42,24 +42,29 @@ class Operators:
     """
 
     def __init__(self, mesh: Any, element: str = "P1", axisymmetric: bool = True) -> None:
-        shape = {"MeshTri": "tri", "MeshQua": "quad"}.get(type(mesh).__name__[:7])
-        if shape is None:
+        kind = {"MeshTri": "tri", "MeshQua": "quad"}.get(type(mesh).__name__[:7])
+        if kind is None:
             raise InputError(f"a {type(mesh).__name__} is not supported; use MeshTri or MeshQuad", field="mesh")
         if element not in ("P1", "P2"):
             raise InputError(f"unknown element {element!r}{nearest(str(element), ['P1', 'P2'])}", field="element")
         if axisymmetric and mesh.p[0].min() < -1e-12 * np.ptp(mesh.p, axis=1).max():
             raise InputError(f"radius is negative: {mesh.p[0].min():.6g} m", field="mesh")
         self.mesh, self.element, self.axisymmetric = mesh, element, axisymmetric
-        self.skfem_element = _ELEMENTS[shape, element]()
+        self.skfem_element = _ELEMENTS[kind, element]()
         self.intorder = 3 if element == "P1" else 5
         self.basis = skfem.Basis(mesh, self.skfem_element, intorder=self.intorder)
         self.size = int(self.basis.N)
         self.points: Array = self.basis.doflocs
         self.element_dofs: Array = self.basis.element_dofs
-        self._phi = np.stack([np.broadcast_to(np.asarray(b[0]), self.basis.dx.shape) for b in self.basis.basis])
+        shape = self.basis.dx.shape
+        self._phi = np.broadcast_to(
+            np.stack([np.broadcast_to(np.asarray(b[0]), shape)[:1] for b in self.basis.basis]),
+            (len(self.basis.basis), *shape),
+        )
         self._grad = np.stack([b[0].grad for b in self.basis.basis])
         self.x: Array = np.asarray(self.basis.global_coordinates())
         self.weight: Array = self.basis.dx * (2 * np.pi * self.x[0] if axisymmetric else 1.0)
+        self.constant_slopes = type(mesh) is skfem.MeshTri1 and element == "P1"
         self._pattern()
         self._kept: dict[Any, Any] = {}
 
@@ -120,8 +125,10 @@ class Operators:
 
         def make() -> Array:
             e = self.elements(name)
-            phi, w = self._phi[:, e], self.weight[e]
-            return self._gather(e, np.einsum("ieq,jeq->ije", phi * w, phi, optimize=True))
+            phi = self._phi[:, 0]  # The same in every element: one matrix product assembles them all.
+            products = (phi[:, None] * phi[None]).reshape(-1, phi.shape[1])
+            local = products @ self.weight[e].T
+            return self._gather(e, local.reshape(len(phi), len(phi), -1))
 
         return self._once(("mass", name), make)
 
@@ -144,10 +151,10 @@ class Operators:
         def make() -> tuple[Array, Array]:
             e = self.elements(name)
             w = self.weight[e]
-            first, second = (
-                self._gather(e, np.einsum("ieq,jeq->ije", g * w, g, optimize=True))
-                for g in self.directed_gradients(name, direction)
-            )
+            slopes = self.directed_gradients(name, direction)
+            if self.constant_slopes and direction is None:
+                slopes, w = (slopes[0][:, :, :1], slopes[1][:, :, :1]), w.sum(axis=1, keepdims=True)
+            first, second = (self._gather(e, np.einsum("ieq,jeq->ije", g * w, g, optimize=True)) for g in slopes)
             return first, second
 
         return self._once(("conduction", name, direction), make)

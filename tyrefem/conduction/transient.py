@@ -20,8 +20,8 @@ from tyrefem.conduction.stage_matrix import StageMatrices
 Array = NDArray[Any]
 
 # Local error allowed per kelvin of tolerance, set so that the global error stays within the tolerance.
-_SHARE = 0.3
-_RUNG = 2.0**0.5
+_SHARE = 0.25
+_RUNG = 2.0 ** (2 / 3)
 
 
 class Integration:
@@ -53,6 +53,7 @@ class Integration:
         self.kept = np.zeros(y.g.size)
         regions = [None, *(c.dofs for c in balance.capacities.values())]
         self._regions = regions
+        self._low = float(times[0])
         self._peaks = [(-math.inf, 0, 0.0)] * len(regions)
 
     def run(self, progress: Callable[[float], None] | None) -> None:
@@ -64,6 +65,7 @@ class Integration:
         b = self.balance
         inside = max(1e-10 * (last - first), 4 * np.spacing(max(abs(first), abs(last))))
         low, high = first + inside, last - inside
+        self._low = low
         self._jump(low)
         b.settle(low, self.y.u, self.y.g)
         b.freeze(low, self.y)
@@ -132,7 +134,7 @@ class Integration:
     def _output(self, step: Step, theta: float, end: State | None, seen: float) -> None:
         b = self.balance
         y = end if end is not None else step.at(theta)
-        t = min(step.t + theta * step.h, seen)
+        t = min(max(step.t + theta * step.h, self._low), seen)
         if end is None and theta > 0:
             b.settle(t, y.u, y.g)
         slope = step.slope(theta)

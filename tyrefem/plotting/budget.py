@@ -15,12 +15,12 @@ from tyrefem.plotting.style import (
     STORED,
     TITLE,
     add_axes,
+    digits,
     figure,
     line_style,
     phase_bands,
     plain,
     si,
-    digits,
     tidy,
     time_unit,
     title,
@@ -131,12 +131,18 @@ def _powers(axes: Axes, budget: HeatBudget) -> None:
     labels = []
     for kind, curve in curves.items():
         axes.plot(t, curve / factor, color=KINDS[kind], lw=2.0)
-        labels.append(Label(f"{kind} {curve[-1] / factor:{form}}", float(t[-1]), float(curve[-1] / factor), color=KINDS[kind]))
+        labels.append(
+            Label(f"{kind} {curve[-1] / factor:{form}}", float(t[-1]), float(curve[-1] / factor), color=KINDS[kind])
+        )
     lost = [(name, series) for (kind, name), series in budget.powers.items() if kind == "lost"]
     peak = max((float(abs(series).max()) for _, series in lost), default=0.0)
     shown = [(name, series) for name, series in lost if float(abs(series).max()) > 0.02 * peak]
     for number, (name, series) in enumerate(shown):
-        style = {**line_style(number), "color": QUIET, "ls": ("--", ":", "-.", (0, (1, 3)), (0, (6, 2, 1, 2)))[number % 5]}
+        style = {
+            **line_style(number),
+            "color": QUIET,
+            "ls": ("--", ":", "-.", (0, (1, 3)), (0, (6, 2, 1, 2)))[number % 5],
+        }
         axes.plot(t, series / factor, lw=1.2, **style)
         text = f"to {plain(name)} {series[-1] / factor:{form}}"
         labels.append(Label(text, float(t[-1]), float(series[-1] / factor), color=QUIET))

@@ -55,14 +55,26 @@ class Canvas:
             return
         half = max(len(label.text) for label in labels) * LETTER * self.scale / 2
         top = float(self.section.place(0.0, 0.0)[0]) * 1e3 - 0.4 * self.scale
-        for sign, align in ((1.0, "right"), (-1.0, "left")):
-            group = [label for label in labels if (label.x >= 0) == (sign > 0)]
-            # Points at the crown want the column left of them; it may reach over the mid plane by its width.
-            x = sign * min(half, max(min((abs(label.x) for label in group), default=0.0) - 0.12 * self.scale, -half / 4))
-            place = (x, top)
-            ordered = sorted(group, key=lambda label: -sign * _angle(label, place, sign))
-            column(self.axes, ordered, x, self.low + 0.1 * self.scale, top, gap=self.gap, align=align)
-            top -= self.gap * len(group)
+        right = [label for label in labels if label.x >= 0]
+        left = [label for label in labels if label.x < 0]
+        # The column stands under its innermost point: leaders then rise beside the texts above, not across them.
+        x = self._under(right, half)
+        self._fan(right, x, top, 1.0)
+        # The left column's leaders start left of the right column's texts.
+        self._fan(left, x - 2 * half if right else -self._under(left, half), top - self.gap * len(right), -1.0)
+
+    def _under(self, labels: Sequence[Label], half: float) -> float:
+        """Where a column's leaders start, mm right of the mid plane for labels on that side."""
+        innermost = min((abs(label.x) for label in labels), default=0.0)
+        return min(half, max(innermost - 0.12 * self.scale, -half / 4))
+
+    def _fan(self, labels: Sequence[Label], x: float, top: float, sign: float) -> None:
+        def angle(label: Label) -> float:
+            return float(np.arctan2(label.y - top, sign * (label.x - x)))
+
+        ordered = sorted(labels, key=lambda label: -angle(label))
+        align = "right" if sign > 0 else "left"
+        column(self.axes, ordered, x, self.low + 0.1 * self.scale, top, gap=self.gap, align=align)
 
     def color_bar(self, image: Any, label: str, *, side: float = 1.0, ticks: Any = None) -> Any:
         """A colour bar right (1) or left (-1) of everything."""
@@ -79,25 +91,26 @@ class Canvas:
         return bar
 
 
-def _angle(label: Label, place: tuple[float, float], sign: float) -> float:
-    """Direction of a point as seen from a place: 0 sideways, rising upwards."""
-    return sign * float(np.arctan2(label.y - place[1], sign * (label.x - place[0])))
+def canvas(
+    section: Section, left: Iterable[str] = (), right: Iterable[str] = (), *, bars: int = 1, below: float = 0.0
+) -> Canvas:
+    """An empty canvas with room for the longest of the texts on either side, and for colour bars (the second left).
 
-
-def canvas(section: Section, left: Iterable[str] = (), right: Iterable[str] = (), *, bars: int = 1) -> Canvas:
-    """An empty canvas with room for the longest of the texts on either side, and for colour bars (the second left)."""
+    ``below``: inches kept free under the section.
+    """
     lines = [line for name in section.boundaries for line in section.boundary_line(name)]
     r = np.concatenate([line[:, 0] for line in lines]) * 1e3
     low, high, width = float(r.min()), float(r.max()), section.overall_width * 1e3
     margins = [max((len(text) for text in texts), default=0) * LETTER for texts in (left, right)]
     margins = [margin + 0.45 if margin else 0.2 for margin in margins]
     scale = width / DRAWN
-    across, up = DRAWN + sum(margins), (high - low) / scale + 0.4
+    across, up = DRAWN + sum(margins), (high - low) / scale + 0.4 + below
     first = 0.62 + (BAR if bars > 1 else 0.0)
     made = figure(first + across + (BAR if bars else 0.1), up + 0.5 + TITLE)
     axes = add_axes(made, first, 0.5, across, up)
     axes.set_xlim(-width / 2 - margins[0] * scale, width / 2 + margins[1] * scale)
-    axes.set_ylim(low - 0.2 * scale, high + 0.2 * scale)
+    bottom = low - (0.2 + below) * scale
+    axes.set_ylim(bottom, high + 0.2 * scale)
     section_axes(axes)
     ticks = np.asarray(axes.get_xticks())
     axes.set_xticks(ticks[np.abs(ticks) <= width / 2 + 1e-9])

@@ -28,7 +28,7 @@ def linear_cells(operators: Any, elements: Array | None = None) -> tuple[Array, 
     dofs = np.asarray(operators.element_dofs)
     chosen = np.arange(dofs.shape[1]) if elements is None else np.asarray(elements)
     parts = _PARTS[dofs.shape[0]]
-    cells = np.concatenate([dofs[np.ix_(part, chosen)] for part in parts], axis=1)
+    cells = np.concatenate([dofs[list(part)][:, chosen] for part in parts], axis=1)
     return cells, np.tile(chosen, len(parts))
 
 

@@ -79,7 +79,9 @@ def _lines(axes: Axes, result: Result, divisor: float) -> list[Label]:
         values = readings[name].to_numpy()
         style = line_style(number)
         axes.plot(t, values, lw=1.5, **style)
-        labels.append(Label(f"{short(name, 24)} {values[-1]:.1f} °C", float(t[-1]), float(values[-1]), color=style["color"]))
+        labels.append(
+            Label(f"{short(name, 24)} {values[-1]:.1f} °C", float(t[-1]), float(values[-1]), color=style["color"])
+        )
     for number, name in enumerate(column for column in readings.columns if column not in ("time_s", *sensors)):
         values = readings[name].to_numpy()
         axes.plot(t, values, color=QUIET, lw=2.4, ls=("-", ":")[number % 2], alpha=0.75)

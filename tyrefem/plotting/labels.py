@@ -42,7 +42,10 @@ def spread(wanted: ArrayLike, gap: float) -> Array:
         blocks.append([place - rank * gap, 1.0])
         while len(blocks) > 1 and blocks[-2][0] > blocks[-1][0]:
             mean, count = blocks.pop()
-            blocks[-1] = [(blocks[-1][0] * blocks[-1][1] + mean * count) / (blocks[-1][1] + count), blocks[-1][1] + count]
+            blocks[-1] = [
+                (blocks[-1][0] * blocks[-1][1] + mean * count) / (blocks[-1][1] + count),
+                blocks[-1][1] + count,
+            ]
     values = np.concatenate([np.full(int(count), mean) for mean, count in blocks]) if blocks else np.empty(0)
     found = np.empty(len(wanted))
     found[order] = values + gap * np.arange(len(wanted))
@@ -100,7 +103,7 @@ def line_ends(axes: Axes, labels: Sequence[Label], *, room: float, size: float =
         return
     figure = axes.figure
     box = axes.get_position()
-    width, height = (float(v) for v in figure.get_size_inches())
+    width, height = (float(v) for v in figure.get_size_inches())  # type: ignore[union-attr]
     low, high = axes.get_ylim()
     per_inch = (high - low) / (box.height * height)
     gap = min(1.35 * size / 72 * per_inch, (high - low) / len(labels))
@@ -110,7 +113,7 @@ def line_ends(axes: Axes, labels: Sequence[Label], *, room: float, size: float =
     places -= max(places.max() - high, 0.0)
     inch = (axes.get_xlim()[1] - axes.get_xlim()[0]) / (box.width * width)
     longest = max(len(label.text) for label in labels)
-    size = min(size, size * (room - 0.25) / (longest * 0.0073 * size))
+    size = min(size, 72 * gap / per_inch / 1.3, (room - 0.25) / (longest * 0.0084))
     for label, y in zip(ordered, places, strict=True):
         axes.plot(
             [label.x, label.x + 0.2 * inch], [label.y, float(y)], color=label.color, lw=0.7, clip_on=False, zorder=5,

@@ -28,7 +28,9 @@ def section_figure(section: Section, sensors: Mapping[str, tuple[float, float]] 
     names = region_labels(section)
     thicknesses = _thicknesses(section)
     beside = [*thicknesses, *right]
-    drawn = canvas(section, [label.text for label in [*names, *left]], [label.text for label in beside], bars=0)
+    drawn = canvas(
+        section, [label.text for label in [*names, *left]], [label.text for label in beside], bars=0, below=0.7
+    )
     axes = drawn.axes
     for number, region in enumerate(section.regions):
         for polygon in section.outline(region, 1e-3):
@@ -43,9 +45,7 @@ def section_figure(section: Section, sensors: Mapping[str, tuple[float, float]] 
     drawn.beside(sorted(beside, key=lambda label: -label.y), 1.0)
     drawn.beside(sorted([*names, *left], key=lambda label: -label.y), -1.0)
     _dimensions(drawn)
-    axes.legend(
-        loc="lower center", fontsize=FONT - 1, frameon=False, handlelength=1.6, bbox_to_anchor=(_middle(axes), 0.06)
-    )
+    axes.legend(loc="lower center", ncols=5, fontsize=FONT - 0.5, frameon=False, handlelength=1.6, columnspacing=1.4)
     title(
         drawn.figure, section.name,
         f"outer diameter {section.outer_diameter * 1e3:.1f} mm, overall width {section.overall_width * 1e3:.1f} mm, "
@@ -56,12 +56,6 @@ def section_figure(section: Section, sensors: Mapping[str, tuple[float, float]] 
 
 def _litres(section: Section) -> float:
     return section.as_full().gas_volume() * 1e3
-
-
-def _middle(axes: Axes) -> float:
-    """The mid plane as a fraction of the axes."""
-    low, high = axes.get_xlim()
-    return -low / (high - low)
 
 
 def _boundaries(axes: Axes, section: Section) -> None:
@@ -79,12 +73,14 @@ def _boundaries(axes: Axes, section: Section) -> None:
 def _line(axes: Axes, section: Section) -> None:
     s = np.linspace(-section.line.length, section.line.length, 241)
     x, y = millimetres(section.as_full().line.position(s))
-    reading = section.reference if section.reference in ("inner", "outer", "total") else f"middle of {section.reference}"
+    reading = (
+        section.reference if section.reference in ("inner", "outer", "total") else f"middle of {section.reference}"
+    )
     axes.plot(x, y, color=INK, lw=0.9, ls=(0, (8, 2, 1.5, 2)), zorder=5, label=f"reference line ({reading})")
 
 
 def _thicknesses(section: Section) -> list[Label]:
-    """Whole thickness at the crown, the shoulder, mid sidewall and the bead, at the outer face."""
+    """Whole thickness at the crown, the shoulder, mid sidewall and the bead, and the radius of the outer face."""
     line = section.line
     stations = {
         "crown": 0.0, "shoulder": line.shoulder_s, "mid sidewall": (line.shoulder_s + line.length) / 2,
@@ -94,7 +90,7 @@ def _thicknesses(section: Section) -> list[Label]:
     for name, s in stations.items():
         thickness = float(section.total_thickness(s))
         x, y = millimetres(section.place(s, thickness))
-        labels.append(Label(f"{name}: {thickness * 1e3:.1f} mm thick", float(x), float(y)))
+        labels.append(Label(f"{name}: {thickness * 1e3:.1f} mm thick, r {y:.1f}", float(x), float(y)))
     return labels
 
 
@@ -104,20 +100,13 @@ def _dimensions(drawn: Canvas) -> None:
         s, depth = (float(np.ravel(v)[0]) for v in section.locate(np.array([[label.y / 1e3, label.x / 1e3]])))
         x, y = millimetres(section.place([s, s], [0.0, depth]))
         axes.plot(x, y, color=INK, lw=1.0, marker="o", ms=2.5, zorder=6)
-    half, y = drawn.width / 2, _widest(section)
+    half, below = drawn.width / 2, drawn.low - 0.2 * drawn.scale
     arrow = {"arrowstyle": "<->", "lw": 0.8, "color": INK, "shrinkA": 0, "shrinkB": 0}
-    axes.annotate("", (-half, y), (half, y), arrowprops=arrow, zorder=6)
-    axes.text(0, y, f"{2 * half:.1f} mm", ha="center", va="center", fontsize=FONT, zorder=7, path_effects=halo(6))
-    # The crown's radius is from the wheel's axis, which lies far below: the arrow comes from there.
-    x, low, _ = 0.12 * drawn.width, drawn.low - 0.2 * drawn.scale, drawn.high
-    inner = float(section.place(0.0, 0.0)[0]) * 1e3
-    axes.annotate(
-        "", (x, drawn.high), (x, low), arrowprops=arrow | {"arrowstyle": "->"}, zorder=6, annotation_clip=False
-    )
-    axes.text(
-        x, y + 0.55 * (inner - y), f"r = {section.outer_diameter * 500:.1f} mm\n(Ø {section.outer_diameter * 1e3:.1f})",
-        ha="center", va="center", fontsize=FONT, zorder=7, path_effects=halo(6),
-    )  # fmt: skip
+    axes.annotate("", (-half, below), (half, below), arrowprops=arrow, zorder=6)
+    axes.text(0, below, f"{2 * half:.1f} mm", ha="center", va="center", fontsize=FONT, zorder=7, path_effects=halo(6))
+    radius = _widest(section)
+    for sign in (1.0, -1.0):
+        axes.plot([sign * half] * 2, [radius, below], color=QUIET, lw=0.5, zorder=0)
 
 
 def _widest(section: Section) -> float:

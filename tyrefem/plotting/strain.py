@@ -62,7 +62,7 @@ def _arcs(axes: Axes, cycle: Arcs) -> None:
     before_r, before_z = cycle.inflated.place(fraction, np.zeros(100))
     r = np.concatenate([crown[:, 0], before_r]) * 1e3
     z = np.concatenate([crown[:, 1], before_z]) * 1e3
-    lines = [("inflated", QUIET, (0, (5, 2)), z, r)]
+    lines: list[tuple[str, str, Any, Array, Array]] = [("inflated", QUIET, (0, (5, 2)), z, r)]
     deflection = max(cycle.case.deflection, cycle.full_flattening)
     loaded = cycle.case.deflection > 0
     if loaded:
@@ -73,7 +73,9 @@ def _arcs(axes: Axes, cycle: Arcs) -> None:
         z_f = np.concatenate([[0.0, line.shoulder_s], after_z]) * 1e3
         lines.append((f"{words} (crown flat)", INK, "-", z_f, r_f))
     for label, color, dashes, x, y in lines:
-        axes.plot(np.concatenate([-x[::-1], x]), np.concatenate([y[::-1], y]), color=color, ls=dashes, lw=1.8, label=label)
+        axes.plot(
+            np.concatenate([-x[::-1], x]), np.concatenate([y[::-1], y]), color=color, ls=dashes, lw=1.8, label=label
+        )
     _zone_marks(axes, cycle)
     if loaded:
         top = line.crown_midline_radius * 1e3
@@ -149,7 +151,14 @@ def _along(drawn: Figure, cycle: Arcs) -> None:
             values = np.array(curves[surface][which] * scale)
             # A step at the shoulder is a step of the strain law, not a steep line.
             jump = np.searchsorted(s, shoulder)
-            axes.plot(np.insert(s, jump, shoulder), np.insert(values, jump, np.nan), color=color, ls=dashes, lw=1.5, label=surface)
+            axes.plot(
+                np.insert(s, jump, shoulder),
+                np.insert(values, jump, np.nan),
+                color=color,
+                ls=dashes,
+                lw=1.5,
+                label=surface,
+            )
         axes.axvline(shoulder, color=QUIET, lw=0.8, ls=":")
         axes.axhline(0.0, color=INK, lw=0.7)
         axes.set_xlim(0.0, length)

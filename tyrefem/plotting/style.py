@@ -46,7 +46,7 @@ def add_axes(drawn: Figure, left: float, bottom: float, width: float, height: fl
 def png(drawn: Figure) -> bytes:
     """The figure as a PNG file's bytes."""
     stream = io.BytesIO()
-    drawn.savefig(stream, format="png", dpi=DPI, facecolor="white")
+    drawn.savefig(stream, format="png", dpi=DPI, facecolor="white", pil_kwargs={"compress_level": 4})
     return stream.getvalue()
 
 

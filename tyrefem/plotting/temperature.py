@@ -71,9 +71,7 @@ def _map(drawn: Canvas, result: Result, temperatures: Array) -> None:
             sign * x, y, corners, temperatures, shading="gouraud", cmap=colours, vmin=low, vmax=high,
             rasterized=True, zorder=1,
         )  # fmt: skip
-    levels = [
-        level for level in MaxNLocator(8, steps=[1, 2, 5, 10]).tick_values(low, high) if low < level < high
-    ]
+    levels = [level for level in MaxNLocator(8, steps=[1, 2, 5, 10]).tick_values(low, high) if low < level < high]
     mirrored = -x if drawn.section.half else x
     lines = axes.tricontour(mirrored, y, corners, temperatures, levels=levels, colors="white", linewidths=0.6, zorder=2)
     decimals = max(0, int(np.ceil(-np.log10(levels[1] - levels[0]) - 1e-9))) if len(levels) > 1 else 1

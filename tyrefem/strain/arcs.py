@@ -18,7 +18,7 @@ from tyrefem.errors import InputError
 from tyrefem.loading import LoadCase
 from tyrefem.strain import Zone
 from tyrefem.strain.cord_rubber import BiasPlies
-from tyrefem.strain.deflected import DeflectedArcs, deflected_sidewall, through
+from tyrefem.strain.deflected import DeflectedArcs, deflected_sidewall, sidewall_arc
 
 Array = NDArray[np.float64]
 #: sqrt(2) exp(-1/2): steepest slope of the Gaussian that the hoop force is assumed to follow (D2, D3).
@@ -110,7 +110,7 @@ class Arcs:
     def inflated(self) -> DeflectedArcs:
         """The sidewall arc before deflection."""
         line = self.section.line
-        return through(line.shoulder, line.bead, line.sidewall_radius)
+        return sidewall_arc(line.shoulder, line.bead, line.sidewall_radius, line.length - line.shoulder_s)
 
     @functools.cached_property
     def deflected(self) -> DeflectedArcs:

@@ -82,11 +82,7 @@ def deflected_sidewall(line: Any, deflection: float, membrane_compliance: float,
     for upper, lower, above, below in zip(radii, radii[1:], values, values[1:], strict=False):
         if above >= 0 >= below and shoulder[1] > bead[1]:
             radius = brentq(gap, lower, upper, xtol=1e-14, rtol=1e-14)
-            return (
-                through(shoulder, bead, radius)
-                if stretched(radius) / radius < math.pi
-                else _major(shoulder, bead, radius)
-            )
+            return sidewall_arc(shoulder, bead, radius, stretched(radius))
     raise InputError(
         f"a deflection of {deflection * 1e3:.1f} mm is impossible for this section: with the crown flattened the "
         f"shoulder is {(shoulder[1] - bead[1]) * 1e3:.1f} mm above the bead, and no sidewall arc of "
@@ -94,6 +90,13 @@ def deflected_sidewall(line: Any, deflection: float, membrane_compliance: float,
         f"(it must flatten the crown, more than {(line.crown_midline_radius - yc) * 1e3:.1f} mm, and not bottom)",
         field="deflection",
     )
+
+
+def sidewall_arc(
+    shoulder: tuple[float, float], bead: tuple[float, float], radius: float, length: float
+) -> DeflectedArcs:
+    """The arc of a radius and length (m) from shoulder to bead: of the two possible, the one of that length."""
+    return (through if length / radius < math.pi else _major)(shoulder, bead, radius)
 
 
 def _major(shoulder: tuple[float, float], bead: tuple[float, float], radius: float) -> DeflectedArcs:

@@ -1,0 +1,90 @@
+"""A card that is wrong says where, what is allowed, and the nearest spelling."""
+
+from __future__ import annotations
+
+import copy
+
+import pytest
+
+from tyrefem import library
+from tyrefem.cards import merged, read_toml
+from tyrefem.errors import InputError
+from tyrefem.materials import MaterialCard, material
+
+
+@pytest.fixture
+def tread():
+    return copy.deepcopy(library.load("material", "nasa-tread")[0])
+
+
+def test_an_unknown_key_gets_the_nearest_spelling(tread):
+    tread["conductivty"] = tread.pop("conductivity")
+    with pytest.raises(InputError, match="did you mean 'conductivity'"):
+        MaterialCard.check(tread)
+
+
+@pytest.mark.parametrize("name", ["conductivity", "density", "specific_heat", "loss_tangent", "shear_modulus"])
+def test_a_number_without_source_is_refused(tread, name):
+    del tread[name]["source"]
+    with pytest.raises(InputError, match=f"{name}.source: missing"):
+        MaterialCard.check(tread)
+
+
+def test_a_number_without_unit_is_refused(tread):
+    tread["density"]["value"] = 1000.0
+    with pytest.raises(InputError, match=r"density\.value: 1000\.0 has no unit"):
+        MaterialCard.check(tread)
+
+
+@pytest.mark.parametrize(
+    ("table", "message"),
+    [
+        ([["20 degC", "0.2 W/m/K"]], "at least two rows"),
+        ([["20 degC", "0.2 W/m/K"], ["20 degC", "0.3 W/m/K"]], "must rise"),
+        ([["20 degC", "0.2 W/m/K"], ["30 degC"]], r"table.1: row must have 2 entries"),
+        ([["20 degC", "0.2 W/m/K"], ["30 degC", "-0.3 W/m/K"]], r"table.1: '-0.3 W/m/K' is out of range"),
+        ([["20 degC", "0.2 W/m/K"], ["30 degC", "0.3 W/m"]], r"table.1"),
+    ],
+)
+def test_a_bad_table_row_is_named(tread, table, message):
+    tread["conductivity"] = {"table": table, "source": "test"}
+    with pytest.raises(InputError, match=message):
+        MaterialCard.check(tread)
+
+
+def test_two_forms_of_one_property_are_refused(tread):
+    tread["conductivity"]["along"] = "0.3 W/m/K"
+    with pytest.raises(InputError, match="exactly one of"):
+        MaterialCard.check(tread)
+
+
+def test_the_error_names_file_and_field(tmp_path):
+    file = tmp_path / "soft.toml"
+    file.write_text(library.find("material", "nasa-tread").read_text().replace("0.5 cal/g/K", "0.5 cal/g"))
+    with pytest.raises(InputError) as caught:
+        material(str(file))
+    assert str(file) in str(caught.value)
+    assert "specific_heat.value" in str(caught.value)
+
+
+def test_a_file_that_is_not_toml_names_the_line(tmp_path):
+    file = tmp_path / "bad.toml"
+    file.write_text("title = 'x'\n= 3\n")
+    with pytest.raises(InputError, match="line 2"):
+        read_toml(file)
+
+
+def test_an_unknown_card_gets_the_nearest_name():
+    with pytest.raises(InputError, match="did you mean 'nasa-tread'"):
+        material("nasa-tred")
+
+
+def test_cards_are_immutable():
+    with pytest.raises(ValueError, match="frozen"):
+        material("nasa-tread").title = "another"
+
+
+def test_laying_changes_over_a_card_leaves_the_rest():
+    base = {"a": {"b": 1, "c": 2}, "d": 3}
+    assert merged(base, {"a": {"b": 9}}) == {"a": {"b": 9, "c": 2}, "d": 3}
+    assert base["a"]["b"] == 1

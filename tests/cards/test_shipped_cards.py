@@ -1,0 +1,78 @@
+"""Every shipped card: each number carries a unit, a source and a possible value."""
+
+from __future__ import annotations
+
+import re
+
+import numpy as np
+import pytest
+
+from tyrefem import library
+from tyrefem.cards import read_toml
+from tyrefem.materials import material
+from tyrefem.section import load as section
+
+MATERIALS = sorted(library.names("material"))
+SECTIONS = sorted(library.names("section"))
+#: Numbers that have no unit by nature.
+PURE = {"relative_sd", "bead_bundles", "shoulder_fraction", "thickness_scale"}
+NUMBER = re.compile(r"^[-+]?[\d.]+(e[-+]?\d+)?\s*(.*)$")
+
+
+def bare_numbers(data, path=()):
+    """Paths of numbers that carry no unit, lists with a 'unit' beside them apart."""
+    if isinstance(data, dict):
+        if "unit" in data and "values" in data:
+            return
+        for key, value in data.items():
+            yield from bare_numbers(value, (*path, key))
+    elif isinstance(data, list):
+        for number, value in enumerate(data):
+            yield from bare_numbers(value, (*path, number))
+    elif not isinstance(data, bool) and (match := NUMBER.match(str(data))) and not match[2]:
+        yield path
+
+
+@pytest.mark.parametrize("name", MATERIALS)
+def test_every_number_of_a_material_has_unit_and_source(name):
+    data = read_toml(library.find("material", name))
+    # tan delta is a ratio.
+    assert [path for path in bare_numbers(data) if path != ("loss_tangent", "value")] == []
+    for key, table in data.items():
+        if isinstance(table, dict):
+            assert table["source"].strip(), key
+
+
+@pytest.mark.parametrize("name", SECTIONS)
+def test_every_number_of_a_section_has_unit_and_source(name):
+    data = read_toml(library.find("section", name))
+    assert [path for path in bare_numbers(data) if not PURE & set(path)] == []
+    assert all(table["source"].strip() for table in [data["line"], data["parameters"], data["rating"], *data["layers"]])
+
+
+@pytest.mark.parametrize("name", MATERIALS)
+def test_a_shipped_material_is_possible(name):
+    card = material(name)
+    for temperature in (-40.0, 25.0, 150.0):
+        assert np.min(card.conductivity.law()) > 0
+        assert 0 <= card.loss_tangent(temperature) < 1
+    assert card.density.at(25.0) * card.specific_heat.at(25.0) == pytest.approx(card.heat_capacity())
+
+
+def test_the_report_s_rubber():
+    """Table 3 and appendix I: k = 0.2092 W/m/K and rho c = 2.092e6 J/m3/K for all; tan delta at 25 degC per region."""
+    loss = {"tread": 0.20, "carcass": 0.10, "sidewall": 0.15, "bead": 0.03}
+    for region, tangent in loss.items():
+        card = material(f"nasa-{region}")
+        assert card.conductivity.law() == pytest.approx(0.2092)
+        assert card.heat_capacity() == pytest.approx(2.092e6)
+        assert card.loss_tangent(25.0) == pytest.approx(tangent)
+        assert card.loss_tangent(75.0) == pytest.approx(tangent * np.exp(-0.74))
+
+
+@pytest.mark.parametrize("name", SECTIONS)
+def test_a_shipped_section_is_the_tyre_of_its_designation(name):
+    """22x5.5: 22 in over the crown; the sections, fitted to tables H1 and H2, come out within 1 %."""
+    tyre = section(name)
+    assert tyre.outer_diameter == pytest.approx(22 * 0.0254, rel=0.01)
+    assert tyre.rating.width == pytest.approx(5.5 * 0.0254)

@@ -1,0 +1,93 @@
+"""Every shipped study: its heat budget closes, and its answer does not hang on mesh, half or time step."""
+
+from __future__ import annotations
+
+import functools
+
+import numpy as np
+import pytest
+
+import tyrefem as tf
+from tyrefem import library
+
+SHIPPED = sorted(library.names("study"))
+STEADY = [name for name in SHIPPED if len(tf.study(name).card.drive.phases) == 1]
+ROLLING = "nasa-22x5.5-8pr"
+
+
+@functools.cache
+def run(name, *changes):
+    return tf.study(name).replace(dict(changes)).run()
+
+
+def gap(*changes, base=()):
+    """Largest difference of any reading over the run, K."""
+    return float(np.abs((run(ROLLING, *changes).readings - run(ROLLING, *base).readings).to_numpy()).max())
+
+
+@pytest.mark.parametrize("name", SHIPPED)
+def test_generated_is_stored_plus_lost(name):
+    budget = run(name).heat_budget
+    generated, stored, lost = (budget.total(kind) for kind in ("generated", "stored", "lost"))
+    assert generated > 0
+    assert generated == pytest.approx(stored + lost, rel=1e-6)
+    assert budget.imbalance < 1e-6
+    # Energies close to rounding; powers as well as the slope of the time integration's interpolant does.
+    powers = [budget.power(kind) for kind in ("generated", "stored", "lost")]
+    assert powers[0] == pytest.approx(powers[1] + powers[2], abs=1e-2 * powers[0].max())
+
+
+@pytest.mark.parametrize("name", STEADY)
+def test_rolling_resistance_is_the_generated_power_over_speed(name):
+    result = run(name)
+    state, resistance = result.phases[-1], result.rolling_resistance
+    assert resistance.force * state.speed == pytest.approx(result.heat_budget.power("generated")[-1], rel=1e-12)
+    assert resistance.coefficient == pytest.approx(resistance.force / state.load, rel=1e-12)
+    # At the start the whole tyre is cold.
+    assert resistance.cold_force * state.speed == pytest.approx(result.heat_budget.power("generated")[0], rel=1e-6)
+
+
+@pytest.mark.parametrize("name", SHIPPED)
+def test_gas_heat_is_what_left_through_the_inner_surface(name):
+    result = run(name)
+    budget = result.heat_budget.energies
+    through = budget["lost", "contained air"][-1]
+    kept = budget["lumped", "contained-air: stored"][-1] + budget["lumped", "contained-air: passed on"][-1]
+    assert kept == pytest.approx(through, rel=1e-6)
+
+
+def test_full_section_equals_half():
+    full, half = run(ROLLING, ("mesh.section", "full")), run(ROLLING)
+    assert gap(("mesh.section", "full")) < 1e-6
+    for key, energy in half.heat_budget.energies.items():
+        assert full.heat_budget.energies[key] == pytest.approx(energy, rel=1e-9, abs=1e-3)
+    assert full.rolling_resistance.force == pytest.approx(half.rolling_resistance.force, rel=1e-9)
+
+
+def test_quadrilaterals_and_triangles_agree():
+    """Within 0.1 K of some 60 K at the default 2 mm."""
+    assert gap(("mesh.cell", "tri")) < 0.1
+
+
+def test_linear_and_quadratic_elements_agree():
+    """Within 0.25 K at the default 2 mm; half the size brings P1 nearer to P2."""
+    quadratic = (("mesh.element", "P2"),)
+    assert gap(*quadratic) < 0.25
+    assert gap(("mesh.size", "1 mm"), base=quadratic) < 0.6 * gap(*quadratic)
+
+
+def test_the_time_step_does_not_matter():
+    assert gap(("numerics.tolerance", "0.001 delta_degC")) < 0.01
+
+
+def test_a_phase_that_stands_still_makes_no_heat():
+    """Taxi, hold, take-off, cool-down: power only while rolling; afterwards the tyre cools towards the ambient."""
+    result = run("nasa-taxi-takeoff")
+    power = result.heat_budget.power("generated")
+    speed = np.array([result.study.card.drive.value("speed", t) for t in result.times])
+    inside = np.array([not any(abs(t - p.end) < 1e-6 for p in result.phases) for t in result.times])
+    assert np.all(power[inside & (speed == 0)] == 0)
+    assert np.all(power[inside & (speed > 0)] > 0)
+    stop = result.phases[-1].start
+    peaks = result.readings[result.times >= stop + 60].drop(columns=["time_s", "rim", "contained-air"])
+    assert np.all(np.diff(peaks.max(axis=1)) < 1e-6)

@@ -1,0 +1,80 @@
+"""A study is immutable, changes by dotted name, and survives its own file."""
+
+from __future__ import annotations
+
+import copy
+
+import pytest
+
+import tyrefem as tf
+
+QUICK = {"mesh.size": "4 mm", "drive.duration": "60 s"}
+
+
+@pytest.fixture(scope="module")
+def study():
+    return tf.study("nasa-22x5.5-8pr")
+
+
+def test_replace_returns_a_new_study(study):
+    before = copy.deepcopy(study.data)
+    faster = study.replace({"drive.speed": "25 mph", "materials.tread.loss_tangent.value": 0.1})
+    assert study.data == before
+    assert faster.card.drive.phases[0].speed.start == pytest.approx(25 * 0.44704)
+    assert faster.materials["tread"].loss_tangent(25.0) == pytest.approx(0.1)
+    assert study.materials["tread"].loss_tangent(25.0) == pytest.approx(0.2)
+    with pytest.raises(AttributeError):
+        study.name = "another"
+
+
+def test_scaled_multiplies_the_number_wherever_it_stands(study):
+    for key in ("drive.load", "materials.tread.conductivity.value", "section.crown_radius"):
+        changed = study.scaled(key, 1.01)
+        assert changed.scaled(key, 1 / 1.01).section.line.crown_radius == pytest.approx(study.section.line.crown_radius)
+    assert study.scaled("section.crown_radius", 1.01).section.line.crown_radius == pytest.approx(
+        1.01 * study.section.line.crown_radius
+    )
+    assert study.scaled("drive.load", 0.5).card.drive.phases[0].load.start == pytest.approx(1350 * 4.4482216)
+
+
+def test_every_uncertain_number_can_be_scaled(study):
+    assert study.uncertainty["materials.tread.loss_tangent.value"] == pytest.approx(0.2)
+    assert {"conductivity", "specific_heat", "loss_tangent"} == {key.split(".")[2] for key in study.uncertainty}
+    for key, sd in study.uncertainty.items():
+        assert 0 < sd < 1
+        assert study.scaled(key, 1 + sd).data != study.data
+
+
+def test_a_saved_study_runs_to_identical_readings(study, tmp_path):
+    changed = study.replace(
+        {**QUICK, "section.crown_radius": "3.4 in", "materials.tread.conductivity.value": "0.25 W/m/K"}
+    )
+    loaded = tf.study(str(changed.save(tmp_path / "other" / "study.toml")))
+    assert loaded.data == changed.data
+    assert (loaded.run().readings == changed.run().readings).all(axis=None)
+
+
+def test_the_error_names_file_and_field(tmp_path, study):
+    file = study.save(tmp_path / "study.toml")
+    file.write_text(file.read_text().replace('speed = "20 mph"', 'speed = "20"'))
+    with pytest.raises(tf.InputError) as caught:
+        tf.study(str(file))
+    assert str(file) in str(caught.value)
+    assert "drive.speed: '20' has no unit" in str(caught.value)
+
+
+def test_an_unknown_study_gets_the_nearest_name():
+    with pytest.raises(tf.InputError, match=r"did you mean 'nasa-22x5\.5-"):
+        tf.study("nasa-22x5.5-8p")
+
+
+def test_a_missing_region_is_named(study):
+    data = copy.deepcopy(study.data)
+    del data["materials"]["bead"]
+    with pytest.raises(tf.InputError, match="no material card for region 'bead'"):
+        tf.Study("x", data, None, study.folder)
+
+
+def test_a_load_that_the_section_cannot_bear_is_an_input_error(study):
+    with pytest.raises(tf.InputError, match=r"impossible|deflects the tyre"):
+        study.replace({"drive.load": "30000 lbf"}).run()

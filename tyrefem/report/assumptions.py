@@ -1,0 +1,47 @@
+"""What the model leaves out or takes on trust, as far as it concerns a study."""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING
+
+if TYPE_CHECKING:
+    from tyrefem.studies import Study
+
+ALWAYS = {
+    "Axisymmetric deformation": "A material point passes once per revolution from the inflated section to the section "
+    "under the footprint's centre, as if the whole tyre were pressed in a barrel; what happens at the footprint's edges "
+    "and along the circumference is not resolved.",
+    "Free, straight rolling": "No slip, steering, camber, braking or wear: no heat from sliding in the footprint.",
+    "Films averaged over the revolution": "The tread sees road and air for their shares of a revolution; flash "
+    "temperatures during contact, and any change around the circumference, are averaged out. At standstill the road "
+    "takes no heat.",
+    "Contained air of one temperature": "The strain cycle uses the drive's pressure; the pressure that rises with the "
+    "air's temperature is reported but does not change the deflection.",
+}
+
+
+def assumptions(study: Study, estimates: list[str]) -> list[tuple[str, str]]:
+    """(what, why it matters); ``estimates`` are the material entries that are marked as estimates."""
+    mechanics = study.card.mechanics
+    found = [*ALWAYS.items()]
+    cycle = (
+        "The strain energy of that change times tan δ is lost once per revolution (convention "
+        f"{mechanics.loss_convention}); higher harmonics and the frequency dependence of tan δ are neglected."
+    )
+    found.insert(1, ("One loss cycle per revolution", cycle))
+    if mechanics.load_law.law == "tr-r-64":
+        memory = "The load-deflection formula is quoted from memory of NASA TR R-64; a measured stiffness is better."
+        found.append(("Load and deflection from memory", memory))
+    found.append(("Footprint from memory", "The footprint's length is that of NASA TR R-64, quoted from memory."))
+    if estimates:
+        found.append(("Estimated material numbers", f"Marked in the table of materials: {'; '.join(estimates)}."))
+    measured = (
+        "This study names measured tables; the comparison with them is a report of its own."
+        if study.measured
+        else "No measured temperatures belong to this study."
+    )
+    scan = (
+        "The model follows Clark & Dodge (1980), whose measured temperature curves are illegible in the scan, so it has "
+        f"not been validated against them. {measured}"
+    )
+    return [*found, ("Validation", scan)]

@@ -1,0 +1,220 @@
+"""What a report says: the numbers that decide first, then the tables."""
+
+from __future__ import annotations
+
+import datetime
+from typing import TYPE_CHECKING, Any
+
+import numpy as np
+
+from tyrefem.plotting.heat_source import rolling_time
+from tyrefem.report.assumptions import assumptions
+from tyrefem.report.inputs import boundary_rows, material_rows, mechanics_rows, section_sources, study_text
+from tyrefem.report.words import number, place, seconds
+from tyrefem.summary import summary, versions
+
+if TYPE_CHECKING:
+    from tyrefem.result import PhaseState, Result
+
+Rows = list[list[str]]
+
+
+def content(result: Result) -> dict[str, Any]:
+    """Everything the template needs, as text."""
+    study = result.study
+    materials, estimates = material_rows(study)
+    text, as_written = study_text(study)
+    return {
+        "title": study.title,
+        "name": study.name,
+        "written": datetime.datetime.now().astimezone().strftime("%Y-%m-%d %H:%M"),
+        "interrupted": _interrupted(result),
+        "headline": headline(result),
+        "sensors": _sensors(result),
+        "extremes": _extremes(result),
+        "phases": [_phase(result, phase) for phase in result.phases],
+        "budget": _budget(result),
+        "imbalance": f"{result.heat_budget.imbalance:.1e}",
+        "materials": materials,
+        "estimates": estimates,
+        "boundaries": boundary_rows(study),
+        "mechanics": mechanics_rows(study),
+        "sources": section_sources(study),
+        "numerics": _numerics(result),
+        "assumptions": assumptions(study, estimates),
+        "study_text": text,
+        "as_written": as_written,
+    }
+
+
+def _interrupted(result: Result) -> str:
+    if not result.history.interrupted:
+        return ""
+    return f"{seconds(result.times[-1])} of {seconds(result.study.card.drive.end)}"
+
+
+def headline(result: Result) -> list[dict[str, str]]:
+    """The numbers that decide: label, value and what belongs to it."""
+    found = summary(result)
+    hot, resistance, air = found["hottest"], found["rolling_resistance"], found["contained_air"]
+    budget = result.heat_budget
+    cards = [
+        {
+            "label": "Hottest point",
+            "value": f"{hot['temperature_degC']:.1f} °C",
+            "note": f"{hot['region']}, {place(result.study.section, hot['s_m'], hot['depth_m'], hot['region'])}; "
+            f"after {seconds(hot['time_s'])}",
+        }
+    ]
+    if resistance["force_N"] > 0:
+        cards.append(
+            {
+                "label": "Rolling resistance",
+                "value": f"{number(resistance['force_N'], 3)} N",
+                "note": f"coefficient {number(resistance['coefficient'], 3)}; cold "
+                f"{number(resistance['cold_force_N'], 3)} N, {number(resistance['cold_coefficient'], 3)}"
+                f"{_at_end_of(result)}",
+            }
+        )
+    cards.append(
+        {
+            "label": "Contained air at the end",
+            "value": f"{air['temperature_degC']:.1f} °C",
+            "note": f"{number(air['gauge_pressure_Pa'] / 1e3)} kPa gauge, "
+            f"{number(result.gas_pressure[0] / 1e3)} kPa at the start",
+        }
+    )
+    cards.append(
+        {
+            "label": "Heat generated",
+            "value": f"{number(budget.total('generated') / 1e3)} kJ",
+            "note": f"stored {number(budget.total('stored') / 1e3)} kJ, lost {number(budget.total('lost') / 1e3)} kJ; "
+            f"the budget closes to {budget.imbalance:.0e}",
+        }
+    )
+    loaded = max((p for p in result.phases if p.start < result.times[-1]), key=lambda p: p.deflection, default=None)
+    if loaded is not None and loaded.deflection > 0:
+        several = f"; phase {loaded.name}" if len(result.phases) > 1 else ""
+        cards.append(
+            {
+                "label": "Deflection",
+                "value": f"{loaded.deflection * 1e3:.1f} mm",
+                "note": f"footprint {loaded.footprint_length * 1e3:.0f} mm, {100 * loaded.road_fraction:.1f} % of a "
+                f"revolution on the road{several}",
+            }
+        )
+    return cards
+
+
+def _at_end_of(result: Result) -> str:
+    """Which phase the rolling resistance belongs to, where there are several."""
+    i = rolling_time(result)
+    if i is None or len(result.phases) < 2:
+        return ""
+    name = next(phase.name for phase in result.phases if result.times[i] <= phase.end + 1e-6)
+    return f"; after {seconds(result.times[i])}, phase {name}"
+
+
+def _drag(result: Result, phase: PhaseState) -> str:
+    """Rolling resistance at the end of a phase, N."""
+    end = min(phase.end, float(result.times[-1]))
+    if phase.speed <= 0 or phase.start >= result.times[-1]:
+        return "–"
+    i = int(np.searchsorted(result.times, end - 1e-6))
+    speed = result.tyre.speed(end * (1 - 1e-12))
+    return number(float(result.heat_budget.power("generated")[i]) / speed, 3) if speed > 0 else "–"
+
+
+def _sensors(result: Result) -> Rows:
+    section, readings = result.study.section, result.readings
+    gradients = result.gradient_at_sensors
+    times, rows = result.times, []
+    for name, (r, z) in result.sensor_places.items():
+        s, depth = (float(np.ravel(v)[0]) for v in section.locate(np.array([[r, z]])))
+        values = readings[name].to_numpy()
+        hottest = int(np.argmax(values))
+        rows.append(
+            [
+                name, str(section.region_at(s, depth)), place(section, s, depth),
+                f"{s * 1e3:.1f}", f"{depth * 1e3:.1f}",
+                f"{values[-1]:.1f}", f"{values[hottest]:.1f}", number(times[hottest]),
+                f"{gradients[name].iloc[-1] / 1e3:.2f}",
+            ]
+        )  # fmt: skip
+    for name in [column for column in readings.columns if column not in ("time_s", *result.sensor_places)]:
+        values = readings[name].to_numpy()
+        hottest = int(np.argmax(values))
+        rows.append([name.replace("-", " "), "–", "lumped: one temperature", "–", "–", f"{values[-1]:.1f}",
+                     f"{values[hottest]:.1f}", number(times[hottest]), "–"])  # fmt: skip
+    return rows
+
+
+def _extremes(result: Result) -> Rows:
+    return [
+        [
+            "whole tyre" if row["region"] == "tyre" else str(row["region"]),
+            place(result.study.section, row["s_m"], row["depth_m"], "" if row["region"] == "tyre" else row["region"]),
+            f"{row['temperature_degC']:.1f}", number(row["time_s"]), f"{row['r_m'] * 1e3:.1f}",
+            f"{row['z_m'] * 1e3:.1f}",
+        ]
+        for row in result.extremes.to_dict("records")
+    ]  # fmt: skip
+
+
+def _phase(result: Result, phase: PhaseState) -> list[str]:
+    reached = result.times[-1]
+    state = "" if reached >= phase.end - 1e-6 else " (not reached)" if phase.start >= reached else " (cut short)"
+    return [
+        phase.name + state, f"{number(phase.start)} – {number(phase.end)}",
+        f"{phase.speed:.2f}", number(phase.load / 1e3), number(phase.pressure / 1e3),
+        f"{phase.deflection * 1e3:.1f}", f"{phase.footprint_length * 1e3:.0f}", f"{100 * phase.road_fraction:.1f}",
+        number(phase.road_film), f"{phase.air_film:.1f}", _drag(result, phase),
+    ]  # fmt: skip
+
+
+def _budget(result: Result) -> list[dict[str, Any]]:
+    budget, rows = result.heat_budget, []
+    generated = budget.total("generated")
+
+    def share(energy: float) -> str:
+        return f"{100 * energy / generated:.1f}" if generated > 0 else "–"
+
+    words = {"generated": "generated in", "stored": "stored in", "lost": "lost to", "lumped": "of that"}
+    for kind, word in words.items():
+        entries = [(name, series) for (k, name), series in budget.energies.items() if k == kind]
+        for name, series in entries:
+            power = budget.powers.get((kind, name))
+            cells = [
+                f"{word} {name}",
+                number(series[-1] / 1e3),
+                "–" if power is None else number(power[-1]),
+                share(series[-1]),
+            ]
+            rows.append({"total": False, "cells": cells})
+        if entries and kind != "lumped":
+            cells = [
+                f"{kind} in all",
+                number(budget.total(kind) / 1e3),
+                number(budget.power(kind)[-1]),
+                share(budget.total(kind)),
+            ]
+            rows.append({"total": True, "cells": cells})
+    return rows
+
+
+def _numerics(result: Result) -> Rows:
+    study, steps, mesh = result.study, result.history.steps, result.tyre.mesh.summary()
+    rows = [
+        ["mesh", f"{mesh['mesher']}: {mesh['nodes']} nodes, {mesh['elements']} {mesh['cell']}s of "
+         f"{mesh['size_m'] * 1e3:.3g} mm, {study.card.mesh.element}, {'half' if mesh['half'] else 'full'} section"],
+        ["mesh quality", f"scaled Jacobian at least {mesh['scaled_jacobian']:.2f}, edge ratio at most "
+         f"{mesh['edge_ratio']:.1f}"],
+        ["time integration", f"adaptive steps, error aimed at {study.tolerance:g} K; {steps.accepted} steps accepted, "
+         f"{steps.rejected} rejected, {steps.factorisations} factorisations"],
+        ["mesh error", f"{study.numerical_sd:g} K (standard deviation assumed by the study)"],
+        ["wall time", f"{result.wall_time:.2f} s"],
+        ["versions", ", ".join(f"{name} {version}" for name, version in versions().items())],
+    ]  # fmt: skip
+    if not study.section.half:
+        return rows
+    return [*rows, ["symmetry", "half section; heat, powers and forces are those of the whole tyre"]]

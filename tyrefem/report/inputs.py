@@ -1,0 +1,153 @@
+"""What went into a run: materials with their sources, boundary laws, mechanics, assumptions, the study file."""
+
+from __future__ import annotations
+
+import math
+import tomllib
+import typing
+from collections.abc import Iterator, Mapping
+from typing import TYPE_CHECKING, Any
+
+from tyrefem.quantity import Unit
+from tyrefem.report.words import number
+
+if TYPE_CHECKING:
+    from tyrefem.cards import Card
+    from tyrefem.materials import MaterialCard
+    from tyrefem.studies import Study
+
+
+def material_rows(study: Study) -> tuple[list[dict[str, Any]], list[str]]:
+    """One row per number: region, card, property, value, uncertainty, source, estimate or not; and the estimates."""
+    rows, estimates = [], []
+    for region, card in study.materials.items():
+        for row, (label, entry, value) in enumerate(_properties(card)):
+            guess = "estimate" in entry.source.lower()
+            if guess:
+                estimates.append(f"{region}: {label}")
+            heads = ["", ""] if row else [region, card.title]
+            sd = "–" if entry.relative_sd is None else f"± {100 * entry.relative_sd:.0f} %"
+            rows.append({"cells": [*heads, label, value, sd, entry.source], "estimate": guess, "first": not row})
+    return rows, estimates
+
+
+def _properties(card: MaterialCard) -> Iterator[tuple[str, Any, str]]:
+    k, loss = card.conductivity, card.loss_tangent
+    if k.along is not None and k.across is not None:
+        yield "conductivity", k, f"{number(k.along)} along, {number(k.across)} across the plies W/m/K"
+    else:
+        yield "conductivity", k, _law(k.law(), "W/m/K")
+    yield "density", card.density, _law(card.density.law(), "kg/m³")
+    yield "specific heat", card.specific_heat, _law(card.specific_heat.law(), "J/kg/K")
+    if loss.law == "exponential":
+        law = f"{number(loss.value or 0)} exp(−{number(loss.rate or 0)} (T − {number(loss.at)} °C))"
+    else:
+        law = number(loss.value or 0) if loss.law == "constant" else f"table of {len(loss.table or [])} rows"
+    yield "tan δ", loss, law
+    for label, modulus in (("shear modulus", card.shear_modulus), ("Young's modulus", card.youngs_modulus)):
+        if modulus is not None:
+            yield label, modulus, f"{number(modulus.value / 1e6)} MPa"
+    if card.cord is not None:
+        angle, shear = card.cord.crown_angle, card.cord.ply_shear_modulus
+        texts = [] if angle is None else [f"crown angle {number(math.degrees(angle))}°"]
+        texts += [] if shear is None else [f"ply shear modulus {number(shear / 1e6)} MPa"]
+        yield "cords", card.cord, ", ".join(texts)
+
+
+def _law(law: Any, unit: str) -> str:
+    """A number, or the ends of a table in temperature."""
+    if not callable(law):
+        return f"{number(law)} {unit}"
+    temperatures = getattr(law, "temperatures", None)
+    if temperatures is None:
+        return f"depends on temperature, {unit}"
+    low, high = temperatures[0], temperatures[-1]
+    ends = f"{number(float(law(low)))} to {number(float(law(high)))}"
+    return f"{ends} {unit} from {number(low)} to {number(high)} °C"
+
+
+def boundary_rows(study: Study) -> list[list[str]]:
+    """Side, law, what it says, and its numbers in SI."""
+    laws = study.card.boundaries
+    rows = []
+    for side in ("road", "outside_air", "contained_air", "rim"):
+        law = getattr(laws, side)
+        words = (type(law).__doc__ or "").strip().partition("\n")[0]
+        rows.append([side.replace("_", " "), str(law.law), words, "; ".join(_numbers(law))])
+    return rows
+
+
+def mechanics_rows(study: Study) -> list[list[str]]:
+    """Name and value of every choice about strain and load."""
+    mechanics = study.card.mechanics
+    law = mechanics.load_law
+    return [
+        ["strain cycle", mechanics.strain],
+        ["load and deflection", "; ".join([str(law.law), *_numbers(law)])],
+        ["loss convention", mechanics.loss_convention],
+        ["Poisson term c_a", number(mechanics.poisson_term)],
+        ["membrane shear", "counted" if mechanics.membrane_shear else "left out"],
+    ]
+
+
+def _numbers(card: Card) -> list[str]:
+    """Every field with its unit; those the study leaves at their defaults say so."""
+    found = []
+    for name, info in type(card).model_fields.items():
+        value = getattr(card, name)
+        if name == "law" or value is None:
+            continue
+        unit = _unit([*info.metadata, info.annotation])
+        if isinstance(value, float):
+            text = f"{number(value)} {unit.replace('**', '')}".strip()
+        else:
+            text = f"table of {len(value)} rows" if isinstance(value, list) else str(value)
+        default = "" if name in card.model_fields_set else " (default)"
+        found.append(f"{name.replace('_', ' ')} {text}{default}")
+    return found
+
+
+def _unit(parts: list[Any]) -> str:
+    """The unit in a field's annotation, however deep; empty where there is none."""
+    for part in parts:
+        if isinstance(part, Unit):
+            return "" if part.unit == "1" else part.unit.replace("delta_degC", "K").replace("degC", "°C")
+        found = _unit(list(typing.get_args(part)))
+        if found:
+            return found
+    return ""
+
+
+def section_sources(study: Study) -> list[list[str]]:
+    """Table of the section's card -> the source it names."""
+    from tyrefem import library
+
+    data, _, _ = library.load("section", study.data["section"], study.folder)
+    return [[where, source] for where, source in _sources(data, "")]
+
+
+def _sources(data: Any, where: str) -> Iterator[tuple[str, str]]:
+    if isinstance(data, Mapping):
+        label = f"{where} {data['name']}" if isinstance(data.get("name"), str) and where else where
+        for key, value in data.items():
+            if key == "source":
+                yield label or "section", str(value)
+            else:
+                yield from _sources(value, f"{label}, {key}" if label else key.replace("_", " "))
+    elif isinstance(data, list):
+        for entry in data:
+            yield from _sources(entry, where)
+
+
+def study_text(study: Study) -> tuple[str, bool]:
+    """The study's file, and whether it is the file as written; if values were changed, the study as it was run."""
+    if study.file is not None and study.file.is_file():
+        text = study.file.read_text(encoding="utf-8")
+        try:
+            if tomllib.loads(text) == dict(study.data):
+                return text, True
+        except tomllib.TOMLDecodeError:
+            pass  # edited since the run: show what was run
+    import tomli_w
+
+    return tomli_w.dumps(dict(study.data)), False
