@@ -58,7 +58,7 @@ def _one_line(campaign: Campaign, done: pd.DataFrame) -> str:
     counted = f"{len(done)} of {len(campaign.cases)} cases finished."
     if not len(done):
         return counted
-    hot = done.loc[done["hottest_degC"].idxmax()]
+    hot = done.iloc[int(done["hottest_degC"].to_numpy().argmax())]
     coefficient = done["rolling_resistance_coefficient"]
     return (
         f"{counted} Hottest: {hot['hottest_degC']:.1f} °C in the {hot['hottest_region']} of case {hot['case']}, "

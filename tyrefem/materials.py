@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import functools
 from dataclasses import dataclass
 from pathlib import Path
 from typing import Annotated, Any, ClassVar, Literal
@@ -15,6 +16,8 @@ from tyrefem.errors import InputError
 from tyrefem.quantity import Unit
 
 Array = NDArray[np.float64]
+#: From absolute zero to the highest temperature that a card may name, degC.
+_RUBBER = (-273.15, 2000.0)
 
 
 class Sourced(Card):
@@ -172,7 +175,7 @@ class LossTangent(Sourced):
     law: Literal["exponential", "constant", "table"] = "exponential"
     value: Annotated[float, Unit("1", ge=0, le=10)] | None = None
     at: Temperature = 25.0
-    rate: Annotated[float, Unit("1/delta_degC", ge=-0.1, le=1)] | None = None
+    rate: Annotated[float, Unit("1/delta_degC", ge=-0.1, le=0.2)] | None = None
     table: list[list[Any]] | None = None
 
     @model_validator(mode="after")
@@ -180,22 +183,27 @@ class LossTangent(Sourced):
         if self.law == "table":
             if self.table is None:
                 raise InputError("the law 'table' needs 'table'")
-            _columns(self.table, ("degC", "1"))
+            _ = self._tabulated
         elif self.value is None:
             raise InputError(f"the law '{self.law}' needs 'value'")
         elif self.law == "exponential" and self.rate is None:
             raise InputError("the law 'exponential' needs 'rate', e.g. '0.0148 1/delta_degC'")
         return self
 
+    @functools.cached_property
+    def _tabulated(self) -> PropertyTable:
+        return PropertyTable(*_columns(self.table or [], ("degC", "1")))
+
     def __call__(self, temperature: Array | float) -> Array:
         """tan delta at temperatures in degC, same shape."""
         if self.law == "table":
-            temperatures, values = _columns(self.table or [], ("degC", "1"))
-            return np.asarray(np.interp(temperature, temperatures, values))
+            return self._tabulated(temperature)
         value = self.value or 0.0
         if self.law == "constant":
             return np.full_like(np.asarray(temperature, dtype=float), value)
-        return value * np.exp(-(self.rate or 0.0) * (np.asarray(temperature) - self.at))
+        # A rejected trial step may stray far: outside these bounds no rubber has a tan delta to speak of.
+        bounded = np.clip(temperature, *_RUBBER)
+        return np.asarray(value * np.exp(-(self.rate or 0.0) * (bounded - self.at)))
 
 
 class Cord(Sourced):

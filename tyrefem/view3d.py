@@ -47,6 +47,8 @@ def _last_line(text: str) -> str:
 def _draw(source: Path, png: Path) -> None:
     import pyvista
 
+    from tyrefem.plotting.style import temperature_map
+
     if source.suffix == ".pvd":
         reader = pyvista.get_reader(str(source))
         reader.set_active_time_value(reader.time_values[-1])
@@ -66,7 +68,9 @@ def _draw(source: Path, png: Path) -> None:
         "title": "temperature [degC]", "color": "black", "vertical": True, "position_x": 0.87, "position_y": 0.2,
         "height": 0.6, "width": 0.07, "fmt": "%.0f",
     }  # fmt: skip
-    plotter.add_mesh(grid, scalars="temperature_degC", cmap="inferno", scalar_bar_args=bar, ambient=0.45, diffuse=0.6)
+    plotter.add_mesh(
+        grid, scalars="temperature_degC", cmap=temperature_map(), scalar_bar_args=bar, ambient=0.45, diffuse=0.6
+    )
     plotter.view_xy()
     if not flat:
         plotter.camera.azimuth, plotter.camera.elevation = 40.0, 25.0

@@ -1,7 +1,7 @@
 """VTK files of a run for ParaView: one .vtu per saved time and a .pvd that gives their times.
 
 The section lies in the plane of the screen: x = z (axial), y = r (up), so the wheel's axis is the x axis; metres.
-P2 elements become quadratic cells; the ring is cut into linear cells on all their nodes.
+P2 elements become quadratic cells; the ring is cut into linear cells on all their nodes, in single precision.
 """
 
 from __future__ import annotations
@@ -95,17 +95,19 @@ class _Ring:
         axial = np.broadcast_to(z, (segments, size))
         points = np.stack([axial, r * np.cos(angle), r * np.sin(angle)], axis=-1).reshape(-1, 3)
         self.points = points.astype(np.float32)
-        turned = cells[::-1].T
+        # Seen along the turn a hexahedron's first face looks inwards, a wedge's outwards.
+        turned = cells[::-1].T if len(cells) == 4 else cells.T
         here = turned[None] + size * np.arange(segments)[:, None, None]
         there = turned[None] + size * (np.arange(1, segments + 1) % segments)[:, None, None]
         self.cell = "hexahedron" if len(cells) == 4 else "wedge"
         self.cells = np.concatenate([here, there], axis=2).reshape(-1, 2 * len(cells)).astype(np.int32)
 
     def at_points(self, values: Array) -> Array:
-        return np.tile(values, self.segments)
+        return np.tile(values.astype(np.float32), self.segments)
 
     def at_cells(self, values: Array) -> Array:
-        return np.tile(values[self.parent], self.segments)
+        kind = np.int32 if values.dtype == np.int32 else np.float32
+        return np.tile(values[self.parent].astype(kind), self.segments)
 
 
 def _write(result: Result, folder: Path, name: str, shape: _Plane | _Ring) -> Path:

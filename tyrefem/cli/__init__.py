@@ -2,8 +2,6 @@
 
 from __future__ import annotations
 
-import contextlib
-import os
 import sys
 from typing import Annotated
 
@@ -66,8 +64,6 @@ def _guarded(arguments: list[str] | None) -> int:
         return fail(error)
     except KeyboardInterrupt:
         return fail("interrupted", 130)
-    except BrokenPipeError:
-        return _reader_went_away()
     except OSError as error:
         return fail(": ".join(str(part) for part in (error.filename, error.strerror or error) if part))
     except SystemExit as end:
@@ -75,13 +71,6 @@ def _guarded(arguments: list[str] | None) -> int:
     except Exception as error:
         return _other(error)
     return code if isinstance(code, int) else 0
-
-
-def _reader_went_away() -> int:
-    """As `head` does: point stdout elsewhere, so that Python's own flush at the end stays silent."""
-    with contextlib.suppress(OSError, ValueError):
-        os.dup2(os.open(os.devnull, os.O_WRONLY), sys.stdout.fileno())
-    return 0
 
 
 def _other(error: Exception) -> int:

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from pathlib import Path
-from typing import TYPE_CHECKING, Annotated
+from typing import TYPE_CHECKING, Annotated, Any
 
 import typer
 
@@ -17,8 +17,10 @@ from tyrefem.cli.common import (
     settings,
     writable_folder,
 )
+from tyrefem.errors import InputError
 
 if TYPE_CHECKING:
+    from tyrefem.campaign import Campaign
     from tyrefem.result import Result
     from tyrefem.studies import Study
 
@@ -38,10 +40,11 @@ def run(
     """
     from tyrefem.studies import study as load
 
-    found = load(study, settings(changes))
+    values = settings(changes)
+    found = load(study, values)
     folder = writable_folder(out or Path("results") / found.name)
     if found.is_campaign:
-        _campaign(found, folder, pictures, vtk, revolved, as_json)
+        _campaign(found, folder, values, pictures, vtk, revolved, as_json)
     else:
         _single(found, folder, pictures, vtk, revolved, as_json)
 
@@ -81,10 +84,13 @@ def _words(result: Result) -> str:
     return "\n".join(lines)
 
 
-def _campaign(study: Study, folder: Path, pictures: bool, vtk: bool, revolved: bool, as_json: bool) -> None:
+def _campaign(
+    study: Study, folder: Path, values: dict[str, Any], pictures: bool, vtk: bool, revolved: bool, as_json: bool
+) -> None:
     from tyrefem.campaign import run_campaign, write_campaign_report
 
     campaign = study.campaign()
+    _refuse_overlaid(campaign, values)
 
     def each(result: Result, place: Path) -> None:
         if vtk:
@@ -113,6 +119,15 @@ def _campaign(study: Study, folder: Path, pictures: bool, vtk: bool, revolved: b
         fail(f"case {entry.case}: {entry.failure}")
     if len(failed):
         raise typer.Exit(1)
+
+
+def _refuse_overlaid(campaign: Campaign, values: dict[str, Any]) -> None:
+    """A value that the table sets again in every case would be changed in vain."""
+    for key in values:
+        if all(key in case.changes for case in campaign.cases):
+            raise InputError(
+                f"every case of {campaign.study.card.cases} sets '{key}' itself: change it there", field="--set"
+            )
 
 
 def register(app: typer.Typer) -> None:

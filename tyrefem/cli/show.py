@@ -53,7 +53,7 @@ def show(
 
 def _section(name: str, values: dict[str, Any]) -> tuple[Any, dict[str, Any]]:
     from tyrefem.dotted import changed
-    from tyrefem.plotting import section_figure
+    from tyrefem.plotting.section import section_figure
     from tyrefem.section import load
 
     data: dict[str, Any] = {"section": name}
@@ -64,7 +64,7 @@ def _section(name: str, values: dict[str, Any]) -> tuple[Any, dict[str, Any]]:
 
 
 def _mesh(name: str, values: dict[str, Any]) -> tuple[Any, dict[str, Any]]:
-    from tyrefem.plotting import mesh_figure
+    from tyrefem.plotting.mesh import mesh_figure
     from tyrefem.studies import study
 
     tyre = study(name, values).mesh()
@@ -72,7 +72,7 @@ def _mesh(name: str, values: dict[str, Any]) -> tuple[Any, dict[str, Any]]:
 
 
 def _strain(name: str, values: dict[str, Any]) -> tuple[Any, dict[str, Any]]:
-    from tyrefem.plotting import strain_figure
+    from tyrefem.plotting.strain import strain_figure
     from tyrefem.rolling import RollingTyre
     from tyrefem.studies import study
 

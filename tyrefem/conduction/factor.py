@@ -11,6 +11,8 @@ from scipy.sparse import csc_matrix, csr_matrix
 from scipy.sparse.csgraph import reverse_cuthill_mckee
 from scipy.sparse.linalg import splu
 
+from tyrefem.conduction.errors import SolverError
+
 Array = NDArray[Any]
 
 _SOLVES_PER_FACTOR = 30.0
@@ -90,7 +92,7 @@ class Factor:
             pbtrf, self._pbtrs = tuple(get_lapack_funcs(("pbtrf", "pbtrs"), (band,)))  # type: ignore[arg-type]
             self._band, info = pbtrf(band, lower=1, overwrite_ab=1)
             if info != 0:
-                raise np.linalg.LinAlgError("the conduction matrix is not positive definite")
+                raise SolverError("the conduction matrix is not positive definite")
         else:
             self._lu = splu(
                 ordering.matrix(data),

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from abc import ABC, abstractmethod
 from typing import Any
 
 import numpy as np
@@ -35,23 +36,23 @@ class Linear:
         self.D = np.zeros((n_reservoirs, n_reservoirs))
 
 
-class Load:
+class Load(ABC):
     """One heat input. `slot` is its line in the ledger of powers into the body (W)."""
 
     slot = -1
     timed = False
     static = False
 
-    def freeze(self, t: float, y: State, linear: Linear) -> None:
+    def freeze(self, t: float, y: State, linear: Linear) -> None:  # noqa: B027 - most have no linear part
         """Put the frozen linear part into `linear`."""
 
     def stale(self, t: float, y: State) -> bool:
         """Whether the frozen part differs by more than a fifth from what it should be now."""
         return False
 
+    @abstractmethod
     def remainder(self, t: float, y: State, G: Array, Gg: Array) -> float:
         """Add what the linear part leaves out to G (body) and Gg (reservoirs); return the power, W."""
-        raise InputError("a load must define its remainder")
 
     def linear_power(self, y: State) -> float:
         """Power of the frozen linear part, W into the body."""

@@ -57,7 +57,7 @@ class Operators:
         self.points: Array = self.basis.doflocs
         self.element_dofs: Array = self.basis.element_dofs
         shape = self.basis.dx.shape
-        self._phi = np.broadcast_to(
+        self.phi = np.broadcast_to(
             np.stack([np.broadcast_to(np.asarray(b[0]), shape)[:1] for b in self.basis.basis]),
             (len(self.basis.basis), *shape),
         )
@@ -66,21 +66,21 @@ class Operators:
         self.weight: Array = self.basis.dx * (2 * np.pi * self.x[0] if axisymmetric else 1.0)
         self.constant_slopes = type(mesh) is skfem.MeshTri1 and element == "P1"
         self._pattern()
-        self._kept: dict[Any, Any] = {}
+        self.remembered: dict[Any, Any] = {}
 
     def _pattern(self) -> None:
         n, dofs = self.size, self.element_dofs.astype(np.int64)
         keys = dofs[:, None, :] * n + dofs[None, :, :]
-        unique, self._place = np.unique(keys.reshape(-1), return_inverse=True)
-        self._place = self._place.reshape(keys.shape)
-        self._keys = unique
+        unique, self.place = np.unique(keys.reshape(-1), return_inverse=True)
+        self.place = self.place.reshape(keys.shape)
+        self.keys = unique
         self.indices = (unique % n).astype(np.int32)
         self.indptr = np.concatenate(([0], np.cumsum(np.bincount(unique // n, minlength=n)))).astype(np.int32)
 
     def _once(self, key: Any, make: Callable[[], Any]) -> Any:
-        if key not in self._kept:
-            self._kept[key] = make()
-        return self._kept[key]
+        if key not in self.remembered:
+            self.remembered[key] = make()
+        return self.remembered[key]
 
     @property
     def nnz(self) -> int:
@@ -95,7 +95,7 @@ class Operators:
         """Weights (n,) whose product with the unknowns is the volume mean."""
 
         def make() -> Array:
-            load = np.einsum("ieq,eq->ie", self._phi, self.weight)
+            load = np.einsum("ieq,eq->ie", self.phi, self.weight)
             row = np.bincount(self.element_dofs.reshape(-1), weights=load.reshape(-1), minlength=self.size)
             return row / row.sum()
 
@@ -117,7 +117,7 @@ class Operators:
         return self._once(("nodes", name), lambda: np.ascontiguousarray(self.points[:, self.dofs(name)]))
 
     def _gather(self, elements: Array, local: Array) -> Array:
-        place = self._place[:, :, elements]
+        place = self.place[:, :, elements]
         return np.bincount(place.reshape(-1), weights=local.reshape(-1), minlength=self.nnz)
 
     def mass(self, name: str) -> Array:
@@ -125,7 +125,7 @@ class Operators:
 
         def make() -> Array:
             e = self.elements(name)
-            phi = self._phi[:, 0]  # The same in every element: one matrix product assembles them all.
+            phi = self.phi[:, 0]  # The same in every element: one matrix product assembles them all.
             products = (phi[:, None] * phi[None]).reshape(-1, phi.shape[1])
             local = products @ self.weight[e].T
             return self._gather(e, local.reshape(len(phi), len(phi), -1))

@@ -116,7 +116,7 @@ def distance(ops: Operators, point: Array) -> float:
 def located(ops: Operators, points: ArrayLike) -> Located:
     """The located points, remembered on the operators for the latest few sets."""
     array = as_points(points)
-    store = ops._kept.setdefault("located", {})
+    store = ops.remembered.setdefault("located", {})
     key = array.tobytes()
     if key not in store:
         if len(store) >= 8:

@@ -32,13 +32,13 @@ class Quadrature:
         def at_points(local: Array) -> csr_matrix:
             return csr_matrix((np.moveaxis(local, 0, -1).reshape(-1), columns, rows), (rows.size - 1, ops.size))
 
-        phi = ops._phi[:, e]
+        phi = ops.phi[:, e]
         slopes = ops.directed_gradients(name, direction)
         self.value = at_points(phi)
         self.slopes = tuple(at_points(g) for g in slopes)
         self.value_t = self.value.T.tocsr()
         self.slopes_t = tuple(g.T.tocsr() for g in self.slopes)
-        place = ops._place[:, :, e]
+        place = ops.place[:, :, e]
         q = np.broadcast_to(np.arange(self.weight.size).reshape(e.size, n_q), (n_local, n_local, e.size, n_q))
         where = np.broadcast_to(place[..., None], q.shape).reshape(-1)
 
@@ -75,7 +75,7 @@ class Surface:
         self.trace_t = self.trace.T.tocsr()
         self.row = self.trace_t @ self.weight
         self.points = np.ascontiguousarray(ops.points[:, self.dofs])
-        self._keys, self._size = ops._keys, ops.size
+        self._keys, self._size = ops.keys, ops.size
 
     def exchange(self, weighted: Array) -> tuple[Array, Array]:
         """Positions and values on the common pattern of the integral of h v u, given h times the weights."""

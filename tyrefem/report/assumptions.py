@@ -9,8 +9,8 @@ if TYPE_CHECKING:
 
 ALWAYS = {
     "Axisymmetric deformation": "A material point passes once per revolution from the inflated section to the section "
-    "under the footprint's centre, as if the whole tyre were pressed in a barrel; what happens at the footprint's edges "
-    "and along the circumference is not resolved.",
+    "under the footprint's centre, as if the whole tyre were pressed in a barrel; what happens at the footprint's "
+    "edges and along the circumference is not resolved.",
     "Free, straight rolling": "No slip, steering, camber, braking or wear: no heat from sliding in the footprint.",
     "Films averaged over the revolution": "The tread sees road and air for their shares of a revolution; flash "
     "temperatures during contact, and any change around the circumference, are averaged out. At standstill the road "
@@ -41,7 +41,7 @@ def assumptions(study: Study, estimates: list[str]) -> list[tuple[str, str]]:
         else "No measured temperatures belong to this study."
     )
     scan = (
-        "The model follows Clark & Dodge (1980), whose measured temperature curves are illegible in the scan, so it has "
-        f"not been validated against them. {measured}"
+        "The model follows Clark & Dodge (1980), whose measured temperature curves are illegible in the scan, so it "
+        f"has not been validated against them. {measured}"
     )
     return [*found, ("Validation", scan)]

@@ -89,7 +89,7 @@ def headline(result: Result) -> list[dict[str, str]]:
             "label": "Heat generated",
             "value": f"{number(budget.total('generated') / 1e3)} kJ",
             "note": f"stored {number(budget.total('stored') / 1e3)} kJ, lost {number(budget.total('lost') / 1e3)} kJ; "
-            f"the budget closes to {budget.imbalance:.0e}",
+            f"the budget closes to {format(budget.imbalance, '.0e').replace('-', '−')}",
         }
     )
     loaded = max((p for p in result.phases if p.start < result.times[-1]), key=lambda p: p.deflection, default=None)
@@ -177,7 +177,7 @@ def _budget(result: Result) -> list[dict[str, Any]]:
     generated = budget.total("generated")
 
     def share(energy: float) -> str:
-        return f"{100 * energy / generated:.1f}" if generated > 0 else "–"
+        return f"{100 * energy / generated:z.1f}" if generated > 0 else "–"
 
     words = {"generated": "generated in", "stored": "stored in", "lost": "lost to", "lumped": "of that"}
     for kind, word in words.items():
@@ -206,7 +206,7 @@ def _numerics(result: Result) -> Rows:
     study, steps, mesh = result.study, result.history.steps, result.tyre.mesh.summary()
     rows = [
         ["mesh", f"{mesh['mesher']}: {mesh['nodes']} nodes, {mesh['elements']} {mesh['cell']}s of "
-         f"{mesh['size_m'] * 1e3:.3g} mm, {study.card.mesh.element}, {'half' if mesh['half'] else 'full'} section"],
+         f"{mesh['size_m'] * 1e3:.3g} mm, {study.card.mesh.element} with {result.tyre.problem.operators.size} unknowns, {'half' if mesh['half'] else 'full'} section"],
         ["mesh quality", f"scaled Jacobian at least {mesh['scaled_jacobian']:.2f}, edge ratio at most "
          f"{mesh['edge_ratio']:.1f}"],
         ["time integration", f"adaptive steps, error aimed at {study.tolerance:g} K; {steps.accepted} steps accepted, "
