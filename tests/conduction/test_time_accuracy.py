@@ -84,10 +84,10 @@ def test_fixed_steps_converge_with_third_order(case: str) -> None:
             balance.settle((i + 1) * h, y.u, y.g)
         return np.concatenate((y.u, y.g))
 
-    reference = end(320)
-    coarse, fine = (np.abs(end(steps) - reference).max() for steps in (40, 80))
-    assert np.log2(coarse / fine) > 2.75
-    assert fine < 0.02
+    reference = end(640)
+    coarse, fine = (np.abs(end(steps) - reference).max() for steps in (80, 160))
+    assert np.log2(coarse / fine) > 2.8
+    assert fine < 1e-4
 
 
 def cases() -> dict[str, dict]:

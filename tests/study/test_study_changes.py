@@ -8,7 +8,7 @@ import pytest
 
 import tyrefem as tf
 
-QUICK = {"mesh.size": "4 mm", "drive.duration": "60 s"}
+QUICK = {"mesh.size": "4 mm", "mesh.element": "P1", "drive.duration": "60 s"}
 
 
 @pytest.fixture(scope="module")

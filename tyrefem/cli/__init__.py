@@ -59,7 +59,7 @@ def main(arguments: list[str] | None = None) -> int:
 
 def _guarded(arguments: list[str] | None) -> int:
     try:
-        code = app(args=arguments, standalone_mode=False)
+        code = app(args=arguments, prog_name=app.info.name, standalone_mode=False)
     except InputError as error:
         return fail(error)
     except KeyboardInterrupt:
@@ -88,5 +88,5 @@ def _other(error: Exception) -> int:
         typer.echo(message())
         return code
     context = getattr(error, "ctx", None)
-    command = context.command_path if context is not None else "tyrefem"
+    command = context.command_path if context is not None else app.info.name
     return fail(f"{message()} ('{command} --help' tells more)", code)

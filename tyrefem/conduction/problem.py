@@ -7,6 +7,7 @@ from typing import Any
 
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
+from threadpoolctl import threadpool_limits
 
 from tyrefem.conduction.balance import HeatBalance
 from tyrefem.conduction.budget import Tally
@@ -202,7 +203,9 @@ class Conduction:
         run = Integration(balance, when, y, float(tolerance), jumps, max_step or np.inf, tally)
         interrupted = False
         try:
-            run.run(progress)
+            # Band solves are too small to share: on a busy machine waiting threads cost ten times the work.
+            with threadpool_limits(1, user_api="blas"):
+                run.run(progress)
         except KeyboardInterrupt:
             interrupted = True
         done = len(tally.kept)

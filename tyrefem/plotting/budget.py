@@ -99,7 +99,7 @@ def _energies(axes: Axes, bars: list[Bar], budget: HeatBudget) -> None:
     ends = [value for bar in bars for value in (bar.start, bar.end)] or [0.0]
     factor, unit = si(max(map(abs, ends)), "J")
     generated = budget.total("generated")
-    form = digits(max((abs(bar.energy) for bar in bars), default=0.0) / factor)
+    form = digits(max((abs(bar.energy) for bar in bars), default=0.0) / factor, 4)
     for row, bar in enumerate(bars):
         axes.barh(row, (bar.end - bar.start) / factor, left=bar.start / factor, color=KINDS[bar.kind], height=0.72)
         axes.plot([bar.end / factor] * 2, [row - 0.36, row + 1.36], color=QUIET, lw=0.6)

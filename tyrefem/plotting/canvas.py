@@ -54,7 +54,7 @@ class Canvas:
         if not labels:
             return
         half = max(len(label.text) for label in labels) * LETTER * self.scale / 2
-        top = float(self.section.place(0.0, 0.0)[0]) * 1e3 - 0.4 * self.scale
+        top = float(self.section.place(0.0, 0.0)[0]) * 1e3 - 0.6 * self.scale
         right = [label for label in labels if label.x >= 0]
         left = [label for label in labels if label.x < 0]
         # The column stands under its innermost point: leaders then rise beside the texts above, not across them.

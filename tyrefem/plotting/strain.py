@@ -169,8 +169,8 @@ def _along(drawn: Figure, cycle: Arcs) -> None:
             axes.margins(y=0.25)
             for x, words in ((shoulder / 2, "crown: I, II"), ((shoulder + length) / 2, "sidewall: III, IV, bead V")):
                 axes.text(x, 1.02, words, transform=axes.get_xaxis_transform(), ha="center", fontsize=FONT, color=QUIET)
-        if row == 1:
-            axes.legend(fontsize=FONT - 1, frameon=False, ncols=3, loc="best", handlelength=2.4)
+        if row == 2:
+            axes.legend(fontsize=FONT - 1, frameon=False, loc="upper right", handlelength=2.8)
         if row < 2:
             axes.tick_params(labelbottom=False)
         else:

@@ -206,7 +206,8 @@ def _numerics(result: Result) -> Rows:
     study, steps, mesh = result.study, result.history.steps, result.tyre.mesh.summary()
     rows = [
         ["mesh", f"{mesh['mesher']}: {mesh['nodes']} nodes, {mesh['elements']} {mesh['cell']}s of "
-         f"{mesh['size_m'] * 1e3:.3g} mm, {study.card.mesh.element} with {result.tyre.problem.operators.size} unknowns, {'half' if mesh['half'] else 'full'} section"],
+         f"{mesh['size_m'] * 1e3:.3g} mm, {study.card.mesh.element} with "
+         f"{result.tyre.problem.operators.size} unknowns, {'half' if mesh['half'] else 'full'} section"],
         ["mesh quality", f"scaled Jacobian at least {mesh['scaled_jacobian']:.2f}, edge ratio at most "
          f"{mesh['edge_ratio']:.1f}"],
         ["time integration", f"adaptive steps, error aimed at {study.tolerance:g} K; {steps.accepted} steps accepted, "

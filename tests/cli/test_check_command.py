@@ -1,0 +1,68 @@
+"""`tyrefem check` of every kind of file, good and bad."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from pathlib import Path
+
+import pytest
+
+from tyrefem import library
+from tyrefem.cli import main
+
+GOOD = {
+    "geometry/nasa-22x5.5-8pr.toml": "a section, ",
+    "materials/nasa-carcass.toml": "a material card, ",
+    "studies/nasa-taxi-takeoff/study.toml": "a study of ",
+    "studies/nasa-taxi-takeoff": "a study of ",
+    "studies/nasa-campaign": "a campaign of 19 cases",
+    "studies/nasa-campaign/cases.csv": "a table of 19 case(s)",
+    "studies/example-validation": "3 measured run(s)",
+    "studies/example-validation/run-1.csv": "a measured table, 1 run(s), ",
+}
+
+
+@pytest.mark.parametrize("file", GOOD)
+def test_good_files(file: str, capfd: pytest.CaptureFixture[str]) -> None:
+    assert main(["check", str(library.shipped() / file)]) == 0
+    out, err = capfd.readouterr()
+    assert GOOD[file] in out
+    assert err == ""
+
+
+def test_every_shipped_card_is_good(capfd: pytest.CaptureFixture[str]) -> None:
+    cards = [path for kind in library.FOLDERS for path in library.names(kind).values()]
+    assert len(cards) > 8
+    assert [str(path) for path in cards if main(["check", str(path)]) != 0] == []
+
+
+BAD = {
+    "wrong.toml": (b"title = \n", "not valid TOML: Invalid value (at line 1, column 9)"),
+    "empty.toml": (b"", "is empty"),
+    "binary.toml": (b"\x7fELF\xff\xfe\x00", "not a text file in UTF-8"),
+    "other.toml": (b"x = 1\n", "unknown key 'x'"),
+    "newline.toml": (b'"a\\nb\\u001b[31m" = 1\n', "unknown key 'a b"),
+    "empty.csv": (b"", "is empty"),
+    "binary.csv": (b"\x7fELF\x00\x01", "is not a text file"),
+    "zip.csv": (b"PK\x03\x04rest", "spreadsheet or archive"),
+    "words.csv": (b"hello\nworld\n", "no time column"),
+    "short.csv": (b"time [s],crown [degC]\n0,25\n1\n", "line 3: 1 cells, but the heading has 2"),
+    "cases.csv": (b"name,drive.load [lbf]\na,1\na,2\n", "case 'a' stands in lines 2 and 3"),
+}
+
+
+@pytest.mark.parametrize("name", BAD)
+def test_bad_files(here: Path, refused: Callable[..., str], name: str) -> None:
+    content, words = BAD[name]
+    (here / name).write_bytes(content)
+    message = refused("check", name)
+    assert words in message
+    assert name in message
+
+
+def test_missing_file_empty_folder_and_a_link_to_nowhere(here: Path, refused: Callable[..., str]) -> None:
+    assert "nowhere.toml: no such file" in refused("check", "nowhere.toml")
+    (here / "folder").mkdir()
+    assert "folder: a folder without a study.toml" in refused("check", "folder")
+    (here / "link.toml").symlink_to("nothing")
+    assert "link.toml: cannot be read" in refused("check", "link.toml")

@@ -1,0 +1,92 @@
+"""A user's own folders of cards, and the paths by which a study can be named."""
+
+from __future__ import annotations
+
+import json
+import shutil
+from collections.abc import Callable
+from pathlib import Path
+
+import pytest
+from terminal import BARE, NASA, SHORT
+
+import tyrefem as tf
+from tyrefem import library
+from tyrefem.cli import main
+
+
+@pytest.fixture
+def own(here: Path) -> Path:
+    """A study of the user's own beside a tread compound of the user's own, of twice the conductivity."""
+    shutil.copytree(library.shipped() / "studies" / NASA, here / "mystudy")
+    text = (here / "mystudy/study.toml").read_text(encoding="utf-8")
+    (here / "mystudy/study.toml").write_text(text.replace('"nasa-tread"', '"my-tread"'), encoding="utf-8")
+    (here / "materials").mkdir()
+    card = (library.shipped() / "materials/nasa-tread.toml").read_text(encoding="utf-8")
+    (here / "materials/my-tread.toml").write_text(card.replace('"5e-4 cal/cm/s/K"', '"1e-3 cal/cm/s/K"'))
+    return here
+
+
+@pytest.mark.parametrize("written", ["./mystudy", "mystudy/study.toml", "mystudy", "./mystudy/study.toml"])
+def test_paths_of_a_study(own: Path, written: str) -> None:
+    assert main(["run", written, *SHORT, *BARE, "--out", "out"]) == 0
+    summary = json.loads((own / "out/summary.json").read_text(encoding="utf-8"))
+    assert summary["study"] == "mystudy"
+    assert tf.study(written).materials["tread"].conductivity.value == pytest.approx(2 * 0.20934, rel=1e-3)
+
+
+def test_absolute_path_from_elsewhere(own: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.chdir("/")
+    assert main(["check", str(own / "mystudy")]) == 0
+
+
+def test_folder_named_by_the_environment(
+    own: Path, tmp_path_factory: pytest.TempPathFactory, monkeypatch: pytest.MonkeyPatch,
+    capfd: pytest.CaptureFixture[str], refused: Callable[..., str],
+) -> None:  # fmt: skip
+    elsewhere = tmp_path_factory.mktemp("elsewhere")
+    shutil.move(own / "materials", elsewhere / "materials")
+    assert "materials.tread: no material named 'my-tread'" in refused("run", "./mystudy")
+    monkeypatch.setenv("TYREFEM_PATH", f"{tmp_path_factory.mktemp('empty')}:{elsewhere}")
+    assert main(["check", "mystudy"]) == 0
+    assert main(["list", "materials"]) == 0
+    assert "my-tread" in capfd.readouterr().out
+
+
+def test_new_cards_are_found_by_name(own: Path, capfd: pytest.CaptureFixture[str]) -> None:
+    assert main(["new", "section", "mine"]) == 0
+    assert main(["new", "study", "wet-road", "--from", "example-validation"]) == 0
+    # A study brings the tables that it names.
+    assert {file.name for file in (own / "studies/wet-road").iterdir()} == {
+        "study.toml", "run-1.csv", "run-2.csv", "run-3.csv",
+    }  # fmt: skip
+    capfd.readouterr()
+    assert main(["list", "studies"]) == 0
+    assert "wet-road" in capfd.readouterr().out
+    assert main(["check", "studies/wet-road"]) == 0
+    assert tf.study("wet-road").replace({"section": "mine"}).section.name == "mine"
+    # A shipped study may use a card of the current folder too.
+    assert main(["run", NASA, *SHORT, *BARE, "--set", "section=mine"]) == 0
+
+
+def test_new_never_overwrites(own: Path, refused: Callable[..., str], capfd: pytest.CaptureFixture[str]) -> None:
+    for kind, file in (
+        ("study", "studies/a/study.toml"),
+        ("section", "geometry/a.toml"),
+        ("material", "materials/a.toml"),
+    ):
+        assert main(["new", kind, "a"]) == 0
+        (own / file).write_text("mine", encoding="utf-8")
+        capfd.readouterr()
+        assert "exists already; nothing was written" in refused("new", kind, "a")
+        assert (own / file).read_text(encoding="utf-8") == "mine"
+
+
+@pytest.mark.parametrize("name", ["../a", "a/b", "", ".hidden", "-x", "a b", "a.toml", "a\n"])
+def test_new_refuses_what_is_no_name(refused: Callable[..., str], name: str) -> None:
+    assert "is no name for a card" in refused("new", "study", "--", name)
+
+
+def test_new_of_an_unknown_kind_or_card(refused: Callable[..., str]) -> None:
+    assert "did you mean 'material'?" in refused("new", "materiall", "x")
+    assert "no section named 'nasa'" in refused("new", "section", "x", "--from", "nasa")

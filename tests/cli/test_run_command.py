@@ -1,0 +1,147 @@
+"""`tyrefem run`: what is written, what is said, and what happens when it cannot go on."""
+
+from __future__ import annotations
+
+import csv
+import json
+import os
+import pty
+import re
+import signal
+import subprocess
+from collections.abc import Callable
+from pathlib import Path
+
+import pytest
+from terminal import BARE, NASA, SHORT, TABLES, command, process
+
+import tyrefem as tf
+from tyrefem.cli import main
+
+
+def test_run_writes_tables_pictures_vtk_and_report(here: Path, capfd: pytest.CaptureFixture[str]) -> None:
+    assert main(["run", NASA, *SHORT, "--out", "deep/er"]) == 0
+    out, err = capfd.readouterr()
+    assert "hottest point" in out
+    assert "deep/er/report.html" in out
+    assert err == ""
+    folder = here / "deep/er"
+    assert {file.name for file in folder.iterdir()} == TABLES | {"vtk", "pictures", "report.html"}
+    assert (folder / f"vtk/{NASA}.pvd").is_file()
+    assert list((folder / "pictures").glob("*.png"))
+    # No temporary file is left behind.
+    assert not [file for file in folder.rglob("*") if file.name.startswith(".")]
+
+
+def test_set_is_what_replace_does(here: Path) -> None:
+    assert main(["run", NASA, *SHORT, *BARE, "--set", "drive.speed=25 mph"]) == 0
+    written = json.loads((here / "results" / NASA / "summary.json").read_text(encoding="utf-8"))
+    changes = {"drive.duration": "10 s", "mesh.size": "8 mm", "output.fields": 2, "drive.speed": "25 mph"}
+    result = tf.study(NASA).replace(changes).run()
+    assert written["hottest"]["temperature_degC"] == pytest.approx(float(result.extremes["temperature_degC"].iloc[0]))
+    assert written["input"]["drive"]["speed"] == "25 mph"
+    assert written["complete"] is True
+    # The study that is written beside the results gives the same results.
+    again = tf.study(here / "results" / NASA / "study.toml")
+    assert again.data == result.study.data
+
+
+def test_json_is_all_there_is_on_stdout(here: Path) -> None:
+    done = process("run", NASA, *SHORT, *BARE, "--json")
+    assert done.returncode == 0
+    assert done.stderr == ""
+    written = json.loads((here / "results" / NASA / "summary.json").read_text(encoding="utf-8"))
+    said = json.loads(done.stdout)
+    for clock in (written, said):
+        clock.pop("wall_time_s")
+    assert said == written
+
+
+def test_pipe_is_quiet_and_terminal_shows_progress() -> None:
+    done = process("run", NASA, *SHORT, *BARE)
+    assert done.stderr == ""
+    assert "\x1b" not in done.stdout
+    assert "\r" not in done.stdout
+    ours, theirs = pty.openpty()
+    with subprocess.Popen(
+        command("run", NASA, *SHORT, *BARE),
+        stdout=subprocess.DEVNULL,
+        stderr=theirs,
+        env=os.environ | {"TERM": "xterm"},
+    ) as running:
+        os.close(theirs)
+        shown = b""
+        try:
+            while piece := os.read(ours, 4096):
+                shown += piece
+        except OSError:  # how a terminal says that the other side is closed
+            pass
+        assert running.wait(60) == 0
+    os.close(ours)
+    assert NASA.encode() in shown
+    assert b"%" in shown
+
+
+def test_interruption_leaves_what_is_finished(here: Path) -> None:
+    # Some thousand steps: stopped when the progress bar has moved, long before its end.
+    long = ("--set", "drive.duration=5 h", "--set", "numerics.tolerance=1e-5 K", "--set", "output.every=10 s")
+    ours, theirs = pty.openpty()
+    with subprocess.Popen(
+        command("run", NASA, *BARE, *long), stdout=subprocess.PIPE, stderr=theirs, text=True,
+        env=os.environ | {"TERM": "xterm"},
+    ) as running:  # fmt: skip
+        os.close(theirs)
+        said = b""
+        while not re.search(rb"\b[1-9]\d?%", said):
+            said += os.read(ours, 4096)
+        running.send_signal(signal.SIGINT)
+        try:
+            while piece := os.read(ours, 4096):
+                said += piece
+        except OSError:
+            pass
+        assert running.wait(60) == 130
+    os.close(ours)
+    assert b"tyrefem: interrupted at" in said
+    assert b"Traceback" not in said
+    folder = here / "results" / NASA
+    assert {file.name for file in folder.iterdir()} == TABLES
+    summary = json.loads((folder / "summary.json").read_text(encoding="utf-8"))
+    assert summary["complete"] is False
+    with (folder / "readings.csv").open(newline="", encoding="utf-8") as file:
+        times = [float(row["time [s]"]) for row in csv.DictReader(file)]
+    assert len(times) > 1
+    assert 0.0 < times[-1] < 5 * 3600.0
+    assert times == sorted(times)
+
+
+def test_a_file_where_a_folder_is_wanted(here: Path, refused: Callable[..., str]) -> None:
+    (here / "taken").write_text("mine", encoding="utf-8")
+    for out in ("taken", "taken/below"):
+        assert "--out: a file is in the place of this folder" in refused("run", NASA, *SHORT, "--out", out)
+        assert "--out" in refused("compare", "example-validation", "--out", out)
+    assert (here / "taken").read_text(encoding="utf-8") == "mine"
+
+
+def test_a_folder_that_cannot_be_written(refused: Callable[..., str]) -> None:
+    # Not even root can make a folder there.
+    assert "cannot be written" in refused("run", NASA, *SHORT, "--out", "/proc/tyrefem/out")
+
+
+@pytest.mark.parametrize(
+    ("arguments", "words"),
+    [
+        (["nasa-22x5.5-8p"], "did you mean 'nasa-22x5.5-8pr'?"),
+        (["./nowhere"], "no study file './nowhere'"),
+        (["~nobody-by-that-name/x"], "no study file"),
+        ([NASA, "--set", "drive.sped=3 mph"], "did you mean 'speed'?"),
+        ([NASA, "--set", "drive.speed"], "is not KEY=VALUE"),
+        ([NASA, "--set", "drive.speed=20"], "has no unit"),
+        ([NASA, "--set", "drive.speed=20 kg"], "is not a unit of this quantity"),
+        ([NASA, "--set", "section=nasa-22x5.5-9pr"], "section: no section named"),
+        ([NASA, "--set", "drive.load=1e7 lbf"], "drive"),
+        (["nasa-campaign", "--set", "drive.load=3000 lbf"], "every case of cases.csv sets 'drive.load' itself"),
+    ],
+)
+def test_bad_input_is_refused_in_one_line(refused: Callable[..., str], arguments: list[str], words: str) -> None:
+    assert words in refused("run", *arguments)

@@ -1,0 +1,97 @@
+"""`tyrefem list`, `tyrefem show`, `tyrefem compare`."""
+
+from __future__ import annotations
+
+import json
+import tomllib
+from collections.abc import Callable
+from pathlib import Path
+
+import pytest
+from terminal import NASA
+
+import tyrefem as tf
+from tyrefem import library
+from tyrefem.cli import main
+
+PNG = b"\x89PNG\r\n\x1a\n"
+
+
+@pytest.mark.parametrize("kind", ["sections", "materials", "studies"])
+def test_list_gives_every_name_and_title(kind: str, capsys: pytest.CaptureFixture[str]) -> None:
+    assert main(["list", kind]) == 0
+    lines = capsys.readouterr().out.splitlines()
+    known = library.names({"sections": "section", "materials": "material", "studies": "study"}[kind])
+    assert [line.split()[0] for line in lines] == sorted(known)
+    assert all(len(line.split()) > 2 for line in lines)
+
+
+def test_list_goes_on_past_a_broken_card(here: Path, capsys: pytest.CaptureFixture[str]) -> None:
+    (here / "materials").mkdir()
+    (here / "materials/broken.toml").write_text("=", encoding="utf-8")
+    assert main(["list", "materials"]) == 0
+    out = capsys.readouterr().out
+    assert "(cannot be read: not valid TOML" in out
+    assert "nasa-tread" in out
+
+
+def test_list_laws(capsys: pytest.CaptureFixture[str]) -> None:
+    assert main(["list", "laws"]) == 0
+    assert {line.split()[0] for line in capsys.readouterr().out.splitlines()} == {
+        "road", "outside_air", "contained_air", "rim",
+    }  # fmt: skip
+
+
+def test_list_of_an_unknown_kind(refused: Callable[..., str]) -> None:
+    assert "did you mean 'studies'?" in refused("list", "study")
+
+
+@pytest.mark.parametrize("kind", ["section", "mesh", "strain"])
+def test_show_draws(kind: str, here: Path, capfd: pytest.CaptureFixture[str]) -> None:
+    assert main(["show", kind, NASA, "--out", "seen.png"]) == 0
+    assert (here / "seen.png").read_bytes().startswith(PNG)
+    out, err = capfd.readouterr()
+    assert "drawn in seen.png" in out
+    assert err == ""
+
+
+def test_show_section_takes_changes(capsys: pytest.CaptureFixture[str]) -> None:
+    volumes = []
+    for value in ("3.0 in", "3.4 in"):
+        assert main(["show", "section", NASA, "--set", f"crown_radius={value}", "--out", "a.png"]) == 0
+        lines = dict(line.split(None, 1) for line in capsys.readouterr().out.splitlines())
+        volumes.append(float(lines["gas_volume_m3"]))
+    assert volumes[0] != pytest.approx(volumes[1], rel=1e-3)
+
+
+def test_show_prints_toml_that_can_be_used(here: Path, capsys: pytest.CaptureFixture[str]) -> None:
+    assert main(["show", "study", NASA, "--set", "drive.speed=25 mph"]) == 0
+    text = capsys.readouterr().out
+    assert tomllib.loads(text)["drive"]["speed"] == "25 mph"
+    (here / "shown.toml").write_text(text, encoding="utf-8")
+    assert tf.study("shown.toml").data == tf.study(NASA, {"drive.speed": "25 mph"}).data
+    assert main(["show", "material", "nasa-tread"]) == 0
+    assert "loss_tangent" in tomllib.loads(capsys.readouterr().out)
+
+
+def test_show_refuses(refused: Callable[..., str]) -> None:
+    assert "did you mean 'mesh'?" in refused("show", "mehs", NASA)
+    assert "no material named 'x'" in refused("show", "material", "x")
+    assert "is out of range" in refused("show", "material", "nasa-tread", "--set", "density.value=-1 kg/m**3")
+    assert refused("show", "section", NASA, "--set", "crown_radius=1 mm")
+
+
+def test_compare_says_json_and_nothing_else(here: Path, capfd: pytest.CaptureFixture[str]) -> None:
+    assert main(["compare", "example-validation", "--no-inputs", "--json", "--set", "mesh.size=8 mm"]) == 0
+    out, err = capfd.readouterr()
+    assert err == ""
+    said = json.loads(out)
+    table = here / "results/example-validation-compare"
+    assert (table / "comparison.html").is_file()
+    assert said["summary"]
+
+
+def test_compare_refuses_a_table_of_other_sensors(here: Path, refused: Callable[..., str]) -> None:
+    (here / "mine.csv").write_text("time [s],crowm-inner [degC]\n0,25\n10,26\n", encoding="utf-8")
+    assert "did you mean 'crown-inner'?" in refused("compare", NASA, "mine.csv")
+    assert "nowhere.csv" in refused("compare", NASA, "nowhere.csv")
