@@ -103,5 +103,5 @@ def test_measured_stiffness():
 
 @pytest.mark.parametrize("given", [{"load": 5e5}, {"deflection": 0.15}])
 def test_an_impossible_deflection_is_refused(given):
-    with pytest.raises(InputError, match="deflects the tyre by .* allowed: 0 to 140 mm"):
+    with pytest.raises(InputError, match=r"deflects the tyre by .* allowed: 0 to 140 mm"):
         load_case(LAW, TYRE, outer_radius=0.28, pressure=6e5, **given)
