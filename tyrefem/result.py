@@ -46,10 +46,11 @@ class PhaseState:
 class RollingResistance:
     """Drag from hysteresis, F = (total heat) / v, N, and coefficient F / F_z.
 
-    ``force`` and ``coefficient`` are at the end of the last rolling phase; ``cold_*`` at that phase's load with every
-    point at the drive's initial temperature. All zero for a tyre that never rolls.
+    ``force`` and ``coefficient`` are at the end of ``phase``, the rolling phase that made the most heat; ``cold_*``
+    then, but with every point at the drive's initial temperature. All zero for a tyre that never rolls.
     """
 
+    phase: str
     force: float
     coefficient: float
     cold_force: float
@@ -193,22 +194,32 @@ class Result:
         return np.asarray(field.values[self.tyre.problem.operators.dofs(zone)])
 
     @functools.cached_property
+    def rolling_reading(self) -> int | None:
+        """Number of the last reading of the rolling phase that made the most heat; None for a tyre that never rolls."""
+        drive, energy = self.study.card.drive, np.zeros(len(self.times))
+        for (kind, _), series in self.heat_budget.energies.items():
+            energy = energy + series if kind == "generated" else energy
+        best: tuple[float, int] | None = None
+        for start, phase, state in zip(drive.starts, drive.phases, self.phases, strict=True):
+            if phase.speed.end <= 0 or state.load <= 0 or start >= self.times[-1]:
+                continue
+            end = min(start + phase.duration, float(self.times[-1]))
+            first, last = (int(np.searchsorted(self.times, t - 1e-6)) for t in (start, end))
+            heat = float(energy[last] - energy[first])
+            best = max(best, (heat, last)) if best else (heat, last)
+        return None if best is None else best[1]
+
+    @functools.cached_property
     def rolling_resistance(self) -> RollingResistance:
         """Force, N, and coefficient."""
-        drive, schedule = self.study.card.drive, self.tyre.schedule
-        power = self.heat_budget.power("generated")
-        for number in reversed(range(len(drive.phases))):
-            start, phase = drive.starts[number], drive.phases[number]
-            if phase.speed.end <= 0 or start >= self.times[-1]:
-                continue
-            i = int(np.searchsorted(self.times, min(start + phase.duration, self.times[-1]) - 1e-6))
-            t = self._just(i)
-            speed, load = self.tyre.speed(t), schedule.mean(lambda case: case.load, t)
-            cold = self._cold_power(t)
-            if load <= 0 or speed <= 0:
-                continue
-            return RollingResistance(power[i] / speed, power[i] / speed / load, cold / speed, cold / speed / load)
-        return RollingResistance(0.0, 0.0, 0.0, 0.0)
+        i = self.rolling_reading
+        if i is None:
+            return RollingResistance("", 0.0, 0.0, 0.0, 0.0)
+        t = self._just(i)
+        phase = self.study.card.drive.phases[self.study.card.drive.locate(t)[0]].name
+        speed, load = self.tyre.speed(t), float(self.tyre.schedule.mean(lambda case: case.load, t))
+        force, cold = float(self.heat_budget.power("generated")[i]) / speed, self._cold_power(t) / speed
+        return RollingResistance(phase, force, force / load, cold, cold / load)
 
     def _cold_power(self, t: float) -> float:
         problem, initial = self.tyre.problem, self.study.card.drive.initial

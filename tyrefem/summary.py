@@ -42,6 +42,7 @@ def summary(result: Result) -> dict[str, Any]:
             "depth_m": peak.depth_m,
         },
         "rolling_resistance": {
+            "phase": resistance.phase,
             "force_N": resistance.force,
             "coefficient": resistance.coefficient,
             "cold_force_N": resistance.cold_force,

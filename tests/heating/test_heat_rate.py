@@ -103,7 +103,7 @@ def flattening_load():
 
 @pytest.mark.parametrize("ends", [(0, 7100), (7100, 700)])
 def test_a_load_ramp_makes_the_heat_of_the_loads_it_passes(ends):
-    """The integral of the steady power over the loads, by Gauss either side of the kink; a run's knots are within 0.3 %."""
+    """The integral of the steady power over the loads, by Gauss either side of the kink; within 0.3 %."""
     x, w = np.polynomial.legendre.leggauss(6)
     low, high, kink = min(ends), max(ends), flattening_load()
     mean = 0.0

@@ -3,7 +3,7 @@
 Its tread surface is deliberately not compared. It averages the *series* conductance through 4 mm of rubber to the road
 and so loses like 18 W/m2/K there; a film at the surface, averaged over the revolution (f H_c = 1300 W/m2/K), holds the
 tread near the road. Here the crown's outside comes out 12 to 28 K lower, the shoulder's outside 12 to 35 K, and the
-crown's middle within 12 K. The contained air is 1 to 11 K higher: its film sees the inner surface weighted by area.
+crown's middle up to 10 K lower. The contained air is 2 to 9 K higher: its film sees the inner surface weighted by area.
 """
 
 from __future__ import annotations

@@ -34,15 +34,6 @@ class ZoneHeat:
     power: float
 
 
-def rolling_time(result: Result) -> int | None:
-    """Number of the last reading time of the last phase that rolls under load; None where none does."""
-    times, drive = result.times, result.study.card.drive
-    for start, phase, state in reversed(list(zip(drive.starts, drive.phases, result.phases, strict=True))):
-        if phase.speed.end > 0 and state.deflection > 0 and start < times[-1]:
-            return int(np.searchsorted(times, min(start + phase.duration, times[-1]) - 1e-6))
-    return None
-
-
 def zone_heat(result: Result, i: int) -> list[ZoneHeat]:
     """Every zone with its own values, so that the steps between zones stay sharp."""
     operators = result.tyre.problem.operators
@@ -62,8 +53,8 @@ def zone_heat(result: Result, i: int) -> list[ZoneHeat]:
 
 
 def heat_source_figure(result: Result) -> Figure:
-    """Left half: strain energy per cycle, J/m3; right half: heat source, W/m3, at the end of the last rolling phase."""
-    i = rolling_time(result)
+    """Left half: strain energy per cycle, J/m3; right half: heat source, W/m3, in the phase with most heat."""
+    i = result.rolling_reading
     zones = zone_heat(result, len(result.times) - 1 if i is None else i)
     total = sum(zone.power for zone in zones)
     energies, sources = [zone.energy for zone in zones], [zone.source for zone in zones]

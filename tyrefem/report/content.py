@@ -7,7 +7,6 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
-from tyrefem.plotting.heat_source import rolling_time
 from tyrefem.report.assumptions import assumptions
 from tyrefem.report.inputs import boundary_rows, material_rows, mechanics_rows, section_sources, study_text
 from tyrefem.report.words import number, place, seconds
@@ -108,7 +107,7 @@ def headline(result: Result) -> list[dict[str, str]]:
 
 def _at_end_of(result: Result) -> str:
     """Which phase the rolling resistance belongs to, where there are several."""
-    i = rolling_time(result)
+    i = result.rolling_reading
     if i is None or len(result.phases) < 2:
         return ""
     name = next(phase.name for phase in result.phases if result.times[i] <= phase.end + 1e-6)

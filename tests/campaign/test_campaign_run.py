@@ -1,0 +1,143 @@
+"""A campaign: each case is the study with its row laid over it; what fails is named and stops nothing."""
+
+from __future__ import annotations
+
+import csv
+import json
+import re
+from dataclasses import replace
+from pathlib import Path
+from typing import Any
+
+import pytest
+
+import tyrefem as tf
+from tyrefem.campaign import Campaign, run_campaign, write_campaign_report
+from tyrefem.cli import main
+from tyrefem.studies import Study
+
+
+def rows_of(path: Path) -> list[dict[str, str]]:
+    with path.open(newline="", encoding="utf-8") as file:
+        return list(csv.DictReader(file))
+
+
+def test_each_case_is_the_study_with_its_row(folder: Path, campaign: Campaign) -> None:
+    table = run_campaign(campaign, folder / "out")
+    assert list(table["case"]) == ["light", "usual", "crushed"]
+    alone = tf.study(folder).replace({"drive.load": "2700 lbf", "drive.pressure": "83 psi"}).run()
+    usual = table.set_index("case").loc["usual"]
+    peak = alone.extremes.iloc[0]
+    assert usual["hottest_degC"] == pytest.approx(peak["temperature_degC"], abs=1e-9)
+    assert usual["load_N"] == pytest.approx(2700 * 4.4482216, rel=1e-6)
+    assert usual["rolling_resistance_N"] == pytest.approx(alone.rolling_resistance.force, rel=1e-9)
+    assert usual["rolling_resistance_coefficient"] == pytest.approx(usual["rolling_resistance_N"] / usual["load_N"])
+    assert usual["crown-inner_degC"] == pytest.approx(float(alone.readings["crown-inner"].iloc[-1]))
+    assert usual[f"{usual['hottest_region']}_max_degC"] == pytest.approx(usual["hottest_degC"])
+    # More load, more deflection, more heat.
+    light = table.set_index("case").loc["light"]
+    assert light["deflection_m"] < usual["deflection_m"]
+    assert light["rolling_resistance_N"] < usual["rolling_resistance_N"]
+
+
+def test_a_failing_case_is_named_and_the_others_go_on(folder: Path, campaign: Campaign) -> None:
+    # The case that cannot be is put first: what follows must still be run.
+    turned = replace(campaign, cases=campaign.cases[::-1])
+    table = run_campaign(turned, folder / "out")
+    written = rows_of(folder / "out/campaign.csv")
+    assert [row["case"] for row in written] == ["crushed", "usual", "light"]
+    assert [bool(row["failure"]) for row in written] == [True, False, False]
+    assert written[0]["hottest_degC"] == ""
+    assert float(written[1]["hottest_degC"]) == pytest.approx(table["hottest_degC"][1], abs=1e-3)
+    summary = json.loads((folder / "out/summary.json").read_text(encoding="utf-8"))
+    assert summary["complete"] is True
+    assert summary["failed"] == ["crushed"]
+    assert not (folder / "out/cases/crushed").exists()
+    assert (folder / "out/cases/usual/readings.csv").is_file()
+
+
+def test_a_defect_in_one_case_is_called_that(campaign: Campaign, folder: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    run = Study.run
+
+    def sometimes(study: Study, progress: Any = None) -> Any:
+        if study.name == "light":
+            raise ZeroDivisionError("float division by zero")
+        return run(study, progress)
+
+    monkeypatch.setattr(Study, "run", sometimes)
+    table = run_campaign(campaign, folder / "out")
+    assert table["failure"][0] == "defect, please report: ZeroDivisionError: float division by zero"
+    assert table["failure"][1] == ""
+
+
+def test_an_interrupted_campaign_keeps_what_is_finished(
+    campaign: Campaign, folder: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    run = Study.run
+
+    def stop(time: float) -> None:
+        if time > 5.0:
+            raise KeyboardInterrupt
+
+    def second_is_stopped(study: Study, progress: Any = None) -> Any:
+        return run(study, stop if study.name == "usual" else progress)
+
+    monkeypatch.setattr(Study, "run", second_is_stopped)
+    with pytest.raises(KeyboardInterrupt):
+        run_campaign(campaign, folder / "out")
+    written = rows_of(folder / "out/campaign.csv")
+    assert [row["case"] for row in written] == ["light", "usual"]
+    assert written[0]["failure"] == ""
+    assert re.fullmatch(r"interrupted at [\d.]+ s", written[1]["failure"])
+    assert json.loads((folder / "out/summary.json").read_text(encoding="utf-8"))["complete"] is False
+    assert json.loads((folder / "out/cases/usual/summary.json").read_text(encoding="utf-8"))["complete"] is False
+
+
+def test_an_older_table_does_not_pass_for_this_one(
+    campaign: Campaign, folder: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    (folder / "out").mkdir()
+    (folder / "out/campaign.csv").write_text("case,failure\nold,\n", encoding="utf-8")
+
+    def stopped(_study: Study, _progress: Any = None) -> None:
+        raise KeyboardInterrupt
+
+    monkeypatch.setattr(Study, "run", stopped)
+    with pytest.raises(KeyboardInterrupt):
+        run_campaign(campaign, folder / "out")
+    assert rows_of(folder / "out/campaign.csv") == []
+    assert json.loads((folder / "out/summary.json").read_text(encoding="utf-8"))["complete"] is False
+
+
+def test_page_stands_alone_and_names_the_failed(campaign: Campaign, folder: Path) -> None:
+    table = run_campaign(campaign, folder / "out")
+    page = write_campaign_report(campaign, table, folder / "out/report.html").read_text(encoding="utf-8")
+    assert "<h1>Three &lt;loads&gt;</h1>" in page
+    assert page.count('src="data:image/png;base64,') == 2
+    assert not re.search(r'(src|href)="(?!data:)|<script|@import', page)
+    assert "2 of 3 cases finished. Hottest: " in page
+    assert table["failure"][2].split(":")[-1].strip() in page.replace("&#39;", "'").replace("&#34;", '"')
+
+
+def test_page_of_nothing_but_failures(campaign: Campaign, folder: Path) -> None:
+    table = run_campaign(replace(campaign, cases=campaign.cases[2:]), folder / "out")
+    page = write_campaign_report(campaign, table, folder / "report.html").read_text(encoding="utf-8")
+    assert "0 of 3 cases finished." in page
+    assert "<img" not in page
+
+
+def test_command_line(folder: Path, monkeypatch: pytest.MonkeyPatch, capfd: pytest.CaptureFixture[str]) -> None:
+    monkeypatch.chdir(folder)
+    assert main(["run", ".", "--no-vtk", "--out", "out"]) == 1
+    out, err = capfd.readouterr()
+    assert "3 cases, 1 failed" in out
+    assert err.startswith("tyrefem: case crushed: ")
+    assert err.count("\n") == 1
+    page = (folder / "out/report.html").read_text(encoding="utf-8")
+    assert '<a href="cases/usual/report.html">usual</a>' in page
+    assert (folder / "out/cases/usual/report.html").is_file()
+    assert main(["run", ".", "--no-vtk", "--no-pictures", "--out", "bare", "--json"]) == 1
+    out, err = capfd.readouterr()
+    assert [case["case"] for case in json.loads(out)["cases"]] == ["light", "usual", "crushed"]
+    assert json.loads(out)["cases"][2]["hottest_degC"] is None
+    assert not (folder / "bare/report.html").exists()

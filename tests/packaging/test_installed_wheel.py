@@ -1,0 +1,109 @@
+"""What is installed from the wheel, outside the checkout, is what the checkout is."""
+
+from __future__ import annotations
+
+import json
+import os
+import subprocess
+import sys
+import tarfile
+import zipfile
+from pathlib import Path
+from typing import Any
+
+import pytest
+
+import tyrefem as tf
+from tyrefem import library
+
+CHECKOUT = Path(__file__).resolve().parents[2]
+STUDY = "nasa-22x5.5-8pr"
+
+
+def run(*command: str | Path, cwd: Path) -> subprocess.CompletedProcess[str]:
+    """A process that knows nothing of the checkout."""
+    hidden = ("PYTHONPATH", "PYTHONHOME", "VIRTUAL_ENV", library.SEARCH_PATH)
+    environment = {key: value for key, value in os.environ.items() if key not in hidden}
+    done = subprocess.run(command, cwd=cwd, env=environment, capture_output=True, text=True, timeout=900, check=False)
+    assert done.returncode == 0, done.stdout[-2000:] + done.stderr[-4000:]
+    return done
+
+
+@pytest.fixture(scope="session")
+def built(tmp_path_factory: pytest.TempPathFactory) -> dict[str, Path]:
+    """The source archive, and the wheel built from it."""
+    folder = tmp_path_factory.mktemp("dist")
+    run(sys.executable, "-m", "build", "--outdir", folder, CHECKOUT, cwd=folder)
+    return {"sdist": next(folder.glob("*.tar.gz")), "wheel": next(folder.glob("*.whl"))}
+
+
+@pytest.fixture(scope="session")
+def installed(built: dict[str, Path], tmp_path_factory: pytest.TempPathFactory) -> Path:
+    """The ``bin`` folder of an empty environment with the wheel and what it depends on."""
+    folder = tmp_path_factory.mktemp("environment")
+    run(sys.executable, "-m", "venv", folder, cwd=folder)
+    commands = folder / ("Scripts" if os.name == "nt" else "bin")
+    run(commands / "python", "-m", "pip", "install", "-q", built["wheel"], cwd=folder)
+    return commands
+
+
+def wheel_names(built: dict[str, Path]) -> set[str]:
+    with zipfile.ZipFile(built["wheel"]) as wheel:
+        return set(wheel.namelist())
+
+
+def test_wheel_holds_every_module_template_and_card(built: dict[str, Path]) -> None:
+    names = wheel_names(built)
+    package = {
+        f"tyrefem/{file.relative_to(CHECKOUT / 'tyrefem').as_posix()}"
+        for file in (CHECKOUT / "tyrefem").rglob("*")
+        if file.suffix in (".py", ".html", ".j2", ".css", ".typed") and "__pycache__" not in file.parts
+    }
+    cards = {
+        f"tyrefem/shipped/{folder}/{file.relative_to(CHECKOUT / folder).as_posix()}"
+        for folder in library.FOLDERS.values()
+        for file in (CHECKOUT / folder).rglob("*")
+        if file.suffix in (".toml", ".csv", ".md")
+    }
+    assert "tyrefem/py.typed" in package
+    assert {f"tyrefem/shipped/studies/{STUDY}/study.toml", "tyrefem/shipped/studies/nasa-campaign/cases.csv"} <= cards
+    assert package | cards <= names
+
+
+def test_wheel_holds_nothing_else(built: dict[str, Path]) -> None:
+    tops = {name.split("/")[0] for name in wheel_names(built)}
+    assert tops == {"tyrefem", f"tyrefem-{tf.__version__}.dist-info"}
+    with zipfile.ZipFile(built["wheel"]) as wheel:
+        metadata = wheel.read(f"tyrefem-{tf.__version__}.dist-info/METADATA").decode()
+    assert "License-Expression: BSD-3-Clause" in metadata
+    required = [line for line in metadata.splitlines() if line.startswith("Requires-Dist:") and "extra ==" not in line]
+    assert not [line for line in required if "gmsh" in line]
+
+
+def test_source_archive_can_be_tested(built: dict[str, Path]) -> None:
+    with tarfile.open(built["sdist"]) as archive:
+        names = {name.split("/", 1)[-1] for name in archive.getnames()}
+    here = Path(__file__).relative_to(CHECKOUT).as_posix()
+    assert {here, "pyproject.toml", "LICENSE", "README.md", "CHANGELOG.md", "docs/dependencies.md"} <= names
+
+
+def test_installed_program_gives_the_checkout_numbers(installed: Path, tmp_path: Path) -> None:
+    run(installed / "tyrefem", "run", STUDY, "--no-pictures", cwd=tmp_path)
+    written: dict[str, Any] = json.loads((tmp_path / "results" / STUDY / "summary.json").read_text(encoding="utf-8"))
+    ours = tf.study(STUDY).run().summary()
+    assert written["hottest"]["temperature_degC"] == pytest.approx(ours["hottest"]["temperature_degC"], abs=1e-6)
+    assert written["hottest"]["region"] == ours["hottest"]["region"]
+    assert (tmp_path / "results" / STUDY / f"vtk/{STUDY}.pvd").is_file()
+
+
+def test_installed_program_lists_the_shipped_studies(installed: Path, tmp_path: Path) -> None:
+    listed = run(installed / "tyrefem", "list", "studies", cwd=tmp_path).stdout
+    assert {line.split()[0] for line in listed.splitlines()} == {
+        path.parent.name for path in (CHECKOUT / "studies").glob("*/study.toml")
+    }
+    where = "import tyrefem, pathlib; print(pathlib.Path(tyrefem.__file__).parents[4])"
+    assert Path(run(installed / "python", "-c", where, cwd=tmp_path).stdout.strip()) == installed.parent
+
+
+def test_requirements_of_the_installed_environment_agree(installed: Path, tmp_path: Path) -> None:
+    assert "No broken requirements" in run(installed / "python", "-m", "pip", "check", cwd=tmp_path).stdout
