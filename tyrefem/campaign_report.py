@@ -94,7 +94,7 @@ def bars(done: pd.DataFrame, column: str) -> Figure:
 
     name, label, form = _AXES[column]
     named = len(done) <= MOST_NAMES
-    line = 0.21 if named else 12.0 / len(done)
+    line = 0.21 if named else 8.0 / len(done)
     left, below, high = (3.4 if named else 1.0), 0.55, line * len(done) + 0.15
     drawn = figure(9.0, below + high + TITLE + 0.25)
     axes = add_axes(drawn, left, below, 8.75 - left, high)
@@ -107,7 +107,7 @@ def bars(done: pd.DataFrame, column: str) -> Figure:
         color: Any = line_style(number)["color"]
         axes.hlines(chosen, axes.get_xlim()[0], [values[i] for i in chosen], color=color, lw=1.2, alpha=0.45)
         marker = "os^Dv"[number % 5]
-        axes.plot([values[i] for i in chosen], chosen, marker, color=color, ms=5.5, label=short(section, 40))
+        axes.plot([values[i] for i in chosen], chosen, marker, color=color, ms=5.5 if named else 3.5, label=short(section, 40))
     pressures = done["pressure_Pa"].to_list()
     for i in places[1:]:
         if abs(pressures[i] - pressures[i - 1]) > 500.0:

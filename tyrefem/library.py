@@ -97,3 +97,12 @@ def load(kind: str, reference: object, near: Path | None = None) -> tuple[dict[s
     path = find(kind, reference, near)
     name = path.parent.name if kind == "study" else path.stem
     return merged(read_toml(path), changes), path, name
+
+
+def located(kind: str, reference: Any, near: Path | None = None) -> Any:
+    """The reference as it must be written elsewhere: a card that is not found by name there gets its whole path."""
+    name = reference["base"] if isinstance(reference, Mapping) else reference
+    path = find(kind, name, near).resolve()
+    if not path.is_relative_to(shipped().resolve()):
+        name = str(path)
+    return {**reference, "base": name} if isinstance(reference, Mapping) else name

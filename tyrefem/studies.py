@@ -188,14 +188,34 @@ class Study:
         return self.replace({f"drive.{key}": value for key, value in changes.items()})
 
     def save(self, path: str | Path) -> Path:
-        """Write the study as a TOML file that runs as it is."""
+        """Write the study as a TOML file that runs as it is.
+
+        Files that the study names relative to its own folder are named by their whole path, if it is another folder.
+        """
         import tomli_w
 
         from tyrefem.output import atomic_path
 
-        with atomic_path(Path(path)) as temporary:
-            temporary.write_text(tomli_w.dumps(dict(self.data)), encoding="utf-8")
-        return Path(path)
+        path = Path(path)
+        data = dict(self.data) if path.parent.resolve() == self.folder else self._portable()
+        with atomic_path(path) as temporary:
+            temporary.write_text(tomli_w.dumps(data), encoding="utf-8")
+        return path
+
+    def _portable(self) -> dict[str, Any]:
+        data: dict[str, Any] = copy.deepcopy(dict(self.data))
+        folder = (self.folder or Path()).resolve()
+        for holder, key in [(data, "cases"), (data.get("mesh", {}), "file")]:
+            if isinstance(holder.get(key), str):
+                holder[key] = str(folder / holder[key])
+        for entry in data.get("measured", []):
+            entry["table"] = str(folder / entry["table"])
+        data["section"] = library.located("section", data["section"], self.folder)
+        data["materials"] = {
+            region: library.located("material", reference, self.folder)
+            for region, reference in data["materials"].items()
+        }
+        return data
 
     # -- work --------------------------------------------------------------------------------------------------------
 

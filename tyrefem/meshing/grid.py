@@ -15,8 +15,8 @@ from tyrefem.section.section import Section
 Array = NDArray[np.float64]
 #: Rows next to the road and the rim are this share of the size: a strong film cools them within millimetres.
 SURFACE_SHARE = 0.25
-#: Away from the surface rows may be this multiple of the size, as temperature varies slowly there.
-CORE_SHARE = 1.5
+#: Thickest row away from the surface over the size: heat sources jump where layers meet.
+CORE_SHARE = 1.0
 #: Longest edge along the meridian over the thinnest row.
 ASPECT = 10.0
 #: Growth of the gaps away from a place where one boundary gives way to another.

@@ -12,6 +12,8 @@ from numpy.typing import ArrayLike, NDArray
 from tyrefem.errors import InputError
 
 Array = NDArray[np.float64]
+#: No layer of any tyre is thinner or thicker [m]; beyond that elements degenerate.
+THINNEST, THICKEST = 1e-5, 1.0
 
 
 @dataclass(frozen=True)
@@ -50,6 +52,10 @@ class Profile:
             raise InputError(f"stations s must rise, but {s[first + 1]:g} m follows {s[first]:g} m")
         if (values <= 0).any():
             raise InputError(f"must be positive everywhere, but is {values.min():g} m")
+        if values.min() < THINNEST or values.max() > THICKEST:
+            raise InputError(
+                f"must be from {THINNEST:g} to {THICKEST:g} m, but goes from {values.min():g} to {values.max():g} m"
+            )
         if self.interpolation == "pchip" and len(s) < 2:
             raise InputError("pchip interpolation needs two stations or more")
 
