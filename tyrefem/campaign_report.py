@@ -107,7 +107,8 @@ def bars(done: pd.DataFrame, column: str) -> Figure:
         color: Any = line_style(number)["color"]
         axes.hlines(chosen, axes.get_xlim()[0], [values[i] for i in chosen], color=color, lw=1.2, alpha=0.45)
         marker = "os^Dv"[number % 5]
-        axes.plot([values[i] for i in chosen], chosen, marker, color=color, ms=5.5 if named else 3.5, label=short(section, 40))
+        size = 5.5 if named else 3.5
+        axes.plot([values[i] for i in chosen], chosen, marker, color=color, ms=size, label=short(section, 40))
     pressures = done["pressure_Pa"].to_list()
     for i in places[1:]:
         if abs(pressures[i] - pressures[i - 1]) > 500.0:

@@ -1,0 +1,78 @@
+"""What surrounds the tyre during its drive: temperatures, speed, films, time on the road."""
+
+from __future__ import annotations
+
+import functools
+from dataclasses import dataclass
+
+import numpy as np
+
+from tyrefem.boundaries import Contact
+from tyrefem.drive import Drive
+from tyrefem.heating import CycleSchedule
+from tyrefem.mechanics import cycle_schedule
+from tyrefem.studies import Study
+
+
+@dataclass(frozen=True, eq=False)
+class Surroundings:
+    """A study's drive and boundary laws as functions of time (s). SI units, temperatures in degC."""
+
+    study: Study
+
+    @property
+    def drive(self) -> Drive:
+        """The drive."""
+        return self.study.card.drive
+
+    @functools.cached_property
+    def schedule(self) -> CycleSchedule:
+        """Load cases and strain cycles of every phase."""
+        return cycle_schedule(self.study)
+
+    def ambient(self, t: float) -> float:
+        """Ambient temperature, degC."""
+        return float(self.drive.value("ambient", t) or 0.0)
+
+    def road_temperature(self, t: float) -> float:
+        """Road temperature, degC: the drive's, else the law's, else the ambient."""
+        return self._first(self.drive.value("road_temperature", t), self.study.card.boundaries.road.temperature, t)
+
+    def rim_temperature(self, t: float) -> float:
+        """Temperature of a fixed rim, degC: the drive's, else the law's, else the drive's initial one."""
+        driven = self.drive.value("rim_temperature", t)
+        law = self.study.card.boundaries.rim.temperature
+        return driven if driven is not None else self.drive.initial if law is None else law
+
+    def _first(self, driven: float | None, law: float | None, t: float) -> float:
+        return driven if driven is not None else self.ambient(t) if law is None else law
+
+    def speed(self, t: float) -> float:
+        """Speed, m/s."""
+        return float(self.drive.value("speed", t) or 0.0)
+
+    def road_fraction(self, t: float) -> float:
+        """Fraction of a revolution that a tread point spends on the road; none at standstill."""
+        if self.speed(t) == 0:
+            return 0.0
+        law = self.study.card.boundaries.road
+        if law.fraction is not None:
+            return law.fraction
+        return self.schedule.mean(lambda case: case.road_fraction, t)
+
+    @functools.cached_property
+    def _tread(self) -> tuple[float, float]:
+        """Conductivity (through the thickness) and heat capacity of the tread at 25 degC: what meets the road."""
+        card = self.study.materials["tread"]
+        conductivity, capacity = card.conductivity.law(), card.heat_capacity()
+        k = conductivity(25.0) if callable(conductivity) else conductivity
+        return float(np.ravel(k)[-1]), float(capacity(25.0) if callable(capacity) else capacity)
+
+    def road_film(self, t: float) -> float:
+        """H_c during contact, W/m2/K."""
+        length = self.schedule.mean(lambda case: case.footprint_length, t)
+        return self.study.card.boundaries.road.film(Contact(self.speed(t), length, *self._tread))
+
+    def air_film(self, t: float) -> float:
+        """Outside film, W/m2/K."""
+        return self.study.card.boundaries.outside_air.film(self.speed(t))
