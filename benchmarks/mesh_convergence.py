@@ -50,7 +50,9 @@ def main() -> None:
                 at_default[mesher] = readings
             unknowns = result.history.values.shape[1]
             nodes = result.tyre.mesh.n_nodes
-            print(f"| {name} | {mesher} | {element} | {size} | {nodes} | {unknowns} | {deviation:.3f} | {seconds:.2f} |")
+            print(
+                f"| {name} | {mesher} | {element} | {size} | {nodes} | {unknowns} | {deviation:.3f} | {seconds:.2f} |"
+            )
         apart[name] = round(float((at_default["mapped"] - at_default["gmsh"]).abs().max().max()), 4)
     print(json.dumps({"deviation_K": worst, "meshers_apart_K": apart}))
 

@@ -10,8 +10,9 @@ from typing import TYPE_CHECKING, Any
 from tyrefem.cases import Case, read_cases
 from tyrefem.conduction import SolverError
 from tyrefem.errors import InputError
+from tyrefem.output import write_json
 from tyrefem.studies import Study
-from tyrefem.summary import versions, write_json, write_tables
+from tyrefem.summary import versions, write_tables
 
 if TYPE_CHECKING:
     import pandas as pd

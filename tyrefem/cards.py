@@ -14,7 +14,8 @@ from tyrefem.quantity import Unit
 
 Text = Annotated[str, Field(min_length=1)]
 Length = Annotated[float, Unit("m")]
-PositiveLength = Annotated[float, Unit("m", gt=0)]
+#: The largest tyre made is 4 m in diameter; far beyond it, coordinates lose the digits that elements need.
+PositiveLength = Annotated[float, Unit("m", gt=0, le=20)]
 Thickness = Annotated[float, Unit("m", ge=0)]
 Temperature = Annotated[float, Unit("degC", le=2000)]
 FilmCoefficient = Annotated[float, Unit("W/m**2/K", ge=0)]
@@ -81,9 +82,19 @@ def read_toml(path: str | Path) -> dict[str, Any]:
         raise InputError(f"cannot be read: {error.strerror or error}", file=path) from None
 
 
+#: Ways of giving one property: a table that is laid over another in one of them drops the other ways.
+FORMS = ({"value"}, {"along", "across"}, {"table"})
+
+
 def merged(base: Mapping[str, Any], changes: Mapping[str, Any]) -> dict[str, Any]:
-    """``base`` with ``changes`` laid over it, tables merged key by key, everything else replaced."""
-    result = dict(base)
+    """``base`` with ``changes`` laid over it, tables merged key by key, everything else replaced.
+
+    >>> merged({"k": {"value": "1 W/m/K", "source": "a"}}, {"k": {"along": "2 W/m/K", "across": "1 W/m/K"}})
+    {'k': {'source': 'a', 'along': '2 W/m/K', 'across': '1 W/m/K'}}
+    """
+    given = [form for form in FORMS if form & set(changes)]
+    dropped = set().union(*FORMS) - set().union(*given) if given else set()
+    result = {key: value for key, value in base.items() if key not in dropped}
     for key, value in changes.items():
         below = result.get(key)
         if isinstance(below, Mapping) and isinstance(value, Mapping):

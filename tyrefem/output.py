@@ -2,12 +2,15 @@
 
 from __future__ import annotations
 
+import json
+import math
 import os
 import secrets
 import shutil
-from collections.abc import Iterator
+from collections.abc import Iterator, Mapping
 from contextlib import contextmanager, suppress
 from pathlib import Path
+from typing import Any
 
 from tyrefem.errors import InputError
 
@@ -81,3 +84,23 @@ def atomic_folder(folder: str | Path) -> Iterator[Path]:
                     os.replace(file, target)
         finally:
             shutil.rmtree(temporary, ignore_errors=True)
+
+
+def jsonable(value: Any) -> Any:
+    """Plain data that JSON can hold: numpy scalars made Python's, NaN and infinity made null."""
+    if isinstance(value, Mapping):
+        return {str(key): jsonable(entry) for key, entry in value.items()}
+    if isinstance(value, list | tuple):
+        return [jsonable(entry) for entry in value]
+    if hasattr(value, "tolist"):
+        return jsonable(value.tolist())
+    if isinstance(value, float) and not math.isfinite(value):
+        return None
+    return value if isinstance(value, str | int | float | bool | None) else str(value)
+
+
+def write_json(data: dict[str, Any], path: Path) -> Path:
+    """Write JSON whole or not at all."""
+    with atomic_path(path) as temporary:
+        temporary.write_text(json.dumps(jsonable(data), indent=1) + "\n", encoding="utf-8")
+    return path

@@ -3,15 +3,13 @@
 from __future__ import annotations
 
 import importlib.metadata
-import json
-import math
 import platform
 from dataclasses import asdict
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
 import tyrefem
-from tyrefem.output import atomic_path
+from tyrefem.output import atomic_path, write_json
 
 if TYPE_CHECKING:
     from tyrefem.result import Result
@@ -72,26 +70,6 @@ def summary(result: Result) -> dict[str, Any]:
 def _hottest_region(result: Result) -> str:
     peaks = result.history.region_maximum
     return max(peaks, key=lambda region: peaks[region].temperature)
-
-
-def jsonable(value: Any) -> Any:
-    """Plain data that JSON can hold: numpy scalars made Python's, NaN and infinity made null."""
-    if isinstance(value, dict):
-        return {str(key): jsonable(entry) for key, entry in value.items()}
-    if isinstance(value, list | tuple):
-        return [jsonable(entry) for entry in value]
-    if hasattr(value, "tolist"):
-        return jsonable(value.tolist())
-    if isinstance(value, float) and not math.isfinite(value):
-        return None
-    return value if isinstance(value, str | int | float | bool | None) else str(value)
-
-
-def write_json(data: dict[str, Any], path: Path) -> Path:
-    """Write JSON whole or not at all."""
-    with atomic_path(path) as temporary:
-        temporary.write_text(json.dumps(jsonable(data), indent=1) + "\n", encoding="utf-8")
-    return path
 
 
 def write_tables(result: Result, folder: Path) -> Path:

@@ -5,6 +5,7 @@ from __future__ import annotations
 from pathlib import Path
 
 import pytest
+import tomli_w
 
 import tyrefem as tf
 
@@ -22,8 +23,8 @@ crushed,40000,83,must fail
 def folder(tmp_path: Path) -> Path:
     """A folder with the campaign's study and table."""
     short = {"drive.duration": "20 s", "mesh.size": "8 mm", "output.fields": 2}
-    study = tf.study(NASA).replace(short | {"cases": "cases.csv", "title": "Three <loads>"})
-    study.save(tmp_path / "study.toml")
+    data = tf.study(NASA).replace(short | {"cases": "cases.csv", "title": "Three <loads>"}).data
+    (tmp_path / "study.toml").write_text(tomli_w.dumps(data), encoding="utf-8")
     (tmp_path / "cases.csv").write_text(CASES, encoding="utf-8")
     return tmp_path
 

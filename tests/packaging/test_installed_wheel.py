@@ -106,4 +106,5 @@ def test_installed_program_lists_the_shipped_studies(installed: Path, tmp_path: 
 
 
 def test_requirements_of_the_installed_environment_agree(installed: Path, tmp_path: Path) -> None:
-    assert "No broken requirements" in run(installed / "python", "-m", "pip", "check", cwd=tmp_path).stdout
+    # Ends with 1, which `run` refuses, where a requirement is missing or of another version.
+    run(installed / "python", "-m", "pip", "check", cwd=tmp_path)

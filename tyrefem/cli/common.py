@@ -94,6 +94,6 @@ def print_json(data: dict[str, Any]) -> None:
     """JSON on stdout."""
     import json
 
-    from tyrefem.summary import jsonable
+    from tyrefem.output import jsonable
 
     typer.echo(json.dumps(jsonable(data), indent=1))

@@ -2,12 +2,17 @@
 
 from __future__ import annotations
 
+import os
+from collections.abc import Iterator
+from concurrent.futures import ProcessPoolExecutor
+from contextlib import contextmanager
+from multiprocessing import get_context
 from pathlib import Path
 from typing import Annotated
 
 import typer
 
-from tyrefem.cli.common import JsonOption, SetOption, StudyArgument, print_json, settings, writable_folder
+from tyrefem.cli.common import JsonOption, SetOption, StudyArgument, print_json, progress, settings, writable_folder
 
 
 def compare(
@@ -29,7 +34,15 @@ def compare(
 
     found = load(study, settings(changes))
     folder = writable_folder(out or Path("results") / f"{found.name}-compare")
-    comparison = found.compare(table, ignore=tuple(ignore or ()), inputs=inputs, k=k)
+    with progress(f"{found.name}: simulations", 1.0, quiet=as_json) as step, _side_by_side(inputs) as executor:
+        comparison = found.compare(
+            table,
+            ignore=tuple(ignore or ()),
+            inputs=inputs,
+            k=k,
+            executor=executor,
+            progress=lambda done, total: step(done / total),
+        )
     comparison.save(folder)
     if as_json:
         print_json(comparison.to_dict())
@@ -40,6 +53,20 @@ def compare(
     for note in comparison.notes:
         typer.echo(f"note: {note}")
     typer.echo(f"results in {folder}; read {folder / 'comparison.html'}")
+
+
+@contextmanager
+def _side_by_side(many: bool) -> Iterator[ProcessPoolExecutor | None]:
+    """A process per core where there are many simulations; none where starting processes takes longer than them."""
+    cores = os.cpu_count() or 1
+    if not many or cores < 2:
+        yield None
+        return
+    executor = ProcessPoolExecutor(cores, mp_context=get_context("spawn"))
+    try:
+        yield executor
+    finally:
+        executor.shutdown(cancel_futures=True)
 
 
 def register(app: typer.Typer) -> None:

@@ -31,7 +31,9 @@ def show(
     kind: Annotated[str, typer.Argument(help=", ".join(KINDS), autocompletion=complete_kinds)],
     name: Annotated[str, typer.Argument(help="Name or path of the card.", autocompletion=complete_names)],
     changes: SetOption = None,
-    out: Annotated[Path | None, typer.Option("--out", help="PNG to write; default: KIND-NAME.png.")] = None,
+    out: Annotated[
+        Path | None, typer.Option("--out", help="PNG to write (a mesh: also .msh, .vtu); default: KIND-NAME.png.")
+    ] = None,
 ) -> None:
     """Show a card: `section`, `mesh` and `strain` are drawn to a PNG, `material` and `study` printed."""
     if kind not in KINDS:
@@ -39,6 +41,9 @@ def show(
     values = settings(changes)
     if kind in ("material", "study"):
         _print(kind, name, values)
+        return
+    if kind == "mesh" and out is not None and out.suffix in (".msh", ".vtu", ".vtk"):
+        _write_mesh(name, values, out)
         return
     figure, facts = _SHOWN[kind](name, values)
     path = out or Path(f"{kind}-{Path(name).stem if name.endswith('.toml') else Path(name).name}.png")
@@ -69,6 +74,17 @@ def _mesh(name: str, values: dict[str, Any]) -> tuple[Any, dict[str, Any]]:
 
     tyre = study(name, values).mesh()
     return mesh_figure(tyre), tyre.summary()
+
+
+def _write_mesh(name: str, values: dict[str, Any], path: Path) -> None:
+    from tyrefem import meshing
+    from tyrefem.output import atomic_path
+    from tyrefem.studies import study
+
+    tyre = study(name, values).mesh()
+    with atomic_path(path) as temporary:
+        meshing.write(tyre, temporary)
+    typer.echo(f"{tyre.n_nodes} nodes, {tyre.n_elements} elements written to {path}")
 
 
 def _strain(name: str, values: dict[str, Any]) -> tuple[Any, dict[str, Any]]:

@@ -126,7 +126,9 @@ class Comparison:
             "rows": self.table.to_dict(orient="records"),
             "inputs": self.inputs.to_dict(orient="records"),
         }
-        plain: dict[str, Any] = _plain(data)
+        from tyrefem.output import jsonable
+
+        plain: dict[str, Any] = jsonable(data)
         return plain
 
     def save(self, folder: str | Path) -> Path:
@@ -211,13 +213,3 @@ def _rms(residuals: pd.DataFrame) -> float:
 
 def _plural(number: int, noun: str) -> str:
     return f"{number:,} {noun}{'' if number == 1 else 's'}"
-
-
-def _plain(value: Any) -> Any:
-    if isinstance(value, Mapping):
-        return {str(key): _plain(below) for key, below in value.items()}
-    if isinstance(value, list | tuple):
-        return [_plain(below) for below in value]
-    if hasattr(value, "item"):
-        value = value.item()
-    return None if isinstance(value, float) and not math.isfinite(value) else value

@@ -60,7 +60,11 @@ class Surface:
         facets = np.asarray(boundaries[name], dtype=np.int64)
         if facets.size == 0:
             raise InputError(f"boundary {name!r} has no facets", field="boundaries")
-        basis = skfem.FacetBasis(ops.mesh, ops.skfem_element, facets=facets, intorder=ops.intorder)
+        try:
+            basis = skfem.FacetBasis(ops.mesh, ops.skfem_element, facets=facets, intorder=ops.intorder)
+        except Exception as error:  # scikit-fem raises a bare Exception where its inverse mapping does not converge
+            message = f"elements at boundary {name!r} are too thin or distorted: {error}"
+            raise InputError(message, field="boundaries") from error
         x = np.asarray(basis.global_coordinates())
         self.name, self.x = name, np.ascontiguousarray(x.reshape(2, -1))
         self.weight = (basis.dx * (2 * np.pi * x[0] if ops.axisymmetric else 1.0)).reshape(-1)
