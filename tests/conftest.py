@@ -7,6 +7,12 @@ import subprocess
 import sys
 
 import pytest
+from hypothesis import settings
+
+# The same examples at every run; HYPOTHESIS_PROFILE=explore looks at new ones.
+settings.register_profile("reproducible", derandomize=True, deadline=None)
+settings.register_profile("explore", deadline=None, max_examples=1000)
+settings.load_profile(os.environ.get("HYPOTHESIS_PROFILE", "reproducible"))
 
 _RENDER = (
     "import pyvista; plotter = pyvista.Plotter(off_screen=True, window_size=(64, 64)); "

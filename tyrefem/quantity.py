@@ -19,6 +19,11 @@ if TYPE_CHECKING:
     from pydantic_core import CoreSchema
 
 _NUMBER = re.compile(r"^\s*([-+]?(?:\d+\.?\d*|\.\d+)(?:[eE][-+]?\d+)?)\s*(.*?)\s*$", re.DOTALL)
+#: Names joined by * / and small powers: pint would work out 9**9**9 for as long as it takes.
+_UNIT = re.compile(
+    r"(?:1\s*/)?(?:[^\W\d][\w°%]*+|[°%][^\W\d]*+|[()\s/·]|\*(?!\*)|[⁻⁰¹²³⁴]+"
+    r"|(?:\*\*|\^)\s*\(?\s*-?\d(?:\.\d+)?\s*\)?(?!\d|\s*(?:\*\*|\^)))+"
+)
 _EXAMPLES = {
     "m": "'0.6 in' or '15 mm'",
     "m/s": "'20 mph' or '9 m/s'",
@@ -97,6 +102,8 @@ def _convert(magnitude: float, text: str, unit: str, value: object, wanted: str)
     units = registry()
     if len(text) > 60:
         raise InputError(f"{text[:60]!r}... is not a unit; expected {wanted}")
+    if not _UNIT.fullmatch(text) or re.search(r"\)\s*(?:\*\*|\^)", text):
+        raise InputError(f"'{text}' in {value!r} is not a unit; expected {wanted}")
     try:
         given = units.parse_units(text)
     except Exception as error:  # pint raises many kinds for text that is not a unit

@@ -36,6 +36,7 @@ def test_missing_library_is_named_with_the_cure(monkeypatch: pytest.MonkeyPatch,
     assert error.value.field == "mesher"
 
 
+@pytest.mark.usefixtures("needs_gmsh")
 def test_quiet_and_without_traces(capfd: pytest.CaptureFixture[str]) -> None:
     import gmsh
 
@@ -47,6 +48,7 @@ def test_quiet_and_without_traces(capfd: pytest.CaptureFixture[str]) -> None:
     assert (said.out, said.err) == ("", "")
 
 
+@pytest.mark.usefixtures("needs_gmsh")
 def test_a_running_gmsh_keeps_its_model_and_options() -> None:
     import gmsh
 
@@ -63,6 +65,7 @@ def test_a_running_gmsh_keeps_its_model_and_options() -> None:
         gmsh.finalize()
 
 
+@pytest.mark.usefixtures("needs_gmsh")
 def test_works_beside_the_main_thread() -> None:
     found: list[int] = []
     section = load("nasa-22x5.5-8pr")
@@ -78,6 +81,7 @@ def test_works_beside_the_main_thread() -> None:
     assert found[0] == found[1]
 
 
+@pytest.mark.usefixtures("needs_gmsh")
 def test_failure_of_gmsh_is_an_input_error(monkeypatch: pytest.MonkeyPatch) -> None:
     import gmsh
 
