@@ -82,6 +82,10 @@ def _measured(study: Study) -> int:
     return sum(len(read_table(table)) for table in {entry.table for entry in study.measured})
 
 
+#: Place among the commands.
+ORDER = 50
+
+
 def register(app: typer.Typer) -> None:
     """Add the command."""
     app.command()(check)

@@ -69,6 +69,10 @@ def _side_by_side(many: bool) -> Iterator[ProcessPoolExecutor | None]:
         executor.shutdown(cancel_futures=True)
 
 
+#: Place among the commands.
+ORDER = 20
+
+
 def register(app: typer.Typer) -> None:
     """Add the command."""
     app.command()(compare)

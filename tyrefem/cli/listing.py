@@ -47,6 +47,10 @@ def _laws() -> None:
             typer.echo(f"{side:14} {name:10} {first}")
 
 
+#: Place among the commands.
+ORDER = 30
+
+
 def register(app: typer.Typer) -> None:
     """Add the command."""
     app.command(name="list")(show_list)

@@ -62,6 +62,10 @@ def _companions(kind: str, source: Path) -> list[Path]:
     return [name for name in inside if (source.parent / name).is_file()]
 
 
+#: Place among the commands.
+ORDER = 60
+
+
 def register(app: typer.Typer) -> None:
     """Add the command."""
     app.command()(new)

@@ -131,6 +131,10 @@ def _refuse_overlaid(campaign: Campaign, values: dict[str, Any]) -> None:
             )
 
 
+#: Place among the commands.
+ORDER = 10
+
+
 def register(app: typer.Typer) -> None:
     """Add the command."""
     app.command()(run)

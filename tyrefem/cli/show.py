@@ -130,6 +130,10 @@ def _print(kind: str, name: str, values: dict[str, Any]) -> None:
     typer.echo(tomli_w.dumps(data), nl=False)
 
 
+#: Place among the commands.
+ORDER = 40
+
+
 def register(app: typer.Typer) -> None:
     """Add the command."""
     app.command()(show)

@@ -84,7 +84,9 @@ class Integration:
                 if h < 1e-13 * max(abs(t), last - first):
                     raise SolverError(f"the time step vanished at t = {t:.6g} s (error estimate {error:.3g} K)")
                 continue
-            h = max(h, h_now) if h_now < h and factor >= 1 else h_now * min(4.0, factor)
+            # One rung more would not be worth its factorisation: wait until the step may grow by two.
+            grown = h_now * (min(4.0, factor) if not 1 <= factor < _RUNG**2 else 1.0)
+            h = max(h, h_now) if h_now < h and factor >= 1 else grown
             t_new = last if h_now == remaining else t + h_now
             self._accept(step, t, t_new, min(t_new, high))
             t = t_new
