@@ -89,7 +89,7 @@ class Factor:
         self.ordering = ordering
         if ordering.banded:
             band = ordering.band(data)
-            pbtrf, self._pbtrs = tuple(get_lapack_funcs(("pbtrf", "pbtrs"), (band,)))  # type: ignore[arg-type]
+            pbtrf, self._pbtrs = tuple(get_lapack_funcs(("pbtrf", "pbtrs"), (band,)))
             self._band, info = pbtrf(band, lower=1, overwrite_ab=1)
             if info != 0:
                 raise SolverError("the conduction matrix is not positive definite")
