@@ -41,8 +41,8 @@ def _parts(data: Mapping[str, Any], key: str) -> list[str]:
     parts = [part.strip().replace("-", "_") if i == 0 else part.strip() for i, part in enumerate(key.split("."))]
     if not all(parts):
         raise InputError(f"'{key}' is not a dotted name such as drive.speed")
-    if parts[0] == "section" and len(parts) == 2 and parts[1] != "base":
-        return _section_parts(parts[1])
+    if parts[0] == "section" and len(parts) >= 2 and parts[1] != "base":
+        return [*_section_parts(parts[1]), *parts[2:]]
     return parts
 
 

@@ -78,3 +78,10 @@ def test_a_missing_region_is_named(study):
 def test_a_load_that_the_section_cannot_bear_is_an_input_error(study):
     with pytest.raises(tf.InputError, match=r"impossible|deflects the tyre"):
         study.replace({"drive.load": "30000 lbf"}).run()
+
+
+def test_a_thickness_scale_may_be_named_without_its_table() -> None:
+    study = tf.study("nasa-22x5.5-8pr")
+    short = study.replace({"section.thickness_scale.tread": 1.2})
+    assert short.data == study.replace({"section.parameters.thickness_scale.tread": 1.2}).data
+    assert short.section.thickness("tread", 0.0) == pytest.approx(1.2 * study.section.thickness("tread", 0.0))
