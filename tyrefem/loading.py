@@ -8,6 +8,7 @@ from typing import Annotated, Literal, Protocol
 
 from tyrefem.cards import Card, Text
 from tyrefem.errors import InputError
+from tyrefem.footprint import TR_R_64, FootprintLaw
 from tyrefem.quantity import Unit
 
 #: TR R-64, type VII tyres, static: C_z.
@@ -87,6 +88,7 @@ class LoadCase:
     pressure: float
     outer_radius: float
     drum_diameter: float = math.inf
+    footprint: FootprintLaw = TR_R_64
 
     @property
     def rolling_radius(self) -> float:
@@ -95,13 +97,14 @@ class LoadCase:
 
     @property
     def footprint_length(self) -> float:
-        """1.7 d sqrt(D/d - (D/d)^2) (TR R-64), shortened by sqrt(1/(1 + d/d_drum)) on a drum.
+        """The footprint law's length, m, shortened by sqrt(1/(1 + d/d_drum)) on a drum unless it was measured.
 
         The drum's factor is the Hertz contact of two cylinders at equal deflection: an estimate.
         """
-        d = 2 * self.outer_radius
-        x = self.deflection / d
-        return 1.7 * d * math.sqrt(max(x - x * x, 0.0)) / math.sqrt(1 + d / self.drum_diameter)
+        length = self.footprint.on_flat_road(self.deflection, self.outer_radius)
+        if not self.footprint.shorter_on_drum:
+            return length
+        return length / math.sqrt(1 + 2 * self.outer_radius / self.drum_diameter)
 
     @property
     def road_fraction(self) -> float:
@@ -122,6 +125,7 @@ def load_case(
     load: float | None = None,
     deflection: float | None = None,
     drum_diameter: float = math.inf,
+    footprint: FootprintLaw = TR_R_64,
 ) -> LoadCase:
     """A load case from a load or from a deflection, the other found by the law.
 
@@ -142,4 +146,4 @@ def load_case(
             f"allowed: 0 to {outer_radius * 500:.4g} mm (half its outer radius)",
             field=field,
         )
-    return LoadCase(load, deflection, pressure, outer_radius, drum_diameter)
+    return LoadCase(load, deflection, pressure, outer_radius, drum_diameter, footprint)

@@ -5,6 +5,7 @@ from __future__ import annotations
 import numpy as np
 
 from tyrefem.errors import InputError
+from tyrefem.footprint import GivenFootprint
 from tyrefem.heating import CycleSchedule, ramp_knots
 from tyrefem.loading import LoadCase, load_case
 from tyrefem.strain.arcs import Arcs, Stiffness
@@ -53,6 +54,7 @@ def cycle_schedule(study: Study) -> CycleSchedule:
     ------
     InputError : a load or deflection that the section cannot take; names the phase.
     """
+    _check_footprint(study)
     moduli = stiffness(study)
     knots, cases, cycles = [], [], []
     for number, phase in enumerate(study.card.drive.phases):
@@ -67,6 +69,15 @@ def cycle_schedule(study: Study) -> CycleSchedule:
         cases.append(phase_cases)
         cycles.append(phase_cycles)
     return CycleSchedule(study.card.drive, tuple(knots), tuple(cases), tuple(cycles))
+
+
+def _check_footprint(study: Study) -> None:
+    law, diameter = study.card.mechanics.footprint, study.section.outer_diameter
+    if isinstance(law, GivenFootprint) and law.length >= diameter:
+        message = (
+            f"{law.length * 1e3:.4g} mm is too long; must be less than the tyre's diameter, {diameter * 1e3:.4g} mm"
+        )
+        raise InputError(message, field="mechanics.footprint.length", file=study.file)
 
 
 def _cycle(study: Study, moduli: Stiffness, case: LoadCase) -> Arcs:
@@ -90,4 +101,5 @@ def _load_case(study: Study, number: int, fraction: float) -> LoadCase:
         load=None if phase.load is None else phase.load.at(fraction),
         deflection=None if phase.deflection is None else phase.deflection.at(fraction),
         drum_diameter=phase.drum_diameter,
+        footprint=study.card.mechanics.footprint,
     )

@@ -23,6 +23,8 @@ if TYPE_CHECKING:
 
 Array = NDArray[np.float64]
 GAS, RIM = "contained-air", "rim"
+#: Largest part of the tread at the crown that one contact may reach before the result warns (a judgement).
+SHALLOW = 0.2
 
 
 @dataclass(frozen=True)
@@ -40,6 +42,8 @@ class PhaseState:
     road_fraction: float
     road_film: float
     air_film: float
+    #: Depth to which one contact cools the tread (Cattani et al. 2023, eq 8).
+    propagation_depth: float
 
 
 @dataclass(frozen=True)
@@ -252,9 +256,22 @@ class Result:
                     self.tyre.road_fraction(t),
                     self.tyre.road_film(t),
                     self.tyre.air_film(t),
+                    self.tyre.propagation_depth(t),
                 )
             )
         return tuple(found)
+
+    @functools.cached_property
+    def warnings(self) -> tuple[str, ...]:
+        """Where the run left the range of its own assumptions, one line each."""
+        tread = float(self.study.section.thickness("tread", 0.0))
+        return tuple(
+            f"phase '{state.name}': one contact cools the tread {state.propagation_depth * 1e3:.2g} mm deep, "
+            f"{100 * state.propagation_depth / tread:.0f} % of its thickness at the crown; a film averaged over "
+            f"the revolution holds below {100 * SHALLOW:.0f} %"
+            for state in self.phases
+            if state.propagation_depth > SHALLOW * tread
+        )
 
     # -- output ------------------------------------------------------------------------------------------------------
 

@@ -15,6 +15,7 @@ from tyrefem.boundaries.road import RoadLaw
 from tyrefem.cards import Card, Text
 from tyrefem.drive import Drive
 from tyrefem.errors import InputError, nearest
+from tyrefem.footprint import TR_R_64, FootprintLaw
 from tyrefem.loading import TrR64, VerticalStiffness
 from tyrefem.quantity import Unit
 
@@ -47,6 +48,7 @@ class Mechanics(Card):
 
     strain: Literal["arcs"] = "arcs"
     load_law: Annotated[TrR64 | VerticalStiffness, Field(discriminator="law")] = TrR64()
+    footprint: Annotated[FootprintLaw, Field(discriminator="law")] = TR_R_64
     loss_convention: Literal["nasa", "sinusoid"] = "nasa"
     poisson_term: Annotated[float, Unit("1", ge=0, le=1)] = 0.75
     membrane_shear: bool = True

@@ -56,6 +56,7 @@ def summary(result: Result) -> dict[str, Any]:
         },
         "extremes": result.extremes.to_dict("records"),
         "heat_budget": result.heat_budget.to_dict(),
+        "warnings": list(result.warnings),
         "phases": [asdict(phase) for phase in result.phases],
         "mesh": result.tyre.mesh.summary() | {"element": study.card.mesh.element},
         "numerics": {"tolerance_K": study.tolerance, **asdict(history.steps)},

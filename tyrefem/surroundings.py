@@ -11,6 +11,7 @@ from tyrefem.boundaries import Contact
 from tyrefem.drive import Drive
 from tyrefem.heating import CycleSchedule
 from tyrefem.mechanics import cycle_schedule
+from tyrefem.road_contact import propagation_depth
 from tyrefem.studies import Study
 
 
@@ -72,6 +73,13 @@ class Surroundings:
         """H_c during contact, W/m2/K."""
         length = self.schedule.mean(lambda case: case.footprint_length, t)
         return self.study.card.boundaries.road.film(Contact(self.speed(t), length, *self._tread))
+
+    def propagation_depth(self, t: float) -> float:
+        """Depth to which one contact cools the tread, m (Cattani et al. 2023, eq 8); 0 for a tyre that stands."""
+        if self.speed(t) == 0:
+            return 0.0
+        length = self.schedule.mean(lambda case: case.footprint_length, t)
+        return propagation_depth(length / self.speed(t), *self._tread)
 
     def air_film(self, t: float) -> float:
         """Outside film, W/m2/K."""

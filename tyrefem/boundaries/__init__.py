@@ -43,7 +43,7 @@ def laws(side: str) -> dict[str, type[Law]]:
     """Every law of a side, by name.
 
     >>> sorted(laws("road"))
-    ['cattani', 'constant']
+    ['cattani', 'constant', 'half-space']
     """
     for module in pkgutil.iter_modules(__path__):
         importlib.import_module(f"{__name__}.{module.name}")

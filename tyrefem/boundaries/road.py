@@ -2,13 +2,13 @@
 
 from __future__ import annotations
 
-import math
 from abc import abstractmethod
 from typing import Annotated, ClassVar, Literal
 
 from tyrefem.boundaries import CAL, Contact, Law
 from tyrefem.cards import FilmCoefficient, Temperature
 from tyrefem.quantity import Unit
+from tyrefem.road_contact import effusivity, half_space_film, triangular_film
 
 
 class RoadLaw(Law):
@@ -41,19 +41,42 @@ class Constant(RoadLaw):
         return self.coefficient
 
 
-class Cattani(RoadLaw):
-    """H_c = sqrt(lambda C v / L): mean over the contact of a triangular profile (Cattani et al. 2023, eq 12).
+class OfTread(RoadLaw):
+    """A film that follows from the tread's lambda and C: the tread card's at 25 degC unless given here."""
 
-    lambda and C are the tread card's at 25 degC unless given here.
-    """
-
-    law: Literal["cattani"]
     conductivity: Annotated[float, Unit("W/m/K", gt=0)] | None = None
     heat_capacity: Annotated[float, Unit("J/m**3/K", gt=0)] | None = None
+
+    def _tread(self, contact: Contact) -> tuple[float, float]:
+        return self.conductivity or contact.conductivity, self.heat_capacity or contact.heat_capacity
+
+
+class Cattani(OfTread):
+    """H_c = sqrt(lambda C v / L): mean over the contact of a triangular profile (Cattani et al. 2023, eq 12)."""
+
+    law: Literal["cattani"]
 
     def film(self, contact: Contact) -> float:
         """H_c during contact, W/m2/K."""
         if contact.footprint_length <= 0:
             return 0.0
-        product = (self.conductivity or contact.conductivity) * (self.heat_capacity or contact.heat_capacity)
-        return math.sqrt(product * contact.speed / contact.footprint_length)
+        return triangular_film(contact.speed, contact.footprint_length, *self._tread(contact))
+
+
+class HalfSpace(OfTread):
+    """Two half-spaces suddenly in contact, H_c = (2/sqrt(pi)) sqrt(lambda C v / L) b_road / (b_road + b_tyre).
+
+    The defaults are estimates for dense asphalt: handbooks give 0.8 to 2 W/m/K and 1.8e6 to 2.4e6 J/m3/K, and for dry
+    concrete much the same (1.7 W/m/K, 2.1e6 J/m3/K). A wet, cracked or porous road differs: give your own.
+    """
+
+    law: Literal["half-space"]
+    road_conductivity: Annotated[float, Unit("W/m/K", gt=0)] = 1.5
+    road_heat_capacity: Annotated[float, Unit("J/m**3/K", gt=0)] = 2.0e6
+
+    def film(self, contact: Contact) -> float:
+        """H_c during contact, W/m2/K."""
+        if contact.footprint_length <= 0:
+            return 0.0
+        road = effusivity(self.road_conductivity, self.road_heat_capacity)
+        return half_space_film(contact.speed, contact.footprint_length, *self._tread(contact), road)

@@ -1,4 +1,4 @@
-"""The command line: `run`, `compare`, `list`, `show`, `check`, `new`. Heavy imports happen inside the commands."""
+"""The command line, one module per command. Heavy imports happen inside the commands."""
 
 from __future__ import annotations
 

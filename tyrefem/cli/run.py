@@ -58,6 +58,8 @@ def _single(study: Study, folder: Path, pictures: bool, vtk: bool, revolved: boo
     if pictures:
         result.plot(folder / "pictures")
         result.report(folder / "report.html")
+    for warning in result.warnings:
+        fail(f"warning: {warning}")
     if as_json:
         print_json(result.summary())
     else:
@@ -94,6 +96,8 @@ def _campaign(
     _refuse_overlaid(campaign, values)
 
     def each(result: Result, place: Path) -> None:
+        for warning in result.warnings:
+            fail(f"warning: {place.name}: {warning}")
         if vtk:
             result.to_vtk(place / "vtk", revolved=revolved)
         if pictures:

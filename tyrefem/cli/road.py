@@ -1,0 +1,177 @@
+"""`tyrefem road`: the film between tread and road, its published tables, and what averaging it costs."""
+
+from __future__ import annotations
+
+from pathlib import Path
+from typing import TYPE_CHECKING, Annotated, Any
+
+import typer
+
+from tyrefem.cli.common import writable_folder
+from tyrefem.errors import InputError
+
+if TYPE_CHECKING:
+    import pandas as pd
+
+road = typer.Typer(
+    name="road",
+    help="The film between tread and road (Cattani et al. 2023): tables, one contact, averaging.",
+    no_args_is_help=True,
+)
+Conductivity = Annotated[str, typer.Option("--conductivity", help="Tread's conductivity.")]
+HeatCapacity = Annotated[str, typer.Option("--heat-capacity", help="Tread's heat capacity by volume.")]
+#: Speeds (km/h) and footprint lengths (m) of the averaging sweep.
+SPEEDS = (0.2, 0.5, 1, 2, 5, 10, 15, 20, 50, 100, 200, 300)
+LENGTHS = (0.10, 0.14, 0.20, 0.30)
+
+
+def _positive(text: str, unit: str, option: str) -> float:
+    from tyrefem.quantity import Unit
+
+    try:
+        return Unit(unit, gt=0)(text)
+    except InputError as error:
+        raise error.within(field=option) from None
+
+
+def _printed(number: int) -> pd.DataFrame:
+    """A table of the paper."""
+    import pandas as pd
+
+    from tyrefem.library import shipped
+
+    return pd.read_csv(shipped() / "studies" / "cattani-road" / f"table-{number}.csv", comment="#")
+
+
+@road.command()
+def table() -> None:
+    """Tables 1 and 2 of the paper: printed value, recomputed value and deviation."""
+    from tyrefem.plotting.road import PAPER
+    from tyrefem.road_contact import triangular_film
+
+    typer.echo("Table 1: v m/s, FL m, literature, printed, recomputed H_c W/m2/K, recomputed - literature")
+    for v, length, literature, printed in _printed(1).itertuples(index=False):
+        film = triangular_film(v, length, *PAPER)
+        typer.echo(f"{v:8g} {length:6.2f} {literature:9.0f} {printed:9.0f} {film:11.2f} {film / literature - 1:+8.1%}")
+    typer.echo("Table 2: v km/h, FL m, printed, recomputed H_c W/m2/K, recomputed - printed")
+    largest, count, printed_2 = 0.0, 0, _printed(2)
+    lengths = [float(name.split("_")[1]) for name in printed_2.columns[1:]]
+    for speed, *films in printed_2.itertuples(index=False):
+        for length, printed in zip(lengths, films, strict=True):
+            film = triangular_film(speed / 3.6, length, *PAPER)
+            largest, count = max(largest, abs(film - printed)), count + 1
+            typer.echo(f"{speed:8g} {length:6.2f} {printed:9.2f} {film:9.2f} {film - printed:+8.3f}")
+    typer.echo(f"largest deviation of {count} values in table 2: {largest:.3f} W/m2/K")
+
+
+@road.command()
+def film(
+    speed: Annotated[str, typer.Option("--speed", help="Speed, e.g. '50 km/h'.")],
+    footprint: Annotated[str, typer.Option("--footprint", help="Footprint length, e.g. '0.14 m'.")],
+    conductivity: Conductivity = "0.25 W/m/K",
+    heat_capacity: HeatCapacity = "2e6 J/m**3/K",
+    road_conductivity: Annotated[str | None, typer.Option(help="Road's conductivity; default: asphalt.")] = None,
+    road_heat_capacity: Annotated[str | None, typer.Option(help="Road's heat capacity; default: asphalt.")] = None,
+) -> None:
+    """Film coefficient of one contact by every law, and how deep it reaches into the tread."""
+    from tyrefem.boundaries import Contact, laws
+    from tyrefem.road_contact import half_space_film, propagation_depth
+
+    v, length = _positive(speed, "m/s", "--speed"), _positive(footprint, "m", "--footprint")
+    k = _positive(conductivity, "W/m/K", "--conductivity")
+    C = _positive(heat_capacity, "J/m**3/K", "--heat-capacity")
+    of_road: dict[str, Any] = {}
+    if road_conductivity is not None:
+        of_road["road_conductivity"] = road_conductivity
+    if road_heat_capacity is not None:
+        of_road["road_heat_capacity"] = road_heat_capacity
+    words = {
+        "constant": "the report's, at every speed",
+        "cattani": "sqrt(lambda C v/FL)",
+        "half-space": "exact, road of finite effusivity",
+    }
+    lines = []
+    for name, law in sorted(laws("road").items()):
+        chosen: Any = law.check({"law": name} | (of_road if name == "half-space" else {}))
+        lines.append(f"{name:16} {chosen.film(Contact(v, length, k, C)):10.1f} W/m2/K  {words.get(name, '')}".rstrip())
+    ideal = half_space_film(v, length, k, C)
+    lines.append(f"{'half-space':16} {ideal:10.1f} W/m2/K  exact, road that keeps its temperature")
+    depth = propagation_depth(length / v, k, C)
+    lines.append(f"{'contact':16} {length / v * 1e3:10.4g} ms, reaches {depth * 1e3:.4g} mm into the tread")
+    typer.echo("\n".join(lines))
+
+
+@road.command()
+def averaging(
+    out: Annotated[Path | None, typer.Option("--out", help="PNG to draw.")] = None,
+    thickness: Annotated[str, typer.Option("--thickness", help="Tread thickness.")] = "10 mm",
+    inner_temperature: Annotated[
+        str, typer.Option("--inside", help="Temperature of the tread's inner side.")
+    ] = "80 degC",
+    conductivity: Conductivity = "0.25 W/m/K",
+    heat_capacity: HeatCapacity = "2e6 J/m**3/K",
+) -> None:
+    """Averaging the film over the revolution against every contact resolved, over speed and footprint length."""
+    from tyrefem.plotting.road import SMALL, averaging_figure, holds_above
+    from tyrefem.quantity import parse
+    from tyrefem.revolution import averaging_sweep
+    from tyrefem.tread_point import TreadPoint
+
+    if out is not None:
+        writable_folder(out.parent)
+    try:
+        inside = parse(inner_temperature, "degC")
+    except InputError as error:
+        raise error.within(field="--inside") from None
+    point = TreadPoint(
+        speed=1.0,
+        footprint_length=LENGTHS[0],
+        thickness=_positive(thickness, "m", "--thickness"),
+        conductivity=_positive(conductivity, "W/m/K", "--conductivity"),
+        heat_capacity=_positive(heat_capacity, "J/m**3/K", "--heat-capacity"),
+        inner_temperature=inside,
+    )
+    errors = averaging_sweep(point, [v / 3.6 for v in SPEEDS], LENGTHS)
+    typer.echo("FL m, v km/h: mean surface resolved, averaged degC; averaged - resolved K; swing in one contact K")
+    for found in errors:
+        v, length = found.point.speed * 3.6, found.point.footprint_length
+        typer.echo(
+            f"{length:5.2f} {v:7.1f} {found.mean_surface:9.2f} {found.averaged_surface:9.2f} "
+            f"{found.surface_difference:+8.2f} {found.swing:8.2f}"
+        )
+    for length in LENGTHS:
+        above = holds_above([found for found in errors if found.point.footprint_length == length])
+        where = f"from {above * 3.6:.4g} km/h" if above is not None else "at no speed of the sweep"
+        typer.echo(f"footprint {length * 1e3:.0f} mm: averaging holds to {SMALL:g} K {where}")
+    if out is not None:
+        _save(averaging_figure(errors), out)
+
+
+@road.command()
+def figures(out: Annotated[Path, typer.Option("--out", help="Folder for the pictures.")]) -> None:
+    """Redraw figures 4 and 5 of the paper."""
+    from tyrefem.plotting.road import film_figure
+
+    folder = writable_folder(out)
+    literature = _printed(1)
+    points = list(zip(literature["speed_m_s"], literature["literature_Hc_W_m2K"], strict=True))
+    folder.mkdir(parents=True, exist_ok=True)
+    _save(film_figure([0.14], points), folder / "figure-4.png")
+    _save(film_figure([0.10, 0.12, 0.14, 0.16, 0.18]), folder / "figure-5.png")
+
+
+def _save(drawn: Any, path: Path) -> None:
+    from tyrefem.output import atomic_path
+
+    with atomic_path(path) as temporary:
+        drawn.savefig(temporary, format="png")
+    typer.echo(f"drawn in {path}")
+
+
+#: Place among the commands.
+ORDER = 70
+
+
+def register(app: typer.Typer) -> None:
+    """Add the group."""
+    app.add_typer(road)

@@ -1,0 +1,154 @@
+"""One tread point through its revolutions: what is lost by averaging the road's film in time."""
+
+from __future__ import annotations
+
+from collections.abc import Iterable, Sequence
+from dataclasses import dataclass, replace
+from typing import Any
+
+import numpy as np
+from numpy.typing import NDArray
+
+from tyrefem.conduction import Film
+from tyrefem.errors import InputError
+from tyrefem.tread_point import TreadPoint
+
+Array = NDArray[Any]
+
+
+@dataclass(frozen=True, eq=False)
+class PeriodicState:
+    """The state that repeats every revolution: nodes x (m from the inner side), temperatures degC, W/m2 to the road."""
+
+    x: Array
+    before_contact: Array
+    after_contact: Array
+    mean: Array
+    heat_to_road: float
+
+
+def periodic_state(point: TreadPoint) -> PeriodicState:
+    """Temperatures that one revolution brings back, by finite elements in depth and exactly in time.
+
+    Each phase is linear, C dT/dt = f - A T, so with A v = l C v it maps T to P T + d; the state of period
+    P2 P1 is one linear solve. No revolution has to be waited for.
+    """
+    ops = point.conduction(Film(0.0, 0.0)).operators
+    x, node = np.unique(np.round(ops.points[0] / point.thickness, 12), return_inverse=True)
+    onto = np.zeros((ops.size, x.size))
+    onto[np.arange(ops.size), node] = 1.0  # Nodes side by side have one temperature.
+    width = float(np.ptp(ops.points[1]))
+    along, across = ops.conduction("tread", None)
+    C = point.heat_capacity * (onto.T @ ops.matrix(ops.mass("tread")) @ onto) / width
+    K = point.conductivity * (onto.T @ ops.matrix(along + across) @ onto) / width
+    load = C.sum(axis=1) / point.heat_capacity * point.heat_source
+    held = point.inner_temperature is not None
+    inside = float(point.inner_temperature or 0.0)
+    free = slice(1 if held else 0, None)
+    load = (load - K[:, 0] * inside * held)[free]
+    C, K = C[free, free], K[free, free]
+    on, off = (_Phase.of(C, K, load, *phase) for phase in point.phases)
+    before = np.linalg.solve(np.eye(len(C)) - off.map @ on.map, off.map @ on.shift + off.shift)
+    after = on.map @ before + on.shift
+    mean_on = on.mean_map @ before + on.mean_shift
+    mean = point.fraction * mean_on + (1 - point.fraction) * (off.mean_map @ after + off.mean_shift)
+    held_side = np.full(int(held), inside)
+    before, after, mean = (np.concatenate([held_side, T]) for T in (before, after, mean))
+    heat = point.fraction * point.phases[0][1] * (float(mean_on[-1]) - point.road_temperature)
+    return PeriodicState(x * point.thickness, before, after, mean, heat)
+
+
+@dataclass(frozen=True, eq=False)
+class _Phase:
+    """T -> map T + shift at the phase's end, T -> mean_map T + mean_shift averaged over it."""
+
+    map: Array
+    shift: Array
+    mean_map: Array
+    mean_shift: Array
+
+    @classmethod
+    def of(cls, C: Array, K: Array, load: Array, duration: float, film: float, sink: float) -> _Phase:
+        from scipy.linalg import eigh
+
+        A, f = K.copy(), load.copy()
+        A[-1, -1] += film
+        f[-1] += film * sink
+        rate, V = eigh(A, C)
+        z = np.maximum(rate, 0.0) * duration
+        some = np.maximum(z, 1e-4)
+        # Means of exp(-z s) over 0..1, and of that mean growing from 0; series where they would cancel.
+        once = np.where(z < 1e-4, 1 - z / 2 + z * z / 6, -np.expm1(-some) / some)
+        twice = np.where(z < 1e-4, 0.5 - z / 6, (some + np.expm1(-some)) / some**2)
+        into, g = V.T @ C, duration * (V.T @ f)
+        return cls((V * np.exp(-z)) @ into, V @ (once * g), (V * once) @ into, V @ (twice * g))
+
+
+@dataclass(frozen=True)
+class AveragingError:
+    """The averaged boundary against every contact resolved, at periodic steady state; degC, W/m2, m.
+
+    ``mean_temperature`` and ``averaged_temperature`` are at ``depths`` below the surface; ``swing`` is how far one
+    contact cools the surface, K.
+    """
+
+    point: TreadPoint
+    mean_surface: float
+    averaged_surface: float
+    swing: float
+    heat_to_road: float
+    averaged_heat_to_road: float
+    depths: tuple[float, ...]
+    mean_temperature: tuple[float, ...]
+    averaged_temperature: tuple[float, ...]
+
+    @property
+    def difference(self) -> tuple[float, ...]:
+        """Averaged minus resolved at ``depths``, K."""
+        return tuple(a - m for a, m in zip(self.averaged_temperature, self.mean_temperature, strict=True))
+
+    @property
+    def surface_difference(self) -> float:
+        """Averaged minus resolved at the surface, K."""
+        return self.averaged_surface - self.mean_surface
+
+
+def averaging_error(
+    point: TreadPoint, depths: Sequence[float] = (0.0, 0.5e-3, 1e-3, 2e-3, 5e-3), film: float | None = None
+) -> AveragingError:
+    """Compare the time-averaged road film with every contact resolved.
+
+    ``depths`` in m below the surface; ``film`` is the H_c to average, the exact half-space mean where it is None.
+    Raises InputError for a depth outside the tread.
+
+    >>> error = averaging_error(TreadPoint(speed=50 / 3.6, footprint_length=0.14))
+    >>> 0 < error.surface_difference < 1 < error.swing
+    True
+    """
+    for depth in depths:
+        if not 0 <= depth <= point.thickness:
+            raise InputError(f"must be from 0 to {point.thickness:g} m, not {depth!r}", field="depths")
+    state = periodic_state(point)
+    field = point.averaged(film).steady(state.mean.mean())
+    averaged = np.asarray(field.at([(max(x, 0.0), 0.0) for x in (point.thickness - np.asarray(depths)).tolist()]))
+    surface = float(np.asarray(field.at([(point.thickness, 0.0)]))[0])
+    road = point.mean_film if film is None else film
+    return AveragingError(
+        point=point,
+        mean_surface=float(state.mean[-1]),
+        averaged_surface=surface,
+        swing=float(state.before_contact[-1] - state.after_contact[-1]),
+        heat_to_road=state.heat_to_road,
+        averaged_heat_to_road=point.fraction * road * (surface - point.road_temperature),
+        depths=tuple(depths),
+        mean_temperature=tuple(np.interp(point.thickness - np.asarray(depths), state.x, state.mean).tolist()),
+        averaged_temperature=tuple(averaged.tolist()),
+    )
+
+
+def averaging_sweep(point: TreadPoint, speeds: Iterable[float], lengths: Iterable[float]) -> list[AveragingError]:
+    """`averaging_error` at every speed (m/s) of every footprint length (m), length by length."""
+    speeds = list(speeds)
+    return [
+        averaging_error(replace(point, speed=speed, footprint_length=length)) for length in lengths for speed in speeds
+    ]
