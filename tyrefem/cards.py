@@ -13,10 +13,8 @@ from tyrefem.errors import InputError, nearest
 from tyrefem.quantity import Unit
 
 Text = Annotated[str, Field(min_length=1)]
-Length = Annotated[float, Unit("m")]
 #: The largest tyre made is 4 m in diameter; far beyond it, coordinates lose the digits that elements need.
 PositiveLength = Annotated[float, Unit("m", gt=0, le=20)]
-Thickness = Annotated[float, Unit("m", ge=0)]
 Temperature = Annotated[float, Unit("degC", le=2000)]
 FilmCoefficient = Annotated[float, Unit("W/m**2/K", ge=0)]
 

@@ -36,7 +36,6 @@ class Quadrature:
         slopes = ops.directed_gradients(name, direction)
         self.value = at_points(phi)
         self.slopes = tuple(at_points(g) for g in slopes)
-        self.value_t = self.value.T.tocsr()
         self.slopes_t = tuple(g.T.tocsr() for g in self.slopes)
         place = ops.place[:, :, e]
         q = np.broadcast_to(np.arange(self.weight.size).reshape(e.size, n_q), (n_local, n_local, e.size, n_q))

@@ -65,7 +65,6 @@ class Arcs:
     section: Any
     stiffness: Stiffness
     case: LoadCase
-    drum_term: bool = True
 
     def __post_init__(self) -> None:
         if not hasattr(self.section.line, "sidewall_radius"):
@@ -165,8 +164,7 @@ class Arcs:
         plies, line, case = self.stiffness.carcass, self.section.line, self.case
         s = np.minimum(s, line.shoulder_s)
         radius = line.position(s)[:, 0]
-        drum = 2 / case.drum_diameter if self.drum_term else 0.0
-        hoop = -self._deflection / radius - y * (1 / radius + drum)
+        hoop = -self._deflection / radius - y * (1 / radius + 2 / case.drum_diameter)
         modulus = plies.meridional(radius)
         thickness = self._carcass_thickness(s)
         membrane = np.full_like(s, self._shoulder_change)
