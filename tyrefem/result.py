@@ -12,7 +12,7 @@ from numpy.typing import ArrayLike, NDArray
 
 from tyrefem.boundaries.contained_air import ATMOSPHERE, KELVIN
 from tyrefem.heat_budget import HeatBudget, whole_tyre
-from tyrefem.sensors import lagged
+from tyrefem.sensors import recorded, true_places
 
 if TYPE_CHECKING:
     import pandas as pd
@@ -87,7 +87,7 @@ class Result:
     @functools.cached_property
     def sensor_places(self) -> dict[str, tuple[float, float]]:
         """(r, z) of every sensor, m."""
-        return {name: self.study.section_place(sensor) for name, sensor in self.study.sensors.items()}
+        return true_places(self.study)
 
     def _inside(self, points: ArrayLike) -> Array:
         """Points moved by the sag of straight-sided elements at most, so that a surface point is in the mesh."""
@@ -103,8 +103,7 @@ class Result:
         columns: dict[str, Any] = {"time_s": self.times}
         if self.sensor_places:
             temperatures = self.at(self._inside(list(self.sensor_places.values())))
-            for column, (name, sensor) in enumerate(self.study.sensors.items()):
-                columns[name] = lagged(self.times, temperatures[:, column], sensor.lag)
+            columns |= recorded(self.study, self.times, temperatures)
         return pd.DataFrame(columns | {GAS: self.gas_temperature} | self._rim_column())
 
     def _rim_column(self) -> dict[str, Array]:

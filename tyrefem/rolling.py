@@ -13,6 +13,7 @@ from numpy.typing import NDArray
 
 from tyrefem.boundaries.rim import Lumped
 from tyrefem.conduction import Conduction, Film, Material, Reservoir
+from tyrefem.effects.acting import Source
 from tyrefem.heating import LOSS_FACTOR, HeatSource
 from tyrefem.meshing import TyreMesh
 from tyrefem.result import GAS, RIM, Result
@@ -37,7 +38,9 @@ class RollingTyre(Surroundings):
         for region, card in self.study.materials.items():
             orthotropic = card.conductivity.orthotropic
             found[region] = Material(
-                card.conductivity.law(), card.heat_capacity(), self._along_plies if orthotropic else None
+                self.acting.conductivity(region, card.conductivity.law()),
+                self.acting.capacity(region, card.heat_capacity()),
+                self._along_plies if orthotropic or self.acting.at("conductivity_factor") else None,
             )
         return found
 
@@ -54,21 +57,24 @@ class RollingTyre(Surroundings):
 
         rim = RIM if isinstance(laws.rim, Lumped) else _of_time(self.rim_temperature)
         air = _of_time(self.ambient)
-        return {
+        driven = self.acting.changes_films
+        sides = {
             "road": [
                 Film(_of_time(lambda t: self.road_fraction(t) * self.road_film(t)), _of_time(self.road_temperature)),
-                Film(_of_time(lambda t: (1 - self.road_fraction(t)) * self.air_film(t)), air),
+                Film(_of_time(lambda t: (1 - self.road_fraction(t)) * self.tread_air_film(t)), air),
             ],
-            "outside_air": Film(_of_time(self.air_film), air),
-            "contained_air": Film(laws.contained_air.film, gas),
-            "rim": Film(laws.rim.total_film, rim),
+            "outside_air": [Film(_of_time(self.air_film), air)],
+            "contained_air": [Film(_of_time(self.gas_film) if driven else laws.contained_air.film, gas)],
+            "rim": [Film(_of_time(self.rim_film) if driven else laws.rim.total_film, rim)],
         }
+        return {side: conditions + self.acting.conditions(side) for side, conditions in sides.items()}
 
     @functools.cached_property
     def _gas_capacity(self) -> float | None:
         law = self.study.card.boundaries.contained_air
         pressure = self.drive.phases[0].pressure.start
-        return law.heat_capacity(self.study.section.gas_volume(), pressure, self._gas_start)
+        capacity = law.heat_capacity(self.study.section.gas_volume(), pressure, self._gas_start)
+        return None if capacity is None else self.acting.gas_capacity(capacity)
 
     @property
     def _gas_start(self) -> float:
@@ -88,13 +94,18 @@ class RollingTyre(Surroundings):
         return found
 
     @functools.cached_property
-    def sources(self) -> dict[str, HeatSource]:
-        """Zone -> heat source."""
+    def hysteresis(self) -> dict[str, HeatSource]:
+        """Zone -> heat of its strain cycle."""
         factor = LOSS_FACTOR[self.study.card.mechanics.loss_convention]
         return {
             zone.name: HeatSource(zone.name, self.schedule, self.study.materials[zone.region].loss_tangent, factor)
             for zone in self.schedule.zones
         }
+
+    @functools.cached_property
+    def sources(self) -> dict[str, Source]:
+        """Zone -> heat source: the strain cycle's, and what the study's effects make of it."""
+        return {zone: self.acting.source(zone, heat) for zone, heat in self.hysteresis.items()}
 
     @functools.cached_property
     def problem(self) -> Conduction:

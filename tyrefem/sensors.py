@@ -1,9 +1,14 @@
-"""The measurement operator: where a thermocouple sits and how it lags."""
+"""The measurement operator: where a thermocouple sits, how it lags, and what the logger makes of it."""
 
 from __future__ import annotations
 
+from typing import TYPE_CHECKING
+
 import numpy as np
-from numpy.typing import NDArray
+from numpy.typing import ArrayLike, NDArray
+
+if TYPE_CHECKING:
+    from tyrefem.studies import Study
 
 Array = NDArray[np.float64]
 
@@ -33,3 +38,41 @@ def lagged(times: Array, temperatures: Array, lag: float) -> Array:
         offset = reading[i] - (temperatures[i] - lag * slope)
         reading[i + 1] = temperatures[i + 1] - lag * slope + offset * decay
     return reading
+
+
+def true_places(study: Study) -> dict[str, tuple[float, float]]:
+    """(r, z) of every sensor, m: as stated, moved by the study's effects, but never out of the rubber."""
+    stated = {name: study.section_place(sensor) for name, sensor in study.sensors.items()}
+    moving = [effect for effect in study.effects if effect.overrides("displacement")]
+    if not moving or not stated:
+        return stated
+    section = study.section
+    s, depth = section.locate(np.array(list(stated.values())))
+    for column, name in enumerate(stated):
+        for effect in moving:
+            along, deeper = effect.displacement(name)
+            s[column], depth[column] = s[column] + along, depth[column] + deeper
+    places = section.place(*section.clamp(s, depth, 0.0))
+    return {name: (float(r), float(z)) for name, (r, z) in zip(stated, places, strict=True)}
+
+
+def recorded(study: Study, times: Array, temperatures: ArrayLike) -> dict[str, Array]:
+    """What the logger records for temperatures (n_times, n_sensors) in degC at the sensors, in the study's order.
+
+    Lag first, then the effects of measurement: a further lag, swapped channels, offset, a logger's clock that is off.
+    """
+    values = np.asarray(temperatures, dtype=float)
+    effects = study.effects
+    lags = {
+        name: sensor.lag + sum(effect.lag_addend(name) for effect in effects) for name, sensor in study.sensors.items()
+    }
+    read = {name: lagged(times, values[:, column], lags[name]) for column, name in enumerate(lags)}
+    late = sum(effect.clock() for effect in effects)
+    found = {}
+    for name in read:
+        channel = name
+        for effect in effects:
+            channel = effect.channel(channel)
+        column = read[channel] + sum(effect.offset(name) for effect in effects)
+        found[name] = np.interp(times + late, times, column) if late else column
+    return found

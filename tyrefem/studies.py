@@ -21,6 +21,7 @@ if TYPE_CHECKING:
 
     from tyrefem.campaign import Campaign
     from tyrefem.compare import Comparison
+    from tyrefem.effects import Effect
     from tyrefem.meshing import TyreMesh
     from tyrefem.result import Result
     from tyrefem.section import Section
@@ -53,6 +54,7 @@ class Study:
             raise self.as_written(error) from None
         _ = self.section, self.materials
         self._check_sensors()
+        self._check_effects()
 
     def as_written(self, error: InputError) -> InputError:
         """The error in the file's own words: a drive without phases has no ``drive.phases.0``."""
@@ -74,7 +76,14 @@ class Study:
             built = load(self.data["section"], near=self.folder)
         except InputError as error:
             raise error if error.file else error.within(field="section", file=self.file) from None
+        for effect in self.effects:
+            built = effect.worn(built)
         return built.as_full() if full else built
+
+    @property
+    def effects(self) -> tuple[Effect, ...]:
+        """The study's effects that are not null."""
+        return tuple(one for one in self.card.effects if not one.is_null)
 
     @functools.cached_property
     def materials(self) -> dict[str, MaterialCard]:
@@ -126,6 +135,14 @@ class Study:
                     if entry.relative_sd and getattr(entry, key, None) is not None:
                         found[f"materials.{region}.{name}.{key}"] = entry.relative_sd
         return found | self.card.uncertainty
+
+    def _check_effects(self) -> None:
+        for number, effect in enumerate(self.card.effects):
+            problem = effect.refusal(self)
+            if problem is None and any(_same(effect, other) for other in self.card.effects[:number]):
+                problem = "is given twice; give it once"
+            if problem is not None:
+                raise InputError(problem, field=f"effects.{effect.name}", file=self.file)
 
     def _check_sensors(self) -> None:
         for name, sensor in self.sensors.items():
@@ -254,6 +271,10 @@ class Study:
         from tyrefem.campaign import Campaign
 
         return Campaign.of(self)
+
+
+def _same(one: Effect, other: Effect) -> bool:
+    return one.name == other.name and one.choice == other.choice
 
 
 def study(name: str | Path, changes: Mapping[str, Any] | None = None) -> Study:

@@ -14,6 +14,7 @@ from tyrefem.boundaries.rim import RimLaw
 from tyrefem.boundaries.road import RoadLaw
 from tyrefem.cards import Card, Text
 from tyrefem.drive import Drive
+from tyrefem.effects import Effect, EffectOf
 from tyrefem.errors import InputError, nearest
 from tyrefem.footprint import TR_R_64, FootprintLaw
 from tyrefem.loading import TrR64, VerticalStiffness
@@ -135,6 +136,7 @@ class StudyCard(Card):
     uncertainty: dict[str, Annotated[float, Unit("1", gt=0, lt=1)]] = Field(default_factory=dict)
     measured: tuple[MeasuredEntry, ...] = ()
     cases: Text | None = None
+    effects: tuple[Annotated[Effect, EffectOf()], ...] = ()
 
     @model_validator(mode="before")
     @classmethod

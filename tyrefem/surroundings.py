@@ -9,6 +9,7 @@ import numpy as np
 
 from tyrefem.boundaries import Contact
 from tyrefem.drive import Drive
+from tyrefem.effects.acting import Acting
 from tyrefem.heating import CycleSchedule
 from tyrefem.mechanics import cycle_schedule
 from tyrefem.road_contact import propagation_depth
@@ -31,19 +32,26 @@ class Surroundings:
         """Load cases and strain cycles of every phase."""
         return cycle_schedule(self.study)
 
+    @functools.cached_property
+    def acting(self) -> Acting:
+        """The study's effects, at work on this tyre."""
+        return Acting(self, self.study.effects)
+
     def ambient(self, t: float) -> float:
         """Ambient temperature, degC."""
-        return float(self.drive.value("ambient", t) or 0.0)
+        return self.acting.sink("outside_air", t, float(self.drive.value("ambient", t) or 0.0))
 
     def road_temperature(self, t: float) -> float:
         """Road temperature, degC: the drive's, else the law's, else the ambient."""
-        return self._first(self.drive.value("road_temperature", t), self.study.card.boundaries.road.temperature, t)
+        driven, law = self.drive.value("road_temperature", t), self.study.card.boundaries.road.temperature
+        return self.acting.sink("road", t, self._first(driven, law, t))
 
     def rim_temperature(self, t: float) -> float:
         """Temperature of a fixed rim, degC: the drive's, else the law's, else the drive's initial one."""
         driven = self.drive.value("rim_temperature", t)
         law = self.study.card.boundaries.rim.temperature
-        return driven if driven is not None else self.drive.initial if law is None else law
+        base = driven if driven is not None else self.drive.initial if law is None else law
+        return self.acting.sink("rim", t, base)
 
     def _first(self, driven: float | None, law: float | None, t: float) -> float:
         return driven if driven is not None else self.ambient(t) if law is None else law
@@ -72,7 +80,8 @@ class Surroundings:
     def road_film(self, t: float) -> float:
         """H_c during contact, W/m2/K."""
         length = self.schedule.mean(lambda case: case.footprint_length, t)
-        return self.study.card.boundaries.road.film(Contact(self.speed(t), length, *self._tread))
+        base = self.study.card.boundaries.road.film(Contact(self.speed(t), length, *self._tread))
+        return self.acting.film("road", t, base)
 
     def propagation_depth(self, t: float) -> float:
         """Depth to which one contact cools the tread, m (Cattani et al. 2023, eq 8); 0 for a tyre that stands."""
@@ -83,4 +92,16 @@ class Surroundings:
 
     def air_film(self, t: float) -> float:
         """Outside film, W/m2/K."""
-        return self.study.card.boundaries.outside_air.film(self.speed(t))
+        return self.acting.film("outside_air", t, self.study.card.boundaries.outside_air.film(self.speed(t)))
+
+    def tread_air_film(self, t: float) -> float:
+        """Outside film of the tread between two contacts, W/m2/K."""
+        return self.acting.film("tread_air", t, self.air_film(t))
+
+    def gas_film(self, t: float) -> float:
+        """Film between inner surface and contained air, W/m2/K."""
+        return self.acting.film("contained_air", t, self.study.card.boundaries.contained_air.film)
+
+    def rim_film(self, t: float) -> float:
+        """Film between bead and rim with every resistance in series, W/m2/K."""
+        return self.acting.film("rim", t, self.study.card.boundaries.rim.total_film)

@@ -181,7 +181,7 @@ def _cell_means(result: Result, i: int) -> tuple[Array, Array]:
         elements = operators.elements(zone)
         place = np.searchsorted(operators.dofs(zone), operators.element_dofs[:, elements])
         source[elements] = q[place].mean(axis=0)
-        energy[elements] = result.tyre.sources[zone].energy_density(nodes, just)[place].mean(axis=0)
+        energy[elements] = result.tyre.hysteresis[zone].energy_density(nodes, just)[place].mean(axis=0)
     return source, energy
 
 

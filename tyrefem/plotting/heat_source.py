@@ -46,7 +46,7 @@ def zone_heat(result: Result, i: int) -> list[ZoneHeat]:
         numbers = np.full(operators.size, -1)
         numbers[operators.dofs(zone.name)] = np.arange(len(operators.dofs(zone.name)))
         nodes, source = sources[zone.name]
-        energy = result.tyre.sources[zone.name].energy_density(nodes, t)
+        energy = result.tyre.hysteresis[zone.name].energy_density(nodes, t)
         power = float(powers["generated", zone.title][i])
         found.append(ZoneHeat(zone.name, zone.title, nodes, numbers[corners], energy, source, power))
     return found

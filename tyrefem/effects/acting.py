@@ -1,0 +1,118 @@
+"""The effects at work in a tyre, combined: (base + sum of addends) x product of factors."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from dataclasses import dataclass
+from typing import TYPE_CHECKING, Any
+
+import numpy as np
+from numpy.typing import NDArray
+
+from tyrefem.conduction import Flux, Radiation
+from tyrefem.effects.effect import Effect
+
+if TYPE_CHECKING:
+    from tyrefem.surroundings import Surroundings
+
+Array = NDArray[np.float64]
+Source = Callable[[Array, float, Array], Array]
+
+
+@dataclass(frozen=True, eq=False)
+class Acting:
+    """What a tyre's effects make of a quantity of the model."""
+
+    tyre: Surroundings
+    effects: tuple[Effect, ...]
+
+    def at(self, *ports: str) -> tuple[Effect, ...]:
+        """The effects that enter at one of these ports."""
+        return tuple(one for one in self.effects if any(one.overrides(port) for port in ports))
+
+    @property
+    def changes_films(self) -> bool:
+        """Does any effect touch a film?"""
+        return bool(self.at("film_factor", "film_addend", "film_resistance"))
+
+    def film(self, film: str, t: float, base: float) -> float:
+        """A film at a time, W/m2/K: sums, then factors, then resistances in series."""
+        for one in self.at("film_addend"):
+            base = base + one.film_addend(self.tyre, film, t)
+        for one in self.at("film_factor"):
+            base = base * one.film_factor(self.tyre, film, t)
+        resistance = sum(one.film_resistance(self.tyre, film, t) for one in self.at("film_resistance"))
+        return base / (1 + base * resistance) if resistance else base
+
+    def sink(self, sink: str, t: float, base: float) -> float:
+        """A surrounding temperature at a time, degC."""
+        return base + sum(one.sink_addend(self.tyre, sink, t) for one in self.at("sink_addend"))
+
+    def source(self, zone: str, base: Source) -> Source:
+        """The heat source of a zone with every effect on it."""
+        addends, factors, tyre = self.at("heat_addend"), self.at("heat_factor"), self.tyre
+        if not addends and not factors:
+            return base
+
+        def heat(x: Array, t: float, T: Array) -> Array:
+            q = base(x, t, T)
+            for one in addends:
+                q = q + one.heat_addend(tyre, zone, x, t, T)
+            for one in factors:
+                q = q * one.heat_factor(tyre, zone, x, t, T)
+            return q
+
+        return heat
+
+    def conductivity(self, region: str, law: Any) -> Any:
+        """Conductivity of a region as `tyrefem.conduction.Material` takes it."""
+        factors = self.at("conductivity_factor")
+        if not factors:
+            return law
+
+        def k(T: Array) -> tuple[Any, Any]:
+            value = law(T) if callable(law) else law
+            along, across = value if isinstance(value, tuple) else (value, value)
+            for one in factors:
+                first, second = one.conductivity_factor(self.tyre, region, T)
+                along, across = along * first, across * second
+            return along, across
+
+        return k
+
+    def capacity(self, region: str, law: Any) -> Any:
+        """Heat capacity of a region as `tyrefem.conduction.Material` takes it."""
+        factors = self.at("capacity_factor")
+        if not factors:
+            return law
+
+        def capacity(T: Array) -> Any:
+            value = law(T) if callable(law) else law
+            for one in factors:
+                value = value * one.capacity_factor(self.tyre, region, T)
+            return value
+
+        return capacity
+
+    def gas_capacity(self, base: float) -> float:
+        """Heat capacity of the contained air, J/K."""
+        for one in self.at("gas_capacity_factor"):
+            base = base * one.gas_capacity_factor(self.tyre)
+        return base
+
+    def conditions(self, surface: str) -> list[Any]:
+        """Fluxes and radiation that effects add to a boundary."""
+        found: list[Any] = []
+        for one in self.effects:
+            if surface not in one.surfaces:
+                continue
+            if one.overrides("flux"):
+                found.append(Flux(_flux_of(one, self.tyre, surface)))
+            if one.overrides("radiation"):
+                radiation: Radiation | None = one.radiation(self.tyre, surface)
+                found += [] if radiation is None else [radiation]
+        return found
+
+
+def _flux_of(effect: Effect, tyre: Surroundings, surface: str) -> Callable[[Array, float], Any]:
+    return lambda x, t: effect.flux(tyre, surface, x, t)

@@ -1,0 +1,234 @@
+"""A physical effect that a model may lack: its parameters, and the port of the model where it enters."""
+
+from __future__ import annotations
+
+import functools
+from collections.abc import Mapping
+from dataclasses import dataclass
+from typing import TYPE_CHECKING, Any, ClassVar
+
+import numpy as np
+from numpy.typing import NDArray
+from pydantic import Field, GetCoreSchemaHandler
+from pydantic_core import CoreSchema, core_schema
+
+from tyrefem.cards import Card, Text
+from tyrefem.quantity import Unit
+
+if TYPE_CHECKING:
+    from tyrefem.conduction import Radiation
+    from tyrefem.section import Section
+    from tyrefem.studies import Study
+    from tyrefem.surroundings import Surroundings
+
+Array = NDArray[np.float64]
+Factor = float | Array
+
+#: Films that an effect may change: H_c of the contact, the outside air, the same on the tread alone, gas, rim.
+FILMS = ("road", "outside_air", "tread_air", "contained_air", "rim")
+#: Temperatures that an effect may shift.
+SINKS = ("road", "outside_air", "rim")
+#: Surfaces that a flux may enter through.
+SURFACES = ("road", "outside_air", "contained_air", "rim")
+
+
+@dataclass(frozen=True)
+class Prior:
+    """Annotation of an effect's parameter: its unit, and what is known of it before any data. SI.
+
+    ``Annotated[float, Prior("W/m**2", "...", scale=500.0, low=0.0, high=1400.0)]`` accepts ``"0.5 kW/m**2"``.
+
+    Parameters
+    ----------
+    unit, meaning : unit in a study file; one line.
+    scale : standard deviation of the prior about ``null``, the value at which the effect is not there.
+    low, high : bounds; physics forbids what lies beyond (the sign, for most).
+    start : where a fit begins, for a parameter that only shapes the effect (``amplitude`` False).
+    """
+
+    unit: str
+    meaning: str
+    scale: float
+    low: float
+    high: float
+    null: float = 0.0
+    start: float | None = None
+    amplitude: bool = True
+
+    def __get_pydantic_core_schema__(self, source: Any, handler: GetCoreSchemaHandler) -> CoreSchema:
+        return core_schema.no_info_plain_validator_function(Unit(self.unit, ge=self.low, le=self.high))
+
+
+@dataclass(frozen=True)
+class Parameter:
+    """A parameter of an effect by name."""
+
+    name: str
+    prior: Prior
+
+
+class Effect(Card):
+    """Base of all effects; a subclass in a module of this package, or of a folder the user names, registers itself.
+
+    A subclass sets ``name``, ``sentence``, ``source``, its parameters as fields annotated with a `Prior`, and
+    overrides the port (method) where it enters. Every port is given the tyre in its surroundings (speed, load
+    cases, section). Effects combine as (base + sum of addends) x product of factors, so their order does not matter;
+    one whose amplitudes are all null is left out, and the run is then the same to the bit.
+    """
+
+    kind: ClassVar[str] = "effect"
+    #: Name in study files; one sentence for people; where the effect is described; heat, conduction, boundary...
+    name: ClassVar[str] = ""
+    sentence: ClassVar[str] = ""
+    source: ClassVar[str] = ""
+    family: ClassVar[str] = ""
+    #: Boundaries that the ports `flux` and `radiation` may use.
+    surfaces: ClassVar[tuple[str, ...]] = SURFACES
+
+    #: Where the values come from, and their standard deviations: said by who wrote the study, used by nobody.
+    provenance: Text | None = Field(default=None, alias="from")
+    sd: dict[str, Any] = Field(default_factory=dict)
+
+    # -- parameters --------------------------------------------------------------------------------------------------
+
+    @classmethod
+    @functools.cache
+    def parameters(cls) -> tuple[Parameter, ...]:
+        """The parameters with unit and prior, amplitudes first."""
+        found = []
+        for name, field in cls.model_fields.items():
+            found += [Parameter(name, item) for item in field.metadata if isinstance(item, Prior)]
+        return tuple(sorted(found, key=lambda one: not one.prior.amplitude))
+
+    @property
+    def values(self) -> dict[str, float]:
+        """Parameter -> value, SI."""
+        return {one.name: float(getattr(self, one.name)) for one in self.parameters()}
+
+    @property
+    def choice(self) -> dict[str, str]:
+        """What tells this variant from others of the same effect: the sensor's name, say."""
+        return {}
+
+    @property
+    def is_null(self) -> bool:
+        """Are all amplitudes at the value where the effect is not there?"""
+        amplitudes = [one for one in self.parameters() if one.prior.amplitude]
+        return bool(amplitudes) and all(getattr(self, one.name) == one.prior.null for one in amplitudes)
+
+    @classmethod
+    def overrides(cls, port: str) -> bool:
+        """Does the effect enter at this port?"""
+        return getattr(cls, port) is not getattr(Effect, port)
+
+    @classmethod
+    def ports(cls) -> tuple[str, ...]:
+        """The ports where the effect enters."""
+        return tuple(port for port in PORTS if cls.overrides(port))
+
+    @classmethod
+    def refusal(cls, study: Study) -> str | None:
+        """Why the effect has no meaning in a study; None where it has."""
+        return None
+
+    @classmethod
+    def variants(cls, study: Study) -> tuple[Mapping[str, str], ...]:
+        """The choices (a sensor's name, say) to try in a study, one mapping each."""
+        return ({},)
+
+    # -- ports: heat and conduction ----------------------------------------------------------------------------------
+
+    def heat_factor(self, tyre: Surroundings, zone: str, x: Array, t: float, T: Array) -> Factor:
+        """Factor on the heat source of a strain zone at points x (2, n), time t (s), temperatures T (n,), degC."""
+        return 1.0
+
+    def heat_addend(self, tyre: Surroundings, zone: str, x: Array, t: float, T: Array) -> Factor:
+        """Heat added to a strain zone's source, W/m3; arguments as of `heat_factor`."""
+        return 0.0
+
+    def conductivity_factor(self, tyre: Surroundings, region: str, T: Array) -> tuple[Factor, Factor]:
+        """Factors on the conductivity along and across the plies at temperatures T (n,), degC."""
+        return 1.0, 1.0
+
+    def capacity_factor(self, tyre: Surroundings, region: str, T: Array) -> Factor:
+        """Factor on the volumetric heat capacity at temperatures T (n,), degC."""
+        return 1.0
+
+    # -- ports: boundaries -------------------------------------------------------------------------------------------
+
+    def film_factor(self, tyre: Surroundings, film: str, t: float) -> float:
+        """Factor on one of `FILMS` at time t (s)."""
+        return 1.0
+
+    def film_addend(self, tyre: Surroundings, film: str, t: float) -> float:
+        """W/m2/K added to one of `FILMS` at time t (s)."""
+        return 0.0
+
+    def film_resistance(self, tyre: Surroundings, film: str, t: float) -> float:
+        """m2 K/W in series with one of `FILMS` at time t (s): 1/h -> 1/h + R."""
+        return 0.0
+
+    def sink_addend(self, tyre: Surroundings, sink: str, t: float) -> float:
+        """K added to the temperature of one of `SINKS` at time t (s)."""
+        return 0.0
+
+    def flux(self, tyre: Surroundings, surface: str, x: Array, t: float) -> Factor:
+        """W/m2 into the tyre through one of `SURFACES` at points x (2, n) and time t (s)."""
+        return 0.0
+
+    def radiation(self, tyre: Surroundings, surface: str) -> Radiation | None:
+        """Radiation of one of `SURFACES`; None for none."""
+        return None
+
+    def gas_capacity_factor(self, tyre: Surroundings) -> float:
+        """Factor on the heat capacity of the contained air."""
+        return 1.0
+
+    # -- ports: section and measurement ------------------------------------------------------------------------------
+
+    def worn(self, section: Section) -> Section:
+        """The section as it is in truth."""
+        return section
+
+    def displacement(self, sensor: str) -> tuple[float, float]:
+        """How far a sensor sits from its stated place: along the meridian and in depth, m."""
+        return 0.0, 0.0
+
+    def lag_addend(self, sensor: str) -> float:
+        """s added to a sensor's lag."""
+        return 0.0
+
+    def offset(self, sensor: str) -> float:
+        """K that a sensor shows too much."""
+        return 0.0
+
+    def clock(self) -> float:
+        """s by which the logger's clock is late: what it calls t was measured at t + clock."""
+        return 0.0
+
+    def channel(self, sensor: str) -> str:
+        """The sensor whose temperature is recorded under a sensor's name."""
+        return sensor
+
+
+PORTS = (
+    "heat_factor",
+    "heat_addend",
+    "conductivity_factor",
+    "capacity_factor",
+    "film_factor",
+    "film_addend",
+    "film_resistance",
+    "sink_addend",
+    "flux",
+    "radiation",
+    "gas_capacity_factor",
+    "worn",
+    "displacement",
+    "lag_addend",
+    "offset",
+    "clock",
+    "channel",
+)
+#: Ports that change what is measured, not the tyre.
+MEASUREMENT_PORTS = PORTS[-5:]

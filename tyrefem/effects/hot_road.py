@@ -1,0 +1,28 @@
+"""A road warmer (or colder) than the study says."""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING, Annotated, ClassVar
+
+from tyrefem.effects.effect import Effect, Prior
+
+if TYPE_CHECKING:
+    from tyrefem.surroundings import Surroundings
+
+
+class HotRoad(Effect):
+    """T_road -> T_road + warmer_by."""
+
+    name: ClassVar[str] = "hot-road"
+    family: ClassVar[str] = "boundary"
+    sentence: ClassVar[str] = "The road is warmer than stated, as asphalt in the sun is."
+    source: ClassVar[str] = (
+        "estimate: summer asphalt is 20 to 30 K above the air (handbook range); Cattani et al. 2023 keep the road's "
+        "temperature as an input of its own"
+    )
+
+    warmer_by: Annotated[float, Prior("delta_degC", "road above its stated temperature", 10.0, -30.0, 60.0)] = 0.0
+
+    def sink_addend(self, tyre: Surroundings, sink: str, t: float) -> float:
+        """K added to the road's temperature."""
+        return self.warmer_by if sink == "road" else 0.0
