@@ -95,6 +95,11 @@ class Result:
         s, depth = section.locate(np.asarray(points, dtype=float).reshape(-1, 2))
         return np.asarray(section.place(*section.clamp(s, depth, self.tyre.mesh.size**2 / 0.1)))
 
+    @property
+    def sensor_points(self) -> Array:
+        """(n_sensors, 2) in (r, z), m: where in the mesh the sensors are read."""
+        return self._inside(list(self.sensor_places.values()))
+
     @functools.cached_property
     def readings(self) -> pd.DataFrame:
         """``time_s``, one column per sensor (lag applied), the contained air, and a lumped rim; degC."""
@@ -102,7 +107,7 @@ class Result:
 
         columns: dict[str, Any] = {"time_s": self.times}
         if self.sensor_places:
-            temperatures = self.at(self._inside(list(self.sensor_places.values())))
+            temperatures = self.at(self.sensor_points)
             columns |= recorded(self.study, self.times, temperatures)
         return pd.DataFrame(columns | {GAS: self.gas_temperature} | self._rim_column())
 

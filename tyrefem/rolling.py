@@ -25,12 +25,25 @@ Array = NDArray[np.float64]
 
 @dataclass(frozen=True, eq=False)
 class RollingTyre(Surroundings):
-    """A study made into a conduction problem. Everything is built once, on demand."""
+    """A study made into a conduction problem. Everything is built once, on demand.
+
+    ``like``: another tyre, whose mesh (and so the operators assembled on it) is taken if the section is the same.
+    """
+
+    like: RollingTyre | None = None
 
     @functools.cached_property
     def mesh(self) -> TyreMesh:
         """The mesh, with the strain zones added as named subdomains."""
         zones = self.schedule.zones
+        if self.like is not None:
+            study, other = self.study, self.like.study
+            if (
+                study.section is other.section
+                and study.card.mesh == other.card.mesh
+                and zones == self.like.schedule.zones
+            ):
+                return self.like.mesh
         return self.study.mesh().with_zones({zone.name: (zone.region, zone.start, zone.end) for zone in zones})
 
     def _materials(self) -> dict[str, Material]:
@@ -40,16 +53,9 @@ class RollingTyre(Surroundings):
             found[region] = Material(
                 self.acting.conductivity(region, card.conductivity.law()),
                 self.acting.capacity(region, card.heat_capacity()),
-                self._along_plies if orthotropic or self.acting.at("conductivity_factor") else None,
+                self.mesh.along_meridian if orthotropic or self.acting.at("conductivity_factor") else None,
             )
         return found
-
-    def _along_plies(self, x: Array) -> Array:
-        """Unit vector along the meridian at points (2, n): the direction of the plies in the section."""
-        section = self.study.section
-        s, _ = section.locate(np.asarray(x).T)
-        n_r, n_z = np.moveaxis(section.line.normal(s), -1, 0)
-        return np.array([-n_z, n_r])
 
     def _boundaries(self) -> dict[str, Any]:
         laws = self.study.card.boundaries
@@ -127,10 +133,10 @@ def _of_time(law: Callable[[float], float]) -> Callable[[Any, float], float]:
     return lambda _x, t: remembered(t)
 
 
-def run(study: Study, progress: Callable[[float], None] | None = None) -> Result:
-    """Simulate a study's drive."""
+def run(study: Study, progress: Callable[[float], None] | None = None, like: RollingTyre | None = None) -> Result:
+    """Simulate a study's drive; ``like``: see `RollingTyre`."""
     began = clock.perf_counter()
-    tyre = RollingTyre(study)
+    tyre = RollingTyre(study, like)
     end = tyre.drive.end
     every = study.card.output.every
     fields = np.linspace(0.0, end, study.card.output.fields)

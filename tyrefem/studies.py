@@ -6,7 +6,7 @@ import copy
 import functools
 import re
 from collections.abc import Mapping
-from dataclasses import dataclass, field, replace
+from dataclasses import dataclass, field
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
@@ -52,6 +52,7 @@ class Study:
             object.__setattr__(self, "card", StudyCard.check(self.data, self.file))
         except InputError as error:
             raise self.as_written(error) from None
+        self._share(self.__dict__.pop("_like", None))
         _ = self.section, self.materials
         self._check_sensors()
         self._check_effects()
@@ -136,6 +137,20 @@ class Study:
                         found[f"materials.{region}.{name}.{key}"] = entry.relative_sd
         return found | self.card.uncertainty
 
+    def _share(self, like: Study | None) -> None:
+        """Take over what another study has built, where the two do not differ."""
+        if like is None:
+            return
+        worn = any(effect.overrides("worn") for effect in (*self.effects, *like.effects))
+        if (
+            not worn
+            and self.data["section"] == like.data["section"]
+            and self.card.mesh.section == like.card.mesh.section
+        ):
+            self.__dict__["section"] = like.section
+        if self.data["materials"] == like.data["materials"]:
+            self.__dict__["materials"] = like.materials
+
     def _check_effects(self) -> None:
         for number, effect in enumerate(self.card.effects):
             problem = effect.refusal(self)
@@ -194,7 +209,13 @@ class Study:
         data: dict[str, Any] = copy.deepcopy(dict(self.data))
         for key, value in changes.items():
             data = changed(data, key, value)
-        return replace(self, data=data)
+        return self._with(data)
+
+    def _with(self, data: Mapping[str, Any]) -> Study:
+        study = object.__new__(Study)
+        study.__dict__.update(name=self.name, data=data, file=self.file, folder=self.folder, _like=self)
+        study.__post_init__()
+        return study
 
     def scaled(self, key: str, factor: float) -> Study:
         """A new study with the number at a dotted name times a factor."""

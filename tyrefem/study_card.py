@@ -72,7 +72,7 @@ class Sensor(Card):
     """A thermocouple: ``s`` along the meridian from the crown and ``depth`` from the inner surface, or ``at = [r, z]``.
 
     ``lag`` is its first-order time constant, ``noise`` the standard deviation of a reading, ``accuracy`` that of its
-    calibration, ``position_sd`` that of its place (defaults: estimates for a hand-drilled thermocouple).
+    calibration, ``position_sd`` that of its place, ``lag_sd`` that of its lag (defaults: estimates for a hand-drilled thermocouple).
     """
 
     s: Annotated[float, Unit("m")] | None = None
@@ -82,6 +82,7 @@ class Sensor(Card):
     lag: Annotated[float, Unit("s", ge=0)] = 0.0
     noise: Annotated[float, Unit("delta_degC", ge=0)] = 0.5
     accuracy: Annotated[float, Unit("delta_degC", ge=0)] = 1.0
+    lag_sd: Annotated[float, Unit("s", ge=0)] = 2.0
 
     @model_validator(mode="after")
     def _one_place(self) -> Sensor:
@@ -103,6 +104,22 @@ class Numerics(Card):
 
     tolerance: Annotated[float, Unit("delta_degC", gt=0, le=10)] = 0.01
     mesh_sd: Annotated[float, Unit("delta_degC", ge=0)] = 0.05
+
+
+class DiagnosisChoice(Card):
+    """What the diagnosis assumes; every default is an estimate.
+
+    ``film_sd``: relative standard deviation of the film coefficients. ``discrepancy``: standard deviation of what the
+    model misses even when it is right (mesh, time steps, the shape of the strain energy), K, correlated over
+    ``correlation_time``. ``effects_expected``: prior probability that anything is missing. ``exclude``: effects that are
+    known not to be there.
+    """
+
+    film_sd: Annotated[float, Unit("1", gt=0, lt=1)] = 0.2
+    discrepancy: Annotated[float, Unit("delta_degC", gt=0)] = 0.1
+    correlation_time: Annotated[float, Unit("s", gt=0)] = 120.0
+    effects_expected: Annotated[float, Unit("1", gt=0, lt=1)] = 0.5
+    exclude: tuple[Text, ...] = ()
 
 
 class MeasuredEntry(Card):
@@ -137,6 +154,7 @@ class StudyCard(Card):
     measured: tuple[MeasuredEntry, ...] = ()
     cases: Text | None = None
     effects: tuple[Annotated[Effect, EffectOf()], ...] = ()
+    diagnosis: DiagnosisChoice = DiagnosisChoice()
 
     @model_validator(mode="before")
     @classmethod

@@ -55,6 +55,11 @@ class Prior:
     start: float | None = None
     amplitude: bool = True
 
+    @property
+    def origin(self) -> float:
+        """Where a fit measures the parameter from: the null of an amplitude, the start of a shape."""
+        return self.null if self.amplitude or self.start is None else self.start
+
     def __get_pydantic_core_schema__(self, source: Any, handler: GetCoreSchemaHandler) -> CoreSchema:
         return core_schema.no_info_plain_validator_function(Unit(self.unit, ge=self.low, le=self.high))
 
@@ -82,6 +87,8 @@ class Effect(Card):
     sentence: ClassVar[str] = ""
     source: ClassVar[str] = ""
     family: ClassVar[str] = ""
+    #: A correction of a base number: fitted along in a diagnosis, never named as missing.
+    calibration: ClassVar[bool] = False
     #: Boundaries that the ports `flux` and `radiation` may use.
     surfaces: ClassVar[tuple[str, ...]] = SURFACES
 

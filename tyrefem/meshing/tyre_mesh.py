@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping
+from collections.abc import Callable, Mapping
 from dataclasses import dataclass, replace
 from functools import cached_property
 from typing import Any
@@ -98,6 +98,18 @@ class TyreMesh:
         """
         found = {name: self.elements_between(start, end, region) for name, (region, start, end) in zones.items()}
         return replace(self, mesh=self.mesh.with_subdomains(found))
+
+    @cached_property
+    def along_meridian(self) -> Callable[[Array], Array]:
+        """Unit vector along the meridian at points (2, n): the direction of the plies. The same function every time."""
+        section = self.section
+
+        def direction(x: Array) -> Array:
+            s, _ = section.locate(np.asarray(x).T)
+            n_r, n_z = np.moveaxis(section.line.normal(s), -1, 0)
+            return np.array([-n_z, n_r])
+
+        return direction
 
     @cached_property
     def quality(self) -> dict[str, float]:

@@ -1,0 +1,91 @@
+"""The amended study: the old one with what was found, as few changes as say it."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import dataclass
+from typing import Any
+
+import numpy as np
+
+from tyrefem.diagnose.refine import Explained, Gap
+from tyrefem.diagnose.unknowns import Unknown, with_values
+from tyrefem.studies import Study
+
+#: A correction of a base number or a sensor that moves no block mean by this much is left out, K.
+NEGLIGIBLE = 0.1
+
+
+@dataclass(frozen=True)
+class Change:
+    """One number of the amended study: ``x`` with its standard deviation; ``missing``: part of a named effect."""
+
+    unknown: Unknown
+    x: float
+    sd: float
+    missing: bool
+    source: str
+
+
+def changes(gap: Gap, best: Explained, runs: Sequence[str]) -> tuple[Change, ...]:
+    """What a fit changes: the named effects, then corrections of base numbers and sensors that matter."""
+    fitted = [name for name, one in zip(runs, gap.lab.bench.trials, strict=True) if not one.hold_out]
+    source = f"diagnosis of {gap.lab.bench.study.name}, fitted to {', '.join(fitted)}"
+    own = {one for member in best.members for one in member.unknowns}
+    found = []
+    for unknown in sorted(best.unknowns, key=lambda one: one not in own):
+        x, sd = best.values[unknown], best.sd[unknown]
+        if unknown in own:
+            found.append(Change(unknown, x, sd, True, source))
+            continue
+        column = gap.unknowns.index(unknown)
+        moved = max(float(np.abs(gap.jacobians[i][:, column] * x).max()) for i in range(len(gap.jacobians)))
+        if moved > NEGLIGIBLE:
+            found.append(Change(unknown, x, sd, False, source))
+    return tuple(found)
+
+
+def amended(study: Study, change: Sequence[Change]) -> Study:
+    """The study with the changes, rounded to what their standard deviations carry, and where they come from."""
+    totals: dict[Unknown, float] = {one.unknown: _rounded(one.x, one.sd) for one in change}
+    new = with_values(study, totals)
+    entries = [dict(entry) for entry in new.data.get("effects", [])]
+    for one in change:
+        if one.unknown.effect is None:
+            continue
+        wanted = {"name": one.unknown.effect, **dict(one.unknown.choice)}
+        for entry in entries:
+            if all(entry.get(key) == value for key, value in wanted.items()):
+                assert one.unknown.parameter is not None
+                unit = one.unknown.unit
+                number = float(f"{one.sd:.2g}")
+                entry["sd"] = {
+                    **entry.get("sd", {}),
+                    one.unknown.parameter.name: number if unit == "1" else f"{number!r} {unit}",
+                }
+                entry["from"] = one.source
+    if entries:
+        # Named effects first: they are what the study is about.
+        named = {one.unknown.effect for one in change if one.missing}
+        entries.sort(key=lambda entry: entry["name"] not in named)
+        new = new.replace({"effects": entries})
+    title = study.title if study.title.endswith("(amended)") else f"{study.title} (amended)"
+    return new.replace({"title": title}) if change else new
+
+
+def _rounded(x: float, sd: float) -> float:
+    """x to a hundredth of its standard deviation."""
+    if sd <= 0 or not np.isfinite(sd):
+        return x
+    digits = int(np.ceil(-np.log10(sd / 100)))
+    return round(x, digits)
+
+
+def difference(study: Study, new: Study) -> list[str]:
+    """The lines by which the amended study's file differs, as a unified difference."""
+    import difflib
+
+    import tomli_w
+
+    texts: list[Any] = [tomli_w.dumps(dict(one.data)).splitlines() for one in (study, new)]
+    return list(difflib.unified_diff(*texts, "study.toml", "amended.toml", n=1, lineterm=""))

@@ -1,0 +1,136 @@
+"""Heat of unknown origin: a regularised estimate of what is missing where nothing in the catalogue explains the gap."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import dataclass
+
+import numpy as np
+from numpy.typing import NDArray
+
+from tyrefem.diagnose.gauss import fit
+from tyrefem.diagnose.refine import Explained, Gap
+from tyrefem.diagnose.unknowns import Unknown, of_effect
+from tyrefem.effects import catalogue
+from tyrefem.studies import Study
+
+Array = NDArray[np.float64]
+#: Stations along the half meridian.
+STATIONS = 7
+#: Prior of the missing heat: a share of the hottest zone's hysteresis. Of a missing flux: W/m2. Estimates.
+HEAT, FLUX = 4e4, 400.0
+
+
+def patches(study: Study) -> tuple[Unknown, ...]:
+    """Unknown heat (while rolling) and unknown flux (always) at stations evenly spread from crown to bead."""
+    length = study.section.line.length
+    spacing = length / STATIONS
+    known, found = catalogue(), []
+    for name, sd in (("missing-heat", HEAT), ("missing-flux", FLUX)):
+        for number in range(STATIONS):
+            station = round((number + 0.5) * spacing, 6)
+            choice = (("station", f"{station!r} m"), ("width", f"{round(spacing * 0.6, 6)!r} m"))
+            found += of_effect(known[name], choice, sd)
+    return tuple(found)
+
+
+@dataclass(frozen=True, eq=False)
+class MissingHeat:
+    """What is missing, patch by patch.
+
+    Parameters
+    ----------
+    stations : (n,) m along the meridian. heat, heat_sd : (n_runs, n) W/m3. flux, flux_sd : (n_runs, n) W/m2.
+    runs, speeds : names and fastest speeds (m/s) of the fitted runs. log_evidence : of the data, comparable with the
+        sets'. region : where most of the missing heat is. watts : (n,) W, mean over the runs, by station.
+    """
+
+    stations: Array
+    heat: Array
+    heat_sd: Array
+    flux: Array
+    flux_sd: Array
+    runs: tuple[str, ...]
+    speeds: Array
+    log_evidence: float
+    region: str
+    station: float
+    watts: Array
+
+    @property
+    def kind(self) -> str:
+        """Is it heat inside (W/m3), or a flux through the surface (W/m2)?"""
+        heat = float((np.abs(self.heat.mean(axis=0)) / self.heat_sd.mean(axis=0)).max())
+        flux = float((np.abs(self.flux.mean(axis=0)) / self.flux_sd.mean(axis=0)).max())
+        return "heat" if heat >= flux else "flux"
+
+
+def missing_heat(gap: Gap, unknown: Sequence[Unknown], about: Explained) -> MissingHeat:
+    """The patches' heat in every fitted run, fitted together with everything that ``about`` fits.
+
+    Every patch has a part that all runs share and one of its own in each run, of half the standard deviation; the
+    priors are what regularises.
+    """
+    trials = gap.lab.bench.trials
+    columns = [gap.unknowns.index(one) for one in unknown]
+    blocks = [gap.whitened[i][:, columns] for i in gap.fitted]
+    rows = np.cumsum([0, *(len(block) for block in blocks)])
+    shared = np.vstack(blocks)
+    own = []
+    for block, start in zip(blocks, rows, strict=False):
+        wide = np.zeros((rows[-1], len(columns)))
+        wide[start : start + len(block)] = block
+        own.append(wide)
+    n, k = len(about.unknowns), len(columns)
+    J = np.hstack([about.jacobian, shared, *own])
+    sd_patch = np.array([one.sd for one in unknown])
+    sd = np.concatenate([[one.sd for one in about.unknowns], sd_patch, *[sd_patch / 2 for _ in own]])
+    low = np.concatenate([[one.low for one in about.unknowns], np.full(k * (1 + len(own)), -np.inf)])
+    high = np.concatenate([[one.high for one in about.unknowns], np.full(k * (1 + len(own)), np.inf)])
+    solution = fit(J.T @ J, J.T @ about.data, sd, low, high)
+    means, spreads = [], []
+    for number in range(len(own)):
+        at = n + k * (number + 1) + np.arange(k)
+        both = n + np.arange(k)
+        means.append(solution.mean[both] + solution.mean[at])
+        C = solution.covariance
+        variance = np.diag(C)[both] + np.diag(C)[at] + 2 * C[both, at]
+        spreads.append(np.sqrt(np.maximum(variance, 0.0)))
+    mean, spread = np.array(means), np.array(spreads)
+    half = k // 2
+    study = gap.lab.bench.study
+    stations = np.array([float(dict(one.choice)["station"].split()[0]) for one in unknown[:half]])
+    watts = _watts(study, stations, mean[:, :half].mean(axis=0), mean[:, half:].mean(axis=0))
+    score = _score(mean, spread, half)
+    worst = int(np.argmax(score))
+    s, depth = np.array([stations[worst]]), study.section.total_thickness([stations[worst]]) / 2
+    drives = [gap.lab.bench.driven(study, i).card.drive for i in gap.fitted]
+    return MissingHeat(
+        stations,
+        mean[:, :half],
+        spread[:, :half],
+        mean[:, half:],
+        spread[:, half:],
+        tuple(trials[i].name for i in gap.fitted),
+        np.array([max(max(phase.speed.start, phase.speed.end) for phase in drive.phases) for drive in drives]),
+        solution.log_evidence - float(about.data @ about.data) / 2,
+        str(study.section.region_at(s, depth)[0]),
+        float(stations[worst]),
+        watts,
+    )
+
+
+def _score(mean: Array, spread: Array, half: int) -> Array:
+    """How surely something is missing at each station: heat and flux together, in standard deviations."""
+    ratio = mean.mean(axis=0) / spread.mean(axis=0)
+    return np.hypot(ratio[:half], ratio[half:])
+
+
+def _watts(study: Study, stations: Array, heat: Array, flux: Array) -> Array:
+    """Missing heat of the whole tyre by station, W: patch height times ring volume and surface of its stretch."""
+    section = study.section
+    spacing = section.line.length / STATIONS
+    radius = section.line.position(stations)[:, 0]
+    thickness = np.asarray(section.total_thickness(stations))
+    ring = 2 * np.pi * radius * spacing * 2
+    return np.asarray(ring * (heat * thickness + flux))

@@ -1,0 +1,241 @@
+"""The full model fitted to the data with a set of effects: Gauss-Newton with secant corrections, several sets at once."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Sequence
+from dataclasses import dataclass
+from functools import cached_property
+
+import numpy as np
+from numpy.typing import NDArray
+from scipy.stats import chi2
+
+from tyrefem.diagnose.evidence import Linear, Members
+from tyrefem.diagnose.gauss import Fit, fit
+from tyrefem.diagnose.laboratory import Laboratory
+from tyrefem.diagnose.unknowns import Unknown
+
+Array = NDArray[np.float64]
+#: The prediction of the linear model is good enough when it misses the simulation by this much (whitened norm).
+CLOSE = 1.0
+MOST_STEPS = 5
+
+
+@dataclass(frozen=True, eq=False)
+class Gap:
+    """What is measured minus what the study says, and how it changes with every unknown.
+
+    Parameters
+    ----------
+    lab : simulates. unknowns : nuisance first. nuisance : how many belong to every model.
+    correction : per trial, what the study's own mesh adds to the coarse one. jacobians : per trial (n_blocks, k).
+    """
+
+    lab: Laboratory
+    unknowns: tuple[Unknown, ...]
+    nuisance: int
+    correction: tuple[Array, ...]
+    computed: tuple[Array, ...]
+    jacobians: tuple[Array, ...]
+
+    @property
+    def fitted(self) -> list[int]:
+        """Numbers of the trials that are fitted."""
+        return [i for i, one in enumerate(self.lab.bench.trials) if not one.hold_out]
+
+    @property
+    def held_out(self) -> list[int]:
+        """Numbers of the trials that are held out."""
+        return [i for i, one in enumerate(self.lab.bench.trials) if one.hold_out]
+
+    def residual(self, number: int, computed: Array) -> Array:
+        """Whitened measured - computed of one trial."""
+        trial = self.lab.bench.trials[number]
+        return trial.whitened(trial.measured - computed - self.correction[number])
+
+    @cached_property
+    def whitened(self) -> tuple[Array, ...]:
+        """Whitened jacobian of every trial."""
+        return tuple(one.whitened(J) for one, J in zip(self.lab.bench.trials, self.jacobians, strict=True))
+
+    def linear(self, trials: Sequence[int]) -> Linear:
+        """The linear model of some trials about x = 0."""
+        data = np.concatenate([self.residual(i, self.computed[i]) for i in trials])
+        return Linear(self.unknowns, self.nuisance, data, np.vstack([self.whitened[i] for i in trials]))
+
+
+@dataclass(frozen=True, eq=False)
+class Explained:
+    """A set of effects fitted to the data.
+
+    Parameters
+    ----------
+    members : the set. unknowns : everything fitted. fit : posterior. log_evidence : ln p(fitted data | set).
+    computed : trial -> block means of the fitted model, corrected for the mesh. misfit : |r|^2 + |x/sd|^2.
+    readings : number of fitted blocks. held_out : ln p(held-out data | fitted data, set). steps : simulations per trial.
+    """
+
+    members: Members
+    unknowns: tuple[Unknown, ...]
+    fit: Fit
+    log_evidence: float
+    computed: dict[int, Array]
+    misfit: float
+    readings: int
+    held_out: float
+    held_out_p: float
+    steps: int
+    converged: bool
+    #: Linear model of the fitted trials about the fit, d = J x + e: whitened data and jacobian of ``unknowns``.
+    data: Array
+    jacobian: Array
+
+    @cached_property
+    def values(self) -> dict[Unknown, float]:
+        """Unknown -> x."""
+        return dict(zip(self.unknowns, (float(x) for x in self.fit.mean), strict=True))
+
+    @cached_property
+    def sd(self) -> dict[Unknown, float]:
+        """Unknown -> posterior standard deviation of x."""
+        return dict(zip(self.unknowns, (float(x) for x in self.fit.sd), strict=True))
+
+    @property
+    def p_value(self) -> float:
+        """Probability of a misfit at least as large, were the model right: chi-squared with one degree per block."""
+        return float(chi2.sf(self.misfit, self.readings))
+
+    @property
+    def at_bound(self) -> tuple[str, ...]:
+        """Keys of the effects' amplitudes that ended on a bound."""
+        own = {one for member in self.members for one in member.amplitudes}
+        return tuple(one.key for one, held in zip(self.unknowns, self.fit.at_bound, strict=True) if held and one in own)
+
+
+class _Refinement:
+    """One set on its way: asks for simulations at ``trial_point`` and takes what they say."""
+
+    def __init__(self, gap: Gap, members: Members) -> None:
+        self.gap, self.members = gap, members
+        linear = gap.linear(gap.fitted)
+        own = [one for member in members for one in member.amplitudes]
+        self.unknowns = [*gap.unknowns[: gap.nuisance], *own]
+        self.J = linear.jacobian[:, linear.columns(self.unknowns)].copy()
+        self.r = linear.data
+        self.x = np.zeros(len(self.unknowns))
+        self.computed = {i: gap.computed[i] for i in gap.fitted}
+        self.shapes = [one for member in members for one in member.shapes]
+        self.steps, self.done, self.converged = 0, False, False
+        self._propose()
+
+    @property
+    def point(self) -> dict[Unknown, float]:
+        return dict(zip(self.unknowns, (float(x) for x in self.trial), strict=True))
+
+    def _prior(self) -> tuple[Array, Array, Array]:
+        return tuple(np.array([getattr(one, what) for one in self.unknowns]) for what in ("sd", "low", "high"))  # type: ignore[return-value]
+
+    def _propose(self) -> None:
+        self.best = fit(self.J.T @ self.J, self.J.T @ (self.r + self.J @ self.x), *self._prior())
+        self.trial, self.halved = self.best.mean, 0
+        self.expected = self.r - self.J @ (self.trial - self.x)
+        if np.linalg.norm(self.r - self.expected) < 1e-9:
+            self.done = self.converged = True
+
+    def _misfit(self, r: Array, x: Array) -> float:
+        return float(r @ r + ((x / self._prior()[0]) ** 2).sum())
+
+    def accept(self, answers: Sequence[Array]) -> None:
+        """Take the simulations at the trial point."""
+        computed = dict(zip(self.gap.fitted, answers, strict=True))
+        r = np.concatenate([self.gap.residual(i, computed[i]) for i in self.gap.fitted])
+        self.steps += 1
+        step = self.trial - self.x
+        sd = self._prior()[0]
+        length = float(((step / sd) ** 2).sum())
+        missed = (self.r - self.J @ step) - r
+        if length > 0:
+            # Broyden: the smallest change of J (in units of the priors) that would have predicted this simulation.
+            self.J = self.J + np.outer(missed, step / sd**2) / length
+        if self._misfit(r, self.trial) > self._misfit(self.r, self.x) and self.halved < 3 and self.steps < MOST_STEPS:
+            self.halved += 1
+            self.trial = self.x + 0.4 * step
+            return
+        self.x, self.r, self.computed = self.trial, r, computed
+        if self.shapes and self.steps >= 1:
+            self._release_shapes()
+            return
+        if np.linalg.norm(missed) < CLOSE:
+            self.done = self.converged = True
+            self.best = fit(self.J.T @ self.J, self.J.T @ (self.r + self.J @ self.x), *self._prior())
+        elif self.steps >= MOST_STEPS:
+            self.done = True
+            self.best = fit(self.J.T @ self.J, self.J.T @ (self.r + self.J @ self.x), *self._prior())
+        else:
+            self._propose()
+
+    def _release_shapes(self) -> None:
+        """Now that there is an amplitude, its shape matters: take its columns from difference quotients."""
+        at = dict(zip(self.unknowns, (float(x) for x in self.x), strict=True))
+        answers = self.gap.lab.ask("differences", [(i, self.shapes, at) for i in self.gap.fitted])
+        columns = np.vstack(
+            [self.gap.lab.bench.trials[i].whitened(J) for i, J in zip(self.gap.fitted, answers, strict=True)]
+        )
+        self.unknowns = [*self.unknowns, *self.shapes]
+        self.J = np.hstack([self.J, columns])
+        self.x = np.concatenate([self.x, np.zeros(len(self.shapes))])
+        self.shapes = []
+        self._propose()
+
+
+def refined(gap: Gap, sets: Sequence[Members], tick: Callable[[], None] | None = None) -> list[Explained]:
+    """Fit every set with the full model; the simulations of all sets are asked for together."""
+    running = [_Refinement(gap, members) for members in sets]
+    while active := [one for one in running if not one.done]:
+        questions = [(i, one.point) for one in active for i in gap.fitted]
+        answers = gap.lab.ask("predict", questions, tick)
+        width = len(gap.fitted)
+        for number, one in enumerate(active):
+            one.accept(answers[number * width : (number + 1) * width])
+    return [_explained(gap, one) for one in running]
+
+
+def _explained(gap: Gap, one: _Refinement) -> Explained:
+    values = dict(zip(one.unknowns, (float(x) for x in one.x), strict=True))
+    computed = {i: one.computed[i] + gap.correction[i] for i in gap.fitted}
+    log_held, p_held = 0.0, 1.0
+    if gap.held_out:
+        answers = gap.lab.ask("predict", [(i, values) for i in gap.held_out])
+        columns = [gap.unknowns.index(unknown) for unknown in one.unknowns if unknown in gap.unknowns]
+        kept = [k for k, unknown in enumerate(one.unknowns) if unknown in gap.unknowns]
+        r, J = [], []
+        for i, answer in zip(gap.held_out, answers, strict=True):
+            computed[i] = answer + gap.correction[i]
+            r.append(gap.residual(i, answer))
+            J.append(gap.whitened[i][:, columns])
+        log_held, p_held = _predictive(np.concatenate(r), np.vstack(J), one.best.covariance[np.ix_(kept, kept)])
+    effective = one.r + one.J @ one.x
+    return Explained(
+        one.members,
+        tuple(one.unknowns),
+        Fit(one.x, one.best.covariance, one.best.log_evidence, one.best.at_bound),
+        one.best.log_evidence - float(effective @ effective) / 2,
+        computed,
+        one._misfit(one.r, one.x),
+        len(one.r),
+        log_held,
+        p_held,
+        one.steps,
+        one.converged,
+        effective,
+        one.J,
+    )
+
+
+def _predictive(r: Array, J: Array, covariance: Array) -> tuple[float, float]:
+    """ln N(r; 0, 1 + J C J^T) up to a constant, and the chi-squared probability of r."""
+    spread = np.eye(len(r)) + J @ covariance @ J.T
+    root = np.linalg.cholesky(spread)
+    z = np.linalg.solve(root, r)
+    square = float(z @ z)
+    return float(-square / 2 - np.log(np.diag(root)).sum()), float(chi2.sf(square, len(r)))

@@ -1,0 +1,178 @@
+"""What a diagnosis does not know: base numbers, sensors, effects. Each is one real number, null at zero."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Mapping
+from dataclasses import dataclass
+from typing import Any
+
+from tyrefem.dotted import scaled, value_at
+from tyrefem.effects import catalogue
+from tyrefem.effects.effect import MEASUREMENT_PORTS, Effect, Parameter
+from tyrefem.studies import Study
+
+Choice = tuple[tuple[str, str], ...]
+
+
+@dataclass(frozen=True)
+class Unknown:
+    """One unknown number x; the study as written has x = 0.
+
+    Parameters
+    ----------
+    key : dotted name of a base number (x = ln of its factor), or of an effect's parameter (x = value - origin, SI).
+    sd : standard deviation of its prior. low, high : bounds of x.
+    effect, choice, parameter : for an effect's parameter: name, variant, and the parameter.
+    """
+
+    key: str
+    sd: float
+    low: float = -math.inf
+    high: float = math.inf
+    effect: str | None = None
+    choice: Choice = ()
+    parameter: Parameter | None = None
+
+    @property
+    def step(self) -> float:
+        """Step of a difference quotient; towards the inside of the bounds."""
+        size = 0.02 * self.sd if self.effect else 0.01
+        return size if self.high > 0 else -size
+
+    @property
+    def measures(self) -> bool:
+        """Does it change what is measured, but not the tyre?"""
+        return self.effect is not None and set(catalogue()[self.effect].ports()) <= set(MEASUREMENT_PORTS)
+
+    def value(self, x: float) -> float:
+        """The parameter's own value, SI: a factor for a base number."""
+        return math.exp(x) if self.parameter is None else self.parameter.prior.origin + x
+
+    @property
+    def unit(self) -> str:
+        """Unit of `value`."""
+        return "1" if self.parameter is None else self.parameter.prior.unit
+
+
+@dataclass(frozen=True)
+class Candidate:
+    """An effect that may be missing: one variant of one entry of the catalogue.
+
+    ``unknowns``: its amplitudes first, then the parameters that only shape it.
+    """
+
+    name: str
+    choice: Choice
+    unknowns: tuple[Unknown, ...]
+
+    @property
+    def key(self) -> str:
+        """Name with its variant."""
+        shown = ", ".join(value for _, value in self.choice)
+        return f"{self.name} ({shown})" if shown else self.name
+
+    @property
+    def effect(self) -> type[Effect]:
+        """The entry of the catalogue."""
+        return catalogue()[self.name]
+
+    @property
+    def amplitudes(self) -> tuple[Unknown, ...]:
+        """The unknowns that make the effect."""
+        return tuple(one for one in self.unknowns if one.parameter and one.parameter.prior.amplitude)
+
+    @property
+    def shapes(self) -> tuple[Unknown, ...]:
+        """The unknowns that only shape it."""
+        return tuple(one for one in self.unknowns if one.parameter and not one.parameter.prior.amplitude)
+
+
+def of_effect(effect: type[Effect], choice: Choice, sd: float | None = None) -> tuple[Unknown, ...]:
+    tag = ".".join((effect.name, *(value for _, value in choice)))
+    return tuple(
+        Unknown(
+            f"effects.{tag}.{one.name}",
+            one.prior.scale if sd is None else sd,
+            one.prior.low - one.prior.origin,
+            one.prior.high - one.prior.origin,
+            effect.name,
+            choice,
+            one,
+        )
+        for one in effect.parameters()
+    )
+
+
+def base_unknowns(study: Study) -> tuple[Unknown, ...]:
+    """The uncertain base numbers: those of `Study.uncertainty`, and the films."""
+    numbers = tuple(Unknown(key, sd) for key, sd in study.uncertainty.items())
+    film = catalogue()["film-scale"]
+    taken = {effect.choice["film"] for effect in study.effects if effect.name == "film-scale"}
+    films = ("road", "outside_air", "contained_air", "rim")
+    sd = study.card.diagnosis.film_sd
+    return numbers + tuple(one for name in films if name not in taken for one in of_effect(film, (("film", name),), sd))
+
+
+def sensor_unknowns(study: Study, measured: set[str]) -> tuple[Unknown, ...]:
+    """Place, lag and offset of every sensor that was read; contained air and rim have an offset only."""
+    known, found = catalogue(), []
+    for name, sensor in study.sensors.items():
+        if name not in measured:
+            continue
+        choice = (("sensor", name),)
+        for effect, sd in (
+            ("sensor-misplaced", sensor.position_sd),
+            ("sensor-lag", sensor.lag_sd),
+            ("sensor-offset", sensor.accuracy),
+        ):
+            if sd > 0:
+                found += [one for one in of_effect(known[effect], choice, sd)]
+    return tuple(found)
+
+
+def candidates(study: Study) -> tuple[Candidate, ...]:
+    """Every effect and variant that has a meaning in the study and is not in it already."""
+    present = {(effect.name, tuple(effect.choice.items())) for effect in study.card.effects}
+    found = []
+    for name, effect in catalogue().items():
+        if effect.calibration or name in study.card.diagnosis.exclude or effect.refusal(study) is not None:
+            continue
+        for variant in effect.variants(study):
+            choice = tuple(variant.items())
+            if (name, choice) not in present:
+                found.append(Candidate(name, choice, of_effect(effect, choice)))
+    return tuple(found)
+
+
+def with_values(study: Study, values: Mapping[Unknown, float]) -> Study:
+    """The study with unknowns set to values x; exactly the study itself where all are zero."""
+    entries = [dict(entry) for entry in study.data.get("effects", [])]
+    changes: dict[str, Any] = {}
+    totals: dict[str, tuple[Unknown, float]] = {}
+    for unknown, x in values.items():
+        if unknown.effect is None:
+            if x != 0.0:
+                changes[unknown.key] = scaled(value_at(study.data, unknown.key, study.folder), math.exp(x))
+        else:
+            # A sensor's offset may stand twice: as what every sensor has, and as a candidate that it is far off.
+            totals[unknown.key] = unknown, totals.get(unknown.key, (unknown, 0.0))[1] + x
+    for unknown, x in totals.values():
+        assert unknown.parameter is not None
+        prior = unknown.parameter.prior
+        # A fit may end on a bound to within rounding.
+        value = min(max(unknown.value(x), prior.low), prior.high)
+        text = value if prior.unit == "1" else f"{value!r} {prior.unit}"
+        _entry(entries, unknown)[unknown.parameter.name] = text
+    if totals:
+        changes["effects"] = entries
+    return study.replace(changes) if changes else study
+
+
+def _entry(entries: list[dict[str, Any]], unknown: Unknown) -> dict[str, Any]:
+    wanted = {"name": unknown.effect, **dict(unknown.choice)}
+    for entry in entries:
+        if all(entry.get(key) == value for key, value in wanted.items()):
+            return entry
+    entries.append(wanted)
+    return entries[-1]

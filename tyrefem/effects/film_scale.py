@@ -1,0 +1,34 @@
+"""A film coefficient other than its law says: a correction of the base model, no missing effect."""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING, Annotated, ClassVar, Literal
+
+import numpy as np
+
+from tyrefem.effects.effect import Effect, Prior
+
+if TYPE_CHECKING:
+    from tyrefem.surroundings import Surroundings
+
+
+class FilmScale(Effect):
+    """h -> exp(log_factor) h of one film."""
+
+    name: ClassVar[str] = "film-scale"
+    family: ClassVar[str] = "calibration"
+    calibration: ClassVar[bool] = True
+    sentence: ClassVar[str] = "A film coefficient is larger or smaller than its law says, at every speed alike."
+    source: ClassVar[str] = "estimate: correlations of forced convection scatter by 20 to 30 % (handbook values)"
+
+    film: Literal["road", "outside_air", "contained_air", "rim"]
+    log_factor: Annotated[float, Prior("1", "natural logarithm of the factor", 0.2, -2.0, 2.0)] = 0.0
+
+    @property
+    def choice(self) -> dict[str, str]:
+        """Which film."""
+        return {"film": self.film}
+
+    def film_factor(self, tyre: Surroundings, film: str, t: float) -> float:
+        """The factor, on its own film only."""
+        return float(np.exp(self.log_factor)) if film == self.film else 1.0

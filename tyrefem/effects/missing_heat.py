@@ -1,0 +1,42 @@
+"""Heat of unknown origin about one station of the meridian."""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING, Annotated, ClassVar
+
+import numpy as np
+from numpy.typing import NDArray
+
+from tyrefem.effects.effect import Effect, Factor, Prior
+from tyrefem.quantity import Unit
+
+if TYPE_CHECKING:
+    from tyrefem.surroundings import Surroundings
+
+Array = NDArray[np.float64]
+
+
+class MissingHeat(Effect):
+    """q -> q + heat exp(-((|s| - station)/width)^2 / 2) through the whole thickness, while the tyre rolls."""
+
+    name: ClassVar[str] = "missing-heat"
+    family: ClassVar[str] = "calibration"
+    calibration: ClassVar[bool] = True
+    sentence: ClassVar[str] = "Heat of unknown origin about one station of the meridian, in W/m3, while the tyre rolls."
+    source: ClassVar[str] = "none: what a diagnosis finds when nothing in the catalogue explains a gap"
+
+    station: Annotated[float, Unit("m", ge=0)]
+    width: Annotated[float, Unit("m", gt=0)]
+    heat: Annotated[float, Prior("W/m**3", "heat at the station", 5e4, -1e7, 1e7)] = 0.0
+
+    @property
+    def choice(self) -> dict[str, str]:
+        """Where."""
+        return {"station": f"{self.station!r} m", "width": f"{self.width!r} m"}
+
+    def heat_addend(self, tyre: Surroundings, zone: str, x: Array, t: float, T: Array) -> Factor:
+        """W/m3 at points x (2, n)."""
+        if tyre.speed(t) == 0:
+            return 0.0
+        s, _ = tyre.study.section.locate(x.T)
+        return np.asarray(self.heat * np.exp(-(((np.abs(s) - self.station) / self.width) ** 2) / 2))
