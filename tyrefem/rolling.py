@@ -14,7 +14,7 @@ from numpy.typing import NDArray
 from tyrefem.boundaries.rim import Lumped
 from tyrefem.conduction import Conduction, Film, Material, Reservoir
 from tyrefem.effects.acting import Source
-from tyrefem.heating import LOSS_FACTOR, HeatSource
+from tyrefem.heating import LOSS_FACTOR, CycleSchedule, HeatSource
 from tyrefem.meshing import TyreMesh
 from tyrefem.result import GAS, RIM, Result
 from tyrefem.studies import Study
@@ -31,6 +31,25 @@ class RollingTyre(Surroundings):
     """
 
     like: RollingTyre | None = None
+
+    def _as_in_like(self, tables: tuple[str, ...], ports: tuple[str, ...]) -> bool:
+        """Are these tables of the study, the section, and the effects at these ports those of ``like``?"""
+        if self.like is None:
+            return False
+        own, other = self.study, self.like.study
+        return (
+            own.section is other.section
+            and all(own.data.get(table) == other.data.get(table) for table in tables)
+            and self.acting.at(*ports) == self.like.acting.at(*ports)
+        )
+
+    @functools.cached_property
+    def schedule(self) -> CycleSchedule:
+        """Load cases and strain cycles of every phase."""
+        if self._as_in_like(("materials", "drive", "mechanics"), ()):
+            assert self.like is not None
+            return self.like.schedule
+        return super().schedule
 
     @functools.cached_property
     def mesh(self) -> TyreMesh:
@@ -57,7 +76,14 @@ class RollingTyre(Surroundings):
             )
         return found
 
-    def _boundaries(self) -> dict[str, Any]:
+    @functools.cached_property
+    def boundaries(self) -> dict[str, Any]:
+        """Side -> its films, fluxes and radiation."""
+        ports = ("film_factor", "film_addend", "film_resistance", "sink_addend", "flux", "radiation")
+        if self._as_in_like(("boundaries", "drive", "mechanics"), ports):
+            assert self.like is not None
+            if self.tread == self.like.tread:
+                return self.like.boundaries
         laws = self.study.card.boundaries
         gas = GAS if self._gas_capacity is not None else laws.contained_air.temperature  # type: ignore[attr-defined]
 
@@ -96,7 +122,8 @@ class RollingTyre(Surroundings):
             exchanges: list[tuple[float, Any]] = [(rim.cooling * share, self.ambient)]
             if self._gas_capacity is not None and rim.air > 0:
                 exchanges.append((rim.air * share, GAS))
-            found[RIM] = Reservoir(rim.heat_capacity * share, self.rim_temperature(0.0), tuple(exchanges))
+            power = (lambda t: share * self.acting.rim_power(t)) if self.acting.at("rim_power") else 0.0
+            found[RIM] = Reservoir(rim.heat_capacity * share, self.rim_temperature(0.0), tuple(exchanges), power)
         return found
 
     @functools.cached_property
@@ -111,6 +138,9 @@ class RollingTyre(Surroundings):
     @functools.cached_property
     def sources(self) -> dict[str, Source]:
         """Zone -> heat source: the strain cycle's, and what the study's effects make of it."""
+        if self._as_in_like(("materials", "drive", "mechanics"), ("heat_factor", "heat_addend")):
+            assert self.like is not None
+            return self.like.sources
         return {zone: self.acting.source(zone, heat) for zone, heat in self.hysteresis.items()}
 
     @functools.cached_property
@@ -119,7 +149,7 @@ class RollingTyre(Surroundings):
         return Conduction(
             self.mesh.mesh,
             self._materials(),
-            self._boundaries(),
+            self.boundaries,
             self.sources,
             axisymmetric=True,
             element=self.study.card.mesh.element,

@@ -43,17 +43,16 @@ def lagged(times: Array, temperatures: Array, lag: float) -> Array:
 def true_places(study: Study) -> dict[str, tuple[float, float]]:
     """(r, z) of every sensor, m: as stated, moved by the study's effects, but never out of the rubber."""
     stated = {name: study.section_place(sensor) for name, sensor in study.sensors.items()}
-    moving = [effect for effect in study.effects if effect.overrides("displacement")]
-    if not moving or not stated:
-        return stated
-    section = study.section
-    s, depth = section.locate(np.array(list(stated.values())))
-    for column, name in enumerate(stated):
-        for effect in moving:
-            along, deeper = effect.displacement(name)
-            s[column], depth[column] = s[column] + along, depth[column] + deeper
-    places = section.place(*section.clamp(s, depth, 0.0))
-    return {name: (float(r), float(z)) for name, (r, z) in zip(stated, places, strict=True)}
+    section, found = study.section, dict(stated)
+    worn_away = () if section.as_built is None else [name for name in stated if not section.contains([stated[name]])[0]]
+    for name, place in stated.items():
+        moves = [move for effect in study.effects if (move := effect.displacement(name)) != (0.0, 0.0)]
+        if moves or name in worn_away:
+            s, depth = section.locate(np.array([place]))
+            along, deeper = (sum(part) for part in zip((0.0, 0.0), *moves, strict=True))
+            r, z = section.place(*section.clamp(s + along, depth + deeper, 0.0))[0]
+            found[name] = (float(r), float(z))
+    return found
 
 
 def recorded(study: Study, times: Array, temperatures: ArrayLike) -> dict[str, Array]:

@@ -52,9 +52,11 @@ class Study:
             object.__setattr__(self, "card", StudyCard.check(self.data, self.file))
         except InputError as error:
             raise self.as_written(error) from None
-        self._share(self.__dict__.pop("_like", None))
+        like = self.__dict__.pop("_like", None)
+        self._share(like)
         _ = self.section, self.materials
-        self._check_sensors()
+        if like is None or self.new_section is not like.new_section or self.sensors != like.sensors:
+            self._check_sensors()
         self._check_effects()
 
     def as_written(self, error: InputError) -> InputError:
@@ -69,17 +71,22 @@ class Study:
 
     @functools.cached_property
     def section(self) -> Section:
-        """The tyre's section, half or full as the mesh table says."""
+        """The tyre's section, half or full as the mesh table says, worn as the study's effects say."""
+        section = self.new_section
+        for effect in self.effects:
+            section = effect.worn(section)
+        return section
+
+    @functools.cached_property
+    def new_section(self) -> Section:
+        """The section before any wear."""
         from tyrefem.section import load
 
-        full = self.card.mesh.section == "full"
         try:
             built = load(self.data["section"], near=self.folder)
         except InputError as error:
             raise error if error.file else error.within(field="section", file=self.file) from None
-        for effect in self.effects:
-            built = effect.worn(built)
-        return built.as_full() if full else built
+        return built.as_full() if self.card.mesh.section == "full" else built
 
     @property
     def effects(self) -> tuple[Effect, ...]:
@@ -141,19 +148,16 @@ class Study:
         """Take over what another study has built, where the two do not differ."""
         if like is None:
             return
-        worn = any(effect.overrides("worn") for effect in (*self.effects, *like.effects))
-        if (
-            not worn
-            and self.data["section"] == like.data["section"]
-            and self.card.mesh.section == like.card.mesh.section
-        ):
-            self.__dict__["section"] = like.section
+        if self.data["section"] == like.data["section"] and self.card.mesh.section == like.card.mesh.section:
+            self.__dict__["new_section"] = like.new_section
+            if not any(effect.overrides("worn") for effect in (*self.effects, *like.effects)):
+                self.__dict__["section"] = like.section
         if self.data["materials"] == like.data["materials"]:
             self.__dict__["materials"] = like.materials
 
     def _check_effects(self) -> None:
         for number, effect in enumerate(self.card.effects):
-            problem = effect.refusal(self)
+            problem = effect.problem(self)
             if problem is None and any(_same(effect, other) for other in self.card.effects[:number]):
                 problem = "is given twice; give it once"
             if problem is not None:
@@ -167,8 +171,8 @@ class Study:
                 raise error.within(field=f"sensors.{name}", file=self.file) from None
 
     def section_place(self, sensor: Sensor) -> tuple[float, float]:
-        """(r, z) of a sensor, m; refuses one outside the rubber."""
-        section = self.section
+        """(r, z) of a sensor as it was built in, m; refuses one outside the rubber."""
+        section = self.new_section
         if sensor.at is not None:
             r, z = sensor.at
             if not section.contains([[r, z]])[0]:

@@ -6,6 +6,7 @@ import functools
 from dataclasses import dataclass
 
 import numpy as np
+from numpy.typing import NDArray
 
 from tyrefem.boundaries import Contact
 from tyrefem.drive import Drive
@@ -14,6 +15,8 @@ from tyrefem.heating import CycleSchedule
 from tyrefem.mechanics import cycle_schedule
 from tyrefem.road_contact import propagation_depth
 from tyrefem.studies import Study
+
+Array = NDArray[np.float64]
 
 
 @dataclass(frozen=True, eq=False)
@@ -36,6 +39,31 @@ class Surroundings:
     def acting(self) -> Acting:
         """The study's effects, at work on this tyre."""
         return Acting(self, self.study.effects)
+
+    @functools.cached_property
+    def rated_deflection(self) -> float:
+        """Deflection at the rated load and pressure, m."""
+        rating = self.study.section.rating
+        assert rating is not None
+        return self.study.card.mechanics.load_law.deflection(rating.load, rating.pressure, rating)
+
+    def region(self, zone: str) -> str:
+        """The region that a strain zone is part of."""
+        return next(str(one.region) for one in self.schedule.zones if one.name == zone)
+
+    def places(self, x: Array) -> tuple[Array, Array]:
+        """|s| along the meridian and depth of points x (2, n), m; remembered for arrays that come back."""
+        kept = self._places.get(id(x))
+        if kept is None or kept[0] is not x:
+            s, depth = self.study.section.locate(np.asarray(x).T)
+            if len(self._places) > 32:
+                self._places.clear()
+            kept = self._places[id(x)] = (x, np.abs(s), depth)
+        return kept[1:]
+
+    @functools.cached_property
+    def _places(self) -> dict[int, tuple[Array, Array, Array]]:
+        return {}
 
     def ambient(self, t: float) -> float:
         """Ambient temperature, degC."""
@@ -70,7 +98,7 @@ class Surroundings:
         return self.schedule.mean(lambda case: case.road_fraction, t)
 
     @functools.cached_property
-    def _tread(self) -> tuple[float, float]:
+    def tread(self) -> tuple[float, float]:
         """Conductivity (through the thickness) and heat capacity of the tread at 25 degC: what meets the road."""
         card = self.study.materials["tread"]
         conductivity, capacity = card.conductivity.law(), card.heat_capacity()
@@ -80,7 +108,7 @@ class Surroundings:
     def road_film(self, t: float) -> float:
         """H_c during contact, W/m2/K."""
         length = self.schedule.mean(lambda case: case.footprint_length, t)
-        base = self.study.card.boundaries.road.film(Contact(self.speed(t), length, *self._tread))
+        base = self.study.card.boundaries.road.film(Contact(self.speed(t), length, *self.tread))
         return self.acting.film("road", t, base)
 
     def propagation_depth(self, t: float) -> float:
@@ -88,7 +116,7 @@ class Surroundings:
         if self.speed(t) == 0:
             return 0.0
         length = self.schedule.mean(lambda case: case.footprint_length, t)
-        return propagation_depth(length / self.speed(t), *self._tread)
+        return propagation_depth(length / self.speed(t), *self.tread)
 
     def air_film(self, t: float) -> float:
         """Outside film, W/m2/K."""

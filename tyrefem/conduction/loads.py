@@ -40,6 +40,8 @@ class Load(ABC):
     """One heat input. `slot` is its line in the ledger of powers into the body (W)."""
 
     slot = -1
+    #: The condition or source that a user stated; loads of one cause act alike.
+    cause: Any = None
     timed = False
     static = False
 

@@ -35,6 +35,7 @@ def balance_of(
             allowed = ops.mesh.subdomains or {}
             raise InputError(f"unknown subdomain {name!r}{nearest(name, allowed)}", field="sources")
         loads.append((("source", name, 0), SourceLoad(ops, name, q)))
+        loads[-1][1].cause = q
     for name, conditions in boundaries.items():
         surface = ops.surface(name)
         for i, c in enumerate(conditions):
@@ -53,8 +54,10 @@ def balance_of(
                 loads.append((entry, RadiationLoad(surface, c, field)))
             elif isinstance(c, Fixed):
                 fixed.append((entry, surface, Datum(c.temperature, surface.points, field)))
+                continue
             else:
                 raise InputError(f"must be a Film, Flux, Radiation or Fixed, not {c!r}", field=field)
+            loads[-1][1].cause = c
     for name, reservoir in reservoirs.items():
         for index, load in reservoir_loads(numbers[name], name, reservoir, numbers):
             loads.append((("reservoir", name, index), load))

@@ -56,7 +56,7 @@ class Tangents:
         return (value @ self.values.reshape(-1, size).T).T.reshape(parameters, times, -1)
 
 
-def stage_times(breaks: Sequence[float], first: float = 3.0, growth: float = 1.5, longest: float = 60.0) -> Array:
+def stage_times(breaks: Sequence[float], first: float = 3.0, growth: float = 1.7, longest: float = 80.0) -> Array:
     """Times at which `tangents` wants the base solution: every step's start, first stage and end.
 
     Steps grow from ``first`` (s) by ``growth`` to ``longest`` after every break, where data jump; breaks include the
@@ -113,15 +113,15 @@ def _march(
     base: Conduction, times: Array, values: Array, reservoirs: Array, perturbed: Sequence[Perturbed]
 ) -> Tangents:
     ops, n, m, count = base.operators, base.operators.size, reservoirs.shape[1], len(perturbed)
-    balance = base._balance()
+    balance, reference = base._balance(), base._balance()
     if balance.fixed.dofs.size:
         raise InputError("tangents need a problem without Fixed boundaries", field="boundaries")
     others = [one.problem._balance() for one in perturbed]
-    steps = np.array([one.step for one in perturbed])
     heat = balance.reservoir_capacity(reservoirs[0])
     start_state = State(values[0], reservoirs[0])
-    for other in others:
-        other.freeze(float(times[0]), start_state)
+    for each in (reference, *others):
+        each.freeze(float(times[0]), start_state)
+    direct = [_Direct(reference, other, one.step) for other, one in zip(others, perturbed, strict=True)]
     ordering = ops.ordering(np.arange(n))
     s = np.zeros((n + m, count))
     for column, one in enumerate(perturbed):
@@ -139,7 +139,7 @@ def _march(
             if stage == 0:
                 balance.freeze(t, y)
                 solve = _solver(ordering, balance, GAMMA * h, n, m, heat)
-            forcing = _forcing(balance, others, steps, t, y, heat)
+            forcing = _forcing(balance, direct, t, y, heat)
             source = _source_slope(balance, t, y)
             start = s + (1 - GAMMA) * h * slopes[0] if stage else s
             right = forcing - _linear(balance, start)
@@ -185,26 +185,59 @@ def _rate(balance: HeatBalance, t: float, y: State) -> Array:
     return np.concatenate([body, Gg + balance.B.T @ y.u - balance.D @ y.g])
 
 
-def _forcing(
-    balance: HeatBalance, others: Sequence[HeatBalance], steps: Array, t: float, y: State, heat: Array
-) -> Array:
+class _Direct:
+    """What one parameter changes in the heat of every unknown: only loads that differ are evaluated.
+
+    Both problems are frozen at the same state, so that what they have in common drops out exactly.
+    """
+
+    def __init__(self, base: HeatBalance, other: HeatBalance, step: float) -> None:
+        self.base, self.other, self.step = base, other, step
+        ours = {id(load.cause) for load in base.acting if load.cause is not None}
+        theirs = {id(load.cause) for load in other.acting if load.cause is not None}
+        self.added = [load for load in other.acting if id(load.cause) not in ours or load.cause is None]
+        self.gone = [load for load in base.acting if id(load.cause) not in theirs or load.cause is None]
+        self.S = None if np.array_equal(base.S_data, other.S_data) else base.ops.matrix(other.S_data - base.S_data)
+        self.B = None if np.array_equal(base.B, other.B) else other.B - base.B
+        self.D = None if np.array_equal(base.D, other.D) else other.D - base.D
+
+    def rate(self, t: float, y: State) -> Array:
+        """(n + m,) W per unit of the parameter."""
+        G, Gg = np.zeros(y.u.size), np.zeros(y.g.size)
+        G0, Gg0 = np.zeros(y.u.size), np.zeros(y.g.size)
+        for load in self.added:
+            load.remainder(t, y, G, Gg)
+        for load in self.gone:
+            load.remainder(t, y, G0, Gg0)
+        body, gas = G - G0, Gg - Gg0
+        if self.S is not None:
+            body -= self.S @ y.u
+        if self.B is not None:
+            body += self.B @ y.g
+            gas += self.B.T @ y.u
+        if self.D is not None:
+            gas -= self.D @ y.g
+        return np.concatenate([body, gas]) / self.step
+
+
+def _forcing(balance: HeatBalance, direct: Sequence[_Direct], t: float, y: State, heat: Array) -> Array:
     """(n + m, n_parameters): what each parameter does directly, per unit of it."""
     n = y.u.size
-    found = np.zeros((n + heat.size, len(others)))
+    found = np.zeros((n + heat.size, len(direct)))
     own = _rate(balance, t, y)
     slope: Array | None = None
-    for column, (other, step) in enumerate(zip(others, steps, strict=True)):
-        found[:, column] = (_rate(other, t, y) - own) / step
-        capacity = other.reservoir_capacity(y.g)
+    for column, one in enumerate(direct):
+        found[:, column] = one.rate(t, y)
+        other = one.other
         if other.variable_capacity:
             other.M_data = other.mass(y.u)
         changed = not np.array_equal(other.M_data, balance.M_data)
-        if changed and slope is None:
-            slope = balance.ops.ordering(np.arange(n)).factor(balance.M_data).solve(own[:n].copy())
         if changed:
-            assert slope is not None
-            found[:n, column] -= balance.ops.matrix(other.M_data - balance.M_data) @ slope / step
-        found[n:, column] -= (capacity - heat) / step * own[n:] / np.where(heat > 0, heat, 1.0)
+            if slope is None:
+                slope = balance.ops.ordering(np.arange(n)).factor(balance.M_data).solve(own[:n].copy())
+            found[:n, column] -= balance.ops.matrix(other.M_data - balance.M_data) @ slope / one.step
+        capacity = other.reservoir_capacity(y.g)
+        found[n:, column] -= (capacity - heat) / one.step * own[n:] / np.where(heat > 0, heat, 1.0)
     return found
 
 

@@ -32,9 +32,7 @@ STATIONS = 9
 SKIN = 1e-3
 
 
-def next_experiment(
-    gap: Gap, judgement: Judgement, fitted: Callable[[Members], Explained | None]
-) -> dict[str, Any]:
+def next_experiment(gap: Gap, judgement: Judgement, fitted: Callable[[Members], Explained | None]) -> dict[str, Any]:
     """The sensor place and the drive that separate the two most probable sets best.
 
     The expected gain of a further history is ln of the odds that it adds to the true one of the two sets,

@@ -26,40 +26,58 @@ __all__ = ["Effect", "EffectOf", "Parameter", "Prior", "catalogue"]
 
 
 @functools.cache
-def _modules(folders: str) -> None:
-    """Import every module that defines effects."""
-    for module in pkgutil.iter_modules(__path__):
-        importlib.import_module(f"{__name__}.{module.name}")
+def _modules(folders: str) -> frozenset[str]:
+    """Import every module that defines effects; their names."""
+    found = [f"{__name__}.{module.name}" for module in pkgutil.iter_modules(__path__)]
+    for name in found:
+        importlib.import_module(name)
     for folder in filter(None, folders.split(os.pathsep)):
         if not Path(folder).is_dir():
             raise InputError(f"TYREFEM_EFFECTS names '{folder}', which is no folder")
-        for file in sorted(Path(folder).glob("*.py")):
-            name = f"tyrefem_user_effects_{file.stem}"
-            spec = importlib.util.spec_from_file_location(name, file)
-            assert spec is not None
-            assert spec.loader is not None
-            module_object = importlib.util.module_from_spec(spec)
-            sys.modules[name] = module_object
-            try:
-                spec.loader.exec_module(module_object)
-            except Exception as error:
-                raise InputError(f"cannot be loaded as effects: {error}", file=file) from error
+        found += [_loaded(file) for file in sorted(Path(folder).resolve().glob("*.py"))]
+    return frozenset(found)
+
+
+def _loaded(file: Path) -> str:
+    """Execute a user's file as a module of its own; the module's name."""
+    name = f"tyrefem_user_effects.{file}"
+    spec = importlib.util.spec_from_file_location(name, file)
+    assert spec is not None
+    assert spec.loader is not None
+    module = sys.modules[name] = importlib.util.module_from_spec(spec)
+    try:
+        spec.loader.exec_module(module)
+    except Exception as error:
+        del sys.modules[name]
+        said = error.message if isinstance(error, InputError) else f"{type(error).__name__}: {error}"
+        raise InputError(f"cannot be loaded as effects: {said}", file=file) from error
+    return name
 
 
 def catalogue() -> dict[str, type[Effect]]:
     """Every effect by name, in alphabetical order.
 
+    Raises
+    ------
+    InputError : a user's file cannot be loaded, or takes a name that another effect has.
+
     >>> "hot-road" in catalogue()
     True
     """
-    _modules(os.environ.get("TYREFEM_EFFECTS", ""))
+    modules = _modules(os.environ.get("TYREFEM_EFFECTS", ""))
     found: dict[str, type[Effect]] = {}
     stack = list(Effect.__subclasses__())
     while stack:
         one = stack.pop()
         stack.extend(one.__subclasses__())
-        if one.name:
-            found[one.name] = one
+        if not one.name or one.__module__ not in modules:
+            continue
+        if getattr(sys.modules[one.__module__], one.__name__, None) is not one:
+            continue  # left over from an earlier state of its file
+        if one.name in found:
+            both = " and ".join(sorted({one.__module__, found[one.name].__module__}))
+            raise InputError(f"two effects are named '{one.name}': in {both}")
+        found[one.name] = one
     return dict(sorted(found.items()))
 
 

@@ -78,6 +78,10 @@ class Acting:
                 along, across = along * first, across * second
             return along, across
 
+        if not callable(law):
+            cold, hot = k(np.array([0.0])), k(np.array([100.0]))
+            if all(np.ndim(value) == 0 for value in (*cold, *hot)) and cold == hot:
+                return cold
         return k
 
     def capacity(self, region: str, law: Any) -> Any:
@@ -99,6 +103,10 @@ class Acting:
         for one in self.at("gas_capacity_factor"):
             base = base * one.gas_capacity_factor(self.tyre)
         return base
+
+    def rim_power(self, t: float) -> float:
+        """W that effects put into the whole wheel's lumped rim at a time."""
+        return sum(one.rim_power(self.tyre, t) for one in self.at("rim_power"))
 
     def conditions(self, surface: str) -> list[Any]:
         """Fluxes and radiation that effects add to a boundary."""

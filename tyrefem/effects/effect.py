@@ -13,6 +13,7 @@ from pydantic import Field, GetCoreSchemaHandler
 from pydantic_core import CoreSchema, core_schema
 
 from tyrefem.cards import Card, Text
+from tyrefem.errors import InputError, nearest
 from tyrefem.quantity import Unit
 
 if TYPE_CHECKING:
@@ -81,6 +82,14 @@ class Effect(Card):
     one whose amplitudes are all null is left out, and the run is then the same to the bit.
     """
 
+    @classmethod
+    def __pydantic_init_subclass__(cls, **options: Any) -> None:
+        """Refuse a class that lacks what an effect must say of itself."""
+        if cls.name:
+            complaint = _complaint(cls)
+            if complaint:
+                raise InputError(f"effect '{cls.name}': {complaint}")
+
     kind: ClassVar[str] = "effect"
     #: Name in study files; one sentence for people; where the effect is described; heat, conduction, boundary...
     name: ClassVar[str] = ""
@@ -138,6 +147,10 @@ class Effect(Card):
         """Why the effect has no meaning in a study; None where it has."""
         return None
 
+    def problem(self, study: Study) -> str | None:
+        """What is wrong with this effect in a study: no meaning there, or a choice (a sensor) that it does not have."""
+        return self.refusal(study)
+
     @classmethod
     def variants(cls, study: Study) -> tuple[Mapping[str, str], ...]:
         """The choices (a sensor's name, say) to try in a study, one mapping each."""
@@ -191,6 +204,10 @@ class Effect(Card):
         """Factor on the heat capacity of the contained air."""
         return 1.0
 
+    def rim_power(self, tyre: Surroundings, t: float) -> float:
+        """W put into the whole wheel's lumped rim at time t (s)."""
+        return 0.0
+
     # -- ports: section and measurement ------------------------------------------------------------------------------
 
     def worn(self, section: Section) -> Section:
@@ -218,6 +235,33 @@ class Effect(Card):
         return sensor
 
 
+#: What an effect may change.
+FAMILIES = ("heat", "conduction", "boundary", "section", "asymmetry", "measurement", "calibration")
+
+
+def _complaint(cls: type[Effect]) -> str | None:
+    """What an effect's class forgot."""
+    for said in ("sentence", "source", "family"):
+        if not getattr(cls, said):
+            return f"needs '{said}'"
+    if cls.family not in FAMILIES:
+        return f"unknown family '{cls.family}'{nearest(cls.family, FAMILIES)}"
+    if not cls.ports():
+        return f"overrides no port; allowed: {', '.join(PORTS)}"
+    for name, field in cls.model_fields.items():
+        prior = next((item for item in field.metadata if isinstance(item, Prior)), None)
+        if prior is None:
+            continue
+        begin = prior.null if prior.amplitude else prior.start
+        if begin is None or not prior.low <= begin <= prior.high:
+            return f"parameter '{name}' must begin from {prior.low:g} to {prior.high:g}, not at {begin}"
+        if not 0 < prior.scale < np.inf:
+            return f"parameter '{name}' needs a positive scale"
+        if field.default != begin:
+            return f"parameter '{name}' must have the default {begin:g}"
+    return None
+
+
 PORTS = (
     "heat_factor",
     "heat_addend",
@@ -230,6 +274,7 @@ PORTS = (
     "flux",
     "radiation",
     "gas_capacity_factor",
+    "rim_power",
     "worn",
     "displacement",
     "lag_addend",

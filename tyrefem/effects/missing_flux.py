@@ -37,5 +37,5 @@ class MissingFlux(Effect):
 
     def flux(self, tyre: Surroundings, surface: str, x: Array, t: float) -> Factor:
         """W/m2 at points x (2, n)."""
-        s, _ = tyre.study.section.locate(x.reshape(2, -1).T)
-        return np.asarray(self.into * np.exp(-(((np.abs(s) - self.station) / self.width) ** 2) / 2))
+        s, _ = tyre.places(x)
+        return np.asarray(self.into * np.exp(-(((s - self.station) / self.width) ** 2) / 2))

@@ -38,5 +38,5 @@ class MissingHeat(Effect):
         """W/m3 at points x (2, n)."""
         if tyre.speed(t) == 0:
             return 0.0
-        s, _ = tyre.study.section.locate(x.T)
-        return np.asarray(self.heat * np.exp(-(((np.abs(s) - self.station) / self.width) ** 2) / 2))
+        s, _ = tyre.places(x)
+        return np.asarray(self.heat * np.exp(-(((s - self.station) / self.width) ** 2) / 2))

@@ -55,7 +55,7 @@ def _outermost(section: Section, index: int) -> bool:
 
 def _rows(section: Section, index: int, size: float, through: int) -> int:
     s = stations(section, 0.0, section.line.length, size)
-    thickest = float(section.layers[index].thickness(s).max())
+    thickest = float(section.built_layers[index].thickness(s).max())
     first = size * SURFACE_SHARE if _outermost(section, index) else size * CORE_SHARE
     return max(through, rows_needed(thickest, first, size * CORE_SHARE))
 
@@ -74,7 +74,7 @@ def _stations(section: Section, size: float, rows: list[int]) -> Array:
     def wanted(s: Array) -> Array:
         rise = SURFACE_SHARE * size + GROWTH * np.abs(s[:, None] - changes).min(axis=1)
         thin = np.full_like(s, size)
-        for index, (layer, count) in enumerate(zip(section.layers, rows, strict=True)):
+        for index, (layer, count) in enumerate(zip(section.built_layers, rows, strict=True)):
             thickness = layer.thickness(s)
             row = thickness / count
             if _outermost(section, index):

@@ -24,6 +24,7 @@ class Layup:
     layers : from the inside to the outside, names all different.
     reference : the layer whose midline the meridian is, ``"total"`` for the middle of the whole thickness,
         ``"inner"`` or ``"outer"`` for a face.
+    as_built : the layers that the meridian was drawn for, where they have become thinner; None: ``layers``.
 
     Raises
     ------
@@ -41,6 +42,7 @@ class Layup:
 
     layers: tuple[Layer, ...]
     reference: str
+    as_built: tuple[Layer, ...] | None = None
 
     def __post_init__(self) -> None:
         names = [layer.name for layer in self.layers]
@@ -61,16 +63,20 @@ class Layup:
     def faces(self, s: ArrayLike) -> Array:
         """Distance from the meridian to the inner face, then each layer's outer face: (n_layers + 1, ...) [m]."""
         s = np.asarray(s, dtype=float)
-        return self._stacked(np.stack([layer.thickness(s) for layer in self.layers]))
+        return self._stacked(*[np.stack([one.thickness(s) for one in layers]) for layers in self._now_and_built])
 
     def slopes(self, s: ArrayLike) -> Array:
         """d/ds of `faces`, same shape."""
         s = np.asarray(s, dtype=float)
-        return self._stacked(np.stack([layer.thickness.slope(s) for layer in self.layers]))
+        return self._stacked(*[np.stack([one.thickness.slope(s) for one in layers]) for layers in self._now_and_built])
 
-    def _stacked(self, rises: Array) -> Array:
-        heights = np.concatenate([np.zeros((1, *rises.shape[1:])), np.cumsum(rises, axis=0)])
-        return np.asarray(heights - self._meridian(heights))
+    @property
+    def _now_and_built(self) -> list[tuple[Layer, ...]]:
+        return [self.layers] if self.as_built is None else [self.layers, self.as_built]
+
+    def _stacked(self, rises: Array, built: Array | None = None) -> Array:
+        heights, first = _heights(rises), _heights(rises if built is None else built)
+        return np.asarray(heights - self._meridian(first))
 
     def _meridian(self, heights: Array) -> Array:
         """Height of the meridian above the inner face."""
@@ -82,3 +88,8 @@ class Layup:
             return np.asarray(heights[-1] / 2)
         index = [layer.name for layer in self.layers].index(self.reference)
         return np.asarray((heights[index] + heights[index + 1]) / 2)
+
+
+def _heights(rises: Array) -> Array:
+    """Heights above the inner face from the thicknesses of the layers."""
+    return np.concatenate([np.zeros((1, *rises.shape[1:])), np.cumsum(rises, axis=0)])

@@ -19,7 +19,7 @@ Array = NDArray[np.float64]
 
 def check_possible(section: Section) -> None:
     """Raise `InputError` with field and reason unless the section can be built."""
-    Layup(section.layers, section.reference)
+    Layup(section.layers, section.reference, section.as_built)
     _ends(section)
     length = section.line.length
     s = stations(section, 0.0, length, length / 120)

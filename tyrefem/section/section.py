@@ -39,6 +39,7 @@ class Section:
     nominal_width : w of the report's shear formula and of the shoulder [m].
     inner_volume : measured air volume of the whole tyre [m3]; None: from the geometry.
     half : only z >= 0, with the boundary ``symmetry`` at the mid plane.
+    as_built : the layers before wear; None: ``layers``. They place the meridian.
 
     Raises
     ------
@@ -65,6 +66,7 @@ class Section:
     nominal_width: float
     inner_volume: float | None = None
     half: bool = True
+    as_built: tuple[Layer, ...] | None = None
 
     def __post_init__(self) -> None:
         from tyrefem.section.possible import check_possible
@@ -75,7 +77,7 @@ class Section:
 
     @cached_property
     def _layup(self) -> Layup:
-        return Layup(self.layers, self.reference)
+        return Layup(self.layers, self.reference, self.as_built)
 
     @property
     def regions(self) -> tuple[str, ...]:
@@ -255,6 +257,38 @@ class Section:
     def outer_diameter(self) -> float:
         """Diameter over the crown [m]."""
         return 2 * float(self.line.position(0.0)[0] + self.interfaces(0.0)[-1])
+
+    @property
+    def built_layers(self) -> tuple[Layer, ...]:
+        """The layers before wear."""
+        return self.layers if self.as_built is None else self.as_built
+
+    def worn(self, region: str, fraction: float) -> Section:
+        """The section with a fraction of a region's thickness worn off its outside; everything else stays in place.
+
+        The thickness goes over into the neighbour's between two stations of the layer's table.
+
+        Raises
+        ------
+        InputError : no such region, or it is not in the outermost layer.
+
+        >>> from tyrefem.section import load
+        >>> new = load("nasa-22x5.5-8pr")
+        >>> old = new.worn("tread", 0.5)
+        >>> float(old.thickness("tread", 0.0) / new.thickness("tread", 0.0))
+        0.5
+        >>> bool((old.place(0.01, 0.004) == new.place(0.01, 0.004)).all())
+        True
+        """
+        self.require_region(region)
+        *inner, outer = self.layers
+        if region not in outer.regions.names:
+            raise InputError(f"region '{region}' is not on the outside of section '{self.name}' and cannot wear")
+        profile = outer.thickness
+        left = np.where(outer.regions.at(profile.s) == region, 1.0 - fraction, 1.0)
+        thinner = replace(profile, values=tuple((np.asarray(profile.values) * left).tolist()))
+        layers = (*inner, replace(outer, thickness=thinner))
+        return replace(self, layers=layers, as_built=self.built_layers)
 
     def as_full(self) -> Section:
         """The whole section, from bead to bead."""

@@ -1,0 +1,101 @@
+"""Contracts that every effect of the catalogue keeps."""
+
+from __future__ import annotations
+
+import numpy as np
+import pytest
+from suitable import CASES, NAMES, base, change, entry, has_amplitude, result, suitable
+
+import tyrefem as tf
+from tyrefem.effects import catalogue
+from tyrefem.effects.effect import FAMILIES
+
+AMPLITUDES = [name for name in NAMES if has_amplitude(catalogue()[name])]
+
+
+def test_the_catalogue_is_what_the_contracts_cover() -> None:
+    assert sorted(catalogue()) == NAMES
+
+
+@pytest.mark.parametrize("name", NAMES)
+def test_it_says_what_it_is(name: str) -> None:
+    effect = catalogue()[name]
+    assert effect.__module__ == f"tyrefem.effects.{name.replace('-', '_')}"
+    assert effect.sentence.endswith(".")
+    assert effect.family in FAMILIES
+    assert "estimate" in effect.source or any(year in effect.source for year in ("1980", "2016", "2023", "Roberts"))
+    assert len([one for one in effect.parameters() if one.prior.amplitude]) <= (2 if name == "sensor-misplaced" else 1)
+    for one in effect.parameters():
+        assert one.prior.meaning
+        assert one.prior.low <= one.prior.null <= one.prior.high
+        assert one.prior.low < one.prior.null + one.prior.scale < one.prior.high
+
+
+@pytest.mark.parametrize("name", AMPLITUDES)
+def test_at_null_it_is_not_there(name: str) -> None:
+    assert suitable(name).replace({"effects": [entry(name, 0.0)]}).effects == ()
+
+
+def test_at_null_the_run_is_the_same_to_the_bit() -> None:
+    study = suitable("hot-road")
+    shared = [name for name in AMPLITUDES if CASES[name].changes == {}]
+    assert len(shared) > 10
+    null = study.replace({"effects": [entry(name, 0.0) for name in shared]})
+    assert null.run().readings.equals(base("hot-road").readings)
+
+
+@pytest.mark.parametrize("name", NAMES)
+def test_it_shows_and_has_the_sign_of_physics(name: str) -> None:
+    changed = change(name, 1.0)
+    assert np.isfinite(changed).all()
+    columns = list(base(name).readings.columns[1:])
+    seen = {column: sign * changed[:, columns.index(column)] for column, sign in CASES[name].signs.items()}
+    assert {column: series.mean() > 0 for column, series in seen.items()} == dict.fromkeys(seen, True)
+    assert max(series.max() for series in seen.values()) > 0.1
+
+
+@pytest.mark.parametrize("name", AMPLITUDES)
+def test_a_small_amplitude_does_half_of_twice_as_much(name: str) -> None:
+    small, twice = change(name, 0.05), change(name, 0.1)
+    assert np.abs(small).max() > 1e-3
+    assert np.linalg.norm(twice - 2 * small) < 0.1 * np.linalg.norm(twice)
+
+
+@pytest.mark.parametrize("name", NAMES)
+def test_the_heat_budget_closes(name: str) -> None:
+    assert result(name, 1.0).heat_budget.imbalance < 1e-5
+
+
+def test_order_in_the_file_does_not_matter() -> None:
+    # Two of each port that several effects share: heat, conductivity, film, flux, sink, measurement.
+    together = [
+        "loss-temperature-law", "belt-edge-shear", "pressure-rise", "cord-conduction", "conductivity-temperature",
+        "wet-road", "gas-mixing", "sun", "tread-slip", "ambient-drift", "hot-road", "sensor-lag", "swapped-channels",
+    ]  # fmt: skip
+    study = suitable("hot-road")
+    entries = [entry(name, 1.0) for name in together]
+    there, back = (study.replace({"effects": order}).run().readings for order in (entries, entries[::-1]))
+    assert np.allclose(there, back, rtol=0, atol=1e-9)
+
+
+@pytest.mark.parametrize("name", NAMES)
+def test_a_number_beyond_its_bounds_is_refused(name: str) -> None:
+    table = {key: value for key, value in entry(name, 1.0).items() if key != "name"}
+    for one in catalogue()[name].parameters():
+        for beyond in (one.prior.low - one.prior.scale, one.prior.high + one.prior.scale):
+            written = f"{beyond!r} {'' if one.prior.unit == '1' else one.prior.unit}"
+            with pytest.raises(tf.InputError, match=rf"{one.name}.*is out of range: must be at (least|most)"):
+                catalogue()[name].check(table | {one.name: written})
+
+
+@pytest.mark.parametrize("name", NAMES)
+def test_every_variant_fits_its_study(name: str) -> None:
+    study, effect = suitable(name), catalogue()[name]
+    assert effect.refusal(study) is None
+    variants = effect.variants(study)
+    assert variants
+    for choice in variants:
+        one = effect.check(dict(choice))
+        assert one.choice == dict(choice)
+        assert one.problem(study) is None
+    assert len({tuple(choice.items()) for choice in variants}) == len(variants)

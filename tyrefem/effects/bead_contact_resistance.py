@@ -1,0 +1,28 @@
+"""A thermal resistance between bead and rim."""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING, Annotated, ClassVar
+
+from tyrefem.effects.effect import Effect, Prior
+
+if TYPE_CHECKING:
+    from tyrefem.surroundings import Surroundings
+
+
+class BeadContactResistance(Effect):
+    """1/h -> 1/h + resistance at the rim."""
+
+    name: ClassVar[str] = "bead-contact-resistance"
+    family: ClassVar[str] = "boundary"
+    sentence: ClassVar[str] = "Bead and rim do not touch perfectly: heat has to cross a thin gap."
+    source: ClassVar[str] = (
+        "Clark & Dodge 1980, appendix I: the contact resistance is unknown and neglected; estimate: 1e-4 to "
+        "1e-3 m2 K/W for rubber pressed on metal, 0.04 for 1 mm of still air"
+    )
+
+    resistance: Annotated[float, Prior("m**2*K/W", "thermal resistance between bead and rim", 1e-3, 0.0, 0.1)] = 0.0
+
+    def film_resistance(self, tyre: Surroundings, film: str, t: float) -> float:
+        """m2 K/W in series with the rim's film."""
+        return self.resistance if film == "rim" else 0.0

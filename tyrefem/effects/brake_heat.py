@@ -1,0 +1,39 @@
+"""A brake that warms the rim."""
+
+from __future__ import annotations
+
+import math
+from typing import TYPE_CHECKING, Annotated, ClassVar
+
+from tyrefem.effects.effect import Effect, Prior
+
+if TYPE_CHECKING:
+    from tyrefem.studies import Study
+    from tyrefem.surroundings import Surroundings
+
+
+class BrakeHeat(Effect):
+    """T_rim -> T_rim + warmer_by (1 - exp(-t/lag))."""
+
+    name: ClassVar[str] = "brake-heat"
+    family: ClassVar[str] = "boundary"
+    sentence: ClassVar[str] = "The brake warms the rim, and the rim the bead."
+    source: ClassVar[str] = (
+        "estimate: wheels of braked runs get 20 to 100 K hotter than ambient within some minutes, and stay so "
+        "for many more"
+    )
+
+    warmer_by: Annotated[float, Prior("delta_degC", "warming of the rim in the end", 30.0, 0.0, 300.0)] = 0.0
+    lag: Annotated[
+        float, Prior("s", "time in which it warms", 200.0, 30.0, 3600.0, null=300.0, start=300.0, amplitude=False)
+    ] = 300.0
+
+    def sink_addend(self, tyre: Surroundings, sink: str, t: float) -> float:
+        """K added to the rim's temperature."""
+        return self.warmer_by * -math.expm1(-t / self.lag) if sink == "rim" else 0.0
+
+    @classmethod
+    def refusal(cls, study: Study) -> str | None:
+        """A lumped rim finds its own temperature."""
+        lumped = study.card.boundaries.rim.law == "lumped"  # type: ignore[attr-defined]
+        return "the rim is lumped and finds its own temperature; use 'brake-power'" if lumped else None

@@ -1,0 +1,34 @@
+"""A brake that puts heat into a lumped rim."""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING, Annotated, ClassVar
+
+from tyrefem.effects.effect import Effect, Prior
+
+if TYPE_CHECKING:
+    from tyrefem.studies import Study
+    from tyrefem.surroundings import Surroundings
+
+
+class BrakePower(Effect):
+    """C dT_rim/dt -> C dT_rim/dt + power, while the wheel turns."""
+
+    name: ClassVar[str] = "brake-power"
+    family: ClassVar[str] = "boundary"
+    sentence: ClassVar[str] = "The brake puts heat into the rim while the wheel turns."
+    source: ClassVar[str] = (
+        "estimate: a dragging brake of 0.1 % of 12 kN at 9 m/s makes 100 W; steady braking at 0.03 g some kW"
+    )
+
+    power: Annotated[float, Prior("W", "heat into the whole wheel while it turns", 200.0, 0.0, 2e4)] = 0.0
+
+    def rim_power(self, tyre: Surroundings, t: float) -> float:
+        """W into the rim."""
+        return self.power if tyre.speed(t) > 0 else 0.0
+
+    @classmethod
+    def refusal(cls, study: Study) -> str | None:
+        """Only a lumped rim takes up heat."""
+        lumped = study.card.boundaries.rim.law == "lumped"  # type: ignore[attr-defined]
+        return None if lumped else "only a lumped rim takes up heat; use 'brake-heat'"

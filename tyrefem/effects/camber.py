@@ -1,0 +1,42 @@
+"""A wheel that leans."""
+
+from __future__ import annotations
+
+import math
+from typing import TYPE_CHECKING, Annotated, ClassVar
+
+import numpy as np
+
+from tyrefem.effects.effect import Array, Effect, Factor, Prior
+from tyrefem.effects.sides import half_width, needs_full
+
+if TYPE_CHECKING:
+    from tyrefem.studies import Study
+    from tyrefem.surroundings import Surroundings
+
+
+class Camber(Effect):
+    """q -> q (1 + z_s tan(angle) / D)^2, z_s = z within the shoulders; not in the bead."""
+
+    name: ClassVar[str] = "camber"
+    family: ClassVar[str] = "asymmetry"
+    sentence: ClassVar[str] = "The wheel leans, so that one shoulder deflects more than the other."
+    source: ClassVar[str] = (
+        "estimate: each side deflects by D + z_s tan(angle), and strain energy goes with the square of the "
+        "deflection; alignment is good to a degree or two"
+    )
+
+    angle: Annotated[float, Prior("rad", "camber; positive presses the side z > 0", math.radians(2), -0.2, 0.2)] = 0.0
+
+    def heat_factor(self, tyre: Surroundings, zone: str, x: Array, t: float, T: Array) -> Factor:
+        """The square of the local deflection over the mean one."""
+        deflection = tyre.schedule.mean(lambda case: case.deflection, t)
+        if deflection <= 0 or tyre.region(zone) == "bead":
+            return 1.0
+        lateral = np.clip(x[1], *half_width(tyre))
+        return np.asarray(np.maximum(1 + lateral * math.tan(self.angle) / deflection, 0.0) ** 2)
+
+    @classmethod
+    def refusal(cls, study: Study) -> str | None:
+        """A half section has one side only."""
+        return needs_full(study)

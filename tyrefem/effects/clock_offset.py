@@ -1,0 +1,22 @@
+"""A logger whose clock is late."""
+
+from __future__ import annotations
+
+from typing import Annotated, ClassVar
+
+from tyrefem.effects.effect import Effect, Prior
+
+
+class ClockOffset(Effect):
+    """reading at t -> temperature at t + late, for every sensor; held beyond the ends of the drive."""
+
+    name: ClassVar[str] = "clock-offset"
+    family: ClassVar[str] = "measurement"
+    sentence: ClassVar[str] = "The logger's time zero is not the start of the drive."
+    source: ClassVar[str] = "estimate: loggers started by hand are some ten seconds off"
+
+    late: Annotated[float, Prior("s", "what the logger calls t was measured at t + late", 20.0, -300.0, 300.0)] = 0.0
+
+    def clock(self) -> float:
+        """s by which the logger's clock is late."""
+        return self.late

@@ -1,0 +1,27 @@
+"""Conductivity that varies with temperature."""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING, Annotated, ClassVar
+
+from tyrefem.effects.effect import Array, Effect, Factor, Prior
+from tyrefem.effects.shapes import above_25
+
+if TYPE_CHECKING:
+    from tyrefem.surroundings import Surroundings
+
+
+class ConductivityTemperature(Effect):
+    """k -> k (1 + slope (T - 25 degC)) in every region."""
+
+    name: ClassVar[str] = "conductivity-temperature"
+    family: ClassVar[str] = "conduction"
+    sentence: ClassVar[str] = "The conductivity of the rubber changes with temperature."
+    source: ClassVar[str] = "estimate: filled rubbers change by -0.1 to +0.2 % per kelvin between 20 and 120 degC"
+
+    slope: Annotated[float, Prior("1/delta_degC", "relative change of k per kelvin", 1.5e-3, -3e-3, 6e-3)] = 0.0
+
+    def conductivity_factor(self, tyre: Surroundings, region: str, T: Array) -> tuple[Factor, Factor]:
+        """1 + slope (T - 25), the same along and across the plies."""
+        factor = 1 + self.slope * above_25(T)
+        return factor, factor

@@ -1,0 +1,28 @@
+"""Conduction along the cords of the carcass."""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING, Annotated, ClassVar
+
+from tyrefem.effects.effect import Array, Effect, Factor, Prior
+
+if TYPE_CHECKING:
+    from tyrefem.surroundings import Surroundings
+
+
+class CordConduction(Effect):
+    """k_along -> k_along (1 + gain) in the carcass."""
+
+    name: ClassVar[str] = "cord-conduction"
+    family: ClassVar[str] = "conduction"
+    sentence: ClassVar[str] = "Cords conduct better than rubber, so heat flows more easily along the plies."
+    source: ClassVar[str] = (
+        "estimate: rubber 0.2 W/m/K; nylon and polyester cords 0.2 to 1 along the fibre (gain below 1), "
+        "aramid 3 to 4, steel about 50 (gain 5 to 30 at 2 to 10 % by volume)"
+    )
+
+    gain: Annotated[float, Prior("1", "relative rise of the conductivity along the plies", 1.0, 0.0, 40.0)] = 0.0
+
+    def conductivity_factor(self, tyre: Surroundings, region: str, T: Array) -> tuple[Factor, Factor]:
+        """1 + gain along the plies of the carcass."""
+        return (1 + self.gain, 1.0) if region == "carcass" else (1.0, 1.0)

@@ -1,0 +1,28 @@
+"""Heat capacity that rises with temperature."""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING, Annotated, ClassVar
+
+from tyrefem.effects.effect import Array, Effect, Factor, Prior
+from tyrefem.effects.shapes import above_25
+
+if TYPE_CHECKING:
+    from tyrefem.surroundings import Surroundings
+
+
+class HeatCapacityTemperature(Effect):
+    """C -> C (1 + slope (T - 25 degC)) in every region."""
+
+    name: ClassVar[str] = "heat-capacity-temperature"
+    family: ClassVar[str] = "conduction"
+    sentence: ClassVar[str] = "The heat capacity of the rubber rises with temperature."
+    source: ClassVar[str] = (
+        "estimate: specific heat of rubbers above their glass transition rises by 0.15 to 0.35 % per kelvin"
+    )
+
+    slope: Annotated[float, Prior("1/delta_degC", "relative rise of rho c per kelvin", 2.5e-3, 0.0, 8e-3)] = 0.0
+
+    def capacity_factor(self, tyre: Surroundings, region: str, T: Array) -> Factor:
+        """1 + slope (T - 25)."""
+        return 1 + self.slope * above_25(T)

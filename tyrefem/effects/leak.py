@@ -1,0 +1,28 @@
+"""Deflection of a tyre whose pressure is not the drive's: what a leak and warm air share."""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING
+
+if TYPE_CHECKING:
+    from tyrefem.studies import Study
+    from tyrefem.surroundings import Surroundings
+
+
+def deflection_change(tyre: Surroundings, t: float, pressure_factor: float) -> float:
+    """D(F, factor p) / D(F, p) of the load-deflection law; 1 without load, or where the drive gives the deflection."""
+    law, rating = tyre.study.card.mechanics.load_law, tyre.study.section.rating
+    assert rating is not None
+    load, pressure = (tyre.schedule.mean(quantity, t) for quantity in (lambda c: c.load, lambda c: c.pressure))
+    if load <= 0 or tyre.drive.phases[tyre.drive.locate(t)[0]].load is None:
+        return 1.0
+    return law.deflection(load, pressure_factor * pressure, rating) / law.deflection(load, pressure, rating)
+
+
+def no_load(study: Study) -> str | None:
+    """Why pressure does not matter in a study: its drive gives the deflection, or its law knows no pressure."""
+    if study.card.mechanics.load_law.law == "vertical-stiffness":
+        return "the load law 'vertical-stiffness' does not depend on pressure"
+    if all(phase.load is None for phase in study.card.drive.phases):
+        return "the drive gives the deflection, which pressure then does not change"
+    return None

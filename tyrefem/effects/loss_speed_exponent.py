@@ -1,0 +1,29 @@
+"""tan delta that rises with frequency."""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING, Annotated, ClassVar
+
+from tyrefem.effects.effect import Array, Effect, Factor, Prior
+from tyrefem.effects.shapes import speed_ratio
+
+if TYPE_CHECKING:
+    from tyrefem.surroundings import Surroundings
+
+
+class LossSpeedExponent(Effect):
+    """q -> q (v / v_ref)^exponent, v_ref = 10 m/s."""
+
+    name: ClassVar[str] = "loss-speed-exponent"
+    family: ClassVar[str] = "heat"
+    sentence: ClassVar[str] = "Hysteresis rises with the frequency of the strain cycle, and so with speed."
+    source: ClassVar[str] = (
+        "estimate: tan(delta) of filled rubber above its glass transition rises by 10 to 50 % per decade of "
+        "frequency (exponent 0.04 to 0.18)"
+    )
+
+    exponent: Annotated[float, Prior("1", "exponent of speed in the loss per revolution", 0.15, 0.0, 1.0)] = 0.0
+
+    def heat_factor(self, tyre: Surroundings, zone: str, x: Array, t: float, T: Array) -> Factor:
+        """(v / v_ref)^exponent."""
+        return float(speed_ratio(tyre, t) ** self.exponent)

@@ -1,0 +1,33 @@
+"""tan delta with another temperature law."""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING, Annotated, ClassVar
+
+import numpy as np
+
+from tyrefem.effects.effect import Array, Effect, Factor, Prior
+from tyrefem.effects.shapes import above_25
+
+if TYPE_CHECKING:
+    from tyrefem.surroundings import Surroundings
+
+
+class LossTemperatureLaw(Effect):
+    """q -> q exp(-rate (T - 25 degC))."""
+
+    name: ClassVar[str] = "loss-temperature-law"
+    family: ClassVar[str] = "heat"
+    sentence: ClassVar[str] = "tan delta falls with temperature faster (or slower) than the card says."
+    source: ClassVar[str] = (
+        "Clark & Dodge 1980, table 3, note 5 gives a rate of 0.0148 1/K for all compounds; estimate: between "
+        "compounds the rate spreads by a third of that"
+    )
+
+    rate: Annotated[float, Prior("1/delta_degC", "added to the rate at which tan delta falls", 0.005, -0.02, 0.03)] = (
+        0.0
+    )
+
+    def heat_factor(self, tyre: Surroundings, zone: str, x: Array, t: float, T: Array) -> Factor:
+        """exp(-rate (T - 25))."""
+        return np.asarray(np.exp(-self.rate * above_25(T)))

@@ -1,0 +1,37 @@
+"""An outside film with another speed law."""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING, Annotated, ClassVar
+
+from tyrefem.effects.effect import Effect, Prior
+from tyrefem.effects.shapes import speed_ratio
+
+if TYPE_CHECKING:
+    from tyrefem.surroundings import Surroundings
+
+
+class OutsideFilmSpeed(Effect):
+    """h -> h_0 + (h - h_0) (v / v_ref)^exponent while rolling, h_0 = 5.44 W/m2/K of still air, v_ref = 10 m/s."""
+
+    name: ClassVar[str] = "outside-film-speed"
+    family: ClassVar[str] = "boundary"
+    sentence: ClassVar[str] = "The outside film follows another power of speed than the study says."
+    source: ClassVar[str] = (
+        "Clark & Dodge 1980, appendix I: 5.44 + 1.674 v; estimate: turbulent flow over a disc or plate gives "
+        "v^0.8, a spinning wheel in a well less, hence an exponent about -0.2 beside the linear law and 0.8 "
+        "beside a constant film"
+    )
+
+    #: Film of still air, W/m2/K (Clark & Dodge 1980, appendix I): what speed has no part in.
+    STILL: ClassVar[float] = 5.44
+
+    exponent: Annotated[float, Prior("1", "added to the exponent of speed of the forced part", 0.3, -0.9, 1.5)] = 0.0
+
+    def film_factor(self, tyre: Surroundings, film: str, t: float) -> float:
+        """The forced part times (v / v_ref)^exponent; nothing at rest."""
+        if film != "outside_air" or tyre.speed(t) == 0:
+            return 1.0
+        whole = tyre.study.card.boundaries.outside_air.film(tyre.speed(t))
+        forced = max(whole - self.STILL, 0.0) / whole if whole > 0 else 0.0
+        return float(1 + forced * (speed_ratio(tyre, t) ** self.exponent - 1))

@@ -1,0 +1,38 @@
+"""A slow leak."""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING, Annotated, ClassVar
+
+from tyrefem.effects.effect import Array, Effect, Factor, Prior
+from tyrefem.effects.leak import deflection_change, no_load
+
+if TYPE_CHECKING:
+    from tyrefem.studies import Study
+    from tyrefem.surroundings import Surroundings
+
+
+class PressureLoss(Effect):
+    """q -> q (D(p - rate t) / D(p))^2, D the deflection at the load of the drive; not in tread and bead."""
+
+    name: ClassVar[str] = "pressure-loss"
+    family: ClassVar[str] = "heat"
+    sentence: ClassVar[str] = "The tyre loses air during the run, deflects more and more, and heats up."
+    source: ClassVar[str] = (
+        "estimate: a slow leak loses up to 1 bar in an hour (28 Pa/s); strain energy of the carcass and "
+        "sidewall goes with the square of the deflection"
+    )
+
+    rate: Annotated[float, Prior("Pa/s", "gauge pressure lost per time, from the start", 30.0, 0.0, 1000.0)] = 0.0
+
+    def heat_factor(self, tyre: Surroundings, zone: str, x: Array, t: float, T: Array) -> Factor:
+        """(D'/D)^2 at the lower pressure, of which a fifth is left at least."""
+        if tyre.region(zone) in ("tread", "bead"):
+            return 1.0
+        pressure = tyre.schedule.mean(lambda case: case.pressure, t)
+        return deflection_change(tyre, t, max(1 - self.rate * t / pressure, 0.2) if pressure > 0 else 1.0) ** 2
+
+    @classmethod
+    def refusal(cls, study: Study) -> str | None:
+        """A drive at a given deflection does not feel the pressure."""
+        return no_load(study)

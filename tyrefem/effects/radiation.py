@@ -1,0 +1,31 @@
+"""Radiation of the outer surface."""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING, Annotated, ClassVar
+
+from tyrefem.conduction import Radiation
+from tyrefem.effects.effect import Effect, Prior
+
+if TYPE_CHECKING:
+    from tyrefem.surroundings import Surroundings
+
+
+class RadiationToAmbient(Effect):
+    """q = emissivity sigma (T_a^4 - T^4) on outer sidewall and tread, whose time on the road is neglected."""
+
+    name: ClassVar[str] = "radiation"
+    family: ClassVar[str] = "boundary"
+    sentence: ClassVar[str] = "The outer surface radiates to the surroundings beside what the film takes."
+    source: ClassVar[str] = (
+        "Allouis et al. 2016: emissivity 0.95 of tread and liner; surroundings at ambient temperature. The "
+        "films of Clark & Dodge 1980 do not say that they include it"
+    )
+
+    surfaces: ClassVar[tuple[str, ...]] = ("road", "outside_air")
+
+    emissivity: Annotated[float, Prior("1", "emissivity of the outer surface", 0.6, 0.0, 1.0)] = 0.0
+
+    def radiation(self, tyre: Surroundings, surface: str) -> Radiation | None:
+        """To the ambient."""
+        return Radiation(self.emissivity, lambda x, t: tyre.ambient(t))

@@ -1,0 +1,36 @@
+"""A road film that rises with speed where the study has it constant."""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING, Annotated, ClassVar
+
+from tyrefem.effects.effect import Effect, Prior
+from tyrefem.effects.shapes import speed_ratio
+
+if TYPE_CHECKING:
+    from tyrefem.studies import Study
+    from tyrefem.surroundings import Surroundings
+
+
+class RoadFilmSpeed(Effect):
+    """H_c -> H_c (v / v_ref)^exponent, v_ref = 10 m/s."""
+
+    name: ClassVar[str] = "road-film-speed"
+    family: ClassVar[str] = "boundary"
+    sentence: ClassVar[str] = "The film between tread and road rises with speed, as each contact is shorter."
+    source: ClassVar[str] = (
+        "Cattani et al. 2023, eq 12: H_c = sqrt(lambda C v / FL), an exponent of 0.5, where Clark & Dodge "
+        "1980 have one film for all speeds"
+    )
+
+    exponent: Annotated[float, Prior("1", "exponent of speed in the road film", 0.5, 0.0, 1.5)] = 0.0
+
+    def film_factor(self, tyre: Surroundings, film: str, t: float) -> float:
+        """(v / v_ref)^exponent on the road film."""
+        return float(speed_ratio(tyre, t) ** self.exponent) if film == "road" else 1.0
+
+    @classmethod
+    def refusal(cls, study: Study) -> str | None:
+        """A law that has the speed in it already."""
+        law = study.card.boundaries.road.law  # type: ignore[attr-defined]
+        return None if law == "constant" else f"the road's law '{law}' has the speed in it already"

@@ -1,0 +1,26 @@
+"""A thermocouple that is not where it should be."""
+
+from __future__ import annotations
+
+from typing import Annotated, ClassVar
+
+from tyrefem.effects.effect import Prior
+from tyrefem.effects.of_sensor import OfSensor
+
+
+class SensorMisplaced(OfSensor):
+    """place of one sensor -> place + (along, deeper), kept inside the rubber."""
+
+    name: ClassVar[str] = "sensor-misplaced"
+    family: ClassVar[str] = "measurement"
+    sentence: ClassVar[str] = "One thermocouple sits millimetres from its stated place."
+    source: ClassVar[str] = (
+        "estimate: a drilled hole ends within 1 mm of its mark; a slipped or mistaken thermocouple is 3 to 5 mm off"
+    )
+
+    along: Annotated[float, Prior("m", "along the meridian, towards the bead", 4e-3, -0.02, 0.02)] = 0.0
+    deeper: Annotated[float, Prior("m", "outwards, in depth from the inner surface", 2.5e-3, -0.01, 0.01)] = 0.0
+
+    def displacement(self, sensor: str) -> tuple[float, float]:
+        """m along the meridian and in depth."""
+        return (self.along, self.deeper) if sensor == self.sensor else (0.0, 0.0)

@@ -1,0 +1,42 @@
+"""A standing wave behind the footprint above a critical speed."""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING, Annotated, ClassVar
+
+import numpy as np
+
+from tyrefem.effects.effect import Array, Effect, Factor, Prior
+
+if TYPE_CHECKING:
+    from tyrefem.surroundings import Surroundings
+
+
+class StandingWave(Effect):
+    """q -> q (1 + gain z log(1 + exp(u/z))), u = v/v_c - 1, z = 0.1: a smooth onset; not in the bead."""
+
+    name: ClassVar[str] = "standing-wave"
+    family: ClassVar[str] = "heat"
+    sentence: ClassVar[str] = (
+        "Above a critical speed a standing wave runs round the tyre behind the footprint and flexes it again and again."
+    )
+    source: ClassVar[str] = (
+        "estimate: waves run round a membrane at sqrt(p r / (rho h)), 90 m/s for the 22x5.5 at 83 psi and 50 "
+        "to 60 m/s for a passenger tyre; onset over a tenth of the critical speed and a heat that trebles at "
+        "1.5 times the critical speed are judgements"
+    )
+
+    #: Width of the onset over the critical speed.
+    ONSET: ClassVar[float] = 0.1
+
+    gain: Annotated[float, Prior("1", "relative heat added at twice the critical speed", 4.0, 0.0, 40.0)] = 0.0
+    critical_speed: Annotated[
+        float, Prior("m/s", "speed of the onset", 15.0, 15.0, 150.0, null=50.0, start=50.0, amplitude=False)
+    ] = 50.0
+
+    def heat_factor(self, tyre: Surroundings, zone: str, x: Array, t: float, T: Array) -> Factor:
+        """1 + gain times the smooth positive part of v/v_c - 1."""
+        if tyre.region(zone) == "bead":
+            return 1.0
+        u = (tyre.speed(t) / self.critical_speed - 1) / self.ONSET
+        return 1 + self.gain * self.ONSET * float(np.logaddexp(0.0, u))

@@ -1,0 +1,32 @@
+"""Sunshine on the tyre."""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING, Annotated, ClassVar
+
+from tyrefem.effects.effect import Array, Effect, Factor, Prior
+
+if TYPE_CHECKING:
+    from tyrefem.surroundings import Surroundings
+
+
+class Sun(Effect):
+    """Flux  absorbed  through tread and outer sidewall, mean over the turning surface."""
+
+    name: ClassVar[str] = "sun"
+    family: ClassVar[str] = "boundary"
+    sentence: ClassVar[str] = "The sun shines on the tyre."
+    source: ClassVar[str] = (
+        "estimate: up to 1000 W/m2 at the ground, 0.93 absorbed by black rubber, and a turning tyre shows the "
+        "sun a sixth of its outer surface on average"
+    )
+
+    surfaces: ClassVar[tuple[str, ...]] = ("road", "outside_air")
+
+    absorbed: Annotated[
+        float, Prior("W/m**2", "absorbed by the outer surface, mean over the revolution", 100.0, 0.0, 600.0)
+    ] = 0.0
+
+    def flux(self, tyre: Surroundings, surface: str, x: Array, t: float) -> Factor:
+        """W/m2 into the tyre, from the start to the end."""
+        return self.absorbed

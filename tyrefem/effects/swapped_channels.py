@@ -1,0 +1,57 @@
+"""Two thermocouples recorded under each other's name."""
+
+from __future__ import annotations
+
+import itertools
+from collections.abc import Mapping
+from typing import TYPE_CHECKING, ClassVar
+
+from tyrefem.cards import Text
+from tyrefem.effects.effect import Effect
+from tyrefem.errors import nearest
+
+if TYPE_CHECKING:
+    from tyrefem.studies import Study
+
+
+class SwappedChannels(Effect):
+    """The column ``sensor`` holds what ``other`` measured, and the reverse. There or not: it has no amplitude."""
+
+    name: ClassVar[str] = "swapped-channels"
+    family: ClassVar[str] = "measurement"
+    sentence: ClassVar[str] = "Two thermocouples are plugged into each other's channels."
+    source: ClassVar[str] = "estimate: the commonest mistake at the patch panel of a rig with many thermocouples"
+
+    sensor: Text
+    other: Text
+
+    def channel(self, sensor: str) -> str:
+        """The sensor whose temperature is recorded under a sensor's name."""
+        return {self.sensor: self.other, self.other: self.sensor}.get(sensor, sensor)
+
+    @property
+    def choice(self) -> dict[str, str]:
+        """The two sensors' names."""
+        return {"sensor": self.sensor, "other": self.other}
+
+    @classmethod
+    def refusal(cls, study: Study) -> str | None:
+        """Fewer than two sensors."""
+        return None if len(study.sensors) > 1 else "needs two sensors in the study"
+
+    def problem(self, study: Study) -> str | None:
+        """A sensor that the study does not have, one swapped with itself, or one swapped twice."""
+        for name in (self.sensor, self.other):
+            if len(study.sensors) > 1 and name not in study.sensors:
+                return f"the study has no sensor '{name}'{nearest(name, study.sensors)}"
+        if self.sensor == self.other:
+            return f"'{self.sensor}' is swapped with itself; name two sensors"
+        swaps = [one for one in study.card.effects if isinstance(one, SwappedChannels)]
+        taken = [name for one in swaps for name in (one.sensor, one.other)]
+        twice = [name for name in (self.sensor, self.other) if taken.count(name) > 1]
+        return f"'{twice[0]}' is swapped twice" if twice else self.refusal(study)
+
+    @classmethod
+    def variants(cls, study: Study) -> tuple[Mapping[str, str], ...]:
+        """Every pair of sensors."""
+        return tuple({"sensor": one, "other": other} for one, other in itertools.combinations(study.sensors, 2))

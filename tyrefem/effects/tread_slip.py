@@ -1,0 +1,34 @@
+"""Friction of a tread that slides on the road, braked or driven."""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING, Annotated, ClassVar
+
+from tyrefem.effects.effect import Array, Effect, Factor, Prior
+from tyrefem.effects.friction import sliding_flux
+
+if TYPE_CHECKING:
+    from tyrefem.surroundings import Surroundings
+
+
+class TreadSlip(Effect):
+    """Flux into the tread  mu p |slip| v f b_tyre / (b_tyre + b_road), averaged over the revolution."""
+
+    name: ClassVar[str] = "tread-slip"
+    family: ClassVar[str] = "heat"
+    sentence: ClassVar[str] = (
+        "The tread slides on the road, braked, driven or scrubbed, and friction heats its surface."
+    )
+    source: ClassVar[str] = (
+        "Roberts, Temperature rise when rubber slides, eqs 2 and 5: stress times sliding speed, divided as "
+        "the effusivities. estimate: mu = 0.8, contact pressure = inflation pressure, road of dense asphalt "
+        "(1732 J/m2/K/s^0.5); free rolling scrubs by 0.1 to 1 %"
+    )
+
+    slip: Annotated[float, Prior("1", "sliding speed over the tyre's speed", 0.01, 0.0, 0.2)] = 0.0
+
+    surfaces: ClassVar[tuple[str, ...]] = ("road",)
+
+    def flux(self, tyre: Surroundings, surface: str, x: Array, t: float) -> Factor:
+        """W/m2 into the tread, the same over its width."""
+        return self.slip * sliding_flux(tyre, t)

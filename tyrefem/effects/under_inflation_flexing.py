@@ -1,0 +1,37 @@
+"""Shoulder and sidewall of an under-inflated tyre flex more than the two arcs say."""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING, Annotated, ClassVar
+
+from tyrefem.effects.effect import Array, Effect, Factor, Prior
+from tyrefem.effects.shapes import beyond_shoulder, deflection_ratio
+
+if TYPE_CHECKING:
+    from tyrefem.surroundings import Surroundings
+
+
+class UnderInflationFlexing(Effect):
+    """q -> q (1 + gain w(s) max(D/D_rated - 1, 0)), w rising from 0 at the crown to 1 in the sidewall."""
+
+    name: ClassVar[str] = "under-inflation-flexing"
+    family: ClassVar[str] = "heat"
+    sentence: ClassVar[str] = (
+        "A tyre deflected beyond its rated deflection flexes more at shoulder and sidewall than the two arcs say."
+    )
+    source: ClassVar[str] = (
+        "Clark & Dodge 1980, summary: when the tyre is seriously under-inflated the theory predicts a lower "
+        "temperature rise than is observed. estimate: linear in the excess deflection, local to shoulder and "
+        "sidewall, about doubled heat at twice the rated deflection"
+    )
+
+    gain: Annotated[
+        float, Prior("1", "relative heat added in the sidewall at twice the rated deflection", 1.0, 0.0, 8.0)
+    ] = 0.0
+
+    def heat_factor(self, tyre: Surroundings, zone: str, x: Array, t: float, T: Array) -> Factor:
+        """1 + gain w(s) times the deflection in excess of the rated one."""
+        excess = deflection_ratio(tyre, t) - 1
+        if excess <= 0 or tyre.region(zone) == "bead":
+            return 1.0
+        return 1 + self.gain * excess * beyond_shoulder(tyre, x)

@@ -1,0 +1,34 @@
+"""Water on the road."""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING, Annotated, ClassVar
+
+from tyrefem.effects.effect import Effect, Prior
+
+if TYPE_CHECKING:
+    from tyrefem.surroundings import Surroundings
+
+
+class WetRoad(Effect):
+    """H_c -> H_c (1 + film_gain);  h of the tread between two contacts -> h (1 + 2.8 film_gain)."""
+
+    name: ClassVar[str] = "wet-road"
+    family: ClassVar[str] = "boundary"
+    sentence: ClassVar[str] = (
+        "Water on the road improves the contact and wets the tread, which evaporation then cools between two contacts."
+    )
+    source: ClassVar[str] = (
+        "estimate: water fills the gaps of the road texture and about doubles H_c (film_gain 1); on the wet "
+        "tread evaporation adds 2.8 times the dry film, by the Lewis relation L/c_p dw/dT with 1.2e-3 1/K at "
+        "25 degC"
+    )
+
+    #: Evaporation over convection, per kelvin of a wet surface: 2.45e6/1005 J/kg over J/kg/K times dw/dT = 1.16e-3 1/K.
+    EVAPORATION: ClassVar[float] = 2.8
+
+    film_gain: Annotated[float, Prior("1", "relative rise of the road film; 1 for a wet road", 1.0, 0.0, 8.0)] = 0.0
+
+    def film_factor(self, tyre: Surroundings, film: str, t: float) -> float:
+        """1 + film_gain on the road, 1 + 2.8 film_gain on the tread between two contacts."""
+        return 1 + self.film_gain * {"road": 1.0, "tread_air": self.EVAPORATION}.get(film, 0.0)

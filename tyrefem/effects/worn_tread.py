@@ -1,0 +1,34 @@
+"""A tread that is worn."""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING, Annotated, ClassVar
+
+from tyrefem.effects.effect import Effect, Prior
+
+if TYPE_CHECKING:
+    from tyrefem.section import Section
+    from tyrefem.studies import Study
+
+
+class WornTread(Effect):
+    """thickness of the tread -> thickness (1 - fraction); the meridian and the carcass stay where they are."""
+
+    name: ClassVar[str] = "worn-tread"
+    family: ClassVar[str] = "section"
+    sentence: ClassVar[str] = "The tread is thinner than the section says."
+    source: ClassVar[str] = (
+        "estimate: tyres are tested anywhere between new and worn to the base of the grooves, about half of "
+        "the tread layer"
+    )
+
+    fraction: Annotated[float, Prior("1", "part of the tread layer's thickness that is gone", 0.25, 0.0, 0.8)] = 0.0
+
+    def worn(self, section: Section) -> Section:
+        """The section with its tread thinner."""
+        return section.worn("tread", self.fraction)
+
+    @classmethod
+    def refusal(cls, study: Study) -> str | None:
+        """A mesh that the user gave does not follow the section."""
+        return None if study.card.mesh.file is None else "the study's mesh comes from a file and does not wear"

@@ -1,0 +1,57 @@
+"""A wheel that runs at a slip angle."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from typing import TYPE_CHECKING, Annotated, ClassVar, Literal
+
+import numpy as np
+
+from tyrefem.effects.effect import Array, Effect, Factor, Prior
+from tyrefem.effects.friction import sliding_flux
+from tyrefem.effects.sides import half_width, needs_full
+
+if TYPE_CHECKING:
+    from tyrefem.studies import Study
+    from tyrefem.surroundings import Surroundings
+
+
+class Yaw(Effect):
+    """Flux into the tread as of `tread-slip`, times 1 + z_s / z_shoulder towards the loaded side."""
+
+    name: ClassVar[str] = "yaw"
+    family: ClassVar[str] = "asymmetry"
+    sentence: ClassVar[str] = (
+        "The wheel runs at a slip angle: the tread scrubs sideways, most on the side that the side force loads."
+    )
+    source: ClassVar[str] = (
+        "Roberts, Temperature rise when rubber slides, eqs 2 and 5, as for tread-slip; estimate: friction "
+        "rises linearly from one shoulder to the other; a slip angle of 1 degree slides by 1.7 % of the speed "
+        "where it slides fully"
+    )
+
+    surfaces: ClassVar[tuple[str, ...]] = ("road",)
+
+    side: Literal["left", "right"] = "right"
+    slip: Annotated[float, Prior("1", "sideways sliding speed over the tyre's speed", 0.01, 0.0, 0.2)] = 0.0
+
+    def flux(self, tyre: Surroundings, surface: str, x: Array, t: float) -> Factor:
+        """W/m2 into the tread; ``right`` is z > 0."""
+        low, high = half_width(tyre)
+        lateral = np.clip(x[1], low, high) / high * (1 if self.side == "right" else -1)
+        return np.asarray(self.slip * sliding_flux(tyre, t) * (1 + lateral))
+
+    @property
+    def choice(self) -> dict[str, str]:
+        """The loaded side."""
+        return {"side": self.side}
+
+    @classmethod
+    def variants(cls, study: Study) -> tuple[Mapping[str, str], ...]:
+        """Either side."""
+        return {"side": "left"}, {"side": "right"}
+
+    @classmethod
+    def refusal(cls, study: Study) -> str | None:
+        """A half section has one side only."""
+        return needs_full(study)
