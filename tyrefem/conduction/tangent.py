@@ -15,14 +15,13 @@ from tyrefem.conduction.balance import HeatBalance
 from tyrefem.conduction.loads import SourceLoad, State
 from tyrefem.conduction.operators import Operators
 from tyrefem.conduction.points import located
+from tyrefem.conduction.quick import GAMMA, StageSolver
 from tyrefem.errors import InputError
 
 if TYPE_CHECKING:
     from tyrefem.conduction.problem import Conduction
 
 Array = NDArray[Any]
-#: L-stable two-stage method of second order (SDIRK2): both stages have this coefficient on the diagonal.
-GAMMA = 1 - 1 / np.sqrt(2)
 
 
 @dataclass(frozen=True)
@@ -138,7 +137,7 @@ def _march(
             y = State(values[first + 1 + stage], reservoirs[first + 1 + stage])
             if stage == 0:
                 balance.freeze(t, y)
-                solve = _solver(ordering, balance, GAMMA * h, n, m, heat)
+                solve = StageSolver(ordering, balance, GAMMA * h, heat)
             forcing = _forcing(balance, direct, t, y, heat)
             source = _source_slope(balance, t, y)
             start = s + (1 - GAMMA) * h * slopes[0] if stage else s
@@ -160,22 +159,6 @@ def _linear(balance: HeatBalance, s: Array) -> Array:
     n = balance.ops.size
     body, gas = s[:n], s[n:]
     return np.vstack([balance.S @ body - balance.B @ gas, balance.D @ gas - balance.B.T @ body])
-
-
-def _solver(ordering: Any, balance: HeatBalance, h: float, n: int, m: int, heat: Array) -> Any:
-    """Solver of (M + h S) k - h B kg = r, (C + h D) kg - h B^T k = rg."""
-    factor = ordering.factor(balance.M_data + h * balance.S_data)
-    through = factor.solve(h * balance.B) if m else np.zeros((n, 0))
-    small = np.diag(heat) + h * balance.D - h * balance.B.T @ through
-
-    def solve(right: Array) -> Array:
-        body = factor.solve(np.ascontiguousarray(right[:n]))
-        if not m:
-            return body
-        gas = np.linalg.solve(small, right[n:] + h * balance.B.T @ body)
-        return np.vstack([body + through @ gas, gas])
-
-    return solve
 
 
 def _rate(balance: HeatBalance, t: float, y: State) -> Array:

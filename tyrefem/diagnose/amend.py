@@ -33,7 +33,7 @@ def changes(gap: Gap, best: Explained, runs: Sequence[str]) -> tuple[Change, ...
     source = f"diagnosis of {gap.lab.bench.study.name}, fitted to {', '.join(fitted)}"
     own = {one for member in best.members for one in member.unknowns}
     found = []
-    for unknown in sorted(best.unknowns, key=lambda one: one not in own):
+    for unknown in sorted(best.values, key=lambda one: one not in own):
         x, sd = best.values[unknown], best.sd[unknown]
         if unknown in own:
             found.append(Change(unknown, x, sd, True, source))
@@ -56,14 +56,15 @@ def amended(study: Study, change: Sequence[Change]) -> Study:
         wanted = {"name": one.unknown.effect, **dict(one.unknown.choice)}
         for entry in entries:
             if all(entry.get(key) == value for key, value in wanted.items()):
-                assert one.unknown.parameter is not None
+                entry["from"] = one.source
+                if one.unknown.parameter is None:
+                    continue
                 unit = one.unknown.unit
                 number = float(f"{one.sd:.2g}")
                 entry["sd"] = {
                     **entry.get("sd", {}),
                     one.unknown.parameter.name: number if unit == "1" else f"{number!r} {unit}",
                 }
-                entry["from"] = one.source
     if entries:
         # Named effects first: they are what the study is about.
         named = {one.unknown.effect for one in change if one.missing}

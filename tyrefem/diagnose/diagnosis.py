@@ -164,7 +164,7 @@ def diagnose(
         change = changes(gap, best, [one.name for one in trials])
         new = amended(study, change)
         before = {i: gap.computed[i] + gap.correction[i] for i in range(len(trials))}
-        after = dict(enumerate(lab.ask("rerun", [(i, new) for i in range(len(trials))])))
+        after = dict(enumerate(lab.ask("full", [(i, new) for i in range(len(trials))])))
         further: Mapping[str, Any] = {}
         if judgement.verdict == "confounded":
             from tyrefem.diagnose.experiment import next_experiment
@@ -182,20 +182,16 @@ def gap_of(lab: Laboratory, tick: Tick | None = None) -> Gap:
     study, trials = lab.bench.study, lab.bench.trials
     measured = {one.sensor for each in trials for one in each.series}
     nuisance = (*base_unknowns(study), *sensor_unknowns(study, measured))
-    found = [one for each in candidates(study) for one in each.amplitudes]
+    found = [one for each in candidates(study) for one in (*each.amplitudes, *each.presence)]
     unknowns = (*nuisance, *found, *patches(study))
-    numbers = range(len(trials))
     done = 0
 
     def step() -> None:
         nonlocal done
         done += 1
         if tick:
-            tick("sensitivities", done, 2 * len(trials))
+            tick("sensitivities", done, len(trials))
 
-    answers = lab.ask("jacobian_and_base", [(i, unknowns) for i in numbers], step)
-    corrections = lab.ask("correction", [(i,) for i in numbers], step)
-    return Gap(
-        lab, unknowns, len(nuisance), tuple(corrections), tuple(base for _, base in answers),
-        tuple(J for J, _ in answers),
-    )  # fmt: skip
+    answers = lab.ask("prepared", [(i, unknowns) for i in range(len(trials))], step)
+    computed, correction, jacobians = (tuple(each) for each in zip(*answers, strict=True))
+    return Gap(lab, unknowns, len(nuisance), correction, computed, jacobians)

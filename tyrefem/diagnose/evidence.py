@@ -27,6 +27,15 @@ class Linear:
     data: Array
     jacobian: Array
 
+    def with_data(self, data: Array) -> Linear:
+        """The same model of other data; what does not depend on them is kept."""
+        _ = self._marginal
+        other = Linear(self.unknowns, self.nuisance, data, self.jacobian)
+        for name in ("place", "gram", "sd", "_inverse", "_marginal"):
+            if name in self.__dict__:
+                other.__dict__[name] = self.__dict__[name]
+        return other
+
     @cached_property
     def place(self) -> dict[Unknown, int]:
         """Unknown -> its column."""
@@ -49,16 +58,19 @@ class Linear:
 
     @cached_property
     def _marginal(self) -> tuple[Array, Array, float]:
-        """(Gram, overlap, log evidence of the nuisance alone) of the candidates with the nuisance integrated out."""
+        """With the nuisance integrated out: Gram of the others, G_en (G_nn + S^-2)^-1, and ln det(1 + S G S) / 2."""
         n = self.nuisance
         sd = self.sd[:n]
-        matrix = np.eye(n) + self.gram[:n, :n] * sd[:, None] * sd[None, :]
-        solved = np.linalg.solve(matrix, sd[:, None] * self.gram[:n, n:])
-        gram = self.gram[n:, n:] - (sd[:, None] * self.gram[:n, n:]).T @ solved
-        own = np.linalg.solve(matrix, sd * self.overlap[:n])
-        overlap = self.overlap[n:] - (sd[:, None] * self.gram[:n, n:]).T @ own
-        log_evidence = float((sd * self.overlap[:n]) @ own / 2 - np.linalg.slogdet(matrix)[1] / 2)
-        return gram, overlap, log_evidence
+        projection = self.gram[n:, :n] @ self._inverse
+        gram = self.gram[n:, n:] - projection @ self.gram[:n, n:]
+        return gram, projection, float(np.linalg.slogdet(np.eye(n) + self.gram[:n, :n] * np.outer(sd, sd))[1] / 2)
+
+    @cached_property
+    def _inverse(self) -> Array:
+        """(G + S^-2)^-1 of the nuisance."""
+        n = self.nuisance
+        sd = self.sd[:n]
+        return np.asarray(np.linalg.inv(np.eye(n) + self.gram[:n, :n] * sd[:, None] * sd[None, :]) * np.outer(sd, sd))
 
     def columns(self, unknowns: Sequence[Unknown]) -> NDArray[np.intp]:
         """Columns of unknowns."""
@@ -66,13 +78,22 @@ class Linear:
 
     def log_evidence(self, members: Members) -> float:
         """ln p(d | the members' amplitudes and the nuisance), up to a constant of the data."""
+        n = self.nuisance
+        overlap, fixed = self.overlap, 0.0
+        present = self.columns([one for member in members for one in member.presence])
+        if len(present):
+            # What is simply there is taken off the data: d' = d - J 1.
+            overlap = overlap - self.gram[:, present].sum(axis=1)
+            fixed = float(self.overlap[present].sum() - self.gram[np.ix_(present, present)].sum() / 2)
+        gram, projection, half = self._marginal
+        own = fixed - half + float(overlap[:n] @ self._inverse @ overlap[:n]) / 2
         unknowns = [one for member in members for one in member.amplitudes]
-        gram, overlap, own = self._marginal
         if not unknowns:
             return own
-        at = self.columns(unknowns) - self.nuisance
+        at = self.columns(unknowns) - n
         limits = np.array([(one.low, one.high) for one in unknowns])
-        return own + fit(gram[np.ix_(at, at)], overlap[at], self.sd[self.nuisance :][at], *limits.T).log_evidence
+        reduced = overlap[n:][at] - projection[at] @ overlap[:n]
+        return own + fit(gram[np.ix_(at, at)], reduced, self.sd[n:][at], *limits.T).log_evidence
 
     def fit(self, unknowns: Sequence[Unknown]) -> Fit:
         """Posterior of the given unknowns, all others null."""

@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import dataclasses
 import functools
 from collections.abc import Callable, Iterator, Mapping, Sequence
 from concurrent.futures import Executor, ProcessPoolExecutor
@@ -13,7 +12,8 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
-from tyrefem.conduction.tangent import Perturbed, stage_times, tangents
+from tyrefem.conduction.tangent import Perturbed, tangents
+from tyrefem.diagnose.lean import Lean, lean
 from tyrefem.diagnose.trials import Trial
 from tyrefem.diagnose.unknowns import Unknown, with_values
 from tyrefem.result import GAS, RIM, Result
@@ -28,7 +28,6 @@ COARSE = {
     "mesh.size": "4 mm",
     "mesh.element": "P1",
     "numerics.tolerance": "0.05 delta_degC",
-    "output.every": "5 s",
     "output.fields": 2,
 }
 
@@ -53,7 +52,7 @@ class Bench:
         return self.study.replace(coarse)
 
     @functools.cached_property
-    def _bases(self) -> dict[int, tuple[Study, Result]]:
+    def _bases(self) -> dict[int, Lean]:
         return {}
 
     def driven(self, study: Study, number: int) -> Study:
@@ -61,46 +60,41 @@ class Bench:
         drive = self.trials[number].drive
         return study.with_drive(drive) if drive else study
 
-    def base(self, number: int) -> tuple[Study, Result]:
-        """The coarse study at a trial's drive, and its result."""
+    def base(self, number: int) -> Lean:
+        """The coarse study simulated at a trial's drive."""
         if number not in self._bases:
-            study = self.driven(self.coarse, number)
-            like = next((result.tyre for _, result in self._bases.values()), None)
-            self._bases[number] = study, run(study, like=like)
+            like = next((one.tyre for one in self._bases.values()), None)
+            self._bases[number] = lean(self.driven(self.coarse, number), like)
         return self._bases[number]
 
-    def blocks(self, number: int, result: Result) -> Array:
-        """The block means that a result predicts for a trial."""
-        readings = result.readings
-        times = readings["time_s"].to_numpy(dtype=float)
+    def blocks(self, number: int, times: Array, readings: Mapping[str, Any]) -> Array:
+        """Block means of a trial from readings at ``times``."""
         return np.concatenate(
-            [one.sampled(times, readings[one.sensor].to_numpy(dtype=float)) for one in self.trials[number].series]
+            [one.sampled(times, np.asarray(readings[one.sensor], dtype=float)) for one in self.trials[number].series]
         )
 
+    def full(self, number: int, study: Study) -> Array:
+        """Block means of a trial from a run with error control on the study's own mesh."""
+        readings = run(self.driven(study, number)).readings
+        return self.blocks(number, readings["time_s"].to_numpy(dtype=float), readings)
+
     def predict(self, number: int, values: Values) -> Array:
-        """Block means of a trial with unknowns at ``values``, on the coarse mesh."""
-        return self.blocks(number, self.simulate(number, values))
+        """Block means of a trial with unknowns at ``values``, by the lean simulation."""
+        base = self.base(number)
+        own = with_values(base.study, {unknown: x for unknown, x in values.items() if not unknown.measures})
+        found = base if own.data == base.study.data else lean(own, base.tyre)
+        found = found.as_measured_by(with_values(base.study, values))
+        return self.blocks(number, found.grid, found.readings)
 
     def simulate(self, number: int, values: Values) -> Result:
-        """The result of a trial's drive with unknowns at ``values``, on the coarse mesh."""
-        study, base = self.base(number)
-        changing = {unknown: x for unknown, x in values.items() if not unknown.measures}
-        own = with_values(study, changing)
-        result = base if own.data == study.data else run(own, like=base.tyre)
-        return dataclasses.replace(result, study=with_values(study, values))
+        """The result of a trial's drive with unknowns at ``values``, on the coarse mesh with error control."""
+        return run(with_values(self.driven(self.coarse, number), values))
 
-    def correction(self, number: int) -> Array:
-        """What the study's own mesh and tolerance change of the block means, at x = 0."""
-        fine = self.driven(self.study, number)
-        return self.blocks(number, run(fine)) - self.blocks(number, self.base(number)[1])
-
-    def rerun(self, number: int, study: Study) -> Array:
-        """Block means of another study (the amended one, on its own mesh) at a trial's drive."""
-        return self.blocks(number, run(self.driven(study, number)))
-
-    def jacobian_and_base(self, number: int, unknowns: Sequence[Unknown]) -> tuple[Array, Array]:
-        """`jacobian`, and the block means at x = 0 on the coarse mesh."""
-        return self.jacobian(number, unknowns), self.blocks(number, self.base(number)[1])
+    def prepared(self, number: int, unknowns: Sequence[Unknown]) -> tuple[Array, Array, Array]:
+        """Of a trial at x = 0: lean block means, what the study's own mesh and error control add, the jacobian."""
+        base = self.base(number)
+        here = self.blocks(number, base.grid, base.readings)
+        return here, self.full(number, self.study) - here, self.jacobian(number, unknowns)
 
     def differences(self, number: int, unknowns: Sequence[Unknown], at: Values) -> Array:
         """(n_blocks, n_unknowns): difference quotients by simulating again."""
@@ -112,36 +106,31 @@ class Bench:
 
     def jacobian(self, number: int, unknowns: Sequence[Unknown]) -> Array:
         """(n_blocks, n_unknowns): d(block mean)/dx at x = 0, from the assembled operators where the mesh stays."""
-        study, base = self.base(number)
-        here = self.blocks(number, base)
+        base = self.base(number)
+        here = self.blocks(number, base.grid, base.readings)
         found = np.zeros((len(here), len(unknowns)))
         columns: list[int] = []
         perturbed: list[Perturbed] = []
         for column, one in enumerate(unknowns):
-            step = one.step
+            study = with_values(base.study, {one: one.step})
             if one.measures:
-                seen = dataclasses.replace(base, study=with_values(study, {one: step}))
-                found[:, column] = (self.blocks(number, seen) - here) / step
+                seen = base.as_measured_by(study)
+                found[:, column] = (self.blocks(number, seen.grid, seen.readings) - here) / one.step
                 continue
-            tyre = RollingTyre(with_values(study, {one: step}), base.tyre)
+            tyre = RollingTyre(study, base.tyre)
             if tyre.mesh is base.tyre.mesh:
                 columns.append(column)
-                perturbed.append(Perturbed(tyre.problem, step, tyre.drive.initial))
+                perturbed.append(Perturbed(tyre.problem, one.step, tyre.drive.initial))
             else:
                 found[:, column] = self.differences(number, [one], {})[:, 0]
         if columns:
-            found[:, columns] = self._tangents(number, study, base, perturbed)
+            found[:, columns] = self._tangents(number, base, perturbed)
         return found
 
-    def _tangents(self, number: int, study: Study, base: Result, perturbed: Sequence[Perturbed]) -> Array:
-        drive = study.card.drive
-        times = stage_times([*drive.starts, drive.end])
-        history = base.tyre.problem.transient(times, drive.initial, study.tolerance, breakpoints=drive.starts[1:])
-        gas = list(history.reservoirs)
-        states = np.column_stack([history.reservoirs[name] for name in gas]) if gas else np.zeros((len(times), 0))
-        found = tangents(base.tyre.problem, times, history.values, states, perturbed)
-        at_sensors = found.at(base.sensor_points) if len(study.sensors) else None
-        places = list(study.sensors)
+    def _tangents(self, number: int, base: Lean, perturbed: Sequence[Perturbed]) -> Array:
+        found = tangents(base.tyre.problem, base.times, base.values, base.reservoirs, perturbed)
+        gas, places, sensors = list(base.tyre.problem.reservoirs), list(base.study.sensors), base.study.sensors
+        at_sensors = found.at(base.sensor_points) if places else None
         blocks = []
         for one in self.trials[number].series:
             if one.sensor in (GAS, RIM):
@@ -149,9 +138,11 @@ class Bench:
                 column = found.reservoirs[:, :, gas.index(one.sensor)] if known else np.zeros(found.values.shape[:2])
             else:
                 assert at_sensors is not None
-                lag = study.sensors[one.sensor].lag
-                column = np.array([lagged(times, row, lag) for row in at_sensors[:, :, places.index(one.sensor)]])
-            blocks.append(one.sampled(times, column.T))
+                column = at_sensors[:, :, places.index(one.sensor)]
+            dense = base.dense(column.T)
+            if one.sensor in sensors:
+                dense = np.column_stack([lagged(base.grid, each, sensors[one.sensor].lag) for each in dense.T])
+            blocks.append(one.sampled(base.grid, dense))
         return np.concatenate(blocks)
 
 

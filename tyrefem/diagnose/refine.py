@@ -92,13 +92,15 @@ class Explained:
 
     @cached_property
     def values(self) -> dict[Unknown, float]:
-        """Unknown -> x."""
-        return dict(zip(self.unknowns, (float(x) for x in self.fit.mean), strict=True))
+        """Unknown -> x; 1 for what is simply there."""
+        fitted = dict(zip(self.unknowns, (float(x) for x in self.fit.mean), strict=True))
+        return fitted | {one: 1.0 for member in self.members for one in member.presence}
 
     @cached_property
     def sd(self) -> dict[Unknown, float]:
         """Unknown -> posterior standard deviation of x."""
-        return dict(zip(self.unknowns, (float(x) for x in self.fit.sd), strict=True))
+        fitted = dict(zip(self.unknowns, (float(x) for x in self.fit.sd), strict=True))
+        return fitted | {one: 0.0 for member in self.members for one in member.presence}
 
     @property
     def p_value(self) -> float:
@@ -121,7 +123,8 @@ class _Refinement:
         own = [one for member in members for one in member.amplitudes]
         self.unknowns = [*gap.unknowns[: gap.nuisance], *own]
         self.J = linear.jacobian[:, linear.columns(self.unknowns)].copy()
-        self.r = linear.data
+        self.fixed = [one for member in members for one in member.presence]
+        self.r = linear.data - linear.jacobian[:, linear.columns(self.fixed)].sum(axis=1)
         self.x = np.zeros(len(self.unknowns))
         self.computed = {i: gap.computed[i] for i in gap.fitted}
         self.shapes = [one for member in members for one in member.shapes]
@@ -130,7 +133,10 @@ class _Refinement:
 
     @property
     def point(self) -> dict[Unknown, float]:
-        return dict(zip(self.unknowns, (float(x) for x in self.trial), strict=True))
+        return self._named(self.trial)
+
+    def _named(self, x: Array) -> dict[Unknown, float]:
+        return dict(zip(self.unknowns, (float(one) for one in x), strict=True)) | dict.fromkeys(self.fixed, 1.0)
 
     def _prior(self) -> tuple[Array, Array, Array]:
         return tuple(np.array([getattr(one, what) for one in self.unknowns]) for what in ("sd", "low", "high"))  # type: ignore[return-value]
@@ -139,7 +145,7 @@ class _Refinement:
         self.best = fit(self.J.T @ self.J, self.J.T @ (self.r + self.J @ self.x), *self._prior())
         self.trial, self.halved = self.best.mean, 0
         self.expected = self.r - self.J @ (self.trial - self.x)
-        if np.linalg.norm(self.r - self.expected) < 1e-9:
+        if not self.fixed and np.linalg.norm(self.r - self.expected) < 1e-9:
             self.done = self.converged = True
 
     def _misfit(self, r: Array, x: Array) -> float:
@@ -176,7 +182,7 @@ class _Refinement:
 
     def _release_shapes(self) -> None:
         """Now that there is an amplitude, its shape matters: take its columns from difference quotients."""
-        at = dict(zip(self.unknowns, (float(x) for x in self.x), strict=True))
+        at = self._named(self.x)
         answers = self.gap.lab.ask("differences", [(i, self.shapes, at) for i in self.gap.fitted])
         columns = np.vstack(
             [self.gap.lab.bench.trials[i].whitened(J) for i, J in zip(self.gap.fitted, answers, strict=True)]
@@ -201,7 +207,7 @@ def refined(gap: Gap, sets: Sequence[Members], tick: Callable[[], None] | None =
 
 
 def _explained(gap: Gap, one: _Refinement) -> Explained:
-    values = dict(zip(one.unknowns, (float(x) for x in one.x), strict=True))
+    values = one._named(one.x)
     computed = {i: one.computed[i] + gap.correction[i] for i in gap.fitted}
     log_held, p_held = 0.0, 1.0
     if gap.held_out:

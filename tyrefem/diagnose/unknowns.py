@@ -37,8 +37,15 @@ class Unknown:
     @property
     def step(self) -> float:
         """Step of a difference quotient; towards the inside of the bounds."""
+        if self.fixed:
+            return 1.0
         size = 0.02 * self.sd if self.effect else 0.01
         return size if self.high > 0 else -size
+
+    @property
+    def fixed(self) -> bool:
+        """Is it there (x = 1) or not (x = 0), with nothing in between?"""
+        return self.effect is not None and self.parameter is None
 
     @property
     def measures(self) -> bool:
@@ -47,7 +54,9 @@ class Unknown:
 
     def value(self, x: float) -> float:
         """The parameter's own value, SI: a factor for a base number."""
-        return math.exp(x) if self.parameter is None else self.parameter.prior.origin + x
+        if self.parameter is None:
+            return x if self.fixed else math.exp(x)
+        return self.parameter.prior.origin + x
 
     @property
     def unit(self) -> str:
@@ -83,6 +92,11 @@ class Candidate:
         return tuple(one for one in self.unknowns if one.parameter and one.parameter.prior.amplitude)
 
     @property
+    def presence(self) -> tuple[Unknown, ...]:
+        """The unknown of an effect that is there or not, with nothing in between."""
+        return tuple(one for one in self.unknowns if one.fixed)
+
+    @property
     def shapes(self) -> tuple[Unknown, ...]:
         """The unknowns that only shape it."""
         return tuple(one for one in self.unknowns if one.parameter and not one.parameter.prior.amplitude)
@@ -90,6 +104,8 @@ class Candidate:
 
 def of_effect(effect: type[Effect], choice: Choice, sd: float | None = None) -> tuple[Unknown, ...]:
     tag = ".".join((effect.name, *(value for _, value in choice)))
+    if not effect.parameters():
+        return (Unknown(f"effects.{tag}", 1.0, 0.0, 1.0, effect.name, choice),)
     return tuple(
         Unknown(
             f"effects.{tag}.{one.name}",
@@ -158,7 +174,10 @@ def with_values(study: Study, values: Mapping[Unknown, float]) -> Study:
             # A sensor's offset may stand twice: as what every sensor has, and as a candidate that it is far off.
             totals[unknown.key] = unknown, totals.get(unknown.key, (unknown, 0.0))[1] + x
     for unknown, x in totals.values():
-        assert unknown.parameter is not None
+        if unknown.parameter is None:
+            if x:
+                _entry(entries, unknown)
+            continue
         prior = unknown.parameter.prior
         # A fit may end on a bound to within rounding.
         value = min(max(unknown.value(x), prior.low), prior.high)

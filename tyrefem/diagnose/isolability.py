@@ -1,0 +1,229 @@
+"""Before any data: which effects a study's sensors and runs can tell apart, and how strong they must be to be seen."""
+
+from __future__ import annotations
+
+import itertools
+import math
+from collections.abc import Callable, Sequence
+from dataclasses import dataclass
+from functools import cached_property
+from typing import TYPE_CHECKING, Any
+
+import numpy as np
+from numpy.typing import NDArray
+
+from tyrefem.compare.experiment import OUTSIDE_THE_RUBBER
+from tyrefem.diagnose.diagnosis import gap_of
+from tyrefem.diagnose.evidence import Linear, Members
+from tyrefem.diagnose.laboratory import Bench, laboratory
+from tyrefem.diagnose.refine import Gap
+from tyrefem.diagnose.sets import Prior
+from tyrefem.diagnose.trials import Series, Trial
+from tyrefem.diagnose.unknowns import Candidate, candidates
+from tyrefem.studies import Study
+
+if TYPE_CHECKING:
+    import pandas as pd
+
+Array = NDArray[np.float64]
+#: Nats by which the true explanation must be ahead of every rival without noise, so that noise turns the order round,
+#: or leaves it undecided (less than 90 %), in one case of twenty: m - 1.645 sqrt(2 m) > ln 9.
+MARGIN = 9.3
+#: Readings are supposed this often, s.
+EVERY = 10.0
+
+
+def planned(study: Study, sensors: Sequence[str] = ()) -> tuple[Trial, ...]:
+    """The runs of a study's ``[[measured]]`` entries (or its own drive) with all its sensors read every 10 s."""
+    entries = study.measured
+    plans = [(entry.run or f"run {n + 1}", dict(entry.drive), entry.hold_out) for n, entry in enumerate(entries)]
+    found = []
+    for name, drive, hold_out in plans or [("the study's own drive", {}, False)]:
+        driven = study.with_drive(drive) if drive else study
+        times = np.arange(0.0, driven.card.drive.end + EVERY / 2, EVERY)
+        choice = study.card.diagnosis
+        names = list(sensors) or [*study.sensors, OUTSIDE_THE_RUBBER[0]]
+        series = tuple(
+            Series(
+                one,
+                times,
+                np.zeros_like(times),
+                study.sensors[one].noise if one in study.sensors else 0.5,
+                choice.discrepancy,
+                choice.correlation_time,
+            )
+            for one in names
+        )
+        found.append(Trial(name, drive, hold_out, series))
+    return tuple(found)
+
+
+@dataclass(frozen=True, eq=False)
+class Isolability:
+    """What a layout of sensors and runs can tell.
+
+    Parameters
+    ----------
+    study : its name. candidates : the effects. smallest : amplitude (own unit) from which each is told from all
+        others, infinite if never within its bounds; ``seen`` : from which it is told from no effect.
+    scale : prior sd of the amplitude. rivals : the last rival to be ruled out.
+    apart : (n, n) nats by which effect i at its scale is ahead of effect j fitted to it. runs : smallest sets of runs.
+    """
+
+    study: str
+    candidates: tuple[Candidate, ...]
+    smallest: Array
+    seen: Array
+    scale: Array
+    rivals: tuple[str, ...]
+    apart: Array
+    runs: tuple[tuple[str, ...], ...]
+    weights: Array
+
+    @cached_property
+    def table(self) -> pd.DataFrame:
+        """One row per effect: from what amplitude it is seen, and told from all others."""
+        import pandas as pd
+
+        units = [one.unknowns[0].unit for one in self.candidates]
+        return pd.DataFrame(
+            {
+                "effect": [one.key for one in self.candidates],
+                "unit": units,
+                "usual": self.scale,
+                "seen_from": self.seen,
+                "told_from": self.smallest,
+                "last_rival": self.rivals,
+                "identifiable_at_usual": self.smallest <= self.scale * (1 + 1e-9),
+            }
+        )
+
+    @cached_property
+    def groups(self) -> tuple[tuple[str, ...], ...]:
+        """Effects that are not told apart at their usual strength: connected by pairs that are too close."""
+        n = len(self.candidates)
+        close = (self.apart < MARGIN) & (self.apart.T < MARGIN)
+        left, found = set(range(n)), []
+        while left:
+            group, queue = set(), [min(left)]
+            while queue:
+                i = queue.pop()
+                if i in group:
+                    continue
+                group.add(i)
+                queue += [j for j in left if close[i, j] and j not in group]
+            left -= group
+            found.append(tuple(self.candidates[i].key for i in sorted(group)))
+        return tuple(sorted(found, key=len, reverse=True))
+
+
+def margins(linear: Linear, signal: Array, true: Members, rivals: Sequence[Members], prior: Prior) -> list[float]:
+    """Nats by which ``true`` is ahead of each rival for data that are ``signal`` without noise."""
+    given = linear.with_data(signal)
+    own = prior(true) + given.log_evidence(true)
+    return [own - prior(one) - given.log_evidence(one) for one in rivals]
+
+
+def rivals_of(true: Members, found: Sequence[Candidate]) -> list[Members]:
+    """No effect, every other single effect, and every part of the truth; sets that hold the truth are no rivals."""
+    sets: list[Members] = [()]
+    sets += [(one,) for one in found if one not in true]
+    for size in range(1, len(true)):
+        sets += list(itertools.combinations(true, size))
+    return sets
+
+
+def isolability(
+    study: Study, *, workers: int = 1, progress: Callable[[str, int, int], None] | None = None, gap: Gap | None = None
+) -> Isolability:
+    """What the sensors and runs of a study can tell apart, by the linear model about the study as it is.
+
+    Raises
+    ------
+    InputError : a run's drive that the tyre cannot take.
+    """
+    if gap is None:
+        with laboratory(Bench(study, planned(study)), workers) as lab:
+            gap = gap_of(lab, progress)
+    found = candidates(study)
+    prior = Prior(found, study.card.diagnosis.effects_expected)
+    linear = gap.linear(gap.fitted)
+    n = len(found)
+    smallest, seen, last = np.full(n, np.inf), np.full(n, np.inf), [""] * n
+    apart = np.zeros((n, n))
+    for i, one in enumerate(found):
+        response = _response(linear, one)
+        at_scale = margins(linear, response, (one,), [(other,) for other in found], prior)
+        apart[i] = at_scale
+        smallest[i], last[i] = _threshold(linear, response, one, found, prior)
+        seen[i], _ = _threshold(linear, response, one, (), prior)
+    runs = _fewest_runs(gap, found, prior, smallest)
+    scale = np.array([one.amplitudes[0].sd if one.amplitudes else 1.0 for one in found])
+    shares = np.array([1 / sum(other.name == one.name for other in found) for one in found])
+    return Isolability(study.name, found, smallest * scale, seen * scale, scale, tuple(last), apart, runs, shares)
+
+
+def _response(linear: Linear, one: Candidate) -> Array:
+    """Signal of an effect at its usual strength: all its amplitudes one prior sd from null, on the allowed side."""
+    signal = np.zeros(len(linear.data))
+    for unknown in one.presence:
+        signal = signal + linear.jacobian[:, linear.place[unknown]]
+    for unknown in one.amplitudes:
+        side = 1.0 if unknown.high > 0 else -1.0
+        signal = signal + linear.jacobian[:, linear.place[unknown]] * side * min(unknown.sd, abs(side * unknown.high))
+    return signal
+
+
+def _threshold(
+    linear: Linear, response: Array, one: Candidate, found: Sequence[Candidate], prior: Prior
+) -> tuple[float, str]:
+    """Amplitude, in prior sds, from which the effect is ahead of every rival; and the rival that holds out longest."""
+    sets = rivals_of((one,), found)
+    if not one.amplitudes:
+        ahead = margins(linear, response, (one,), sets, prior)
+        worst = int(np.argmin(ahead))
+        return 1.0 if ahead[worst] >= MARGIN else math.inf, " + ".join(each.key for each in sets[worst]) or "no effect"
+    unknown = one.amplitudes[0]
+    largest = max(abs(unknown.low), abs(unknown.high)) / unknown.sd
+    largest = min(largest, 20.0)
+    values = np.geomspace(0.02, largest, 40) if largest > 0.02 else np.array([largest])
+    rival = ""
+    for value in values:
+        ahead = margins(linear, value * response, (one,), sets, prior)
+        worst = int(np.argmin(ahead))
+        if ahead[worst] >= MARGIN:
+            return float(value), rival
+        rival = " + ".join(member.key for member in sets[worst]) or "no effect"
+    return math.inf, rival
+
+
+def _fewest_runs(gap: Gap, found: Sequence[Candidate], prior: Prior, smallest: Array) -> tuple[tuple[str, ...], ...]:
+    """The smallest sets of fitted runs that identify at twice their usual strength all that all runs together do."""
+    names = [one.name for one in gap.lab.bench.trials]
+    wanted = [i for i in range(len(found)) if smallest[i] <= 2.0]
+    for size in range(1, len(gap.fitted) + 1):
+        enough = []
+        for chosen in itertools.combinations(gap.fitted, size):
+            linear = gap.linear(list(chosen))
+            ok = all(
+                min(margins(linear, 2 * _response(linear, found[i]), (found[i],), rivals_of((found[i],), found), prior))
+                >= MARGIN
+                for i in wanted
+            )
+            if ok:
+                enough.append(tuple(names[i] for i in chosen))
+        if enough:
+            return tuple(enough)
+    return ()
+
+
+def summary(found: Isolability) -> dict[str, Any]:
+    """Plain data for JSON."""
+    return {
+        "study": found.study,
+        "margin_nats": MARGIN,
+        "effects": found.table.to_dict(orient="records"),
+        "groups": [list(group) for group in found.groups],
+        "fewest_runs": [list(one) for one in found.runs],
+        "apart_nats": found.apart.round(2).tolist(),
+    }

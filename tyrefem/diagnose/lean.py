@@ -1,0 +1,105 @@
+"""The lean simulation of the fit: fixed steps, no heat budget, only what the sensors read."""
+
+from __future__ import annotations
+
+import dataclasses
+from dataclasses import dataclass
+from functools import cached_property
+
+import numpy as np
+from numpy.typing import NDArray
+from scipy.interpolate import CubicSpline
+
+from tyrefem.conduction.points import located
+from tyrefem.conduction.quick import quick
+from tyrefem.conduction.tangent import stage_times
+from tyrefem.result import GAS, RIM
+from tyrefem.rolling import RollingTyre
+from tyrefem.sensors import recorded, true_places
+from tyrefem.studies import Study
+
+Array = NDArray[np.float64]
+#: Readings are computed this often, s.
+EVERY = 5.0
+
+
+@dataclass(frozen=True, eq=False)
+class Lean:
+    """A study simulated on fixed steps.
+
+    Parameters
+    ----------
+    study : what the sensors and the logger are; may differ from the tyre's study in effects of measurement.
+    times : (n_times,) s, every step's start, stage and end; values (n_times, n), reservoirs (n_times, m): degC.
+    """
+
+    study: Study
+    tyre: RollingTyre
+    times: Array
+    values: Array
+    reservoirs: Array
+
+    def as_measured_by(self, study: Study) -> Lean:
+        """The same temperatures, measured by another study's sensors."""
+        return dataclasses.replace(self, study=study)
+
+    @cached_property
+    def grid(self) -> Array:
+        """Times of the readings, s."""
+        return time_grid(self.times)
+
+    def dense(self, history: Array) -> Array:
+        """A history at ``times`` (n_times, ...) on `grid`: cubic between the ends of steps, phase by phase."""
+        return on_grid(self.times, history, self.study.card.drive.starts, self.grid)
+
+    @cached_property
+    def sensor_points(self) -> Array:
+        """(n_sensors, 2) m: places of the sensors, kept within the straight-sided elements."""
+        places = true_places(self.study)
+        section = self.tyre.study.section
+        s, depth = section.locate(np.array(list(places.values())).reshape(-1, 2))
+        return np.asarray(section.place(*section.clamp(s, depth, self.tyre.mesh.size**2 / 0.1)))
+
+    @cached_property
+    def readings(self) -> dict[str, Array]:
+        """Sensor -> degC on `grid`; contained air and rim too."""
+        found: dict[str, Array] = {}
+        if self.study.sensors:
+            operator = located(self.tyre.problem.operators, self.sensor_points).value()
+            at_sensors = (operator @ self.values[::2].T).T
+            dense = on_grid(self.times[::2], at_sensors, self.study.card.drive.starts, self.grid, ends_only=True)
+            found |= recorded(self.study, self.grid, dense)
+        names = list(self.tyre.problem.reservoirs)
+        for name in (GAS, RIM):
+            if name in names:
+                found[name] = self.dense(self.reservoirs[:, names.index(name)])
+        if GAS not in found:
+            held = self.study.card.boundaries.contained_air.temperature  # type: ignore[attr-defined]
+            found[GAS] = np.full(len(self.grid), held)
+        return found
+
+
+def lean(study: Study, like: RollingTyre | None = None) -> Lean:
+    """Simulate a study's drive on fixed steps."""
+    tyre = RollingTyre(study, like)
+    times = stage_times([*tyre.drive.starts, tyre.drive.end])
+    return Lean(study, tyre, times, *quick(tyre.problem, times, tyre.drive.initial))
+
+
+def time_grid(times: Array) -> Array:
+    """Evenly spaced times over the whole drive, s."""
+    return np.linspace(times[0], times[-1], max(int(np.ceil((times[-1] - times[0]) / EVERY)), 2) + 1)
+
+
+def on_grid(times: Array, history: Array, starts: tuple[float, ...], grid: Array, *, ends_only: bool = False) -> Array:
+    """A history at stage times (or at ends of steps only) on a grid: cubic splines within each phase, which may kink."""
+    if not ends_only:
+        times, history = times[::2], history[::2]
+    found = np.empty((len(grid), *history.shape[1:]))
+    edges = [*starts, times[-1]]
+    for start, end in zip(edges, edges[1:], strict=False):
+        own = (times >= start - 1e-9) & (times <= end + 1e-9)
+        inside = (grid >= start - 1e-9) & (grid <= end + 1e-9)
+        if inside.any():
+            found[inside] = CubicSpline(times[own], history[own], axis=0)(grid[inside])
+    return found

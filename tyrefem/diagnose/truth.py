@@ -1,0 +1,107 @@
+"""A made-up truth for blind tests: made otherwise than the diagnosis analyses, and read by imperfect sensors."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from typing import Any
+
+import numpy as np
+import pandas as pd
+from numpy.typing import NDArray
+
+from tyrefem.boundaries.contained_air import ContainedAirLaw
+from tyrefem.conduction import Conduction
+from tyrefem.conduction.loads import State
+from tyrefem.conduction.points import located
+from tyrefem.effects import Effect
+from tyrefem.effects.acting import Acting
+from tyrefem.measured import MeasuredRun
+from tyrefem.result import GAS
+from tyrefem.rolling import RollingTyre
+from tyrefem.sensors import recorded, true_places
+from tyrefem.studies import Study
+
+Array = NDArray[np.float64]
+#: The truth's own mesh: triangles, quadratic, finer than the diagnosis uses.
+FINE = {"mesh.cell": "tri", "mesh.element": "P2", "mesh.size": "2.5 mm"}
+#: Step of the truth's own time integration, s.
+STEP = 2.5
+
+
+@dataclass(frozen=True)
+class Logger:
+    """How a run is recorded: readings about ``every`` s, jittered; each sensor misses stretches; Gaussian noise."""
+
+    every: float = 10.0
+    noise: float = 0.5
+    gap: float = 0.6
+
+
+def backward(problem: Conduction, times: Array, initial: float) -> tuple[Array, Array]:
+    """March with BDF2 on even steps (the first one backward Euler), the remainder extrapolated: (values, reservoirs).
+
+    Another method than the solver's own, for data that are not made as they are analysed.
+    """
+    balance = problem._balance()
+    n = problem.operators.size
+    state = problem._initial(balance, initial, float(times[0]), None)
+    ordering = problem.operators.ordering(np.arange(n))
+    u, g = [state.u], [state.g]
+    rest: list[tuple[Array, Array]] = []
+    heat = balance.reservoir_capacity(state.g)
+    key: tuple[int, float] | None = None
+    for i, (before, after) in enumerate(zip(times, times[1:], strict=False)):
+        h, t = after - before, after - 1e-9 * after
+        now = State(u[-1], g[-1])
+        jump = i == 0 or balance.stale(t, now)
+        if jump:
+            balance.freeze(t, now)
+        G, Gg, _ = balance.remainder(t, now)
+        even = not jump and i > 0 and abs((times[i] - times[i - 1]) - h) < 1e-9 * h
+        if even and rest:
+            first, firstg = 2 * G - rest[-1][0], 2 * Gg - rest[-1][1]
+        else:
+            first, firstg = G, Gg
+        rest.append((G, Gg))
+        c, past, pastg = (1.5, 2 * u[-1] - 0.5 * u[-2], 2 * g[-1] - 0.5 * g[-2]) if even else (1.0, u[-1], g[-1])
+        if key != (balance.version, c / h):
+            factor = ordering.factor(c / h * balance.M_data + balance.S_data)
+            through = factor.solve(balance.B.copy())
+            small = np.diag(c / h * heat) + balance.D - balance.B.T @ through
+            key = balance.version, c / h
+        body = factor.solve(balance.M @ past / h + first)
+        gas = np.linalg.solve(small, heat * pastg / h + firstg + balance.B.T @ body)
+        u.append(body + through @ gas)
+        g.append(gas)
+    return np.array(u), np.array(g)
+
+
+def record(study: Study, name: str, logger: Logger, rng: np.random.Generator, extra: tuple[Effect, ...] = ()) -> MeasuredRun:
+    """A run as a logger records it. ``study``: the truth, at this run's drive; ``extra``: effects of no catalogue."""
+    tyre = RollingTyre(study)
+    if extra:
+        tyre.__dict__["acting"] = Acting(tyre, (*study.effects, *extra))
+    edges = [*tyre.drive.starts, tyre.drive.end]
+    times = np.unique(
+        np.concatenate([np.linspace(a, b, int(round((b - a) / STEP)) + 1) for a, b in zip(edges, edges[1:], strict=False)])
+    )
+    values, reservoirs = backward(tyre.problem, times, tyre.drive.initial)
+    section = study.section
+    s, depth = section.locate(np.array(list(true_places(study).values())))
+    points = section.place(*section.clamp(s, depth, tyre.mesh.size**2 / 0.1))
+    at = (located(tyre.problem.operators, points).value() @ values.T).T
+    clean: dict[str, Any] = dict(recorded(study, times, at))
+    law: ContainedAirLaw = study.card.boundaries.contained_air
+    names = list(tyre.problem.reservoirs)
+    clean[GAS] = reservoirs[:, names.index(GAS)] if GAS in names else np.full(len(times), law.temperature)  # type: ignore[attr-defined]
+    count = int(times[-1] / logger.every)
+    clock = np.sort(rng.uniform(0.0, times[-1], count))
+    clock = clock[np.diff(clock, prepend=-1.0) > 0.05]
+    columns = {}
+    for sensor, history in clean.items():
+        readings = np.interp(clock, times, history) + rng.normal(0.0, logger.noise, len(clock))
+        if rng.random() < logger.gap:
+            start = rng.uniform(0.0, 0.9) * times[-1]
+            readings[(clock > start) & (clock < start + rng.uniform(0.03, 0.12) * times[-1])] = np.nan
+        columns[sensor] = readings
+    return MeasuredRun(name, clock, pd.DataFrame(columns))
