@@ -103,6 +103,7 @@ def row(case: Case, outcome: Result | str) -> dict[str, Any]:
         "rolling_resistance_N": resistance.force,
         "rolling_resistance_coefficient": resistance.coefficient,
         **{f"{name}_degC": float(readings[name].iloc[-1]) for name in readings.columns if name != "time_s"},
+        **({} if outcome.sliding is None else {"exit_edge_max_degC": outcome.sliding.hottest.exit_edge_highest}),
         "heat_budget_imbalance": outcome.heat_budget.imbalance,
         "failure": f"interrupted at {outcome.times[-1]:g} s" if outcome.history.interrupted else "",
     }

@@ -8,11 +8,11 @@ from collections.abc import Mapping
 from typing import Any
 
 from tyrefem import library
+from tyrefem.drive import RIVALS
 from tyrefem.errors import InputError, nearest
 
 #: Tables whose text value is a reference to a card: changing something below it lays the change over the card.
 _REFERENCES = {"section": "section", "materials.*": "material"}
-_RIVALS = {"load": ["deflection"], "deflection": ["load"]}
 _AMOUNT = re.compile(r"^\s*([-+]?(?:\d+\.?\d*|\.\d+)(?:[eE][-+]?\d+)?)(.*)$", re.DOTALL)
 
 
@@ -84,7 +84,7 @@ def _refuse_overridden(data: Mapping[str, Any], parts: list[str]) -> None:
     if parts[0] != "drive" or len(parts) < 2 or not isinstance(drive, Mapping):
         return
     phases = drive.get("phases")
-    same = {parts[1], *_RIVALS.get(parts[1], ())}
+    same = {parts[1], *RIVALS.get(parts[1], ())}
     if isinstance(phases, list) and phases and all(isinstance(p, Mapping) and same & set(p) for p in phases):
         names = [str(p.get("name", number)) for number, p in enumerate(phases)]
         raise InputError(
@@ -96,7 +96,7 @@ def _refuse_overridden(data: Mapping[str, Any], parts: list[str]) -> None:
 
 def _drop_rivals(parts: list[str], place: dict[str, Any]) -> None:
     """Load and deflection say the same thing: setting one drops the other; so do a sensor's two ways of placing."""
-    rivals = _RIVALS if parts[0] == "drive" else {}
+    rivals = RIVALS if parts[0] == "drive" else {}
     if parts[0] == "sensors":
         rivals = {"at": ["s", "depth"], "s": ["at"], "depth": ["at"]}
     for rival in rivals.get(parts[-1], []):

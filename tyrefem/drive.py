@@ -15,6 +15,7 @@ from pydantic_core import CoreSchema, core_schema
 from tyrefem.cards import Card, Temperature, Text
 from tyrefem.errors import InputError, nearest
 from tyrefem.quantity import Unit
+from tyrefem.slip import Slip, check_slip, is_locked, slides, slip_of
 
 
 @dataclass(frozen=True)
@@ -69,6 +70,15 @@ class RampOf:
 FASTEST = 400.0
 
 
+#: Keys that say the same thing: a phase's own takes the place of the drive's other.
+RIVALS = {
+    "load": ["deflection"],
+    "deflection": ["load"],
+    "slip_ratio": ["slip_speed"],
+    "slip_speed": ["slip_ratio"],
+}
+
+
 class Phase(Card):
     """A stretch of the drive. Keys left out come from the study's ``[drive]`` table."""
 
@@ -82,12 +92,28 @@ class Phase(Card):
     road_temperature: Annotated[Ramp, RampOf(Unit("degC", le=2000))] | None = None
     rim_temperature: Annotated[Ramp, RampOf(Unit("degC", le=2000))] | None = None
     drum_diameter: Annotated[float, Unit("m", gt=0)] = math.inf
+    #: Braking positive, 1 a locked wheel; driving down to -1, where the wheel turns twice as fast as it rolls.
+    slip_ratio: Annotated[Ramp, RampOf(Unit("1", ge=-1, le=1))] | None = None
+    #: The same as a speed: forward speed less the tread's.
+    slip_speed: Annotated[Ramp, RampOf(Unit("m/s", ge=-FASTEST, le=FASTEST))] | None = None
+    #: Yaw of the wheel against its way; either sign.
+    slip_angle: Annotated[Ramp, RampOf(Unit("rad"))] | None = None
 
     @model_validator(mode="after")
     def _one_of_load_and_deflection(self) -> Phase:
         if (self.load is None) == (self.deflection is None):
             raise InputError("give exactly one of 'load' and 'deflection'")
         return self
+
+    @model_validator(mode="after")
+    def _possible_slip(self) -> Phase:
+        check_slip(self)
+        return self
+
+    @property
+    def slides(self) -> bool:
+        """Does the tread slide on the road?"""
+        return slides(self)
 
     @property
     def changes_load(self) -> bool:
@@ -120,7 +146,7 @@ class Drive(Card):
     def _filled(defaults: Mapping[str, Any], phase: Any, number: int, count: int) -> dict[str, Any]:
         if not isinstance(phase, Mapping):
             raise InputError("must be a table of keys", field=f"phases.{number}")
-        drop = {"load"} if "deflection" in phase else {"deflection"} if "load" in phase else set()
+        drop = {rival for key, rivals in RIVALS.items() if key in phase for rival in rivals}
         own = {"name": f"phase {number + 1}" if count > 1 else "rolling"}
         return own | {key: value for key, value in defaults.items() if key not in drop} | dict(phase)
 
@@ -158,6 +184,24 @@ class Drive(Card):
         number, fraction = self.locate(time)
         ramp = getattr(self.phases[number], quantity)
         return None if ramp is None else ramp.at(fraction)
+
+    def slip(self, time: float) -> Slip:
+        """The wheel's motion at a time."""
+        number, fraction = self.locate(time)
+        return slip_of(self.phases[number], fraction)
+
+    @functools.cached_property
+    def _locked(self) -> tuple[bool, ...]:
+        return tuple(is_locked(phase) for phase in self.phases)
+
+    def locked_since(self, time: float) -> float | None:
+        """When the wheel locked that is locked at a time, s; None for one that turns or stands with the vehicle."""
+        number, _ = self.locate(time)
+        if not self._locked[number]:
+            return None
+        while number > 0 and self._locked[number - 1]:
+            number -= 1
+        return self.starts[number]
 
 
 def _start_of(value: Any) -> Any:

@@ -1,4 +1,4 @@
-"""The heat budget of a run of the whole tyre: generated = stored + lost, in J and W."""
+"""The heat budget of a run of the whole tyre: generated + sliding = stored + lost, in J and W."""
 
 from __future__ import annotations
 
@@ -21,13 +21,16 @@ Array = NDArray[np.float64]
 class HeatBudget:
     """Heat of the whole tyre (a half section's is doubled).
 
-    Body: sum generated = sum stored + sum lost. Lumped bodies: received from the tyre = stored + passed on.
+    Body: sum generated + sum sliding = sum stored + sum lost. Lumped bodies: received from the tyre = stored + passed
+    on.
 
     Attributes
     ----------
     times : (n,) s. ``energies``, ``powers`` : (kind, name) -> (n,) J since the start, and W; kinds are
-        ``generated`` (by strain zone), ``stored`` (by region), ``lost`` (by boundary), ``lumped`` (gas, rim; J only).
-    residual : (n,) J, generated - stored - lost. ``imbalance`` : largest residual over the largest throughput.
+        ``generated`` by hysteresis (by strain zone), ``sliding`` (friction on the road, the tread's share; only with
+        slip), ``stored`` (by region), ``lost`` (by boundary), ``lumped`` (gas, rim; J only).
+    residual : (n,) J, generated + sliding - stored - lost. ``imbalance`` : largest residual over the largest
+        throughput.
     """
 
     times: Array
@@ -40,6 +43,11 @@ class HeatBudget:
         """Energy of a kind at the end, J."""
         return float(sum(series[-1] for (k, _), series in self.energies.items() if k == kind))
 
+    @property
+    def made(self) -> float:
+        """All heat that came into the rubber at the end, generated and sliding, J."""
+        return self.total("generated") + self.total("sliding")
+
     def power(self, kind: str) -> Array:
         """Power of a kind over time, (n,) W."""
         return np.asarray(
@@ -48,10 +56,10 @@ class HeatBudget:
 
     @property
     def table(self) -> pd.DataFrame:
-        """One row per entry: ``kind``, ``name``, ``energy_J`` and ``power_W`` at the end, ``share`` of generated."""
+        """One row per entry: ``kind``, ``name``, ``energy_J`` and ``power_W`` at the end, ``share`` of `made`."""
         import pandas as pd
 
-        generated = self.total("generated")
+        made = self.made
         rows = []
         for (kind, name), series in self.energies.items():
             power = self.powers.get((kind, name))
@@ -61,7 +69,7 @@ class HeatBudget:
                     "name": name,
                     "energy_J": float(series[-1]),
                     "power_W": float("nan") if power is None else float(power[-1]),
-                    "share": float(series[-1]) / generated if generated > 0 else float("nan"),
+                    "share": float(series[-1]) / made if made > 0 else float("nan"),
                 }
             )
         return pd.DataFrame(rows)
@@ -88,6 +96,9 @@ class HeatBudget:
 
 #: What the conditions on a boundary are called in the budget, by (boundary, number of the condition).
 NAMES = {("road", 0): "road contact", ("road", 1): "air at the tread", ("outside_air", 0): "outside air"}
+#: Friction heat, and what a locked wheel gives to the passing road: together what sliding brings into the tread.
+SLIDING = (("road", 2), ("road", 3))
+FRICTION = "friction on the road"
 
 
 def whole_tyre(budget: Budget, zone_titles: Mapping[str, str], half: bool) -> HeatBudget:
@@ -103,9 +114,15 @@ def whole_tyre(budget: Budget, zone_titles: Mapping[str, str], half: bool) -> He
 
     for zone, energy in budget.generated.items():
         add("generated", zone_titles.get(zone, zone), energy, budget.generated_power[zone])
+    rubbing = [key for key in SLIDING if key in budget.lost_by_condition]
+    if rubbing:
+        energy = -np.sum([budget.lost_by_condition[key] for key in rubbing], axis=0)
+        add("sliding", FRICTION, energy, -np.sum([budget.lost_power_by_condition[key] for key in rubbing], axis=0))
     for region, energy in budget.stored.items():
         add("stored", region, energy, budget.stored_power[region])
     for key, energy in budget.lost_by_condition.items():
+        if key in SLIDING:
+            continue
         name = NAMES.get(key, key[0].replace("_", " "))
         add("lost", name, energy, budget.lost_power_by_condition[key])
     for reservoir, energy in budget.reservoir_stored.items():

@@ -51,9 +51,8 @@ class CycleSchedule:
         return self.cycles[0][0].zones
 
     def revolution_rate(self, time: float) -> float:
-        """v / (2 r_r), 1/s: pi times the revolutions per second, as in q = U tan d v / (2 r_r) (eq 26)."""
-        speed = self.drive.value("speed", time) or 0.0
-        return speed / (2 * self.mean(lambda case: case.rolling_radius, time))
+        """v / (2 r_r), 1/s: pi times the revolutions per second, as in q = U tan d v / (2 r_r) (eq 26); v less slip."""
+        return self.drive.slip(time).rolling_speed / (2 * self.mean(lambda case: case.rolling_radius, time))
 
 
 @dataclass(eq=False)

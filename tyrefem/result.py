@@ -12,7 +12,11 @@ from numpy.typing import ArrayLike, NDArray
 
 from tyrefem.boundaries.contained_air import ATMOSPHERE, KELVIN
 from tyrefem.heat_budget import HeatBudget, whole_tyre
+from tyrefem.limits import warnings_of
+from tyrefem.phase_state import PhaseState, phase_states
+from tyrefem.rolling_resistance import RollingResistance, rolling_reading, rolling_resistance
 from tyrefem.sensors import recorded, true_places
+from tyrefem.sliding.outcome import SlidingOutcome, sliding_outcome
 
 if TYPE_CHECKING:
     import pandas as pd
@@ -23,42 +27,6 @@ if TYPE_CHECKING:
 
 Array = NDArray[np.float64]
 GAS, RIM = "contained-air", "rim"
-#: Largest part of the tread at the crown that one contact may reach before the result warns (a judgement).
-SHALLOW = 0.2
-
-
-@dataclass(frozen=True)
-class PhaseState:
-    """A phase of the drive as it was simulated; mechanical quantities at its end. SI units, degC."""
-
-    name: str
-    start: float
-    end: float
-    speed: float
-    load: float
-    pressure: float
-    deflection: float
-    footprint_length: float
-    road_fraction: float
-    road_film: float
-    air_film: float
-    #: Depth to which one contact cools the tread (Cattani et al. 2023, eq 8).
-    propagation_depth: float
-
-
-@dataclass(frozen=True)
-class RollingResistance:
-    """Drag from hysteresis, F = (total heat) / v, N, and coefficient F / F_z.
-
-    ``force`` and ``coefficient`` are at the end of ``phase``, the rolling phase that made the most heat; ``cold_*``
-    then, but with every point at the drive's initial temperature. All zero for a tyre that never rolls.
-    """
-
-    phase: str
-    force: float
-    coefficient: float
-    cold_force: float
-    cold_coefficient: float
 
 
 @dataclass(frozen=True, eq=False)
@@ -189,11 +157,14 @@ class Result:
         """Zone -> (nodes (2, n), q (n,) W/m3) at ``times[i]``, from the zone's side of its borders."""
         field = self.history.field(i)
         return {
-            zone: (nodes := self.tyre.problem.points(zone), source(nodes, self._just(i), self._nodal(field, zone)))
+            zone: (
+                nodes := self.tyre.problem.points(zone),
+                source(nodes, self.just_before(i), self._nodal(field, zone)),
+            )
             for zone, source in self.tyre.sources.items()
         }
 
-    def _just(self, i: int) -> float:
+    def just_before(self, i: int) -> float:
         """The time ``times[i]``, seen from before: at the end of a phase, that phase still counts."""
         t = float(self.times[i])
         return t - 1e-9 * max(t, 1.0) if i else t
@@ -204,78 +175,27 @@ class Result:
     @functools.cached_property
     def rolling_reading(self) -> int | None:
         """Number of the last reading of the rolling phase that made the most heat; None for a tyre that never rolls."""
-        drive, energy = self.study.card.drive, np.zeros(len(self.times))
-        for (kind, _), series in self.heat_budget.energies.items():
-            energy = energy + series if kind == "generated" else energy
-        best: tuple[float, int] | None = None
-        for start, phase, state in zip(drive.starts, drive.phases, self.phases, strict=True):
-            if phase.speed.end <= 0 or state.load <= 0 or start >= self.times[-1]:
-                continue
-            end = min(start + phase.duration, float(self.times[-1]))
-            first, last = (int(np.searchsorted(self.times, t - 1e-6)) for t in (start, end))
-            heat = float(energy[last] - energy[first])
-            best = max(best, (heat, last)) if best else (heat, last)
-        return None if best is None else best[1]
+        return rolling_reading(self)
 
     @functools.cached_property
     def rolling_resistance(self) -> RollingResistance:
-        """Force, N, and coefficient."""
-        i = self.rolling_reading
-        if i is None:
-            return RollingResistance("", 0.0, 0.0, 0.0, 0.0)
-        t = self._just(i)
-        phase = self.study.card.drive.phases[self.study.card.drive.locate(t)[0]].name
-        speed, load = self.tyre.speed(t), float(self.tyre.schedule.mean(lambda case: case.load, t))
-        force, cold = float(self.heat_budget.power("generated")[i]) / speed, self._cold_power(t) / speed
-        return RollingResistance(phase, force, force / load, cold, cold / load)
-
-    def _cold_power(self, t: float) -> float:
-        problem, initial = self.tyre.problem, self.study.card.drive.initial
-        total = 0.0
-        for zone, source in self.tyre.sources.items():
-            nodes = problem.points(zone)
-            q = source(nodes, t, np.full(nodes.shape[1], initial))
-            total += float((problem.operators.source(zone) @ q).sum())
-        return total * (2.0 if self.study.section.half else 1.0)
+        """Force, N, and coefficient; of hysteresis only."""
+        return rolling_resistance(self)
 
     @functools.cached_property
     def phases(self) -> tuple[PhaseState, ...]:
         """The drive's phases as simulated."""
-        drive, schedule = self.study.card.drive, self.tyre.schedule
-        found = []
-        for start, phase in zip(drive.starts, drive.phases, strict=True):
-            end = start + phase.duration
-            t = end * (1 - 1e-12)
-            mean = functools.partial(schedule.mean, time=t)
-            found.append(
-                PhaseState(
-                    phase.name,
-                    start,
-                    end,
-                    self.tyre.speed(t),
-                    mean(lambda case: case.load),
-                    mean(lambda case: case.pressure),
-                    mean(lambda case: case.deflection),
-                    mean(lambda case: case.footprint_length),
-                    self.tyre.road_fraction(t),
-                    self.tyre.road_film(t),
-                    self.tyre.air_film(t),
-                    self.tyre.propagation_depth(t),
-                )
-            )
-        return tuple(found)
+        return phase_states(self.tyre)
+
+    @functools.cached_property
+    def sliding(self) -> SlidingOutcome | None:
+        """Friction heat, mean tread and exit-edge temperatures of the phases with slip; None where none was reached."""
+        return sliding_outcome(self)
 
     @functools.cached_property
     def warnings(self) -> tuple[str, ...]:
         """Where the run left the range of its own assumptions, one line each."""
-        tread = float(self.study.section.thickness("tread", 0.0))
-        return tuple(
-            f"phase '{state.name}': one contact cools the tread {state.propagation_depth * 1e3:.2g} mm deep, "
-            f"{100 * state.propagation_depth / tread:.0f} % of its thickness at the crown; a film averaged over "
-            f"the revolution holds below {100 * SHALLOW:.0f} %"
-            for state in self.phases
-            if state.propagation_depth > SHALLOW * tread
-        )
+        return warnings_of(self)
 
     # -- output ------------------------------------------------------------------------------------------------------
 

@@ -17,6 +17,7 @@ from tyrefem.effects.acting import Source
 from tyrefem.heating import LOSS_FACTOR, CycleSchedule, HeatSource
 from tyrefem.meshing import TyreMesh
 from tyrefem.result import GAS, RIM, Result
+from tyrefem.sliding.tread import SlidingTread
 from tyrefem.studies import Study
 from tyrefem.surroundings import Surroundings
 
@@ -94,6 +95,7 @@ class RollingTyre(Surroundings):
             "road": [
                 Film(_of_time(lambda t: self.road_fraction(t) * self.road_film(t)), _of_time(self.road_temperature)),
                 Film(_of_time(lambda t: (1 - self.road_fraction(t)) * self.tread_air_film(t)), air),
+                *self.sliding.conditions,
             ],
             "outside_air": [Film(_of_time(self.air_film), air)],
             "contained_air": [Film(_of_time(self.gas_film) if driven else laws.contained_air.film, gas)],
@@ -144,6 +146,11 @@ class RollingTyre(Surroundings):
         return {zone: self.acting.source(zone, heat) for zone, heat in self.hysteresis.items()}
 
     @functools.cached_property
+    def sliding(self) -> SlidingTread:
+        """Friction heat of the tread on the road, in phases with slip."""
+        return SlidingTread(self)
+
+    @functools.cached_property
     def problem(self) -> Conduction:
         """The conduction problem."""
         return Conduction(
@@ -170,7 +177,8 @@ def run(study: Study, progress: Callable[[float], None] | None = None, like: Rol
     end = tyre.drive.end
     every = study.card.output.every
     fields = np.linspace(0.0, end, study.card.output.fields)
-    times = np.unique(np.round(np.concatenate([np.arange(0.0, end, every), tyre.drive.starts, fields, [end]]), 9))
+    readings = np.concatenate([np.arange(0.0, end, every), tyre.drive.starts, tyre.sliding.readings, fields, [end]])
+    times = np.unique(np.round(readings, 9))
     history = tyre.problem.transient(
         times,
         tyre.drive.initial,

@@ -12,6 +12,7 @@ from tyrefem.boundaries.contained_air import ContainedAirLaw
 from tyrefem.boundaries.outside_air import OutsideAirLaw
 from tyrefem.boundaries.rim import RimLaw
 from tyrefem.boundaries.road import RoadLaw
+from tyrefem.boundaries.sliding import SlidingLaw
 from tyrefem.cards import Card, Text
 from tyrefem.drive import Drive
 from tyrefem.effects import Effect, EffectOf
@@ -56,7 +57,7 @@ class Mechanics(Card):
 
 
 class Boundaries(Card):
-    """Where the heat goes: one law per side."""
+    """Where the heat goes, and what sliding adds in phases with slip: one law per side."""
 
     road: Annotated[RoadLaw, LawOf("road", "constant")] = Field(default_factory=lambda: LawOf("road", "constant")({}))
     outside_air: Annotated[OutsideAirLaw, LawOf("outside_air", "nasa")] = Field(
@@ -66,6 +67,9 @@ class Boundaries(Card):
         default_factory=lambda: LawOf("contained_air", "gas")({})
     )
     rim: Annotated[RimLaw, LawOf("rim", "fixed")] = Field(default_factory=lambda: LawOf("rim", "fixed")({}))
+    sliding: Annotated[SlidingLaw, LawOf("sliding", "constant")] = Field(
+        default_factory=lambda: LawOf("sliding", "constant")({})
+    )
 
 
 class Sensor(Card):

@@ -56,6 +56,7 @@ def summary(result: Result) -> dict[str, Any]:
         },
         "extremes": result.extremes.to_dict("records"),
         "heat_budget": result.heat_budget.to_dict(),
+        **({} if result.sliding is None else {"sliding": result.sliding.to_dict()}),
         "warnings": list(result.warnings),
         "phases": [asdict(phase) for phase in result.phases],
         "mesh": result.tyre.mesh.summary() | {"element": study.card.mesh.element},
@@ -74,7 +75,10 @@ def _hottest_region(result: Result) -> str:
 
 
 def write_tables(result: Result, folder: Path) -> Path:
-    """``readings.csv``, ``extremes.csv``, ``heat_budget.csv``, ``heat_power.csv``, ``study.toml``, ``summary.json``."""
+    """``readings.csv``, ``extremes.csv``, ``heat_budget.csv``, ``heat_power.csv``, ``study.toml``, ``summary.json``.
+
+    With slip also ``sliding.csv``: the contact over time.
+    """
     folder.mkdir(parents=True, exist_ok=True)
     readings = result.readings.rename(columns=lambda name: "time [s]" if name == "time_s" else f"{name} [degC]")
     readings["contained-air pressure [kPa]"] = result.gas_pressure / 1e3
@@ -84,6 +88,8 @@ def write_tables(result: Result, folder: Path) -> Path:
         "heat_budget.csv": result.heat_budget.table,
         "heat_power.csv": result.heat_budget.series,
     }
+    if result.sliding is not None:
+        tables["sliding.csv"] = result.sliding.series
     for name, table in tables.items():
         with atomic_path(folder / name) as temporary:
             table.to_csv(temporary, index=False, float_format="%.6g")

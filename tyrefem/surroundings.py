@@ -88,10 +88,19 @@ class Surroundings:
         """Speed, m/s."""
         return float(self.drive.value("speed", t) or 0.0)
 
+    def rolling_speed(self, t: float) -> float:
+        """Speed of the tread through the footprint, m/s: the wheel's without slip, 0 for a locked wheel."""
+        return self.drive.slip(t).rolling_speed
+
     def road_fraction(self, t: float) -> float:
-        """Fraction of a revolution that a tread point spends on the road; none at standstill."""
+        """Part of the time that the section is on the road: none at standstill, all of it under a locked wheel."""
         if self.speed(t) == 0:
             return 0.0
+        fraction = self.rolling_fraction(t)
+        return 1.0 if fraction > 0 and self.drive.locked_since(t) is not None else fraction
+
+    def rolling_fraction(self, t: float) -> float:
+        """Fraction of a revolution that a tread point spends on the road while the wheel turns."""
         law = self.study.card.boundaries.road
         if law.fraction is not None:
             return law.fraction
@@ -106,17 +115,21 @@ class Surroundings:
         return float(np.ravel(k)[-1]), float(capacity(25.0) if callable(capacity) else capacity)
 
     def road_film(self, t: float) -> float:
-        """H_c during contact, W/m2/K."""
+        """H_c during contact, W/m2/K; none under a locked wheel, whose road has a film of its own."""
+        if self.drive.locked_since(t) is not None:
+            return 0.0
         length = self.schedule.mean(lambda case: case.footprint_length, t)
-        base = self.study.card.boundaries.road.film(Contact(self.speed(t), length, *self.tread))
+        base = self.study.card.boundaries.road.film(Contact(self.rolling_speed(t), length, *self.tread))
         return self.acting.film("road", t, base)
 
     def propagation_depth(self, t: float) -> float:
-        """Depth to which one contact cools the tread, m (Cattani et al. 2023, eq 8); 0 for a tyre that stands."""
-        if self.speed(t) == 0:
+        """Depth to which one contact cools the tread, m (Cattani et al. 2023, eq 8); 0 for a wheel that stands."""
+        if self.rolling_speed(t) <= 0 or self.drive.locked_since(t) is not None:
             return 0.0
-        length = self.schedule.mean(lambda case: case.footprint_length, t)
-        return propagation_depth(length / self.speed(t), *self.tread)
+        contact = self.schedule.mean(lambda case: case.footprint_length, t) / self.rolling_speed(t)
+        phase = self.drive.phases[self.drive.locate(t)[0]]
+        # A wheel that slows to a lock has no last contact of its own: none is longer than the phase.
+        return propagation_depth(min(contact, phase.duration) if phase.slides else contact, *self.tread)
 
     def air_film(self, t: float) -> float:
         """Outside film, W/m2/K."""

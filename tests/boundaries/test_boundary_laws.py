@@ -137,7 +137,7 @@ def test_a_lumped_rim_stores_what_the_beads_give_less_what_it_passes_on():
     )
 
 
-@pytest.mark.parametrize("side", ["road", "outside_air", "contained_air", "rim"])
+@pytest.mark.parametrize("side", ["road", "outside_air", "contained_air", "rim", "sliding"])
 def test_an_unknown_law_lists_the_known(side):
     with pytest.raises(InputError, match="unknown law 'nothing'"):
         law(side, "nothing")

@@ -38,7 +38,7 @@ def test_list_goes_on_past_a_broken_card(here: Path, capsys: pytest.CaptureFixtu
 def test_list_laws(capsys: pytest.CaptureFixture[str]) -> None:
     assert main(["list", "laws"]) == 0
     assert {line.split()[0] for line in capsys.readouterr().out.splitlines()} == {
-        "road", "outside_air", "contained_air", "rim",
+        "road", "outside_air", "contained_air", "rim", "sliding",
     }  # fmt: skip
 
 

@@ -41,7 +41,7 @@ def show_list(
 def _laws() -> None:
     from tyrefem.boundaries import laws
 
-    for side in ("road", "outside_air", "contained_air", "rim"):
+    for side in ("road", "outside_air", "contained_air", "rim", "sliding"):
         for name, law in sorted(laws(side).items()):
             first = (law.__doc__ or "").strip().splitlines()[0]
             typer.echo(f"{side:14} {name:10} {first}")

@@ -71,7 +71,10 @@ def _single(study: Study, folder: Path, pictures: bool, vtk: bool, revolved: boo
 
 def _words(result: Result) -> str:
     peak, region = result.extremes.iloc[0], result.summary()["hottest"]["region"]
+    from tyrefem.sliding.listing import phase_lines
+
     resistance, budget = result.rolling_resistance, result.heat_budget
+    rubbed = "" if result.sliding is None else f"sliding {budget.total('sliding') / 1e3:.1f} kJ, "
     during = f", end of {resistance.phase}" if len(result.phases) > 1 and resistance.phase else ""
     lines = [
         result.study.title,
@@ -80,10 +83,12 @@ def _words(result: Result) -> str:
         f"  rolling resistance  {resistance.force:7.1f} N, coefficient {resistance.coefficient:.4f} "
         f"(cold {resistance.cold_force:.1f} N, {resistance.cold_coefficient:.4f}){during}",
         f"  contained air       {result.gas_temperature[-1]:7.1f} degC, {result.gas_pressure[-1] / 1e3:.0f} kPa gauge",
-        f"  heat generated      {budget.total('generated') / 1e3:7.1f} kJ, stored "
+        f"  heat generated      {budget.total('generated') / 1e3:7.1f} kJ, {rubbed}stored "
         f"{budget.total('stored') / 1e3:.1f} kJ, lost {budget.total('lost') / 1e3:.1f} kJ; "
         f"closes to {budget.imbalance:.0e}",
     ]
+    if result.sliding is not None:
+        lines += list(phase_lines(result.sliding))
     return "\n".join(lines)
 
 

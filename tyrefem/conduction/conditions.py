@@ -95,16 +95,21 @@ class Film:
 
 @dataclass(frozen=True)
 class Flux:
-    """Heat flux q in W/m2 into the body: number or f(x, t).
+    """Heat flux q in W/m2 into the body: number or f(x, t); with ``of_temperature`` f(x, t, T), T (n,) degC at x.
+
+    Its slope in T is left out of the linear part: keep it small, as that of a film that the mesh resolves.
 
     >>> Flux(1700.0).q
     1700.0
     """
 
     q: OfSpaceTime
+    of_temperature: bool = False
 
     def __post_init__(self) -> None:
         _check(self.q, "q")
+        if self.of_temperature and not callable(self.q):
+            raise InputError("must be a function f(x, t, T)", field="q")
 
 
 @dataclass(frozen=True)

@@ -11,7 +11,7 @@ from scipy.sparse.linalg import splu
 from tyrefem.conduction.balance import HeatBalance
 from tyrefem.conduction.errors import SolverError
 from tyrefem.conduction.loads import SourceLoad, State
-from tyrefem.conduction.surface_loads import FilmLoad, RadiationLoad
+from tyrefem.conduction.surface_loads import FilmLoad, FluxLoad, RadiationLoad
 from tyrefem.errors import InputError
 
 _MOST = 60
@@ -85,6 +85,11 @@ def _correction(balance: HeatBalance, t: float, y: State, residual: np.ndarray) 
                 (np.ones(load.dofs.size), (np.arange(load.dofs.size), load.dofs)), (load.dofs.size, y.u.size)
             )
             J = J - block @ columns
+        elif isinstance(load, FluxLoad) and load.of_temperature:
+            dq = (load.value(t, y.u + _BUMP) - load.value(t, y.u - _BUMP)) / (2 * _BUMP)
+            data = np.zeros(balance.ops.nnz)
+            np.add.at(data, *load.s.exchange(load.s.weight * dq))
+            J = J - balance.ops.matrix(data)
     free = balance.fixed.free
     J = J.tocsr()[free][:, free]
     if y.g.size:

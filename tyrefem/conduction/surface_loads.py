@@ -8,7 +8,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from tyrefem.conduction.conditions import Film, Flux, Radiation
-from tyrefem.conduction.datum import Datum
+from tyrefem.conduction.datum import Datum, checked
 from tyrefem.conduction.loads import STALE, Linear, Load, State
 from tyrefem.conduction.operators import Surface
 
@@ -74,15 +74,29 @@ class FilmLoad(Load):
 
 
 class FluxLoad(Load):
-    """A given flux into the body."""
+    """A given flux into the body, or one that depends on the surface's temperature."""
 
     def __init__(self, surface: Surface, flux: Flux, field: str) -> None:
-        self.s, self.q = surface, Datum(flux.q, surface.x, f"{field}.q")
-        self.static = self.q.constant
+        self.s, self._field = surface, f"{field}.q"
+        self._of_temperature: Any = flux.q if flux.of_temperature else None
+        self._given = Datum(0.0 if flux.of_temperature else flux.q, surface.x, self._field)
+        self.static = self._given.constant and not flux.of_temperature
         self.timed = not self.static
 
+    @property
+    def of_temperature(self) -> bool:
+        """Does it depend on the surface's temperature?"""
+        return self._of_temperature is not None
+
+    def value(self, t: float, u: Array) -> Any:
+        """The flux at the surface's points, W/m2: a number or (n,)."""
+        if self._of_temperature is None:
+            return self._given(t)
+        T = self.s.trace @ u[self.s.dofs]
+        return checked(self._of_temperature(self.s.x, t, T), T.size, self._field, t)
+
     def remainder(self, t: float, y: State, G: Array, Gg: Array) -> float:
-        q = self.q(t)
+        q = self.value(t, y.u)
         load = self.s.row * q if np.ndim(q) == 0 else self.s.trace_t @ (self.s.weight * q)
         G[self.s.dofs] += load
         return float(load.sum())

@@ -76,14 +76,18 @@ def backward(problem: Conduction, times: Array, initial: float) -> tuple[Array, 
     return np.array(u), np.array(g)
 
 
-def record(study: Study, name: str, logger: Logger, rng: np.random.Generator, extra: tuple[Effect, ...] = ()) -> MeasuredRun:
+def record(
+    study: Study, name: str, logger: Logger, rng: np.random.Generator, extra: tuple[Effect, ...] = ()
+) -> MeasuredRun:
     """A run as a logger records it. ``study``: the truth, at this run's drive; ``extra``: effects of no catalogue."""
     tyre = RollingTyre(study)
     if extra:
         tyre.__dict__["acting"] = Acting(tyre, (*study.effects, *extra))
     edges = [*tyre.drive.starts, tyre.drive.end]
     times = np.unique(
-        np.concatenate([np.linspace(a, b, int(round((b - a) / STEP)) + 1) for a, b in zip(edges, edges[1:], strict=False)])
+        np.concatenate(
+            [np.linspace(a, b, int(round((b - a) / STEP)) + 1) for a, b in zip(edges, edges[1:], strict=False)]
+        )
     )
     values, reservoirs = backward(tyre.problem, times, tyre.drive.initial)
     section = study.section

@@ -21,15 +21,17 @@ def _figures(result: Result) -> dict[str, Callable[[], Any]]:
     from tyrefem.plotting.heat_source import heat_source_figure
     from tyrefem.plotting.histories import histories_figure
     from tyrefem.plotting.mesh import mesh_figure
+    from tyrefem.plotting.sliding import sliding_figure
     from tyrefem.plotting.strain import cycle_figure
     from tyrefem.plotting.temperature import temperature_figure
 
     found: dict[str, Callable[[], Any]] = {"temperature.png": lambda: temperature_figure(result)}
-    hottest = result.history.maximum
+    hottest, sliding = result.history.maximum, result.sliding
     if hottest.time < result.times[-1] and hottest.temperature > float(result.history.values[-1].max()) + 0.1:
         found["temperature-hottest.png"] = lambda: temperature_figure(result, hottest.time)
     found |= {
         "histories.png": lambda: histories_figure(result),
+        **({"sliding.png": lambda: sliding_figure(sliding)} if sliding is not None else {}),
         "heat-budget.png": lambda: budget_figure(result),
         "heat-source.png": lambda: heat_source_figure(result),
     }
@@ -42,7 +44,7 @@ def pictures(result: Result) -> dict[str, bytes]:
     """File name -> PNG of the standard pictures of a run; drawn once per result.
 
     ``temperature`` at the end, and at the hottest moment where that is earlier; ``histories``; ``heat-budget``;
-    ``heat-source``; ``strain-cycle``; ``mesh``.
+    ``heat-source``; ``strain-cycle``; ``mesh``; with slip ``sliding``.
     """
     from tyrefem.plotting.style import png
 

@@ -12,6 +12,7 @@ from tyrefem.plotting.style import (
     INK,
     LOST,
     QUIET,
+    SLIDING,
     STORED,
     TITLE,
     add_axes,
@@ -35,8 +36,12 @@ if TYPE_CHECKING:
 
 #: Mean width of a letter of the bars' names, inches.
 LETTER = 0.074
-KINDS = {"generated": GENERATED, "stored": STORED, "lost": LOST}
-WORDS = {"generated": "generated in", "stored": "stored in", "lost": "lost to"}
+KINDS = {"generated": GENERATED, "sliding": SLIDING, "stored": STORED, "lost": LOST}
+WORDS = {"generated": "generated in", "sliding": "from", "stored": "stored in", "lost": "lost to"}
+#: Kinds that bring heat in.
+MADE = ("generated", "sliding")
+#: A power this many times the generated is cut off, so that the others can be read.
+TALLEST = 10.0
 
 
 @dataclass(frozen=True)
@@ -51,14 +56,14 @@ class Bar:
     @property
     def energy(self) -> float:
         """J, as it counts in its kind."""
-        return self.end - self.start if self.kind == "generated" else self.start - self.end
+        return self.end - self.start if self.kind in MADE else self.start - self.end
 
 
 def waterfall(budget: HeatBudget) -> list[Bar]:
-    """Bars that rise with what is generated and fall with what is stored and lost; the last ends at the residual."""
+    """Bars that rise with heat generated or from sliding and fall with heat stored and lost, down to the residual."""
     bars, level = [], 0.0
     for kind in KINDS:
-        sign = 1.0 if kind == "generated" else -1.0
+        sign = 1.0 if kind in MADE else -1.0
         for (k, name), series in budget.energies.items():
             if k == kind:
                 after = level + sign * float(series[-1])
@@ -82,13 +87,20 @@ def budget_figure(result: Result) -> Figure:
     _powers(power, budget)
     factor, unit = si(max(abs(budget.total(kind)) for kind in KINDS), "J")
     form = digits(max(abs(budget.total(kind)) for kind in KINDS) / factor, 4)
-    numbers = [format(budget.total(kind) / factor, form) for kind in KINDS]
+    numbers = {kind: format(budget.total(kind) / factor, form) for kind in KINDS}
+    rubbed = f" + sliding {numbers['sliding']}" if "sliding" in _kinds(budget) else ""
     title(
         drawn, result.study.title,
-        f"heat of the whole tyre: generated {numbers[0]} {unit} = stored {numbers[1]} + lost {numbers[2]}; "
+        f"heat of the whole tyre: generated {numbers['generated']} {unit}{rubbed} = stored {numbers['stored']} + lost "
+        f"{numbers['lost']}; "
         f"closes to {budget.imbalance:.0e} of it",
     )  # fmt: skip
     return drawn
+
+
+def _kinds(budget: HeatBudget) -> list[str]:
+    """The kinds that this budget has."""
+    return [kind for kind in KINDS if any(k == kind for k, _ in budget.energies)]
 
 
 def _name(bar: Bar) -> str:
@@ -98,12 +110,12 @@ def _name(bar: Bar) -> str:
 def _energies(axes: Axes, bars: list[Bar], budget: HeatBudget) -> None:
     ends = [value for bar in bars for value in (bar.start, bar.end)] or [0.0]
     factor, unit = si(max(map(abs, ends)), "J")
-    generated = budget.total("generated")
+    made = budget.made
     form = digits(max((abs(bar.energy) for bar in bars), default=0.0) / factor, 4)
     for row, bar in enumerate(bars):
         axes.barh(row, (bar.end - bar.start) / factor, left=bar.start / factor, color=KINDS[bar.kind], height=0.72)
         axes.plot([bar.end / factor] * 2, [row - 0.36, row + 1.36], color=QUIET, lw=0.6)
-        share = f" ({100 * bar.energy / generated:.1f} %)" if generated > 0 else ""
+        share = f" ({100 * bar.energy / made:.1f} %)" if made > 0 else ""
         text = format(bar.energy / factor, form) + share
         axes.annotate(
             text, (max(bar.start, bar.end) / factor, row), xytext=(4, 0), textcoords="offset points", va="center",
@@ -115,7 +127,8 @@ def _energies(axes: Axes, bars: list[Bar], budget: HeatBudget) -> None:
     span = (high - low) or 1.0
     axes.set_xlim(low - 0.02 * span, high + 0.36 * span)
     axes.axvline(0.0, color=INK, lw=0.8)
-    axes.set_xlabel(f"heat [{unit}], share of the generated", fontsize=FONT)
+    what = "generated" if "sliding" not in _kinds(budget) else "generated and from sliding"
+    axes.set_xlabel(f"heat [{unit}], share of the {what}", fontsize=FONT)
     tidy(axes)
     axes.grid(visible=False, axis="y")
     for tick, bar in zip(axes.get_yticklabels(), bars, strict=True):
@@ -125,9 +138,13 @@ def _energies(axes: Axes, bars: list[Bar], budget: HeatBudget) -> None:
 def _powers(axes: Axes, budget: HeatBudget) -> None:
     divisor, unit_t = time_unit(float(budget.times[-1]))
     t = budget.times / divisor
-    curves = {kind: budget.power(kind) for kind in KINDS}
-    factor, unit = si(max(float(abs(curve).max()) for curve in curves.values()), "W")
-    form = digits(max(float(abs(curve).max()) for curve in curves.values()) / factor)
+    curves = {kind: budget.power(kind) for kind in _kinds(budget)}
+    top = highest = max(float(abs(curve).max()) for curve in curves.values())
+    usual = TALLEST * float(budget.power("generated").max(initial=0.0))
+    if "sliding" in curves and highest > usual > 0:
+        top = usual / 2
+    factor, unit = si(top, "W")
+    form = digits(top / factor)
     labels = []
     for kind, curve in curves.items():
         axes.plot(t, curve / factor, color=KINDS[kind], lw=2.0)
@@ -150,5 +167,10 @@ def _powers(axes: Axes, budget: HeatBudget) -> None:
     axes.set_xlim(0.0, max(float(t[-1]), 1e-9))
     axes.set_xlabel(f"time [{unit_t}]", fontsize=FONT)
     axes.set_ylabel(f"power [{unit}]", fontsize=FONT)
+    if top < highest:
+        low = min(float(curve.min()) for curve in curves.values())
+        axes.set_ylim(max(low, -0.3 * top) / factor, top / factor)
+        text = f"cut off: up to {highest / factor:{form}} {unit}"
+        axes.annotate(text, (0.02, 0.9), xycoords="axes fraction", fontsize=FONT - 1, color=QUIET)
     tidy(axes)
     line_ends(axes, labels, room=1.6, size=FONT - 0.5)

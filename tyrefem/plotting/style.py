@@ -20,7 +20,7 @@ DASHES: tuple[Any, ...] = ("-", (0, (5, 1.5)), (0, (1.2, 1.2)), (0, (6, 1.5, 1.2
 #: Light fills of regions, by their order in the section.
 FILLS = ("#f3d9b1", "#bcd4e6", "#cfe3c4", "#e3cfe0", "#e0e0e0", "#f5efb8")
 INK, QUIET = "#1b1b1b", "#6a6a6a"
-GENERATED, STORED, LOST = "#D55E00", "#0072B2", "#009E73"
+GENERATED, SLIDING, STORED, LOST = "#D55E00", "#8C510A", "#0072B2", "#009E73"
 #: Perceptually uniform; the second for quantities other than temperature.
 ENERGY_MAP = "viridis"
 DPI = 110

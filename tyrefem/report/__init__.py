@@ -18,6 +18,7 @@ CAPTIONS = {
     "temperature.png": "Temperature on the section at the end of the run, with the thermocouples' readings.",
     "temperature-hottest.png": "The same at the moment when the tyre was hottest.",
     "histories.png": "Readings over time.",
+    "sliding.png": "The contact in every phase with slip; the exit edge is the hottest a tread point gets.",
     "heat-budget.png": "Left: the heat that was generated (rising) equals what was stored and lost (falling). "
     "Right: the powers over time.",
     "heat-source.png": "Strain energy per revolution, and the heat it becomes, by zone, at the end of the last "

@@ -11,7 +11,6 @@ ALWAYS = {
     "Axisymmetric deformation": "A material point passes once per revolution from the inflated section to the section "
     "under the footprint's centre, as if the whole tyre were pressed in a barrel; what happens at the footprint's "
     "edges and along the circumference is not resolved.",
-    "Free, straight rolling": "No slip, steering, camber, braking or wear: no heat from sliding in the footprint.",
     "Films averaged over the revolution": "The tread sees road and air for their shares of a revolution; flash "
     "temperatures during contact, and any change around the circumference, are averaged out. At standstill the road "
     "takes no heat.",
@@ -20,10 +19,29 @@ ALWAYS = {
 }
 
 
+FREE = {
+    "Free, straight rolling": "No slip, steering, camber, braking or wear: no heat from sliding in the footprint.",
+}
+SLIDING = {
+    "Friction even over the footprint": "All of the footprint slides at one speed under one pressure. Its heat divides "
+    "between tread and road as they conduct; wear, water, tread gaps, camber and the strain of braking and cornering "
+    "are left out.",
+}
+LOCKED = {
+    "A locked wheel's section stands for its patch": "The section modelled is the one on the road, and conduction "
+    "along the circumference is neglected: afterwards the tyre is as hot all round as at that patch, and the heat "
+    "budget counts a ring of such sections.",
+}
+
+
 def assumptions(study: Study, estimates: list[str]) -> list[tuple[str, str]]:
     """(what, why it matters); ``estimates`` are the material entries that are marked as estimates."""
     mechanics = study.card.mechanics
-    found = [*ALWAYS.items()]
+    drive = study.card.drive
+    slip = SLIDING if any(phase.slides for phase in drive.phases) else FREE
+    locked = LOCKED if any(drive.locked_since(start) is not None for start in drive.starts) else {}
+    always = [*ALWAYS.items()]
+    found = [always[0], *slip.items(), *locked.items(), *always[1:]]
     cycle = (
         "The strain energy of that change times tan δ is lost once per revolution (convention "
         f"{mechanics.loss_convention}); higher harmonics and the frequency dependence of tan δ are neglected."

@@ -9,11 +9,13 @@ import numpy as np
 
 from tyrefem.report.assumptions import assumptions
 from tyrefem.report.inputs import boundary_rows, material_rows, mechanics_rows, section_sources, study_text
+from tyrefem.report.sliding import sliding_card, sliding_rows
 from tyrefem.report.words import number, place, seconds
 from tyrefem.summary import summary, versions
 
 if TYPE_CHECKING:
-    from tyrefem.result import PhaseState, Result
+    from tyrefem.phase_state import PhaseState
+    from tyrefem.result import Result
 
 Rows = list[list[str]]
 
@@ -28,6 +30,8 @@ def content(result: Result) -> dict[str, Any]:
         "name": study.name,
         "written": datetime.datetime.now().astimezone().strftime("%Y-%m-%d %H:%M"),
         "interrupted": _interrupted(result),
+        "warnings": result.warnings,
+        "sliding": sliding_rows(result),
         "headline": headline(result),
         "sensors": _sensors(result),
         "extremes": _extremes(result),
@@ -87,10 +91,12 @@ def headline(result: Result) -> list[dict[str, str]]:
         {
             "label": "Heat generated",
             "value": f"{number(budget.total('generated') / 1e3)} kJ",
-            "note": f"stored {number(budget.total('stored') / 1e3)} kJ, lost {number(budget.total('lost') / 1e3)} kJ; "
+            "note": f"{_rubbed(result)}stored {number(budget.total('stored') / 1e3)} kJ, "
+            f"lost {number(budget.total('lost') / 1e3)} kJ; "
             f"the budget closes to {format(budget.imbalance, '.0e').replace('-', '−')}",
         }
     )
+    cards += sliding_card(result)
     loaded = max((p for p in result.phases if p.start < result.times[-1]), key=lambda p: p.deflection, default=None)
     if loaded is not None and loaded.deflection > 0:
         several = f"; phase {loaded.name}" if len(result.phases) > 1 else ""
@@ -103,6 +109,10 @@ def headline(result: Result) -> list[dict[str, str]]:
             }
         )
     return cards
+
+
+def _rubbed(result: Result) -> str:
+    return "" if result.sliding is None else f"sliding {number(result.heat_budget.total('sliding') / 1e3)} kJ more; "
 
 
 def _at_end_of(result: Result) -> str:
@@ -173,12 +183,18 @@ def _phase(result: Result, phase: PhaseState) -> list[str]:
 
 def _budget(result: Result) -> list[dict[str, Any]]:
     budget, rows = result.heat_budget, []
-    generated = budget.total("generated")
+    made = budget.made
 
     def share(energy: float) -> str:
-        return f"{100 * energy / generated:z.1f}" if generated > 0 else "–"
+        return f"{100 * energy / made:z.1f}" if made > 0 else "–"
 
-    words = {"generated": "generated in", "stored": "stored in", "lost": "lost to", "lumped": "of that"}
+    words = {
+        "generated": "generated in",
+        "sliding": "from",
+        "stored": "stored in",
+        "lost": "lost to",
+        "lumped": "of that",
+    }
     for kind, word in words.items():
         entries = [(name, series) for (k, name), series in budget.energies.items() if k == kind]
         for name, series in entries:

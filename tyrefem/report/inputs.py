@@ -70,7 +70,8 @@ def boundary_rows(study: Study) -> list[list[str]]:
     """Side, law, what it says, and its numbers in SI."""
     laws = study.card.boundaries
     rows = []
-    for side in ("road", "outside_air", "contained_air", "rim"):
+    rubs = any(phase.slides for phase in study.card.drive.phases)
+    for side in ("road", "outside_air", "contained_air", "rim", *(["sliding"] if rubs else [])):
         law = getattr(laws, side)
         words = (type(law).__doc__ or "").strip().partition("\n")[0]
         rows.append([side.replace("_", " "), str(law.law), words, "; ".join(_numbers(law))])

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from tyrefem.sliding.contact import Passage
 from tyrefem.sliding.locked_wheel import MILD, SEVERE, LockedWheel
 from tyrefem.sliding.rise import (
     MEAN_OF_EXIT,
@@ -15,6 +16,7 @@ from tyrefem.sliding.rise import (
     shared_rise,
     surface_rise,
 )
+from tyrefem.sliding.skid import half_space_surface
 from tyrefem.sliding.slider import share_into_slider, share_of_like_solids
 from tyrefem.sliding.solid import ASPHALT, ICE, RUBBER, SOLIDS, TEAK, Solid, solid
 from tyrefem.sliding.tables import IceRow, WoodRow, ice_distance, ice_rows, wood_rows
@@ -30,12 +32,14 @@ __all__ = [
     "TEAK",
     "IceRow",
     "LockedWheel",
+    "Passage",
     "Solid",
     "WoodRow",
     "distance_of_fall_off",
     "exit_rise",
     "exit_rise_of_stress",
     "fall_off",
+    "half_space_surface",
     "heat_flux",
     "ice_distance",
     "ice_rows",

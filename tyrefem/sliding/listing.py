@@ -1,10 +1,26 @@
-"""Roberts' tables as lines of text, measured beside predicted."""
+"""Sliding as lines of text: Roberts' tables, measured beside predicted, and the phases of a run."""
 
 from __future__ import annotations
 
 from collections.abc import Iterator
+from typing import TYPE_CHECKING
 
 from tyrefem.sliding.tables import IceRow, WoodRow, ice_distance
+
+if TYPE_CHECKING:
+    from tyrefem.sliding.outcome import SlidingOutcome
+
+
+def phase_lines(outcome: SlidingOutcome) -> Iterator[str]:
+    """One line per phase with slip of a run: mean tread and exit edge, friction and where it was limited."""
+    for phase in outcome.phases:
+        limited = f", limited to {phase.friction_lowest:.2f} by decomposition" if phase.capped else ""
+        locked = ", locked" if phase.locked else ""
+        yield (
+            f"  sliding             {phase.exit_edge_highest:7.1f} degC at the exit edge of the contact, mean tread "
+            f"{phase.mean_highest:.1f} degC; {phase.name}{locked}: up to {phase.sliding_speed:.2f} m/s, friction "
+            f"{phase.friction:.2f}{limited}"
+        )
 
 
 def wood_lines(rows: tuple[WoodRow, ...]) -> Iterator[str]:

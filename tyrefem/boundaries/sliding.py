@@ -1,0 +1,71 @@
+"""Friction of the tread on the road: what a sliding contact rubs with, and how hot rubber may get."""
+
+from __future__ import annotations
+
+from abc import abstractmethod
+from typing import Annotated, ClassVar, Literal
+
+from tyrefem.boundaries import Law
+from tyrefem.boundaries.road import HalfSpace, RoadLaw
+from tyrefem.cards import Temperature
+from tyrefem.quantity import Unit
+from tyrefem.road_contact import effusivity
+from tyrefem.slip import Slip
+
+Friction = Annotated[float, Unit("1", ge=0, le=5)]
+
+
+class SlidingLaw(Law):
+    """Friction heat mu p v_s of a contact, W/m2, where a phase of the drive has slip; nothing where it has none.
+
+    ``pressure`` is the load over the modelled footprint where it is not given, so that all friction heat is
+    mu F_z v_s. The road is that of a road law that names one, else that law's defaults (`HalfSpace`). Friction falls
+    where it would make the contact's exit edge hotter than ``decomposition_temperature`` (Roberts, eq 13); 350 degC is
+    an estimate, as is every default here.
+    """
+
+    side: ClassVar[str] = "sliding"
+    pressure: Annotated[float, Unit("Pa", gt=0)] | None = None
+    road_conductivity: Annotated[float, Unit("W/m/K", gt=0)] | None = None
+    road_heat_capacity: Annotated[float, Unit("J/m**3/K", gt=0)] | None = None
+    decomposition_temperature: Temperature = 350.0
+
+    @abstractmethod
+    def friction(self, slip: Slip) -> float:
+        """Friction force over load, before decomposition limits it."""
+
+    def road_effusivity(self, road: RoadLaw) -> float:
+        """b of the road, J/m2/K/s^0.5: given here, else that of the road law, else its default."""
+        named = road if isinstance(road, HalfSpace) else HalfSpace(law="half-space")
+        return effusivity(
+            self.road_conductivity or named.road_conductivity, self.road_heat_capacity or named.road_heat_capacity
+        )
+
+
+class Constant(SlidingLaw):
+    """One coefficient at every slip: the force that is used, over the load. At small slip 0.8 is an upper bound."""
+
+    law: Literal["constant"]
+    coefficient: Friction = 0.8
+
+    def friction(self, slip: Slip) -> float:
+        """Friction force over load."""
+        return self.coefficient
+
+
+class Brush(SlidingLaw):
+    """mu (1 - (1 - x)^3), x = v_s/(w r)/``full_slip`` up to 1: bristles that stick in front and slide behind.
+
+    The brush of even bristles under a parabolic pressure (Pacejka, *Tire and Vehicle Dynamics*, ch. 3): force times
+    sliding speed is the heat. ``full_slip``, where the whole footprint slides, is 0.15 (estimate).
+    """
+
+    law: Literal["brush"]
+    coefficient: Friction = 0.8
+    full_slip: Annotated[float, Unit("1", gt=0, le=2)] = 0.15
+
+    def friction(self, slip: Slip) -> float:
+        """Friction force over load."""
+        full = self.full_slip * slip.rolling_speed
+        x = slip.sliding_speed / full if full > slip.sliding_speed else 1.0
+        return self.coefficient * (1.0 - (1.0 - x) ** 3)

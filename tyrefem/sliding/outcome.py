@@ -1,0 +1,229 @@
+"""What sliding did in a run: friction, heat into the tread, mean tread and exit-edge temperatures."""
+
+from __future__ import annotations
+
+import functools
+import math
+from collections.abc import Iterator
+from dataclasses import asdict, dataclass
+from typing import TYPE_CHECKING, Any
+
+import numpy as np
+from numpy.typing import NDArray
+
+from tyrefem.sliding.skid import half_space_surface
+
+if TYPE_CHECKING:
+    import pandas as pd
+
+    from tyrefem.result import Result
+
+Array = NDArray[np.float64]
+Numbers = NDArray[np.intp]
+#: Part of a skid's rise by which the section's surface may differ from a half-space's before the result warns.
+UNRESOLVED = 0.05
+#: Part of a skid after which that is asked: no mesh resolves its first instant.
+SETTLED = 0.2
+
+
+@dataclass(frozen=True)
+class SlidingPhase:
+    """A phase with slip. SI, degC; ``highest`` values are over the phase's readings.
+
+    ``tread_start``, ``tread_highest`` are means over the tread's surface by finite elements; ``half_space_highest``
+    is the same of a half-space, for a locked wheel. ``exit_edge_highest`` is the hottest that a point of the contact
+    gets. ``friction_work`` is mu F_z v_s in time; ``tread_heat`` the tread's part of it, both of one footprint.
+    """
+
+    name: str
+    start: float
+    end: float
+    locked: bool
+    sliding_speed: float
+    pressure: float
+    friction: float
+    friction_lowest: float
+    capped: bool
+    friction_work: float
+    tread_heat: float
+    tread_start: float
+    tread_highest: float
+    half_space_highest: float | None
+    exit_edge_highest: float
+    exit_edge_time: float
+    heated_depth: float
+
+    @property
+    def mean_highest(self) -> float:
+        """Highest mean temperature of the sliding surface: that of the half-space under a locked wheel."""
+        return self.tread_highest if self.half_space_highest is None else self.half_space_highest
+
+
+@dataclass(frozen=True, eq=False)
+class SlidingOutcome:
+    """Sliding in a run. ``phases`` : one entry per phase with slip that was reached. ``warnings`` : for people."""
+
+    result: Result
+    phases: tuple[SlidingPhase, ...]
+    series: pd.DataFrame
+
+    @functools.cached_property
+    def table(self) -> pd.DataFrame:
+        """``phases`` as a table."""
+        import pandas as pd
+
+        return pd.DataFrame([asdict(phase) for phase in self.phases])
+
+    @property
+    def hottest(self) -> SlidingPhase:
+        """The phase with the hottest exit edge."""
+        return max(self.phases, key=lambda phase: phase.exit_edge_highest)
+
+    def to_dict(self) -> dict[str, Any]:
+        """JSON-ready: one entry per phase."""
+        return {"phases": [asdict(phase) for phase in self.phases]}
+
+    @functools.cached_property
+    def warnings(self) -> tuple[str, ...]:
+        """Friction that was limited, what a locked wheel stands for, skids that the mesh does not resolve."""
+        return tuple(line for phase in self.phases for line in self._warnings(phase))
+
+    def _warnings(self, phase: SlidingPhase) -> Iterator[str]:
+        limit = self.result.tyre.sliding.law.decomposition_temperature
+        if phase.capped:
+            yield (
+                f"phase '{phase.name}': friction falls from {phase.friction:.2g} to {phase.friction_lowest:.2g}, so "
+                f"that the contact stays below {limit:g} degC, where its rubber decomposes"
+            )
+        if not phase.locked:
+            return
+        tyre, middle = self.result.tyre, (phase.start + phase.end) / 2
+        yield (
+            f"phase '{phase.name}': the wheel is locked, the section is the one on the road; the heat budget counts a "
+            f"ring of such sections, {1 / tyre.rolling_fraction(middle):.3g} times the footprint"
+        )
+        late = self.series[(self.series.phase == phase.name) & (self.series.time_s > phase.start)]
+        late = late[late.time_s >= phase.start + SETTLED * (phase.end - phase.start)]
+        apart = (late.tread_mean_degC - late.half_space_degC).abs().max()
+        rise = late.half_space_degC.max() - phase.tread_start
+        if apart > UNRESOLVED * abs(rise):
+            yield (
+                f"phase '{phase.name}': heat goes {phase.heated_depth * 1e3:.2g} mm deep, elements are "
+                f"{tyre.mesh.size * 1e3:.2g} mm: the section's surface is up to {apart:.2g} K off the half-space "
+                "value, which is given beside it; a smaller mesh.size helps"
+            )
+
+
+def sliding_outcome(result: Result) -> SlidingOutcome | None:
+    """The sliding of a run; None where no phase with slip was reached."""
+    import pandas as pd
+
+    phases, rows = [], []
+    for number, phase in enumerate(result.study.card.drive.phases):
+        start = result.study.card.drive.starts[number]
+        numbers = np.flatnonzero((result.times >= start - 1e-6) & (result.times <= start + phase.duration + 1e-6))
+        if phase.slides and len(numbers) > 1:
+            found = list(_series(result, number, numbers))
+            rows += found
+            phases.append(_phase(result, number, numbers, pd.DataFrame(found)))
+    return SlidingOutcome(result, tuple(phases), pd.DataFrame(rows)) if phases else None
+
+
+def _within(result: Result, number: int, i: int) -> float:
+    """The time of a reading, seen from inside a phase."""
+    drive = result.study.card.drive
+    start, duration = drive.starts[number], drive.phases[number].duration
+    return float(np.clip(result.times[i], start + 1e-9 * duration, start + duration * (1 - 1e-9)))
+
+
+def _series(result: Result, number: int, numbers: Numbers) -> Iterator[dict[str, Any]]:
+    sliding, drive = result.tyre.sliding, result.study.card.drive
+    surface, phase = sliding.surface, drive.phases[number]
+    beside = _half_space(result, number, numbers)
+    for i, skid in zip(numbers, beside, strict=True):
+        t = _within(result, number, int(i))
+        nodes = result.history.values[i][surface.dofs]
+        T = surface.trace @ nodes
+        mean, flux = float(surface.weight @ T / surface.area), sliding.friction_flux(t, T)
+        used, wanted = float(surface.weight @ flux / surface.area), sliding.uncapped_flux(t)
+        friction, passage = sliding.friction(t), sliding.passage(t)
+        locked = drive.locked_since(t) is not None
+        share = 0.0 if passage is None else passage.tread_share
+        if locked and used > 0:
+            share = 1.0 - sliding.skid_film(t) * (skid - result.tyre.road_temperature(t)) / used
+        yield {
+            "phase": phase.name,
+            "time_s": float(result.times[i]),
+            "sliding_speed_m_s": drive.slip(t).sliding_speed,
+            "contact_pressure_Pa": sliding.pressure(t),
+            "friction": friction * used / wanted if wanted > 0 else friction,
+            "capped": bool(flux.min() < wanted * (1 - 1e-9)),
+            "friction_power_W": used * sliding.contact_area(t),
+            "tread_share": share,
+            "tread_mean_degC": mean,
+            "tread_hottest_degC": float(nodes.max()),
+            "half_space_degC": skid,
+            "exit_edge_degC": float(np.max(sliding.exit_edge(t, np.array([skid]) if locked else nodes))),
+        }
+
+
+def _half_space(result: Result, number: int, numbers: Numbers) -> Array:
+    """Surface of a locked wheel's half-space at readings, from the section's mean when it locked; NaN for another."""
+    tyre, drive = result.tyre, result.study.card.drive
+    inside = [_within(result, number, int(i)) for i in numbers]
+    since = drive.locked_since(inside[0])
+    if since is None:
+        return np.full(len(numbers), math.nan)
+    sliding = tyre.sliding
+    first = int(np.searchsorted(result.times, since - 1e-6))
+    initial = _mean_surface(result, first)
+    last = drive.starts[number] + drive.phases[number].duration
+
+    def at(time: float) -> float:
+        return min(since + time, last * (1 - 1e-12))
+
+    return half_space_surface(
+        np.array(inside) - since,
+        lambda time: float(sliding.friction_flux(at(time), np.array([initial]))[0]),
+        lambda time: sliding.skid_film(at(time)),
+        lambda time: tyre.road_temperature(at(time)),
+        initial,
+        sliding.effusivities[0],
+    )
+
+
+def _mean_surface(result: Result, i: int) -> float:
+    surface = result.tyre.sliding.surface
+    return float(surface.row @ result.history.values[i][surface.dofs] / surface.area)
+
+
+def _phase(result: Result, number: int, numbers: Numbers, series: pd.DataFrame) -> SlidingPhase:
+    sliding, tyre = result.tyre.sliding, result.tyre
+    drive, state = result.study.card.drive, result.phases[number]
+    seconds = series.time_s.to_numpy()
+    hottest, fastest = int(series.exit_edge_degC.argmax()), int(series.sliding_speed_m_s.argmax())
+    energy = sum(e for (kind, _), e in result.heat_budget.energies.items() if kind == "sliding")
+    heat = float(energy[numbers[-1]] - energy[numbers[0]])  # type: ignore[index]
+    middle = float(seconds[0] + seconds[-1]) / 2
+    k, capacity = tyre.tread
+    since = drive.locked_since(middle)
+    return SlidingPhase(
+        name=state.name,
+        start=state.start,
+        end=min(state.end, float(result.times[-1])),
+        locked=state.locked,
+        sliding_speed=float(series.sliding_speed_m_s.iloc[fastest]),
+        pressure=float(series.contact_pressure_Pa.iloc[fastest]),
+        friction=sliding.friction(_within(result, number, int(numbers[fastest]))),
+        friction_lowest=float(series.friction.min()),
+        capped=bool(series.capped.any()),
+        friction_work=float(np.trapezoid(series.friction_power_W, seconds)),
+        # A ring of sections slides under a locked wheel in the budget: the footprint's part of it.
+        tread_heat=heat * (tyre.rolling_fraction(middle) if state.locked else 1.0),
+        tread_start=float(series.tread_mean_degC.iloc[0]),
+        tread_highest=float(series.tread_mean_degC.max()),
+        half_space_highest=float(series.half_space_degC.max()) if state.locked else None,
+        exit_edge_highest=float(series.exit_edge_degC.iloc[hottest]),
+        exit_edge_time=float(seconds[hottest]),
+        heated_depth=math.sqrt(4.0 * k / capacity * (float(seconds[-1]) - since)) if since is not None else 0.0,
+    )
