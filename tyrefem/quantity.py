@@ -68,6 +68,16 @@ def parse(value: object, unit: str) -> float:
     >>> parse("5 K", "delta_degC")
     5.0
     """
+    return _parse_text(value, unit) if isinstance(value, str) else _parse(value, unit)
+
+
+@functools.lru_cache(maxsize=4096)
+def _parse_text(value: str, unit: str) -> float:
+    """The same text is asked for again and again when a study is varied."""
+    return _parse(value, unit)
+
+
+def _parse(value: object, unit: str) -> float:
     wanted = f"a quantity like {_EXAMPLES[unit]}" if unit in _EXAMPLES else f"a quantity in {unit}"
     magnitude, text = _split(value, unit, wanted)
     if not math.isfinite(magnitude):

@@ -47,9 +47,12 @@ class RollingTyre(Surroundings):
     @functools.cached_property
     def schedule(self) -> CycleSchedule:
         """Load cases and strain cycles of every phase."""
-        if self._as_in_like(("materials", "drive", "mechanics"), ()):
+        if self._as_in_like(("drive", "mechanics"), ()):
             assert self.like is not None
-            return self.like.schedule
+            own, other = self.study.materials, self.like.study.materials
+            stiff = ("shear_modulus", "youngs_modulus", "cord")
+            if all(getattr(own[region], name) == getattr(other[region], name) for region in own for name in stiff):
+                return self.like.schedule
         return super().schedule
 
     @functools.cached_property
@@ -66,9 +69,15 @@ class RollingTyre(Surroundings):
                 return self.like.mesh
         return self.study.mesh().with_zones({zone.name: (zone.region, zone.start, zone.end) for zone in zones})
 
-    def _materials(self) -> dict[str, Material]:
-        found = {}
+    @functools.cached_property
+    def bodies(self) -> dict[str, Material]:
+        """Region -> what conducts and stores heat there, effects included."""
+        like, found = self.like, {}
+        same = like is not None and self._as_in_like((), ("conductivity_factor", "capacity_factor"))
         for region, card in self.study.materials.items():
+            if like is not None and same and self.mesh is like.mesh and card is like.study.materials[region]:
+                found[region] = like.bodies[region]
+                continue
             orthotropic = card.conductivity.orthotropic
             found[region] = Material(
                 self.acting.conductivity(region, card.conductivity.law()),
@@ -91,7 +100,7 @@ class RollingTyre(Surroundings):
         rim = RIM if isinstance(laws.rim, Lumped) else _of_time(self.rim_temperature)
         air = _of_time(self.ambient)
         driven = self.acting.changes_films
-        sides = {
+        sides: dict[str, list[Any]] = {
             "road": [
                 Film(_of_time(lambda t: self.road_fraction(t) * self.road_film(t)), _of_time(self.road_temperature)),
                 Film(_of_time(lambda t: (1 - self.road_fraction(t)) * self.tread_air_film(t)), air),
@@ -140,10 +149,16 @@ class RollingTyre(Surroundings):
     @functools.cached_property
     def sources(self) -> dict[str, Source]:
         """Zone -> heat source: the strain cycle's, and what the study's effects make of it."""
-        if self._as_in_like(("materials", "drive", "mechanics"), ("heat_factor", "heat_addend")):
-            assert self.like is not None
-            return self.like.sources
-        return {zone: self.acting.source(zone, heat) for zone, heat in self.hysteresis.items()}
+        like, found = self.like, {}
+        same = like is not None and self._as_in_like(("drive",), ("heat_factor", "heat_addend"))
+        for zone in self.schedule.zones:
+            if like is not None and same and self.schedule is like.schedule:
+                cards = [study.materials[zone.region].loss_tangent for study in (self.study, like.study)]
+                if cards[0] == cards[1]:
+                    found[zone.name] = like.sources[zone.name]
+                    continue
+            found[zone.name] = self.acting.source(zone.name, self.hysteresis[zone.name])
+        return found
 
     @functools.cached_property
     def sliding(self) -> SlidingTread:
@@ -155,7 +170,7 @@ class RollingTyre(Surroundings):
         """The conduction problem."""
         return Conduction(
             self.mesh.mesh,
-            self._materials(),
+            self.bodies,
             self.boundaries,
             self.sources,
             axisymmetric=True,

@@ -96,8 +96,12 @@ class Study:
     @functools.cached_property
     def materials(self) -> dict[str, MaterialCard]:
         """Region -> material card."""
-        found = {}
+        found: dict[str, MaterialCard] = {}
+        known = self.__dict__.pop("_known_materials", {})
         for region in REGIONS:
+            if region in known:
+                found[region] = known[region]
+                continue
             try:
                 data, path, _ = library.load("material", self.data["materials"][region], self.folder)
                 found[region] = MaterialCard.check(data, path)
@@ -152,8 +156,10 @@ class Study:
             self.__dict__["new_section"] = like.new_section
             if not any(effect.overrides("worn") for effect in (*self.effects, *like.effects)):
                 self.__dict__["section"] = like.section
-        if self.data["materials"] == like.data["materials"]:
-            self.__dict__["materials"] = like.materials
+        mine, theirs = self.data["materials"], like.data["materials"]
+        self.__dict__["_known_materials"] = {
+            region: like.materials[region] for region in REGIONS if mine[region] == theirs[region]
+        }
 
     def _check_effects(self) -> None:
         for number, effect in enumerate(self.card.effects):

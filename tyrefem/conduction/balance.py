@@ -49,6 +49,7 @@ class HeatBalance:
             k = material.conductivity
             if callable(k):
                 self.conduction.append(VariableConduction(ops, name, material))
+                self.conduction[-1].cause = k
                 continue
             pair = k if isinstance(k, (tuple, list)) else (k, k)
             for data, value in zip(ops.conduction(name, material.direction), pair, strict=True):

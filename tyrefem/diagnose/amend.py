@@ -2,14 +2,15 @@
 
 from __future__ import annotations
 
+import math
 from collections.abc import Sequence
 from dataclasses import dataclass
-from typing import Any
 
 import numpy as np
 
 from tyrefem.diagnose.refine import Explained, Gap
 from tyrefem.diagnose.unknowns import Unknown, with_values
+from tyrefem.dotted import scaled
 from tyrefem.studies import Study
 
 #: A correction of a base number or a sensor that moves no block mean by this much is left out, K.
@@ -45,10 +46,27 @@ def changes(gap: Gap, best: Explained, runs: Sequence[str]) -> tuple[Change, ...
     return tuple(found)
 
 
+def rounded(change: Sequence[Change]) -> dict[Unknown, float]:
+    """The changes' values, rounded to what their standard deviations carry."""
+    return {one.unknown: _rounded(one.x, one.sd) for one in change}
+
+
 def amended(study: Study, change: Sequence[Change]) -> Study:
-    """The study with the changes, rounded to what their standard deviations carry, and where they come from."""
-    totals: dict[Unknown, float] = {one.unknown: _rounded(one.x, one.sd) for one in change}
+    """The study with the changes, rounded, and where they come from.
+
+    A factor on a number of the drive applies to the drives of the ``[[measured]]`` runs too.
+    """
+    totals = rounded(change)
     new = with_values(study, totals)
+    runs = [dict(entry) for entry in new.data.get("measured", [])]
+    for unknown, x in totals.items():
+        if unknown.effect is None and unknown.key.startswith("drive."):
+            key = unknown.key.removeprefix("drive.")
+            for entry in runs:
+                if key in entry.get("drive", {}):
+                    entry["drive"] = {**entry["drive"], key: scaled(entry["drive"][key], math.exp(x))}
+    if runs != new.data.get("measured", []):
+        new = new.replace({"measured": runs})
     entries = [dict(entry) for entry in new.data.get("effects", [])]
     for one in change:
         if one.unknown.effect is None:
@@ -88,5 +106,5 @@ def difference(study: Study, new: Study) -> list[str]:
 
     import tomli_w
 
-    texts: list[Any] = [tomli_w.dumps(dict(one.data)).splitlines() for one in (study, new)]
-    return list(difflib.unified_diff(*texts, "study.toml", "amended.toml", n=1, lineterm=""))
+    before, after = (tomli_w.dumps(dict(one.data)).splitlines() for one in (study, new))
+    return list(difflib.unified_diff(before, after, "study.toml", "amended.toml", n=1, lineterm=""))

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import functools
 import time
-from collections.abc import Callable, Iterable, Mapping
+from collections.abc import Callable, Iterable, Mapping, Sequence
 from dataclasses import dataclass
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
@@ -12,14 +12,14 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 
 from tyrefem.compare.experiment import Table, experiments
-from tyrefem.diagnose.amend import Change, amended, changes
-from tyrefem.diagnose.laboratory import Bench, Laboratory, laboratory
+from tyrefem.diagnose.amend import Change, amended, changes, rounded
+from tyrefem.diagnose.laboratory import Bench, Laboratory, Response, laboratory
 from tyrefem.diagnose.missing import MissingHeat, missing_heat, patches
 from tyrefem.diagnose.refine import Explained, Gap, refined
 from tyrefem.diagnose.search import search
 from tyrefem.diagnose.sets import Prior
 from tyrefem.diagnose.trials import trial
-from tyrefem.diagnose.unknowns import Candidate, base_unknowns, candidates, sensor_unknowns
+from tyrefem.diagnose.unknowns import Candidate, Unknown, base_unknowns, candidates, sensor_unknowns
 from tyrefem.diagnose.verdict import OUTSIDE, Judgement, judge, standings
 from tyrefem.diagnose.where import gap_table, rms
 from tyrefem.errors import InputError
@@ -108,7 +108,8 @@ def diagnose(
     largest: int = 3,
     workers: int = 1,
     progress: Tick | None = None,
-    gap: Gap | None = None,
+    known: Sequence[Response] | None = None,
+    rerun: bool = True,
 ) -> Diagnosis:
     """Find where study and data disagree, name the missing effect, add it and show what is left.
 
@@ -117,7 +118,8 @@ def diagnose(
     study : the study; its cards and sensors state what is uncertain, its ``[diagnosis]`` table the rest.
     table : CSV file or runs; None = the study's own ``[[measured]]`` entries. ignore, rename : see `compare`.
     largest : effects at most in a set. workers : processes. progress : called with (what is done, number, of how many).
-    gap : data and tangents already at hand (see `gap_of`), for many diagnoses of one layout.
+    known : responses of the runs' drives already at hand (see `responses`), for many diagnoses of one layout.
+    rerun : run the amended study on its own mesh at the end; else ``after`` is the fit's own prediction.
 
     Raises
     ------
@@ -130,8 +132,7 @@ def diagnose(
     if not any(not one.hold_out for one in trials):
         raise InputError("no reading within the simulated drive in any run that is not held out", file=study.file)
     with laboratory(Bench(study, trials), workers) as lab:
-        if gap is None:
-            gap = gap_of(lab, tick)
+        gap = gap_of(lab, tick, known)
         found = candidates(study)
         prior = Prior(found, study.card.diagnosis.effects_expected)
         done = 0
@@ -152,7 +153,7 @@ def diagnose(
 
         def fitted(members: tuple[Candidate, ...]) -> Explained | None:
             if members not in explained:
-                explained[members] = refined(gap, [members])[0]  # type: ignore[arg-type]
+                explained[members] = refined(gap, [members])[0]
             return explained[members]
 
         judgement = judge(ranked, fitted)
@@ -163,8 +164,10 @@ def diagnose(
         tick("running the amended study", 0, 0)
         change = changes(gap, best, [one.name for one in trials])
         new = amended(study, change)
-        before = {i: gap.computed[i] + gap.correction[i] for i in range(len(trials))}
-        after = dict(enumerate(lab.ask("full", [(i, new) for i in range(len(trials))])))
+        before = {i: gap.corrected(i, gap.computed[i]) for i in range(len(trials))}
+        after = dict(best.computed)
+        if rerun:
+            after = dict(enumerate(lab.ask("full", [(i, rounded(change)) for i in range(len(trials))])))
         further: Mapping[str, Any] = {}
         if judgement.verdict == "confounded":
             from tyrefem.diagnose.experiment import next_experiment
@@ -177,21 +180,35 @@ def diagnose(
     )  # fmt: skip
 
 
-def gap_of(lab: Laboratory, tick: Tick | None = None) -> Gap:
-    """Base predictions and tangents of every trial of a laboratory."""
-    study, trials = lab.bench.study, lab.bench.trials
-    measured = {one.sensor for each in trials for one in each.series}
-    nuisance = (*base_unknowns(study), *sensor_unknowns(study, measured))
+def unknowns_of(study: Study, measured: Iterable[str]) -> tuple[tuple[Unknown, ...], int]:
+    """Everything that a diagnosis with these sensors may fit, and how many of them, the first, belong to every model."""
+    nuisance = (*base_unknowns(study), *sensor_unknowns(study, set(measured)))
     found = [one for each in candidates(study) for one in (*each.amplitudes, *each.presence)]
-    unknowns = (*nuisance, *found, *patches(study))
+    return (*nuisance, *found, *patches(study)), len(nuisance)
+
+
+def responses(lab: Laboratory, unknowns: tuple[Unknown, ...], tick: Tick | None = None) -> tuple[Response, ...]:
+    """The response of every trial's drive: the dear part of a diagnosis, and the same for any data."""
+    count = len(lab.bench.trials)
     done = 0
 
     def step() -> None:
         nonlocal done
         done += 1
         if tick:
-            tick("sensitivities", done, len(trials))
+            tick("sensitivities", done, count)
 
-    answers = lab.ask("prepared", [(i, unknowns) for i in range(len(trials))], step)
-    computed, correction, jacobians = (tuple(each) for each in zip(*answers, strict=True))
-    return Gap(lab, unknowns, len(nuisance), correction, computed, jacobians)
+    return tuple(lab.ask("response", [(i, unknowns) for i in range(count)], step))
+
+
+def gap_of(lab: Laboratory, tick: Tick | None = None, known: Sequence[Response] | None = None) -> Gap:
+    """Data against study for the trials of a laboratory; ``known``: their responses, if at hand."""
+    trials = lab.bench.trials
+    unknowns, nuisance = unknowns_of(lab.bench.study, {one.sensor for each in trials for one in each.series})
+    if known is not None and any(one.unknowns != unknowns for one in known):
+        raise InputError("the responses at hand are of another study, or of other sensors")
+    found = known or responses(lab, unknowns, tick)
+    computed, correction, jacobians = zip(
+        *(one.blocks(each) for one, each in zip(found, trials, strict=True)), strict=True
+    )
+    return Gap(lab, unknowns, nuisance, correction, computed, jacobians)

@@ -73,7 +73,7 @@ def _places(study: Study, pair: list[Result]) -> list[tuple[str, dict[str, float
     total = np.asarray(section.total_thickness(s))
     depth = np.where(np.arange(len(s)) % 3 == 0, SKIN, np.where(np.arange(len(s)) % 3 == 1, total / 2, total - SKIN))
     values = [result.at(section.place(s, depth)) for result in pair]
-    gradient = 0.0
+    gradient = np.zeros_like(values[0])
     for along, deeper in ((SKIN / 2, 0.0), (0.0, SKIN / 2)):
         moved = pair[0].at(section.place(*section.clamp(s + along, depth + deeper, SKIN / 4)))
         gradient = gradient + ((moved - values[0]) / (SKIN / 2)) ** 2

@@ -25,11 +25,37 @@ Array = NDArray[np.float64]
 Values = Mapping[Unknown, float]
 #: Mesh and tolerance of the fit; what they leave is corrected by one run with the study's own (at x = 0).
 COARSE = {
-    "mesh.size": "4 mm",
+    "mesh.size": "3.5 mm",
     "mesh.element": "P1",
     "numerics.tolerance": "0.05 delta_degC",
     "output.fields": 2,
 }
+
+
+@dataclass(frozen=True, eq=False)
+class Response:
+    """How a study's readings at one drive respond to unknowns, on an even grid of times; independent of any data.
+
+    Parameters
+    ----------
+    times : (n,) s. readings : sensor -> (n,) degC at x = 0, by the lean simulation. correction : sensor -> (n,) K that
+        the study's own mesh and error control add. slopes : sensor -> (n, n_unknowns) d(reading)/dx at x = 0.
+    """
+
+    unknowns: tuple[Unknown, ...]
+    times: Array
+    readings: dict[str, Array]
+    correction: dict[str, Array]
+    slopes: dict[str, Array]
+
+    def blocks(self, trial: Trial) -> tuple[Array, Array, Array]:
+        """Block means of a trial's series: lean readings, correction, slopes (n_blocks, n_unknowns)."""
+        parts = [
+            [one.sampled(self.times, values[one.sensor]) for one in trial.series]
+            for values in (self.readings, self.correction, self.slopes)
+        ]
+        first, second, third = (np.concatenate(part) for part in parts)
+        return first, second, third
 
 
 @dataclass(frozen=True, eq=False)
@@ -73,28 +99,43 @@ class Bench:
             [one.sampled(times, np.asarray(readings[one.sensor], dtype=float)) for one in self.trials[number].series]
         )
 
-    def full(self, number: int, study: Study) -> Array:
+    def full(self, number: int, values: Values) -> Array:
         """Block means of a trial from a run with error control on the study's own mesh."""
-        readings = run(self.driven(study, number)).readings
-        return self.blocks(number, readings["time_s"].to_numpy(dtype=float), readings)
+        readings = run(with_values(self.driven(self.study, number), values)).readings
+        times = readings["time_s"].to_numpy(dtype=float)
+        return self.blocks(number, times, {str(name): readings[name] for name in readings})
+
+    def response(self, number: int, unknowns: Sequence[Unknown]) -> Response:
+        """How all sensors respond to the unknowns at a trial's drive."""
+        base = self.base(number)
+        fine = run(self.driven(self.study, number)).readings
+        times = fine["time_s"].to_numpy(dtype=float)
+        sensors = list(base.readings)
+        correction = {
+            one: np.interp(base.grid, times, fine[one].to_numpy(dtype=float)) - base.readings[one] for one in sensors
+        }
+        slopes = self._slopes(base, base.study, unknowns, sensors, {})
+        return Response(tuple(unknowns), base.grid, base.readings, correction, slopes)
+
+    def jacobian(self, number: int, unknowns: Sequence[Unknown], at: Values) -> Array:
+        """(n_blocks, n_unknowns): d(block mean)/dx with unknowns at ``at``."""
+        base = self.base(number)
+        here = lean(with_values(base.study, at), base.tyre)
+        series = self.trials[number].series
+        slopes = self._slopes(here, base.study, unknowns, [one.sensor for one in series], at)
+        return np.concatenate([one.sampled(here.grid, slopes[one.sensor]) for one in series])
 
     def predict(self, number: int, values: Values) -> Array:
         """Block means of a trial with unknowns at ``values``, by the lean simulation."""
         base = self.base(number)
-        own = with_values(base.study, {unknown: x for unknown, x in values.items() if not unknown.measures})
-        found = base if own.data == base.study.data else lean(own, base.tyre)
-        found = found.as_measured_by(with_values(base.study, values))
+        study = with_values(base.study, values)
+        same = all(unknown.measures or x == 0.0 for unknown, x in values.items())
+        found = base.as_measured_by(study) if same else lean(study, base.tyre)
         return self.blocks(number, found.grid, found.readings)
 
     def simulate(self, number: int, values: Values) -> Result:
         """The result of a trial's drive with unknowns at ``values``, on the coarse mesh with error control."""
         return run(with_values(self.driven(self.coarse, number), values))
-
-    def prepared(self, number: int, unknowns: Sequence[Unknown]) -> tuple[Array, Array, Array]:
-        """Of a trial at x = 0: lean block means, what the study's own mesh and error control add, the jacobian."""
-        base = self.base(number)
-        here = self.blocks(number, base.grid, base.readings)
-        return here, self.full(number, self.study) - here, self.jacobian(number, unknowns)
 
     def differences(self, number: int, unknowns: Sequence[Unknown], at: Values) -> Array:
         """(n_blocks, n_unknowns): difference quotients by simulating again."""
@@ -104,46 +145,46 @@ class Bench:
         ]
         return np.column_stack(columns) if columns else np.zeros((len(here), 0))
 
-    def jacobian(self, number: int, unknowns: Sequence[Unknown]) -> Array:
-        """(n_blocks, n_unknowns): d(block mean)/dx at x = 0, from the assembled operators where the mesh stays."""
-        base = self.base(number)
-        here = self.blocks(number, base.grid, base.readings)
-        found = np.zeros((len(here), len(unknowns)))
+    def _slopes(
+        self, base: Lean, origin: Study, unknowns: Sequence[Unknown], sensors: Sequence[str], at: Values
+    ) -> dict[str, Array]:
+        """Sensor -> (n_grid, n_unknowns) d(reading)/dx about a solution; from its operators where the mesh stays."""
+        found = {one: np.zeros((len(base.grid), len(unknowns))) for one in sensors}
         columns: list[int] = []
         perturbed: list[Perturbed] = []
         for column, one in enumerate(unknowns):
-            study = with_values(base.study, {one: one.step})
+            study = with_values(origin, {**at, one: at.get(one, 0.0) + one.step})
             if one.measures:
-                seen = base.as_measured_by(study)
-                found[:, column] = (self.blocks(number, seen.grid, seen.readings) - here) / one.step
-                continue
-            tyre = RollingTyre(study, base.tyre)
-            if tyre.mesh is base.tyre.mesh:
-                columns.append(column)
-                perturbed.append(Perturbed(tyre.problem, one.step, tyre.drive.initial))
+                other = base.as_measured_by(study)
             else:
-                found[:, column] = self.differences(number, [one], {})[:, 0]
+                tyre = RollingTyre(study, base.tyre)
+                if tyre.mesh is base.tyre.mesh:
+                    columns.append(column)
+                    perturbed.append(Perturbed(tyre.problem, one.step, tyre.drive.initial))
+                    continue
+                other = lean(study)
+            for sensor in sensors:
+                found[sensor][:, column] = (other.readings[sensor] - base.readings[sensor]) / one.step
         if columns:
-            found[:, columns] = self._tangents(number, base, perturbed)
+            for sensor, slopes in self._tangents(base, perturbed, sensors).items():
+                found[sensor][:, columns] = slopes
         return found
 
-    def _tangents(self, number: int, base: Lean, perturbed: Sequence[Perturbed]) -> Array:
+    def _tangents(self, base: Lean, perturbed: Sequence[Perturbed], sensors: Sequence[str]) -> dict[str, Array]:
         found = tangents(base.tyre.problem, base.times, base.values, base.reservoirs, perturbed)
-        gas, places, sensors = list(base.tyre.problem.reservoirs), list(base.study.sensors), base.study.sensors
-        at_sensors = found.at(base.sensor_points) if places else None
-        blocks = []
-        for one in self.trials[number].series:
-            if one.sensor in (GAS, RIM):
-                known = one.sensor in gas
-                column = found.reservoirs[:, :, gas.index(one.sensor)] if known else np.zeros(found.values.shape[:2])
+        gas, cards = list(base.tyre.problem.reservoirs), base.study.sensors
+        at_sensors = found.at(base.sensor_points) if cards else None
+        slopes = {}
+        for sensor in sensors:
+            if sensor in (GAS, RIM):
+                known = sensor in gas
+                column = found.reservoirs[:, :, gas.index(sensor)] if known else np.zeros(found.values.shape[:2])
+                slopes[sensor] = base.dense(column.T)
             else:
                 assert at_sensors is not None
-                column = at_sensors[:, :, places.index(one.sensor)]
-            dense = base.dense(column.T)
-            if one.sensor in sensors:
-                dense = np.column_stack([lagged(base.grid, each, sensors[one.sensor].lag) for each in dense.T])
-            blocks.append(one.sampled(base.grid, dense))
-        return np.concatenate(blocks)
+                dense = base.dense(at_sensors[:, :, list(cards).index(sensor)].T)
+                slopes[sensor] = np.column_stack([lagged(base.grid, one, cards[sensor].lag) for one in dense.T])
+        return slopes
 
 
 _BENCH: list[Bench] = []

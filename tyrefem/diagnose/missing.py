@@ -25,7 +25,8 @@ def patches(study: Study) -> tuple[Unknown, ...]:
     """Unknown heat (while rolling) and unknown flux (always) at stations evenly spread from crown to bead."""
     length = study.section.line.length
     spacing = length / STATIONS
-    known, found = catalogue(), []
+    known = catalogue()
+    found: list[Unknown] = []
     for name, sd in (("missing-heat", HEAT), ("missing-flux", FLUX)):
         for number in range(STATIONS):
             station = round((number + 0.5) * spacing, 6)

@@ -5,6 +5,7 @@ from __future__ import annotations
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass
 from functools import cached_property
+from typing import Any
 
 import numpy as np
 from numpy.typing import NDArray
@@ -16,9 +17,10 @@ from tyrefem.diagnose.laboratory import Laboratory
 from tyrefem.diagnose.unknowns import Unknown
 
 Array = NDArray[np.float64]
-#: The prediction of the linear model is good enough when it misses the simulation by this much (whitened norm).
-CLOSE = 1.0
-MOST_STEPS = 5
+#: The prediction of the linear model is good enough when it misses the simulation by this much (whitened norm); far
+#: enough off to take new tangents when it misses it by the second.
+CLOSE, ASTRAY = 1.0, 6.0
+MOST_STEPS, MOST_TANGENTS = 9, 1
 
 
 @dataclass(frozen=True, eq=False)
@@ -48,10 +50,25 @@ class Gap:
         """Numbers of the trials that are held out."""
         return [i for i, one in enumerate(self.lab.bench.trials) if one.hold_out]
 
+    @cached_property
+    def _start(self) -> tuple[float, ...]:
+        bench = self.lab.bench
+        return tuple(bench.driven(bench.study, i).card.drive.initial for i in range(len(bench.trials)))
+
+    def corrected(self, number: int, computed: Array) -> Array:
+        """Lean block means of a trial with what the study's own mesh adds.
+
+        That was found at x = 0; the error of a mesh grows with the rise above the start, so it is scaled by the rises.
+        """
+        start, own = self._start[number], self.computed[number]
+        rise = own - start
+        ratio = np.where(np.abs(rise) > 1.0, (computed - start) / np.where(rise == 0, 1.0, rise), 1.0)
+        return np.asarray(computed + self.correction[number] * np.clip(ratio, 0.2, 5.0))
+
     def residual(self, number: int, computed: Array) -> Array:
-        """Whitened measured - computed of one trial."""
+        """Whitened measured - computed of one trial, from lean block means."""
         trial = self.lab.bench.trials[number]
-        return trial.whitened(trial.measured - computed - self.correction[number])
+        return trial.whitened(trial.measured - self.corrected(number, computed))
 
     @cached_property
     def whitened(self) -> tuple[Array, ...]:
@@ -129,6 +146,7 @@ class _Refinement:
         self.computed = {i: gap.computed[i] for i in gap.fitted}
         self.shapes = [one for member in members for one in member.shapes]
         self.steps, self.done, self.converged = 0, False, False
+        self.tangents, self.wants_tangents = 0, False
         self._propose()
 
     @property
@@ -168,8 +186,9 @@ class _Refinement:
             self.trial = self.x + 0.4 * step
             return
         self.x, self.r, self.computed = self.trial, r, computed
-        if self.shapes and self.steps >= 1:
-            self._release_shapes()
+        astray = float(np.linalg.norm(missed)) > ASTRAY and self.tangents < MOST_TANGENTS
+        if (self.shapes or astray) and self.steps < MOST_STEPS:
+            self._new_tangents()
             return
         if np.linalg.norm(missed) < CLOSE:
             self.done = self.converged = True
@@ -180,17 +199,29 @@ class _Refinement:
         else:
             self._propose()
 
-    def _release_shapes(self) -> None:
-        """Now that there is an amplitude, its shape matters: take its columns from difference quotients."""
-        at = self._named(self.x)
-        answers = self.gap.lab.ask("differences", [(i, self.shapes, at) for i in self.gap.fitted])
-        columns = np.vstack(
-            [self.gap.lab.bench.trials[i].whitened(J) for i, J in zip(self.gap.fitted, answers, strict=True)]
-        )
+    def _new_tangents(self) -> None:
+        """Ask for tangents at this point; with an amplitude at hand, the parameters that shape it are fitted too."""
         self.unknowns = [*self.unknowns, *self.shapes]
-        self.J = np.hstack([self.J, columns])
         self.x = np.concatenate([self.x, np.zeros(len(self.shapes))])
         self.shapes = []
+        self.tangents += 1
+        self.wants_tangents = True
+
+    def questions(self) -> tuple[str, list[tuple[Any, ...]]]:
+        """The method of the bench to ask, and with what."""
+        fitted = self.gap.fitted
+        if self.wants_tangents:
+            return "jacobian", [(i, tuple(self.unknowns), self._named(self.x)) for i in fitted]
+        return "predict", [(i, self.point) for i in fitted]
+
+    def take(self, answers: Sequence[Array]) -> None:
+        """Take the answers to `questions`."""
+        if not self.wants_tangents:
+            self.accept(answers)
+            return
+        trials = self.gap.lab.bench.trials
+        self.J = np.vstack([trials[i].whitened(J) for i, J in zip(self.gap.fitted, answers, strict=True)])
+        self.wants_tangents = False
         self._propose()
 
 
@@ -198,17 +229,18 @@ def refined(gap: Gap, sets: Sequence[Members], tick: Callable[[], None] | None =
     """Fit every set with the full model; the simulations of all sets are asked for together."""
     running = [_Refinement(gap, members) for members in sets]
     while active := [one for one in running if not one.done]:
-        questions = [(i, one.point) for one in active for i in gap.fitted]
-        answers = gap.lab.ask("predict", questions, tick)
-        width = len(gap.fitted)
-        for number, one in enumerate(active):
-            one.accept(answers[number * width : (number + 1) * width])
+        for method in ("predict", "jacobian"):
+            asking = [one for one in active if one.questions()[0] == method]
+            answers = gap.lab.ask(method, [each for one in asking for each in one.questions()[1]], tick)
+            width = len(gap.fitted)
+            for number, one in enumerate(asking):
+                one.take(answers[number * width : (number + 1) * width])
     return [_explained(gap, one) for one in running]
 
 
 def _explained(gap: Gap, one: _Refinement) -> Explained:
     values = one._named(one.x)
-    computed = {i: one.computed[i] + gap.correction[i] for i in gap.fitted}
+    computed = {i: gap.corrected(i, one.computed[i]) for i in gap.fitted}
     log_held, p_held = 0.0, 1.0
     if gap.held_out:
         answers = gap.lab.ask("predict", [(i, values) for i in gap.held_out])
@@ -216,7 +248,7 @@ def _explained(gap: Gap, one: _Refinement) -> Explained:
         kept = [k for k, unknown in enumerate(one.unknowns) if unknown in gap.unknowns]
         r, J = [], []
         for i, answer in zip(gap.held_out, answers, strict=True):
-            computed[i] = answer + gap.correction[i]
+            computed[i] = gap.corrected(i, answer)
             r.append(gap.residual(i, answer))
             J.append(gap.whitened[i][:, columns])
         log_held, p_held = _predictive(np.concatenate(r), np.vstack(J), one.best.covariance[np.ix_(kept, kept)])

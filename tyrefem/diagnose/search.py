@@ -1,70 +1,136 @@
-"""The search: which sets to fit with the full model, until no unfitted set can matter."""
+"""The search: forward selection with the full model, each fit being the point from which the next sets are judged."""
 
 from __future__ import annotations
 
-from collections.abc import Callable, Sequence
+import itertools
+from collections.abc import Callable, Iterable, Sequence
 
-from tyrefem.diagnose.evidence import Members
+from tyrefem.diagnose.evidence import Linear, Members
 from tyrefem.diagnose.refine import Explained, Gap, refined
 from tyrefem.diagnose.sets import Prior, screened
 from tyrefem.diagnose.unknowns import Candidate
 
 #: Sets fitted at once, and in all.
-BATCH, MOST = 4, 14
-#: A set whose ln(prior x evidence) at first sight is so far below the best needs no full fit; and one that only adds
-#: to a set which has been fitted, so that its estimate can be trusted more.
-FAR, NEAR = 9.0, 4.0
+BATCH, MOST = 4, 16
+#: Single effects that are fitted whatever comes.
+SINGLES = 4
+#: A set whose ln(prior x evidence) is estimated so far below the best needs no full fit: when judged from the study as
+#: it is, and when judged from the fit of a part of it.
+FAR, NEAR = 12.0, 3.0
 Scored = tuple[float, Members, Explained | None]
 
 
+class _Search:
+    """Sets fitted so far, and estimates for all others."""
+
+    def __init__(self, gap: Gap, candidates: Sequence[Candidate], prior: Prior, largest: int, tick: Tick) -> None:
+        self.gap, self.candidates, self.prior, self.largest, self.tick = gap, candidates, prior, largest, tick
+        self.order = {one: number for number, one in enumerate(candidates)}
+        self.done: dict[Members, Explained] = {}
+        self.linear = gap.linear(gap.fitted)
+        #: Set -> (estimate of ln(prior x evidence), whether it was judged from the fit of a part).
+        self.estimate: dict[Members, tuple[float, bool]] = {
+            self.sorted(members): (score + self.linear.constant, False)
+            for score, members in screened(self.linear, candidates, prior, min(largest, 2))
+        }
+
+    def sorted(self, members: Iterable[Candidate]) -> Members:
+        return tuple(sorted(members, key=self.order.__getitem__))
+
+    def score(self, members: Members) -> float:
+        return self.prior(members) + self.done[members].log_evidence
+
+    @property
+    def top(self) -> float:
+        return max(self.score(members) for members in self.done)
+
+    def fit(self, sets: Iterable[Members]) -> None:
+        wanted = [members for members in dict.fromkeys(sets) if members not in self.done]
+        for one in refined(self.gap, wanted, (lambda: self.tick("simulating")) if self.tick else None):
+            self.done[self.sorted(one.members)] = one
+        for members in wanted:
+            if members and len(members) < self.largest and self.score(members) > self.top - FAR:
+                self._extend(members)
+
+    def _extend(self, members: Members) -> None:
+        """Judge every set that adds one effect, in the linear model about the fit."""
+        one = self.done[members]
+        taken = {member.name for member in members}
+        others = [each for each in self.candidates if each.name not in taken]
+        unknowns = [unknown for each in others for unknown in (*each.amplitudes, *each.presence)]
+        about = _about(self.gap, one, unknowns)
+        own = about.log_evidence(())
+        for each in others:
+            more = self.sorted((*members, each))
+            gain = about.log_evidence((each,)) - own + self.prior(more) - self.prior(members)
+            known = self.estimate.get(more, (0.0, False))
+            value = self.score(members) + gain
+            # Judged from two parts, the better one counts.
+            self.estimate[more] = (max(value, known[0]) if known[1] else value, True)
+
+    def promising(self) -> list[Members]:
+        top = self.top
+        found = [
+            (value, members)
+            for members, (value, judged) in self.estimate.items()
+            if members not in self.done and value > top - (NEAR if judged else FAR)
+        ]
+        # A pair judged from afar waits until its parts have been fitted and it can be judged from there.
+        found = [(value, members) for value, members in found if len(members) < 2 or self.estimate[members][1]]
+        return [members for _, members in sorted(found, key=lambda one: -one[0])]
+
+
+Tick = Callable[[str], None] | None
+
+
 def search(
-    gap: Gap,
-    candidates: Sequence[Candidate],
-    prior: Prior,
-    *,
-    largest: int = 3,
-    tick: Callable[[str], None] | None = None,
+    gap: Gap, candidates: Sequence[Candidate], prior: Prior, *, largest: int = 3, tick: Tick = None
 ) -> list[Scored]:
     """Sets with ln(prior x evidence of the fitted runs), best first; with the fit where there was one.
 
-    The linear model orders the sets; the promising ones are fitted with the full model, a few at a time, and every fit
-    moves the estimate for the sets that contain it.
+    No effect and the most promising single effects are fitted with the full model; from every good fit, each effect
+    that could be added is judged in the linear model about it, and the promising sets are fitted in turn. At the end
+    every part of the best set has been fitted too (the backward check).
     """
-    linear = gap.linear(gap.fitted)
-    first = {members: score + linear.constant for score, members in screened(linear, candidates, prior, largest)}
-    done: dict[Members, Explained] = {}
-
-    def fit(sets: list[Members]) -> None:
-        for one in refined(gap, sets, (lambda: tick("simulating")) if tick else None):
-            done[one.members] = one
-
-    fit([()])
-    while len(done) < MOST:
-        estimate = {members: _estimate(members, first, done, prior) for members in first if members not in done}
-        top = max(_score(one, prior) for one in done.values())
-        ahead = sorted((-score, number, members) for number, (members, score) in enumerate(estimate.items()))
-        promising = [
-            members for negative, _, members in ahead if -negative > top - (NEAR if _begun(members, done) else FAR)
-        ][:BATCH]
+    found = _Search(gap, candidates, prior, largest, tick)
+    singles = sorted(
+        (members for members in found.estimate if len(members) == 1), key=lambda members: -found.estimate[members][0]
+    )
+    pairs = sorted(
+        (members for members in found.estimate if len(members) == 2), key=lambda members: -found.estimate[members][0]
+    )
+    # Two effects that hide each other may both look weak alone: the parts of the best pair are tried as well.
+    ahead = [(one,) for one in (pairs[0] if pairs else ())]
+    found.fit([(), *singles[:SINGLES], *ahead])
+    while len(found.done) < MOST:
+        promising = found.promising()[:BATCH]
         if not promising:
-            break
-        fit(promising)
-    scored: list[Scored] = [(_score(one, prior), one.members, one) for one in done.values()]
-    scored += [(_estimate(members, first, done, prior), members, None) for members in first if members not in done]
-    return sorted(scored, key=lambda one: -one[0])
+            best = max(found.done, key=found.score)
+            parts = [part for size in range(1, len(best)) for part in itertools.combinations(best, size)]
+            missing = [part for part in parts if part not in found.done]
+            if not missing:
+                break
+            promising = missing
+        found.fit(promising)
+    scored: list[Scored] = [(found.score(members), members, one) for members, one in found.done.items()]
+    scored += [(value, members, None) for members, (value, _) in found.estimate.items() if members not in found.done]
+    top = found.top
+    # A set that was only judged from afar may not stand above the best that was fitted.
+    return sorted(
+        ((score if one is not None else min(score, top - NEAR), members, one) for score, members, one in scored),
+        key=lambda one: -one[0],
+    )
 
 
-def _begun(members: Members, done: dict[Members, Explained]) -> bool:
-    return any(one and set(one) < set(members) for one in done)
+def _about(gap: Gap, one: Explained, unknowns: Sequence[object]) -> Linear:
+    """The linear model about a fit, with the columns of further unknowns as at x = 0."""
+    import numpy as np
 
-
-def _score(one: Explained, prior: Prior) -> float:
-    return prior(one.members) + one.log_evidence
-
-
-def _estimate(members: Members, first: dict[Members, float], done: dict[Members, Explained], prior: Prior) -> float:
-    """The linear score, moved by what the full fit gained for the largest fitted part of the set."""
-    parts = [one for one in done if set(one) < set(members)]
-    size = max((len(one) for one in parts), default=0)
-    gains = [_score(done[one], prior) - first[one] for one in parts if len(one) == size]
-    return first[members] + (max(gains) if gains else 0.0)
+    columns = [gap.unknowns.index(unknown) for unknown in unknowns]  # type: ignore[arg-type]
+    further = np.vstack([gap.whitened[i][:, columns] for i in gap.fitted])
+    return Linear(
+        (*one.unknowns, *unknowns),  # type: ignore[arg-type]
+        len(one.unknowns),
+        one.data,
+        np.hstack([one.jacobian, further]),
+    )

@@ -169,7 +169,7 @@ def with_values(study: Study, values: Mapping[Unknown, float]) -> Study:
     for unknown, x in values.items():
         if unknown.effect is None:
             if x != 0.0:
-                changes[unknown.key] = scaled(value_at(study.data, unknown.key, study.folder), math.exp(x))
+                changes[unknown.key] = scaled(_written(study, unknown.key), math.exp(x))
         else:
             # A sensor's offset may stand twice: as what every sensor has, and as a candidate that it is far off.
             totals[unknown.key] = unknown, totals.get(unknown.key, (unknown, 0.0))[1] + x
@@ -186,6 +186,14 @@ def with_values(study: Study, values: Mapping[Unknown, float]) -> Study:
     if totals:
         changes["effects"] = entries
     return study.replace(changes) if changes else study
+
+
+def _written(study: Study, key: str) -> Any:
+    """The number at a dotted name as it is written; looked up once per study, which is immutable."""
+    known = study.__dict__.setdefault("_written", {})
+    if key not in known:
+        known[key] = value_at(study.data, key, study.folder)
+    return known[key]
 
 
 def _entry(entries: list[dict[str, Any]], unknown: Unknown) -> dict[str, Any]:

@@ -12,6 +12,8 @@ from tyrefem.diagnose.refine import Explained
 IDENTIFIED, CONFOUNDED, UNEXPLAINED, NO_GAP = "identified", "confounded", "unexplained", "no gap"
 #: A set is named when it is this probable; sets of joint probability up to the second are reported.
 SURE, CREDIBLE = 0.9, 0.99
+#: And when nothing more is missing with at least this probability.
+WHOLE = 0.5
 #: A misfit less probable than this, were the model right, is not accepted.
 IMPROBABLE = 1e-4
 #: Probability that the cause is not in the catalogue, given that there is any (estimate).
@@ -54,6 +56,11 @@ class Judgement:
         """The most probable set."""
         return self.standings[0]
 
+    @property
+    def probability(self) -> float:
+        """Probability that all of the best set is part of the truth, whatever else is."""
+        return probability(self.standings)
+
 
 def standings(
     scores: Sequence[tuple[float, Members, Explained | None]], unknown: float | None = None
@@ -80,11 +87,20 @@ def inclusion(ranked: Sequence[Standing]) -> dict[str, float]:
     return dict(sorted(found.items(), key=lambda item: -item[1]))
 
 
+def probability(ranked: Sequence[Standing]) -> float:
+    """Joint probability of the best set and of all sets that hold it."""
+    best = ranked[0]
+    own = {one.key for one in best.members}
+    if not own or best.unexplained:
+        return best.probability
+    return sum(one.probability for one in ranked if own <= {member.key for member in one.members})
+
+
 def judge(ranked: Sequence[Standing], explained: Callable[[Members], Explained | None]) -> Judgement:
     """The verdict on sets ranked by probability.
 
-    A set is *identified* when it is at least 90 % probable, no amplitude is at a bound, the misfit is one that noise
-    makes, and the held-out runs do not reject it. Without such a set: *no gap* if no effect is the most probable,
+    A set is *identified* when it is part of the truth with at least 90 % and all of it with at least 50 % probability, no
+    amplitude is at a bound, the misfit is one that noise makes, and the held-out runs do not reject it. Without such a set: *no gap* if no effect is the most probable,
     *unexplained* if the cause is outside the catalogue or the best set does not fit, else *confounded*.
     """
     best = ranked[0]
@@ -119,8 +135,9 @@ def judge(ranked: Sequence[Standing], explained: Callable[[Members], Explained |
     if fit is not None and fit.at_bound:
         reasons.append("at a bound that physics sets: " + ", ".join(fit.at_bound))
         return verdict(CONFOUNDED)
-    if best.probability >= SURE:
-        reasons.append(f"{best.key} is {100 * best.probability:.1f} % probable among all sets of effects tried")
+    sure = probability(ranked)
+    if sure >= SURE and best.probability >= WHOLE:
+        reasons.append(f"{best.key} is missing with {100 * sure:.1f} % probability, by all sets of effects tried")
         return verdict(IDENTIFIED)
     reasons.append("these sensors and runs cannot tell apart: " + "; ".join(one.key for one in credible))
     return verdict(CONFOUNDED)

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import functools
 from collections.abc import Callable
 from dataclasses import dataclass
 from typing import TYPE_CHECKING, Any
@@ -28,7 +29,14 @@ class Acting:
 
     def at(self, *ports: str) -> tuple[Effect, ...]:
         """The effects that enter at one of these ports."""
-        return tuple(one for one in self.effects if any(one.overrides(port) for port in ports))
+        if ports not in self._entering:
+            entering = tuple(one for one in self.effects if any(one.overrides(port) for port in ports))
+            self._entering[ports] = entering
+        return self._entering[ports]
+
+    @functools.cached_property
+    def _entering(self) -> dict[tuple[str, ...], tuple[Effect, ...]]:
+        return {}
 
     @property
     def changes_films(self) -> bool:

@@ -1,0 +1,242 @@
+"""Blind tests: hide effects in made-up data for a study's sensors and runs, and see whether the diagnosis finds them."""
+
+from __future__ import annotations
+
+import itertools
+import math
+from collections.abc import Sequence
+from dataclasses import dataclass, field
+from typing import Any
+
+import numpy as np
+from numpy.typing import NDArray
+
+from tyrefem.diagnose.diagnosis import Diagnosis, diagnose, gap_of
+from tyrefem.diagnose.evidence import Members
+from tyrefem.diagnose.isolability import MARGIN, margins, planned, rivals_of
+from tyrefem.diagnose.laboratory import Bench, Response, laboratory
+from tyrefem.diagnose.refine import Gap
+from tyrefem.diagnose.sets import Prior
+from tyrefem.diagnose.strangers import HotRing, Lamp
+from tyrefem.diagnose.truth import FINE, Logger, record
+from tyrefem.diagnose.unknowns import (
+    Candidate,
+    Unknown,
+    base_unknowns,
+    candidates,
+    sensor_unknowns,
+    with_values,
+)
+from tyrefem.effects import Effect
+from tyrefem.measured import MeasuredRun
+from tyrefem.studies import Study
+
+Array = NDArray[np.float64]
+#: Kinds of cases and their shares.
+KINDS = {"one": 0.55, "two": 0.15, "none": 0.15, "outside": 0.15}
+
+
+@dataclass(frozen=True, eq=False)
+class Case:
+    """What is hidden in a case.
+
+    Parameters
+    ----------
+    number, seed, kind. hidden : the candidates; values : every unknown's true x. stranger : an effect of no catalogue,
+    with the station (m) where it heats. ``loud`` : the sensor that is far out of place in a case of kind "none".
+    """
+
+    number: int
+    seed: int
+    kind: str
+    hidden: Members
+    values: dict[Unknown, float]
+    stranger: Effect | None = None
+    station: float = math.nan
+    loud: str = ""
+
+    @property
+    def names(self) -> list[str]:
+        """The hidden effects in words."""
+        return [one.key for one in self.hidden] or ([] if self.stranger is None else [type(self.stranger).name])
+
+
+def cases(study: Study, count: int, seed: int) -> list[Case]:
+    """So many cases: kinds in fixed shares, every candidate effect in turn, amplitudes from barely visible to strong.
+
+    Variants of an effect (sensors) are drawn; amplitudes are log-uniform from 0.25 to 3 prior standard deviations.
+    """
+    found = candidates(study)
+    names = sorted({one.name for one in found})
+    physical = [name for name in names if next(one for one in found if one.name == name).effect.family != "measurement"]
+    order = np.random.default_rng([seed, 0]).permutation(len(names))
+    turn = itertools.cycle([names[i] for i in order])
+    result = []
+    for number in range(count):
+        rng = np.random.default_rng([seed, number + 1])
+        kind = _kind(number, count)
+        base = (*base_unknowns(study), *sensor_unknowns(study, set(study.sensors)))
+        values = {one: _within(one, rng.normal(0.0, one.sd)) for one in base}
+        hidden: list[Candidate] = []
+        stranger, station, loud = None, math.nan, ""
+        if kind == "one":
+            hidden = [_variant(found, next(turn), rng)]
+        elif kind == "two":
+            pair = rng.choice(len(physical), 2, replace=False)
+            hidden = [_variant(found, physical[i], rng) for i in pair]
+        elif kind == "outside":
+            stranger, station = _stranger(study, rng)
+        elif rng.random() < 0.5:
+            # Wrong numbers dressed up as physics: one base number at two and a half standard deviations.
+            one = base[int(rng.integers(len(study.uncertainty)))]
+            values[one] = 2.5 * one.sd * rng.choice([-1.0, 1.0])
+        for member in hidden:
+            values |= dict.fromkeys(member.presence, 1.0)
+            for unknown in member.amplitudes:
+                size = unknown.sd * math.exp(rng.uniform(math.log(0.25), math.log(3.0)))
+                side = (
+                    rng.choice([-1.0, 1.0]) if unknown.low < 0 < unknown.high else (1.0 if unknown.high > 0 else -1.0)
+                )
+                values[unknown] = _within(unknown, side * size)
+        result.append(Case(number, seed, kind, tuple(hidden), values, stranger, station, loud))
+    return result
+
+
+def _kind(number: int, count: int) -> str:
+    """Kinds spread evenly over the cases."""
+    place, edge = (number * 0.6180339887) % 1.0, 0.0
+    for kind, share in KINDS.items():
+        edge += share
+        if place < edge:
+            return kind
+    return "one"
+
+
+def _within(unknown: Unknown, x: float) -> float:
+    """Not beyond 95 % of a bound."""
+    return float(np.clip(x, 0.95 * unknown.low, 0.95 * unknown.high))
+
+
+def _variant(found: Sequence[Candidate], name: str, rng: np.random.Generator) -> Candidate:
+    own = [one for one in found if one.name == name]
+    return own[int(rng.integers(len(own)))]
+
+
+def _stranger(study: Study, rng: np.random.Generator) -> tuple[Effect, float]:
+    length = study.section.line.length
+    width = rng.uniform(0.12, 0.25) * length
+    start = rng.uniform(0.0, length - width)
+    size = math.exp(rng.uniform(math.log(0.5), math.log(4.0)))
+    if rng.random() < 0.6:
+        ring = HotRing.check(
+            {
+                "start": f"{start} m",
+                "end": f"{start + width} m",
+                "outer": bool(rng.random() < 0.5),
+                "exponent": float(rng.uniform(0.3, 2.5)),
+                "heat": f"{size * 1e5} W/m**3",
+            }
+        )
+        return ring, start + width / 2
+    start = rng.uniform(0.2 * length, length * 0.8 - width)
+    lamp = Lamp.check(
+        {
+            "start": f"{start} m",
+            "end": f"{start + width} m",
+            "until": f"{rng.uniform(200.0, 900.0)} s",
+            "shine": f"{size * 600.0} W/m**2",
+        }
+    )
+    return lamp, start + width / 2
+
+
+def measured(study: Study, case: Case, logger: Logger | None = None) -> list[MeasuredRun]:
+    """The data of a case: the truth simulated run by run, and recorded."""
+    logger = logger or Logger()
+    extra = () if case.stranger is None else (case.stranger,)
+    runs = []
+    for number, trial in enumerate(planned(study)):
+        rng = np.random.default_rng([case.seed, case.number + 1, number + 1])
+        driven = study.with_drive(trial.drive) if trial.drive else study
+        # A load that is off by 2 % is off in every run, whatever each run's load.
+        truth = with_values(driven, case.values).replace(FINE)
+        runs.append(record(truth, trial.name, logger, rng, extra))
+    return runs
+
+
+@dataclass(frozen=True, eq=False)
+class Outcome:
+    """What the diagnosis said of a case."""
+
+    case: Case
+    identifiable: bool
+    diagnosis: dict[str, Any] = field(default_factory=dict)
+
+    def to_dict(self) -> dict[str, Any]:
+        """A row of ``blind.json``."""
+        return {
+            "number": self.case.number,
+            "kind": self.case.kind,
+            "hidden": self.case.names,
+            "amplitude": {
+                one.key: self.case.values[one] / one.sd for member in self.case.hidden for one in member.amplitudes
+            },
+            "identifiable": self.identifiable,
+            **self.diagnosis,
+        }
+
+
+def identifiable(gap: Gap, study: Study, case: Case) -> bool:
+    """Would the linear model, without noise, put the hidden effects ahead of every rival by the margin?
+
+    Found from the response of the study itself (no data, no diagnosis), simulated at the hidden amplitude.
+    """
+    if not case.hidden:
+        return False
+    own = {one: case.values[one] for member in case.hidden for one in (*member.amplitudes, *member.presence)}
+    bench = gap.lab.bench
+    signal = np.concatenate(
+        [bench.trials[i].whitened(bench.predict(i, own) - bench.predict(i, {})) for i in gap.fitted]
+    )
+    found = candidates(study)
+    prior = Prior(found, study.card.diagnosis.effects_expected)
+    linear = gap.linear(gap.fitted)
+    ahead = margins(linear, signal, case.hidden, rivals_of(case.hidden, found), prior)
+    return min(ahead) >= MARGIN
+
+
+def run_case(study: Study, case: Case, known: Sequence[Response]) -> Outcome:
+    """Make the data of a case, diagnose them, and put both side by side. ``known``: responses of the planned runs."""
+    with laboratory(Bench(study, planned(study))) as lab:
+        able = identifiable(gap_of(lab, known=known), study, case)
+    return Outcome(case, able, said(diagnose(study, measured(study, case), largest=2, known=known, rerun=False)))
+
+
+def said(found: Diagnosis) -> dict[str, Any]:
+    """What a diagnosis says, for a row of ``blind.json``."""
+    judgement = found.judgement
+    best = judgement.best
+    named = [one.key for one in best.members] if found.verdict == "identified" else []
+    chosen: set[str] = set()
+    for one in judgement.credible:
+        chosen |= (
+            {"not in the catalogue"} if one.unexplained else {member.key for member in one.members} or {"no effect"}
+        )
+    return {
+        "verdict": found.verdict,
+        "named": named,
+        "set": sorted(chosen),
+        "best": best.key,
+        "probability": judgement.probability,
+        "inclusion": {key: value for key, value in judgement.named.items() if value > 0.01},
+        "p_value": found.best.p_value,
+        "held_out_p": found.best.held_out_p,
+        "missing_station_m": found.missing.station,
+        "rms_K": {"before": found.rms(after=False, held_out=False), "after": found.rms(after=True, held_out=False)},
+        "held_out_rms_K": {
+            "before": found.rms(after=False, held_out=True),
+            "after": found.rms(after=True, held_out=True),
+        },
+        "noise_K": found.noise,
+        "seconds": found.seconds,
+    }
