@@ -97,12 +97,14 @@ class HeatBudget:
 #: What the conditions on a boundary are called in the budget, by (boundary, number of the condition).
 NAMES = {("road", 0): "road contact", ("road", 1): "air at the tread", ("outside_air", 0): "outside air"}
 #: Friction heat, and what a locked wheel gives to the passing road: together what sliding brings into the tread.
-SLIDING = (("road", 2), ("road", 3))
 FRICTION = "friction on the road"
 
 
-def whole_tyre(budget: Budget, zone_titles: Mapping[str, str], half: bool) -> HeatBudget:
-    """The budget of a section as that of the whole tyre."""
+def whole_tyre(
+    budget: Budget, zone_titles: Mapping[str, str], half: bool, added: Mapping[tuple[str, int], str] | None = None
+) -> HeatBudget:
+    """The budget of a section as that of the whole tyre; ``added`` names the conditions of effects."""
+    names = NAMES | dict(added or {})
     factor = 2.0 if half else 1.0
     energies: dict[tuple[str, str], Array] = {}
     powers: dict[tuple[str, str], Array] = {}
@@ -114,16 +116,16 @@ def whole_tyre(budget: Budget, zone_titles: Mapping[str, str], half: bool) -> He
 
     for zone, energy in budget.generated.items():
         add("generated", zone_titles.get(zone, zone), energy, budget.generated_power[zone])
-    rubbing = [key for key in SLIDING if key in budget.lost_by_condition]
+    rubbing = [key for key in budget.lost_by_condition if names.get(key) == FRICTION]
     if rubbing:
         energy = -np.sum([budget.lost_by_condition[key] for key in rubbing], axis=0)
         add("sliding", FRICTION, energy, -np.sum([budget.lost_power_by_condition[key] for key in rubbing], axis=0))
     for region, energy in budget.stored.items():
         add("stored", region, energy, budget.stored_power[region])
     for key, energy in budget.lost_by_condition.items():
-        if key in SLIDING:
+        if key in rubbing:
             continue
-        name = NAMES.get(key, key[0].replace("_", " "))
+        name = names.get(key, key[0].replace("_", " "))
         add("lost", name, energy, budget.lost_power_by_condition[key])
     for reservoir, energy in budget.reservoir_stored.items():
         add("lumped", f"{reservoir}: stored", energy, None)

@@ -125,9 +125,8 @@ def _convert(magnitude: float, text: str, unit: str, value: object, wanted: str)
         )
     if unit == "degC" and "delta" in str(given):
         raise InputError(f"{value!r} is a difference of temperatures, but a temperature is wanted: 'degC'")
-    target = "dimensionless" if unit == "1" else unit
     try:
-        result = float(units.Quantity(magnitude, given).to(target).magnitude)
+        result = _converted(magnitude, text, unit)
     except Exception as error:  # dimensionality or offset units: the same advice to the user
         raise InputError(f"'{text}' is not a unit of this quantity ({value!r}); expected {wanted}") from error
     if unit == "degC":
@@ -135,6 +134,14 @@ def _convert(magnitude: float, text: str, unit: str, value: object, wanted: str)
             raise InputError(f"{value!r} is below absolute zero")
         return round(result, 10)
     return result
+
+
+@functools.lru_cache(maxsize=4096)
+def _converted(magnitude: float, text: str, unit: str) -> float:
+    """A study is read again for every variant of it, with mostly the same numbers: pint is asked once."""
+    units = registry()
+    target = "dimensionless" if unit == "1" else unit
+    return float(units.Quantity(magnitude, units.parse_units(text)).to(target).magnitude)
 
 
 def convert(value: float, unit: str, to: str) -> float:

@@ -151,7 +151,7 @@ class Result:
     def heat_budget(self) -> HeatBudget:
         """W and J per region and boundary of the whole tyre; generated = stored + lost."""
         titles = {zone.name: zone.title for zone in self.tyre.schedule.zones}
-        return whole_tyre(self.history.budget, titles, self.study.section.half)
+        return whole_tyre(self.history.budget, titles, self.study.section.half, self.tyre.condition_names)
 
     def heat_source(self, i: int) -> dict[str, tuple[Array, Array]]:
         """Zone -> (nodes (2, n), q (n,) W/m3) at ``times[i]``, from the zone's side of its borders."""

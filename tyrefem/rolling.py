@@ -14,6 +14,7 @@ from numpy.typing import NDArray
 from tyrefem.boundaries.rim import Lumped
 from tyrefem.conduction import Conduction, Film, Material, Reservoir
 from tyrefem.effects.acting import Source
+from tyrefem.heat_budget import FRICTION
 from tyrefem.heating import LOSS_FACTOR, CycleSchedule, HeatSource
 from tyrefem.meshing import TyreMesh
 from tyrefem.result import GAS, RIM, Result
@@ -87,20 +88,37 @@ class RollingTyre(Surroundings):
         return found
 
     @functools.cached_property
-    def boundaries(self) -> dict[str, Any]:
-        """Side -> its films, fluxes and radiation."""
+    def boundaries(self) -> dict[str, list[Any]]:
+        """Side -> its films, then the fluxes and radiation that effects add."""
         ports = ("film_factor", "film_addend", "film_resistance", "sink_addend", "flux", "radiation")
         if self._as_in_like(("boundaries", "drive", "mechanics"), ports):
             assert self.like is not None
             if self.tread == self.like.tread:
                 return self.like.boundaries
+        added = {side: [condition for _, condition in self.acting.conditions(side)] for side in self._films}
+        return {side: films + added[side] for side, films in self._films.items()}
+
+    @property
+    def condition_names(self) -> dict[tuple[str, int], str]:
+        """(boundary, number of the condition) -> name in the heat budget, of those that slip and effects add."""
+        plain = len(self._films["road"]) - len(self.sliding.conditions)
+        rubbing = {("road", number): FRICTION for number in range(plain, len(self._films["road"]))}
+        return rubbing | {
+            (side, number): name
+            for side, films in self._films.items()
+            for number, (name, _) in enumerate(self.acting.conditions(side), len(films))
+        }
+
+    @functools.cached_property
+    def _films(self) -> dict[str, list[Any]]:
+        """Side -> its films, and what slip adds."""
         laws = self.study.card.boundaries
         gas = GAS if self._gas_capacity is not None else laws.contained_air.temperature  # type: ignore[attr-defined]
 
         rim = RIM if isinstance(laws.rim, Lumped) else _of_time(self.rim_temperature)
         air = _of_time(self.ambient)
         driven = self.acting.changes_films
-        sides: dict[str, list[Any]] = {
+        return {
             "road": [
                 Film(_of_time(lambda t: self.road_fraction(t) * self.road_film(t)), _of_time(self.road_temperature)),
                 Film(_of_time(lambda t: (1 - self.road_fraction(t)) * self.tread_air_film(t)), air),
@@ -110,7 +128,6 @@ class RollingTyre(Surroundings):
             "contained_air": [Film(_of_time(self.gas_film) if driven else laws.contained_air.film, gas)],
             "rim": [Film(_of_time(self.rim_film) if driven else laws.rim.total_film, rim)],
         }
-        return {side: conditions + self.acting.conditions(side) for side, conditions in sides.items()}
 
     @functools.cached_property
     def _gas_capacity(self) -> float | None:

@@ -13,6 +13,7 @@ from terminal import NASA
 import tyrefem as tf
 from tyrefem import library
 from tyrefem.cli import main
+from tyrefem.effects import catalogue
 
 PNG = b"\x89PNG\r\n\x1a\n"
 
@@ -40,6 +41,30 @@ def test_list_laws(capsys: pytest.CaptureFixture[str]) -> None:
     assert {line.split()[0] for line in capsys.readouterr().out.splitlines()} == {
         "road", "outside_air", "contained_air", "rim", "sliding",
     }  # fmt: skip
+
+
+def test_list_effects(capsys: pytest.CaptureFixture[str]) -> None:
+    assert main(["list", "effects"]) == 0
+    lines = capsys.readouterr().out.splitlines()
+    assert sorted(line.split()[0] for line in lines) == sorted(catalogue())
+    assert all(line.endswith(".") for line in lines)
+
+
+def test_show_effect_says_bounds_units_prior_and_source(capsys: pytest.CaptureFixture[str]) -> None:
+    assert main(["show", "effect", "ambient-drift"]) == 0
+    out = capsys.readouterr().out
+    for said in (
+        "boundary",
+        "source: estimate",
+        "-40 delta_degC/hour to 40 delta_degC/hour",
+        "prior sd",
+        "[[effects]]",
+    ):
+        assert said in out
+
+
+def test_show_of_an_unknown_effect(refused: Callable[..., str]) -> None:
+    assert "no effect named 'wet_road'; did you mean 'wet-road'?" in refused("show", "effect", "wet_road")
 
 
 def test_list_of_an_unknown_kind(refused: Callable[..., str]) -> None:

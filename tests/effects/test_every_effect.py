@@ -63,7 +63,10 @@ def test_a_small_amplitude_does_half_of_twice_as_much(name: str) -> None:
 
 @pytest.mark.parametrize("name", NAMES)
 def test_the_heat_budget_closes(name: str) -> None:
-    assert result(name, 1.0).heat_budget.imbalance < 1e-5
+    budget = result(name, 1.0).heat_budget
+    assert budget.imbalance < 1e-5
+    left = budget.total("generated") - budget.total("stored") - budget.total("lost")
+    assert abs(left) < 1e-5 * sum(abs(series[-1]) for series in budget.energies.values())
 
 
 def test_order_in_the_file_does_not_matter() -> None:
@@ -83,9 +86,18 @@ def test_a_number_beyond_its_bounds_is_refused(name: str) -> None:
     table = {key: value for key, value in entry(name, 1.0).items() if key != "name"}
     for one in catalogue()[name].parameters():
         for beyond in (one.prior.low - one.prior.scale, one.prior.high + one.prior.scale):
-            written = f"{beyond!r} {'' if one.prior.unit == '1' else one.prior.unit}"
+            written = one.prior.text(beyond)
             with pytest.raises(tf.InputError, match=rf"{one.name}.*is out of range: must be at (least|most)"):
                 catalogue()[name].check(table | {one.name: written})
+
+
+@pytest.mark.parametrize("name", NAMES)
+def test_what_is_written_is_read(name: str) -> None:
+    effect = catalogue()[name]
+    for one in effect.parameters():
+        for value in (one.prior.low, one.prior.null, one.prior.high, one.prior.null + one.prior.scale):
+            read = effect.check({**CASES[name].choice, one.name: one.prior.text(value, 12)})
+            assert read.values[one.name] == pytest.approx(value, rel=1e-11, abs=1e-15)
 
 
 @pytest.mark.parametrize("name", NAMES)

@@ -13,20 +13,23 @@ KINDS = {"sections": "section", "materials": "material", "studies": "study"}
 
 def complete_kinds(incomplete: str) -> list[str]:
     """Kinds for shell completion."""
-    return [kind for kind in [*KINDS, "laws"] if kind.startswith(incomplete)]
+    return [kind for kind in [*KINDS, "laws", "effects"] if kind.startswith(incomplete)]
 
 
 def show_list(
     kind: Annotated[
-        str, typer.Argument(help="sections, materials, studies or laws.", autocompletion=complete_kinds)
+        str, typer.Argument(help="sections, materials, studies, laws or effects.", autocompletion=complete_kinds)
     ] = "studies",
 ) -> None:
-    """List sections, materials or studies by name, or the boundary laws."""
+    """List sections, materials or studies by name, the boundary laws, or the effects."""
     if kind == "laws":
         _laws()
         return
+    if kind == "effects":
+        _effects()
+        return
     if kind not in KINDS:
-        raise InputError(f"no kind '{kind}'{nearest(kind, [*KINDS, 'laws'])}")
+        raise InputError(f"no kind '{kind}'{nearest(kind, [*KINDS, 'laws', 'effects'])}")
     from tyrefem import library
     from tyrefem.cards import read_toml
 
@@ -45,6 +48,15 @@ def _laws() -> None:
         for name, law in sorted(laws(side).items()):
             first = (law.__doc__ or "").strip().splitlines()[0]
             typer.echo(f"{side:14} {name:10} {first}")
+
+
+def _effects() -> None:
+    from tyrefem.effects import catalogue
+    from tyrefem.effects.description import by_family
+
+    for family, members in by_family(catalogue()).items():
+        for effect in members:
+            typer.echo(f"{effect.name:28} {family:12} {effect.sentence}")
 
 
 #: Place among the commands.

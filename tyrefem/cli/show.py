@@ -1,4 +1,4 @@
-"""`tyrefem show`: draw or print a section, material, study, mesh or strain cycle."""
+"""`tyrefem show`: draw or print a section, material, study, mesh, strain cycle or effect."""
 
 from __future__ import annotations
 
@@ -10,7 +10,7 @@ import typer
 from tyrefem.cli.common import SetOption, settings
 from tyrefem.errors import InputError, nearest
 
-KINDS = ("section", "material", "study", "mesh", "strain")
+KINDS = ("section", "material", "study", "mesh", "strain", "effect")
 
 
 def complete_kinds(incomplete: str) -> list[str]:
@@ -23,6 +23,10 @@ def complete_names(context: typer.Context, incomplete: str) -> list[str]:
     from tyrefem import library
 
     kind = context.params.get("kind", "study")
+    if kind == "effect":
+        from tyrefem.effects import catalogue
+
+        return [name for name in catalogue() if name.startswith(incomplete)]
     kind = kind if kind in library.FOLDERS else "study"
     return [name for name in library.names(kind) if name.startswith(incomplete)]
 
@@ -35,10 +39,13 @@ def show(
         Path | None, typer.Option("--out", help="PNG to write (a mesh: also .msh, .vtu); default: KIND-NAME.png.")
     ] = None,
 ) -> None:
-    """Show a card: `section`, `mesh` and `strain` are drawn to a PNG, `material` and `study` printed."""
+    """Show a card: `section`, `mesh` and `strain` are drawn to a PNG; `material`, `study` and `effect` printed."""
     if kind not in KINDS:
         raise InputError(f"no kind '{kind}'{nearest(kind, KINDS)}")
     values = settings(changes)
+    if kind == "effect":
+        _effect(name)
+        return
     if kind in ("material", "study"):
         _print(kind, name, values)
         return
@@ -103,6 +110,24 @@ def _strain(name: str, values: dict[str, Any]) -> tuple[Any, dict[str, Any]]:
         "road_fraction": case.road_fraction,
     }
     return strain_figure(found), facts
+
+
+def _effect(name: str) -> None:
+    from tyrefem.effects import catalogue
+    from tyrefem.effects.description import COLUMNS, equation, example, parameter_rows, ports
+
+    known = catalogue()
+    if name not in known:
+        raise InputError(f"no effect named '{name}'{nearest(name, known)}")
+    effect = known[name]
+    typer.echo(f"{name} ({effect.family}): {effect.sentence}")
+    typer.echo(f"  {equation(effect)}\n  enters as: {ports(effect)}\n  source: {effect.source}\n")
+    for row in parameter_rows(effect):
+        typer.echo(row[0])
+        for heading, cell in zip(COLUMNS[1:], row[1:], strict=True):
+            if cell:
+                typer.echo(f"  {heading:14} {cell}")
+    typer.echo(f"\n{example(effect)}")
 
 
 _SHOWN = {"section": _section, "mesh": _mesh, "strain": _strain}

@@ -116,17 +116,18 @@ class Acting:
         """W that effects put into the whole wheel's lumped rim at a time."""
         return sum(one.rim_power(self.tyre, t) for one in self.at("rim_power"))
 
-    def conditions(self, surface: str) -> list[Any]:
-        """Fluxes and radiation that effects add to a boundary."""
-        found: list[Any] = []
+    def conditions(self, surface: str) -> list[tuple[str, Any]]:
+        """Fluxes and radiation that effects add to a boundary, each with a name for the heat budget."""
+        found: list[tuple[str, Any]] = []
         for one in self.effects:
             if surface not in one.surfaces:
                 continue
+            label = " ".join([one.name, *one.choice.values(), "on the", surface.replace("_", " ")])
             if one.overrides("flux"):
-                found.append(Flux(_flux_of(one, self.tyre, surface)))
+                found.append((label, Flux(_flux_of(one, self.tyre, surface))))
             if one.overrides("radiation"):
                 radiation: Radiation | None = one.radiation(self.tyre, surface)
-                found += [] if radiation is None else [radiation]
+                found += [] if radiation is None else [(label, radiation)]
         return found
 
 

@@ -19,7 +19,15 @@ class AmbientDrift(Effect):
     source: ClassVar[str] = "estimate: a test hall or a summer morning drifts by some kelvins per hour"
 
     rate: Annotated[
-        float, Prior("delta_degC/s", "change per time, from the start", 8 / 3600, -40 / 3600, 40 / 3600)
+        float,
+        Prior(
+            "delta_degC/s",
+            "change per time, from the start",
+            8 / 3600,
+            -40 / 3600,
+            40 / 3600,
+            written="delta_degC/hour",
+        ),
     ] = 0.0
 
     def sink_addend(self, tyre: Surroundings, sink: str, t: float) -> float:

@@ -36,7 +36,15 @@ class BeltEdgeShear(Effect):
     CENTRE: ClassVar[float] = 0.95
 
     loss: Annotated[
-        float, Prior("J/m**3", "energy lost per revolution at the rated deflection, at the centre", 2e4, 0.0, 4e5)
+        float,
+        Prior(
+            "J/m**3",
+            "energy lost per revolution at the rated deflection, at the centre",
+            2e4,
+            0.0,
+            4e5,
+            written="kJ/m**3",
+        ),
     ] = 0.0
 
     def heat_addend(self, tyre: Surroundings, zone: str, x: Array, t: float, T: Array) -> Factor:

@@ -26,7 +26,17 @@ class Camber(Effect):
         "deflection; alignment is good to a degree or two"
     )
 
-    angle: Annotated[float, Prior("rad", "camber; positive presses the side z > 0", math.radians(2), -0.2, 0.2)] = 0.0
+    angle: Annotated[
+        float,
+        Prior(
+            "rad",
+            "camber; positive presses the side z > 0",
+            math.radians(2),
+            -0.25,
+            0.25,
+            written="deg",
+        ),
+    ] = 0.0
 
     def heat_factor(self, tyre: Surroundings, zone: str, x: Array, t: float, T: Array) -> Factor:
         """The square of the local deflection over the mean one."""

@@ -14,7 +14,7 @@ from pydantic_core import CoreSchema, core_schema
 
 from tyrefem.cards import Card, Text
 from tyrefem.errors import InputError, nearest
-from tyrefem.quantity import Unit
+from tyrefem.quantity import Unit, convert
 
 if TYPE_CHECKING:
     from tyrefem.conduction import Radiation
@@ -45,6 +45,10 @@ class Prior:
     scale : standard deviation of the prior about ``null``, the value at which the effect is not there.
     low, high : bounds; physics forbids what lies beyond (the sign, for most).
     start : where a fit begins, for a parameter that only shapes the effect (``amplitude`` False).
+    written : unit in which people write it, where that is not ``unit``: ``deg`` for ``rad``.
+
+    >>> Prior("m", "along the meridian", 4e-3, -0.02, 0.02, written="mm").text(0.0025)
+    '2.5 mm'
     """
 
     unit: str
@@ -55,6 +59,13 @@ class Prior:
     null: float = 0.0
     start: float | None = None
     amplitude: bool = True
+    written: str | None = None
+
+    def text(self, value: float, digits: int = 4) -> str:
+        """A value (SI) as it is written in a study file."""
+        unit = self.written or self.unit
+        number = value if unit == self.unit else convert(value, self.unit, unit)
+        return f"{number:.{digits}g}{'' if unit == '1' else f' {unit}'}"
 
     @property
     def origin(self) -> float:
@@ -62,7 +73,9 @@ class Prior:
         return self.null if self.amplitude or self.start is None else self.start
 
     def __get_pydantic_core_schema__(self, source: Any, handler: GetCoreSchemaHandler) -> CoreSchema:
-        return core_schema.no_info_plain_validator_function(Unit(self.unit, ge=self.low, le=self.high))
+        # "40 delta_degC/hour" must not fail at a bound of 40/3600 for its last digits.
+        low, high = self.low - 1e-9 * abs(self.low), self.high + 1e-9 * abs(self.high)
+        return core_schema.no_info_plain_validator_function(Unit(self.unit, ge=low, le=high))
 
 
 @dataclass(frozen=True)

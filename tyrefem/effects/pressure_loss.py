@@ -23,7 +23,9 @@ class PressureLoss(Effect):
         "sidewall goes with the square of the deflection"
     )
 
-    rate: Annotated[float, Prior("Pa/s", "gauge pressure lost per time, from the start", 30.0, 0.0, 1000.0)] = 0.0
+    rate: Annotated[
+        float, Prior("Pa/s", "gauge pressure lost per time, from the start", 30.0, 0.0, 1000.0, written="kPa/min")
+    ] = 0.0
 
     def heat_factor(self, tyre: Surroundings, zone: str, x: Array, t: float, T: Array) -> Factor:
         """(D'/D)^2 at the lower pressure, of which a fifth is left at least."""

@@ -18,8 +18,10 @@ class SensorMisplaced(OfSensor):
         "estimate: a drilled hole ends within 1 mm of its mark; a slipped or mistaken thermocouple is 3 to 5 mm off"
     )
 
-    along: Annotated[float, Prior("m", "along the meridian, towards the bead", 4e-3, -0.02, 0.02)] = 0.0
-    deeper: Annotated[float, Prior("m", "outwards, in depth from the inner surface", 2.5e-3, -0.01, 0.01)] = 0.0
+    along: Annotated[float, Prior("m", "along the meridian, towards the bead", 4e-3, -0.02, 0.02, written="mm")] = 0.0
+    deeper: Annotated[
+        float, Prior("m", "outwards, in depth from the inner surface", 2.5e-3, -0.01, 0.01, written="mm")
+    ] = 0.0
 
     def displacement(self, sensor: str) -> tuple[float, float]:
         """m along the meridian and in depth."""

@@ -11,7 +11,7 @@ if TYPE_CHECKING:
 
 
 class WetRoad(Effect):
-    """H_c -> H_c (1 + film_gain);  h of the tread between two contacts -> h (1 + 2.8 film_gain)."""
+    """H_c -> H_c (1 + film_gain);  h of the rolling tread between two contacts -> h (1 + 2.8 film_gain)."""
 
     name: ClassVar[str] = "wet-road"
     family: ClassVar[str] = "boundary"
@@ -30,5 +30,7 @@ class WetRoad(Effect):
     film_gain: Annotated[float, Prior("1", "relative rise of the road film; 1 for a wet road", 1.0, 0.0, 8.0)] = 0.0
 
     def film_factor(self, tyre: Surroundings, film: str, t: float) -> float:
-        """1 + film_gain on the road, 1 + 2.8 film_gain on the tread between two contacts."""
+        """1 + film_gain on the road, 1 + 2.8 film_gain on the tread between two contacts; at rest the tread dries."""
+        if tyre.speed(t) == 0:
+            return 1.0
         return 1 + self.film_gain * {"road": 1.0, "tread_air": self.EVAPORATION}.get(film, 0.0)

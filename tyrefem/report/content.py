@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 
 from tyrefem.report.assumptions import assumptions
-from tyrefem.report.inputs import boundary_rows, material_rows, mechanics_rows, section_sources, study_text
+from tyrefem.report.inputs import boundary_rows, effect_rows, material_rows, mechanics_rows, section_sources, study_text
 from tyrefem.report.sliding import sliding_card, sliding_rows
 from tyrefem.report.words import number, place, seconds
 from tyrefem.summary import summary, versions
@@ -41,6 +41,7 @@ def content(result: Result) -> dict[str, Any]:
         "materials": materials,
         "estimates": estimates,
         "boundaries": boundary_rows(study),
+        "effects": effect_rows(study),
         "mechanics": mechanics_rows(study),
         "sources": section_sources(study),
         "numerics": _numerics(result),

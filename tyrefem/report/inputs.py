@@ -91,6 +91,18 @@ def mechanics_rows(study: Study) -> list[list[str]]:
     ]
 
 
+def effect_rows(study: Study) -> list[list[str]]:
+    """Name, sentence, values with their standard deviations, and where they come from, of every effect at work."""
+    rows = []
+    for effect in study.effects:
+        values = [f"{name} {text}" for name, text in effect.choice.items()]
+        for one in effect.parameters():
+            sd = f" ± {effect.sd[one.name]}" if one.name in effect.sd else ""
+            values.append(f"{one.name.replace('_', ' ')} {one.prior.text(getattr(effect, one.name))}{sd}")
+        rows.append([effect.name, effect.sentence, "; ".join(values), effect.provenance or "the study"])
+    return rows
+
+
 def _numbers(card: Card) -> list[str]:
     """Every field with its unit; those the study leaves at their defaults say so."""
     found = []

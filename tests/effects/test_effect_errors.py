@@ -1,0 +1,188 @@
+"""A wrong entry of [[effects]] is refused in words; a user's own effects are found in the folder that is named."""
+
+from __future__ import annotations
+
+from pathlib import Path
+from typing import Any
+
+import pytest
+from suitable import COARSE
+
+import tyrefem as tf
+from tyrefem.effects import catalogue
+from tyrefem.report.inputs import effect_rows
+
+OWN = '''
+"""A lamp beside the tyre."""
+
+from typing import Annotated, ClassVar
+
+from tyrefem.effects import Effect, Prior
+
+
+class Lamp(Effect):
+    """Flux through the outer sidewall."""
+
+    name: ClassVar[str] = "{name}"
+    family: ClassVar[str] = "boundary"
+    sentence: ClassVar[str] = "A lamp shines on the sidewall."
+    source: ClassVar[str] = "estimate: a halogen lamp of 500 W at 1 m"
+    surfaces: ClassVar[tuple[str, ...]] = ("outside_air",)
+
+    shine: Annotated[float, Prior("W/m**2", "flux through the sidewall", {scale}, 0.0, 1e4)] = {default}
+
+    def flux(self, tyre, surface, x, t):
+        return self.shine
+'''
+
+
+@pytest.fixture
+def study() -> tf.Study:
+    """Six sensors on a coarse mesh."""
+    return tf.study("example-validation").replace(COARSE)
+
+
+@pytest.fixture
+def own(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> Path:
+    """The user's folder of effects."""
+    monkeypatch.setenv("TYREFEM_EFFECTS", str(tmp_path))
+    return tmp_path
+
+
+@pytest.mark.parametrize(
+    ("effect", "words"),
+    [
+        ({"name": "hot-raod"}, "unknown effect 'hot-raod'; did you mean 'hot-road'?"),
+        ({"warmer_by": "3 delta_degC"}, "unknown effect None"),
+        ("hot-road", "must be a table with a name"),
+        ({"name": "hot-road", "warmer": "3 delta_degC"}, "unknown key 'warmer'; did you mean 'warmer_by'?"),
+        ({"name": "hot-road", "warmer_by": "3 degC"}, "write 'delta_degC'"),
+        ({"name": "hot-road", "warmer_by": 3}, "has no unit"),
+        ({"name": "sun", "absorbed": "-1 W/m**2"}, "must be at least 0 W/m**2"),
+        ({"name": "wet-road", "film_gain": "nan"}, "film_gain"),
+        ({"name": "sensor-lag", "slower_by": "3 s"}, "sensor: missing; this field is required"),
+        ({"name": "sensor-lag", "sensor": "crown-iner"}, "no sensor 'crown-iner'; did you mean 'crown-inner'?"),
+        ({"name": "swapped-channels", "sensor": "crown-inner", "other": "bed"}, "no sensor 'bed'; did you mean 'bead'"),
+        ({"name": "swapped-channels", "sensor": "bead", "other": "bead"}, "swapped with itself"),
+        ({"name": "road-film-speed", "exponent": 0.5}, "the road's law 'cattani' has the speed in it already"),
+        ({"name": "gas-mass", "fraction": 1.0}, "the contained air's law is 'gas', not 'report'"),
+        ({"name": "brake-power", "power": "1 kW"}, "only a lumped rim takes up heat; use 'brake-heat'"),
+        ({"name": "camber", "angle": "1 deg"}, "needs the full section: [mesh] section = 'full'"),
+        ({"name": "yaw", "slip": "1 %"}, "needs the full section"),
+    ],
+)
+def test_a_wrong_entry_is_refused(study: tf.Study, effect: Any, words: str) -> None:
+    with pytest.raises(tf.InputError) as caught:
+        study.replace({"boundaries.road": {"law": "cattani"}, "effects": [effect]})
+    assert words in str(caught.value)
+    assert "effects" in str(caught.value)
+
+
+def test_effects_of_other_boundaries_are_refused(study: tf.Study) -> None:
+    rim = {"law": "lumped", "mass": "9 kg", "cooling": "2 W/K"}
+    with pytest.raises(tf.InputError, match="use 'brake-power'"):
+        study.replace({"boundaries.rim": rim, "effects": [{"name": "brake-heat", "warmer_by": "9 delta_degC"}]})
+    for drive, words in (({"deflection": "1 in"}, "gives the deflection"), ({}, "does not depend on pressure")):
+        law = {"law": "vertical-stiffness", "stiffness": "400 N/mm", "source": "estimate: a test"}
+        changes: dict[str, Any] = {"mechanics.load_law": law} if not drive else {}
+        if drive:
+            kept = {key: value for key, value in study.data["drive"].items() if key != "load"}
+            changes = {"drive": {**kept, **drive}}
+        for name in ("pressure-rise", "pressure-loss"):
+            with pytest.raises(tf.InputError, match=words):
+                study.replace({**changes, "effects": [{"name": name}]})
+
+
+@pytest.mark.parametrize(
+    ("entries", "words"),
+    [
+        ([{"name": "sun"}, {"name": "sun", "absorbed": "1 W/m**2"}], "effects.sun: is given twice"),
+        ([{"name": "sensor-lag", "sensor": "bead"}] * 2, "effects.sensor-lag: is given twice"),
+        (
+            [
+                {"name": "swapped-channels", "sensor": "bead", "other": "surface"},
+                {"name": "swapped-channels", "sensor": "surface", "other": "crown-inner"},
+            ],
+            "effects.swapped-channels: 'surface' is swapped twice",
+        ),
+    ],
+)
+def test_twice_the_same_is_refused(study: tf.Study, entries: list[dict[str, str]], words: str) -> None:
+    with pytest.raises(tf.InputError, match=words):
+        study.replace({"effects": entries})
+
+
+def test_two_sensors_may_lag(study: tf.Study) -> None:
+    lags = [{"name": "sensor-lag", "sensor": name, "slower_by": "3 s"} for name in ("bead", "surface")]
+    assert [one.choice for one in study.replace({"effects": lags}).effects] == [
+        {"sensor": "bead"},
+        {"sensor": "surface"},
+    ]
+
+
+def test_provenance_and_sd_are_kept(study: tf.Study) -> None:
+    said = {"name": "hot-road", "warmer_by": "10 delta_degC", "from": "diagnosis of run-1.csv"}
+    (effect,) = study.replace({"effects": [said | {"sd": {"warmer_by": "2 delta_degC"}}]}).effects
+    assert effect.provenance == "diagnosis of run-1.csv"
+    assert effect.sd == {"warmer_by": "2 delta_degC"}
+
+
+def test_the_report_names_the_effects_at_work(study: tf.Study) -> None:
+    entries = [
+        {"name": "hot-road", "warmer_by": "10 K", "from": "diagnosis of run-1.csv", "sd": {"warmer_by": "2 K"}},
+        {"name": "sensor-lag", "sensor": "bead", "slower_by": "8 s"},
+        {"name": "sun", "absorbed": "0 W/m**2"},
+    ]
+    road, lag = effect_rows(study.replace({"effects": entries}))
+    assert road == ["hot-road", catalogue()["hot-road"].sentence, "warmer by 10 delta_degC ± 2 K", entries[0]["from"]]
+    assert lag[2:] == ["sensor bead; slower by 8 s", "the study"]
+
+
+def test_an_effect_of_the_user_s_folder_acts(own: Path, study: tf.Study) -> None:
+    (own / "lamp.py").write_text(OWN.format(name="lamp", scale="50.0", default="0.0"), encoding="utf-8")
+    assert "lamp" in catalogue()
+    dark, lit = (
+        study.replace({"effects": [{"name": "lamp", "shine": f"{shine} W/m**2"}]}).run().readings
+        for shine in (0.0, 50.0)
+    )
+    assert (lit - dark)["sidewall-outer"].iloc[-1] > 0.1
+
+
+def test_without_the_folder_it_is_gone(study: tf.Study) -> None:
+    assert "lamp" not in catalogue()
+    with pytest.raises(tf.InputError, match="unknown effect 'lamp'"):
+        study.replace({"effects": [{"name": "lamp", "shine": "50 W/m**2"}]})
+
+
+@pytest.mark.parametrize(
+    ("text", "words"),
+    [
+        ("class Lamp(", "cannot be loaded as effects: SyntaxError"),
+        ("import nothing_like_it", "cannot be loaded as effects: ModuleNotFoundError"),
+        (OWN.format(name="lamp", scale="-1.0", default="0.0"), "effect 'lamp': parameter 'shine' needs a positive"),
+        (OWN.format(name="lamp", scale="1.0", default="3.0"), "parameter 'shine' must have the default 0"),
+        (OWN.format(name="lamp", scale="1.0", default="0.0").replace("def flux", "def flow"), "overrides no port"),
+        (OWN.format(name="lamp", scale="1.0", default="0.0").replace('"boundary"', '"boundry"'), "'boundary'"),
+        (OWN.format(name="lamp", scale="1.0", default="0.0").replace('"estimate', '"" #'), "needs 'source'"),
+    ],
+)
+def test_a_bad_file_is_one_clear_error(own: Path, text: str, words: str) -> None:
+    (own / "lamp.py").write_text(text, encoding="utf-8")
+    for _ in range(2):  # and the same one when asked again
+        with pytest.raises(tf.InputError) as caught:
+            catalogue()
+        assert str(caught.value).startswith(str(own / "lamp.py"))
+        assert words in str(caught.value)
+        assert "\n" not in str(caught.value)
+
+
+def test_a_name_that_is_taken_is_refused(own: Path) -> None:
+    (own / "lamp.py").write_text(OWN.format(name="hot-road", scale="1.0", default="0.0"), encoding="utf-8")
+    with pytest.raises(tf.InputError, match="two effects are named 'hot-road'"):
+        catalogue()
+
+
+def test_a_folder_that_is_none(monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setenv("TYREFEM_EFFECTS", "/nowhere/at/all")
+    with pytest.raises(tf.InputError, match="TYREFEM_EFFECTS names '/nowhere/at/all', which is no folder"):
+        catalogue()

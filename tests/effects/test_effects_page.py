@@ -1,0 +1,55 @@
+"""docs/effects.md is what the catalogue says, and every effect has its picture."""
+
+from __future__ import annotations
+
+import importlib.util
+import re
+import tomllib
+from pathlib import Path
+from types import ModuleType
+
+import pytest
+
+import tyrefem as tf
+from tyrefem.effects import catalogue
+from tyrefem.effects.description import example
+
+ROOT = Path(__file__).parents[2]
+
+
+@pytest.fixture(scope="module")
+def tool() -> ModuleType:
+    """tools/make_effects_page.py as a module."""
+    spec = importlib.util.spec_from_file_location("make_effects_page", ROOT / "tools/make_effects_page.py")
+    assert spec is not None
+    assert spec.loader is not None
+    module = importlib.util.module_from_spec(spec)
+    spec.loader.exec_module(module)
+    return module
+
+
+def test_the_page_is_up_to_date(tool: ModuleType) -> None:
+    written = (ROOT / "docs/effects.md").read_text(encoding="utf-8")
+    assert written == tool.page(), "run tools/make_effects_page.py"
+
+
+def test_every_effect_has_a_picture_and_every_picture_an_effect(tool: ModuleType) -> None:
+    named = re.findall(r"\((pictures/effect-[a-z-]+\.png)\)", tool.page())
+    assert len(named) == len(catalogue())
+    assert {ROOT / "docs" / name for name in named} == set((ROOT / "docs/pictures").glob("effect-*.png"))
+    assert all((ROOT / "docs" / name).read_bytes().startswith(b"\x89PNG") for name in named)
+
+
+@pytest.mark.parametrize("name", sorted(catalogue()))
+def test_the_example_of_the_page_can_be_put_into_a_study(name: str, tool: ModuleType) -> None:
+    changes = tool.DRAWN_FOR.get(name, ({}, ""))[0]
+    entries = tomllib.loads(example(catalogue()[name]))["effects"]
+    (effect,) = tf.study("example-validation").replace({**changes, "effects": entries}).effects
+    assert effect.name == name
+
+
+def test_the_page_s_own_effect_loads(tmp_path: Path, tool: ModuleType, monkeypatch: pytest.MonkeyPatch) -> None:
+    (code,) = re.findall(r"```python\n(.*?)```", tool.page(), re.DOTALL)
+    (tmp_path / "lamp.py").write_text(code, encoding="utf-8")
+    monkeypatch.setenv("TYREFEM_EFFECTS", str(tmp_path))
+    assert catalogue()["lamp"].ports() == ("flux",)

@@ -1,0 +1,199 @@
+"""Write docs/effects.md from the catalogue, and the picture of every effect's signature (run from the root).
+
+`python tools/make_effects_page.py` writes both; with `--text` the page alone, without running any study.
+"""
+
+from __future__ import annotations
+
+import sys
+from pathlib import Path
+from typing import Any
+
+import tyrefem as tf
+from tyrefem.effects import Effect, catalogue
+from tyrefem.effects.description import COLUMNS, by_family, equation, example, parameter_rows, ports
+from tyrefem.output import atomic_path
+
+PAGE = Path("docs/effects.md")
+PICTURES = Path("docs/pictures")
+STUDY = "example-validation"
+DRAWING = {"mesh.size": "4 mm", "numerics.tolerance": "0.02 delta_degC", "output": {"every": "10 s", "fields": 2}}
+BEAD = {"sensors.bead": {"s": "5.6 in", "depth": "0.3 in"}}
+LEFT = {"mesh.section": "full", "sensors.shoulder-left": {"s": "-2.00 in", "depth": "0.07 in"}}
+FAST = {"drive.phases.rolling.speed": "30 m/s"}
+LUMPED = {"boundaries.rim": {"law": "lumped", "mass": "9 kg", "cooling": "2 W/K", "air": "0.5 W/K"}}
+#: What an effect needs beside the study to be drawn: changes, and these in words.
+DRAWN_FOR: dict[str, tuple[dict[str, Any], str]] = {
+    "bead-contact-resistance": (BEAD, "with a thermocouple in the bead"),
+    "brake-heat": (BEAD, "with a thermocouple in the bead"),
+    "brake-power": (BEAD | LUMPED, "with a thermocouple in the bead and a lumped rim of 9 kg"),
+    "camber": (LEFT, "on the full section, with a thermocouple in the other shoulder"),
+    "gas-mass": ({"boundaries.contained_air": {"law": "report"}}, "with the report's air"),
+    "loss-speed-exponent": (FAST, "at 30 m/s"),
+    "outside-film-speed": (FAST, "at 30 m/s"),
+    "road-film-speed": (FAST, "at 30 m/s"),
+    "standing-wave": ({"drive.phases.rolling.speed": "55 m/s"}, "at 55 m/s"),
+    "under-inflation-flexing": ({"drive.load": "4000 lbf"}, "at 4000 lbf"),
+    "yaw": (LEFT, "on the full section, with a thermocouple in the other shoulder"),
+}
+CHOICES = {"swapped-channels": {"sensor": "crown-inner", "other": "sidewall-inner"}}
+
+INTRODUCTION = """\
+# Effects
+
+What a model of a rolling tyre may lack, one class per effect. This page is written by `tools/make_effects_page.py`
+from the classes.
+
+An effect is added to a study as an entry of `[[effects]]`; `tyrefem list effects` and `tyrefem show effect NAME`
+print what is below.
+
+```toml
+[[effects]]
+name = "hot-road"
+warmer_by = "10 delta_degC"
+from = "diagnosis of run-1.csv"          # optional: where the value comes from
+sd = { warmer_by = "2 delta_degC" }      # optional: its standard deviation; said, used by nobody
+```
+
+- Every quantity is (base + sum of addends) x product of factors, so the order in the file does not matter; films take
+  resistances in series last.
+- An effect whose amplitudes are all at the value "not there" is left out: the run is then the same to the bit.
+- *allowed* are the bounds of physics; beyond them a value is refused. *prior sd* is the standard deviation of what is
+  known before any data: the size that the effect typically has where it is present. A *shape* parameter says how an
+  effect looks; it does nothing while the amplitude is null.
+- An effect that has no meaning in a study (camber on a half section) is refused with the reason.
+- A source that begins with "estimate" is an engineer's judgement, not a measurement.
+
+**Signatures.** Each picture shows what the effect, at one prior sd, changes in the readings of the study
+`example-validation` (22x5.5 8PR, 2700 lbf, 83 psi, 20 mph for 600 s, then 600 s at rest), computed with the effect
+less computed without, unless the caption says otherwise. Where the largest change is below the 0.5 K noise of a
+reading, thermocouples at these places cannot see the effect.
+
+**An effect of your own** is a Python file in a folder that `TYREFEM_EFFECTS` names (several folders as in `PATH`):
+
+```python
+from typing import Annotated, ClassVar
+
+from tyrefem.effects import Effect, Prior
+
+
+class Lamp(Effect):
+    \"\"\"Flux through the outer sidewall.\"\"\"
+
+    name: ClassVar[str] = "lamp"
+    family: ClassVar[str] = "boundary"
+    sentence: ClassVar[str] = "A lamp shines on the sidewall."
+    source: ClassVar[str] = "estimate: a halogen lamp of 500 W at 1 m"
+    surfaces: ClassVar[tuple[str, ...]] = ("outside_air",)
+
+    shine: Annotated[float, Prior("W/m**2", "flux through the sidewall", 50.0, 0.0, 1e4)] = 0.0
+
+    def flux(self, tyre, surface, x, t):
+        return self.shine
+```
+
+`Prior` takes unit, meaning, prior sd, lower and upper bound; the method is one of the ports of
+`tyrefem.effects.Effect`, whose docstrings give arguments and units: `heat_factor`, `heat_addend`,
+`conductivity_factor`, `capacity_factor`, `film_factor`, `film_addend`, `film_resistance`, `sink_addend`, `flux`,
+`radiation`, `gas_capacity_factor`, `rim_power`, `worn`, `displacement`, `lag_addend`, `offset`, `clock`, `channel`.
+"""
+
+
+def page() -> str:
+    """The text of docs/effects.md."""
+    effects = {name: one for name, one in catalogue().items() if one.__module__.startswith("tyrefem.")}
+    families = by_family(effects)
+    parts = [INTRODUCTION, "## Catalogue\n", "| effect | family | what it is |\n|---|---|---|"]
+    for family, members in families.items():
+        parts += [f"| [{one.name}](#{one.name}) | {family} | {one.sentence} |" for one in members]
+    for members in families.values():
+        parts += [_entry(one) for one in members]
+    return "\n".join(parts) + "\n"
+
+
+def _entry(effect: type[Effect]) -> str:
+    where = DRAWN_FOR.get(effect.name, ({}, ""))[1]
+    rows = [f"| {' | '.join(COLUMNS)} |", "|" + "---|" * len(COLUMNS)]
+    rows += [
+        f"| `{row[0]}` | {' | '.join(cell.replace('|', '/') for cell in row[1:])} |" for row in parameter_rows(effect)
+    ]
+    return "\n".join(
+        [
+            f"\n## {effect.name}\n",
+            f"{effect.sentence}\n",
+            f"    {equation(effect)}\n",
+            f"Enters as {ports(effect)}. Source: {effect.source}.\n",
+            *rows,
+            f"\n```toml\n{example(effect)}\n```\n",
+            f"![Change of the readings over time](pictures/effect-{effect.name}.png)",
+            *([f"\nDrawn {where}."] if where else []),
+        ]
+    )
+
+
+def _study(name: str) -> tf.Study:
+    return tf.study(STUDY).replace({**DRAWING, **DRAWN_FOR.get(name, ({}, ""))[0]})
+
+
+def draw(effect: type[Effect], base: tf.Result) -> None:
+    """The picture of one effect's signature."""
+    from tyrefem.plotting.labels import Label, line_ends
+    from tyrefem.plotting.style import FONT, QUIET, add_axes, figure, line_style, phase_bands, png, tidy
+
+    study = _study(effect.name)
+    choice = CHOICES.get(effect.name, effect.variants(study)[-1] if effect.name == "yaw" else effect.variants(study)[0])
+    values = {
+        one.name: one.prior.text(one.prior.null + one.prior.scale, 12)
+        for one in effect.parameters()
+        if one.prior.amplitude
+    }
+    readings = study.replace({"effects": [{"name": effect.name, **choice, **values}]}).run().readings
+    change, t = readings - base.readings, readings["time_s"].to_numpy() / 60
+    drawn = figure(6.4, 2.5)
+    axes = add_axes(drawn, 0.6, 0.42, 4.0, 1.95)
+    labels = []
+    for number, name in enumerate(column for column in change.columns if column != "time_s"):
+        series = change[name].to_numpy()
+        style = {"color": QUIET, "ls": "-"} if name in ("contained-air", "rim") else line_style(number)
+        axes.plot(t, series, lw=1.3, **style)
+        labels.append(Label(name, float(t[-1]), float(series[-1]), color=style["color"]))
+    axes.set_ylabel("change [K]", fontsize=FONT)
+    axes.set_xlabel("time [min]", fontsize=FONT)
+    axes.set_xlim(0, t[-1])
+    phase_bands(axes, [(phase.name, phase.start / 60, phase.end / 60) for phase in base.phases], named=False)
+    tidy(axes)
+    line_ends(axes, labels, room=1.7)
+    PICTURES.mkdir(exist_ok=True)
+    with atomic_path(PICTURES / f"effect-{effect.name}.png") as temporary:
+        _few_colours(png(drawn)).save(temporary, format="PNG", optimize=True)
+
+
+def _few_colours(data: bytes) -> Any:
+    """The same picture with a palette: a quarter of the bytes."""
+    import io
+
+    from PIL import Image
+
+    return (
+        Image.open(io.BytesIO(data))
+        .convert("RGB")
+        .quantize(colors=96, method=Image.Quantize.MAXCOVERAGE, dither=Image.Dither.NONE)
+    )
+
+
+def main() -> None:
+    """Write the page, and the pictures unless only the text is asked for."""
+    if "--text" not in sys.argv:
+        bases: dict[str, tf.Result] = {}
+        for effect in catalogue().values():
+            changes = repr(DRAWN_FOR.get(effect.name, ({}, ""))[0])
+            if changes not in bases:
+                bases[changes] = _study(effect.name).run()
+            draw(effect, bases[changes])
+            print(effect.name, flush=True)
+    with atomic_path(PAGE) as temporary:
+        temporary.write_text(page(), encoding="utf-8")
+
+
+if __name__ == "__main__":
+    main()
