@@ -72,10 +72,17 @@ class Study:
     @functools.cached_property
     def section(self) -> Section:
         """The tyre's section, half or full as the mesh table says, worn as the study's effects say."""
-        section = self.new_section
-        for effect in self.effects:
-            section = effect.worn(section)
-        return section
+        wear = [effect for effect in self.effects if effect.overrides("worn")]
+        # Studies that share a new section share the worn one too: operators are assembled once per section.
+        known = self.new_section.__dict__.setdefault("_worn", {})
+        key = tuple((effect.name, *effect.values.items()) for effect in wear)
+        if key not in known:
+            section = self.new_section
+            for effect in wear:
+                section = effect.worn(section)
+            known[key] = section
+        worn: Section = known[key]
+        return worn
 
     @functools.cached_property
     def new_section(self) -> Section:
@@ -154,8 +161,6 @@ class Study:
             return
         if self.data["section"] == like.data["section"] and self.card.mesh.section == like.card.mesh.section:
             self.__dict__["new_section"] = like.new_section
-            if not any(effect.overrides("worn") for effect in (*self.effects, *like.effects)):
-                self.__dict__["section"] = like.section
         mine, theirs = self.data["materials"], like.data["materials"]
         self.__dict__["_known_materials"] = {
             region: like.materials[region] for region in REGIONS if mine[region] == theirs[region]

@@ -76,7 +76,8 @@ class Sensor(Card):
     """A thermocouple: ``s`` along the meridian from the crown and ``depth`` from the inner surface, or ``at = [r, z]``.
 
     ``lag`` is its first-order time constant, ``noise`` the standard deviation of a reading, ``accuracy`` that of its
-    calibration, ``position_sd`` that of its place, ``lag_sd`` that of its lag (defaults: estimates for a hand-drilled thermocouple).
+    calibration, ``position_sd`` that of its place, ``lag_sd`` that of its lag (defaults: estimates for a hand-drilled
+    thermocouple).
     """
 
     s: Annotated[float, Unit("m")] | None = None
@@ -115,8 +116,8 @@ class DiagnosisChoice(Card):
 
     ``film_sd``: relative standard deviation of the film coefficients. ``discrepancy``: standard deviation of what the
     model misses even when it is right (mesh, time steps, the shape of the strain energy), K, correlated over
-    ``correlation_time``. ``effects_expected``: prior probability that anything is missing. ``exclude``: effects that are
-    known not to be there.
+    ``correlation_time``. ``effects_expected``: prior probability that anything is missing. ``exclude``: effects known
+    not to be there.
     """
 
     film_sd: Annotated[float, Unit("1", gt=0, lt=1)] = 0.2

@@ -1,4 +1,4 @@
-"""Blind tests: hide effects in made-up data for a study's sensors and runs, and see whether the diagnosis finds them."""
+"""Blind tests: hide effects in made-up data for a study's sensors and runs, and see what the diagnosis says."""
 
 from __future__ import annotations
 

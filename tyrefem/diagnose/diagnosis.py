@@ -181,7 +181,7 @@ def diagnose(
 
 
 def unknowns_of(study: Study, measured: Iterable[str]) -> tuple[tuple[Unknown, ...], int]:
-    """Everything that a diagnosis with these sensors may fit, and how many of them, the first, belong to every model."""
+    """Everything that a diagnosis with these sensors may fit, and how many of it, the first, are in every model."""
     nuisance = (*base_unknowns(study), *sensor_unknowns(study, set(measured)))
     found = [one for each in candidates(study) for one in (*each.amplitudes, *each.presence)]
     return (*nuisance, *found, *patches(study)), len(nuisance)

@@ -116,6 +116,34 @@ class Isolability:
             found.append(tuple(self.candidates[i].key for i in sorted(group)))
         return tuple(sorted(found, key=len, reverse=True))
 
+    def to_dict(self) -> dict[str, Any]:
+        """Plain data for JSON."""
+        return {
+            "study": self.study,
+            "margin_nats": MARGIN,
+            "effects": self.table.to_dict(orient="records"),
+            "groups": [list(group) for group in self.groups],
+            "fewest_runs": [list(one) for one in self.runs],
+            "apart_nats": self.apart.round(2).tolist(),
+        }
+
+    def words(self) -> list[str]:
+        """What an engineer who plans a test wants to know."""
+        table = self.table
+        shown = table[["effect", "unit", "usual", "seen_from", "told_from", "last_rival"]]
+        can = table["identifiable_at_usual"]
+        lines = [shown.to_string(index=False, float_format="%.3g")]
+        lines.append(f"{int(can.sum())} of {len(table)} effects are identifiable at their usual strength.")
+        never = table.loc[~np.isfinite(table["seen_from"]), "effect"]
+        if len(never):
+            lines.append("These sensors and runs cannot see, at any strength: " + ", ".join(never) + ".")
+        together = [", ".join(group) for group in self.groups if len(group) > 1]
+        lines += [f"Not told apart, or not seen, at usual strength: {names}." for names in together]
+        if self.runs:
+            sets = "; ".join(" + ".join(one) for one in self.runs)
+            lines.append(f"Fewest runs that identify as much: {sets}.")
+        return lines
+
 
 def margins(linear: Linear, signal: Array, true: Members, rivals: Sequence[Members], prior: Prior) -> list[float]:
     """Nats by which ``true`` is ahead of each rival for data that are ``signal`` without noise."""
@@ -215,15 +243,3 @@ def _fewest_runs(gap: Gap, found: Sequence[Candidate], prior: Prior, smallest: A
         if enough:
             return tuple(enough)
     return ()
-
-
-def summary(found: Isolability) -> dict[str, Any]:
-    """Plain data for JSON."""
-    return {
-        "study": found.study,
-        "margin_nats": MARGIN,
-        "effects": found.table.to_dict(orient="records"),
-        "groups": [list(group) for group in found.groups],
-        "fewest_runs": [list(one) for one in found.runs],
-        "apart_nats": found.apart.round(2).tolist(),
-    }

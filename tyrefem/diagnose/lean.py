@@ -5,6 +5,7 @@ from __future__ import annotations
 import dataclasses
 from dataclasses import dataclass
 from functools import cached_property
+from itertools import pairwise
 
 import numpy as np
 from numpy.typing import NDArray
@@ -92,12 +93,12 @@ def time_grid(times: Array) -> Array:
 
 
 def on_grid(times: Array, history: Array, starts: tuple[float, ...], grid: Array, *, ends_only: bool = False) -> Array:
-    """A history at stage times (or at ends of steps only) on a grid: cubic splines within each phase, which may kink."""
+    """A history at stage times (or at ends of steps only) on a grid: cubic splines within each phase."""
     if not ends_only:
         times, history = times[::2], history[::2]
     found = np.empty((len(grid), *history.shape[1:]))
     edges = [*starts, times[-1]]
-    for start, end in zip(edges, edges[1:], strict=False):
+    for start, end in pairwise(edges):
         own = (times >= start - 1e-9) & (times <= end + 1e-9)
         inside = (grid >= start - 1e-9) & (grid <= end + 1e-9)
         if inside.any():

@@ -1,4 +1,4 @@
-"""The full model fitted to the data with a set of effects: Gauss-Newton with secant corrections, several sets at once."""
+"""The full model fitted to the data with sets of effects: Gauss-Newton with secant corrections."""
 
 from __future__ import annotations
 
@@ -20,7 +20,7 @@ Array = NDArray[np.float64]
 #: The prediction of the linear model is good enough when it misses the simulation by this much (whitened norm); far
 #: enough off to take new tangents when it misses it by the second.
 CLOSE, ASTRAY = 1.0, 6.0
-MOST_STEPS, MOST_TANGENTS = 9, 1
+FIRST_STEPS, MORE_STEPS = 4, 6
 
 
 @dataclass(frozen=True, eq=False)
@@ -89,7 +89,7 @@ class Explained:
     ----------
     members : the set. unknowns : everything fitted. fit : posterior. log_evidence : ln p(fitted data | set).
     computed : trial -> block means of the fitted model, corrected for the mesh. misfit : |r|^2 + |x/sd|^2.
-    readings : number of fitted blocks. held_out : ln p(held-out data | fitted data, set). steps : simulations per trial.
+    readings : number of fitted blocks. held_out : ln p(held-out data | fitted data, set). steps : simulations.
     """
 
     members: Members
@@ -106,6 +106,12 @@ class Explained:
     #: Linear model of the fitted trials about the fit, d = J x + e: whitened data and jacobian of ``unknowns``.
     data: Array
     jacobian: Array
+    refinement: _Refinement
+
+    @property
+    def finished(self) -> bool:
+        """Nothing is gained by going on: converged, with all shape parameters fitted."""
+        return self.converged and not self.refinement.shapes
 
     @cached_property
     def values(self) -> dict[Unknown, float]:
@@ -146,7 +152,8 @@ class _Refinement:
         self.computed = {i: gap.computed[i] for i in gap.fitted}
         self.shapes = [one for member in members for one in member.shapes]
         self.steps, self.done, self.converged = 0, False, False
-        self.tangents, self.wants_tangents = 0, False
+        #: Tangents that may still be taken, and steps.
+        self.tangents, self.limit, self.wants_tangents = 0, FIRST_STEPS, False
         self._propose()
 
     @property
@@ -181,19 +188,19 @@ class _Refinement:
         if length > 0:
             # Broyden: the smallest change of J (in units of the priors) that would have predicted this simulation.
             self.J = self.J + np.outer(missed, step / sd**2) / length
-        if self._misfit(r, self.trial) > self._misfit(self.r, self.x) and self.halved < 3 and self.steps < MOST_STEPS:
+        if self._misfit(r, self.trial) > self._misfit(self.r, self.x) and self.halved < 3 and self.steps < self.limit:
             self.halved += 1
             self.trial = self.x + 0.4 * step
             return
         self.x, self.r, self.computed = self.trial, r, computed
-        astray = float(np.linalg.norm(missed)) > ASTRAY and self.tangents < MOST_TANGENTS
-        if (self.shapes or astray) and self.steps < MOST_STEPS:
+        astray = float(np.linalg.norm(missed)) > ASTRAY
+        if (self.shapes or astray) and self.tangents > 0 and self.steps < self.limit:
             self._new_tangents()
             return
         if np.linalg.norm(missed) < CLOSE:
             self.done = self.converged = True
             self.best = fit(self.J.T @ self.J, self.J.T @ (self.r + self.J @ self.x), *self._prior())
-        elif self.steps >= MOST_STEPS:
+        elif self.steps >= self.limit:
             self.done = True
             self.best = fit(self.J.T @ self.J, self.J.T @ (self.r + self.J @ self.x), *self._prior())
         else:
@@ -204,8 +211,13 @@ class _Refinement:
         self.unknowns = [*self.unknowns, *self.shapes]
         self.x = np.concatenate([self.x, np.zeros(len(self.shapes))])
         self.shapes = []
-        self.tangents += 1
+        self.tangents -= 1
         self.wants_tangents = True
+
+    def go_on(self) -> None:
+        """Take tangents here and some more steps; for a fit that matters and has not converged."""
+        self.done, self.tangents, self.limit = False, 1, self.steps + MORE_STEPS
+        self._new_tangents()
 
     def questions(self) -> tuple[str, list[tuple[Any, ...]]]:
         """The method of the bench to ask, and with what."""
@@ -226,8 +238,21 @@ class _Refinement:
 
 
 def refined(gap: Gap, sets: Sequence[Members], tick: Callable[[], None] | None = None) -> list[Explained]:
-    """Fit every set with the full model; the simulations of all sets are asked for together."""
-    running = [_Refinement(gap, members) for members in sets]
+    """Fit every set with the full model; the simulations of all sets are asked for together.
+
+    These are first fits, in few steps: see `polished`.
+    """
+    return _run(gap, [_Refinement(gap, members) for members in sets], tick)
+
+
+def polished(gap: Gap, fits: Sequence[Explained], tick: Callable[[], None] | None = None) -> list[Explained]:
+    """First fits carried on to convergence with tangents at where they are, their shape parameters fitted too."""
+    for one in fits:
+        one.refinement.go_on()
+    return _run(gap, [one.refinement for one in fits], tick)
+
+
+def _run(gap: Gap, running: Sequence[_Refinement], tick: Callable[[], None] | None) -> list[Explained]:
     while active := [one for one in running if not one.done]:
         for method in ("predict", "jacobian"):
             asking = [one for one in active if one.questions()[0] == method]
@@ -267,6 +292,7 @@ def _explained(gap: Gap, one: _Refinement) -> Explained:
         one.converged,
         effective,
         one.J,
+        one,
     )
 
 

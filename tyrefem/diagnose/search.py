@@ -5,13 +5,17 @@ from __future__ import annotations
 import itertools
 from collections.abc import Callable, Iterable, Sequence
 
+import numpy as np
+
 from tyrefem.diagnose.evidence import Linear, Members
-from tyrefem.diagnose.refine import Explained, Gap, refined
+from tyrefem.diagnose.refine import Explained, Gap, polished, refined
 from tyrefem.diagnose.sets import Prior, screened
-from tyrefem.diagnose.unknowns import Candidate
+from tyrefem.diagnose.unknowns import Candidate, Unknown
 
 #: Sets fitted at once, and in all.
-BATCH, MOST = 4, 16
+BATCH, MOST = 4, 14
+#: Leading fits that are carried on to convergence after every batch.
+POLISHED = 2
 #: Single effects that are fitted whatever comes.
 SINGLES = 4
 #: A set whose ln(prior x evidence) is estimated so far below the best needs no full fit: when judged from the study as
@@ -27,12 +31,17 @@ class _Search:
         self.gap, self.candidates, self.prior, self.largest, self.tick = gap, candidates, prior, largest, tick
         self.order = {one: number for number, one in enumerate(candidates)}
         self.done: dict[Members, Explained] = {}
+        self.polished: set[Members] = set()
         self.linear = gap.linear(gap.fitted)
         #: Set -> (estimate of ln(prior x evidence), whether it was judged from the fit of a part).
         self.estimate: dict[Members, tuple[float, bool]] = {
             self.sorted(members): (score + self.linear.constant, False)
             for score, members in screened(self.linear, candidates, prior, min(largest, 2))
         }
+
+    def _count(self) -> None:
+        if self.tick is not None:
+            self.tick("simulating")
 
     def sorted(self, members: Iterable[Candidate]) -> Members:
         return tuple(sorted(members, key=self.order.__getitem__))
@@ -46,11 +55,28 @@ class _Search:
 
     def fit(self, sets: Iterable[Members]) -> None:
         wanted = [members for members in dict.fromkeys(sets) if members not in self.done]
-        for one in refined(self.gap, wanted, (lambda: self.tick("simulating")) if self.tick else None):
+        for one in refined(self.gap, wanted, self._count):
             self.done[self.sorted(one.members)] = one
+        self._polish()
         for members in wanted:
             if members and len(members) < self.largest and self.score(members) > self.top - FAR:
                 self._extend(members)
+
+    def _polish(self) -> None:
+        """Carry the leading fits on to convergence: their numbers decide."""
+        for _ in range(POLISHED):
+            ahead = sorted(self.done, key=self.score, reverse=True)
+            left = [
+                members
+                for members in ahead[:POLISHED]
+                if members not in self.polished and self.score(members) > self.top - FAR
+            ]
+            left = [members for members in left if not self.done[members].finished]
+            if not left:
+                return
+            for one in polished(self.gap, [self.done[members] for members in left], self._count):
+                self.done[self.sorted(one.members)] = one
+            self.polished.update(left)
 
     def _extend(self, members: Members) -> None:
         """Judge every set that adds one effect, in the linear model about the fit."""
@@ -122,14 +148,12 @@ def search(
     )
 
 
-def _about(gap: Gap, one: Explained, unknowns: Sequence[object]) -> Linear:
+def _about(gap: Gap, one: Explained, unknowns: Sequence[Unknown]) -> Linear:
     """The linear model about a fit, with the columns of further unknowns as at x = 0."""
-    import numpy as np
-
-    columns = [gap.unknowns.index(unknown) for unknown in unknowns]  # type: ignore[arg-type]
+    columns = [gap.unknowns.index(unknown) for unknown in unknowns]
     further = np.vstack([gap.whitened[i][:, columns] for i in gap.fitted])
     return Linear(
-        (*one.unknowns, *unknowns),  # type: ignore[arg-type]
+        (*one.unknowns, *unknowns),
         len(one.unknowns),
         one.data,
         np.hstack([one.jacobian, further]),

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from dataclasses import dataclass
+from itertools import pairwise
 from typing import Any
 
 import numpy as np
@@ -49,7 +50,7 @@ def backward(problem: Conduction, times: Array, initial: float) -> tuple[Array, 
     rest: list[tuple[Array, Array]] = []
     heat = balance.reservoir_capacity(state.g)
     key: tuple[int, float] | None = None
-    for i, (before, after) in enumerate(zip(times, times[1:], strict=False)):
+    for i, (before, after) in enumerate(pairwise(times)):
         h, t = after - before, after - 1e-9 * after
         now = State(u[-1], g[-1])
         jump = i == 0 or balance.stale(t, now)
@@ -83,11 +84,7 @@ def record(
     if extra:
         tyre.__dict__["acting"] = Acting(tyre, (*study.effects, *extra))
     edges = [*tyre.drive.starts, tyre.drive.end]
-    times = np.unique(
-        np.concatenate(
-            [np.linspace(a, b, int(round((b - a) / STEP)) + 1) for a, b in zip(edges, edges[1:], strict=False)]
-        )
-    )
+    times = np.unique(np.concatenate([np.linspace(a, b, round((b - a) / STEP) + 1) for a, b in pairwise(edges)]))
     values, reservoirs = backward(tyre.problem, times, tyre.drive.initial)
     section = study.section
     s, depth = section.locate(np.array(list(true_places(study).values())))

@@ -132,7 +132,8 @@ def base_unknowns(study: Study) -> tuple[Unknown, ...]:
 
 def sensor_unknowns(study: Study, measured: set[str]) -> tuple[Unknown, ...]:
     """Place, lag and offset of every sensor that was read; contained air and rim have an offset only."""
-    known, found = catalogue(), []
+    known = catalogue()
+    found: list[Unknown] = []
     for name, sensor in study.sensors.items():
         if name not in measured:
             continue
@@ -143,7 +144,7 @@ def sensor_unknowns(study: Study, measured: set[str]) -> tuple[Unknown, ...]:
             ("sensor-offset", sensor.accuracy),
         ):
             if sd > 0:
-                found += [one for one in of_effect(known[effect], choice, sd)]
+                found += of_effect(known[effect], choice, sd)
     return tuple(found)
 
 

@@ -22,7 +22,7 @@ OUTSIDE = 0.05
 
 @dataclass(frozen=True)
 class Standing:
-    """A set of effects and how it stands: ``score`` = ln(prior x evidence), ``probability`` among all, the fit if any."""
+    """A set of effects and how it stands: ``score`` = ln(prior x evidence), ``probability``, the fit if any."""
 
     members: Members
     score: float
@@ -99,8 +99,9 @@ def probability(ranked: Sequence[Standing]) -> float:
 def judge(ranked: Sequence[Standing], explained: Callable[[Members], Explained | None]) -> Judgement:
     """The verdict on sets ranked by probability.
 
-    A set is *identified* when it is part of the truth with at least 90 % and all of it with at least 50 % probability, no
-    amplitude is at a bound, the misfit is one that noise makes, and the held-out runs do not reject it. Without such a set: *no gap* if no effect is the most probable,
+    A set is *identified* when it is part of the truth with at least 90 % and all of it with at least 50 % probability,
+    no amplitude is at a bound, the misfit is one that noise makes, and the held-out runs do not reject it. Without such
+    a set: *no gap* if no effect is the most probable,
     *unexplained* if the cause is outside the catalogue or the best set does not fit, else *confounded*.
     """
     best = ranked[0]

@@ -1,0 +1,46 @@
+"""How often the diagnosis is right: blind cases on the layout of studies/hidden-effect.
+
+It has 8 histories, three runs and one that is held out.
+
+    python benchmarks/blind.py --cases 200 --seed 1 --out results/blind
+
+Prints a table for people and, as its last line, one JSON object with the rates. Interrupted, it goes on where it was.
+"""
+
+from __future__ import annotations
+
+import argparse
+import json
+import os
+import time
+from pathlib import Path
+
+import tyrefem as tf
+from tyrefem.diagnose.blind_rates import run_blind
+
+
+def main() -> None:
+    """Run and print."""
+    parser = argparse.ArgumentParser(description=__doc__)
+    parser.add_argument("--study", default="hidden-effect")
+    parser.add_argument("--cases", type=int, default=200)
+    parser.add_argument("--seed", type=int, default=1)
+    parser.add_argument("--out", type=Path, default=Path("results/blind"))
+    parser.add_argument("--workers", type=int, default=os.cpu_count() or 1)
+    given = parser.parse_args()
+    began = time.perf_counter()
+    found = run_blind(tf.study(given.study), given.cases, given.seed, given.out, given.workers)
+    for line in found.words():
+        print(line)
+    print()
+    for row in found.by_effect:
+        print(f"{row['effect']:30s} {row['cases']:3d} cases, {row['identifiable']:3d} identifiable, "
+              f"{row['named']:3d} named  {'; '.join(row['else'])}")  # fmt: skip
+    for row in found.reliability:
+        print(f"stated {row['stated']:.3f}: {row['right']} of {row['of']} right")
+    rates = {name: rate.to_dict() for name, rate in found.rates.items()}
+    print(json.dumps({"cases": len(found.rows), "seconds": time.perf_counter() - began, "rates": rates}))
+
+
+if __name__ == "__main__":
+    main()

@@ -1,0 +1,48 @@
+"""`tyrefem blind`: hide effects in made-up data for a study's sensors, and see how often the diagnosis is right."""
+
+from __future__ import annotations
+
+import os
+from pathlib import Path
+from typing import Annotated
+
+import typer
+
+from tyrefem.cli.common import JsonOption, SetOption, StudyArgument, print_json, progress, settings, writable_folder
+
+
+def blind(
+    study: StudyArgument,
+    cases: Annotated[int, typer.Option(min=1, max=10_000, help="How many cases.")] = 20,
+    seed: Annotated[int, typer.Option(min=0, help="Seed of what is hidden, and of the noise.")] = 1,
+    changes: SetOption = None,
+    out: Annotated[Path | None, typer.Option("--out", help="Folder; default: results/STUDY-blind.")] = None,
+    workers: Annotated[int | None, typer.Option(min=1, help="Processes; default: one per core.")] = None,
+    as_json: JsonOption = False,
+) -> None:
+    """Hide effects in made-up data for this study's sensors and runs, and report how often the diagnosis is right.
+
+    Finished cases are kept: the same command goes on where an interrupted one was.
+    """
+    from tyrefem.diagnose.blind_rates import run_blind
+    from tyrefem.studies import study as load
+
+    found = load(study, settings(changes))
+    folder = writable_folder(out or Path("results") / f"{found.name}-blind")
+    with progress(f"{found.name}: {cases} cases", 1.0, quiet=as_json) as step:
+        result = run_blind(found, cases, seed, folder, workers or os.cpu_count() or 1, lambda done: step(done / cases))
+    if as_json:
+        print_json(result.to_dict())
+        return
+    for line in result.words():
+        typer.echo(line)
+    typer.echo(f"results in {folder}")
+
+
+#: Place among the commands.
+ORDER = 27
+
+
+def register(app: typer.Typer) -> None:
+    """Add the command."""
+    app.command()(blind)

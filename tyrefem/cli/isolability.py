@@ -1,0 +1,52 @@
+"""`tyrefem isolability`: before any data, which missing effects a study's sensors and runs can tell apart."""
+
+from __future__ import annotations
+
+import json
+import os
+from pathlib import Path
+from typing import Annotated
+
+import typer
+
+from tyrefem.cli.common import JsonOption, SetOption, StudyArgument, print_json, progress, settings, writable_folder
+
+
+def isolability(
+    study: StudyArgument,
+    changes: SetOption = None,
+    out: Annotated[Path | None, typer.Option("--out", help="Folder; default: results/STUDY-isolability.")] = None,
+    workers: Annotated[int | None, typer.Option(min=1, help="Processes; default: one per core, at most 4.")] = None,
+    as_json: JsonOption = False,
+) -> None:
+    """Before any data: which effects the study's sensors and runs can tell apart, and how strong they must be."""
+    from tyrefem.diagnose.isolability import isolability as found_by
+    from tyrefem.diagnose.isolability_picture import picture
+    from tyrefem.output import atomic_folder, jsonable
+    from tyrefem.studies import study as load
+
+    found = load(study, settings(changes))
+    folder = writable_folder(out or Path("results") / f"{found.name}-isolability")
+    count = workers or min(os.cpu_count() or 1, 4)
+    with progress(f"{found.name}: sensitivities", 1.0, quiet=as_json) as step:
+        result = found_by(found, workers=count, progress=lambda _what, done, total: step(done / max(total, 1)))
+    with atomic_folder(folder) as temporary:
+        result.table.to_csv(temporary / "isolability.csv", index=False, lineterminator="\n")
+        text = json.dumps(jsonable(result.to_dict()), indent=1, ensure_ascii=False, allow_nan=False)
+        (temporary / "isolability.json").write_text(text + "\n", encoding="utf-8")
+        (temporary / "isolability.png").write_bytes(picture(result))
+    if as_json:
+        print_json(jsonable(result.to_dict()))
+        return
+    for line in result.words():
+        typer.echo(line)
+    typer.echo(f"results in {folder}")
+
+
+#: Place among the commands.
+ORDER = 26
+
+
+def register(app: typer.Typer) -> None:
+    """Add the command."""
+    app.command()(isolability)

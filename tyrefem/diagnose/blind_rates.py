@@ -1,0 +1,237 @@
+"""Many blind cases, side by side and resumable, and how often the diagnosis was right."""
+
+from __future__ import annotations
+
+import hashlib
+import json
+import math
+from collections.abc import Callable, Iterable, Sequence
+from concurrent.futures import ProcessPoolExecutor, as_completed
+from dataclasses import dataclass
+from functools import cached_property
+from itertools import pairwise
+from multiprocessing import get_context
+from pathlib import Path
+from typing import Any
+
+from tyrefem.diagnose.blind import cases, run_case
+from tyrefem.diagnose.diagnosis import responses, unknowns_of
+from tyrefem.diagnose.isolability import planned
+from tyrefem.diagnose.laboratory import Bench, Response, laboratory
+from tyrefem.output import atomic_path, jsonable
+from tyrefem.result import GAS
+from tyrefem.studies import Study
+
+Row = dict[str, Any]
+#: A stranger's place is right when the missing heat is found within this part of the half meridian.
+NEAR = 1.5 / 7
+#: Amplitude, in prior standard deviations, from which an effect counts as strong.
+STRONG = 1.0
+BINS = (0.5, 0.7, 0.8, 0.9, 0.95, 0.99, 1.0)
+
+
+@dataclass(frozen=True)
+class Rate:
+    """``right`` of ``of`` cases, with a 95 % Wilson interval.
+
+    >>> one = Rate(19, 20)
+    >>> round(one.value, 2), [round(x, 2) for x in one.interval]
+    (0.95, [0.76, 0.99])
+    """
+
+    right: int
+    of: int
+
+    @property
+    def value(self) -> float:
+        """Share; NaN of nothing."""
+        return self.right / self.of if self.of else math.nan
+
+    @property
+    def interval(self) -> tuple[float, float]:
+        """95 % interval (Wilson 1927)."""
+        if not self.of:
+            return 0.0, 1.0
+        n, p, z = self.of, self.value, 1.96
+        middle = (p + z * z / (2 * n)) / (1 + z * z / n)
+        half = z / (1 + z * z / n) * math.sqrt(p * (1 - p) / n + z * z / (4 * n * n))
+        return max(middle - half, 0.0), min(middle + half, 1.0)
+
+    def to_dict(self) -> Row:
+        """Plain data."""
+        low, high = self.interval
+        return {"right": self.right, "of": self.of, "rate": self.value, "low": low, "high": high}
+
+
+@dataclass(frozen=True, eq=False)
+class Blind:
+    """Finished cases of a blind test and their rates."""
+
+    study: str
+    seed: int
+    rows: tuple[Row, ...]
+
+    def _of(self, kind: str) -> list[Row]:
+        return [row for row in self.rows if row["kind"] == kind]
+
+    @cached_property
+    def rates(self) -> dict[str, Rate]:
+        """What was asked -> how often it held."""
+        one, two, none, outside = (self._of(kind) for kind in ("one", "two", "none", "outside"))
+        able = [row for row in one if row["identifiable"]]
+        able_two = [row for row in two if row["identifiable"]]
+        named = [row for row in self.rows if row["verdict"] == "identified"]
+        strong = [row for row in able if min(map(abs, row["amplitude"].values()), default=1.0) >= STRONG]
+        right = [row for row in able if _right(row)]
+        return {
+            "one effect: identifiable": _rate(one, lambda row: row["identifiable"]),
+            "identifiable: named correctly": _rate(able, _right),
+            "identifiable: true effect in the reported set": _rate(
+                able, lambda row: set(row["hidden"]) <= set(row["set"])
+            ),
+            "one effect: wrong name": _rate(one, _wrong),
+            "no effect: no gap": _rate(none, lambda row: row["verdict"] == "no gap"),
+            "outside the catalogue: confident wrong name": _rate(outside, lambda row: row["verdict"] == "identified"),
+            "outside the catalogue: unexplained": _rate(outside, lambda row: row["verdict"] == "unexplained"),
+            "outside the catalogue, unexplained: place right": _rate(
+                [row for row in outside if row["verdict"] == "unexplained"],
+                lambda row: abs(row["missing_station_m"] - row["station_m"]) <= NEAR * row["length_m"],
+            ),
+            "two effects: both named": _rate(two, _right),
+            "two identifiable effects: both named": _rate(able_two, _right),
+            "named rightly: held-out rms at most 1.2 times the noise": _rate(
+                right, lambda row: row["held_out_rms_K"]["after"] <= 1.2 * row["noise_K"]
+            ),
+            "strong and identifiable: held-out gap shrunk 3 times": _rate(
+                [row for row in strong if row["held_out_rms_K"]["before"] > 3 * row["noise_K"]], _shrunk
+            ),
+            "verdicts 'identified': right": _rate(named, _right),
+        }
+
+    @cached_property
+    def reliability(self) -> list[Row]:
+        """Stated probability against the share that was right, of the verdicts 'identified'."""
+        found = []
+        for low, high in pairwise(BINS):
+            own = [row for row in self.rows if row["verdict"] == "identified" and low < row["probability"] <= high]
+            if own:
+                mean = sum(row["probability"] for row in own) / len(own)
+                held = _rate(own, lambda row: bool(row["hidden"]) and set(row["named"]) <= set(row["hidden"]))
+                found.append({"stated": mean, **held.to_dict()})
+        return found
+
+    @cached_property
+    def by_effect(self) -> list[Row]:
+        """One row per effect (variants together): cases, identifiable, named, and what it was taken for."""
+        found: dict[str, Row] = {}
+        for row in self._of("one"):
+            name = row["hidden"][0].split(" (")[0]
+            own = found.setdefault(name, {"effect": name, "cases": 0, "identifiable": 0, "named": 0, "else": []})
+            own["cases"] += 1
+            own["identifiable"] += bool(row["identifiable"])
+            own["named"] += _right(row)
+            if row["identifiable"] and not _right(row):
+                own["else"].append(f"{row['verdict']}: {row['best']}")
+        return sorted(found.values(), key=lambda row: row["effect"])
+
+    def to_dict(self) -> Row:
+        """What ``blind.json`` holds."""
+        return {
+            "study": self.study,
+            "seed": self.seed,
+            "cases": list(self.rows),
+            "rates": {name: rate.to_dict() for name, rate in self.rates.items()},
+            "reliability": self.reliability,
+            "by_effect": self.by_effect,
+        }
+
+    def words(self) -> list[str]:
+        """A table for people."""
+        lines = []
+        for name, rate in self.rates.items():
+            low, high = rate.interval
+            share = f"{100 * rate.value:5.1f} % ({100 * low:.0f} to {100 * high:.0f})" if rate.of else "    -"
+            lines.append(f"{name:60s} {rate.right:4d} of {rate.of:4d}  {share}")
+        return lines
+
+
+def _rate(rows: Sequence[Row], holds: Callable[[Row], bool]) -> Rate:
+    return Rate(sum(1 for row in rows if holds(row)), len(rows))
+
+
+def _right(row: Row) -> bool:
+    return row["verdict"] == "identified" and set(row["named"]) == set(row["hidden"])
+
+
+def _wrong(row: Row) -> bool:
+    return row["verdict"] == "identified" and not set(row["named"]) & set(row["hidden"])
+
+
+def _shrunk(row: Row) -> bool:
+    """The gap beyond noise on held-out runs is at least three times smaller."""
+    noise = row["noise_K"]
+    before, after = (max(row["held_out_rms_K"][when] ** 2 - noise**2, 0.0) ** 0.5 for when in ("before", "after"))
+    return bool(before >= 3 * after)
+
+
+_KNOWN: list[tuple[Study, tuple[Response, ...]]] = []
+
+
+def _install(study: Study, known: tuple[Response, ...]) -> None:
+    _KNOWN[:] = [(study, known)]
+
+
+def _case(number: int, count: int, seed: int) -> Row:
+    study, known = _KNOWN[0]
+    case = cases(study, count, seed)[number]
+    row = run_case(study, case, known).to_dict()
+    plain: Row = jsonable({**row, "station_m": case.station, "length_m": study.section.line.length})
+    return plain
+
+
+def run_blind(
+    study: Study, count: int, seed: int, folder: Path, workers: int = 1, tick: Callable[[int], None] | None = None
+) -> Blind:
+    """Run cases side by side; every finished one is kept in ``folder``/cases, and ``folder``/blind.json at the end.
+
+    Cases already there (same study, count and seed) are not run again.
+    """
+    text = json.dumps([jsonable(dict(study.data)), count, seed], sort_keys=True, default=str)
+    tag = hashlib.sha256(text.encode()).hexdigest()[:12]
+    store = folder / "cases"
+    store.mkdir(parents=True, exist_ok=True)
+    rows: dict[int, Row] = {}
+    for path in store.glob(f"{tag}-*.json"):
+        rows[int(path.stem.split("-")[1])] = json.loads(path.read_text(encoding="utf-8"))
+    left = [number for number in range(count) if number not in rows]
+    if left:
+        with laboratory(Bench(study, planned(study)), workers) as lab:
+            known = responses(lab, unknowns_of(study, [*study.sensors, GAS])[0])
+        for number, row in _answers(study, known, left, count, seed, workers):
+            rows[number] = row
+            with atomic_path(store / f"{tag}-{number:05d}.json") as temporary:
+                temporary.write_text(json.dumps(row), encoding="utf-8")
+            if tick:
+                tick(len(rows))
+    found = Blind(study.name, seed, tuple(rows[number] for number in sorted(rows)))
+    with atomic_path(folder / "blind.json") as temporary:
+        temporary.write_text(json.dumps(jsonable(found.to_dict()), indent=1) + "\n", encoding="utf-8")
+    return found
+
+
+def _answers(
+    study: Study, known: tuple[Response, ...], numbers: Sequence[int], count: int, seed: int, workers: int
+) -> Iterable[tuple[int, Row]]:
+    if workers <= 1:
+        _install(study, known)
+        for number in numbers:
+            yield number, _case(number, count, seed)
+        return
+    with ProcessPoolExecutor(workers, get_context("spawn"), _install, (study, known)) as pool:
+        futures = {pool.submit(_case, number, count, seed): number for number in numbers}
+        try:
+            for future in as_completed(futures):
+                yield futures[future], future.result()
+        except BaseException:
+            pool.shutdown(wait=False, cancel_futures=True)
+            raise

@@ -1,0 +1,38 @@
+"""The picture of an isolability: who is told from whom."""
+
+from __future__ import annotations
+
+import io
+
+import numpy as np
+
+from tyrefem.diagnose.isolability import MARGIN, Isolability
+
+
+def picture(found: Isolability) -> bytes:
+    """PNG: nats by which each effect at its usual strength is ahead of each rival; variants of a swap are left out."""
+    from matplotlib.backends.backend_agg import FigureCanvasAgg
+    from matplotlib.colors import BoundaryNorm
+    from matplotlib.figure import Figure
+
+    kept = [i for i, one in enumerate(found.candidates) if one.name != "swapped-channels"]
+    names = [found.candidates[i].key for i in kept]
+    values = found.apart[np.ix_(kept, kept)].copy()
+    np.fill_diagonal(values, np.nan)
+    size = 2.6 + 0.19 * len(names)
+    figure = Figure(figsize=(size + 1.2, size), layout="constrained")
+    FigureCanvasAgg(figure)
+    axes = figure.subplots()
+    levels = [-20.0, 0.0, MARGIN / 2, MARGIN, 30.0, 100.0, 1e6]
+    image = axes.imshow(values, cmap="RdYlGn", norm=BoundaryNorm(levels, 256))
+    axes.set_xticks(range(len(names)), names, rotation=90, fontsize=6)
+    axes.set_yticks(range(len(names)), names, fontsize=6)
+    axes.set_xlabel("rival, fitted to it", fontsize=8)
+    axes.set_ylabel("hidden effect, at its usual strength", fontsize=8)
+    axes.set_title(f"{found.study}: lead of the truth over a rival (above {MARGIN:g} nats: told apart)", fontsize=9)
+    bar = figure.colorbar(image, ax=axes, shrink=0.7, ticks=levels[:-1])
+    bar.set_label("lead, nats", fontsize=8)
+    bar.ax.tick_params(labelsize=7)
+    buffer = io.BytesIO()
+    figure.savefig(buffer, format="png", dpi=150)
+    return buffer.getvalue()
