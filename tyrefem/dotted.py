@@ -121,19 +121,19 @@ def value_at(data: Mapping[str, Any], key: str, near: Any = None) -> Any:
     return place
 
 
-def scaled(value: Any, factor: float) -> Any:
-    """A quantity as written, its number times a factor.
+def scaled(value: Any, factor: float, significant: int | None = None) -> Any:
+    """A quantity as written, its number times a factor; rounded to so many significant digits, if asked.
 
-    >>> scaled("20 mph", 1.5)
-    '30 mph'
+    >>> scaled("20 mph", 1.5), scaled("20 mph", 1.23456, significant=3), scaled(0.1, 1.23456, significant=3)
+    ('30 mph', '24.7 mph', 0.123)
     """
     if isinstance(value, bool):
         raise InputError(f"{value!r} is not a number that can be scaled")
     if isinstance(value, int | float):
-        return value * factor
+        return value * factor if significant is None else float(f"{value * factor:.{significant}g}")
     if isinstance(value, list):
-        return [scaled(entry, factor) for entry in value]
+        return [scaled(entry, factor, significant) for entry in value]
     match = _AMOUNT.match(value) if isinstance(value, str) else None
     if match is None:
         raise InputError(f"{value!r} is not a number that can be scaled")
-    return f"{float(match[1]) * factor:.12g}{match[2]}"
+    return f"{float(match[1]) * factor:.{significant or 12}g}{match[2]}"

@@ -21,6 +21,7 @@ if TYPE_CHECKING:
 
     from tyrefem.campaign import Campaign
     from tyrefem.compare import Comparison
+    from tyrefem.diagnose import Diagnosis
     from tyrefem.effects import Effect
     from tyrefem.meshing import TyreMesh
     from tyrefem.result import Result
@@ -296,6 +297,15 @@ class Study:
         from tyrefem.compare import compare
 
         return compare(self, table, result, **options)
+
+    def diagnose(self, table: Any = None, **options: Any) -> Diagnosis:
+        """What the model is missing, judged by measured tables: the one given, or the study's own.
+
+        Options: see `tyrefem.diagnose.diagnose`.
+        """
+        from tyrefem.diagnose import diagnose
+
+        return diagnose(self, table, **options)
 
     @property
     def is_campaign(self) -> bool:

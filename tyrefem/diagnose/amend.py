@@ -5,12 +5,13 @@ from __future__ import annotations
 import math
 from collections.abc import Sequence
 from dataclasses import dataclass
+from typing import Any
 
 import numpy as np
 
 from tyrefem.diagnose.refine import Explained, Gap
 from tyrefem.diagnose.unknowns import Unknown, with_values
-from tyrefem.dotted import scaled
+from tyrefem.dotted import scaled, value_at
 from tyrefem.studies import Study
 
 #: A correction of a base number or a sensor that moves no block mean by this much is left out, K.
@@ -57,14 +58,16 @@ def amended(study: Study, change: Sequence[Change]) -> Study:
     A factor on a number of the drive applies to the drives of the ``[[measured]]`` runs too.
     """
     totals = rounded(change)
-    new = with_values(study, totals)
+    new = with_values(study, {unknown: x for unknown, x in totals.items() if unknown.effect})
+    base = [one for one in change if not one.unknown.effect]
+    new = new.replace({one.unknown.key: _restated(study, one) for one in base}) if base else new
     runs = [dict(entry) for entry in new.data.get("measured", [])]
     for unknown, x in totals.items():
         if unknown.effect is None and unknown.key.startswith("drive."):
             key = unknown.key.removeprefix("drive.")
             for entry in runs:
                 if key in entry.get("drive", {}):
-                    entry["drive"] = {**entry["drive"], key: scaled(entry["drive"][key], math.exp(x))}
+                    entry["drive"] = {**entry["drive"], key: scaled(entry["drive"][key], math.exp(x), 5)}
     if runs != new.data.get("measured", []):
         new = new.replace({"measured": runs})
     entries = [dict(entry) for entry in new.data.get("effects", [])]
@@ -90,6 +93,13 @@ def amended(study: Study, change: Sequence[Change]) -> Study:
         new = new.replace({"effects": entries})
     title = study.title if study.title.endswith("(amended)") else f"{study.title} (amended)"
     return new.replace({"title": title}) if change else new
+
+
+def _restated(study: Study, one: Change) -> Any:
+    """A base number as the study writes it, changed, to the digits that a hundredth of its standard deviation has."""
+    written = value_at(study.data, one.unknown.key, study.folder)
+    digits = max(3, int(np.ceil(-np.log10(max(one.sd, 1e-6) / 100))) + 1)
+    return scaled(written, one.unknown.value(one.x), digits)
 
 
 def _rounded(x: float, sd: float) -> float:

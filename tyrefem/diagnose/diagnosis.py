@@ -12,9 +12,10 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 
 from tyrefem.compare.experiment import Table, experiments
-from tyrefem.diagnose.amend import Change, amended, changes, rounded
+from tyrefem.diagnose.amend import Change, amended, changes
 from tyrefem.diagnose.laboratory import Bench, Laboratory, Response, laboratory
 from tyrefem.diagnose.missing import MissingHeat, missing_heat, patches
+from tyrefem.diagnose.progress_store import ProgressStore
 from tyrefem.diagnose.refine import Explained, Gap, refined
 from tyrefem.diagnose.search import search
 from tyrefem.diagnose.sets import Prior
@@ -71,8 +72,13 @@ class Diagnosis:
 
     @functools.cached_property
     def where_after(self) -> pd.DataFrame:
-        """The same for the fitted model."""
-        return gap_table(self.gap, self.after)
+        """The same for the amended study, at the same stretches of time."""
+        return gap_table(self.gap, self.after, self.before)
+
+    @functools.cached_property
+    def prior(self) -> Prior:
+        """ln of the prior probability of a set."""
+        return Prior(self.candidates, self.original.card.diagnosis.effects_expected)
 
     def rms(self, *, after: bool, held_out: bool) -> float:
         """Root mean square of measured - computed, K."""
@@ -110,6 +116,7 @@ def diagnose(
     progress: Tick | None = None,
     known: Sequence[Response] | None = None,
     rerun: bool = True,
+    store: ProgressStore | None = None,
 ) -> Diagnosis:
     """Find where study and data disagree, name the missing effect, add it and show what is left.
 
@@ -120,6 +127,7 @@ def diagnose(
     largest : effects at most in a set. workers : processes. progress : called with (what is done, number, of how many).
     known : responses of the runs' drives already at hand (see `responses`), for many diagnoses of one layout.
     rerun : run the amended study on its own mesh at the end; else ``after`` is the fit's own prediction.
+    store : where finished simulations are kept, so that an interrupted diagnosis takes them up again.
 
     Raises
     ------
@@ -131,7 +139,10 @@ def diagnose(
     trials = tuple(one for one in (trial(each, study) for each in planned) if one.series)
     if not any(not one.hold_out for one in trials):
         raise InputError("no reading within the simulated drive in any run that is not held out", file=study.file)
-    with laboratory(Bench(study, trials), workers) as lab:
+    bench = Bench(study, trials)
+    if store is not None and store.open(bench):
+        tick(f"taking up {store.taken_up} simulations", 0, 0)
+    with laboratory(bench, workers, store) as lab:
         gap = gap_of(lab, tick, known)
         found = candidates(study)
         prior = Prior(found, study.card.diagnosis.effects_expected)
@@ -167,7 +178,9 @@ def diagnose(
         before = {i: gap.corrected(i, gap.computed[i]) for i in range(len(trials))}
         after = dict(best.computed)
         if rerun:
-            after = dict(enumerate(lab.ask("full", [(i, rounded(change)) for i in range(len(trials))])))
+            after = dict(
+                enumerate(lab.ask("full", [(i, amended(bench.driven(study, i), change)) for i in range(len(trials))]))
+            )
         further: Mapping[str, Any] = {}
         if judgement.verdict == "confounded":
             from tyrefem.diagnose.experiment import next_experiment
@@ -198,7 +211,11 @@ def responses(lab: Laboratory, unknowns: tuple[Unknown, ...], tick: Tick | None 
         if tick:
             tick("sensitivities", done, count)
 
-    return tuple(lab.ask("response", [(i, unknowns) for i in range(count)], step))
+    sensors = lab.bench.sensors
+    return tuple(
+        Response(unknowns, times, *(dict(zip(sensors, each, strict=True)) for each in stacks))
+        for times, *stacks in lab.ask("response", [(i, unknowns) for i in range(count)], step)
+    )
 
 
 def gap_of(lab: Laboratory, tick: Tick | None = None, known: Sequence[Response] | None = None) -> Gap:
@@ -211,4 +228,4 @@ def gap_of(lab: Laboratory, tick: Tick | None = None, known: Sequence[Response] 
     computed, correction, jacobians = zip(
         *(one.blocks(each) for one, each in zip(found, trials, strict=True)), strict=True
     )
-    return Gap(lab, unknowns, nuisance, correction, computed, jacobians)
+    return Gap(lab, unknowns, nuisance, correction, computed, jacobians, tuple(found))

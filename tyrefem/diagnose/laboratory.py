@@ -3,17 +3,23 @@
 from __future__ import annotations
 
 import functools
+import os
+import signal
 from collections.abc import Callable, Iterator, Mapping, Sequence
-from concurrent.futures import Executor, ProcessPoolExecutor
+from concurrent.futures import Executor, ProcessPoolExecutor, as_completed
 from contextlib import contextmanager
 from dataclasses import dataclass
+from multiprocessing import active_children, get_context
 from typing import Any
 
 import numpy as np
 from numpy.typing import NDArray
+from threadpoolctl import threadpool_limits
 
+from tyrefem.boundaries.rim import Lumped
 from tyrefem.conduction.tangent import Perturbed, tangents
 from tyrefem.diagnose.lean import Lean, lean
+from tyrefem.diagnose.progress_store import ProgressStore
 from tyrefem.diagnose.trials import Trial
 from tyrefem.diagnose.unknowns import Unknown, with_values
 from tyrefem.result import GAS, RIM, Result
@@ -99,23 +105,27 @@ class Bench:
             [one.sampled(times, np.asarray(readings[one.sensor], dtype=float)) for one in self.trials[number].series]
         )
 
-    def full(self, number: int, values: Values) -> Array:
-        """Block means of a trial from a run with error control on the study's own mesh."""
-        readings = run(with_values(self.driven(self.study, number), values)).readings
+    def full(self, number: int, study: Study) -> Array:
+        """Block means of a trial from a run of a study (at the trial's drive) with error control on its own mesh."""
+        readings = run(study).readings
         times = readings["time_s"].to_numpy(dtype=float)
         return self.blocks(number, times, {str(name): readings[name] for name in readings})
 
-    def response(self, number: int, unknowns: Sequence[Unknown]) -> Response:
-        """How all sensors respond to the unknowns at a trial's drive."""
+    @property
+    def sensors(self) -> tuple[str, ...]:
+        """Everything that can be read: the study's sensors, the contained air, a lumped rim."""
+        lumped = isinstance(self.study.card.boundaries.rim, Lumped)
+        return (*self.study.sensors, GAS, RIM) if lumped else (*self.study.sensors, GAS)
+
+    def response(self, number: int, unknowns: Sequence[Unknown]) -> tuple[Array, Array, Array, Array]:
+        """What a `Response` is made of: times, and by sensor readings, correction and slopes, stacked."""
         base = self.base(number)
         fine = run(self.driven(self.study, number)).readings
         times = fine["time_s"].to_numpy(dtype=float)
-        sensors = list(base.readings)
-        correction = {
-            one: np.interp(base.grid, times, fine[one].to_numpy(dtype=float)) - base.readings[one] for one in sensors
-        }
-        slopes = self._slopes(base, base.study, unknowns, sensors, {})
-        return Response(tuple(unknowns), base.grid, base.readings, correction, slopes)
+        readings = np.array([base.readings[one] for one in self.sensors])
+        exact = np.array([np.interp(base.grid, times, fine[one].to_numpy(dtype=float)) for one in self.sensors])
+        slopes = self._slopes(base, base.study, unknowns, self.sensors, {})
+        return base.grid, readings, exact - readings, np.array([slopes[one] for one in self.sensors])
 
     def jacobian(self, number: int, unknowns: Sequence[Unknown], at: Values) -> Array:
         """(n_blocks, n_unknowns): d(block mean)/dx with unknowns at ``at``."""
@@ -191,7 +201,10 @@ _BENCH: list[Bench] = []
 
 
 def _install(bench: Bench) -> None:
+    """Begin a worker: one thread for linear algebra, and the same Ctrl-C that stops its parent ends it silently."""
     _BENCH[:] = [bench]
+    threadpool_limits(1, user_api="blas")
+    signal.signal(signal.SIGINT, lambda *_: os._exit(130))
 
 
 def _task(name: str, arguments: tuple[Any, ...]) -> Any:
@@ -200,38 +213,54 @@ def _task(name: str, arguments: tuple[Any, ...]) -> Any:
 
 @dataclass(frozen=True, eq=False)
 class Laboratory:
-    """Simulations for a bench, side by side if it has workers. Results come in the order of the questions."""
+    """Simulations for a bench, side by side if it has workers. Results come in the order of the questions.
+
+    What ``store`` knows from an interrupted diagnosis is not simulated again.
+    """
 
     bench: Bench
     pool: Executor | None = None
+    store: ProgressStore | None = None
 
     def ask(self, name: str, questions: Sequence[tuple[Any, ...]], tick: Callable[[], None] | None = None) -> list[Any]:
         """The answers of a method of `Bench` to several questions (arguments)."""
-        if self.pool is None:
-            found = []
-            for one in questions:
-                found.append(getattr(self.bench, name)(*one))
-                if tick:
-                    tick()
-            return found
-        futures = [self.pool.submit(_task, name, one) for one in questions]
-        found = []
-        for future in futures:
-            found.append(future.result())
+        found = [self.store.known(name, one) if self.store else None for one in questions]
+        open_ones = [number for number, answer in enumerate(found) if answer is None]
+        for _ in range(len(found) - len(open_ones)):
+            if tick:
+                tick()
+        for number, answer in self._answers(name, {number: questions[number] for number in open_ones}):
+            found[number] = answer
+            if self.store:
+                self.store.keep(name, questions[number], answer)
             if tick:
                 tick()
         return found
 
+    def _answers(self, name: str, questions: Mapping[int, tuple[Any, ...]]) -> Iterator[tuple[int, Any]]:
+        """Answers as they are ready, with their questions' numbers."""
+        if self.pool is None:
+            for number, one in questions.items():
+                yield number, getattr(self.bench, name)(*one)
+            return
+        futures = {self.pool.submit(_task, name, one): number for number, one in questions.items()}
+        for future in as_completed(futures):
+            yield futures[future], future.result()
+
 
 @contextmanager
-def laboratory(bench: Bench, workers: int = 1) -> Iterator[Laboratory]:
+def laboratory(bench: Bench, workers: int = 1, store: ProgressStore | None = None) -> Iterator[Laboratory]:
     """A laboratory with so many processes; 1: in this one."""
     if workers <= 1:
-        yield Laboratory(bench)
+        yield Laboratory(bench, store=store)
         return
-    with ProcessPoolExecutor(workers, initializer=_install, initargs=(bench,)) as pool:
+    before = set(active_children())
+    with ProcessPoolExecutor(workers, mp_context=get_context("spawn"), initializer=_install, initargs=(bench,)) as pool:
         try:
-            yield Laboratory(bench, pool)
+            yield Laboratory(bench, pool, store)
         except BaseException:
+            # Nobody wants the simulations that are still running.
             pool.shutdown(wait=False, cancel_futures=True)
+            for worker in set(active_children()) - before:
+                worker.terminate()
             raise

@@ -13,7 +13,7 @@ from scipy.stats import chi2
 
 from tyrefem.diagnose.evidence import Linear, Members
 from tyrefem.diagnose.gauss import Fit, fit
-from tyrefem.diagnose.laboratory import Laboratory
+from tyrefem.diagnose.laboratory import Laboratory, Response
 from tyrefem.diagnose.unknowns import Unknown
 
 Array = NDArray[np.float64]
@@ -31,6 +31,7 @@ class Gap:
     ----------
     lab : simulates. unknowns : nuisance first. nuisance : how many belong to every model.
     correction : per trial, what the study's own mesh adds to the coarse one. jacobians : per trial (n_blocks, k).
+    responses : what these were sampled from; of use for other data at the same drives.
     """
 
     lab: Laboratory
@@ -39,6 +40,7 @@ class Gap:
     correction: tuple[Array, ...]
     computed: tuple[Array, ...]
     jacobians: tuple[Array, ...]
+    responses: tuple[Response, ...] = ()
 
     @property
     def fitted(self) -> list[int]:

@@ -17,13 +17,15 @@ if TYPE_CHECKING:
 Array = NDArray[np.float64]
 #: A sensor is on its plateau where it changes by less than this part of its fastest rate (a convention).
 SLOW = 0.1
+#: A history that changes by less than this is a plateau, K.
+FLAT = 0.1
 STRETCHES = ("heating", "plateau", "cooling")
 
 
 def stretches(series: Series, computed: Array) -> NDArray[np.object_]:
     """Heating, plateau or cooling for every block, by the slope of the computed history (n_blocks,)."""
     names = np.full(len(computed), "plateau", dtype=object)
-    if len(computed) < 2:
+    if len(computed) < 2 or np.ptp(computed) < FLAT:
         return names
     slope = np.gradient(computed, series.block_times)
     fastest = np.abs(slope).max()
@@ -32,7 +34,7 @@ def stretches(series: Series, computed: Array) -> NDArray[np.object_]:
     return names
 
 
-def gap_table(gap: Gap, computed: Mapping[int, Array]) -> pd.DataFrame:
+def gap_table(gap: Gap, computed: Mapping[int, Array], like: Mapping[int, Array] | None = None) -> pd.DataFrame:
     """One row per run, sensor and stretch: mean and rms of measured - computed, K, and how surely it is not nothing.
 
     ``sigma`` is the mean over its standard deviation from noise, discrepancy (both with their correlation in time),
@@ -41,6 +43,7 @@ def gap_table(gap: Gap, computed: Mapping[int, Array]) -> pd.DataFrame:
     Parameters
     ----------
     computed : trial -> block means to hold against the data, e.g. the study's own.
+    like : trial -> block means whose slope tells the stretches apart; default: ``computed``.
     """
     import pandas as pd
 
@@ -54,7 +57,7 @@ def gap_table(gap: Gap, computed: Mapping[int, Array]) -> pd.DataFrame:
             residual = (measured - computed[number])[place]
             J = gap.jacobians[number][place, : gap.nuisance]
             covariance = one.covariance + (J * prior**2) @ J.T
-            kinds = stretches(one, computed[number][place])
+            kinds = stretches(one, (like or computed)[number][place])
             for kind in STRETCHES:
                 mask = kinds == kind
                 if not mask.any():
@@ -82,8 +85,8 @@ def _speed(drive: object, times: Array) -> float:
     return float(np.mean([drive.value("speed", t) or 0.0 for t in times]))  # type: ignore[attr-defined]
 
 
-def rms(gap: Gap, computed: Mapping[int, Array], trials: list[int]) -> float:
-    """Root mean square of measured - computed over the readings of some trials, K; NaN without any.
+def rms(gap: Gap, computed: Mapping[int, Array], trials: list[int], sensor: str | None = None) -> float:
+    """Root mean square of measured - computed over the readings of some trials (of one sensor), K; NaN without any.
 
     Block means stand for their readings, so that the noise within a block is added to what the means show.
     """
@@ -91,6 +94,8 @@ def rms(gap: Gap, computed: Mapping[int, Array], trials: list[int]) -> float:
     for number in trials:
         trial = gap.lab.bench.trials[number]
         for one in trial.series:
+            if sensor not in (None, one.sensor):
+                continue
             place = trial.parts()[one.sensor]
             residual = trial.measured[place] - computed[number][place]
             within = one.measured - np.repeat(one.block_means(one.measured), one.sizes.astype(int))

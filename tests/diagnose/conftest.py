@@ -1,0 +1,54 @@
+"""One small case for every test: a hot road is hidden, and the diagnosis was interrupted once."""
+
+from __future__ import annotations
+
+import shutil
+from collections.abc import Iterator
+from pathlib import Path
+from typing import Any
+
+import pytest
+from hidden import FINISHED, WARMER, Case, measure, study
+
+from tyrefem.diagnose import search
+from tyrefem.diagnose.laboratory import Bench
+from tyrefem.diagnose.progress_store import ProgressStore
+
+
+@pytest.fixture(scope="session", autouse=True)
+def one_at_a_time() -> Iterator[None]:
+    """One set is fitted at a time: the best is clear here, so that its rivals need no fit, and the test is short."""
+    with pytest.MonkeyPatch.context() as patch:
+        patch.setattr(search, "BATCH", 1)
+        yield
+
+
+@pytest.fixture(scope="session")
+def case(one_at_a_time: None, tmp_path_factory: pytest.TempPathFactory) -> Case:
+    """Hot road, three runs, one of them held out."""
+    folder = tmp_path_factory.mktemp("hidden")
+    owner = study(folder / "study")
+    measure(owner, [{"name": "hot-road", "warmer_by": f"{WARMER} delta_degC"}])
+    computed: list[int] = []
+    response = Bench.response
+
+    def spied(bench: Bench, number: int, unknowns: Any) -> Any:
+        computed.append(number)
+        return response(bench, number, unknowns)
+
+    def interrupted(what: str, done: int, total: int) -> None:
+        if what == "sensitivities" and done == FINISHED:
+            raise KeyboardInterrupt
+
+    store = ProgressStore(folder / "progress")
+    with pytest.MonkeyPatch.context() as patch:
+        patch.setattr(Bench, "response", spied)
+        with pytest.raises(KeyboardInterrupt):
+            owner.diagnose(largest=1, store=store, progress=interrupted)
+        first = len(computed)
+        diagnosis = owner.diagnose(largest=1, store=store)
+    taken_up = store.taken_up
+    kept = Path(shutil.copytree(folder / "progress", folder / "kept"))
+    store.clear()
+    diagnosis.save(folder / "out")
+    return Case(owner, diagnosis, folder / "out", computed[:first], computed[first:], kept, taken_up)

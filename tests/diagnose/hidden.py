@@ -1,0 +1,80 @@
+"""A study with three thermocouples and short runs, and measurements that another mesh and a hidden effect made."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+import pandas as pd
+import tomli_w
+
+import tyrefem as tf
+from tyrefem.diagnose import Diagnosis
+from tyrefem.effects import catalogue
+
+#: Few rivals make a short test: all of them heat or cool the tread, or move a reading.
+RIVALS = {"hot-road", "sun", "sensor-offset"}
+RUNS: dict[str, dict[str, Any]] = {
+    "slow": {},
+    "loaded": {"load": "3600 lbf", "pressure": "110 psi"},
+    "fast": {"speed": "30 mph"},
+}
+HELD_OUT = "fast"
+NOISE, END = 0.5, 160.0
+#: What is hidden in the measurements, K; trials whose sensitivities are finished when the diagnosis is interrupted.
+WARMER, FINISHED = 25.0, 2
+
+
+@dataclass(frozen=True)
+class Case:
+    """A diagnosis, its folder, the trials whose sensitivities each of the two tries computed, and what was kept."""
+
+    study: tf.Study
+    diagnosis: Diagnosis
+    folder: Path
+    first: list[int]
+    second: list[int]
+    kept: Path
+    taken_up: int
+
+
+def study(folder: Path) -> tf.Study:
+    """The study as its owner wrote it, saved in a folder."""
+    changes = {
+        "title": "Three thermocouples",
+        "drive": {
+            "speed": "20 mph", "load": "2700 lbf", "pressure": "83 psi", "ambient": "25 degC", "duration": f"{END} s",
+        },
+        "mesh.size": "4 mm",
+        "sensors": {
+            "crown-outer": {"s": "0.33 in", "depth": "0.63 in", "lag": "2 s"},
+            "shoulder-inner": {"s": "2.00 in", "depth": "0.07 in", "lag": "2 s"},
+            "sidewall-outer": {"s": "3.95 in", "depth": "0.28 in", "lag": "2 s"},
+        },
+        "diagnosis.exclude": sorted(name for name in catalogue() if name not in RIVALS),
+        "measured": [
+            {"table": f"{name}.csv", "drive": drive, "hold_out": name == HELD_OUT} for name, drive in RUNS.items()
+        ],
+    }  # fmt: skip
+    base = tf.study("example-validation").replace(changes)
+    folder.mkdir(parents=True, exist_ok=True)
+    file = folder / "study.toml"
+    file.write_text(tomli_w.dumps(dict(base.data)), encoding="utf-8")
+    return tf.study(file)
+
+
+def measure(owner: tf.Study, effects: list[dict[str, Any]], seed: int = 11) -> None:
+    """Write the tables: truth on a finer mesh, with hidden effects and noise."""
+    rng = np.random.default_rng(seed)
+    truth = owner.replace({"mesh.size": "3 mm", "effects": effects, "measured": []})
+    assert owner.folder is not None
+    for name, drive in RUNS.items():
+        readings = truth.with_drive(drive).run().readings
+        times = np.arange(0.0, END + 1.0, 3.0)
+        columns = {"time [s]": times}
+        for sensor in owner.sensors:
+            computed = np.interp(times, readings["time_s"], readings[sensor])
+            columns[f"{sensor} [degC]"] = np.round(computed + NOISE * rng.normal(size=len(times)), 2)
+        pd.DataFrame(columns).to_csv(owner.folder / f"{name}.csv", index=False)

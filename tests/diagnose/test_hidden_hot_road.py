@@ -1,0 +1,216 @@
+"""A hidden hot road: named, added, and the gap shrinks on a run that no fit has seen."""
+
+from __future__ import annotations
+
+import json
+import shutil
+import subprocess
+import sys
+from pathlib import Path
+
+import numpy as np
+import pandas as pd
+import pytest
+from hidden import FINISHED, HELD_OUT, NOISE, RUNS, WARMER, Case
+
+import tyrefem as tf
+from tyrefem.cli import main
+from tyrefem.diagnose.laboratory import Bench
+from tyrefem.diagnose.progress_store import ProgressStore, key_of
+from tyrefem.measured import MeasuredRun
+
+
+def test_the_hidden_effect_is_named_with_its_size(case: Case) -> None:
+    d = case.diagnosis
+    assert d.verdict == "identified"
+    assert [one.name for one in d.best.members] == ["hot-road"]
+    amplitude = d.best.members[0].amplitudes[0]
+    assert abs(d.best.values[amplitude] - WARMER) < 4 * d.best.sd[amplitude]
+    assert d.best.sd[amplitude] < 0.4 * WARMER
+
+
+def test_the_gap_shrinks_to_the_noise_on_the_run_no_fit_has_seen(case: Case) -> None:
+    d = case.diagnosis
+    before, after = (d.rms(after=after, held_out=True) for after in (False, True))
+    assert before > 3 * after
+    assert after < 1.2 * NOISE
+    assert d.rms(after=True, held_out=False) == pytest.approx(NOISE, rel=0.15)
+
+
+def test_verdict_json_says_what_the_diagnosis_found(case: Case) -> None:
+    said = json.loads((case.folder / "verdict.json").read_text(encoding="utf-8"))
+    d = case.diagnosis
+    assert said["verdict"] == "identified"
+    (effect,) = said["effects"]
+    assert effect["name"] == "hot-road"
+    assert 0.9 < effect["probability"] <= 1.0
+    amplitude = d.best.members[0].amplitudes[0]
+    assert effect["parameters"] == {
+        "warmer_by": {"value": d.best.values[amplitude], "sd": d.best.sd[amplitude], "unit": "delta_degC"}
+    }
+    assert said["candidates"][0]["name"] == "hot-road"
+    assert len(said["candidates"]) == len(d.candidates)
+    for row in said["candidates"]:
+        assert {"name", "variant", "probability", "log_evidence", "confounded_with"} <= set(row)
+    # Evidence is a likelihood of the same data: the true effect beats no effect by far, and every rival alone.
+    gains = [row["log_evidence_gain"] for row in said["candidates"]]
+    assert gains[0] > 50
+    assert gains[0] == max(gains)
+    assert said["candidates"][0]["rms_K"] < 1.2 * NOISE
+    for state, after in (("before", False), ("after", True)):
+        assert said["gap"][state]["rms_K"] == pytest.approx(d.rms(after=after, held_out=False))
+        assert said["gap"][state]["held_out_rms_K"] == pytest.approx(d.rms(after=after, held_out=True))
+    assert said["gap"]["noise_K"] == pytest.approx(NOISE)
+    # The road heats the tread: the sensor next to it is where the study fails most.
+    assert said["where"]["sensor"] == "crown-outer"
+    assert said["where"]["region"] == "tread"
+    assert said["where"]["phase"] in ("heating", "plateau", "cooling")
+    assert said["where"]["run"] in RUNS
+    assert said["next_experiment"] == {}
+    assert said["missing_heat"] is None
+    assert said["versions"]["tyrefem"] == tf.__version__
+    assert said["input"]["drive"]["speed"] == "20 mph"
+    assert {run["run"]: run["hold_out"] for run in said["runs"]} == {name: name == HELD_OUT for name in RUNS}
+    assert sum(row["probability"] for row in said["sets"]) == pytest.approx(1.0, abs=1e-6)
+
+
+def test_the_amended_study_runs_as_it_is_and_gives_what_was_shown(case: Case) -> None:
+    said = json.loads((case.folder / "verdict.json").read_text(encoding="utf-8"))
+    amended = tf.study(case.folder / said["amended_study"])
+    assert amended.effects[0].name == "hot-road"
+    assert amended.title.endswith("(amended)")
+    entry = amended.data["effects"][0]
+    assert "slow, loaded" in entry["from"]
+    assert entry["sd"]["warmer_by"].endswith("delta_degC")
+    readings = amended.with_drive(RUNS[HELD_OUT]).run().readings
+    number = list(RUNS).index(HELD_OUT)
+    trial = case.diagnosis.gap.lab.bench.trials[number]
+    computed = np.concatenate([one.sampled(readings["time_s"], readings[one.sensor]) for one in trial.series])
+    np.testing.assert_allclose(computed, case.diagnosis.after[number], atol=1e-9)
+    table = pd.read_csv(case.folder / "histories.csv").query("run == @HELD_OUT")
+    np.testing.assert_allclose(table["amended_degC"], computed, atol=1e-9)
+
+
+def test_the_difference_is_readable_and_only_what_was_found(case: Case) -> None:
+    lines = (case.folder / "difference.txt").read_text(encoding="utf-8").splitlines()
+    added = [line[1:] for line in lines[2:] if line.startswith("+")]
+    removed = [line[1:] for line in lines[2:] if line.startswith("-")]
+    assert any(line.startswith("warmer_by = ") for line in added)
+    changed = {one.unknown.key for one in case.diagnosis.changes}
+    # Every line that goes is the title, or a number (or the card of one) that was corrected.
+    for line in removed:
+        name = line.split(" = ")[0]
+        assert name == "title" or any(name in key.split(".") for key in changed), line
+    numbers = [line.split(" = ")[1].strip('"').split()[0] for line in added if line.startswith(("value = ", "load = "))]
+    assert numbers
+    assert all(len(number.lstrip("-0.").replace(".", "")) <= 6 for number in numbers)
+
+
+def test_tables_of_before_and_after(case: Case) -> None:
+    where = pd.read_csv(case.folder / "where.csv")
+    assert set(where["run"]) == set(RUNS)
+    assert where.loc[where["hold_out"], "run"].unique().tolist() == [HELD_OUT]
+    worst = where["mean_K"].abs().idxmax()
+    assert abs(where.loc[worst, "mean_after_K"]) < 0.1 * abs(where.loc[worst, "mean_K"])
+    histories = pd.read_csv(case.folder / "histories.csv")
+    deviation = histories["measured_degC"] - histories["original_degC"]
+    part = where[(where["run"] == "slow") & (where["sensor"] == "crown-outer")]
+    mine = (histories["run"] == "slow") & (histories["sensor"] == "crown-outer")
+    weights = histories["readings"]
+    mean = np.average(deviation[mine], weights=weights[mine])
+    assert np.average(part["mean_K"], weights=part["n"]) == pytest.approx(mean, abs=1e-9)
+
+
+def test_the_page_needs_nothing_else_and_begins_with_the_verdict(case: Case) -> None:
+    text = (case.folder / "diagnosis.html").read_text(encoding="utf-8")
+    for outside in ("http://", "https://", "<script", "<link"):
+        assert outside not in text
+    pictures = sorted(file.name for file in case.folder.glob("*.png"))
+    assert pictures == sorted(
+        ["rms.png", "residual-map.png", "probabilities.png", *(f"histories-{run}.png" for run in RUNS)]
+    )
+    assert text.count('src="data:image/png;base64,') == len(pictures)
+    first = text.index("The road is warmer than stated")
+    assert first < text.index("Where they differ")
+    assert all(run in text for run in RUNS)
+
+
+def test_an_interrupted_diagnosis_takes_up_what_was_finished(case: Case) -> None:
+    assert case.first == [0, 1]
+    assert case.second == [2]
+    assert case.taken_up == FINISHED
+    assert not case.folder.with_name("progress").exists()
+
+
+def test_kept_simulations_belong_to_one_study_and_its_data(case: Case) -> None:
+    bench = case.diagnosis.gap.lab.bench
+    other = Bench(case.study.replace({"drive.speed": "21 mph"}), bench.trials)
+    fewer = Bench(case.study, bench.trials[:2])
+    assert len({key_of(one) for one in (bench, other, fewer)}) == 3
+    assert key_of(bench) == key_of(Bench(tf.study(case.study.file), bench.trials))
+    store = ProgressStore(case.kept.with_name("copied"))
+    (store.folder / "left-by-another").mkdir(parents=True)
+    assert store.open(bench) == 0
+    assert list(store.folder.iterdir()) == []
+    answer = np.array([1.0, 1 / 3, np.nan])
+    store.keep("predict", (0, {}), answer)
+    np.testing.assert_array_equal(store.known("predict", (0, {})), answer)
+    assert store.known("predict", (1, {})) is None
+    next(store.folder.rglob("*.npz")).write_bytes(b"half a file")
+    assert store.known("predict", (0, {})) is None
+
+
+def test_the_command_goes_on_where_it_was_and_says_so(
+    case: Case, tmp_path: Path, capfd: pytest.CaptureFixture[str]
+) -> None:
+    out = tmp_path / "out"
+    shutil.copytree(case.kept, out / ".progress")
+    assert main(["diagnose", str(case.study.file), "--out", str(out), "--workers", "1", "--largest", "1"]) == 0
+    said, err = capfd.readouterr()
+    assert err == ""
+    assert said.startswith(f"{len(list(case.kept.rglob('*.npz')))} simulations were taken up")
+    assert "IDENTIFIED: The road is warmer than stated" in said
+    assert str(out / "diagnosis.html") in said
+    # Nothing hidden is left: neither what was kept, nor a temporary file.
+    assert not [file for file in out.rglob("*") if file.name.startswith(".")]
+    ours, theirs = (json.loads((folder / "verdict.json").read_text()) for folder in (out, case.folder))
+    for one in (ours, theirs):
+        one.pop("wall_time_s")
+    assert ours == theirs
+
+
+def test_noise_alone_is_no_gap(case: Case) -> None:
+    d, rng = case.diagnosis, np.random.default_rng(5)
+    runs = []
+    for number, one in enumerate(d.gap.lab.bench.trials):
+        columns = {}
+        for series in one.series:
+            # The study's own prediction at the times of the readings, through the means of its blocks.
+            own = np.interp(series.times, series.block_times, d.before[number][one.parts()[series.sensor]])
+            columns[series.sensor] = own + NOISE * rng.normal(size=len(series.times))
+        runs.append(MeasuredRun(one.name, one.series[0].times, pd.DataFrame(columns)))
+    # The same layout: the responses at hand serve.
+    found = case.study.diagnose(runs, largest=1, known=d.gap.responses)
+    assert found.verdict == "no gap"
+    assert found.to_dict()["effects"] == []
+    assert found.rms(after=False, held_out=False) == pytest.approx(NOISE, rel=0.15)
+
+
+def test_python_can_start_workers_and_they_agree(case: Case) -> None:
+    code = (
+        "import sys; import tyrefem as tf; from tyrefem.diagnose.laboratory import laboratory, Bench\n"
+        "from tyrefem.compare.experiment import experiments; from tyrefem.diagnose.trials import trial\n"
+        "if __name__ == '__main__':\n"
+        "    study = tf.study(sys.argv[1])\n"
+        "    bench = Bench(study, tuple(trial(one, study) for one in experiments(study)))\n"
+        "    with laboratory(bench, 2) as lab:\n"
+        "        here = [bench.predict(i, {}) for i in (0, 1)]\n"
+        "        there = lab.ask('predict', [(0, {}), (1, {})])\n"
+        "    assert all((a == b).all() for a, b in zip(here, there, strict=True))\n"
+    )
+    script = case.folder.parent / "workers.py"
+    script.write_text(code, encoding="utf-8")
+    done = subprocess.run(
+        [sys.executable, str(script), str(case.study.file)], capture_output=True, text=True, timeout=300, check=False
+    )
+    assert (done.returncode, done.stderr) == (0, "")

@@ -1,0 +1,40 @@
+"""Ctrl-C ends a diagnosis at once: no traceback, nothing half written, and what is finished stays."""
+
+from __future__ import annotations
+
+import os
+import signal
+import subprocess
+import sys
+import time
+from pathlib import Path
+
+from hidden import Case
+
+
+def test_interruption_keeps_what_is_finished_and_nothing_else(case: Case, tmp_path: Path) -> None:
+    out = tmp_path / "out"
+    command = [
+        sys.executable, "-m", "tyrefem", "diagnose", str(case.study.file), "--out", str(out), "--workers", "2",
+        "--set", "drive.load=2710 lbf",
+    ]  # fmt: skip
+    with subprocess.Popen(
+        command, stdout=subprocess.PIPE, stderr=subprocess.PIPE, text=True, start_new_session=True
+    ) as running:
+        try:
+            until = time.monotonic() + 240
+            while not list(out.rglob("*.npz")) and running.poll() is None and time.monotonic() < until:
+                time.sleep(0.05)
+            # A terminal sends it to the whole group, workers too.
+            os.killpg(running.pid, signal.SIGINT)
+            said, err = running.communicate(timeout=60)
+        finally:
+            if running.poll() is None:
+                os.killpg(running.pid, signal.SIGKILL)
+    assert running.returncode == 130
+    assert said == ""
+    assert err.startswith("tyrefem: interrupted; ")
+    assert "the same command goes on" in err
+    assert err.count("\n") == 1
+    assert [file.name for file in out.iterdir()] == [".progress"]
+    assert all(file.suffix == ".npz" and not file.name.startswith(".") for file in out.rglob("*") if file.is_file())

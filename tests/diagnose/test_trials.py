@@ -1,0 +1,84 @@
+"""Readings as blocks: means, correlated uncertainty made white, noise seen in the readings; stretches of a history."""
+
+from __future__ import annotations
+
+import numpy as np
+import pytest
+
+from tyrefem.diagnose.trials import BLOCKS, Series, Trial, _scatter
+from tyrefem.diagnose.where import stretches
+
+
+def _series(count: int = 200, *, noise: float = 0.5, discrepancy: float = 0.1, tau: float = 120.0) -> Series:
+    times = np.sort(np.random.default_rng(1).uniform(0.0, 1000.0, count))
+    return Series("crown", times, 25.0 + 0.02 * times, noise, discrepancy, tau)
+
+
+def test_block_means_are_means_and_hold_every_reading() -> None:
+    one = _series(203)
+    assert len(one.starts) == BLOCKS
+    assert one.sizes.sum() == 203
+    assert one.block_means(one.measured) @ one.sizes == pytest.approx(one.measured.sum())
+    own = one.measured[one.starts[3] : one.starts[4]].mean()
+    assert one.block_means(one.measured)[3] == pytest.approx(own, rel=1e-14)
+    few = _series(7)
+    np.testing.assert_array_equal(few.block_means(few.measured), few.measured)
+
+
+def test_a_computed_history_is_seen_at_the_times_of_the_readings() -> None:
+    one = _series()
+    times = np.linspace(0.0, 1000.0, 11)
+    values = np.column_stack([3.0 * times, np.sin(times / 300)])
+    seen = one.sampled(times, values)
+    for column in range(2):
+        expected = one.block_means(np.interp(one.times, times, values[:, column]))
+        np.testing.assert_allclose(seen[:, column], expected, atol=1e-9)
+        np.testing.assert_allclose(one.sampled(times, values[:, column]), expected, atol=1e-9)
+    np.testing.assert_allclose(seen[:, 0], 3.0 * one.block_times)
+
+
+def test_whitening_leaves_independent_numbers_of_unit_variance() -> None:
+    one = _series(50)
+    unit = one.whitened(np.eye(len(one.starts)))
+    np.testing.assert_allclose(unit @ one.covariance @ unit.T, np.eye(len(one.starts)), atol=1e-10)
+    # Drawn with noise per reading and a discrepancy that all readings of a stretch share.
+    rng = np.random.default_rng(2)
+    apart = np.abs(one.times[:, None] - one.times[None, :])
+    root = np.linalg.cholesky(0.1**2 * np.exp(-apart / 120.0) + 1e-10 * np.eye(50))
+    drawn = root @ rng.normal(size=(50, 4000)) + 0.5 * rng.normal(size=(50, 4000))
+    white = one.whitened(one.block_means(drawn))
+    np.testing.assert_allclose(np.cov(white), np.eye(len(one.starts)), atol=0.12)
+
+
+def test_a_trial_takes_its_series_one_after_the_other() -> None:
+    first, second = _series(30), _series(80, noise=2.0)
+    trial = Trial("run", {}, False, (first, second))
+    blocks = np.arange(30.0 + BLOCKS)
+    expected = np.concatenate([first.whitened(blocks[:30]), second.whitened(blocks[30:])])
+    np.testing.assert_array_equal(trial.whitened(blocks), expected)
+
+
+def test_scatter_is_noise_not_signal() -> None:
+    rng = np.random.default_rng(3)
+    times = np.sort(rng.uniform(0.0, 1000.0, 3000))
+    signal = 25.0 + 60.0 * (1 - np.exp(-times / 200.0))
+    noise = 0.8 * rng.normal(size=3000)
+    assert _scatter(times, signal) < 0.05
+    # What it returns is a lower bound of the noise: a third is left for rounding and chance.
+    assert _scatter(times, signal + noise) == pytest.approx(0.8 / 1.33, rel=0.06)
+    noise[::97] += 30.0
+    assert _scatter(times, signal + noise) == pytest.approx(0.8 / 1.33, rel=0.06)
+    assert _scatter(times[:8], signal[:8] + noise[:8]) == 0.0
+
+
+def test_stretches_follow_the_slope() -> None:
+    one = _series(400)
+    t = one.block_times
+    rising = 25.0 + 60.0 * (1 - np.exp(-np.minimum(t, 600.0) / 100.0))
+    history = np.where(t <= 600.0, rising, 25.0 + (rising - 25.0) * np.exp(-(t - 600.0) / 150.0))
+    kinds = stretches(one, history)
+    # 10 % of the fastest rate is left after ln(10) time constants.
+    assert set(kinds[t < 200.0]) == {"heating"}
+    assert set(kinds[(t > 270.0) & (t < 550.0)]) == {"plateau"}
+    assert set(kinds[(t > 640.0) & (t < 850.0)]) == {"cooling"}
+    assert set(stretches(one, np.full_like(t, 25.0))) == {"plateau"}

@@ -1,0 +1,191 @@
+"""A diagnosis as one self-contained HTML page: the verdict in words first, pictures embedded."""
+
+from __future__ import annotations
+
+import base64
+import math
+from collections.abc import Mapping
+from typing import TYPE_CHECKING, Any
+
+from tyrefem.diagnose import words
+from tyrefem.diagnose.amend import Change, difference
+from tyrefem.diagnose.rivals import candidate_rows, finite, set_rows
+from tyrefem.diagnose.unknowns import Unknown
+from tyrefem.diagnose.verdict import CONFOUNDED, IDENTIFIED, UNEXPLAINED
+from tyrefem.dotted import value_at
+
+if TYPE_CHECKING:
+    from tyrefem.diagnose.diagnosis import Diagnosis
+
+#: Rows that are shown before the rest is folded away.
+SHOWN = 12
+#: Gain, ln of odds, that is worth a row.
+TELLS = 0.1
+
+
+def page(d: Diagnosis, pictures: Mapping[str, bytes], *, version: str) -> str:
+    """The page's HTML; ``pictures`` maps file name -> PNG, as `tyrefem.diagnose.pictures.pictures` returns."""
+    from jinja2 import Environment, PackageLoader, StrictUndefined
+
+    from tyrefem.diagnose.record import where
+
+    environment = Environment(
+        loader=PackageLoader("tyrefem.diagnose", "."), autoescape=True, undefined=StrictUndefined, trim_blocks=True,
+        lstrip_blocks=True,
+    )  # fmt: skip
+    embedded = {name: base64.b64encode(png).decode("ascii") for name, png in pictures.items()}
+    return environment.get_template("page.html").render(
+        d=d,
+        version=version,
+        sentences=words.verdict_words(d),
+        place=where(d),
+        numbers=_numbers(d),
+        named=_named(d),
+        candidates=[_candidate(row) for row in candidate_rows(d)],
+        sets=[_set(row) for row in set_rows(d)],
+        where=_where(d),
+        corrections=_corrections(d),
+        difference=difference(d.original, d.study),
+        reasons=[words.shortened(one) for one in d.judgement.reasons],
+        further=words.next_words(d),
+        offered_sensors=_offers(d, "sensors", "place", "run"),
+        offered_drives=_offers(d, "drives", "drive", "sensor"),
+        assumed=_assumed(d),
+        pictures=embedded,
+        shown=SHOWN,
+        unexplained=d.verdict == UNEXPLAINED,
+        confounded=d.verdict == CONFOUNDED,
+    )
+
+
+def _numbers(d: Diagnosis) -> list[dict[str, str]]:
+    """Root mean squares before and after, fitted and held out."""
+    found = []
+    for held_out, name in ((False, "fitted runs"), (True, "held-out runs")):
+        before, after = (d.rms(after=after, held_out=held_out) for after in (False, True))
+        if math.isfinite(before):
+            value = f"{before:.2f} → {after:.2f} K"
+            found.append({"label": f"rms on {name}", "value": value, "note": "original → amended"})
+    note = "what no model can go below"
+    return [*found, {"label": "noise of the readings", "value": f"{d.noise:.2f} K", "note": note}]
+
+
+def _named(d: Diagnosis) -> list[dict[str, Any]]:
+    """The effects that the amended study has beyond the original, as a person reads them."""
+    if d.verdict not in (IDENTIFIED, CONFOUNDED, UNEXPLAINED):
+        return []
+    return [
+        {
+            "key": one.key,
+            "probability": words.percent(d.judgement.named.get(one.key, 0.0)),
+            "sentence": one.effect.sentence,
+            "source": one.effect.source,
+            "amounts": words.effect_amounts(one, d.best),
+        }
+        for one in d.best.members
+    ]
+
+
+def _candidate(row: Mapping[str, Any]) -> dict[str, str]:
+    shown = ", ".join(row["variant"].values())
+    return {
+        "name": f"{row['name']} ({shown})" if shown else row["name"],
+        "probability": words.percent(row["probability"]),
+        "gain": f"{row['log_evidence_gain']:+z,.{1 if abs(row['log_evidence_gain']) < 1000 else 0}f}",
+        "parameters": "; ".join(
+            words.amount(entry["value"], entry["sd"], entry["unit"]) for entry in row["parameters"].values()
+        ),
+        "confounded": words.shortened("; ".join(row["confounded_with"])),
+        **_fitness(row),
+    }
+
+
+def _set(row: Mapping[str, Any]) -> dict[str, Any]:
+    return {
+        "name": " + ".join(row["effects"]) or "no effect",
+        "probability": words.percent(row["probability"]),
+        "below": f"{-row['log_score_below_best']:z.1f}",
+        "credible": row["credible"],
+        **_fitness(row),
+    }
+
+
+def _fitness(row: Mapping[str, Any]) -> dict[str, str]:
+    """How well a set does, or nothing where the full model was not fitted."""
+    shown = {"at_bound": "at a bound" if row.get("at_bound") else ""}
+    for keys, form in ((("rms_K", "held_out_rms_K"), ".2f"), (("p_value", "held_out_p"), ".2g")):
+        for key in keys:
+            value = finite(row, key)
+            shown[key] = "" if value is None else format(value, form)
+    return shown
+
+
+def _where(d: Diagnosis) -> list[dict[Any, Any]]:
+    from tyrefem.diagnose.tables import where_table
+
+    return where_table(d).to_dict(orient="records")
+
+
+def _corrections(d: Diagnosis) -> list[dict[str, str]]:
+    """Base numbers and sensors that the amended study corrects: original -> amended, with standard deviation."""
+    return [_correction(d, one) for one in d.changes if not one.missing]
+
+
+def _correction(d: Diagnosis, one: Change) -> dict[str, str]:
+    unknown = one.unknown
+    if unknown.effect is None:
+        new = value_at(d.study.data, unknown.key, d.study.folder)
+        relative = unknown.value(one.x) - 1
+        return {
+            "what": unknown.key,
+            "original": str(value_at(d.original.data, unknown.key, d.original.folder)),
+            "amended": str(new),
+            "change": f"{100 * relative:+z.1f} ± {100 * one.sd:.1f} %",
+            "prior": f"± {100 * unknown.sd:.0f} %",
+        }
+    if unknown.effect == "film-scale":
+        film = dict(unknown.choice)["film"].replace("_", " ")
+        # The parameter is ln of a factor: a person reads the factor.
+        return {
+            "what": f"film coefficient, {film}",
+            "original": "as its law says",
+            "amended": f"times {math.exp(one.x):.3g}",
+            "change": f"{100 * (math.exp(one.x) - 1):+z.1f} ± {100 * one.sd:.1f} %",
+            "prior": f"± {100 * unknown.sd:.0f} %",
+        }
+    return {
+        "what": f"{', '.join(value for _, value in unknown.choice)}: {words.parameter_name(unknown)}",
+        "original": "as stated",
+        "amended": "",
+        "change": words.amount(unknown.value(one.x), one.sd, unknown.unit),
+        "prior": _prior(unknown),
+    }
+
+
+def _prior(unknown: Unknown) -> str:
+    return "± " + words.amount(0.0, unknown.sd, unknown.unit).split("± ")[1]
+
+
+def _offers(d: Diagnosis, kind: str, what: str, at: str) -> list[dict[str, Any]]:
+    """Sensors or drives that would tell something, with what they change."""
+    found = []
+    for one in d.next_experiment.get(kind, ()):
+        changes = ", ".join(f"{key} = {value}" for key, value in one.get("changes", {}).items())
+        name = f"{one[what]} ({changes})" if changes else one[what]
+        found.append({"what": name, "gain": one["gain"], "largest_K": one["largest_K"], "at": one[at]})
+    return [one for one in found if one["gain"] > TELLS]
+
+
+def _assumed(d: Diagnosis) -> list[str]:
+    choice = d.original.card.diagnosis
+    return [
+        f"Probability beforehand that anything is missing: {words.percent(choice.effects_expected)}, shared by "
+        f"{len({one.name for one in d.candidates})} effects ({len(d.candidates)} with their variants) and their sets.",
+        f"Film coefficients are known to {100 * choice.film_sd:.0f} %; base numbers as the cards and the study's "
+        "[uncertainty] table state; each sensor's place, lag and offset as its entry states.",
+        f"Even a right model misses by {choice.discrepancy:g} K, correlated over {choice.correlation_time:g} s; the "
+        "noise of readings is independent.",
+        *([f"Excluded by the study: {', '.join(choice.exclude)}."] if choice.exclude else []),
+        "About every fit the model is taken as linear within its uncertainty (Laplace); parameters have Gaussian "
+        "priors cut at the bounds that physics sets.",
+    ]

@@ -1,0 +1,183 @@
+"""What a program gets of a diagnosis: `verdict.json`; and the folder with everything that a person gets."""
+
+from __future__ import annotations
+
+from pathlib import Path
+from typing import TYPE_CHECKING, Any
+
+import tyrefem
+from tyrefem.diagnose.amend import difference
+from tyrefem.diagnose.rivals import candidate_rows, parameters, set_rows
+from tyrefem.diagnose.tables import history_table, where_table
+from tyrefem.diagnose.verdict import CONFOUNDED, IDENTIFIED, UNEXPLAINED
+from tyrefem.diagnose.words import verdict_words
+from tyrefem.output import atomic_folder, jsonable, write_json
+from tyrefem.summary import versions
+
+if TYPE_CHECKING:
+    from tyrefem.diagnose.diagnosis import Diagnosis
+
+AMENDED, PAGE = "amended.toml", "diagnosis.html"
+
+
+def record(d: Diagnosis) -> dict[str, Any]:
+    """The diagnosis in numbers, SI and degC as the keys say; NaN is null.
+
+    ``effects`` are the members of the most probable set where the verdict is "identified" or "confounded".
+    """
+    named = d.best.members if d.verdict in (IDENTIFIED, CONFOUNDED) else ()
+    found = {
+        "verdict": d.verdict,
+        "summary": list(verdict_words(d)),
+        "reasons": list(d.judgement.reasons),
+        "effects": [
+            {
+                "name": one.name,
+                "variant": dict(one.choice),
+                "probability": d.judgement.named.get(one.key, 0.0),
+                "parameters": parameters(one.unknowns, d.best),
+                "source": one.effect.source,
+            }
+            for one in named
+        ],
+        "candidates": candidate_rows(d),
+        "sets": set_rows(d),
+        "gap": {
+            "before": _rms(d, after=False),
+            "after": _rms(d, after=True),
+            "noise_K": d.noise,
+        },
+        "where": where(d),
+        "next_experiment": dict(d.next_experiment),
+        "amended_study": AMENDED,
+        "changes": change_rows(d),
+        "missing_heat": missing_heat(d) if d.verdict == UNEXPLAINED else None,
+        "study": d.original.name,
+        "title": d.original.title,
+        "runs": _runs(d),
+        "numerics": {
+            "tolerance_K": d.original.tolerance,
+            "mesh": d.original.mesh().summary() | {"element": d.original.card.mesh.element},
+            "assumed": d.original.card.diagnosis.model_dump(),
+        },
+        "wall_time_s": d.seconds,
+        "versions": versions(),
+        "random_seed": None,
+        "input": dict(d.original.data),
+    }  # fmt: skip
+    plain: dict[str, Any] = jsonable(found)
+    return plain
+
+
+def where(d: Diagnosis) -> dict[str, Any]:
+    """Where the original study disagrees most surely, and by more than noise."""
+    table = d.where
+    large = table[table["mean_K"].abs() >= d.noise]
+    row = (table if large.empty else large).sort_values("sigma", ascending=False, kind="stable").iloc[0]
+    return {
+        "sensor": row["sensor"],
+        "region": region_of(d, str(row["sensor"])),
+        "phase": row["phase"],
+        "run": row["run"],
+        "hold_out": bool(row["hold_out"]),
+        "speed_m_s": float(row["speed_m_s"]),
+        "mean_K": float(row["mean_K"]),
+        "rms_K": float(row["rms_K"]),
+        "sigma": float(row["sigma"]),
+    }
+
+
+def region_of(d: Diagnosis, sensor: str) -> str:
+    """The region that a sensor is in; its own name if it is not in the rubber."""
+    card = d.original.sensors.get(sensor)
+    if card is None:
+        return sensor
+    section = d.original.new_section
+    s, depth = section.locate([d.original.section_place(card)])
+    return str(section.region_at(s, depth)[0])
+
+
+def change_rows(d: Diagnosis) -> list[dict[str, Any]]:
+    """What the amended study changes: SI value of a parameter, factor of a base number, with standard deviation."""
+    return [
+        {
+            "key": one.unknown.key,
+            "effect": one.unknown.effect,
+            "variant": dict(one.unknown.choice),
+            "missing": one.missing,
+            "original": one.unknown.value(0.0),
+            "value": one.unknown.value(one.x),
+            "sd": one.sd * (one.unknown.value(one.x) if one.unknown.parameter is None else 1.0),
+            "unit": one.unknown.unit,
+            "source": one.source,
+        }
+        for one in d.changes
+    ]
+
+
+def missing_heat(d: Diagnosis) -> dict[str, Any]:
+    """Heat of unknown origin by station: W/m3 inside while the tyre rolls, W/m2 through the outer surface always."""
+    found = d.missing
+    return {
+        "kind": found.kind,
+        "region": found.region,
+        "station_m": found.station,
+        "stations_m": found.stations,
+        "watts": found.watts,
+        "runs": [
+            {
+                "run": run,
+                "speed_m_s": float(found.speeds[number]),
+                "heat_W_m3": found.heat[number],
+                "heat_sd_W_m3": found.heat_sd[number],
+                "flux_W_m2": found.flux[number],
+                "flux_sd_W_m2": found.flux_sd[number],
+            }
+            for number, run in enumerate(found.runs)
+        ],
+    }
+
+
+def _rms(d: Diagnosis, *, after: bool) -> dict[str, float]:
+    return {"rms_K": d.rms(after=after, held_out=False), "held_out_rms_K": d.rms(after=after, held_out=True)}
+
+
+def _runs(d: Diagnosis) -> list[dict[str, Any]]:
+    return [
+        {
+            "run": one.name,
+            "hold_out": one.hold_out,
+            "drive": one.drive,
+            "readings": sum(len(each.times) for each in one.series),
+            "end_s": max(float(each.times[-1]) for each in one.series),
+            "noise_K": {each.sensor: each.noise for each in one.series},
+        }
+        for one in d.gap.lab.bench.trials
+    ]
+
+
+def write(d: Diagnosis, folder: Path) -> Path:
+    """Write everything into a folder, each file complete or not there; returns the page.
+
+    ``verdict.json``, ``amended.toml``, ``difference.txt``, ``where.csv``, ``histories.csv``, the pictures, and
+    ``diagnosis.html``.
+
+    Raises
+    ------
+    InputError : the folder cannot be written.
+    """
+    from tyrefem.diagnose.page import page
+    from tyrefem.diagnose.pictures import pictures
+
+    drawn = pictures(d)
+    with atomic_folder(folder) as temporary:
+        write_json(record(d), temporary / "verdict.json")
+        d.study.save(temporary / AMENDED)
+        lines = difference(d.original, d.study)
+        (temporary / "difference.txt").write_text("\n".join([*lines, ""]) if lines else "", encoding="utf-8")
+        where_table(d).to_csv(temporary / "where.csv", index=False, lineterminator="\n")
+        history_table(d).to_csv(temporary / "histories.csv", index=False, lineterminator="\n")
+        for name, picture in drawn.items():
+            (temporary / name).write_bytes(picture)
+        (temporary / PAGE).write_text(page(d, drawn, version=tyrefem.__version__), encoding="utf-8")
+    return folder / PAGE
