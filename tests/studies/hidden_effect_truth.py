@@ -43,7 +43,9 @@ def main() -> None:
         table.insert(0, "time [min]", run.times / 60)
         table.insert(0, "run", run.name)
         parts.append(table)
-    whole = pd.concat(parts).round({"time [min]": 4}).round(2)
+    whole = pd.concat(parts)
+    readings = [name for name in whole if name.endswith("[degF]")]
+    whole = whole.round({"time [min]": 4, **dict.fromkeys(readings, 2)})
     with TABLE.open("w", encoding="utf-8") as file:
         file.write(HEADER.format(seed=SEED))
         whole.to_csv(file, index=False, lineterminator="\n")
