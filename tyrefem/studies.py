@@ -60,6 +60,10 @@ class Study:
             self._check_sensors()
         self._check_effects()
 
+    def __reduce__(self) -> tuple[Any, ...]:
+        """Another process builds it again from what was written: a user's own effect is in no importable module."""
+        return Study, (self.name, self.data, self.file, self.folder)
+
     def as_written(self, error: InputError) -> InputError:
         """The error in the file's own words: a drive without phases has no ``drive.phases.0``."""
         drive = self.data.get("drive")

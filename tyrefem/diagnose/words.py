@@ -49,12 +49,11 @@ def amount(value: float, sd: float, unit: str) -> str:
 
 
 def _decimals(sd: float) -> int:
-    """Decimals of a standard deviation: two digits up to 3.5 in its first ones, else one (Particle Data Group)."""
+    """Decimals that show two digits of a standard deviation that begins below 3.55, else one (Particle Data Group)."""
     if sd <= 0 or not math.isfinite(sd):
         return 2
     size = math.floor(math.log10(sd))
-    lead = sd / 10.0**size
-    return 1 - size if lead < 3.55 else -size - 1 + (lead < 9.5)
+    return 1 - size if sd / 10.0**size < 3.55 else -size
 
 
 def percent(probability: float) -> str:
@@ -176,9 +175,9 @@ def _closing(d: Diagnosis) -> str:
         before, after = d.rms(after=False, held_out=held_out), d.rms(after=True, held_out=held_out)
         if math.isfinite(before):
             parts.append(f"from {before:.1f} to {after:.1f} K on the {name} runs")
-    return (
-        f"In the amended study the rms of measured - computed goes {' and '.join(parts)}; the noise is {d.noise:.1f} K."
-    )
+    study = "In the amended study" if d.best.members else "With corrections of base numbers and sensors alone"
+    going = " and ".join(parts)
+    return f"{study} the rms of measured - computed goes {going}; the noise is {d.noise:.1f} K."
 
 
 def _kelvin(d: Diagnosis, *, after: bool) -> str:

@@ -1,0 +1,91 @@
+"""The page and the record of verdicts other than "identified", drawn from one diagnosis judged otherwise."""
+
+from __future__ import annotations
+
+import json
+from dataclasses import replace
+from pathlib import Path
+
+import numpy as np
+import pytest
+from hidden import Case
+
+from tyrefem.diagnose import Diagnosis
+from tyrefem.diagnose.rivals import contenders, support
+from tyrefem.diagnose.verdict import CONFOUNDED, UNEXPLAINED, Standing
+from tyrefem.diagnose.words import verdict_words
+
+NEXT = {
+    "between": ["hot-road", "sun"],
+    "sensors": [{"place": "s = 0 mm, outside", "gain": 4.0, "largest_K": 2.5, "run": "slow"}],
+    "drives": [
+        {
+            "drive": "twice the speed", "changes": {"speed": "40 mph"}, "gain": 0.01, "largest_K": 0.1,
+            "sensor": "crown-outer",
+        },
+    ],
+}  # fmt: skip
+
+
+def confounded(d: Diagnosis) -> Diagnosis:
+    """As if hot road and sun were 60 : 25, and an idle effect beside the hot road took the rest."""
+    by_name = {one.name: one for one in d.candidates}
+    hot, sun, idle = by_name["hot-road"], by_name["sun"], by_name["sensor-offset"]
+    fits = {one.members: one.explained for one in d.judgement.standings}
+    sets = [((hot,), 0.6), ((sun,), 0.25), ((hot, idle), 0.14), ((), 0.01)]
+    alone = [((one,), 0.0) for one in d.candidates if one not in (hot, sun)]
+    found = tuple(
+        Standing(members, float(np.log(probability + 1e-30)), probability, fits.get(members))
+        for members, probability in [*sets, *alone]
+    )
+    named = {"hot-road": 0.74, "sun": 0.25}
+    judged = replace(d.judgement, verdict=CONFOUNDED, standings=found, credible=found[:3], named=named)
+    return replace(d, judgement=judged, next_experiment=NEXT)
+
+
+def test_confounded_names_the_rivals_and_what_would_decide(case: Case, tmp_path: Path) -> None:
+    d = confounded(case.diagnosis)
+    # The hot road with an idle effect beside it is no rival of the hot road, but speaks for it.
+    assert [one.key for one in contenders(d)] == ["hot-road", "sun"]
+    assert support(d, contenders(d)[0]) == pytest.approx(0.74)
+    d.save(tmp_path)
+    said = json.loads((tmp_path / "verdict.json").read_text(encoding="utf-8"))
+    rivals = {row["name"]: row["confounded_with"] for row in said["candidates"]}
+    assert rivals["hot-road"] == ["sun"]
+    assert rivals["sun"] == ["hot-road"]
+    assert rivals["sensor-offset"] == []
+    assert said["next_experiment"]["sensors"][0]["largest_K"] == 2.5
+    assert [one["name"] for one in said["effects"]] == ["hot-road"]
+    words = " ".join(verdict_words(d))
+    assert "cannot tell what: hot-road (74 %), or sun (25 %)" in words
+    assert "A thermocouple at s = 0 mm, outside" in words
+    assert "twice the speed" not in words
+    page = (tmp_path / "diagnosis.html").read_text(encoding="utf-8")
+    assert words.split(". ")[0] in page
+    assert not (tmp_path / "missing-heat.png").exists()
+
+
+def test_unexplained_draws_the_missing_heat_and_names_nothing(case: Case, tmp_path: Path) -> None:
+    d = case.diagnosis
+    outside = Standing((), 0.0, 0.97, None, unexplained=True)
+    judged = replace(
+        d.judgement, verdict=UNEXPLAINED, standings=(outside, *d.judgement.standings), credible=(outside,), named={}
+    )
+    missing = replace(
+        d.missing, flux=np.full_like(d.missing.flux, 10.0), flux_sd=np.full_like(d.missing.flux, 50.0),
+        heat=np.full_like(d.missing.heat, 2e4), heat_sd=np.full_like(d.missing.heat, 1e3),
+        station=float(d.missing.stations[0]), region="tread",
+    )  # fmt: skip
+    d = replace(d, judgement=judged, missing=missing, best=d.null)
+    d.save(tmp_path)
+    said = json.loads((tmp_path / "verdict.json").read_text(encoding="utf-8"))
+    assert said["effects"] == []
+    assert said["missing_heat"]["kind"] == "heat"
+    assert len(said["missing_heat"]["runs"]) == 2
+    assert said["missing_heat"]["runs"][0]["heat_W_m3"] == [2e4] * len(missing.stations)
+    words = verdict_words(d)
+    assert words[0].startswith("Unexplained")
+    assert "heat inside the tread while it rolls, in the crown" in words[1]
+    assert "+20.0 ± 1.0 kW/m³" in words[1]
+    for name in ("missing-heat.png", "missing-heat-stations.png"):
+        assert (tmp_path / name).stat().st_size > 10_000
