@@ -14,7 +14,7 @@ AMPLITUDES = [name for name in NAMES if has_amplitude(catalogue()[name])]
 
 
 def test_the_catalogue_is_what_the_contracts_cover() -> None:
-    assert sorted(catalogue()) == NAMES
+    assert sorted(name for name, effect in catalogue().items() if not effect.calibration) == NAMES
 
 
 @pytest.mark.parametrize("name", NAMES)

@@ -3,19 +3,19 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Sequence
+from collections.abc import Iterable, Mapping, Sequence
 from dataclasses import dataclass
 from typing import Any
 
 import numpy as np
 
-from tyrefem.diagnose.refine import Explained, Gap
+from tyrefem.diagnose.refine import Gap
 from tyrefem.diagnose.unknowns import Unknown, with_values
 from tyrefem.dotted import scaled, value_at
 from tyrefem.studies import Study
 
 #: A correction of a base number or a sensor that moves no block mean by this much is left out, K.
-NEGLIGIBLE = 0.1
+NEGLIGIBLE = 0.2
 
 
 @dataclass(frozen=True)
@@ -29,21 +29,26 @@ class Change:
     source: str
 
 
-def changes(gap: Gap, best: Explained, runs: Sequence[str]) -> tuple[Change, ...]:
-    """What a fit changes: the named effects, then corrections of base numbers and sensors that matter."""
+def changes(
+    gap: Gap,
+    values: Mapping[Unknown, float],
+    sd: Mapping[Unknown, float],
+    missing: Iterable[Unknown],
+    runs: Sequence[str],
+) -> tuple[Change, ...]:
+    """What a fit changes: what is ``missing`` first, then the corrections of base numbers and sensors that matter."""
     fitted = [name for name, one in zip(runs, gap.lab.bench.trials, strict=True) if not one.hold_out]
     source = f"diagnosis of {gap.lab.bench.study.name}, fitted to {', '.join(fitted)}"
-    own = {one for member in best.members for one in member.unknowns}
+    own = set(missing)
     found = []
-    for unknown in sorted(best.values, key=lambda one: one not in own):
-        x, sd = best.values[unknown], best.sd[unknown]
+    for unknown in sorted(values, key=lambda one: one not in own):
         if unknown in own:
-            found.append(Change(unknown, x, sd, True, source))
+            found.append(Change(unknown, values[unknown], sd[unknown], True, source))
             continue
         column = gap.unknowns.index(unknown)
-        moved = max(float(np.abs(gap.jacobians[i][:, column] * x).max()) for i in range(len(gap.jacobians)))
+        moved = max(float(np.abs(J[:, column] * values[unknown]).max()) for J in gap.jacobians)
         if moved > NEGLIGIBLE:
-            found.append(Change(unknown, x, sd, False, source))
+            found.append(Change(unknown, values[unknown], sd[unknown], False, source))
     return tuple(found)
 
 

@@ -21,7 +21,7 @@ from tyrefem.diagnose.search import search
 from tyrefem.diagnose.sets import Prior
 from tyrefem.diagnose.trials import trial
 from tyrefem.diagnose.unknowns import Candidate, Unknown, base_unknowns, candidates, sensor_unknowns
-from tyrefem.diagnose.verdict import OUTSIDE, Judgement, judge, standings
+from tyrefem.diagnose.verdict import OUTSIDE, UNEXPLAINED, Judgement, judge, standings
 from tyrefem.diagnose.where import gap_table, rms
 from tyrefem.errors import InputError
 from tyrefem.studies import Study
@@ -156,7 +156,6 @@ def diagnose(
         scored = search(gap, found, prior, largest=largest, tick=count)
         explained = {one.members: one for _, _, one in scored if one is not None}
         null = explained[()]
-        best_known = max(explained.values(), key=lambda one: prior(one.members) + one.log_evidence)
         unknown = patches(study)
         missing = missing_heat(gap, unknown, null)
         outside = np.log(study.card.diagnosis.effects_expected * OUTSIDE) + missing.log_evidence
@@ -170,17 +169,23 @@ def diagnose(
         judgement = judge(ranked, fitted)
         best = judgement.best.explained or (null if judgement.best.unexplained else fitted(judgement.best.members))
         assert best is not None
-        if best.members:
-            missing = missing_heat(gap, unknown, best_known)
-        tick("running the amended study", 0, 0)
-        change = changes(gap, best, [one.name for one in trials])
+        values, sd = best.values, best.sd
+        lacking = [one for member in best.members for one in member.unknowns]
+        if judgement.verdict == UNEXPLAINED:
+            # Nothing is named: the study gets the heat of unknown origin that is more than two sd from none.
+            lacking = [one for one in unknown if abs(missing.values[one]) > 2 * missing.sd[one]]
+            values = {one: x for one, x in missing.values.items() if one in lacking or one not in unknown}
+            sd = missing.sd
+        change = changes(gap, values, sd, lacking, [one.name for one in trials])
         new = amended(study, change)
         before = {i: gap.corrected(i, gap.computed[i]) for i in range(len(trials))}
-        after = dict(best.computed)
+        tick("running the amended study", 0, 0)
         if rerun:
-            after = dict(
-                enumerate(lab.ask("full", [(i, amended(bench.driven(study, i), change)) for i in range(len(trials))]))
-            )
+            driven = [amended(bench.driven(study, i), change) for i in range(len(trials))]
+            after = dict(enumerate(lab.ask("full", list(enumerate(driven)))))
+        else:
+            answers = lab.ask("predict", [(i, values) for i in range(len(trials))])
+            after = {i: gap.corrected(i, answer) for i, answer in enumerate(answers)}
         further: Mapping[str, Any] = {}
         if judgement.verdict == "confounded":
             from tyrefem.diagnose.experiment import next_experiment

@@ -12,7 +12,7 @@ from tyrefem.diagnose.evidence import Members
 from tyrefem.diagnose.laboratory import Bench
 from tyrefem.diagnose.refine import Explained, Gap
 from tyrefem.diagnose.trials import Series, Trial
-from tyrefem.diagnose.verdict import Judgement
+from tyrefem.diagnose.verdict import Judgement, Standing
 from tyrefem.errors import InputError
 from tyrefem.result import GAS, Result
 from tyrefem.studies import Study
@@ -43,7 +43,7 @@ def next_experiment(gap: Gap, judgement: Judgement, fitted: Callable[[Members], 
     -------
     ``between`` (two sets), ``sensors`` and ``drives`` in order of gain; empty if only one set is left.
     """
-    sets = [one for one in judgement.credible if not one.unexplained][:2]
+    sets = _rivals(judgement)
     if len(sets) < 2:
         return {}
     fits = [one.explained or fitted(one.members) for one in sets]
@@ -64,6 +64,16 @@ def next_experiment(gap: Gap, judgement: Judgement, fitted: Callable[[Members], 
         "sensors": sorted(sensors.values(), key=lambda one: -one["gain"])[:5],
         "drives": sorted((one for one in drives if one), key=lambda one: -one["gain"]),
     }
+
+
+def _rivals(judgement: Judgement) -> list[Standing]:
+    """The best set and the next one that is not the same with something idle added, or left out."""
+    sets = [one for one in judgement.credible if not one.unexplained]
+    for other in sets[1:]:
+        ours, theirs = set(sets[0].members), set(other.members)
+        if not ours <= theirs and (not theirs or not theirs <= ours):
+            return [sets[0], other]
+    return sets[:2]
 
 
 def _places(study: Study, pair: list[Result]) -> list[tuple[str, dict[str, float], Array, Array, Array]]:

@@ -44,6 +44,7 @@ class MissingHeat:
     stations : (n,) m along the meridian. heat, heat_sd : (n_runs, n) W/m3. flux, flux_sd : (n_runs, n) W/m2.
     runs, speeds : names and fastest speeds (m/s) of the fitted runs. log_evidence : of the data, comparable with the
         sets'. region : where most of the missing heat is. watts : (n,) W, mean over the runs, by station.
+    values, sd : every unknown fitted along, and the patches (mean over the runs): x and its standard deviation.
     """
 
     stations: Array
@@ -57,6 +58,8 @@ class MissingHeat:
     region: str
     station: float
     watts: Array
+    values: dict[Unknown, float]
+    sd: dict[Unknown, float]
 
     @property
     def kind(self) -> str:
@@ -67,11 +70,29 @@ class MissingHeat:
 
 
 def missing_heat(gap: Gap, unknown: Sequence[Unknown], about: Explained) -> MissingHeat:
-    """The patches' heat in every fitted run, fitted together with everything that ``about`` fits.
+    """The patches' heat in every fitted run, fitted together with base numbers and sensors; priors regularise.
 
-    Every patch has a part that all runs share and one of its own in each run, of half the standard deviation; the
-    priors are what regularises.
+    Every patch has a part that all runs share and one of its own in each run, of half the standard deviation. Taken in
+    the linear model about the study as it is, or about ``about`` (a fit without it), whichever explains the data
+    better: a fit that lacks what is missing may have bent base numbers far.
     """
+    nuisance = gap.unknowns[: gap.nuisance]
+    origin = gap.linear(gap.fitted)
+    here = _Point(nuisance, origin.data, origin.jacobian[:, : gap.nuisance])
+    found = [_estimated(gap, unknown, one) for one in (here, _Point(about.unknowns, about.data, about.jacobian))]
+    return max(found, key=lambda one: one.log_evidence)
+
+
+@dataclass(frozen=True, eq=False)
+class _Point:
+    """A linear model d = J x + e of the fitted trials."""
+
+    unknowns: tuple[Unknown, ...]
+    data: Array
+    jacobian: Array
+
+
+def _estimated(gap: Gap, unknown: Sequence[Unknown], about: _Point) -> MissingHeat:
     trials = gap.lab.bench.trials
     columns = [gap.unknowns.index(one) for one in unknown]
     blocks = [gap.whitened[i][:, columns] for i in gap.fitted]
@@ -118,6 +139,8 @@ def missing_heat(gap: Gap, unknown: Sequence[Unknown], about: Explained) -> Miss
         str(study.section.region_at(s, depth)[0]),
         float(stations[worst]),
         watts,
+        dict(zip((*about.unknowns, *unknown), map(float, [*solution.mean[:n], *mean.mean(axis=0)]), strict=True)),
+        dict(zip((*about.unknowns, *unknown), map(float, [*solution.sd[:n], *spread.mean(axis=0)]), strict=True)),
     )
 
 
