@@ -20,7 +20,7 @@ def check(
     """Check a file without running it; says the first thing that is wrong."""
     path = Path(file)
     if path.is_dir():
-        path = path / "study.toml"
+        path = path / ("rig.toml" if (path / "rig.toml").is_file() else "study.toml")
         if not path.is_file():
             raise InputError("a folder without a study.toml", file=file)
     if not os.path.lexists(path):
@@ -47,6 +47,11 @@ def _card(path: Path) -> str:
     data: dict[str, Any] = read_toml(path)
     if not data:
         raise InputError("is empty", file=path)
+    if "laser" in data:
+        from tyrefem.rig import RigCard
+
+        rig = RigCard.check(data, path)
+        return f"a laser rig, {len(rig.layers)} layer(s), {len(rig.sensors)} sensors, {len(rig.runs)} run(s)"
     if "layers" in data or "line" in data:
         from tyrefem.section import load
 

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from tyrefem.conduction.budget import Budget
-from tyrefem.conduction.conditions import Film, Fixed, Flux, Material, Radiation, Reservoir
+from tyrefem.conduction.conditions import Convection, Film, Fixed, Flux, Material, Radiation, Reservoir
 from tyrefem.conduction.errors import SolverError
 from tyrefem.conduction.field import Field
 from tyrefem.conduction.history import History, Peak, Steps
@@ -13,6 +13,7 @@ from tyrefem.conduction.problem import Conduction
 __all__ = [
     "Budget",
     "Conduction",
+    "Convection",
     "Field",
     "Film",
     "Fixed",

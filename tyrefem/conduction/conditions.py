@@ -136,6 +136,30 @@ class Radiation:
 
 
 @dataclass(frozen=True)
+class Convection:
+    """Newton cooling whose film follows the surface temperature, q = h(T) (sink - T) into the body.
+
+    Parameters
+    ----------
+    h : film coefficient, W/m2/K: function of the surface temperature T (array, degC), h > 0, h (T - sink) growing.
+    sink : temperature, degC.
+
+    >>> round(float(Convection(h=lambda T: 1.3 * abs(T - 20.0) ** 0.25 + 1e-9, sink=20.0).h(36.0)), 3)
+    2.6
+    """
+
+    h: Callable[..., Any]
+    sink: float
+
+    def __post_init__(self) -> None:
+        if not callable(self.h):
+            raise InputError("must be a function of the surface temperature; a Film takes a number", field="h")
+        if callable(self.sink):
+            raise InputError("must be a number", field="sink")
+        _check(self.sink, "sink", low=-273.15)
+
+
+@dataclass(frozen=True)
 class Fixed:
     """Prescribed temperature in degC: number or f(x, t).
 
@@ -183,4 +207,4 @@ class Reservoir:
                 _check(other, "exchanges")
 
 
-Condition = Film | Flux | Radiation | Fixed
+Condition = Film | Flux | Radiation | Convection | Fixed

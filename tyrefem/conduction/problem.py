@@ -31,7 +31,7 @@ class Conduction:
     ----------
     mesh : scikit-fem triangle or quadrilateral mesh, coordinates (r, z) or (x, y) in m.
     regions : subdomain -> `Material`; they must cover every element exactly once.
-    boundaries : boundary -> `Film`, `Flux`, `Radiation`, `Fixed`, or a list of them that add up.
+    boundaries : boundary -> `Film`, `Flux`, `Radiation`, `Convection`, `Fixed`, or a list of them that add up.
         Boundaries left out are insulated. A node of two `Fixed` boundaries takes the first one's value.
     sources : subdomain (any) -> W/m3, a number or f(x, t, T) with x (2, n), T (n,) at its nodes; overlapping
         subdomains add. x is the same array object at every call.
@@ -123,7 +123,9 @@ class Conduction:
         balance = self._balance()
         outside = self._held_reservoirs()
         if not anchored(balance, outside, time):
-            raise InputError("a steady problem needs a Fixed, Film or Radiation boundary", field="boundaries")
+            raise InputError(
+                "a steady problem needs a Fixed, Film or Radiation boundary, or a Convection", field="boundaries"
+            )
         y = solve_steady(balance, self._initial(balance, initial, time, None), time)
         power = balance.powers(time, y, np.zeros(y.u.size))
         generated: dict[str, float] = {}

@@ -8,7 +8,8 @@ from typing import Any
 import numpy as np
 
 from tyrefem.conduction.balance import HeatBalance
-from tyrefem.conduction.conditions import Condition, Film, Fixed, Flux, Material, Radiation, Reservoir
+from tyrefem.conduction.conditions import Condition, Convection, Film, Fixed, Flux, Material, Radiation, Reservoir
+from tyrefem.conduction.convection_load import ConvectionLoad
 from tyrefem.conduction.datum import Datum
 from tyrefem.conduction.loads import Load, SourceLoad
 from tyrefem.conduction.operators import Operators, Surface
@@ -52,11 +53,13 @@ def balance_of(
                 loads.append((entry, FluxLoad(surface, c, field)))
             elif isinstance(c, Radiation):
                 loads.append((entry, RadiationLoad(surface, c, field)))
+            elif isinstance(c, Convection):
+                loads.append((entry, ConvectionLoad(surface, c, field)))
             elif isinstance(c, Fixed):
                 fixed.append((entry, surface, Datum(c.temperature, surface.points, field)))
                 continue
             else:
-                raise InputError(f"must be a Film, Flux, Radiation or Fixed, not {c!r}", field=field)
+                raise InputError(f"must be a Film, Flux, Radiation or Fixed, or a Convection, not {c!r}", field=field)
             loads[-1][1].cause = c
     for name, reservoir in reservoirs.items():
         for index, load in reservoir_loads(numbers[name], name, reservoir, numbers):

@@ -9,6 +9,7 @@ from scipy.sparse import bmat, csr_matrix, diags
 from scipy.sparse.linalg import splu
 
 from tyrefem.conduction.balance import HeatBalance
+from tyrefem.conduction.convection_load import ConvectionLoad
 from tyrefem.conduction.errors import SolverError
 from tyrefem.conduction.loads import SourceLoad, State
 from tyrefem.conduction.surface_loads import FilmLoad, FluxLoad, RadiationLoad
@@ -103,14 +104,14 @@ def _correction(balance: HeatBalance, t: float, y: State, residual: np.ndarray) 
 
 
 def anchored(balance: HeatBalance, outside: set[int], t: float) -> bool:
-    """Whether a given temperature holds the body: fixed, by a film or radiation, or through a reservoir.
+    """Whether a given temperature holds the body: fixed, by a film, convection or radiation, or through a reservoir.
 
     `outside` numbers the reservoirs that exchange heat, directly or in a chain, with a given temperature.
     """
     if balance.fixed.dofs.size:
         return True
     for load in balance.loads:
-        if isinstance(load, RadiationLoad) and load.factor > 0:
+        if isinstance(load, ConvectionLoad) or (isinstance(load, RadiationLoad) and load.factor > 0):
             return True
         if isinstance(load, FilmLoad) and np.max(load.h(t)) > 0 and load.reservoir in (None, *outside):
             return True

@@ -1,0 +1,81 @@
+"""`tyrefem rig` from another folder: simulated tables are identified, the cards run, the layer study is written."""
+
+from __future__ import annotations
+
+import json
+from pathlib import Path
+
+import pytest
+
+from tyrefem.cli import main
+from tyrefem.materials import material
+from tyrefem.measured import read_table
+from tyrefem.rig import load
+from tyrefem.rig.find import find
+from tyrefem.rig.layer_study import merged
+
+SHORT = ("--set", "drive.duration=10 s", "--set", "mesh.size=8 mm", "--set", "output.fields=2")
+
+
+@pytest.fixture
+def here(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> Path:
+    """A folder with a short version of the shipped rig: one power, 200 s of heating, no cooling."""
+    monkeypatch.chdir(tmp_path)
+    monkeypatch.delenv("TYREFEM_PATH", raising=False)
+    text = find("trtlab").read_text(encoding="utf-8").split("[runs.high]")[0]
+    text = text.replace('"1050 s"', '"200 s"').replace('cooling = "550 s"', 'cooling = "60 s"')
+    (tmp_path / "mine.toml").write_text(text, encoding="utf-8")
+    return tmp_path
+
+
+def test_from_simulation_to_a_card_that_runs(here: Path, capfd: pytest.CaptureFixture[str]) -> None:
+    assert main(["rig", "simulate", "mine.toml", "--seed", "1", "--every", "2 s", "--out", "sim"]) == 0
+    (run,) = read_table("sim/low.csv")
+    assert run.comments[0].startswith("SIMULATED")
+    assert {"readings.png", "patch.png", "summary.json", "low.csv"} == {file.name for file in Path("sim").iterdir()}
+    assert main(["rig", "identify", "mine.toml", "sim/low.csv", "--base", "tread=nasa-tread", "--constant"]) == 0
+    out = Path("results/rig-mine-identified")
+    told = json.loads((out / "rig.json").read_text(encoding="utf-8"))
+    tread = next(one for one in told["estimates"] if one["name"] == "tread.conductivity")
+    assert tread["low_95"] < 0.25 < tread["high_95"]
+    page = (out / "report.html").read_text(encoding="utf-8")
+    assert "http" not in page.replace("http-equiv", "")
+    assert page.count("data:image/png;base64") == 3
+    assert (out / "residuals.csv").read_text(encoding="utf-8").count("\n") == 1 + 3 * 161
+    assert not (out / "materials" / "carcass.toml").exists()
+    card = material("results/rig-mine-identified/materials/tread.toml")
+    assert card.conductivity.law() == pytest.approx(tread["value"], rel=1e-4)
+    assert card.conductivity.relative_sd == pytest.approx(tread["relative_sd"], rel=0.06)
+    assert "laser rig" in card.conductivity.source
+    assert card.loss_tangent(25.0) == pytest.approx(0.2)
+    assert "nasa-tread" in card.notes
+    own = f"materials.tread={out}/materials/tread.toml"
+    assert main(["run", "nasa-22x5.5-8pr", *SHORT, "--no-pictures", "--no-vtk", "--set", own, "--out", "run"]) == 0
+    assert Path("run/summary.json").is_file()
+    capfd.readouterr()
+
+
+def test_layers_merge_to_the_same_mass_heat_and_resistance() -> None:
+    card, _ = load("layers")
+    for count in (1, 2, 3, 4):
+        fewer = merged(card, count)
+        assert len(fewer.layers) == count
+        for sums in (
+            lambda one: one.thickness,
+            lambda one: one.thickness * one.density.value,
+            lambda one: one.thickness * one.density.value * one.specific_heat.value,
+            lambda one: one.thickness / one.conductivity.value,
+        ):
+            assert sum(map(sums, fewer.layers)) == pytest.approx(sum(map(sums, card.layers)))
+
+
+def test_layer_study_improves_with_the_true_layers(here: Path, capfd: pytest.CaptureFixture[str]) -> None:
+    """Two layers that differ much, fitted as one and as two: the second takes most of the misfit away."""
+    text = Path("mine.toml").read_text(encoding="utf-8").replace('value = "0.3 W/m/K"', 'value = "0.7 W/m/K"')
+    text = text.replace('cooling = "60 s"', 'cooling = "0 s"')
+    Path("mine.toml").write_text(text, encoding="utf-8")
+    assert main(["rig", "layers", "mine.toml", "--out", "out", "--json"]) == 0
+    one, two = json.loads(capfd.readouterr().out)["rows"]
+    assert two["transient_misfit_K"] < 0.5 * one["transient_misfit_K"]
+    assert two["log_evidence"] > one["log_evidence"] + 10
+    assert Path("out/layers.png").is_file()

@@ -1,0 +1,90 @@
+"""Identification: on 3D data, on what the evidence chooses, and on tests that cannot determine what is asked."""
+
+from __future__ import annotations
+
+from typing import Any
+
+import numpy as np
+import pytest
+from cases import TIMES, measured, properties, truth
+
+from tyrefem.rig import Identification, RigCard, identify, load, simulate
+from tyrefem.rig.grid import Fineness
+from tyrefem.rig.readings import matched
+
+COARSE = Fineness(3, 6, 2)
+
+
+def rig(*, runs: tuple[str, ...] = ("high",), **phases: float) -> RigCard:
+    card, _ = load("trtlab")
+    return card.model_copy(
+        update={
+            "runs": {name: card.runs[name] for name in runs},
+            "phases": card.phases.model_copy(update=phases),
+        }
+    )
+
+
+def of_itself(card: RigCard, values: dict[str, float] | None = None, **options: Any) -> Identification:
+    """Readings of the model itself on the same coarse mesh, identified."""
+    wanted = [name for name in card.sensors if name not in options.get("without", ())]
+    done = simulate(card, every=10.0, seed=7, values=values, fineness=COARSE)
+    tests = [matched(card, run, wanted, options.pop("without", ())) for run in done.runs.values()]
+    return identify(card, tests=tests, fineness=COARSE, **options)
+
+
+def test_curved_patch_in_3d_is_identified() -> None:
+    """Hexahedra, BDF2, another air, misplaced spot: one power, every property inside its interval and within 10 %."""
+    card = rig()
+    real = truth(0, card, linear=False)
+    runs = measured(0, card, real)
+    found = identify(card, tests=[matched(card, run, list(card.sensors)) for run in runs], linear=False)
+    for name, value in properties(card, real).items():
+        one = found.by_name[name]
+        assert one.verdict == "determined", name
+        assert one.holds(value), name
+        assert one.value == pytest.approx(value, rel=0.10), name
+    assert found.by_name["spot_across"].holds(real.spot_offset)
+    for block in found.fit.blocks:
+        assert np.sqrt(np.mean(block.residual**2)) < 1.3 * card.sensors[block.series.sensor].noise
+    assert TIMES.size * 3 == sum(block.series.counts.sum() for block in found.fit.blocks)
+
+
+def test_evidence_finds_what_is_linear_and_leaves_the_rest() -> None:
+    """The tread's conductivity falls by 0.2 % per kelvin: chosen, alone, with its value."""
+    card = rig(heating=150.0, cooling=0.0)
+    found = of_itself(card, {"tread.conductivity_slope": -2e-3, "tread.conductivity": 0.28})
+    assert found.selection.chosen == ("tread.conductivity_slope",)
+    assert found.by_name["tread.conductivity_slope"].holds(-2e-3)
+    assert found.by_name["tread.conductivity"].holds(0.28)
+    assert found.selection.log_evidence[found.selection.chosen] > 3
+    assert any("Linear in temperature: conductivity of tread" in words for words in found.words)
+
+
+def test_a_short_test_without_inner_view_says_what_it_cannot_determine() -> None:
+    card = rig(heating=60.0, cooling=0.0)
+    found = of_itself(card, without=("inner", "interface"), linear=False)
+    unknown = {one.name for one in found.properties if one.verdict == "not determined"}
+    assert {"carcass.conductivity", "carcass.specific_heat"} <= unknown
+    assert sum(words.startswith("NOT DETERMINED") for words in found.words) == len(unknown)
+    said = " ".join(found.words)
+    assert "There is no view of the inner face." in said
+    assert "The test is short: 60 s" in said
+    for name in unknown:
+        one = found.by_name[name]
+        assert one.holds(one.prior_value)
+        assert one.high / one.low > 1.5
+
+
+def test_unknown_absorbed_power_is_unknown_scale() -> None:
+    """Scaling power, k, c and films together changes no temperature: a doubtful absorptance shows in every property."""
+    card = rig(heating=150.0, cooling=0.0)
+    sure = of_itself(card, linear=False)
+    laser = card.laser.model_copy(update={"absorptance_sd": 0.1})
+    around = card.surroundings.model_copy(update={"convection_sd": 0.5})
+    doubtful = of_itself(card.model_copy(update={"laser": laser, "surroundings": around}), linear=False)
+    for name in ("tread.conductivity", "tread.specific_heat"):
+        assert doubtful.by_name[name].relative_sd > 1.5 * sure.by_name[name].relative_sd
+    names = [one.name for one in doubtful.estimates]
+    pair = names.index("tread.conductivity"), names.index("absorptance")
+    assert doubtful.correlation[pair] > 0.9

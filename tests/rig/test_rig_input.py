@@ -1,0 +1,132 @@
+"""Impossible rigs and bad tables: one clear line that names file and field, exit code 2, nothing written."""
+
+from __future__ import annotations
+
+from pathlib import Path
+
+import numpy as np
+import pytest
+
+from tyrefem.cli import main
+from tyrefem.errors import InputError
+from tyrefem.rig import load, read
+from tyrefem.rig.find import find, tables
+
+CARD = find("trtlab").read_text(encoding="utf-8")
+TABLE = "time [s],outer [degC],inner [degC],interface [degC]\n" + "".join(
+    f"{t},{22 + t / 10},{22 + t / 200},{22 + t / 100}\n" for t in range(0, 400, 10)
+)
+
+
+@pytest.fixture(autouse=True)
+def here(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> Path:
+    monkeypatch.chdir(tmp_path)
+    monkeypatch.delenv("TYREFEM_PATH", raising=False)
+    return tmp_path
+
+
+IMPOSSIBLE = [
+    ('spot_diameter = "10 mm"', 'spot_diameter = "130 mm"', "laser.spot_diameter: the spot, 130 mm wide"),
+    ('power = "0.5 W"', 'power = "5 W"', "runs.low.power: 5 W is outside the laser's range, 0.5 to 2 W"),
+    ('cooling = "550 s"\n', "", "phases.cooling: missing"),
+    ('heating = "1050 s"', 'heating = "0 s"', "phases.heating"),
+    ('depth = "8 mm" ', 'depth = "15 mm" ', "sensors.interface.depth: 15 mm is outside the tyre"),
+    ('thickness = "8 mm"', 'thickness = "0 mm"', "layers.0.thickness"),
+    ('thickness = "8 mm"', 'thickness = "8"', "has no unit"),
+    ('name = "carcass"', 'name = "tread"', "two layers are named 'tread'"),
+    ("absorptance = 0.95", "absorptance = 1.2", "laser.absorptance"),
+    ('value = "0.25 W/m/K"', 'value = "0 W/m/K"', "layers.0.conductivity.value"),
+    ('circumferential_radius = "300 mm"', 'circumferential_radius = "8 mm"', "cannot be bent"),
+    ('face = "inner"', 'face = "innner"', "sensors.inner.face"),
+    ('face = "inner"\n', "", "a camera needs 'face'"),
+    ('window = "4 mm"                     #', 'windw = "4 mm" #', "did you mean 'window'"),
+    ('power_range = ["0.5 W", "2 W"]', 'power_range = ["2 W", "0.5 W"]', "laser.power_range"),
+    ("convection_sd = 0.15", "convection_sd = nan", "surroundings.convection_sd"),
+]
+
+
+@pytest.mark.parametrize(("old", "new", "words"), IMPOSSIBLE, ids=[one[2][:28] for one in IMPOSSIBLE])
+@pytest.mark.parametrize("command", [["simulate"], ["identify"], ["layers"]], ids=lambda c: c[0])
+def test_impossible_rig(
+    command: list[str], old: str, new: str, words: str, here: Path, capfd: pytest.CaptureFixture[str]
+) -> None:
+    assert old in CARD
+    (here / "rig.toml").write_text(CARD.replace(old, new, 1), encoding="utf-8")
+    (here / "low.csv").write_text(TABLE, encoding="utf-8")
+    tables = ["low.csv"] if command == ["identify"] else []
+    assert main(["rig", *command, "rig.toml", *tables, "--out", "out"]) == 2
+    out, err = capfd.readouterr()
+    assert out == ""
+    assert err.count("\n") == 1
+    assert err.startswith("tyrefem: rig.toml: ")
+    assert words in err
+    assert not (here / "out").exists()
+
+
+BAD = [
+    (TABLE.replace("inner [degC]", "innner [degC]"), [], "no column 'inner [degC]'; did you mean 'innner'"),
+    (TABLE.replace("inner [degC]", "inner"), [], "has no unit"),
+    (TABLE.replace("\n100,", "\n90,"), [], "times must increase"),
+    (TABLE.replace("\n100,32.0", "\n100,hot"), [], "hot"),
+    ("\n".join(TABLE.splitlines()[:6]), [], "fewer than 5 readings after 60 s"),
+    (TABLE + "2000,50,30,30\n", [], "goes on until 2000 s"),
+    (TABLE.replace("outer [degC]", "outer [degC],spare [degC]").replace("0,22", "0,1,22"), [], "line"),
+    (TABLE.replace("interface", "couple"), ["--without", "interface"], "'couple' is no sensor of the rig"),
+    (TABLE, ["--without", "inne"], "unknown sensor 'inne'; did you mean 'inner'"),
+    (TABLE, ["--base", "nasa-treed"], "did you mean 'nasa-tread'"),
+    (TABLE, ["--base", "traed=nasa-tread"], "unknown layer 'traed'; did you mean 'tread'"),
+]
+
+
+@pytest.mark.parametrize(("table", "options", "words"), BAD, ids=[one[2][:28] for one in BAD])
+def test_bad_table(table: str, options: list[str], words: str, here: Path, capfd: pytest.CaptureFixture[str]) -> None:
+    (here / "low.csv").write_text(table, encoding="utf-8")
+    assert main(["rig", "identify", "trtlab", "low.csv", *options, "--out", "out"]) == 2
+    out, err = capfd.readouterr()
+    assert out == ""
+    assert err.count("\n") == 1
+    assert words in err
+    assert not (here / "out").exists()
+
+
+def test_a_card_can_be_checked_without_running(here: Path, capfd: pytest.CaptureFixture[str]) -> None:
+    assert main(["check", str(find("trtlab").parent)]) == 0
+    assert "a laser rig, 2 layer(s), 3 sensors, 2 run(s)" in capfd.readouterr().out
+    (here / "rig.toml").write_text(CARD.replace('idle = "60 s"', 'idle = "60"'), encoding="utf-8")
+    assert main(["check", "rig.toml"]) == 2
+    assert "rig.toml: phases.idle: '60' has no unit" in capfd.readouterr().err
+
+
+def test_tables_must_belong_to_the_card(here: Path) -> None:
+    card, _ = load("trtlab")
+    (here / "lo.csv").write_text(TABLE, encoding="utf-8")
+    (here / "low.csv").write_text(TABLE, encoding="utf-8")
+    with pytest.raises(InputError, match="run 'lo' is not in the rig's card; did you mean 'low'"):
+        read(card, ["lo.csv"])
+    with pytest.raises(InputError, match="given twice"):
+        read(card, ["low.csv", "low.csv"])
+    with pytest.raises(InputError, match="no table"):
+        read(card, [])
+    with pytest.raises(InputError, match=r"none of low\.csv, high\.csv lies beside the card"):
+        tables(card, here / "elsewhere" / "rig.toml")
+    with pytest.raises(InputError, match="no rig named"):
+        load("trtlb")
+
+
+def test_readings_of_a_fast_logger_are_averaged_but_not_over_a_switch(here: Path) -> None:
+    """Groups keep the sum of the readings, leave gaps out, and none holds times on both sides of 60 s."""
+    card, _ = load("trtlab")
+    t = np.arange(0.0, 400.0, 0.25)
+    rng = np.random.default_rng(0)
+    outer = rng.normal(30.0, 1.0, t.size)
+    gap = rng.random(t.size) < 0.1
+    rows = [f"{a},{'' if g else b},30,30" for a, b, g in zip(t, outer, gap, strict=True)]
+    (here / "low.csv").write_text("time [s],outer [degC],inner [degC],interface [degC]\n" + "\n".join(rows), "utf-8")
+    (test,) = read(card, ["low.csv"])
+    one = next(series for series in test.series if series.sensor == "outer")
+    assert one.times.size <= 402
+    assert one.counts.sum() == (~gap).sum()
+    assert float(one.counts @ one.readings) == pytest.approx(float(outer[~gap].sum()))
+    before = one.times < 60.0
+    assert float(one.counts[before].sum()) == (~gap & (t < 60.0)).sum()
+    assert one.matrix.sum(axis=1) == pytest.approx(np.ones(one.times.size))

@@ -1,0 +1,157 @@
+"""`tyrefem rig`: simulate the laser rig, identify layers from its tables, study the number of layers."""
+
+from __future__ import annotations
+
+from pathlib import Path
+from typing import Annotated
+
+import typer
+
+from tyrefem.cli.common import JsonOption, print_json, progress, writable_folder
+from tyrefem.errors import InputError
+
+group = typer.Typer(
+    name="rig",
+    help="Laser rig: conductivity and specific heat of a tyre's layers from heating tests.",
+    no_args_is_help=True,
+    context_settings={"help_option_names": ["-h", "--help"]},
+)
+RigArgument = Annotated[str, typer.Argument(metavar="RIG", help="A rig's name, rig.toml or folder, e.g. trtlab.")]
+OutOption = Annotated[Path | None, typer.Option("--out", help="Folder; default: results/rig-...")]
+#: Tests that a fit of one model usually computes, for the bar.
+_USUAL = 16
+
+
+@group.command()
+def simulate(
+    rig: RigArgument,
+    out: OutOption = None,
+    every: Annotated[str, typer.Option(help="Time between readings.")] = "5 s",
+    seed: Annotated[int | None, typer.Option(help="Of the instruments' noise; without it, none.")] = None,
+    as_json: JsonOption = False,
+) -> None:
+    """What the sensors would read in the card's tests: one table per run, pictures."""
+    from tyrefem import rig as rigs
+    from tyrefem.quantity import parse
+    from tyrefem.rig.files import write_simulation
+
+    card, file = rigs.load(rig)
+    folder = writable_folder(out or Path("results") / f"rig-{_name(file)}")
+    try:
+        step = parse(every, "s")
+    except InputError as error:
+        raise error.within(field="--every") from None
+    if seed is not None and seed < 0:
+        raise InputError("must not be negative", field="--seed")
+    done = rigs.simulate(card, every=step, seed=seed)
+    write_simulation(done, folder)
+    rows = {name: run.temperatures.max().round(2).to_dict() for name, run in done.runs.items()}
+    if as_json:
+        print_json({"highest_degC": rows, "words": done.words, "folder": folder})
+        return
+    for name, highest in rows.items():
+        seen = ", ".join(f"{sensor} {value:.1f}" for sensor, value in highest.items())
+        typer.echo(f"{name} ({card.runs[name].power:g} W): highest readings, degC: {seen}")
+    for words in done.words:
+        typer.echo(f"note: {words}")
+    typer.echo(f"results in {folder}")
+
+
+@group.command()
+def identify(
+    rig: RigArgument,
+    tables: Annotated[
+        list[Path] | None,
+        typer.Argument(metavar="[TABLE...]", help="Measured CSV; runs named as in the card. Default: beside the card."),
+    ] = None,
+    out: OutOption = None,
+    base: Annotated[
+        list[str] | None,
+        typer.Option(help="Card with what a rig cannot know (loss tangent ...): CARD or LAYER=CARD. Repeatable."),
+    ] = None,
+    without: Annotated[list[str] | None, typer.Option(help="A sensor of the card to do without. Repeatable.")] = None,
+    constant: Annotated[bool, typer.Option("--constant", help="No property may depend on temperature.")] = False,
+    as_json: JsonOption = False,
+) -> None:
+    """Conductivity and specific heat of every layer with 95 % intervals; what the tables cannot determine."""
+    from tyrefem import rig as rigs
+    from tyrefem.rig.files import write
+    from tyrefem.rig.find import tables as beside
+    from tyrefem.rig.layer_cards import bases
+    from tyrefem.rig.verdict import shown, spoken
+
+    card, file = rigs.load(rig)
+    folder = writable_folder(out or Path("results") / f"rig-{_name(file)}-identified")
+    tests = rigs.read(card, beside(card, file, tables or ()), without or ())
+    chosen = bases(card, base or [])
+    count = 0
+    total = _USUAL * len(tests)
+    with progress(f"{_name(file)}: computed tests", total, quiet=as_json) as step:
+
+        def one_more() -> None:
+            nonlocal count
+            count += 1
+            step(min(count, total))
+
+        found = rigs.identify(card, tests=tests, linear=not constant, progress=one_more)
+    write(found, folder, base or [])
+    if as_json:
+        print_json(found.to_dict())
+        return
+    for one in found.properties:
+        typer.echo(f"{spoken(one.name):34}{shown(one, 4):42}{one.verdict}")
+    for words in found.words:
+        typer.echo(f"- {words}")
+    typer.echo(f"results in {folder}; read {folder / 'report.html'}")
+    if chosen:
+        typer.echo("material cards: " + ", ".join(str(folder / "materials" / f"{layer}.toml") for layer in chosen))
+    else:
+        typer.echo("no material card written: --base names the card that gives loss tangent and stiffness")
+
+
+@group.command()
+def layers(
+    rig: RigArgument,
+    tables: Annotated[
+        list[Path] | None, typer.Argument(metavar="[TABLE...]", help="Measured CSV files; default: simulated.")
+    ] = None,
+    out: OutOption = None,
+    most: Annotated[int, typer.Option(min=1, help="Largest number of layers to fit.")] = 4,
+    seed: Annotated[int, typer.Option(min=0, help="Of the noise of simulated readings.")] = 1,
+    as_json: JsonOption = False,
+) -> None:
+    """Fit one set of readings with 1, 2, 3 ... layers: what more layers improve."""
+    from tyrefem import rig as rigs
+    from tyrefem.rig.find import tables as beside
+    from tyrefem.rig.layer_study import study, write
+    from tyrefem.rig.readings import matched
+
+    card, file = rigs.load(rig)
+    folder = writable_folder(out or Path("results") / f"rig-{_name(file)}-layers")
+    if tables:
+        tests = rigs.read(card, beside(card, file, tables))
+    else:
+        done = rigs.simulate(card, seed=seed)
+        tests = tuple(matched(card, run, list(card.sensors)) for run in done.runs.values())
+    counts = range(1, min(most, len(card.layers)) + 1)
+    with progress(f"{_name(file)}: layers", counts[-1], quiet=as_json) as step:
+        found = study(card, tests, counts, progress=step)
+    write(found, folder)
+    if as_json:
+        print_json({"rows": found.table().to_dict("records")})
+        return
+    typer.echo(found.table().to_string(index=False, float_format="%.3g"))
+    typer.echo(f"results in {folder}")
+
+
+def _name(file: Path) -> str:
+    return file.resolve().parent.name.removeprefix("rig-") if file.name == "rig.toml" else file.stem
+
+
+#: Place among the commands.
+ORDER = 85
+
+
+def register(app: typer.Typer) -> None:
+    """Add the group of commands."""
+    app.add_typer(group)

@@ -1,0 +1,226 @@
+"""The rig's description: layers with first guesses, laser, phases, surroundings, sensors, runs."""
+
+from __future__ import annotations
+
+from typing import Annotated, Any, ClassVar, Literal
+
+from pydantic import Field, model_validator
+
+from tyrefem.cards import Card, PositiveLength, Temperature, Text
+from tyrefem.errors import InputError
+from tyrefem.quantity import Unit
+
+Share = Annotated[float, Unit("1", gt=0, le=1)]
+Relative = Annotated[float, Unit("1", ge=0, lt=1)]
+
+
+class Guess(Card):
+    """A first guess with the relative standard deviation that it deserves, constant or linear in temperature.
+
+    ``slope`` is per kelvin, about the card's reference temperature. What the sources say goes into ``source``.
+    """
+
+    UNIT: ClassVar[str] = "1"
+    value: Any
+    relative_sd: Annotated[float, Unit("1", gt=0, le=2)] = 0.5
+    slope: Annotated[float, Unit("1/delta_degC", ge=-0.02, le=0.02)] = 0.0
+    source: Text
+
+    @model_validator(mode="before")
+    @classmethod
+    def _in_its_unit(cls, data: Any) -> Any:
+        if isinstance(data, dict) and "value" in data:
+            try:
+                return {**data, "value": Unit(cls.UNIT, gt=0)(data["value"])}
+            except InputError as error:
+                raise error.within(field="value") from None
+        return data
+
+
+class ConductivityGuess(Guess):
+    """W/m/K."""
+
+    UNIT: ClassVar[str] = "W/m/K"
+
+
+class SpecificHeatGuess(Guess):
+    """J/kg/K."""
+
+    UNIT: ClassVar[str] = "J/kg/K"
+
+
+class KnownDensity(Card):
+    """kg/m3, weighed: a heating test sees only density times specific heat."""
+
+    value: Annotated[float, Unit("kg/m**3", gt=0)]
+    source: Text
+
+
+class LayerCard(Card):
+    """One layer: ``thickness`` with the standard deviation of its measurement, and what it is made of.
+
+    ``reference_temperature``: at which its properties are given, best where the layer is during the tests.
+    """
+
+    name: Text
+    thickness: Annotated[float, Unit("m", gt=0, le=0.2)]
+    thickness_sd: Annotated[float, Unit("m", ge=0, le=0.01)] = 0.0
+    density: KnownDensity
+    conductivity: ConductivityGuess
+    specific_heat: SpecificHeatGuess
+    reference_temperature: Temperature = 40.0
+
+
+class Laser(Card):
+    """The beam: ``spot_diameter`` of the even disc, or of a Gaussian beam where the intensity is 1/e2 of the middle's.
+
+    ``absorptance``: share of the beam's power that becomes heat. ``placing_sd``: of either coordinate of the spot's
+    centre against the point at which the sensors are aimed.
+    """
+
+    spot_diameter: Annotated[float, Unit("m", gt=0)]
+    profile: Literal["uniform", "gaussian"] = "uniform"
+    absorptance: Share = 0.95
+    absorptance_sd: Annotated[float, Unit("1", ge=0, lt=0.5)] = 0.02
+    placing_sd: Annotated[float, Unit("m", ge=0, le=0.01)] = 1e-3
+    power_range: tuple[Annotated[float, Unit("W", gt=0)], Annotated[float, Unit("W", gt=0)]] = (0.5, 2.0)
+
+
+class PatchCard(Card):
+    """The piece that is computed, and the crown's radii of curvature (none: flat)."""
+
+    radius: PositiveLength
+    circumferential_radius: PositiveLength | None = None
+    lateral_radius: PositiveLength | None = None
+
+    @property
+    def curvature(self) -> float:
+        """Mean curvature of the outer face, 1/m."""
+        return sum(0.5 / r for r in (self.circumferential_radius, self.lateral_radius) if r is not None)
+
+
+class Phases(Card):
+    """Laser off, on, off."""
+
+    idle: Annotated[float, Unit("s", ge=0, le=1e5)]
+    heating: Annotated[float, Unit("s", gt=0, le=1e5)]
+    cooling: Annotated[float, Unit("s", ge=0, le=1e5)]
+
+    @property
+    def end(self) -> float:
+        """s."""
+        return self.idle + self.heating + self.cooling
+
+
+class SurroundingsCard(Card):
+    """Air and walls. The films of both faces are those of a vertical plate of the ``characteristic_length`` times a
+    factor of 1 with the relative standard deviation ``convection_sd``; the paper leaves ``radiation`` out."""
+
+    ambient: Temperature
+    characteristic_length: PositiveLength
+    convection_sd: Annotated[float, Unit("1", ge=0, le=1)] = 0.15
+    radiation: bool = True
+    emissivity: Share = 0.95
+    emissivity_sd: Annotated[float, Unit("1", ge=0, lt=0.5)] = 0.01
+
+
+class SensorCard(Card):
+    """``camera``: the mean over a disc of the outer or inner ``face``; ``thermocouple``: a point at a ``depth``.
+
+    ``aside``: distance along the face from the rig's mark. ``noise``: of one reading; ``offset_sd``: of a constant
+    error; ``depth_sd`` and ``lag`` (first order, with ``lag_sd`` relative) belong to thermocouples.
+    """
+
+    instrument: Literal["camera", "thermocouple"]
+    face: Literal["outer", "inner"] | None = None
+    window: Annotated[float, Unit("m", ge=0, le=0.1)] = 4e-3
+    depth: Annotated[float, Unit("m", gt=0)] | None = None
+    depth_sd: Annotated[float, Unit("m", ge=0, le=0.01)] = 0.0
+    aside: Annotated[float, Unit("m", ge=0)] = 0.0
+    lag: Annotated[float, Unit("s", ge=0, le=600)] = 0.0
+    lag_sd: Relative = 0.0
+    noise: Annotated[float, Unit("delta_degC", gt=0, le=50)]
+    offset_sd: Annotated[float, Unit("delta_degC", ge=0, le=50)] = 0.0
+
+    @model_validator(mode="after")
+    def _complete(self) -> SensorCard:
+        if self.instrument == "camera":
+            if self.face is None:
+                raise InputError("a camera needs 'face', outer or inner", field="face")
+            if self.depth is not None or self.depth_sd:
+                raise InputError("a camera sees a face and has no depth", field="depth")
+        elif self.depth is None:
+            raise InputError("a thermocouple needs 'depth' below the outer face", field="depth")
+        elif self.face is not None:
+            raise InputError("a thermocouple lies inside and has no face", field="face")
+        return self
+
+
+class RunCard(Card):
+    """One test: the laser's power, and its own ambient temperature where it differs."""
+
+    power: Annotated[float, Unit("W", gt=0)]
+    ambient: Temperature | None = None
+
+
+class RigCard(Card):
+    """A rig.toml, checked for what cannot be built."""
+
+    kind: ClassVar[str] = "rig"
+    title: Text
+    notes: str = ""
+    laser: Laser
+    patch: PatchCard
+    phases: Phases
+    surroundings: SurroundingsCard
+    layers: Annotated[tuple[LayerCard, ...], Field(min_length=1, max_length=8)]
+    sensors: Annotated[dict[str, SensorCard], Field(min_length=1)]
+    runs: Annotated[dict[str, RunCard], Field(min_length=1)]
+    slope_sd: Annotated[float, Unit("1/delta_degC", gt=0, le=0.02)] = 2e-3
+    #: Floor of the model's own error, relative to the rise: mesh, round shells for a doubly curved crown.
+    model_error: Annotated[float, Unit("1", ge=0, lt=0.1)] = 1e-3
+
+    @property
+    def thickness(self) -> float:
+        """Of all layers, m."""
+        return sum(one.thickness for one in self.layers)
+
+    @model_validator(mode="after")
+    def _possible(self) -> RigCard:
+        self._patch()
+        names = [one.name for one in self.layers]
+        for number, name in enumerate(names):
+            if name in names[:number]:
+                raise InputError(f"two layers are named '{name}'", field=f"layers.{number}.name")
+        for name, sensor in self.sensors.items():
+            self._sensor(name, sensor)
+        low, high = self.laser.power_range
+        if low > high:
+            raise InputError("the first power must not be larger than the second", field="laser.power_range")
+        for name, run in self.runs.items():
+            if not low <= run.power <= high:
+                words = f"{run.power:g} W is outside the laser's range, {low:g} to {high:g} W (laser.power_range)"
+                raise InputError(words, field=f"runs.{name}.power")
+        return self
+
+    def _patch(self) -> None:
+        spot, radius = self.laser.spot_diameter / 2, self.patch.radius
+        if spot >= radius:
+            words = f"the spot, {2e3 * spot:g} mm wide, does not fit on the patch, {2e3 * radius:g} mm wide"
+            raise InputError(words, field="laser.spot_diameter")
+        curvature = self.patch.curvature
+        if curvature * max(self.thickness, radius / 1.5) >= 1:
+            words = f"a patch of {1e3 * radius:g} mm and {1e3 * self.thickness:g} mm thick cannot be bent so sharply"
+            raise InputError(words, field="patch.circumferential_radius")
+
+    def _sensor(self, name: str, sensor: SensorCard) -> None:
+        field = f"sensors.{name}"
+        if name.lower() in ("time", "run", "t") or not name.strip():
+            raise InputError(f"'{name}' is a name that tables already use", field="sensors")
+        if sensor.depth is not None and sensor.depth >= self.thickness:
+            words = f"{1e3 * sensor.depth:g} mm is outside the tyre, which is {1e3 * self.thickness:g} mm thick"
+            raise InputError(words, field=f"{field}.depth")
+        reach = sensor.aside + (sensor.window / 2 if sensor.instrument == "camera" else 0.0)
+        if reach >= self.patch.radius:
+            words = f"{1e3 * reach:g} mm from the mark is outside the patch of {1e3 * self.patch.radius:g} mm radius"
+            raise InputError(words, field=f"{field}.aside")

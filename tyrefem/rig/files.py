@@ -1,0 +1,126 @@
+"""What a rig's simulation, identification or layer study leaves in a folder; whole or not at all."""
+
+from __future__ import annotations
+
+import json
+from collections.abc import Sequence
+from pathlib import Path
+from typing import TYPE_CHECKING, Any
+
+from tyrefem.output import atomic_folder, jsonable
+
+if TYPE_CHECKING:
+    from tyrefem.rig.identification import Identification
+    from tyrefem.rig.simulation import Simulation
+
+
+def write(found: Identification, folder: Path, base: str | Sequence[str] | None = None) -> Path:
+    """Write an identification: ``report.html``, ``rig.json``, ``summary.json``, CSV tables, PNGs, material cards.
+
+    ``base``: the card, or ``LAYER=CARD`` entries, that give what the rig cannot know; without it no card is written.
+    """
+    import tomli_w
+
+    from tyrefem.rig.layer_cards import bases, layer_cards
+    from tyrefem.rig.page import page
+    from tyrefem.rig.pictures import pictures
+    from tyrefem.rig.summary import summary
+
+    given = [base] if isinstance(base, str) else list(base or [])
+    cards = layer_cards(found, bases(found.card, given))
+    data, drawn = summary(found), pictures(found)
+    data["materials"] = {layer: f"materials/{layer}.toml" for layer in cards}
+    text = page(found, drawn, cards)
+    with atomic_folder(folder) as place:
+        put_json(place / "rig.json", data)
+        short = (
+            "rig",
+            "determined",
+            "not_determined",
+            "poorly_determined",
+            "words",
+            "estimates",
+            "materials",
+            "versions",
+        )
+        put_json(place / "summary.json", {key: data[key] for key in short})
+        found.table.to_csv(place / "estimates.csv", index=False)
+        _residuals(found).to_csv(place / "residuals.csv", index=False)
+        for name, content in drawn.items():
+            (place / name).write_bytes(content)
+        if cards:
+            (place / "materials").mkdir()
+        for layer, card in cards.items():
+            (place / "materials" / f"{layer}.toml").write_text(tomli_w.dumps(card), encoding="utf-8")
+        (place / "report.html").write_text(text, encoding="utf-8")
+    return folder
+
+
+def _residuals(found: Identification) -> Any:
+    import pandas as pd
+
+    parts = [
+        pd.DataFrame(
+            {
+                "run": block.series.test,
+                "sensor": block.series.sensor,
+                "time_s": block.series.times,
+                "measured_degC": block.series.readings,
+                "computed_degC": block.computed,
+                "residual_K": block.residual,
+                "readings": block.series.counts,
+            }
+        )
+        for block in found.fit.blocks
+    ]
+    return pd.concat(parts, ignore_index=True)
+
+
+def write_simulation(done: Simulation, folder: Path) -> Path:
+    """Write simulated tables (``RUN.csv``, which `identify` reads), ``summary.json`` and pictures."""
+    from tyrefem.plotting.style import png
+    from tyrefem.rig.pictures import heated_patch, histories
+    from tyrefem.summary import versions
+
+    sensors = list(done.card.sensors)
+    runs = {name: (run.times, run.temperatures.to_numpy()) for name, run in done.runs.items()}
+    powers = {name: run.power for name, run in done.card.runs.items()}
+    drawn = {"readings.png": png(histories(done.card.phases, runs, sensors, powers))}
+    on = done.clock.heating.size - 1
+    strongest = max(powers, key=lambda name: powers[name])
+    borders = [done.values[f"{layer.name}.thickness"] for layer in done.card.layers]
+    layers = " | ".join(layer.name for layer in done.card.layers)
+    words = f"{powers[strongest]:g} W, laser from above; layers: {layers}"
+    drawn["patch.png"] = png(heated_patch(done.twin.grid(done.values), done.fields[strongest][on], borders, words))
+    summary = {
+        "rig": done.card.title,
+        "file": done.file,
+        "values": dict(done.values),
+        "runs": {
+            name: {
+                "power_W": powers[name],
+                "hottest_degC": float(done.fields[name].max()),
+                "end_of_heating_degC": dict(zip(sensors, _at_switch(done, name), strict=True)),
+            }
+            for name in done.runs
+        },
+        "words": list(done.words),
+        "versions": versions(),
+    }
+    with atomic_folder(folder) as place:
+        for name, run in done.runs.items():
+            run.write(place / f"{name}.csv")
+        for name, content in drawn.items():
+            (place / name).write_bytes(content)
+        put_json(place / "summary.json", summary)
+    return folder
+
+
+def _at_switch(done: Simulation, name: str) -> list[float]:
+    seen = done.twin.seen(done.values, done.clock, done.fields[name])
+    return [float(value) for value in seen[done.clock.heating.size - 1]]
+
+
+def put_json(path: Path, data: dict[str, Any]) -> None:
+    """Write JSON; the folder it goes to is moved into place as a whole."""
+    path.write_text(json.dumps(jsonable(data), indent=1) + "\n", encoding="utf-8")

@@ -1,0 +1,156 @@
+"""The most probable numbers of the rig: Gauss-Newton with Levenberg's damping, priors included."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Sequence
+from dataclasses import dataclass
+from typing import Any
+
+import numpy as np
+from numpy.typing import NDArray
+
+from tyrefem.rig.noise import Block, Noise, Normal, estimated, log_evidence, normal
+from tyrefem.rig.parameters import Parameters
+from tyrefem.rig.readings import HeatingTest
+from tyrefem.rig.twin import Twin
+
+Array = NDArray[Any]
+#: A step shorter than this share of the posterior's standard deviations ends the fit; one far longer, a rough one.
+_CLOSE, _ROUGHLY = 0.1, 2.0
+_MOST, _MOST_ROUGHLY = 25, 8
+#: No coordinate moves further than this in one step: the problem is only locally linear.
+_LONGEST = 1.5
+
+
+@dataclass(frozen=True, eq=False)
+class Fit:
+    """A finished fit.
+
+    Attributes
+    ----------
+    parameters, x : what was free and its coordinates (priors are N(0, 1)).
+    covariance : of x, Laplace: (1 + J^T C^-1 J)^-1.
+    noise : with the estimated model error.
+    blocks : readings, computed readings and slopes at x.
+    evidence : ln p(readings), Laplace.
+    solutions : number of tests computed.
+    """
+
+    parameters: Parameters
+    x: Array
+    covariance: Array
+    noise: Noise
+    blocks: tuple[Block, ...]
+    evidence: float
+    solutions: int
+
+    @property
+    def values(self) -> dict[str, float]:
+        """Every number of the rig."""
+        return self.parameters.values(self.x)
+
+
+class Fitter:
+    """Fits one rig to its tests; counts the solutions."""
+
+    def __init__(self, twin: Twin, tests: Sequence[HeatingTest], progress: Callable[[], None] | None = None) -> None:
+        self.twin, self.tests, self.progress = twin, tuple(tests), progress or (lambda: None)
+        self.solutions = 0
+
+    def predict(self, parameters: Parameters, x: Array) -> list[tuple[Array, Array]]:
+        """(fields, readings at computed times) of every test."""
+        values, out = parameters.values(x), []
+        for test in self.tests:
+            fields = self.twin.fields(values, test.run, test.clock)
+            out.append((fields, self.twin.seen(values, test.clock, fields)))
+            self.solutions += 1
+            self.progress()
+        return out
+
+    def blocks(self, parameters: Parameters, x: Array, predicted: list[tuple[Array, Array]]) -> tuple[Block, ...]:
+        """Residuals and slopes of every series."""
+        found = []
+        for test, (fields, seen) in zip(self.tests, predicted, strict=True):
+            slopes = self.twin.slopes(parameters, x, test.run, test.clock, fields, seen)
+            for one in test.series:
+                column = self.twin.sensors.index(one.sensor)
+                computed = one.matrix @ seen[:, column]
+                rise = np.maximum(one.matrix @ (seen[:, column] - seen[0, column]), 0.0)
+                found.append(Block(one, computed, one.matrix @ slopes[:, column], rise))
+        return tuple(found)
+
+    def _cost(self, predicted: list[tuple[Array, Array]], x: Array, factors: list[Array]) -> float:
+        from scipy.linalg import solve_triangular
+
+        total, k = float(x @ x), 0
+        for test, (_, seen) in zip(self.tests, predicted, strict=True):
+            for one in test.series:
+                r = one.readings - one.matrix @ seen[:, self.twin.sensors.index(one.sensor)]
+                white = solve_triangular(factors[k], r, lower=True, check_finite=False)
+                total, k = total + float(white @ white), k + 1
+        return total
+
+    def fit(self, parameters: Parameters, x: Array, noise: Noise, floor: float, *, rough: bool = False) -> Fit:
+        """Fit from coordinates x; the model error is estimated twice, once the fit has nearly settled.
+
+        A rough fit ends early: near enough to see which properties are missing.
+        """
+        predicted = self.predict(parameters, x)
+        damping, rounds = 0.1 if rough else 0.0, 0
+        for count in range(_MOST + 1):
+            blocks = self.blocks(parameters, x, predicted)
+            eq = normal(blocks, noise)
+            left = _length(eq, x)
+            if left < 0.7 and rounds < 2 and not rough:
+                noise, rounds = estimated(blocks, x, noise, floor), rounds + 1
+                eq = normal(blocks, noise)
+                left = _length(eq, x)
+            done = left < _ROUGHLY or count == _MOST_ROUGHLY if rough else left < _CLOSE and rounds == 2
+            if done or count == _MOST:
+                break
+            x, predicted, damping = self._step(parameters, x, predicted, eq, blocks, noise, damping)
+        covariance = np.linalg.inv(np.eye(x.size) + eq.matrix)
+        return Fit(parameters, x, covariance, noise, blocks, log_evidence(eq, x), self.solutions)
+
+    def _step(
+        self,
+        parameters: Parameters,
+        x: Array,
+        predicted: list[tuple[Array, Array]],
+        eq: Normal,
+        blocks: tuple[Block, ...],
+        noise: Noise,
+        damping: float,
+    ) -> tuple[Array, list[tuple[Array, Array]], float]:
+        """One step that lowers the cost; the damping with which the next one should begin."""
+        factors = [noise.factor(block.series, block.rise) for block in blocks]
+        before = self._cost(predicted, x, factors)
+        for _ in range(6):
+            H = np.eye(x.size) + eq.matrix + damping * np.diag(np.diag(eq.matrix))
+            step = _bounded(H, eq.right - x)
+            trial = self.predict(parameters, x + step)
+            if self._cost(trial, x + step, factors) < before + 1e-3:
+                return x + step, trial, damping / 10 if damping > 1e-3 else 0.0
+            damping = max(10 * damping, 0.1)
+        return x, predicted, damping
+
+
+def _length(eq: Normal, x: Array) -> float:
+    """Length of the Gauss-Newton step in units of the posterior: what moves less than its uncertainty is done."""
+    g = eq.right - x
+    return float(np.sqrt(np.maximum(g @ np.linalg.solve(np.eye(x.size) + eq.matrix, g), 0.0)))
+
+
+def _bounded(H: Array, g: Array) -> Array:
+    """The step H^-1 g whose coordinates stay within bounds: what would go further is held there, the rest solved."""
+    step, held = np.zeros(g.size), np.zeros(g.size, dtype=bool)
+    for _ in range(g.size):
+        free = ~held
+        step[free] = np.linalg.solve(H[np.ix_(free, free)], g[free] - H[np.ix_(free, held)] @ step[held])
+        beyond = free & (np.abs(step) > _LONGEST)
+        if not beyond.any():
+            break
+        worst = int(np.argmax(np.abs(step) * beyond))
+        step[worst] = np.clip(step[worst], -_LONGEST, _LONGEST)
+        held[worst] = True
+    return step

@@ -1,0 +1,197 @@
+"""From measured tables to conductivity and specific heat of every layer, with what is known and what is not."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Iterable, Mapping, Sequence
+from dataclasses import dataclass
+from functools import cached_property
+from pathlib import Path
+from typing import TYPE_CHECKING, Any
+
+import numpy as np
+from numpy.typing import NDArray
+from threadpoolctl import threadpool_limits
+
+from tyrefem.rig.card import RigCard
+from tyrefem.rig.estimate import Estimate, estimate_of, together
+from tyrefem.rig.find import load
+from tyrefem.rig.find import tables as beside
+from tyrefem.rig.fit import Fit, Fitter
+from tyrefem.rig.grid import USUAL, Fineness
+from tyrefem.rig.noise import Noise, estimated, normal
+from tyrefem.rig.parameters import PROPERTY, RIG, SLOPE, Parameters, parameters_of
+from tyrefem.rig.readings import HeatingTest, read
+from tyrefem.rig.selection import Selection, select
+from tyrefem.rig.twin import Twin
+
+if TYPE_CHECKING:
+    import pandas as pd
+
+Array = NDArray[Any]
+
+
+@dataclass(frozen=True, eq=False)
+class Identification:
+    """What a rig's tables say about its layers.
+
+    Attributes
+    ----------
+    card, file : the rig. tests : what was read.
+    fit : the most probable numbers. selection : which properties are linear in temperature.
+    estimates : one per free parameter, properties first, with 95 % intervals.
+    correlation : (n, n) of the estimates' coordinates, in their order.
+    """
+
+    card: RigCard
+    file: Path | None
+    tests: tuple[HeatingTest, ...]
+    fit: Fit
+    selection: Selection
+    estimates: tuple[Estimate, ...]
+    correlation: Array
+
+    @cached_property
+    def by_name(self) -> dict[str, Estimate]:
+        """Name -> estimate."""
+        return {one.name: one for one in self.estimates}
+
+    @property
+    def properties(self) -> tuple[Estimate, ...]:
+        """Conductivity and specific heat of every layer."""
+        return tuple(one for one in self.estimates if one.group == PROPERTY)
+
+    @cached_property
+    def together(self) -> float:
+        """Half width in standard deviations at which the properties' intervals hold all of them at once with 95 %."""
+        n = len(self.properties)
+        return together(self.correlation[:n, :n])
+
+    def all_hold(self, truth: Mapping[str, float]) -> bool:
+        """Are all given properties inside the intervals that hold them together with 95 %?"""
+        for name, value in truth.items():
+            one = self.by_name[name]
+            if abs(np.log(one.value / value)) > self.together * (one.relative_sd or 0.0):
+                return False
+        return True
+
+    @cached_property
+    def table(self) -> pd.DataFrame:
+        """One row per parameter: value, 95 % interval, relative sd, prior, how much the readings narrowed it."""
+        import pandas as pd
+
+        return pd.DataFrame([one.to_dict() for one in self.estimates])
+
+    @cached_property
+    def words(self) -> tuple[str, ...]:
+        """What the data cannot determine and what else a reader must know, one sentence each."""
+        from tyrefem.rig.verdict import sentences
+
+        return sentences(self)
+
+    def to_dict(self) -> dict[str, Any]:
+        """What `rig.json` holds."""
+        from tyrefem.rig.summary import summary
+
+        return summary(self)
+
+    def save(self, folder: str | Path, base: str | None = None) -> Path:
+        """Write JSON, tables, pictures, ``report.html`` and, with a base card, material cards."""
+        from tyrefem.rig.files import write
+
+        return write(self, Path(folder), base)
+
+
+def identify(
+    rig: str | Path | RigCard,
+    tables: Iterable[str | Path] = (),
+    *,
+    tests: Sequence[HeatingTest] = (),
+    without: Sequence[str] = (),
+    linear: bool = True,
+    fineness: Fineness | None = None,
+    progress: Callable[[], None] | None = None,
+) -> Identification:
+    """Find conductivity and specific heat of every layer of a rig from its measured tables.
+
+    Minimises |C^(-1/2) (measured - computed)|^2 + |x|^2 over the coordinates x of all uncertain numbers, C the noise
+    and model error of `tyrefem.rig.noise`, priors N(0, 1) in x; several tests are fitted together. Intervals are
+    Laplace's, averaged over which properties are linear in temperature.
+
+    Parameters
+    ----------
+    rig : name, path or card. tables : CSV files whose runs are named like the card's; none: those beside the card.
+    tests : tests already read, instead of tables.
+    without : sensors that the tables need not have.
+    linear : whether properties may be linear in temperature where the evidence asks for it.
+    fineness : of the mesh. progress : called after every computed test.
+
+    Raises InputError for a card or table that cannot be used.
+    """
+    card, file = (rig, None) if isinstance(rig, RigCard) else load(rig)
+    found = tuple(tests) or read(card, tables if file is None else beside(card, file, tables), without)
+    # The matrices are too small to share: on a busy machine waiting threads cost many times the work.
+    with threadpool_limits(1, user_api="blas"):
+        sensors = tuple(one.sensor for one in found[0].series)
+        fitter = Fitter(Twin(card, sensors, fineness or USUAL), found, progress)
+        return _identified(card, file, fitter, linear)
+
+
+def _identified(card: RigCard, file: Path | None, fitter: Fitter, linear: bool) -> Identification:
+    """A rough fit shows which properties need a slope; then fits and weighings in turn, until the choice stands."""
+    sensors = fitter.twin.sensors
+    every = parameters_of(card, sensors)
+    slopes = {one.name for one in every.free if one.group == SLOPE}
+    if not linear:
+        every, slopes = every.without(slopes), set()
+    noise = Noise(
+        {name: card.sensors[name].noise for name in sensors},
+        dict.fromkeys(sensors, max(2 * card.model_error, 1e-4)),
+    )
+    chosen: tuple[str, ...] = ()
+    x = np.zeros(len(every))
+    tried: set[tuple[str, ...]] = set()
+    rough = True
+    while True:
+        used = every.without(slopes - set(chosen))
+        keep = np.array([name in used.names for name in every.names])
+        fit = fitter.fit(used, x[keep], noise, card.model_error, rough=rough)
+        x = np.zeros(len(every))
+        x[keep] = fit.x
+        noise, selection = _weighed(fitter, every, x, fit, card.model_error)
+        if not rough:
+            tried.add(chosen)
+            if selection.chosen in tried or len(tried) == 3:
+                break
+        rough, chosen = False, selection.chosen
+    return _result(card, file, fitter.tests, fit, selection, every, keep)
+
+
+def _weighed(fitter: Fitter, every: Parameters, x: Array, fit: Fit, floor: float) -> tuple[Noise, Selection]:
+    """The noise with every slope free, and the combinations weighed with it."""
+    predicted = fitter.predict(every, x)
+    blocks = fitter.blocks(every, x, predicted)
+    noise = estimated(blocks, x, fit.noise, floor)
+    return noise, select(every, normal(blocks, noise), x)
+
+
+def _result(
+    card: RigCard,
+    file: Path | None,
+    tests: tuple[HeatingTest, ...],
+    fit: Fit,
+    selection: Selection,
+    every: Parameters,
+    keep: Array,
+) -> Identification:
+    """Intervals about the fit: the combinations' spread about their mean, plus what the fit is away from it."""
+    away = selection.mean[keep] - fit.x
+    mixed = selection.covariance[np.ix_(keep, keep)] + np.outer(away, away)
+    # The averaged spread may only widen an interval, never narrow the fitted model's own.
+    widen = np.sqrt(np.maximum(np.diag(mixed) / np.diag(fit.covariance), 1.0))
+    covariance = fit.covariance * np.outer(widen, widen)
+    groups = (PROPERTY, SLOPE, RIG)
+    order = sorted(range(len(fit.parameters)), key=lambda i: groups.index(fit.parameters.free[i].group))
+    sd = np.sqrt(np.diag(covariance))
+    correlation = (covariance / np.outer(sd, sd))[np.ix_(order, order)]
+    estimates = tuple(estimate_of(fit.parameters.free[i], float(fit.x[i]), float(sd[i])) for i in order)
+    return Identification(card, file, tests, fit, selection, estimates, correlation)

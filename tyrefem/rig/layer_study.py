@@ -1,0 +1,151 @@
+"""How many layers does the model need? One set of readings, fitted with one layer, two, three ..."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Sequence
+from dataclasses import dataclass
+from itertools import pairwise
+from pathlib import Path
+from typing import TYPE_CHECKING, Any
+
+import numpy as np
+from numpy.typing import NDArray
+
+from tyrefem.errors import InputError
+from tyrefem.rig.card import RigCard
+from tyrefem.rig.identification import Identification, identify
+from tyrefem.rig.readings import HeatingTest
+
+if TYPE_CHECKING:
+    import pandas as pd
+
+Array = NDArray[Any]
+#: So long after a switch of the laser the test counts as transient, s.
+TRANSIENT = 300.0
+
+
+def merged(card: RigCard, count: int) -> RigCard:
+    """The card with neighbouring layers made one until `count` are left; the thinnest pair goes first.
+
+    Thicknesses add up; the guess of the conductivity is that of layers in series, density and specific heat keep
+    mass and heat capacity. Raises InputError for a count that the card does not have.
+
+    >>> from tyrefem.rig.find import load
+    >>> one = merged(load("trtlab")[0], 1).layers[0]
+    >>> one.name, round(one.thickness, 4), round(one.conductivity.value, 3)
+    ('tread+carcass', 0.015, 0.271)
+    """
+    if not 1 <= count <= len(card.layers):
+        raise InputError(f"the card has {len(card.layers)} layers; {count} cannot be made of them", field="layers")
+    layers = list(card.layers)
+    while len(layers) > count:
+        pairs = [a.thickness + b.thickness for a, b in pairwise(layers)]
+        i = int(np.argmin(pairs))
+        layers[i : i + 2] = [_one(layers[i], layers[i + 1])]
+    return card.model_copy(update={"layers": tuple(layers)})
+
+
+def _one(a: Any, b: Any) -> Any:
+    total = a.thickness + b.thickness
+    mass = a.thickness * a.density.value + b.thickness * b.density.value
+    heat = sum(one.thickness * one.density.value * one.specific_heat.value for one in (a, b))
+    k = total / sum(one.thickness / one.conductivity.value for one in (a, b))
+
+    def changed(old: Any, value: float) -> Any:
+        return old.model_copy(update={"value": value, "source": f"mean of {a.name} and {b.name}"})
+
+    return a.model_copy(
+        update={
+            "name": f"{a.name}+{b.name}",
+            "thickness": total,
+            "density": changed(a.density, mass / total),
+            "conductivity": changed(a.conductivity, k),
+            "specific_heat": changed(a.specific_heat, heat / mass),
+        }
+    )
+
+
+@dataclass(frozen=True, eq=False)
+class LayerStudy:
+    """Fits of one set of readings with growing numbers of layers.
+
+    Attributes
+    ----------
+    counts : layers of each fit. fits : what came out.
+    """
+
+    counts: tuple[int, ...]
+    fits: tuple[Identification, ...]
+
+    def table(self) -> pd.DataFrame:
+        """One row per fit: misfit without noise (K) soon after a switch of the laser and later; rms; evidence.
+
+        The misfit is the root of the mean product of neighbouring residuals, in which independent noise cancels.
+        """
+        import pandas as pd
+
+        rows = []
+        for count, found in zip(self.counts, self.fits, strict=True):
+            early, late = _misfits(found)
+            rows.append(
+                {
+                    "layers": count,
+                    "names": " | ".join(layer.name for layer in found.card.layers),
+                    "transient_misfit_K": early,
+                    "steady_misfit_K": late,
+                    "rms_K": float(np.sqrt(np.mean(np.concatenate([b.residual**2 for b in found.fit.blocks])))),
+                    "model_error": max(found.fit.noise.model.values()),
+                    "log_evidence": found.fit.evidence - self.fits[0].fit.evidence,
+                    "determined": sum(one.verdict == "determined" for one in found.properties),
+                    "properties": len(found.properties),
+                }
+            )
+        return pd.DataFrame(rows)
+
+
+def _misfits(found: Identification) -> tuple[float, float]:
+    """Root of the mean product of neighbouring residuals of all sensors: soon after a switch, and the rest, K."""
+    phases = found.card.phases
+    switches = (phases.idle, phases.idle + phases.heating)
+    early, late = [], []
+    for block in found.fit.blocks:
+        t, r = block.series.times[1:], block.residual
+        soon = np.any([(t > s) & (t <= s + TRANSIENT) for s in switches], axis=0)
+        product = r[1:] * r[:-1]
+        early.append(product[soon])
+        late.append(product[~soon])
+    means = (float(np.mean(np.concatenate(part))) for part in (early, late))
+    first, second = (max(mean, 0.0) ** 0.5 for mean in means)
+    return first, second
+
+
+def study(
+    card: RigCard,
+    tests: Sequence[HeatingTest],
+    counts: Sequence[int],
+    progress: Callable[[int], None] | None = None,
+) -> LayerStudy:
+    """Fit the tests with each number of layers, properties constant in temperature."""
+    fits = []
+    for count in counts:
+        fits.append(identify(merged(card, count), tests=tests, linear=False))
+        if progress:
+            progress(count)
+    return LayerStudy(tuple(counts), tuple(fits))
+
+
+def write(done: LayerStudy, folder: Path) -> Path:
+    """Write ``layers.csv``, ``layers.png`` and ``summary.json``."""
+    from tyrefem.output import atomic_folder
+    from tyrefem.plotting.style import png
+    from tyrefem.rig.files import put_json
+    from tyrefem.rig.layer_pictures import layers_figure
+    from tyrefem.summary import versions
+
+    table = done.table()
+    picture = png(layers_figure(done))
+    with atomic_folder(folder) as place:
+        table.to_csv(place / "layers.csv", index=False)
+        (place / "layers.png").write_bytes(picture)
+        put_json(place / "summary.json", {"rows": table.to_dict("records"), "versions": versions()})
+    return folder

@@ -1,0 +1,148 @@
+"""How far readings may be from the computed ones: noise of the instrument, and the model's own error.
+
+The model's error is taken as a random process proportional to the rise, eps g(t) z(t), with z an Ornstein-Uhlenbeck
+process of correlation time tau: neighbouring readings then tell the same thing and do not narrow the intervals as
+independent ones would.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass, replace
+from typing import Any
+
+import numpy as np
+from numpy.typing import NDArray
+from scipy.linalg import cho_solve, cholesky, solve_triangular
+
+from tyrefem.rig.readings import Series
+
+Array = NDArray[Any]
+#: Correlation times that the fit may choose, s.
+SHORTEST, LONGEST = 5.0, 1000.0
+#: Largest relative model error that is looked for.
+LARGEST = 0.1
+_GROUPS = 110
+
+
+@dataclass(frozen=True)
+class Noise:
+    """Standard deviations by sensor: of one reading (K), of the model relative to the rise; tau in s."""
+
+    reading: Mapping[str, float]
+    model: Mapping[str, float]
+    tau: float = 200.0
+
+    def factor(self, one: Series, rise: Array) -> Array:
+        """Lower Cholesky factor of the covariance of a series, `rise` (n,) in K."""
+        gap = np.abs(one.times[:, None] - one.times[None, :])
+        g = self.model[one.sensor] * rise
+        covariance = np.outer(g, g) * np.exp(-gap / self.tau)
+        covariance[np.diag_indices_from(covariance)] += self.reading[one.sensor] ** 2 / one.counts
+        return np.asarray(cholesky(covariance, lower=True, check_finite=False))
+
+
+@dataclass(frozen=True, eq=False)
+class Block:
+    """One series with its computed readings, its residual (measured - computed), slopes (n, parameters), rise (n,)."""
+
+    series: Series
+    computed: Array
+    slopes: Array
+    rise: Array
+
+    @property
+    def residual(self) -> Array:
+        """measured - computed, K."""
+        return np.asarray(self.series.readings - self.computed)
+
+
+@dataclass(frozen=True, eq=False)
+class Normal:
+    """Normal equations of whitened blocks: J^T J, J^T r, r^T r, ln det C."""
+
+    matrix: Array
+    right: Array
+    square: float
+    log_det: float
+    count: int
+
+
+def normal(blocks: Sequence[Block], noise: Noise) -> Normal:
+    """Whiten and sum up."""
+    n = blocks[0].slopes.shape[1]
+    matrix, right, square, log_det, count = np.zeros((n, n)), np.zeros(n), 0.0, 0.0, 0
+    for block in blocks:
+        L = noise.factor(block.series, block.rise)
+        both = np.column_stack([block.slopes, block.residual])
+        white = solve_triangular(L, both, lower=True, check_finite=False)
+        J, r = white[:, :-1], white[:, -1]
+        matrix += J.T @ J
+        right += J.T @ r
+        square += float(r @ r)
+        log_det += 2 * float(np.log(np.diag(L)).sum())
+        count += r.size
+    return Normal(matrix, right, square, log_det, count)
+
+
+def log_evidence(eq: Normal, x: Array, kept: Array | None = None) -> float:
+    """ln p(readings) of the problem linearised at x, parameters not `kept` held at 0; priors are N(0, 1).
+
+    With the residual r0 = r + J x at the centre of the prior: -1/2 [n ln 2 pi + ln det C + r0^T r0 + ln det(1 + J^T J)
+    - b^T (1 + J^T J)^-1 b], b = J^T r0. What is not kept must be held at 0 in x too, or is moved there to first order.
+    """
+    right = eq.right + eq.matrix @ x
+    square = eq.square + 2 * float(x @ eq.right) + float(x @ eq.matrix @ x)
+    chosen = np.arange(x.size) if kept is None else kept
+    A = np.eye(chosen.size) + eq.matrix[np.ix_(chosen, chosen)]
+    L = cholesky(A, lower=True)
+    b = right[chosen]
+    log_det = 2 * float(np.log(np.diag(L)).sum())
+    gain = float(b @ cho_solve((L, True), b))
+    return -0.5 * (eq.count * np.log(2 * np.pi) + eq.log_det + square + log_det - gain)
+
+
+def _thinned(block: Block) -> Block:
+    """Neighbours averaged to a hundred groups or so: the model's error varies slowly, and covariances cost n^3."""
+    one = block.series
+    size = int(np.ceil(one.times.size / _GROUPS))
+    if size == 1:
+        return block
+    starts = np.arange(0, one.times.size, size)
+    counts = np.add.reduceat(one.counts, starts)
+
+    def mean(values: Array) -> Array:
+        weights = one.counts if values.ndim == 1 else one.counts[:, None]
+        total = np.add.reduceat(values * weights, starts)
+        return np.asarray(total / (counts if values.ndim == 1 else counts[:, None]))
+
+    series = replace(one, times=mean(one.times), readings=mean(one.readings), counts=counts)
+    return Block(series, mean(block.computed), mean(block.slopes), mean(block.rise))
+
+
+def estimated(blocks: Sequence[Block], x: Array, noise: Noise, floor: float) -> Noise:
+    """The model error and correlation time that make the readings most probable, the parameters integrated out.
+
+    Found by Nelder-Mead in logarithms between the floor and 10 %, and between 5 s and 1000 s.
+    """
+    from scipy.optimize import minimize
+
+    thin = [_thinned(block) for block in blocks]
+    sensors = list(noise.model)
+    low, high = np.log(max(floor, 1e-5)), np.log(LARGEST)
+
+    def of(p: Array) -> Noise:
+        errors = np.exp(np.clip(p[:-1], low, high))
+        tau = float(np.exp(np.clip(p[-1], np.log(SHORTEST), np.log(LONGEST))))
+        return replace(noise, model=dict(zip(sensors, map(float, errors), strict=True)), tau=tau)
+
+    def cost(p: Array) -> float:
+        # A weak pull to the floor and to 200 s decides where the readings do not.
+        pull = 0.05 * float(np.sum(np.maximum(p[:-1] - low, 0.0))) + 0.05 * float(p[-1] - np.log(200.0)) ** 2
+        outside = np.concatenate([np.maximum(low - p[:-1], 0), np.maximum(p[:-1] - high, 0)])
+        return pull + 10 * float(outside @ outside) - log_evidence(normal(thin, of(p)), x)
+
+    start = np.log(np.append([max(noise.model[s], 1.5 * floor, 1e-5) for s in sensors], noise.tau))
+    simplex = np.vstack([start, start + 0.7 * np.eye(start.size)])
+    options = {"xatol": 0.05, "fatol": 0.05, "maxfev": 60 * start.size, "initial_simplex": simplex}
+    return of(minimize(cost, start, method="Nelder-Mead", options=options).x)

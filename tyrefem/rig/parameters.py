@@ -1,0 +1,142 @@
+"""What a fit may change: every parameter with its prior, in coordinates in which the prior is a unit normal."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass, replace
+from typing import Any, Literal
+
+import numpy as np
+from numpy.typing import NDArray
+
+from tyrefem.rig.card import RigCard
+
+Array = NDArray[Any]
+
+#: Groups: what is wanted, and what is only uncertain.
+PROPERTY, SLOPE, RIG = "property", "slope", "rig"
+
+
+@dataclass(frozen=True)
+class Parameter:
+    """One number with its prior.
+
+    ``log``: ln p ~ N(ln centre, spread); ``linear``: p ~ N(centre, spread); ``rayleigh``: distance of a point whose two
+    coordinates are N(0, spread); ``folded``: |N(0, spread)|. `value` maps the coordinate x ~ N(0, 1) to p.
+
+    >>> k = Parameter("tread.conductivity", "W/m/K", "log", 0.25, 0.5, PROPERTY)
+    >>> round(k.value(0.0), 3), round(k.value(k.coordinate(0.3)), 3)
+    (0.25, 0.3)
+    """
+
+    name: str
+    unit: str
+    law: Literal["log", "linear", "rayleigh", "folded"]
+    centre: float
+    spread: float
+    group: str
+
+    def value(self, x: float) -> float:
+        """The number at a coordinate."""
+        if self.law == "log":
+            return self.centre * math.exp(self.spread * x)
+        if self.law == "linear":
+            return self.centre + self.spread * x
+        above = max(0.5 * math.erfc(x / math.sqrt(2.0)), 1e-16)
+        if self.law == "rayleigh":
+            return self.spread * math.sqrt(-2.0 * math.log(above))
+        from scipy.special import ndtri
+
+        return self.spread * float(-ndtri(above / 2.0))
+
+    def coordinate(self, value: float) -> float:
+        """The coordinate of a number; for ``log`` and ``linear``."""
+        if self.law == "log":
+            return math.log(value / self.centre) / self.spread
+        return (value - self.centre) / self.spread
+
+    def derivative(self, x: float) -> float:
+        """d value / d x."""
+        if self.law == "log":
+            return self.value(x) * self.spread
+        if self.law == "linear":
+            return self.spread
+        return (self.value(x + 1e-4) - self.value(x - 1e-4)) / 2e-4
+
+
+@dataclass(frozen=True)
+class Parameters:
+    """The free parameters in order, and the value of what is not free."""
+
+    free: tuple[Parameter, ...]
+    held: Mapping[str, float]
+
+    def __len__(self) -> int:
+        return len(self.free)
+
+    @property
+    def names(self) -> tuple[str, ...]:
+        """Of the free ones, in order."""
+        return tuple(one.name for one in self.free)
+
+    def values(self, x: Sequence[float] | Array) -> dict[str, float]:
+        """Every number of the rig at coordinates x."""
+        return {**self.held, **{one.name: one.value(float(v)) for one, v in zip(self.free, x, strict=True)}}
+
+    def without(self, names: Sequence[str] | set[str]) -> Parameters:
+        """The same, with some parameters held at their centre."""
+        gone = {one.name: one.centre for one in self.free if one.name in names}
+        return replace(self, free=tuple(o for o in self.free if o.name not in gone), held={**self.held, **gone})
+
+
+def parameters_of(card: RigCard, sensors: Sequence[str]) -> Parameters:
+    """Every parameter of a rig, for the sensors that are read; those without an uncertainty are held.
+
+    >>> from tyrefem.rig.find import load
+    >>> found = parameters_of(load("trtlab")[0], ["outer", "inner", "interface"])
+    >>> found.names[:4]
+    ('tread.conductivity', 'tread.specific_heat', 'tread.conductivity_slope', 'tread.specific_heat_slope')
+    """
+    listed: list[Parameter] = []
+    for layer in card.layers:
+        for key, unit in (("conductivity", "W/m/K"), ("specific_heat", "J/kg/K")):
+            guess = getattr(layer, key)
+            listed.append(_log(f"{layer.name}.{key}", unit, guess.value, guess.relative_sd, PROPERTY))
+        for key in ("conductivity", "specific_heat"):
+            slope = getattr(layer, key).slope
+            listed.append(Parameter(f"{layer.name}.{key}_slope", "1/K", "linear", slope, card.slope_sd, SLOPE))
+    laser, around = card.laser, card.surroundings
+    listed += [
+        _log("absorptance", "1", laser.absorptance, laser.absorptance_sd / laser.absorptance, RIG),
+        _log("outer_film", "1", 1.0, around.convection_sd, RIG),
+        _log("inner_film", "1", 1.0, around.convection_sd, RIG),
+    ]
+    emissivity = around.emissivity if around.radiation else 0.0
+    listed.append(Parameter("emissivity", "1", "linear", emissivity, around.emissivity_sd if emissivity else 0.0, RIG))
+    for layer in card.layers:
+        listed.append(Parameter(f"{layer.name}.thickness", "m", "linear", layer.thickness, layer.thickness_sd, RIG))
+    seen = {name: card.sensors[name] for name in sensors}
+    # One coordinate is enough where every sensor is aimed at the mark: only the distance matters.
+    aside = any(one.aside > 0 for one in seen.values())
+    listed.append(Parameter("spot_along", "m", "linear", 0.0, laser.placing_sd if aside else 0.0, RIG))
+    listed.append(Parameter("spot_across", "m", "folded" if aside else "rayleigh", 0.0, laser.placing_sd, RIG))
+    for name, sensor in seen.items():
+        if sensor.depth is not None:
+            listed.append(Parameter(f"{name}.depth", "m", "linear", sensor.depth, sensor.depth_sd, RIG))
+            spread = sensor.lag_sd if sensor.lag else 0.0
+            listed.append(_log(f"{name}.lag", "s", sensor.lag, spread, RIG))
+        listed.append(Parameter(f"{name}.offset", "K", "linear", 0.0, sensor.offset_sd, RIG))
+    free = tuple(one for one in listed if one.spread > 0)
+    return Parameters(free, {one.name: one.centre for one in listed if not one.spread > 0})
+
+
+def _log(name: str, unit: str, centre: float, relative_sd: float, group: str) -> Parameter:
+    return Parameter(name, unit, "log", centre, math.sqrt(math.log1p(relative_sd**2)), group)
+
+
+def at(x: Array, place: int, step: float) -> Array:
+    """Coordinates with one moved."""
+    moved = np.array(x, dtype=float)
+    moved[place] += step
+    return moved

@@ -1,0 +1,138 @@
+"""A rig's measured tables, matched with its tests and thinned to what a fit needs."""
+
+from __future__ import annotations
+
+from collections.abc import Iterable, Sequence
+from dataclasses import dataclass
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+from numpy.typing import NDArray
+
+from tyrefem.errors import InputError, nearest
+from tyrefem.measured import MeasuredRun, read_table
+from tyrefem.rig.card import RigCard, RunCard
+from tyrefem.rig.clock import Clock
+
+Array = NDArray[Any]
+#: More readings than this of one sensor in one test are averaged in groups of neighbours.
+MOST = 400
+#: A logger may run a little longer than the phases say, s.
+_SLACK = 5.0
+
+
+@dataclass(frozen=True, eq=False)
+class Series:
+    """One sensor in one test: mean readings of groups, how many each holds, and the way from computed times to them.
+
+    Attributes
+    ----------
+    times, readings, counts : (n,) s, degC, readings per group.
+    matrix : (n, computed times).
+    """
+
+    test: str
+    sensor: str
+    times: Array
+    readings: Array
+    counts: Array
+    matrix: Array
+
+
+@dataclass(frozen=True, eq=False)
+class HeatingTest:
+    """One test: its card, its clock, its series by sensor."""
+
+    name: str
+    run: RunCard
+    clock: Clock
+    series: tuple[Series, ...]
+    file: Path | None = None
+
+
+def read(card: RigCard, tables: Iterable[str | Path], without: Sequence[str] = ()) -> tuple[HeatingTest, ...]:
+    """The tests of tables whose runs are named like those of the card (by ``run`` column, else by file name).
+
+    Parameters
+    ----------
+    without : sensors of the card that the tables need not have.
+
+    Raises InputError naming file, run and column: an unknown or repeated run, a missing sensor column, a table that
+    ends before the laser is on or goes on after the card's phases.
+    """
+    for name in without:
+        if name not in card.sensors:
+            raise InputError(f"unknown sensor '{name}'{nearest(name, card.sensors)}", field="--without")
+    wanted = [name for name in card.sensors if name not in without]
+    if not wanted:
+        raise InputError("no sensor is left", field="--without")
+    found: dict[str, HeatingTest] = {}
+    for table in tables:
+        for run in read_table(table):
+            if run.name not in card.runs:
+                words = f"run '{run.name}' is not in the rig's card{nearest(run.name, card.runs)}"
+                raise InputError(words, file=table)
+            if run.name in found:
+                raise InputError(f"run '{run.name}' is given twice", file=table)
+            found[run.name] = matched(card, run, wanted, set(without))
+    if not found:
+        raise InputError("no table of a test is given")
+    return tuple(found[name] for name in card.runs if name in found)
+
+
+def matched(card: RigCard, run: MeasuredRun, wanted: Sequence[str], without: Iterable[str] = ()) -> HeatingTest:
+    """One measured run as a test of the card."""
+    for name in wanted:
+        if name not in run.sensors:
+            columns = nearest(name, run.sensors)
+            words = f"run '{run.name}' has no column '{name} [degC]'{columns} (--without {name} fits without it)"
+            raise InputError(words, file=run.file)
+    for name in run.sensors:
+        if name not in wanted and name not in without:
+            words = f"column '{name}' is no sensor of the rig{nearest(name, card.sensors)}"
+            raise InputError(words, file=run.file)
+    idle, end = card.phases.idle, card.phases.end
+    if run.times[0] < -_SLACK:
+        raise InputError(f"run '{run.name}' begins at {run.times[0]:g} s; time 0 is the start of idling", file=run.file)
+    if run.times[-1] > end + _SLACK:
+        words = f"run '{run.name}' goes on until {run.times[-1]:g} s, but the card's phases end at {end:g} s"
+        raise InputError(words, file=run.file)
+    if np.sum(run.times > idle) < 5:
+        words = f"run '{run.name}' has fewer than 5 readings after {idle:g} s, when the laser is switched on"
+        raise InputError(words, file=run.file)
+    clock = Clock(card.phases, float(min(run.times[-1], end)))
+    series = []
+    for name in wanted:
+        held = np.isfinite(run.temperatures[name].to_numpy(dtype=float))
+        if not np.any(run.times[held] > idle):
+            raise InputError(f"run '{run.name}' has no reading of '{name}' with the laser on", file=run.file)
+        values = run.temperatures[name].to_numpy(dtype=float)[held]
+        series.append(_series(run.name, name, run.times[held], values, clock, card))
+    return HeatingTest(run.name, card.runs[run.name], clock, tuple(series), run.file)
+
+
+def _series(test: str, sensor: str, times: Array, values: Array, clock: Clock, card: RigCard) -> Series:
+    """Groups of neighbours that do not reach over a switch of the laser."""
+    group = int(np.ceil(times.size / MOST))
+    phases = card.phases
+    phase = np.searchsorted([phases.idle, phases.idle + phases.heating], times, side="right")
+    number = np.zeros(times.size, dtype=int)
+    for p in np.unique(phase):
+        here = np.flatnonzero(phase == p)
+        number[here] = number.max() + 1 + np.arange(here.size) // group
+    _, number = np.unique(number, return_inverse=True)
+    counts = np.bincount(number).astype(float)
+    matrix = clock.matrix(times)
+    if group > 1:
+        means = np.zeros((counts.size, matrix.shape[1]))
+        np.add.at(means, number, matrix)
+        matrix = means / counts[:, None]
+    return Series(
+        test,
+        sensor,
+        np.bincount(number, times) / counts,
+        np.bincount(number, values) / counts,
+        counts,
+        matrix,
+    )

@@ -1,0 +1,122 @@
+"""The rig simulated: what every sensor would read in the card's tests."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Mapping
+from dataclasses import dataclass
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+from numpy.typing import NDArray
+from threadpoolctl import threadpool_limits
+
+from tyrefem.errors import InputError
+from tyrefem.measured import MeasuredRun
+from tyrefem.rig.card import RigCard
+from tyrefem.rig.clock import Clock
+from tyrefem.rig.find import load
+from tyrefem.rig.grid import USUAL, Fineness
+from tyrefem.rig.parameters import parameters_of
+from tyrefem.rig.twin import Twin
+from tyrefem.rig.verdict import HOT
+
+Array = NDArray[Any]
+#: More readings than this per sensor are no table for a person or a fit.
+_MOST = 200_000
+
+
+@dataclass(frozen=True, eq=False)
+class Simulation:
+    """Simulated tests.
+
+    Attributes
+    ----------
+    card, file : the rig. values : the numbers it was simulated with. runs : readings by run.
+    twin, fields : the computed rig and nodal temperatures (computed times, unknowns) by run; clock : their times.
+    """
+
+    card: RigCard
+    file: Path | None
+    values: Mapping[str, float]
+    runs: Mapping[str, MeasuredRun]
+    twin: Twin
+    clock: Clock
+    fields: Mapping[str, Array]
+
+    @property
+    def words(self) -> tuple[str, ...]:
+        """What a reader should know: temperatures that rubber does not bear, heat at the patch's rim."""
+        out = []
+        grid = self.twin.grid(self.values)
+        on = self.clock.heating.size - 1
+        for name, fields in self.fields.items():
+            peak, ambient = float(fields.max()), float(fields[0, 0])
+            if peak > HOT:
+                out.append(f"Run '{name}': the spot reaches {peak:.0f} degC; rubber changes at such temperatures.")
+            rim = float((grid.at(grid.along[-1], grid.depths) @ fields[-1]).max()) - ambient
+            if rim > 0.01 * (float(fields[on].max()) - ambient):
+                out.append(f"Run '{name}': the patch's rim is {rim:.1f} K warm; patch.radius should be larger.")
+        return tuple(out)
+
+
+def simulate(
+    rig: str | Path | RigCard,
+    *,
+    every: float = 5.0,
+    seed: int | None = None,
+    values: Mapping[str, float] | None = None,
+    fineness: Fineness | None = None,
+    progress: Callable[[], None] | None = None,
+) -> Simulation:
+    """Readings of every run of a rig's card.
+
+    Parameters
+    ----------
+    rig : name, path or card. every : s between readings.
+    seed : of the instruments' noise; None leaves it out.
+    values : numbers to change, by parameter name, e.g. ``{"tread.conductivity": 0.3, "outer.offset": 0.1}``.
+
+    Raises InputError for an impossible rig or an unknown number.
+
+    >>> done = simulate("trtlab", every=60.0, fineness=Fineness(2, 5, 2))
+    >>> readings = done.runs["high"].temperatures
+    >>> sorted(readings, key=lambda sensor: readings[sensor].max())
+    ['inner', 'interface', 'outer']
+    """
+    card, file = (rig, None) if isinstance(rig, RigCard) else load(rig)
+    import pandas as pd
+
+    if not every > 0 or card.phases.end / every > _MOST:
+        raise InputError(f"{every:g} s gives no readings, or more than {_MOST}", field="--every")
+    sensors = tuple(card.sensors)
+    parameters = parameters_of(card, sensors)
+    known = parameters.values(np.zeros(len(parameters)))
+    # The spot is where it should be, unless asked otherwise: the middle of its prior lies beside the mark.
+    known["spot_across"] = 0.0
+    for name in values or {}:
+        if name not in known:
+            from tyrefem.errors import nearest
+
+            raise InputError(f"unknown number '{name}'{nearest(name, known)}", field="values")
+    numbers = {**known, **(values or {})}
+    twin, clock = Twin(card, sensors, fineness or USUAL), Clock(card.phases, card.phases.end)
+    times = np.arange(0.0, card.phases.end + every / 2, every)
+    times = times[times <= card.phases.end]
+    matrix = clock.matrix(times)
+    rng = np.random.default_rng(seed)
+    noise = np.array([card.sensors[name].noise for name in sensors])
+    runs, kept = {}, {}
+    for name, run in card.runs.items():
+        with threadpool_limits(1, user_api="blas"):
+            kept[name] = twin.fields(numbers, run, clock)
+        readings = matrix @ twin.seen(numbers, clock, kept[name])
+        if seed is not None:
+            readings = readings + noise * rng.normal(size=readings.shape)
+        comment = f"SIMULATED with tyrefem rig simulate: {card.title}, run {name}, {run.power:g} W"
+        comment += f", noise of seed {seed}" if seed is not None else ", no noise"
+        frame = pd.DataFrame(np.round(readings, 4), columns=list(sensors))
+        runs[name] = MeasuredRun(name, times, frame, None, (comment,))
+        if progress:
+            progress()
+    return Simulation(card, file, numbers, runs, twin, clock, kept)

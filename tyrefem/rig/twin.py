@@ -1,0 +1,142 @@
+"""The computed rig: what every sensor reads in every test for given numbers, and the slopes of that."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from dataclasses import dataclass
+from typing import Any
+
+import numpy as np
+from numpy.typing import NDArray
+
+from tyrefem.rig.card import RigCard, RunCard
+from tyrefem.rig.clock import Clock
+from tyrefem.rig.grid import USUAL, Fineness, Grid
+from tyrefem.rig.parameters import Parameter, Parameters, at
+from tyrefem.rig.patch import Layer, Patch, Property
+from tyrefem.rig.sensitivity import Sensitivity
+from tyrefem.rig.views import view
+
+Array = NDArray[Any]
+#: Error in time that a solve aims at, K: with the tests' computed times it stays far below the cameras' noise.
+TOLERANCE = 0.1
+#: Parameters that only a sensor knows of need no new solution.
+_VIEWS = ("spot_along", "spot_across", "depth", "lag", "offset")
+
+
+@dataclass(frozen=True, eq=False)
+class Twin:
+    """The rig of a card, in numbers.
+
+    Parameters
+    ----------
+    card : the rig.
+    sensors : those that are read, in order.
+    fineness : of the mesh.
+    """
+
+    card: RigCard
+    sensors: tuple[str, ...]
+    fineness: Fineness = USUAL
+
+    def patch(self, values: Mapping[str, float], run: RunCard) -> Patch:
+        """The heated patch of one test."""
+        card = self.card
+        layers = tuple(
+            Layer(
+                one.name,
+                max(values[f"{one.name}.thickness"], 0.2 * one.thickness),
+                one.density.value,
+                *(
+                    Property(values[f"{one.name}.{key}"], values[f"{one.name}.{key}_slope"], one.reference_temperature)
+                    for key in ("conductivity", "specific_heat")
+                ),
+            )
+            for one in card.layers
+        )
+        return Patch(
+            layers,
+            card.patch.radius,
+            card.patch.curvature,
+            card.laser.spot_diameter / 2,
+            card.laser.profile,
+            values["absorptance"] * run.power,
+            card.surroundings.ambient if run.ambient is None else run.ambient,
+            card.surroundings.characteristic_length,
+            values["outer_film"],
+            values["inner_film"],
+            min(max(values["emissivity"], 0.0), 1.0),
+        )
+
+    def grid(self, values: Mapping[str, float]) -> Grid:
+        """The mesh of the layers' thicknesses, kept for the latest few."""
+        return self.patch(values, next(iter(self.card.runs.values()))).grid(self.fineness)
+
+    def fields(self, values: Mapping[str, float], run: RunCard, clock: Clock) -> Array:
+        """Nodal temperatures (computed times, unknowns)."""
+        patch, grid = self.patch(values, run), self.grid(values)
+        hot = patch.heated(grid, clock.heating, TOLERANCE).values
+        if not clock.cooling.size:
+            return hot
+        off = np.concatenate([[0.0], clock.cooling])
+        return np.concatenate([hot, patch.cooled(grid, off, hot[-1], TOLERANCE).values[1:]])
+
+    def seen(self, values: Mapping[str, float], clock: Clock, fields: Array) -> Array:
+        """Readings without noise, (computed times, sensors)."""
+        grid, columns = self.grid(values), []
+        for name in self.sensors:
+            row = view(name, self.card.sensors[name], grid, values)
+            raw = np.asarray(fields @ row.T.toarray())[:, 0]
+            columns.append(clock.lagged(raw, values.get(f"{name}.lag", 0.0)) + values[f"{name}.offset"])
+        return np.stack(columns, axis=1)
+
+    def readings(self, values: Mapping[str, float], run: RunCard, clock: Clock) -> Array:
+        """Readings of one test, (computed times, sensors), degC."""
+        return self.seen(values, clock, self.fields(values, run, clock))
+
+    def slopes(self, parameters: Parameters, x: Array, run: RunCard, clock: Clock, fields: Array, base: Array) -> Array:
+        """d readings / d coordinates, (computed times, sensors, parameters), about the fields at x."""
+        values = parameters.values(x)
+        out = np.zeros((*base.shape, len(parameters)))
+        solved = [i for i, one in enumerate(parameters.free) if not _only_seen(one) and not _thickness(one)]
+        names = tuple(parameters.free[i].name for i in solved)
+        tangent = self._tangent(values, names, run, clock, fields)
+        grid = self.grid(values)
+        for column, name in enumerate(self.sensors):
+            row = view(name, self.card.sensors[name], grid, values).toarray()[0]
+            raw = np.einsum("tup,u->tp", tangent, row)
+            for i, slope in zip(solved, clock.lagged(raw, values.get(f"{name}.lag", 0.0)).T, strict=True):
+                one = parameters.free[i]
+                out[:, column, i] = slope * one.spread
+        for i, one in enumerate(parameters.free):
+            if i in solved:
+                continue
+            step = 0.05 if _only_seen(one) else 0.2
+            moved = parameters.values(at(x, i, step))
+            back = parameters.values(at(x, i, -step))
+            if _only_seen(one):
+                up, down = self.seen(moved, clock, fields), self.seen(back, clock, fields)
+            else:
+                up, down = self.readings(moved, run, clock), self.readings(back, run, clock)
+            out[:, :, i] = (up - down) / (2 * step)
+        return out
+
+    def _tangent(
+        self, values: Mapping[str, float], names: tuple[str, ...], run: RunCard, clock: Clock, fields: Array
+    ) -> Array:
+        sensitivity = Sensitivity(self.patch(values, run), self.grid(values), names)
+        n = clock.heating.size
+        hot = sensitivity.run(clock.heating, fields[:n], None, lit=True)
+        if not clock.cooling.size:
+            return hot
+        off = np.concatenate([[0.0], clock.cooling])
+        cold = sensitivity.run(off, fields[n - 1 :], hot[-1], lit=False)
+        return np.concatenate([hot, cold[1:]])
+
+
+def _only_seen(one: Parameter) -> bool:
+    return one.name.rpartition(".")[2] in _VIEWS
+
+
+def _thickness(one: Parameter) -> bool:
+    return one.name.endswith(".thickness")
