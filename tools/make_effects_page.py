@@ -99,9 +99,14 @@ class Lamp(Effect):
 """
 
 
+def _shown(effect: type[Effect]) -> bool:
+    """Effects that a diagnosis may name; corrections of base numbers are described in docs/diagnosis.md."""
+    return effect.__module__.startswith("tyrefem.") and not effect.calibration
+
+
 def page() -> str:
     """The text of docs/effects.md."""
-    effects = {name: one for name, one in catalogue().items() if one.__module__.startswith("tyrefem.")}
+    effects = {name: one for name, one in catalogue().items() if _shown(one)}
     families = by_family(effects)
     parts = [INTRODUCTION, "## Catalogue\n", "| effect | family | what it is |\n|---|---|---|"]
     for family, members in families.items():
@@ -185,7 +190,7 @@ def main() -> None:
     """Write the page, and the pictures unless only the text is asked for."""
     if "--text" not in sys.argv:
         bases: dict[str, tf.Result] = {}
-        for effect in catalogue().values():
+        for effect in filter(_shown, catalogue().values()):
             changes = repr(DRAWN_FOR.get(effect.name, ({}, ""))[0])
             if changes not in bases:
                 bases[changes] = _study(effect.name).run()

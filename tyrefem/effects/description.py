@@ -54,6 +54,7 @@ def _start(prior: Prior) -> float:
 def example(effect: type[Effect], sensors: tuple[str, ...] = ("crown-inner", "crown-middle")) -> str:
     """An entry of a study file with the amplitudes at the prior's scale."""
     texts = dict(zip(("sensor", "other"), sensors, strict=True))
+    texts |= {"film": "outside_air", "station": "60 mm", "width": "10 mm"}
     lines = ["[[effects]]", f'name = "{effect.name}"']
     lines += [f'{name} = "{texts[name]}"' for name, field in effect.model_fields.items() if field.is_required()]
     for one in effect.parameters():
