@@ -1,0 +1,61 @@
+"""What a layout can tell, before any data."""
+
+from __future__ import annotations
+
+import numpy as np
+import pytest
+from hidden import RIVALS, Case
+
+from tyrefem.diagnose.diagnosis import gap_of
+from tyrefem.diagnose.isolability import MARGIN, Isolability, isolability, margins, planned, rivals_of
+from tyrefem.diagnose.laboratory import Bench, Laboratory
+from tyrefem.diagnose.refine import Gap
+from tyrefem.diagnose.sets import Prior
+
+
+@pytest.fixture(scope="module")
+def gap(case: Case) -> Gap:
+    """The study's planned runs, with the responses that the diagnosis of the same study found."""
+    study = case.study
+    sensors = [one.sensor for one in case.diagnosis.gap.lab.bench.trials[0].series]
+    return gap_of(Laboratory(Bench(study, planned(study, sensors))), known=case.diagnosis.gap.responses)
+
+
+@pytest.fixture(scope="module")
+def found(case: Case, gap: Gap) -> Isolability:
+    return isolability(case.study, gap=gap)
+
+
+def test_every_candidate_has_a_row_and_nothing_else(found: Isolability) -> None:
+    assert {name.split(" (")[0] for name in found.table["effect"]} == RIVALS
+    assert [run for runs in found.runs for run in runs if run == "fast"] == [], "the held-out run is not planned on"
+
+
+def test_to_be_told_from_all_takes_at_least_what_being_seen_takes(found: Isolability) -> None:
+    assert (found.smallest >= found.seen).all()
+    assert np.isfinite(found.seen).any()
+
+
+def test_the_margin_is_reached_at_the_smallest_amplitude_and_not_well_below(
+    case: Case, gap: Gap, found: Isolability
+) -> None:
+    linear, prior = gap.linear(gap.fitted), Prior(found.candidates, 0.5)
+    prior = Prior(found.candidates, case.study.card.diagnosis.effects_expected)
+    number = [one.name for one in found.candidates].index("hot-road")
+    road = found.candidates[number]
+    column = linear.jacobian[:, linear.place[road.amplitudes[0]]]
+    sets = rivals_of((road,), found.candidates)
+
+    def lead(amplitude: float) -> float:
+        return min(margins(linear, amplitude * column, (road,), sets, prior))
+
+    assert lead(found.smallest[number]) >= MARGIN > lead(0.7 * found.smallest[number])
+
+
+def test_twice_the_noise_needs_a_stronger_effect(case: Case, gap: Gap, found: Isolability) -> None:
+    study = case.study
+    sensors = [one.sensor for one in case.diagnosis.gap.lab.bench.trials[0].series]
+    louder = study.replace({f"sensors.{name}.noise": "1.5 delta_degC" for name in study.sensors})
+    again = gap_of(Laboratory(Bench(louder, planned(louder, sensors))), known=case.diagnosis.gap.responses)
+    assert (isolability(louder, gap=again).seen >= found.seen).all()
+    assert (isolability(louder, gap=again).seen > found.seen).any()
