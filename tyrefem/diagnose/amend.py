@@ -65,7 +65,8 @@ def amended(study: Study, change: Sequence[Change]) -> Study:
     totals = rounded(change)
     new = with_values(study, {unknown: x for unknown, x in totals.items() if unknown.effect})
     base = [one for one in change if not one.unknown.effect]
-    new = new.replace({one.unknown.key: _restated(study, one) for one in base}) if base else new
+    for one in base:
+        new = new.replace({one.unknown.key: _restated(study, one), **_provenance(study, one)})
     runs = [dict(entry) for entry in new.data.get("measured", [])]
     for unknown, x in totals.items():
         if unknown.effect is None and unknown.key.startswith("drive."):
@@ -105,6 +106,16 @@ def _restated(study: Study, one: Change) -> Any:
     written = value_at(study.data, one.unknown.key, study.folder)
     digits = max(3, int(np.ceil(-np.log10(max(one.sd, 1e-6) / 100))) + 1)
     return scaled(written, one.unknown.value(one.x), digits)
+
+
+def _provenance(study: Study, one: Change) -> dict[str, Any]:
+    """What a corrected number of a card must say: its new source and standard deviation."""
+    table, _, _ = one.unknown.key.rpartition(".")
+    if not table.startswith("materials."):
+        return {}
+    before = value_at(study.data, f"{table}.source", study.folder)
+    factor = f"factor {one.unknown.value(one.x):.3f} ± {one.sd:.2g} by {one.source}"
+    return {f"{table}.source": f"{factor}; before: {before}", f"{table}.relative_sd": float(f"{one.sd:.2g}")}
 
 
 def _rounded(x: float, sd: float) -> float:

@@ -90,13 +90,13 @@ def effect_words(candidate: Candidate, fit: Explained) -> str:
 
 def verdict_words(d: Diagnosis) -> tuple[str, ...]:
     """The verdict in a few plain sentences, the most important first."""
-    best, closing = d.judgement.best, _closing(d)
+    closing = _closing(d)
     if d.verdict == NO_GAP:
         extent = f"rms {_kelvin(d, after=False)}, noise {d.noise:.1f} K"
         return (f"No gap: noise and the uncertainty of base numbers and sensors account for the deviation ({extent}).",)
     clauses = [effect_words(one, d.best) for one in d.best.members]
     if d.verdict == IDENTIFIED:
-        return _joined(clauses, [f"Probability {percent(best.probability)}."], closing)
+        return _joined(clauses, [f"Probability {percent(d.judgement.probability)}."], closing)
     if d.verdict == CONFOUNDED:
         return _confounded(d, closing)
     found = f"What is missing is most clearly {missing_words(d)}."
