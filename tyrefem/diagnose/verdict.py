@@ -14,6 +14,8 @@ IDENTIFIED, CONFOUNDED, UNEXPLAINED, NO_GAP = "identified", "confounded", "unexp
 SURE, CREDIBLE = 0.9, 0.99
 #: And when nothing more is missing with at least this probability.
 WHOLE = 0.5
+#: So many sets are named in a reason.
+SHOWN = 8
 #: A misfit less probable than this, were the model right, is not accepted.
 IMPROBABLE = 1e-4
 #: Probability that the cause is not in the catalogue, given that there is any (estimate).
@@ -140,5 +142,7 @@ def judge(ranked: Sequence[Standing], explained: Callable[[Members], Explained |
     if sure >= SURE and best.probability >= WHOLE:
         reasons.append(f"{best.key} is missing with {100 * sure:.1f} % probability, by all sets of effects tried")
         return verdict(IDENTIFIED)
-    reasons.append("these sensors and runs cannot tell apart: " + "; ".join(one.key for one in credible))
+    more = f"; and {len(credible) - SHOWN} more" if len(credible) > SHOWN else ""
+    shown = "; ".join(one.key for one in credible[:SHOWN])
+    reasons.append(f"these sensors and runs cannot tell apart: {shown}{more}")
     return verdict(CONFOUNDED)
