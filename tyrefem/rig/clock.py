@@ -21,7 +21,7 @@ def since_switch(duration: float) -> Array:
     """Times from 0 to `duration`, close together after the switch: even steps in ln(1 + t/0.5 s).
 
     >>> since_switch(1050.0).size
-    71
+    49
     """
     span = np.log1p(duration / SCALE)
     return np.asarray(SCALE * np.expm1(np.linspace(0.0, span, max(5, int(np.ceil(span / STEP)) + 1))))

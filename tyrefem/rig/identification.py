@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Iterable, Mapping, Sequence
+from collections.abc import Callable, Iterable, Sequence
 from dataclasses import dataclass
 from functools import cached_property
 from pathlib import Path
@@ -13,7 +13,7 @@ from numpy.typing import NDArray
 from threadpoolctl import threadpool_limits
 
 from tyrefem.rig.card import RigCard
-from tyrefem.rig.estimate import Estimate, estimate_of, together
+from tyrefem.rig.estimate import Estimate, estimate_of
 from tyrefem.rig.find import load
 from tyrefem.rig.find import tables as beside
 from tyrefem.rig.fit import Fit, Fitter
@@ -59,20 +59,6 @@ class Identification:
     def properties(self) -> tuple[Estimate, ...]:
         """Conductivity and specific heat of every layer."""
         return tuple(one for one in self.estimates if one.group == PROPERTY)
-
-    @cached_property
-    def together(self) -> float:
-        """Half width in standard deviations at which the properties' intervals hold all of them at once with 95 %."""
-        n = len(self.properties)
-        return together(self.correlation[:n, :n])
-
-    def all_hold(self, truth: Mapping[str, float]) -> bool:
-        """Are all given properties inside the intervals that hold them together with 95 %?"""
-        for name, value in truth.items():
-            one = self.by_name[name]
-            if abs(np.log(one.value / value)) > self.together * (one.relative_sd or 0.0):
-                return False
-        return True
 
     @cached_property
     def table(self) -> pd.DataFrame:

@@ -7,6 +7,7 @@ from collections.abc import Mapping
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
+from tyrefem.rig.estimate import COVERAGE
 from tyrefem.rig.pictures import references
 from tyrefem.rig.summary import diffusivities, ranked
 from tyrefem.rig.verdict import spoken
@@ -25,6 +26,7 @@ def page(found: Identification, pictures: Mapping[str, bytes], cards: Mapping[st
     )  # fmt: skip
     return environment.get_template("page.html").render(
         found=found,
+        coverage=COVERAGE,
         references=references(found.card),
         spoken=spoken,
         pictures={name: base64.b64encode(png).decode("ascii") for name, png in pictures.items()},

@@ -25,6 +25,7 @@ from tyrefem.plotting.style import (
     tidy,
     title,
 )
+from tyrefem.rig.estimate import COVERAGE
 from tyrefem.rig.verdict import spoken
 
 if TYPE_CHECKING:
@@ -113,7 +114,7 @@ def intervals(found: Identification) -> Figure:
     title(drawn, "Identified properties", f"{references(found.card)}; 95 % intervals; grey: first guess")
     axes = add_axes(drawn, 2.3, 0.55, 3.4, 0.42 * len(shown) + 0.3)
     for row, one in enumerate(shown):
-        spread = np.log1p(one.prior_sd / one.prior_value) * 1.96
+        spread = np.log1p(one.prior_sd / one.prior_value) * COVERAGE
         guess = one.prior_value / one.value
         axes.plot(guess * np.exp([-spread, spread]), [row + 0.16] * 2, color="#bbbbbb", lw=5, solid_capstyle="butt")
         axes.plot(guess, row + 0.16, "|", color=QUIET, ms=9)
@@ -123,7 +124,7 @@ def intervals(found: Identification) -> Figure:
         )
         axes.plot(1.0, row - 0.14, "o", color=color, ms=5)
         axes.text(
-            1.03, row, f"{one.value:.4g} {one.unit} ± {1.96 * (one.relative_sd or 0):.1%}\n{one.verdict}",
+            1.03, row, f"{one.value:.4g} {one.unit} ± {COVERAGE * (one.relative_sd or 0):.1%}\n{one.verdict}",
             fontsize=FONT - 0.5, color=color, va="center", transform=axes.get_yaxis_transform(),
         )  # fmt: skip
     axes.set_yticks(range(len(shown)), [plain(spoken(one.name)) for one in shown])

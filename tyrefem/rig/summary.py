@@ -6,6 +6,7 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
+from tyrefem.rig.estimate import COVERAGE
 from tyrefem.rig.parameters import PROPERTY
 
 if TYPE_CHECKING:
@@ -32,7 +33,7 @@ def summary(found: Identification) -> dict[str, Any]:
         ],
         "reference_temperatures_degC": {one.name: one.reference_temperature for one in found.card.layers},
         "estimates": [one.to_dict() for one in found.estimates],
-        "half_width_together_sd": found.together,
+        "coverage_factor": COVERAGE,
         "diffusivities": diffusivities(found),
         "determined": [one.name for one in found.properties if one.verdict == "determined"],
         "not_determined": [one.name for one in found.properties if one.verdict == "not determined"],
