@@ -39,6 +39,7 @@ def truth(seed: int, card: RigCard, *, linear: bool) -> Truth:
         offset_along=bool(rng.random() < 0.5),
         depth=float(couple.depth + rng.normal(0, couple.depth_sd)),
         lag=float(couple.lag * np.exp(rng.normal(0, couple.lag_sd))),
+        phases=(card.phases.idle, card.phases.heating, card.phases.cooling),
         biases=tuple(float(rng.normal(0, card.sensors[n].offset_sd)) for n in names),
     )
 
@@ -47,9 +48,10 @@ def measured(seed: int, card: RigCard, true: Truth) -> list[MeasuredRun]:
     """Tables of every run of the card."""
     rng = np.random.default_rng(40_000 + seed)
     patch = CurvedPatch(true)
+    times = TIMES[card.phases.end >= TIMES]
     return [
         MeasuredRun(
-            name, TIMES, pd.DataFrame(patch.readings(run.power, TIMES, rng), columns=["outer", "inner", "interface"])
+            name, times, pd.DataFrame(patch.readings(run.power, times, rng), columns=["outer", "inner", "interface"])
         )
         for name, run in card.runs.items()
     ]

@@ -10,9 +10,11 @@ import pytest
 from tyrefem.cli import main
 from tyrefem.materials import material
 from tyrefem.measured import read_table
-from tyrefem.rig import load
+from tyrefem.rig import load, simulate
 from tyrefem.rig.find import find
-from tyrefem.rig.layer_study import merged
+from tyrefem.rig.grid import Fineness
+from tyrefem.rig.layer_study import merged, study, write
+from tyrefem.rig.readings import matched
 
 SHORT = ("--set", "drive.duration=10 s", "--set", "mesh.size=8 mm", "--set", "output.fields=2")
 
@@ -69,13 +71,26 @@ def test_layers_merge_to_the_same_mass_heat_and_resistance() -> None:
             assert sum(map(sums, fewer.layers)) == pytest.approx(sum(map(sums, card.layers)))
 
 
-def test_layer_study_improves_with_the_true_layers(here: Path, capfd: pytest.CaptureFixture[str]) -> None:
+def test_layer_study_improves_with_the_true_layers(tmp_path: Path) -> None:
     """Two layers that differ much, fitted as one and as two: the second takes most of the misfit away."""
-    text = Path("mine.toml").read_text(encoding="utf-8").replace('value = "0.3 W/m/K"', 'value = "0.7 W/m/K"')
-    text = text.replace('cooling = "60 s"', 'cooling = "0 s"')
-    Path("mine.toml").write_text(text, encoding="utf-8")
-    assert main(["rig", "layers", "mine.toml", "--out", "out", "--json"]) == 0
-    one, two = json.loads(capfd.readouterr().out)["rows"]
+    card, _ = load("trtlab")
+    short = card.phases.model_copy(update={"heating": 200.0, "cooling": 0.0})
+    card = card.model_copy(update={"phases": short, "runs": {"high": card.runs["high"]}})
+    coarse = Fineness(2, 5, 2)
+    done = simulate(card, seed=1, values={"carcass.conductivity": 0.7}, fineness=coarse)
+    tests = [matched(card, run, list(card.sensors)) for run in done.runs.values()]
+    found = study(card, tests, (1, 2), coarse)
+    one, two = found.table().to_dict("records")
     assert two["transient_misfit_K"] < 0.5 * one["transient_misfit_K"]
     assert two["log_evidence"] > one["log_evidence"] + 10
+    assert {file.name for file in write(found, tmp_path / "out").iterdir()} == {
+        "layers.csv",
+        "layers.png",
+        "summary.json",
+    }
+
+
+def test_layer_study_is_a_command(here: Path, capfd: pytest.CaptureFixture[str]) -> None:
+    assert main(["rig", "layers", "mine.toml", "--most", "1", "--out", "out", "--json"]) == 0
+    assert [row["layers"] for row in json.loads(capfd.readouterr().out)["rows"]] == [1]
     assert Path("out/layers.png").is_file()

@@ -108,7 +108,7 @@ def test_slopes_are_those_of_differences() -> None:
     fields = twin.fields(parameters.values(x), run, clock)
     base = twin.seen(parameters.values(x), clock, fields)
     slopes = twin.slopes(parameters, x, run, clock, fields, base)
-    for name in ("tread.conductivity", "tread.specific_heat_slope", "outer_film", "absorptance"):
+    for name in ("tread.conductivity", "tread.specific_heat_slope", "outer_film"):
         i = parameters.names.index(name)
         up, down = (twin.readings(parameters.values(at(x, i, step)), run, clock) for step in (0.1, -0.1))
         expected = (up - down) / 0.2

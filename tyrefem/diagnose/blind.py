@@ -18,7 +18,7 @@ from tyrefem.diagnose.laboratory import Bench, Response, laboratory
 from tyrefem.diagnose.refine import Gap
 from tyrefem.diagnose.sets import Prior
 from tyrefem.diagnose.strangers import HotRing, Lamp
-from tyrefem.diagnose.truth import FINE, Logger, record
+from tyrefem.diagnose.truth import Logger, own_mesh, record
 from tyrefem.diagnose.unknowns import (
     Candidate,
     Unknown,
@@ -159,7 +159,7 @@ def measured(study: Study, case: Case, logger: Logger | None = None) -> list[Mea
         rng = np.random.default_rng([case.seed, case.number + 1, number + 1])
         driven = study.with_drive(trial.drive) if trial.drive else study
         # A load that is off by 2 % is off in every run, whatever each run's load.
-        truth = with_values(driven, case.values).replace(FINE)
+        truth = with_values(driven, case.values).replace(own_mesh())
         runs.append(record(truth, trial.name, logger, rng, extra))
     return runs
 

@@ -18,6 +18,7 @@ from tyrefem.diagnose.blind import cases, run_case
 from tyrefem.diagnose.diagnosis import responses, unknowns_of
 from tyrefem.diagnose.isolability import planned
 from tyrefem.diagnose.laboratory import Bench, Response, laboratory
+from tyrefem.diagnose.truth import own_mesh
 from tyrefem.output import atomic_path, jsonable
 from tyrefem.result import GAS
 from tyrefem.studies import Study
@@ -139,6 +140,7 @@ class Blind:
         return {
             "study": self.study,
             "seed": self.seed,
+            "mesh_of_the_truth": own_mesh(),
             "cases": list(self.rows),
             "rates": {name: rate.to_dict() for name, rate in self.rates.items()},
             "reliability": self.reliability,

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import functools
 from dataclasses import dataclass
 from itertools import pairwise
 from typing import Any
@@ -18,16 +19,25 @@ from tyrefem.conduction.points import located
 from tyrefem.effects import Effect
 from tyrefem.effects.acting import Acting
 from tyrefem.measured import MeasuredRun
+from tyrefem.meshing.gmsh import gmsh_works
 from tyrefem.result import GAS
 from tyrefem.rolling import RollingTyre
 from tyrefem.sensors import recorded, true_places
 from tyrefem.studies import Study
 
 Array = NDArray[np.float64]
-#: The truth's own mesh: triangles, quadratic, finer than the diagnosis uses.
-FINE = {"mesh.cell": "tri", "mesh.element": "P2", "mesh.size": "2.5 mm"}
 #: Step of the truth's own time integration, s.
 STEP = 4.0
+
+
+@functools.cache
+def own_mesh() -> dict[str, str]:
+    """The truth's own mesh, finer than the diagnosis uses: unstructured quadratic triangles by gmsh.
+
+    Without gmsh the mapped mesher's triangles.
+    """
+    mesher = "gmsh" if gmsh_works() else "mapped"
+    return {"mesh.mesher": mesher, "mesh.cell": "tri", "mesh.element": "P2", "mesh.size": "2.5 mm"}
 
 
 @dataclass(frozen=True)

@@ -148,6 +148,15 @@ def _gmsh(options: dict[str, float]) -> Iterator[Any]:
             gmsh.finalize()
 
 
+def gmsh_works() -> bool:
+    """Whether the mesher and the system libraries it needs are there."""
+    try:
+        _load()
+    except MissingLibraryError:
+        return False
+    return True
+
+
 def _load() -> tuple[Any, Any]:
     """pygmsh and gmsh, or an error that says what to install."""
     try:

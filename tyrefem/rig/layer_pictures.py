@@ -50,5 +50,7 @@ def layers_figure(done: LayerStudy) -> Figure:
         tidy(panel)
         if number == 0:
             panel.set_ylabel("measured - computed [K]", fontsize=FONT)
-            panel.legend(fontsize=FONT - 1, frameon=False, title="layers", title_fontsize=FONT - 1, ncols=2)
+            handles, counts = panel.get_legend_handles_labels()
+            words = [f"{count} layer{'s' if count != '1' else ''}" for count in counts]
+            drawn.legend(handles, words, loc="upper right", ncols=len(words), fontsize=FONT - 0.5, frameon=False)
     return drawn

@@ -13,6 +13,7 @@ from numpy.typing import NDArray
 
 from tyrefem.errors import InputError
 from tyrefem.rig.card import RigCard
+from tyrefem.rig.grid import Fineness
 from tyrefem.rig.identification import Identification, identify
 from tyrefem.rig.readings import HeatingTest
 
@@ -123,12 +124,13 @@ def study(
     card: RigCard,
     tests: Sequence[HeatingTest],
     counts: Sequence[int],
+    fineness: Fineness | None = None,
     progress: Callable[[int], None] | None = None,
 ) -> LayerStudy:
     """Fit the tests with each number of layers, properties constant in temperature."""
     fits = []
     for count in counts:
-        fits.append(identify(merged(card, count), tests=tests, linear=False))
+        fits.append(identify(merged(card, count), tests=tests, linear=False, fineness=fineness))
         if progress:
             progress(count)
     return LayerStudy(tuple(counts), tuple(fits))
