@@ -14,11 +14,12 @@ from multiprocessing import get_context
 from pathlib import Path
 from typing import Any
 
-from tyrefem.diagnose.blind import cases, run_case
+from tyrefem.diagnose.blind import Outcome, cases, run_case
 from tyrefem.diagnose.diagnosis import responses, unknowns_of
 from tyrefem.diagnose.isolability import planned
 from tyrefem.diagnose.laboratory import Bench, Response, laboratory
 from tyrefem.diagnose.truth import own_mesh
+from tyrefem.errors import InputError
 from tyrefem.output import atomic_path, jsonable
 from tyrefem.result import GAS
 from tyrefem.studies import Study
@@ -176,6 +177,11 @@ def _shrunk(row: Row) -> bool:
     return bool(before >= 3 * after)
 
 
+#: What is noted of a case whose diagnosis broke down.
+FAILED: Row = {
+    "verdict": "failed", "named": [], "set": [], "best": "", "probability": 0.0, "missing_station_m": math.nan,
+    "rms_K": {}, "held_out_rms_K": {"before": 0.0, "after": math.inf}, "noise_K": 0.0,
+}  # fmt: skip
 _KNOWN: list[tuple[Study, tuple[Response, ...]]] = []
 
 
@@ -186,7 +192,11 @@ def _install(study: Study, known: tuple[Response, ...]) -> None:
 def _case(number: int, count: int, seed: int) -> Row:
     study, known = _KNOWN[0]
     case = cases(study, count, seed)[number]
-    row = run_case(study, case, known).to_dict()
+    try:
+        row = run_case(study, case, known).to_dict()
+    except InputError as error:
+        # A diagnosis that breaks down is a wrong one.
+        row = {**Outcome(case, identifiable=True).to_dict(), **FAILED, "reason": str(error)}
     plain: Row = jsonable({**row, "station_m": case.station, "length_m": study.section.line.length})
     return plain
 

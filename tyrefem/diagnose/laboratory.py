@@ -22,6 +22,7 @@ from tyrefem.diagnose.lean import Lean, lean
 from tyrefem.diagnose.progress_store import ProgressStore
 from tyrefem.diagnose.trials import Trial
 from tyrefem.diagnose.unknowns import Unknown, with_values
+from tyrefem.errors import InputError
 from tyrefem.result import GAS, RIM, Result
 from tyrefem.rolling import RollingTyre, run
 from tyrefem.sensors import lagged
@@ -136,11 +137,15 @@ class Bench:
         return np.concatenate([one.sampled(here.grid, slopes[one.sensor]) for one in series])
 
     def predict(self, number: int, values: Values) -> Array:
-        """Block means of a trial with unknowns at ``values``, by the lean simulation."""
+        """Block means of a trial with unknowns at ``values``, by the lean simulation; NaN where no tyre can be so."""
         base = self.base(number)
-        study = with_values(base.study, values)
-        same = all(unknown.measures or x == 0.0 for unknown, x in values.items())
-        found = base.as_measured_by(study) if same else lean(study, base.tyre)
+        try:
+            study = with_values(base.study, values)
+            same = all(unknown.measures or x == 0.0 for unknown, x in values.items())
+            found = base.as_measured_by(study) if same else lean(study, base.tyre)
+        except InputError:
+            # A load that the tyre cannot carry, say: the fit has stepped too far and will try a shorter step.
+            return np.full(len(self.trials[number].measured), np.nan)
         return self.blocks(number, found.grid, found.readings)
 
     def simulate(self, number: int, values: Values) -> Result:

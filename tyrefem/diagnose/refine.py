@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import dataclasses
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass
 from functools import cached_property
@@ -21,6 +22,8 @@ Array = NDArray[np.float64]
 #: enough off to take new tangents when it misses it by the second.
 CLOSE, ASTRAY = 1.0, 6.0
 FIRST_STEPS, MORE_STEPS = 4, 6
+#: A step is shortened to this much of itself, so often where it makes the fit worse or leads to no possible tyre.
+SHORTER, HALVINGS, RETREATS = 0.4, 3, 8
 
 
 @dataclass(frozen=True, eq=False)
@@ -181,18 +184,25 @@ class _Refinement:
     def accept(self, answers: Sequence[Array]) -> None:
         """Take the simulations at the trial point."""
         computed = dict(zip(self.gap.fitted, answers, strict=True))
+        step = self.trial - self.x
+        if not all(np.isfinite(one).all() for one in answers):
+            self._retreat(step)
+            return
         r = np.concatenate([self.gap.residual(i, computed[i]) for i in self.gap.fitted])
         self.steps += 1
-        step = self.trial - self.x
         sd = self._prior()[0]
         length = float(((step / sd) ** 2).sum())
         missed = (self.r - self.J @ step) - r
         if length > 0:
             # Broyden: the smallest change of J (in units of the priors) that would have predicted this simulation.
             self.J = self.J + np.outer(missed, step / sd**2) / length
-        if self._misfit(r, self.trial) > self._misfit(self.r, self.x) and self.halved < 3 and self.steps < self.limit:
+        if (
+            self._misfit(r, self.trial) > self._misfit(self.r, self.x)
+            and self.halved < HALVINGS
+            and self.steps < self.limit
+        ):
             self.halved += 1
-            self.trial = self.x + 0.4 * step
+            self.trial = self.x + SHORTER * step
             return
         self.x, self.r, self.computed = self.trial, r, computed
         astray = float(np.linalg.norm(missed)) > ASTRAY
@@ -207,6 +217,14 @@ class _Refinement:
             self.best = fit(self.J.T @ self.J, self.J.T @ (self.r + self.J @ self.x), *self._prior())
         else:
             self._propose()
+
+    def _retreat(self, step: Array) -> None:
+        """There is no tyre at the trial point: try a shorter step, or stay where the last simulation was."""
+        self.halved += 1
+        self.trial = self.x + SHORTER * step
+        if self.halved > RETREATS:
+            self.trial, self.done = self.x, True
+            self.best = dataclasses.replace(self.best, mean=self.x)
 
     def _new_tangents(self) -> None:
         """Ask for tangents at this point; with an amplitude at hand, the parameters that shape it are fitted too."""
@@ -278,6 +296,9 @@ def _explained(gap: Gap, one: _Refinement) -> Explained:
             computed[i] = gap.corrected(i, answer)
             r.append(gap.residual(i, answer))
             J.append(gap.whitened[i][:, columns])
+        if not np.isfinite(np.concatenate(r)).all():
+            # The held-out drive is not possible with these values: it rejects them.
+            r = [np.full(len(one), 1e3) for one in r]
         log_held, p_held = _predictive(np.concatenate(r), np.vstack(J), one.best.covariance[np.ix_(kept, kept)])
     effective = one.r + one.J @ one.x
     return Explained(

@@ -51,6 +51,6 @@ def layers_figure(done: LayerStudy) -> Figure:
         if number == 0:
             panel.set_ylabel("measured - computed [K]", fontsize=FONT)
             handles, counts = panel.get_legend_handles_labels()
-            words = [f"{count} layer{'s' if count != '1' else ''}" for count in counts]
-            drawn.legend(handles, words, loc="upper right", ncols=len(words), fontsize=FONT - 0.5, frameon=False)
+            labels = [f"{count} layer{'s' if count != '1' else ''}" for count in counts]
+            drawn.legend(handles, labels, loc="upper right", ncols=len(labels), fontsize=FONT - 0.5, frameon=False)
     return drawn
