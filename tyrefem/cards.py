@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+import copy
+import functools
 import tomllib
 from collections.abc import Mapping
 from pathlib import Path
@@ -71,13 +73,20 @@ def read_toml(path: str | Path) -> dict[str, Any]:
     """A TOML file as plain data; a file that is not TOML is an `InputError` with the line."""
     path = Path(path)
     try:
-        return tomllib.loads(path.read_text(encoding="utf-8"))
+        stat = path.stat()
+        return copy.deepcopy(_parsed(path.absolute(), stat.st_mtime_ns, stat.st_size, stat.st_ino))
     except tomllib.TOMLDecodeError as error:
         raise InputError(f"not valid TOML: {error}", file=path) from None
     except UnicodeDecodeError:
         raise InputError("not a text file in UTF-8", file=path) from None
     except OSError as error:
         raise InputError(f"cannot be read: {error.strerror or error}", file=path) from None
+
+
+@functools.lru_cache(maxsize=64)
+def _parsed(path: Path, *_state: int) -> dict[str, Any]:
+    """A file as it was in this state: time of change, size, number."""
+    return tomllib.loads(path.read_text(encoding="utf-8"))
 
 
 #: Ways of giving one property: a table that is laid over another in one of them drops the other ways.

@@ -22,10 +22,25 @@ def changed(data: Mapping[str, Any], key: str, value: Any) -> dict[str, Any]:
     >>> changed({"section": "nasa"}, "section.crown_radius", "3 in")
     {'section': {'base': 'nasa', 'parameters': {'crown_radius': '3 in'}}}
     """
-    parts = _parts(data, key)
+    return all_changed(data, {key: value})
+
+
+def all_changed(data: Mapping[str, Any], changes: Mapping[str, Any]) -> dict[str, Any]:
+    """Plain data with the values at dotted names replaced, one after the other, in a single copy.
+
+    >>> all_changed({"mesh": {}}, {"mesh.size": "3 mm", "mesh.element": "P1"})
+    {'mesh': {'size': '3 mm', 'element': 'P1'}}
+    """
     result: dict[str, Any] = copy.deepcopy(dict(data))
-    _refuse_overridden(result, parts)
-    place: Any = result
+    for key, value in changes.items():
+        _change(result, key, copy.deepcopy(value))
+    return result
+
+
+def _change(data: dict[str, Any], key: str, value: Any) -> None:
+    parts = _parts(data, key)
+    _refuse_overridden(data, parts)
+    place: Any = data
     for depth, part in enumerate(parts[:-1]):
         place = _step(place, part, ".".join(parts[: depth + 1]), parts[: depth + 1])
     last = parts[-1]
@@ -34,7 +49,6 @@ def changed(data: Mapping[str, Any], key: str, value: Any) -> dict[str, Any]:
     else:
         place[last] = value
         _drop_rivals(parts, place)
-    return result
 
 
 def _parts(data: Mapping[str, Any], key: str) -> list[str]:

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import functools
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass, field
 from typing import Any
@@ -17,6 +18,8 @@ Array = NDArray[np.float64]
 
 #: Energy lost per cycle over U tan d / pi: the report's U stands for E' e0^2, the strict one for half of it (eq 25).
 LOSS_FACTOR = {"nasa": 1.0, "sinusoid": 2.0}
+#: Times of which a schedule keeps what it has worked out.
+REMEMBERED = 512
 
 
 @dataclass(frozen=True, eq=False)
@@ -33,6 +36,23 @@ class CycleSchedule:
 
     def weights(self, time: float) -> list[tuple[int, int, float]]:
         """(phase, knot, weight) of the load cases that make up a time."""
+        return self._moment(time)[0]
+
+    def _moment(self, time: float) -> tuple[list[tuple[int, int, float]], float]:
+        """Weights and revolution rate of a time; remembered, as every zone and film asks for the same times."""
+        if time not in self._moments:
+            if len(self._moments) >= REMEMBERED:
+                self._moments.clear()
+            weights = self._weights(time)
+            radius = sum(weight * self.cases[phase][knot].rolling_radius for phase, knot, weight in weights)
+            self._moments[time] = weights, self.drive.slip(time).rolling_speed / (2 * radius)
+        return self._moments[time]
+
+    @functools.cached_property
+    def _moments(self) -> dict[float, tuple[list[tuple[int, int, float]], float]]:
+        return {}
+
+    def _weights(self, time: float) -> list[tuple[int, int, float]]:
         phase, fraction = self.drive.locate(time)
         knots = self.knots[phase]
         if len(knots) == 1:
@@ -52,7 +72,7 @@ class CycleSchedule:
 
     def revolution_rate(self, time: float) -> float:
         """v / (2 r_r), 1/s: pi times the revolutions per second, as in q = U tan d v / (2 r_r) (eq 26); v less slip."""
-        return self.drive.slip(time).rolling_speed / (2 * self.mean(lambda case: case.rolling_radius, time))
+        return self._moment(time)[1]
 
 
 @dataclass(eq=False)
@@ -69,11 +89,12 @@ class HeatSource:
     loss_factor: float = 1.0
     _nodes: Array | None = field(default=None, init=False, repr=False)
     _energies: dict[tuple[int, int], Array] = field(default_factory=dict, init=False, repr=False)
+    _losses: tuple[float, Array] | None = field(default=None, init=False, repr=False)
 
     def energy_density(self, x: Array, t: float) -> Array:
         """U, J/m3, at nodes and time."""
         if self._nodes is not x:
-            self._nodes, self._energies = x, {}
+            self._nodes, self._energies, self._losses = x, {}, None
         total: Array = np.zeros(x.shape[1])
         for phase, knot, weight in self.schedule.weights(t):
             if (phase, knot) not in self._energies:
@@ -86,7 +107,9 @@ class HeatSource:
         rate = self.loss_factor * self.schedule.revolution_rate(t)
         if rate == 0:
             return np.zeros(x.shape[1])
-        return rate * self.energy_density(x, t) * self.loss_tangent(T)
+        if self._nodes is not x or self._losses is None or self._losses[0] != t:
+            self._losses = t, rate * self.energy_density(x, t)
+        return self._losses[1] * self.loss_tangent(T)
 
 
 def ramp_knots(changes: bool, count: int = 9) -> Sequence[float]:

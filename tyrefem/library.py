@@ -65,12 +65,13 @@ def find(kind: str, name: str, near: Path | None = None) -> Path:
             if os.path.isfile(option):
                 return option
         raise InputError(f"no {kind} file '{name}'")
-    known = names(kind, near)
-    if name in known:
-        return known[name]
+    for root in roots(near):
+        path_here = root / FOLDERS[kind] / (f"{name}/study.toml" if kind == "study" else f"{name}.toml")
+        if os.path.isfile(path_here):
+            return path_here
     if kind == "study" and os.path.isfile(path / "study.toml"):
         return path / "study.toml"
-    raise InputError(f"no {kind} named '{name}'{nearest(name, known)}")
+    raise InputError(f"no {kind} named '{name}'{nearest(name, names(kind, near))}")
 
 
 def _path(name: str) -> Path:

@@ -202,7 +202,7 @@ class LossTangent(Sourced):
         if self.law == "constant":
             return np.full_like(np.asarray(temperature, dtype=float), value)
         # A rejected trial step may stray far: outside these bounds no rubber has a tan delta to speak of.
-        bounded = np.clip(temperature, *_RUBBER)
+        bounded = np.minimum(np.maximum(temperature, _RUBBER[0]), _RUBBER[1])
         return np.asarray(value * np.exp(-(self.rate or 0.0) * (bounded - self.at)))
 
 

@@ -15,7 +15,7 @@ from tyrefem.boundaries.rim import Lumped
 from tyrefem.conduction import Conduction, Film, Material, Reservoir
 from tyrefem.effects.acting import Source
 from tyrefem.heat_budget import FRICTION
-from tyrefem.heating import LOSS_FACTOR, CycleSchedule, HeatSource
+from tyrefem.heating import LOSS_FACTOR, REMEMBERED, CycleSchedule, HeatSource
 from tyrefem.meshing import TyreMesh
 from tyrefem.result import GAS, RIM, Result
 from tyrefem.sliding.tread import SlidingTread
@@ -197,8 +197,8 @@ class RollingTyre(Surroundings):
 
 
 def _of_time(law: Callable[[float], float]) -> Callable[[Any, float], float]:
-    """A datum f(x, t) that does not vary in space; the solver asks several times for the same few times."""
-    remembered = functools.lru_cache(maxsize=16)(law)
+    """A datum f(x, t) that does not vary in space; solvers ask for the same times again, on fixed steps for all."""
+    remembered = functools.lru_cache(maxsize=REMEMBERED)(law)
     return lambda _x, t: remembered(t)
 
 

@@ -28,30 +28,33 @@ def lagged(times: Array, temperatures: Array, lag: float) -> Array:
     """
     if lag <= 0 or len(times) < 2:
         return np.array(temperatures, dtype=float)
-    reading = np.empty(len(times))
-    reading[0] = temperatures[0]
     steps = np.diff(times)
-    slopes = np.diff(temperatures) / steps
-    for i, (step, slope) in enumerate(zip(steps, slopes, strict=True)):
-        decay = np.exp(-step / lag)
-        # Particular solution T - lag * slope, plus what is left of the old offset.
-        offset = reading[i] - (temperatures[i] - lag * slope)
-        reading[i + 1] = temperatures[i + 1] - lag * slope + offset * decay
-    return reading
+    behind = lag * np.diff(temperatures) / steps
+    # Particular solution T - lag * slope, plus what is left of the old offset; plain floats, as the loop is hot.
+    before, after = (temperatures[:-1] - behind).tolist(), (temperatures[1:] - behind).tolist()
+    reading = [float(temperatures[0])]
+    for old, new, decay in zip(before, after, np.exp(-steps / lag).tolist(), strict=True):
+        reading.append(new + (reading[-1] - old) * decay)
+    return np.array(reading)
 
 
 def true_places(study: Study) -> dict[str, tuple[float, float]]:
     """(r, z) of every sensor, m: as stated, moved by the study's effects, but never out of the rubber."""
-    stated = {name: study.section_place(sensor) for name, sensor in study.sensors.items()}
+    stated = study.stated_places
     section, found = study.section, dict(stated)
     worn_away = () if section.as_built is None else [name for name in stated if not section.contains([stated[name]])[0]]
-    for name, place in stated.items():
-        moves = [move for effect in study.effects if (move := effect.displacement(name)) != (0.0, 0.0)]
+    moved: dict[str, tuple[float, float]] = {}
+    effects = study.effects
+    for name in stated:
+        moves = [move for effect in effects if (move := effect.displacement(name)) != (0.0, 0.0)]
         if moves or name in worn_away:
-            s, depth = section.locate(np.array([place]))
             along, deeper = (sum(part) for part in zip((0.0, 0.0), *moves, strict=True))
-            r, z = section.place(*section.clamp(s + along, depth + deeper, 0.0))[0]
-            found[name] = (float(r), float(z))
+            moved[name] = along, deeper
+    if moved:
+        s, depth = section.locate(np.array([stated[name] for name in moved]))
+        along_by, deeper_by = np.array(list(moved.values())).T
+        places = section.place(*section.clamp(s + along_by, depth + deeper_by, 0.0))
+        found |= {name: (float(r), float(z)) for name, (r, z) in zip(moved, places, strict=True)}
     return found
 
 

@@ -11,7 +11,7 @@ from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
 from tyrefem import library
-from tyrefem.dotted import changed, scaled, value_at
+from tyrefem.dotted import all_changed, scaled, value_at
 from tyrefem.errors import InputError
 from tyrefem.materials import MaterialCard
 from tyrefem.study_card import REGIONS, MeasuredEntry, Sensor, StudyCard
@@ -56,8 +56,9 @@ class Study:
         like = self.__dict__.pop("_like", None)
         self._share(like)
         _ = self.section, self.materials
-        if like is None or self.new_section is not like.new_section or self.sensors != like.sensors:
-            self._check_sensors()
+        if like is not None and self.new_section is like.new_section and self.sensors == like.sensors:
+            self.__dict__["stated_places"] = like.stated_places
+        _ = self.stated_places
         self._check_effects()
 
     def __reduce__(self) -> tuple[Any, ...]:
@@ -179,12 +180,16 @@ class Study:
             if problem is not None:
                 raise InputError(problem, field=f"effects.{effect.name}", file=self.file)
 
-    def _check_sensors(self) -> None:
+    @functools.cached_property
+    def stated_places(self) -> Mapping[str, tuple[float, float]]:
+        """(r, z) of every sensor as it was built in, m; refuses one outside the rubber."""
+        found = {}
         for name, sensor in self.sensors.items():
             try:
-                self.section_place(sensor)
+                found[name] = self.section_place(sensor)
             except InputError as error:
                 raise error.within(field=f"sensors.{name}", file=self.file) from None
+        return found
 
     def section_place(self, sensor: Sensor) -> tuple[float, float]:
         """(r, z) of a sensor as it was built in, m; refuses one outside the rubber."""
@@ -219,21 +224,20 @@ class Study:
 
     # -- change ------------------------------------------------------------------------------------------------------
 
-    def replace(self, changes: Mapping[str, Any]) -> Study:
+    def replace(self, changes: Mapping[str, Any], like: Study | None = None) -> Study:
         """A new study with values changed by dotted names; units as text, as in a file.
+
+        What another study, ``like`` (this one, if not given), has built is taken over where the two do not differ.
 
         Raises
         ------
         InputError : unknown name (says the nearest), or a value that is not allowed.
         """
-        data: dict[str, Any] = copy.deepcopy(dict(self.data))
-        for key, value in changes.items():
-            data = changed(data, key, value)
-        return self._with(data)
+        return self._with(all_changed(self.data, changes), self if like is None else like)
 
-    def _with(self, data: Mapping[str, Any]) -> Study:
+    def _with(self, data: Mapping[str, Any], like: Study) -> Study:
         study = object.__new__(Study)
-        study.__dict__.update(name=self.name, data=data, file=self.file, folder=self.folder, _like=self)
+        study.__dict__.update(name=self.name, data=data, file=self.file, folder=self.folder, _like=like)
         study.__post_init__()
         return study
 
@@ -338,7 +342,5 @@ def study(name: str | Path, changes: Mapping[str, Any] | None = None) -> Study:
 
     path = library.find("study", str(name))
     found_name = path.parent.name if path.name == "study.toml" else path.stem
-    data = read_toml(path)
-    for key, value in (changes or {}).items():
-        data = changed(data, key, value)
+    data = all_changed(read_toml(path), changes or {})
     return Study(found_name, data, path, path.parent.resolve())

@@ -78,7 +78,7 @@ class SourceLoad(Load):
         """Source at the nodes, (n_nodes,)."""
         T = u if self.all_dofs else u[self.dofs]
         value = self.q if self.static else checked(self.q(self.x, t, T), self.dofs.size, self._field, t)
-        return np.broadcast_to(value, self.dofs.shape)
+        return value if np.ndim(value) else np.full(self.dofs.shape, float(value))
 
     def remainder(self, t: float, y: State, G: Array, Gg: Array) -> float:
         q = self.at_nodes(t, y.u)

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import functools
 from collections.abc import Callable
 from typing import TYPE_CHECKING, Any
 
@@ -79,6 +80,25 @@ class Surface:
         self.row = self.trace_t @ self.weight
         self.points = np.ascontiguousarray(ops.points[:, self.dofs])
         self._keys, self._size = ops.keys, ops.size
+
+    def load(self, q: Any) -> Array:
+        """Load (n_dofs,) W of a flux: a number or its values at the points, W/m2."""
+        return self.row * q if np.ndim(q) == 0 else np.asarray(self.trace_t @ (self.weight * q))
+
+    def loss(self, h: Any, T: Array) -> Array:
+        """Load (n_dofs,) W of the flux h T, with h a number or values at the points, T of the surface's unknowns."""
+        if np.ndim(h) == 0:
+            return np.asarray(h * (self._even @ T))
+        return np.asarray(self.trace_t @ (self.weight * h * (self.trace @ T)))
+
+    @functools.cached_property
+    def _even(self) -> csr_matrix:
+        return (self.trace_t.multiply(self.weight) @ self.trace).tocsr()
+
+    @functools.cached_property
+    def even_exchange(self) -> tuple[Array, Array]:
+        """What `exchange` finds for h = 1 everywhere."""
+        return self.exchange(self.weight)
 
     def exchange(self, weighted: Array) -> tuple[Array, Array]:
         """Positions and values on the common pattern of the integral of h v u, given h times the weights."""

@@ -30,10 +30,14 @@ class FilmLoad(Load):
 
     def freeze(self, t: float, y: State, linear: Linear) -> None:
         self.h0 = self.h(t)
-        weighted = self.s.weight * self.h0
-        where, value = self.s.exchange(weighted)
+        if np.ndim(self.h0) == 0:
+            where, value = self.s.even_exchange
+            value = self.h0 * value
+        else:
+            where, value = self.s.exchange(self.s.weight * self.h0)
         np.add.at(linear.S, where, value)
-        self.row, self.total = self.s.trace_t @ weighted, float(weighted.sum())
+        self.row = self.s.load(self.h0)
+        self.total = float(self.row.sum())
         if self.reservoir is not None:
             linear.B[self.s.dofs, self.reservoir] += self.row
             linear.D[self.reservoir, self.reservoir] += self.total
@@ -50,13 +54,11 @@ class FilmLoad(Load):
         if r is not None:
             if same:
                 return 0.0
-            load = s.trace_t @ (s.weight * (h - h0) * (y.g[r] - s.trace @ y.u[s.dofs]))
+            load = s.load((h - h0) * y.g[r]) - s.loss(h - h0, y.u[s.dofs])
         else:
-            sink = self.sink(t)
-            if same:
-                load = s.row * (h * sink) if np.ndim(h) == np.ndim(sink) == 0 else s.trace_t @ (s.weight * h * sink)
-            else:
-                load = s.trace_t @ (s.weight * (h * sink - (h - h0) * (s.trace @ y.u[s.dofs])))
+            load = s.load(h * self.sink(t))
+            if not same:
+                load = load - s.loss(h - h0, y.u[s.dofs])
         G[s.dofs] += load
         power = float(load.sum())
         if r is not None:
@@ -96,8 +98,7 @@ class FluxLoad(Load):
         return checked(self._of_temperature(self.s.x, t, T), T.size, self._field, t)
 
     def remainder(self, t: float, y: State, G: Array, Gg: Array) -> float:
-        q = self.value(t, y.u)
-        load = self.s.row * q if np.ndim(q) == 0 else self.s.trace_t @ (self.s.weight * q)
+        load = self.s.load(self.value(t, y.u))
         G[self.s.dofs] += load
         return float(load.sum())
 

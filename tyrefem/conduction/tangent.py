@@ -2,7 +2,8 @@
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+import functools
+from collections.abc import Callable, Sequence
 from dataclasses import dataclass
 from itertools import pairwise
 from typing import TYPE_CHECKING, Any
@@ -12,7 +13,7 @@ from numpy.typing import NDArray
 from threadpoolctl import threadpool_limits
 
 from tyrefem.conduction.balance import HeatBalance
-from tyrefem.conduction.loads import SourceLoad, State
+from tyrefem.conduction.loads import Load, SourceLoad, State
 from tyrefem.conduction.operators import Operators
 from tyrefem.conduction.points import located
 from tyrefem.conduction.quick import GAMMA, StageSolver
@@ -184,15 +185,14 @@ class _Direct:
         self.B = None if np.array_equal(base.B, other.B) else other.B - base.B
         self.D = None if np.array_equal(base.D, other.D) else other.D - base.D
 
-    def rate(self, t: float, y: State) -> Array:
-        """(n + m,) W per unit of the parameter."""
-        G, Gg = np.zeros(y.u.size), np.zeros(y.g.size)
-        G0, Gg0 = np.zeros(y.u.size), np.zeros(y.g.size)
+    def rate(self, t: float, y: State, lost: Callable[[Load], Array]) -> Array:
+        """(n + m,) W per unit of the parameter; ``lost`` (n + m,): heat by a load of the base problem."""
+        heat = np.zeros(y.u.size + y.g.size)
+        body, gas = heat[: y.u.size], heat[y.u.size :]
         for load in self.added:
-            load.remainder(t, y, G, Gg)
+            load.remainder(t, y, body, gas)
         for load in self.gone:
-            load.remainder(t, y, G0, Gg0)
-        body, gas = G - G0, Gg - Gg0
+            heat -= lost(load)
         if self.S is not None:
             body -= self.S @ y.u
         if self.B is not None:
@@ -200,7 +200,7 @@ class _Direct:
             gas += self.B.T @ y.u
         if self.D is not None:
             gas -= self.D @ y.g
-        return np.concatenate([body, gas]) / self.step
+        return heat / self.step
 
 
 def _forcing(balance: HeatBalance, direct: Sequence[_Direct], t: float, y: State, heat: Array) -> Array:
@@ -209,8 +209,15 @@ def _forcing(balance: HeatBalance, direct: Sequence[_Direct], t: float, y: State
     found = np.zeros((n + heat.size, len(direct)))
     own = _rate(balance, t, y)
     slope: Array | None = None
+
+    @functools.cache
+    def lost(load: Load) -> Array:
+        heat = np.zeros(len(found))
+        load.remainder(t, y, heat[:n], heat[n:])
+        return heat
+
     for column, one in enumerate(direct):
-        found[:, column] = one.rate(t, y)
+        found[:, column] = one.rate(t, y, lost)
         other = one.other
         if other.variable_capacity:
             other.M_data = other.mass(y.u)

@@ -168,7 +168,7 @@ class Bench:
         columns: list[int] = []
         perturbed: list[Perturbed] = []
         for column, one in enumerate(unknowns):
-            study = with_values(origin, {**at, one: at.get(one, 0.0) + one.step})
+            study = with_values(origin, {**at, one: at.get(one, 0.0) + one.step}, base.study)
             if one.measures:
                 other = base.as_measured_by(study)
             else:

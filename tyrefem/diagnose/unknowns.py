@@ -162,8 +162,11 @@ def candidates(study: Study) -> tuple[Candidate, ...]:
     return tuple(found)
 
 
-def with_values(study: Study, values: Mapping[Unknown, float]) -> Study:
-    """The study with unknowns set to values x; exactly the study itself where all are zero."""
+def with_values(study: Study, values: Mapping[Unknown, float], like: Study | None = None) -> Study:
+    """The study with unknowns set to values x; exactly the study itself where all are zero.
+
+    ``like``: a study close to it, with which it shares what it can; see `Study.replace`.
+    """
     entries = [dict(entry) for entry in study.data.get("effects", [])]
     changes: dict[str, Any] = {}
     totals: dict[str, tuple[Unknown, float]] = {}
@@ -186,7 +189,7 @@ def with_values(study: Study, values: Mapping[Unknown, float]) -> Study:
         _entry(entries, unknown)[unknown.parameter.name] = text
     if totals:
         changes["effects"] = entries
-    return study.replace(changes) if changes else study
+    return study.replace(changes, like) if changes else study
 
 
 def _written(study: Study, key: str) -> Any:

@@ -65,11 +65,16 @@ def catalogue() -> dict[str, type[Effect]]:
     True
     """
     modules = _modules(os.environ.get("TYREFEM_EFFECTS", ""))
+    classes = [Effect]
+    for one in classes:
+        classes += one.__subclasses__()
+    return dict(_by_name(modules, tuple(classes)))
+
+
+@functools.lru_cache(maxsize=1)
+def _by_name(modules: frozenset[str], classes: tuple[type[Effect], ...]) -> dict[str, type[Effect]]:
     found: dict[str, type[Effect]] = {}
-    stack = list(Effect.__subclasses__())
-    while stack:
-        one = stack.pop()
-        stack.extend(one.__subclasses__())
+    for one in classes:
         if not one.name or one.__module__ not in modules:
             continue
         if getattr(sys.modules[one.__module__], one.__name__, None) is not one:
