@@ -78,3 +78,12 @@ def recorded(study: Study, times: Array, temperatures: ArrayLike) -> dict[str, A
         column = read[channel] + sum(effect.offset(name) for effect in effects)
         found[name] = np.interp(times + late, times, column) if late else column
     return found
+
+
+def recorded_change(study: Study, times: Array, temperatures: ArrayLike) -> dict[str, Array]:
+    """How the record changes, K, when the temperatures at the sensors change by (n_times, n_sensors) K.
+
+    `recorded` is linear but for the offsets of channels, which no temperature changes.
+    """
+    found = recorded(study, times, temperatures)
+    return {name: one - sum(effect.offset(name) for effect in study.effects) for name, one in found.items()}

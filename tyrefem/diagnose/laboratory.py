@@ -25,7 +25,7 @@ from tyrefem.diagnose.unknowns import Unknown, with_values
 from tyrefem.errors import InputError
 from tyrefem.result import GAS, RIM, Result
 from tyrefem.rolling import RollingTyre, run
-from tyrefem.sensors import lagged
+from tyrefem.sensors import recorded_change
 from tyrefem.studies import Study
 
 Array = NDArray[np.float64]
@@ -187,18 +187,17 @@ class Bench:
 
     def _tangents(self, base: Lean, perturbed: Sequence[Perturbed], sensors: Sequence[str]) -> dict[str, Array]:
         found = tangents(base.tyre.problem, base.times, base.values, base.reservoirs, perturbed)
-        gas, cards = list(base.tyre.problem.reservoirs), base.study.sensors
-        at_sensors = found.at(base.sensor_points) if cards else None
+        gas = list(base.tyre.problem.reservoirs)
         slopes = {}
         for sensor in sensors:
             if sensor in (GAS, RIM):
                 known = sensor in gas
                 column = found.reservoirs[:, :, gas.index(sensor)] if known else np.zeros(found.values.shape[:2])
                 slopes[sensor] = base.dense(column.T)
-            else:
-                assert at_sensors is not None
-                dense = base.dense(at_sensors[:, :, list(cards).index(sensor)].T)
-                slopes[sensor] = np.column_stack([lagged(base.grid, one, cards[sensor].lag) for one in dense.T])
+        if len(slopes) < len(sensors):
+            at_sensors = base.dense(np.moveaxis(found.at(base.sensor_points), 0, -1))
+            each = [recorded_change(base.study, base.grid, at_sensors[:, :, k]) for k in range(len(perturbed))]
+            slopes |= {name: np.column_stack([one[name] for one in each]) for name in sensors if name not in slopes}
         return slopes
 
 

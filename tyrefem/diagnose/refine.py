@@ -2,8 +2,7 @@
 
 from __future__ import annotations
 
-import dataclasses
-from collections.abc import Callable, Sequence
+from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass
 from functools import cached_property
 from typing import Any
@@ -21,9 +20,14 @@ Array = NDArray[np.float64]
 #: The prediction of the linear model is good enough when it misses the simulation by this much (whitened norm); far
 #: enough off to take new tangents when it misses it by the second.
 CLOSE, ASTRAY = 1.0, 6.0
-FIRST_STEPS, MORE_STEPS = 4, 6
-#: A step is shortened to this much of itself, so often where it makes the fit worse or leads to no possible tyre.
-SHORTER, HALVINGS, RETREATS = 0.4, 3, 8
+#: A fit has converged when the linear model about it promises no more than this drop of the misfit.
+SETTLED = 0.5
+#: A fit with a misfit of so many times the number of readings nearly explains them.
+NEARLY = 1.3
+FIRST_STEPS, MORE_STEPS, MORE_TANGENTS = 4, 14, 4
+#: Trust: no unknown moves by more than so many prior sd in the first step; a step that fails leaves this much of itself
+#: as the next radius, a good one widens it; below the last the fit stays where it is.
+RADIUS, SHORTER, WIDER, TINY = 3.0, 0.4, 2.0, 0.01
 
 
 @dataclass(frozen=True, eq=False)
@@ -114,6 +118,11 @@ class Explained:
     refinement: _Refinement
 
     @property
+    def close(self) -> bool:
+        """Converged, and not far from a misfit that noise makes: a place to start a larger set from."""
+        return self.converged and self.misfit < NEARLY * self.readings
+
+    @property
     def finished(self) -> bool:
         """Nothing is gained by going on: converged, with all shape parameters fitted."""
         return self.converged and not self.refinement.shapes
@@ -143,23 +152,45 @@ class Explained:
 
 
 class _Refinement:
-    """One set on its way: asks for simulations at ``trial_point`` and takes what they say."""
+    """One set on its way: asks for simulations at ``trial_point`` and takes what they say.
 
-    def __init__(self, gap: Gap, members: Members) -> None:
+    Gauss-Newton within a region of trust, a box of so many prior standard deviations about the last good point: a step
+    that makes the fit worse, or leads to no possible tyre, shrinks it, and the next is proposed with what was learnt.
+    """
+
+    def __init__(self, gap: Gap, members: Members, start: Explained | None = None) -> None:
         self.gap, self.members = gap, members
         linear = gap.linear(gap.fitted)
-        own = [one for member in members for one in member.amplitudes]
-        self.unknowns = [*gap.unknowns[: gap.nuisance], *own]
-        self.J = linear.jacobian[:, linear.columns(self.unknowns)].copy()
+        taken = () if start is None else start.members
+        new = [one for one in members if one not in taken]
+        own = [one for member in new for one in member.amplitudes]
         self.fixed = [one for member in members for one in member.presence]
-        self.r = linear.data - linear.jacobian[:, linear.columns(self.fixed)].sum(axis=1)
-        self.x = np.zeros(len(self.unknowns))
-        self.computed = {i: gap.computed[i] for i in gap.fitted}
-        self.shapes = [one for member in members for one in member.shapes]
-        self.steps, self.done, self.converged = 0, False, False
-        #: Tangents that may still be taken, and steps.
-        self.tangents, self.limit, self.wants_tangents = 0, FIRST_STEPS, False
-        self._propose()
+        present = [one for member in new for one in member.presence]
+        columns = linear.jacobian[:, linear.columns(own)]
+        if start is None:
+            self.unknowns = [*gap.unknowns[: gap.nuisance], *own]
+            self.x, self.r = np.zeros(len(self.unknowns)), linear.data
+            self.J = np.hstack([linear.jacobian[:, : gap.nuisance], columns])
+            self.computed = {i: gap.computed[i] for i in gap.fitted}
+            self.shapes: list[Unknown] = []
+        else:
+            part = start.refinement
+            self.unknowns = [*part.unknowns, *own]
+            self.x, self.r = np.concatenate([part.x, np.zeros(len(own))]), part.r
+            self.J = np.hstack([part.J, columns])
+            self.computed, self.shapes = dict(part.computed), list(part.shapes)
+        self.r = self.r - linear.jacobian[:, linear.columns(present)].sum(axis=1)
+        self.shapes += [one for member in new for one in member.shapes]
+        self.steps, self.radius, self.limit, self.tangents = 0, RADIUS, FIRST_STEPS, 0
+        self.done, self.converged, self.matters = False, False, False
+        #: Whether the tangents are not those of x; whether they are asked for.
+        self.moved, self.wants_tangents = False, False
+        # What is simply there changes what every unknown does: with it, the start is simulated, tangents taken first.
+        self.simulated = not present
+        if self.simulated:
+            self._propose()
+        else:
+            self.best, self.trial = self._fitted(), self.x
 
     @property
     def point(self) -> dict[Unknown, float]:
@@ -168,76 +199,93 @@ class _Refinement:
     def _named(self, x: Array) -> dict[Unknown, float]:
         return dict(zip(self.unknowns, (float(one) for one in x), strict=True)) | dict.fromkeys(self.fixed, 1.0)
 
+    @property
     def _prior(self) -> tuple[Array, Array, Array]:
         return tuple(np.array([getattr(one, what) for one in self.unknowns]) for what in ("sd", "low", "high"))  # type: ignore[return-value]
 
-    def _propose(self) -> None:
-        self.best = fit(self.J.T @ self.J, self.J.T @ (self.r + self.J @ self.x), *self._prior())
-        self.trial, self.halved = self.best.mean, 0
-        self.expected = self.r - self.J @ (self.trial - self.x)
-        if not self.fixed and np.linalg.norm(self.r - self.expected) < 1e-9:
-            self.done = self.converged = True
+    def _fitted(self, radius: float = np.inf) -> Fit:
+        """The linear model about x fitted, within a box about it."""
+        sd, low, high = self._prior
+        low, high = np.maximum(low, self.x - radius * sd), np.minimum(high, self.x + radius * sd)
+        return fit(self.J.T @ self.J, self.J.T @ (self.r + self.J @ self.x), sd, low, high)
 
     def _misfit(self, r: Array, x: Array) -> float:
-        return float(r @ r + ((x / self._prior()[0]) ** 2).sum())
+        return float(r @ r + ((x / self._prior[0]) ** 2).sum())
+
+    def _drop(self, x: Array) -> float:
+        """Drop of the misfit that the linear model promises at a point."""
+        return self._misfit(self.r, self.x) - self._misfit(self.r - self.J @ (x - self.x), x)
+
+    @property
+    def promised(self) -> float:
+        """Drop of the misfit that is still to be had, by the linear model."""
+        return max(self._drop(self.best.mean), 0.0)
+
+    def _propose(self) -> None:
+        """Choose the next point, or end."""
+        self.best, self.trial = self._fitted(), self._fitted(self.radius).mean
+        if self.promised < SETTLED:
+            self.done = self.converged = True
+        elif self.steps >= self.limit or self.radius < TINY:
+            self.done = True
 
     def accept(self, answers: Sequence[Array]) -> None:
         """Take the simulations at the trial point."""
         computed = dict(zip(self.gap.fitted, answers, strict=True))
+        sd = self._prior[0]
         step = self.trial - self.x
+        reach = float(np.abs(step / sd).max(initial=0.0))
+        self.steps += 1
         if not all(np.isfinite(one).all() for one in answers):
-            self._retreat(step)
+            # No tyre can be like that.
+            self.radius = SHORTER * reach
+            self._propose()
             return
         r = np.concatenate([self.gap.residual(i, computed[i]) for i in self.gap.fitted])
-        self.steps += 1
-        sd = self._prior()[0]
-        length = float(((step / sd) ** 2).sum())
         missed = (self.r - self.J @ step) - r
-        if length > 0:
+        promised, gained = self._drop(self.trial), self._misfit(self.r, self.x) - self._misfit(r, self.trial)
+        if reach > 0:
             # Broyden: the smallest change of J (in units of the priors) that would have predicted this simulation.
-            self.J = self.J + np.outer(missed, step / sd**2) / length
-        if (
-            self._misfit(r, self.trial) > self._misfit(self.r, self.x)
-            and self.halved < HALVINGS
-            and self.steps < self.limit
-        ):
-            self.halved += 1
-            self.trial = self.x + SHORTER * step
+            self.J = self.J + np.outer(missed, step / sd**2) / float(((step / sd) ** 2).sum())
+        first, self.simulated = not self.simulated, True
+        if gained < 0 and not first:
+            self.radius = SHORTER * reach
+            self._learn() if self.moved and self._may_learn else self._propose()
             return
-        self.x, self.r, self.computed = self.trial, r, computed
-        astray = float(np.linalg.norm(missed)) > ASTRAY
-        if (self.shapes or astray) and self.tangents > 0 and self.steps < self.limit:
-            self._new_tangents()
+        limited = bool((np.abs(step / sd) > 0.99 * self.radius).any())
+        if limited and gained > promised / 2:
+            self.radius *= WIDER
+        self.x, self.r, self.computed, self.moved = self.trial, r, computed, True
+        if first:
+            self._new_tangents(())
             return
-        if np.linalg.norm(missed) < CLOSE:
+        if (self.shapes or float(np.linalg.norm(missed)) > ASTRAY) and self._may_learn:
+            self._learn()
+            return
+        self._propose()
+        if not limited and np.linalg.norm(missed) < CLOSE:
             self.done = self.converged = True
-            self.best = fit(self.J.T @ self.J, self.J.T @ (self.r + self.J @ self.x), *self._prior())
-        elif self.steps >= self.limit:
-            self.done = True
-            self.best = fit(self.J.T @ self.J, self.J.T @ (self.r + self.J @ self.x), *self._prior())
-        else:
-            self._propose()
 
-    def _retreat(self, step: Array) -> None:
-        """There is no tyre at the trial point: try a shorter step, or stay where the last simulation was."""
-        self.halved += 1
-        self.trial = self.x + SHORTER * step
-        if self.halved > RETREATS:
-            self.trial, self.done = self.x, True
-            self.best = dataclasses.replace(self.best, mean=self.x)
+    @property
+    def _may_learn(self) -> bool:
+        return self.tangents > 0 and self.steps < self.limit
 
-    def _new_tangents(self) -> None:
-        """Ask for tangents at this point; with an amplitude at hand, the parameters that shape it are fitted too."""
-        self.unknowns = [*self.unknowns, *self.shapes]
-        self.x = np.concatenate([self.x, np.zeros(len(self.shapes))])
-        self.shapes = []
+    def _learn(self) -> None:
         self.tangents -= 1
-        self.wants_tangents = True
+        self._new_tangents(self.shapes)
+
+    def _new_tangents(self, shapes: Sequence[Unknown]) -> None:
+        """Ask for tangents at this point; with an amplitude at hand, the parameters that shape it are fitted too."""
+        self.unknowns = [*self.unknowns, *shapes]
+        self.x = np.concatenate([self.x, np.zeros(len(shapes))])
+        self.shapes = [one for one in self.shapes if one not in shapes]
+        self.moved, self.wants_tangents = False, True
 
     def go_on(self) -> None:
         """Take tangents here and some more steps; for a fit that matters and has not converged."""
-        self.done, self.tangents, self.limit = False, 1, self.steps + MORE_STEPS
-        self._new_tangents()
+        self.done, self.matters = False, True
+        self.tangents, self.limit, self.radius = MORE_TANGENTS - 1, self.steps + MORE_STEPS, max(self.radius, 1.0)
+        self._new_tangents(self.shapes)
 
     def questions(self) -> tuple[str, list[tuple[Any, ...]]]:
         """The method of the bench to ask, and with what."""
@@ -257,12 +305,18 @@ class _Refinement:
         self._propose()
 
 
-def refined(gap: Gap, sets: Sequence[Members], tick: Callable[[], None] | None = None) -> list[Explained]:
+def refined(
+    gap: Gap,
+    sets: Sequence[Members],
+    tick: Callable[[], None] | None = None,
+    starts: Mapping[Members, Explained] | None = None,
+) -> list[Explained]:
     """Fit every set with the full model; the simulations of all sets are asked for together.
 
-    These are first fits, in few steps: see `polished`.
+    These are first fits, in few steps: see `polished`. ``starts``: the fit of a part of a set to begin with; else the
+    study as it is.
     """
-    return _run(gap, [_Refinement(gap, members) for members in sets], tick)
+    return _run(gap, [_Refinement(gap, members, (starts or {}).get(members)) for members in sets], tick)
 
 
 def polished(gap: Gap, fits: Sequence[Explained], tick: Callable[[], None] | None = None) -> list[Explained]:
@@ -301,11 +355,13 @@ def _explained(gap: Gap, one: _Refinement) -> Explained:
             r = [np.full(len(one), 1e3) for one in r]
         log_held, p_held = _predictive(np.concatenate(r), np.vstack(J), one.best.covariance[np.ix_(kept, kept)])
     effective = one.r + one.J @ one.x
+    # What the linear model promises is believed of a first fit, which may be carried on; not of one that was.
+    doubted = one.promised / 2 if one.matters else 0.0
     return Explained(
         one.members,
         tuple(one.unknowns),
         Fit(one.x, one.best.covariance, one.best.log_evidence, one.best.at_bound),
-        one.best.log_evidence - float(effective @ effective) / 2,
+        one.best.log_evidence - float(effective @ effective) / 2 - doubted,
         computed,
         one._misfit(one.r, one.x),
         len(one.r),

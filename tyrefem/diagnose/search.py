@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import itertools
+from collections import Counter
 from collections.abc import Callable, Iterable, Sequence
 
 import numpy as np
@@ -16,6 +17,8 @@ from tyrefem.diagnose.unknowns import Candidate, Unknown
 BATCH, MOST = 4, 14
 #: Leading fits that are carried on to convergence after every batch.
 POLISHED = 2
+#: So often a fit is carried on.
+CARRIED = 2
 #: Single effects that are fitted whatever comes.
 SINGLES = 4
 #: A set whose ln(prior x evidence) is estimated so far below the best needs no full fit: when judged from the study as
@@ -31,7 +34,8 @@ class _Search:
         self.gap, self.candidates, self.prior, self.largest, self.tick = gap, candidates, prior, largest, tick
         self.order = {one: number for number, one in enumerate(candidates)}
         self.done: dict[Members, Explained] = {}
-        self.polished: set[Members] = set()
+        #: Set -> how often its fit was carried on.
+        self.polished: Counter[Members] = Counter()
         self.linear = gap.linear(gap.fitted)
         #: Set -> (estimate of ln(prior x evidence), whether it was judged from the fit of a part).
         self.estimate: dict[Members, tuple[float, bool]] = {
@@ -55,28 +59,37 @@ class _Search:
 
     def fit(self, sets: Iterable[Members]) -> None:
         wanted = [members for members in dict.fromkeys(sets) if members not in self.done]
-        for one in refined(self.gap, wanted, self._count):
+        for one in refined(self.gap, wanted, self._count, self._starts(wanted)):
             self.done[self.sorted(one.members)] = one
-        self._polish()
-        for members in wanted:
-            if members and len(members) < self.largest and self.score(members) > self.top - FAR:
+        # From a fit that has converged, the sets that add to it are judged once more.
+        for members in dict.fromkeys((*wanted, *self._polish())):
+            if len(members) < self.largest and self.score(members) > self.top - FAR:
                 self._extend(members)
 
-    def _polish(self) -> None:
-        """Carry the leading fits on to convergence: their numbers decide."""
-        for _ in range(POLISHED):
+    def _starts(self, sets: Sequence[Members]) -> dict[Members, Explained]:
+        """For every set the best of its parts that nearly explains the data, if any."""
+        ahead = [members for members in sorted(self.done, key=self.score, reverse=True) if self.done[members].close]
+        found = {members: [part for part in ahead if set(part) < set(members)][:1] for members in sets}
+        return {members: self.done[parts[0]] for members, parts in found.items() if parts}
+
+    def _polish(self) -> list[Members]:
+        """Carry the leading fits on to convergence: their numbers decide. Returns which."""
+        carried: list[Members] = []
+        for _ in range(POLISHED * CARRIED):
             ahead = sorted(self.done, key=self.score, reverse=True)
             left = [
                 members
                 for members in ahead[:POLISHED]
-                if members not in self.polished and self.score(members) > self.top - FAR
+                if self.polished[members] < CARRIED and self.score(members) > self.top - FAR
             ]
             left = [members for members in left if not self.done[members].finished]
             if not left:
-                return
+                break
             for one in polished(self.gap, [self.done[members] for members in left], self._count):
                 self.done[self.sorted(one.members)] = one
             self.polished.update(left)
+            carried += left
+        return carried
 
     def _extend(self, members: Members) -> None:
         """Judge every set that adds one effect, in the linear model about the fit."""
