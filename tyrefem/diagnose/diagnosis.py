@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import functools
+import math
 import time
 from collections.abc import Callable, Iterable, Mapping, Sequence
 from dataclasses import dataclass
@@ -14,14 +15,14 @@ import numpy as np
 from tyrefem.compare.experiment import Table, experiments
 from tyrefem.diagnose.amend import Change, amended, changes
 from tyrefem.diagnose.laboratory import Bench, Laboratory, Response, laboratory
-from tyrefem.diagnose.missing import MissingHeat, missing_heat, patches
+from tyrefem.diagnose.missing import MissingHeat, missing_heat, missing_heat_fitted, patches
 from tyrefem.diagnose.progress_store import ProgressStore
 from tyrefem.diagnose.refine import Explained, Gap, refined
 from tyrefem.diagnose.search import search
 from tyrefem.diagnose.sets import Prior
 from tyrefem.diagnose.trials import trial
 from tyrefem.diagnose.unknowns import Candidate, Unknown, base_unknowns, candidates, sensor_unknowns
-from tyrefem.diagnose.verdict import OUTSIDE, UNEXPLAINED, Judgement, judge, standings
+from tyrefem.diagnose.verdict import IMPROBABLE, OUTSIDE, UNEXPLAINED, Judgement, judge, standings
 from tyrefem.diagnose.where import gap_table, rms
 from tyrefem.errors import InputError
 from tyrefem.studies import Study
@@ -30,6 +31,8 @@ if TYPE_CHECKING:
     import pandas as pd
 
 Tick = Callable[[str, int, int], None]
+#: Heat of unknown origin that the linear model puts this far, or less, below the best set is fitted in the full model.
+NEAR = 10.0
 
 
 @dataclass(frozen=True, eq=False)
@@ -153,13 +156,21 @@ def diagnose(
             done += 1
             tick(what, done, 0)
 
-        scored = search(gap, found, prior, largest=largest, tick=count)
+        unknown = patches(study)
+        outside = math.log(study.card.diagnosis.effects_expected * OUTSIDE)
+
+        def elsewhere(null: Explained) -> float:
+            return outside + missing_heat(gap, unknown, null).log_evidence
+
+        scored = search(gap, found, prior, largest=largest, tick=count, outside=elsewhere)
         explained = {one.members: one for _, _, one in scored if one is not None}
         null = explained[()]
-        unknown = patches(study)
         missing = missing_heat(gap, unknown, null)
-        outside = np.log(study.card.diagnosis.effects_expected * OUTSIDE) + missing.log_evidence
-        ranked = standings(scored, float(outside))
+        ahead = scored[0]
+        doubtful = ahead[2] is None or min(ahead[2].p_value, ahead[2].held_out_p) < IMPROBABLE
+        if doubtful or outside + missing.log_evidence > ahead[0] - NEAR:
+            missing = missing_heat_fitted(gap, unknown, null, lambda: count("fitting heat of unknown origin"))
+        ranked = standings(scored, outside + missing.log_evidence)
 
         def fitted(members: tuple[Candidate, ...]) -> Explained | None:
             if members not in explained:

@@ -2,15 +2,16 @@
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+import dataclasses
+from collections.abc import Callable, Sequence
 from dataclasses import dataclass
 
 import numpy as np
 from numpy.typing import NDArray
 
 from tyrefem.diagnose.gauss import fit
-from tyrefem.diagnose.refine import Explained, Gap
-from tyrefem.diagnose.unknowns import Unknown, of_effect
+from tyrefem.diagnose.refine import Explained, Gap, polished, refined
+from tyrefem.diagnose.unknowns import Candidate, Unknown, of_effect
 from tyrefem.effects import catalogue
 from tyrefem.studies import Study
 
@@ -74,36 +75,50 @@ def missing_heat(gap: Gap, unknown: Sequence[Unknown], about: Explained) -> Miss
 
     Every patch has a part that all runs share and one of its own in each run, of half the standard deviation. Taken in
     the linear model about the study as it is, or about ``about`` (a fit without it), whichever explains the data
-    better: a fit that lacks what is missing may have bent base numbers far.
+    better: a fit that lacks what is missing may have bent base numbers far. See `missing_heat_fitted`.
     """
     nuisance = gap.unknowns[: gap.nuisance]
     origin = gap.linear(gap.fitted)
-    here = _Point(nuisance, origin.data, origin.jacobian[:, : gap.nuisance])
-    found = [_estimated(gap, unknown, one) for one in (here, _Point(about.unknowns, about.data, about.jacobian))]
+    patch = origin.jacobian[:, origin.columns(unknown)]
+    here = _Point(nuisance, origin.data, origin.jacobian[:, : gap.nuisance], patch)
+    found = [_estimated(gap, unknown, one) for one in (here, _Point(about.unknowns, about.data, about.jacobian, patch))]
     return max(found, key=lambda one: one.log_evidence)
+
+
+def missing_heat_fitted(
+    gap: Gap, unknown: Sequence[Unknown], null: Explained, tick: Callable[[], None] | None = None
+) -> MissingHeat:
+    """The same in the full model: the shared patches are fitted to convergence, and the runs' own parts about that."""
+    whole = (Candidate("not-in-the-catalogue", (), tuple(unknown)),)
+    first = refined(gap, [whole], tick, {whole: null} if null.close else {})
+    one = polished(gap, first, tick)[0]
+    other = [number for number, each in enumerate(one.unknowns) if each not in unknown]
+    shared = [one.unknowns.index(each) for each in unknown]
+    kept = tuple(one.unknowns[number] for number in other)
+    point = _Point(kept, one.data, one.jacobian[:, other], one.jacobian[:, shared])
+    return dataclasses.replace(_estimated(gap, unknown, point), values=one.values, sd=one.sd)
 
 
 @dataclass(frozen=True, eq=False)
 class _Point:
-    """A linear model d = J x + e of the fitted trials."""
+    """A linear model d = J x + P p + e of the fitted trials, with the patches' p."""
 
     unknowns: tuple[Unknown, ...]
     data: Array
     jacobian: Array
+    patches: Array
 
 
 def _estimated(gap: Gap, unknown: Sequence[Unknown], about: _Point) -> MissingHeat:
     trials = gap.lab.bench.trials
-    columns = [gap.unknowns.index(one) for one in unknown]
-    blocks = [gap.whitened[i][:, columns] for i in gap.fitted]
-    rows = np.cumsum([0, *(len(block) for block in blocks)])
-    shared = np.vstack(blocks)
-    own = []
-    for block, start in zip(blocks, rows, strict=False):
-        wide = np.zeros((rows[-1], len(columns)))
-        wide[start : start + len(block)] = block
+    shared, own = about.patches, []
+    ends = np.cumsum([len(gap.whitened[i]) for i in gap.fitted])
+    for end, i in zip(ends, gap.fitted, strict=True):
+        wide = np.zeros_like(shared)
+        rows = slice(end - len(gap.whitened[i]), end)
+        wide[rows] = shared[rows]
         own.append(wide)
-    n, k = len(about.unknowns), len(columns)
+    n, k = len(about.unknowns), len(unknown)
     J = np.hstack([about.jacobian, shared, *own])
     sd_patch = np.array([one.sd for one in unknown])
     sd = np.concatenate([[one.sd for one in about.unknowns], sd_patch, *[sd_patch / 2 for _ in own]])

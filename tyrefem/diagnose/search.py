@@ -17,8 +17,11 @@ from tyrefem.diagnose.unknowns import Candidate, Unknown
 BATCH, MOST = 4, 14
 #: Leading fits that are carried on to convergence after every batch.
 POLISHED = 2
-#: So often a fit is carried on.
-CARRIED = 2
+#: So often a fit is carried on; not at all with a misfit of more than the second times the number of readings, and not
+#: twice with more than the third. No effect is only carried on before anything else with less than the last.
+CARRIED, LOST, DOUBTED, NONE = 2, 50.0, 3.0, 10.0
+#: Heat of unknown origin explains the data better by this much, ln, than any set of the catalogue: no more are fitted.
+HOPELESS = 500.0
 #: Single effects that are fitted whatever comes.
 SINGLES = 4
 #: A set whose ln(prior x evidence) is estimated so far below the best needs no full fit: when judged from the study as
@@ -63,7 +66,7 @@ class _Search:
             self.done[self.sorted(one.members)] = one
         # From a fit that has converged, the sets that add to it are judged once more.
         for members in dict.fromkeys((*wanted, *self._polish())):
-            if len(members) < self.largest and self.score(members) > self.top - FAR:
+            if members and len(members) < self.largest and self.score(members) > self.top - FAR:
                 self._extend(members)
 
     def _starts(self, sets: Sequence[Members]) -> dict[Members, Explained]:
@@ -80,9 +83,8 @@ class _Search:
             left = [
                 members
                 for members in ahead[:POLISHED]
-                if self.polished[members] < CARRIED and self.score(members) > self.top - FAR
+                if self.score(members) > self.top - FAR and self._worth_carrying(members)
             ]
-            left = [members for members in left if not self.done[members].finished]
             if not left:
                 break
             for one in polished(self.gap, [self.done[members] for members in left], self._count):
@@ -90,6 +92,26 @@ class _Search:
             self.polished.update(left)
             carried += left
         return carried
+
+    def _worth_carrying(self, members: Members) -> bool:
+        one, often = self.done[members], self.polished[members]
+        most = NONE if not self.singles else DOUBTED if often else LOST
+        return not one.finished and often < CARRIED and one.misfit < most * one.readings
+
+    @property
+    def singles(self) -> list[Members]:
+        """What was fitted, but for no effect."""
+        return [members for members in self.done if members]
+
+    def extend_none(self) -> None:
+        """Judge all single effects and pairs in the linear model about the fit of no effect."""
+        one = self.done[()]
+        unknowns = [unknown for each in self.candidates for unknown in (*each.amplitudes, *each.presence)]
+        about = _about(self.gap, one, unknowns)
+        own = self.prior(()) + about.log_evidence(())
+        for score, members in screened(about, self.candidates, self.prior, min(self.largest, 2)):
+            if members:
+                self.estimate[self.sorted(members)] = (self.score(()) + score - own, True)
 
     def _extend(self, members: Members) -> None:
         """Judge every set that adds one effect, in the linear model about the fit."""
@@ -123,15 +145,24 @@ Tick = Callable[[str], None] | None
 
 
 def search(
-    gap: Gap, candidates: Sequence[Candidate], prior: Prior, *, largest: int = 3, tick: Tick = None
+    gap: Gap,
+    candidates: Sequence[Candidate],
+    prior: Prior,
+    *,
+    largest: int = 3,
+    tick: Tick = None,
+    outside: Callable[[Explained], float] | None = None,
 ) -> list[Scored]:
     """Sets with ln(prior x evidence of the fitted runs), best first; with the fit where there was one.
 
-    No effect and the most promising single effects are fitted with the full model; from every good fit, each effect
-    that could be added is judged in the linear model about it, and the promising sets are fitted in turn. At the end
-    every part of the best set has been fitted too (the backward check).
+    No effect is fitted first. Where it nearly explains the data, all effects and pairs are judged in the linear model
+    about that fit, else in that of the study as it is, and the most promising effects are fitted with the full model.
+    From every good fit, each effect that could be added is judged in the linear model about it, and the promising sets
+    are fitted in turn. At the end every part of the best set has been fitted too (the backward check). ``outside``:
+    score of a cause outside the catalogue, given the fit of no effect; when it is far ahead the search ends.
     """
     found = _Search(gap, candidates, prior, largest, tick)
+    found.fit([()])
     singles = sorted(
         (members for members in found.estimate if len(members) == 1), key=lambda members: -found.estimate[members][0]
     )
@@ -140,8 +171,14 @@ def search(
     )
     # Two effects that hide each other may both look weak alone: the parts of the best pair are tried as well.
     ahead = [(one,) for one in (pairs[0] if pairs else ())]
-    found.fit([(), *singles[:SINGLES], *ahead])
-    while len(found.done) < MOST:
+    if found.done[()].close:
+        found.extend_none()
+    else:
+        found.fit([*singles[:SINGLES], *ahead])
+    batches = 0
+    unknown = outside(found.done[()]) if outside else -np.inf
+    while len(found.done) < MOST and not (batches >= largest and unknown > found.top + HOPELESS):
+        batches += 1
         promising = found.promising()[:BATCH]
         if not promising:
             best = max(found.done, key=found.score)
