@@ -24,6 +24,8 @@ CLOSE, ASTRAY = 1.0, 6.0
 SETTLED = 0.5
 #: A fit with a misfit of so many times the number of readings nearly explains them.
 NEARLY = 1.3
+#: With more than the first the fit is given up when a step leaves more than the second of the misfit.
+FAR_OFF, SLOW = 3.0, 0.9
 FIRST_STEPS, MORE_STEPS, MORE_TANGENTS = 4, 14, 4
 #: Trust: no unknown moves by more than so many prior sd in the first step; a step that fails leaves this much of itself
 #: as the next radius, a good one widens it; below the last the fit stays where it is.
@@ -259,12 +261,15 @@ class _Refinement:
         if first:
             self._new_tangents(())
             return
-        if (self.shapes or float(np.linalg.norm(missed)) > ASTRAY) and self._may_learn:
+        now = self._misfit(r, self.x)
+        slow = self.matters and now > max(FAR_OFF * len(r), SLOW * (now + gained))
+        if (self.shapes or float(np.linalg.norm(missed)) > ASTRAY) and self._may_learn and not slow:
             self._learn()
             return
         self._propose()
         if not limited and np.linalg.norm(missed) < CLOSE:
             self.done = self.converged = True
+        self.done = self.done or slow
 
     @property
     def _may_learn(self) -> bool:

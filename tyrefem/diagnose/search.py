@@ -95,7 +95,7 @@ class _Search:
 
     def _worth_carrying(self, members: Members) -> bool:
         one, often = self.done[members], self.polished[members]
-        most = NONE if not self.singles else DOUBTED if often else LOST
+        most = DOUBTED if often else LOST if self.singles else NONE
         return not one.finished and often < CARRIED and one.misfit < most * one.readings
 
     @property
