@@ -14,6 +14,8 @@ from multiprocessing import get_context
 from pathlib import Path
 from typing import Any
 
+from threadpoolctl import threadpool_limits
+
 from tyrefem.diagnose.blind import Outcome, cases, run_case
 from tyrefem.diagnose.diagnosis import responses, unknowns_of
 from tyrefem.diagnose.isolability import planned
@@ -189,6 +191,12 @@ def _install(study: Study, known: tuple[Response, ...]) -> None:
     _KNOWN[:] = [(study, known)]
 
 
+def _begin(study: Study, known: tuple[Response, ...]) -> None:
+    """Begin a worker: one thread for linear algebra."""
+    threadpool_limits(1, user_api="blas")
+    _install(study, known)
+
+
 def _case(number: int, count: int, seed: int) -> Row:
     study, known = _KNOWN[0]
     case = cases(study, count, seed)[number]
@@ -239,7 +247,7 @@ def _answers(
         for number in numbers:
             yield number, _case(number, count, seed)
         return
-    with ProcessPoolExecutor(workers, get_context("spawn"), _install, (study, known)) as pool:
+    with ProcessPoolExecutor(workers, get_context("spawn"), _begin, (study, known)) as pool:
         futures = {pool.submit(_case, number, count, seed): number for number in numbers}
         try:
             for future in as_completed(futures):

@@ -1,0 +1,33 @@
+"""Tangents are of what is recorded: lag, swapped channels and a late clock between rubber and table."""
+
+from __future__ import annotations
+
+import numpy as np
+import pytest
+from hidden import Case
+
+from tyrefem.diagnose.laboratory import Bench
+from tyrefem.diagnose.unknowns import Unknown, base_unknowns, candidates
+
+#: Effect -> x of its unknown: where the tangents are taken.
+AT = {
+    "sensor-lag (crown-outer)": 25.0,
+    "sensor-offset (shoulder-inner)": 3.0,
+    "swapped-channels (crown-outer, sidewall-outer)": 1.0,
+    "clock-offset": 12.0,
+}
+
+
+@pytest.mark.parametrize("present", [list(AT), ["swapped-channels (crown-outer, sidewall-outer)"], ["clock-offset"]])
+def test_tangents_are_the_difference_quotients_of_the_record(case: Case, present: list[str]) -> None:
+    study = case.study.replace({"diagnosis.exclude": []})
+    known = {one.key: one.unknowns[0] for one in candidates(study)}
+    at: dict[Unknown, float] = {known[key]: AT[key] for key in present}
+    bench = Bench(study, case.diagnosis.gap.lab.bench.trials)
+    wanted = [one for one in base_unknowns(study) if "tread" in one.key]
+    assert wanted
+    found = bench.jacobian(0, wanted, at)
+    quotients = bench.differences(0, wanted, at)
+    scale = np.abs(quotients).max(axis=0)
+    assert (scale > 1.0).all(), "K per unit of the logarithm: something to compare"
+    assert np.abs(found - quotients).max(axis=0) / scale == pytest.approx(0.0, abs=0.05)
