@@ -38,7 +38,7 @@ def main() -> None:
         known = responses(lab, unknowns)
     sensitivities = time.perf_counter() - began
     began = time.perf_counter()
-    found = diagnose(study, workers=given.workers, known=known)
+    found = diagnose(study, workers=given.workers, known=known, looks=1)
     rest = time.perf_counter() - began
     again = one_run * len(bench.trials) * sum(not one.measures for one in unknowns) / given.workers
     print(f"{len(bench.trials)} runs, {len(study.sensors) + 1} histories, {len(found.candidates)} candidates, "

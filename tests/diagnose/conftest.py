@@ -44,11 +44,12 @@ def case(one_at_a_time: None, tmp_path_factory: pytest.TempPathFactory) -> Case:
     with pytest.MonkeyPatch.context() as patch:
         patch.setattr(Bench, "response", spied)
         with pytest.raises(KeyboardInterrupt):
-            owner.diagnose(largest=1, store=store, progress=interrupted)
+            owner.diagnose(largest=1, looks=2, store=store, progress=interrupted)
         first = len(computed)
-        diagnosis = owner.diagnose(largest=1, store=store)
+        diagnosis = owner.diagnose(largest=1, looks=2, store=store)
     taken_up = store.taken_up
     kept = Path(shutil.copytree(folder / "progress", folder / "kept"))
+    shutil.copytree(folder / "progress-2", folder / "kept-2")
     store.clear()
     diagnosis.save(folder / "out")
     return Case(owner, diagnosis, folder / "out", computed[:first], computed[first:], kept, taken_up)

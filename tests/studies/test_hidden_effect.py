@@ -19,7 +19,7 @@ def test_the_table_is_what_the_truth_says(request: pytest.FixtureRequest) -> Non
 
 
 def test_the_hidden_effect_is_found() -> None:
-    found = tf.study("hidden-effect").diagnose(largest=1, rerun=False)
+    found = tf.study("hidden-effect").diagnose(largest=1, rerun=False, looks=1)
     assert found.verdict == "identified"
     assert [one.name for one in found.judgement.best.members] == [HIDDEN]
     (amplitude,) = found.judgement.best.members[0].amplitudes

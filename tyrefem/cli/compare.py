@@ -4,15 +4,15 @@ from __future__ import annotations
 
 import os
 from collections.abc import Iterator
-from concurrent.futures import ProcessPoolExecutor
+from concurrent.futures import Executor
 from contextlib import contextmanager
-from multiprocessing import get_context
 from pathlib import Path
 from typing import Annotated
 
 import typer
 
 from tyrefem.cli.common import JsonOption, SetOption, StudyArgument, print_json, progress, settings, writable_folder
+from tyrefem.processes import processes
 
 
 def compare(
@@ -56,17 +56,14 @@ def compare(
 
 
 @contextmanager
-def _side_by_side(many: bool) -> Iterator[ProcessPoolExecutor | None]:
+def _side_by_side(many: bool) -> Iterator[Executor | None]:
     """A process per core where there are many simulations; none where starting processes takes longer than them."""
     cores = os.cpu_count() or 1
     if not many or cores < 2:
         yield None
         return
-    executor = ProcessPoolExecutor(cores, mp_context=get_context("spawn"))
-    try:
+    with processes(cores) as executor:
         yield executor
-    finally:
-        executor.shutdown(cancel_futures=True)
 
 
 #: Place among the commands.

@@ -34,6 +34,9 @@ def diagnose(
     ] = None,
     workers: Annotated[int | None, typer.Option(min=1, help="Processes; default: one per core, at most 4.")] = None,
     largest: Annotated[int, typer.Option(min=1, max=3, help="Most effects that may be missing at once.")] = 3,
+    looks: Annotated[
+        int, typer.Option(min=1, max=9, help="Diagnoses at most, each of what the one before it left unexplained.")
+    ] = 3,
     as_json: JsonOption = False,
 ) -> None:
     """Find where measurements and study disagree, name the missing effect, and write the study that has it.
@@ -53,6 +56,7 @@ def diagnose(
                 ignore=tuple(ignore or ()),
                 rename=_pairs(rename),
                 largest=largest,
+                looks=looks,
                 workers=workers or min(os.cpu_count() or 1, MOST_WORKERS),
                 progress=tick,
                 store=store,

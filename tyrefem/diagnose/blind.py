@@ -209,7 +209,9 @@ def run_case(study: Study, case: Case, known: Sequence[Response]) -> Outcome:
     """Make the data of a case, diagnose them, and put both side by side. ``known``: responses of the planned runs."""
     with laboratory(Bench(study, planned(study))) as lab:
         able = identifiable(gap_of(lab, known=known), study, case)
-    return Outcome(case, able, said(diagnose(study, measured(study, case), largest=2, known=known, rerun=False)))
+    return Outcome(
+        case, able, said(diagnose(study, measured(study, case), largest=2, known=known, rerun=False, looks=1))
+    )
 
 
 def said(found: Diagnosis) -> dict[str, Any]:

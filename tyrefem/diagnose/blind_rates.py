@@ -6,15 +6,12 @@ import hashlib
 import json
 import math
 from collections.abc import Callable, Iterable, Sequence
-from concurrent.futures import ProcessPoolExecutor, as_completed
+from concurrent.futures import as_completed
 from dataclasses import dataclass
 from functools import cached_property
 from itertools import pairwise
-from multiprocessing import get_context
 from pathlib import Path
 from typing import Any
-
-from threadpoolctl import threadpool_limits
 
 from tyrefem.diagnose.blind import Outcome, cases, run_case
 from tyrefem.diagnose.diagnosis import responses, unknowns_of
@@ -23,6 +20,7 @@ from tyrefem.diagnose.laboratory import Bench, Response, laboratory
 from tyrefem.diagnose.truth import own_mesh
 from tyrefem.errors import InputError
 from tyrefem.output import atomic_path, jsonable
+from tyrefem.processes import processes
 from tyrefem.result import GAS
 from tyrefem.studies import Study
 
@@ -191,12 +189,6 @@ def _install(study: Study, known: tuple[Response, ...]) -> None:
     _KNOWN[:] = [(study, known)]
 
 
-def _begin(study: Study, known: tuple[Response, ...]) -> None:
-    """Begin a worker: one thread for linear algebra."""
-    threadpool_limits(1, user_api="blas")
-    _install(study, known)
-
-
 def _case(number: int, count: int, seed: int) -> Row:
     study, known = _KNOWN[0]
     case = cases(study, count, seed)[number]
@@ -247,11 +239,7 @@ def _answers(
         for number in numbers:
             yield number, _case(number, count, seed)
         return
-    with ProcessPoolExecutor(workers, get_context("spawn"), _begin, (study, known)) as pool:
+    with processes(workers, _install, study, known) as pool:
         futures = {pool.submit(_case, number, count, seed): number for number in numbers}
-        try:
-            for future in as_completed(futures):
-                yield futures[future], future.result()
-        except BaseException:
-            pool.shutdown(wait=False, cancel_futures=True)
-            raise
+        for future in as_completed(futures):
+            yield futures[future], future.result()

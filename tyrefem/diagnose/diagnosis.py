@@ -6,7 +6,7 @@ import functools
 import math
 import time
 from collections.abc import Callable, Iterable, Mapping, Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
@@ -22,7 +22,7 @@ from tyrefem.diagnose.search import search
 from tyrefem.diagnose.sets import Prior
 from tyrefem.diagnose.trials import trial
 from tyrefem.diagnose.unknowns import Candidate, Unknown, base_unknowns, candidates, sensor_unknowns
-from tyrefem.diagnose.verdict import IMPROBABLE, OUTSIDE, UNEXPLAINED, Judgement, judge, standings
+from tyrefem.diagnose.verdict import IDENTIFIED, IMPROBABLE, OUTSIDE, UNEXPLAINED, Judgement, judge, standings
 from tyrefem.diagnose.where import gap_table, rms
 from tyrefem.errors import InputError
 from tyrefem.studies import Study
@@ -31,6 +31,8 @@ if TYPE_CHECKING:
     import pandas as pd
 
 Tick = Callable[[str, int, int], None]
+#: Diagnoses at most, each of what the one before it has left.
+LOOKS = 3
 #: Heat of unknown origin that the linear model puts this far, or less, below the best set is fitted in the full model.
 NEAR = 10.0
 
@@ -46,7 +48,7 @@ class Diagnosis:
     null, best : the fits without any effect and with the most probable set. missing : heat of unknown origin.
     changes : what ``study`` has that ``original`` has not. before, after : trial -> block means, degC.
     next_experiment : what would tell the credible sets apart; empty where nothing needs telling.
-    seconds : wall time.
+    seconds : wall time. again : what was found when the amended study was held against the same data.
     """
 
     original: Study
@@ -62,6 +64,12 @@ class Diagnosis:
     after: dict[int, Any]
     next_experiment: Mapping[str, Any]
     seconds: float
+    again: Diagnosis | None = None
+
+    @property
+    def looks(self) -> tuple[Diagnosis, ...]:
+        """This diagnosis and those of what was left."""
+        return (self, *(self.again.looks if self.again else ()))
 
     @property
     def verdict(self) -> str:
@@ -120,8 +128,12 @@ def diagnose(
     known: Sequence[Response] | None = None,
     rerun: bool = True,
     store: ProgressStore | None = None,
+    looks: int = LOOKS,
 ) -> Diagnosis:
     """Find where study and data disagree, name the missing effect, add it and show what is left.
+
+    What is identified is added, and the amended study is held against the same data again, until nothing more is
+    identified: see `Diagnosis.again`.
 
     Parameters
     ----------
@@ -131,13 +143,58 @@ def diagnose(
     known : responses of the runs' drives already at hand (see `responses`), for many diagnoses of one layout.
     rerun : run the amended study on its own mesh at the end; else ``after`` is the fit's own prediction.
     store : where finished simulations are kept, so that an interrupted diagnosis takes them up again.
+    looks : diagnoses at most.
 
     Raises
     ------
     InputError : as `compare`; or every run is held out.
     """
+    found: list[Diagnosis] = []
+    while not found or (found[-1].verdict == IDENTIFIED and len(found) < looks):
+        number = len(found)
+        found.append(
+            _look(
+                found[-1].study if found else study,
+                table,
+                ignore=ignore,
+                rename=rename,
+                largest=largest,
+                workers=workers,
+                tick=_numbered(progress, number),
+                known=None if number else known,
+                rerun=rerun,
+                store=store and store.look(number),
+            )
+        )
+    result = found.pop()
+    while found:
+        result = replace(found.pop(), again=result)
+    return result
+
+
+def _numbered(progress: Tick | None, number: int) -> Tick:
+    if progress is None:
+        return lambda what, done, total: None
+    if not number:
+        return progress
+    return lambda what, done, total: progress(f"{what}, look {number + 1}", done, total)
+
+
+def _look(
+    study: Study,
+    table: Table | None,
+    *,
+    ignore: Iterable[str],
+    rename: Mapping[str, str] | None,
+    largest: int,
+    workers: int,
+    tick: Tick,
+    known: Sequence[Response] | None,
+    rerun: bool,
+    store: ProgressStore | None,
+) -> Diagnosis:
+    """One diagnosis."""
     began = time.perf_counter()
-    tick = progress or (lambda what, done, total: None)
     planned = experiments(study, table, ignore=ignore, rename=rename)
     trials = tuple(one for one in (trial(each, study) for each in planned) if one.series)
     if not any(not one.hold_out for one in trials):

@@ -3,18 +3,14 @@
 from __future__ import annotations
 
 import functools
-import os
-import signal
 from collections.abc import Callable, Iterator, Mapping, Sequence
-from concurrent.futures import Executor, ProcessPoolExecutor, as_completed
+from concurrent.futures import Executor, as_completed
 from contextlib import contextmanager
 from dataclasses import dataclass
-from multiprocessing import active_children, get_context
 from typing import Any
 
 import numpy as np
 from numpy.typing import NDArray
-from threadpoolctl import threadpool_limits
 
 from tyrefem.boundaries.rim import Lumped
 from tyrefem.conduction.tangent import Perturbed, tangents
@@ -23,6 +19,7 @@ from tyrefem.diagnose.progress_store import ProgressStore
 from tyrefem.diagnose.trials import Trial
 from tyrefem.diagnose.unknowns import Unknown, with_values
 from tyrefem.errors import InputError
+from tyrefem.processes import processes
 from tyrefem.result import GAS, RIM, Result
 from tyrefem.rolling import RollingTyre, run
 from tyrefem.sensors import recorded_change
@@ -205,10 +202,7 @@ _BENCH: list[Bench] = []
 
 
 def _install(bench: Bench) -> None:
-    """Begin a worker: one thread for linear algebra, and the same Ctrl-C that stops its parent ends it silently."""
     _BENCH[:] = [bench]
-    threadpool_limits(1, user_api="blas")
-    signal.signal(signal.SIGINT, lambda *_: os._exit(130))
 
 
 def _task(name: str, arguments: tuple[Any, ...]) -> Any:
@@ -258,13 +252,5 @@ def laboratory(bench: Bench, workers: int = 1, store: ProgressStore | None = Non
     if workers <= 1:
         yield Laboratory(bench, store=store)
         return
-    before = set(active_children())
-    with ProcessPoolExecutor(workers, mp_context=get_context("spawn"), initializer=_install, initargs=(bench,)) as pool:
-        try:
-            yield Laboratory(bench, pool, store)
-        except BaseException:
-            # Nobody wants the simulations that are still running.
-            pool.shutdown(wait=False, cancel_futures=True)
-            for worker in set(active_children()) - before:
-                worker.terminate()
-            raise
+    with processes(workers, _install, bench) as pool:
+        yield Laboratory(bench, pool, store)

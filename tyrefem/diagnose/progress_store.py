@@ -46,6 +46,10 @@ class ProgressStore:
         self.taken_up = self.count
         return self.taken_up
 
+    def look(self, number: int) -> ProgressStore:
+        """The store of a further look at the same data; this one for the first."""
+        return self if number == 0 else ProgressStore(self.folder.with_name(f"{self.folder.name}-{number + 1}"))
+
     def known(self, name: str, question: tuple[Any, ...]) -> Any:
         """The answer to a question, arrays as they were; None where there is none that can be read."""
         try:
@@ -66,8 +70,9 @@ class ProgressStore:
         return len(list(self._place.glob("[!.]*.npz"))) if self._place else 0
 
     def clear(self) -> None:
-        """Remove everything: the diagnosis is done."""
-        shutil.rmtree(self.folder, ignore_errors=True)
+        """Remove everything, of further looks too: the diagnosis is done."""
+        for folder in (self.folder, *self.folder.parent.glob(f"{self.folder.name}-*")):
+            shutil.rmtree(folder, ignore_errors=True)
 
     def _file(self, name: str, question: tuple[Any, ...]) -> Path:
         assert self._place is not None, "open the store first"

@@ -9,8 +9,8 @@ import tyrefem
 from tyrefem.diagnose.amend import difference
 from tyrefem.diagnose.rivals import candidate_rows, parameters, set_rows
 from tyrefem.diagnose.tables import history_table, where_table
-from tyrefem.diagnose.verdict import CONFOUNDED, IDENTIFIED, UNEXPLAINED
-from tyrefem.diagnose.words import verdict_words
+from tyrefem.diagnose.verdict import CONFOUNDED, IDENTIFIED, NO_GAP, UNEXPLAINED
+from tyrefem.diagnose.words import AGAIN, look_folder, verdict_words
 from tyrefem.output import atomic_folder, jsonable, write_json
 from tyrefem.summary import versions
 
@@ -52,6 +52,7 @@ def record(d: Diagnosis) -> dict[str, Any]:
         "amended_study": AMENDED,
         "changes": change_rows(d),
         "missing_heat": missing_heat(d) if d.verdict == UNEXPLAINED else None,
+        "again": [_look(one, number) for number, one in enumerate(d.looks[1:], start=2)],
         "study": d.original.name,
         "title": d.original.title,
         "runs": _runs(d),
@@ -138,6 +139,16 @@ def missing_heat(d: Diagnosis) -> dict[str, Any]:
     }
 
 
+def _look(d: Diagnosis, number: int) -> dict[str, Any]:
+    """A further look at the same data in short; ``folder``: where the whole of it is, where something was found."""
+    return {
+        "verdict": d.verdict,
+        "effects": [one.key for one in d.best.members] if d.verdict in (IDENTIFIED, CONFOUNDED) else [],
+        "reasons": list(d.judgement.reasons),
+        "folder": None if d.verdict == NO_GAP else look_folder(number),
+    }
+
+
 def _rms(d: Diagnosis, *, after: bool) -> dict[str, float]:
     return {"rms_K": d.rms(after=after, held_out=False), "held_out_rms_K": d.rms(after=after, held_out=True)}
 
@@ -159,6 +170,7 @@ def _runs(d: Diagnosis) -> list[dict[str, Any]]:
 def write(d: Diagnosis, folder: Path) -> Path:
     """Write everything into a folder, each file complete or not there; returns the page.
 
+    A further look at the data that found something has a folder ``again`` of its own.
     ``verdict.json``, ``amended.toml``, ``difference.txt``, ``where.csv``, ``histories.csv``, the pictures, and
     ``diagnosis.html``.
 
@@ -180,4 +192,6 @@ def write(d: Diagnosis, folder: Path) -> Path:
         for name, picture in drawn.items():
             (temporary / name).write_bytes(picture)
         (temporary / PAGE).write_text(page(d, drawn, version=tyrefem.__version__), encoding="utf-8")
+    if d.again is not None and d.again.verdict != NO_GAP:
+        write(d.again, folder / AGAIN)
     return folder / PAGE

@@ -10,9 +10,12 @@ from typing import Any
 from tyrefem.dotted import scaled, value_at
 from tyrefem.effects import catalogue
 from tyrefem.effects.effect import MEASUREMENT_PORTS, Effect, Parameter
+from tyrefem.quantity import parse
 from tyrefem.studies import Study
 
 Choice = tuple[tuple[str, str], ...]
+#: Effects that every sensor may have within what its card states: place, lag, offset.
+OF_SENSORS = ("sensor-misplaced", "sensor-lag", "sensor-offset")
 
 
 @dataclass(frozen=True)
@@ -24,6 +27,7 @@ class Unknown:
     key : dotted name of a base number (x = ln of its factor), or of an effect's parameter (x = value - origin, SI).
     sd : standard deviation of its prior. low, high : bounds of x.
     effect, choice, parameter : for an effect's parameter: name, variant, and the parameter.
+    origin : the parameter's value at x = 0 where the study has the effect already.
     """
 
     key: str
@@ -33,6 +37,7 @@ class Unknown:
     effect: str | None = None
     choice: Choice = ()
     parameter: Parameter | None = None
+    origin: float | None = None
 
     @property
     def step(self) -> float:
@@ -56,7 +61,7 @@ class Unknown:
         """The parameter's own value, SI: a factor for a base number."""
         if self.parameter is None:
             return x if self.fixed else math.exp(x)
-        return self.parameter.prior.origin + x
+        return (self.parameter.prior.origin if self.origin is None else self.origin) + x
 
     @property
     def unit(self) -> str:
@@ -102,32 +107,48 @@ class Candidate:
         return tuple(one for one in self.unknowns if one.parameter and not one.parameter.prior.amplitude)
 
 
-def of_effect(effect: type[Effect], choice: Choice, sd: float | None = None) -> tuple[Unknown, ...]:
+def of_effect(
+    effect: type[Effect], choice: Choice, sd: float | None = None, stated: Effect | None = None
+) -> tuple[Unknown, ...]:
+    """The unknowns of an effect; ``stated``: how the study has it, with the standard deviations it states."""
     tag = ".".join((effect.name, *(value for _, value in choice)))
     if not effect.parameters():
         return (Unknown(f"effects.{tag}", 1.0, 0.0, 1.0, effect.name, choice),)
-    return tuple(
-        Unknown(
-            f"effects.{tag}.{one.name}",
-            one.prior.scale if sd is None else sd,
-            one.prior.low - one.prior.origin,
-            one.prior.high - one.prior.origin,
-            effect.name,
-            choice,
-            one,
-        )
-        for one in effect.parameters()
-    )
+    found = []
+    for one in effect.parameters():
+        spread = one.prior.scale if sd is None else sd
+        origin = None if stated is None else stated.values[one.name]
+        if stated is not None and one.name in stated.sd:
+            spread = parse(stated.sd[one.name], one.prior.unit)
+        zero = one.prior.origin if origin is None else origin
+        limits = one.prior.low - zero, one.prior.high - zero
+        found.append(Unknown(f"effects.{tag}.{one.name}", spread, *limits, effect.name, choice, one, origin))
+    return tuple(found)
 
 
 def base_unknowns(study: Study) -> tuple[Unknown, ...]:
-    """The uncertain base numbers: those of `Study.uncertainty`, and the films."""
+    """The uncertain base numbers: those of `Study.uncertainty`, the films, and effects stated with uncertain values."""
     numbers = tuple(Unknown(key, sd) for key, sd in study.uncertainty.items())
-    film = catalogue()["film-scale"]
-    taken = {effect.choice["film"] for effect in study.effects if effect.name == "film-scale"}
-    films = ("road", "outside_air", "contained_air", "rim")
-    sd = study.card.diagnosis.film_sd
-    return numbers + tuple(one for name in films if name not in taken for one in of_effect(film, (("film", name),), sd))
+    known = catalogue()
+    films: list[Unknown] = []
+    for name in ("road", "outside_air", "contained_air", "rim"):
+        choice = (("film", name),)
+        stated = _stated(study, "film-scale", choice)
+        films += of_effect(known["film-scale"], choice, study.card.diagnosis.film_sd, stated)
+    fitted = [
+        unknown
+        for one in study.card.effects
+        if one.name != "film-scale" and one.name not in OF_SENSORS
+        for unknown in of_effect(type(one), tuple(one.choice.items()), stated=one)
+        if unknown.parameter is not None and unknown.parameter.name in one.sd
+    ]
+    return (*numbers, *films, *(one for one in fitted if one.sd > 0))
+
+
+def _stated(study: Study, name: str, choice: Choice) -> Effect | None:
+    """The effect as the study has it, if it has."""
+    found = (one for one in study.card.effects if one.name == name and tuple(one.choice.items()) == choice)
+    return next(found, None)
 
 
 def sensor_unknowns(study: Study, measured: set[str]) -> tuple[Unknown, ...]:
@@ -138,13 +159,9 @@ def sensor_unknowns(study: Study, measured: set[str]) -> tuple[Unknown, ...]:
         if name not in measured:
             continue
         choice = (("sensor", name),)
-        for effect, sd in (
-            ("sensor-misplaced", sensor.position_sd),
-            ("sensor-lag", sensor.lag_sd),
-            ("sensor-offset", sensor.accuracy),
-        ):
-            if sd > 0:
-                found += of_effect(known[effect], choice, sd)
+        for effect, sd in zip(OF_SENSORS, (sensor.position_sd, sensor.lag_sd, sensor.accuracy), strict=True):
+            own = of_effect(known[effect], choice, sd, _stated(study, effect, choice))
+            found += [one for one in own if one.sd > 0]
     return tuple(found)
 
 

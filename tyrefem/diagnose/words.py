@@ -31,6 +31,8 @@ READ = {
     "m**2*K/W": (1.0, "m²K/W"),
     "rad": (180 / math.pi, "°"),
 }
+#: Folder of a further look at the same data, in that of the one before.
+AGAIN = "again"
 
 
 def amount(value: float, sd: float, unit: str) -> str:
@@ -96,7 +98,8 @@ def verdict_words(d: Diagnosis) -> tuple[str, ...]:
         return (f"No gap: noise and the uncertainty of base numbers and sensors account for the deviation ({extent}).",)
     clauses = [effect_words(one, d.best) for one in d.best.members]
     if d.verdict == IDENTIFIED:
-        return _joined(clauses, [f"Probability {percent(d.judgement.probability)}."], closing)
+        said = _joined(clauses, [f"Probability {percent(d.judgement.probability)}."], closing)
+        return (*said, *again_words(d))
     if d.verdict == CONFOUNDED:
         return _confounded(d, closing)
     found = f"What is missing is most clearly {missing_words(d)}."
@@ -187,6 +190,26 @@ def _kelvin(d: Diagnosis, *, after: bool) -> str:
 
 def _joined(clauses: Sequence[str], further: Sequence[str], closing: str) -> tuple[str, ...]:
     return (". And: ".join(clauses) + ". " + " ".join(further), closing)
+
+
+def again_words(d: Diagnosis) -> tuple[str, ...]:
+    """What further looks at the same data found, one sentence each; none where there was no further look."""
+    found = []
+    for number, one in enumerate(d.looks[1:], start=2):
+        if one.verdict == NO_GAP:
+            found.append("The amended study was held against the same data again: no gap is left.")
+            continue
+        named = f": {one.judgement.best.key}" if one.verdict in (IDENTIFIED, CONFOUNDED) else ""
+        found.append(
+            f"The amended study was held against the same data again: {one.verdict}{named}; see the folder "
+            f"{look_folder(number)}."
+        )
+    return tuple(found)
+
+
+def look_folder(number: int) -> str:
+    """Folder of the second, third... look at the same data, within that of the first."""
+    return "/".join([AGAIN] * (number - 1))
 
 
 def shortened(reason: str, most: int = 4) -> str:
