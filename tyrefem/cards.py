@@ -90,7 +90,7 @@ def _parsed(path: Path, *_state: int) -> dict[str, Any]:
 
 
 #: Ways of giving one property: a table that is laid over another in one of them drops the other ways.
-FORMS = ({"value"}, {"along", "across"}, {"table"})
+FORMS = ({"value"}, {"along", "across"}, {"table"}, {"shear_modulus"}, {"c10", "c01", "c20", "c30"})
 
 
 def merged(base: Mapping[str, Any], changes: Mapping[str, Any]) -> dict[str, Any]:
@@ -98,6 +98,8 @@ def merged(base: Mapping[str, Any], changes: Mapping[str, Any]) -> dict[str, Any
 
     >>> merged({"k": {"value": "1 W/m/K", "source": "a"}}, {"k": {"along": "2 W/m/K", "across": "1 W/m/K"}})
     {'k': {'source': 'a', 'along': '2 W/m/K', 'across': '1 W/m/K'}}
+    >>> merged({"layers": [{"name": "liner"}, {"name": "ply"}]}, {"layers": {"1": {"name": "plies"}}})
+    {'layers': [{'name': 'liner'}, {'name': 'plies'}]}
     """
     given = [form for form in FORMS if form & set(changes)]
     dropped = set().union(*FORMS) - set().union(*given) if given else set()
@@ -106,5 +108,19 @@ def merged(base: Mapping[str, Any], changes: Mapping[str, Any]) -> dict[str, Any
         below = result.get(key)
         if isinstance(below, Mapping) and isinstance(value, Mapping):
             value = merged(below, value)
+        elif isinstance(below, list) and isinstance(value, Mapping):
+            value = _entries(below, value, str(key))
         result[key] = value
+    return result
+
+
+def _entries(base: list[Any], changes: Mapping[str, Any], field: str) -> list[Any]:
+    """A list with changes laid over the entries that they number from 0: ``layers.2.regions.0.to``."""
+    result = list(base)
+    for number, value in changes.items():
+        if not (number.isdigit() and int(number) < len(base)):
+            raise InputError(f"no entry '{number}'; allowed: 0 to {len(base) - 1}", field=field)
+        below = result[int(number)]
+        both = isinstance(below, Mapping) and isinstance(value, Mapping)
+        result[int(number)] = merged(below, value) if both else value
     return result

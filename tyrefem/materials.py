@@ -13,6 +13,7 @@ from pydantic import model_validator
 
 from tyrefem.cards import Card, Temperature, Text
 from tyrefem.errors import InputError
+from tyrefem.material_elasticity import Cords, Elasticity
 from tyrefem.quantity import Unit
 
 Array = NDArray[np.float64]
@@ -226,6 +227,8 @@ class MaterialCard(Card):
     shear_modulus: Modulus | None = None
     youngs_modulus: Modulus | None = None
     cord: Cord | None = None
+    elasticity: Elasticity | None = None
+    cords: Cords | None = None
 
     def heat_capacity(self) -> Any:
         """Volumetric heat capacity rho c, J/m3/K: a number or a function of temperature."""

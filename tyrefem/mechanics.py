@@ -2,14 +2,18 @@
 
 from __future__ import annotations
 
+from collections.abc import Callable
+
 import numpy as np
 
 from tyrefem.errors import InputError
 from tyrefem.footprint import GivenFootprint
 from tyrefem.heating import CycleSchedule, ramp_knots
 from tyrefem.loading import LoadCase, load_case
+from tyrefem.strain import StrainCycle
 from tyrefem.strain.arcs import Arcs, Stiffness
 from tyrefem.strain.cord_rubber import BiasPlies
+from tyrefem.strain.given import Given
 from tyrefem.studies import Study
 
 
@@ -20,7 +24,15 @@ def stiffness(study: Study) -> Stiffness:
     ------
     InputError : a card lacks a modulus or an angle that the law needs.
     """
-    section, cord = study.section, study.materials["carcass"].cord
+    section = study.section
+    for region in ("carcass", "tread", "sidewall", "bead"):
+        if region not in section.regions:
+            message = (
+                f"the strain law 'arcs' needs the region '{region}', which section '{section.name}' does not have;"
+                ' other constructions take strain = "given"'
+            )
+            raise InputError(message, field="mechanics.strain", file=study.file)
+    cord = study.materials["carcass"].cord
     mechanics, rating = study.card.mechanics, section.rating
     if rating is None:
         raise InputError("the strain law 'arcs' needs the section's [rating]", field="section.rating")
@@ -55,13 +67,13 @@ def cycle_schedule(study: Study) -> CycleSchedule:
     InputError : a load or deflection that the section cannot take; names the phase.
     """
     _check_footprint(study)
-    moduli = stiffness(study)
+    cycle = _provider(study)
     knots, cases, cycles = [], [], []
     for number, phase in enumerate(study.card.drive.phases):
         fractions = tuple(ramp_knots(phase.changes_load))
         try:
             phase_cases = tuple(_load_case(study, number, fraction) for fraction in fractions)
-            phase_cycles = tuple(_cycle(study, moduli, case) for case in phase_cases)
+            phase_cycles = tuple(cycle(case) for case in phase_cases)
         except InputError as error:
             placed = error.within(field=f"drive.phases.{phase.name}", file=study.file)
             raise study.as_written(placed) from None
@@ -69,6 +81,23 @@ def cycle_schedule(study: Study) -> CycleSchedule:
         cases.append(phase_cases)
         cycles.append(phase_cycles)
     return CycleSchedule(study.card.drive, tuple(knots), tuple(cases), tuple(cycles))
+
+
+def _provider(study: Study) -> Callable[[LoadCase], StrainCycle]:
+    """The study's strain law: from a load case to its strain cycle."""
+    if study.card.mechanics.strain == "given":
+        return _given(study)
+    moduli = stiffness(study)
+    return lambda case: _cycle(study, moduli, case)
+
+
+def _given(study: Study) -> Callable[[LoadCase], StrainCycle]:
+    section, energy = study.section, study.card.mechanics.energy
+    assert energy is not None
+    if section.rating is None:
+        raise InputError("the strain law 'given' needs the section's [rating]", field="section.rating")
+    deflection = study.card.mechanics.load_law.deflection(energy.load, energy.pressure, section.rating)
+    return lambda case: Given(section, energy.regions, deflection, case)
 
 
 def _check_footprint(study: Study) -> None:

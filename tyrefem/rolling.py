@@ -51,7 +51,7 @@ class RollingTyre(Surroundings):
         if self._as_in_like(("drive", "mechanics"), ()):
             assert self.like is not None
             own, other = self.study.materials, self.like.study.materials
-            stiff = ("shear_modulus", "youngs_modulus", "cord")
+            stiff = ("shear_modulus", "youngs_modulus", "cord", "elasticity", "cords")
             if all(getattr(own[region], name) == getattr(other[region], name) for region in own for name in stiff):
                 return self.like.schedule
         return super().schedule

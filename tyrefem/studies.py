@@ -11,10 +11,11 @@ from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
 from tyrefem import library
+from tyrefem.construction import check_cords_fit
 from tyrefem.dotted import all_changed, scaled, value_at
-from tyrefem.errors import InputError
+from tyrefem.errors import InputError, nearest
 from tyrefem.materials import MaterialCard
-from tyrefem.study_card import REGIONS, MeasuredEntry, Sensor, StudyCard
+from tyrefem.study_card import MeasuredEntry, Sensor, StudyCard
 
 if TYPE_CHECKING:
     from collections.abc import Callable
@@ -56,6 +57,7 @@ class Study:
         like = self.__dict__.pop("_like", None)
         self._share(like)
         _ = self.section, self.materials
+        self._check_energy()
         if like is not None and self.new_section is like.new_section and self.sensors == like.sensors:
             self.__dict__["stated_places"] = like.stated_places
         _ = self.stated_places
@@ -108,16 +110,24 @@ class Study:
 
     @functools.cached_property
     def materials(self) -> dict[str, MaterialCard]:
-        """Region -> material card."""
+        """Region of the section -> material card."""
+        regions = self.new_section.regions
+        for region in self.data["materials"]:
+            if region not in regions:
+                message = f"unknown region '{region}'{nearest(str(region), regions)}"
+                raise InputError(message, field="materials", file=self.file)
         found: dict[str, MaterialCard] = {}
         known = self.__dict__.pop("_known_materials", {})
-        for region in REGIONS:
+        for region in regions:
+            if region not in self.data["materials"]:
+                raise InputError(f"no material card for region '{region}'", field="materials", file=self.file)
             if region in known:
                 found[region] = known[region]
                 continue
             try:
                 data, path, _ = library.load("material", self.data["materials"][region], self.folder)
                 found[region] = MaterialCard.check(data, path)
+                check_cords_fit(found[region], self.new_section, region)
             except InputError as error:
                 raise error if error.file else error.within(field=f"materials.{region}", file=self.file) from None
         return found
@@ -165,12 +175,22 @@ class Study:
         """Take over what another study has built, where the two do not differ."""
         if like is None:
             return
-        if self.data["section"] == like.data["section"] and self.card.mesh.section == like.card.mesh.section:
+        if self.data["section"] != like.data["section"]:
+            return
+        if self.card.mesh.section == like.card.mesh.section:
             self.__dict__["new_section"] = like.new_section
         mine, theirs = self.data["materials"], like.data["materials"]
         self.__dict__["_known_materials"] = {
-            region: like.materials[region] for region in REGIONS if mine[region] == theirs[region]
+            region: like.materials[region] for region in like.materials if mine.get(region) == theirs[region]
         }
+
+    def _check_energy(self) -> None:
+        energy = self.card.mechanics.energy
+        try:
+            if energy is not None:
+                energy.check_regions(self.new_section)
+        except InputError as error:
+            raise error.within(field="mechanics.energy", file=self.file) from None
 
     def _check_effects(self) -> None:
         for number, effect in enumerate(self.card.effects):
@@ -290,7 +310,9 @@ class Study:
             if choice.file is not None:
                 path = (self.folder or Path()) / choice.file
                 return meshing.read_for(self.section, path, names=choice.names, axes=choice.axes, unit=choice.unit)
-            return meshing.build(self.section, mesher=choice.mesher, size=choice.size, cell=choice.cell)
+            return meshing.build(
+                self.section, mesher=choice.mesher, size=choice.size, cell=choice.cell, through=choice.through
+            )
         except InputError as error:
             raise error if error.file else error.within(field="mesh", file=self.file) from None
 

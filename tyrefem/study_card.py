@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping
 from typing import Annotated, Any, ClassVar, Literal
 
 from pydantic import Field, model_validator
@@ -16,15 +15,17 @@ from tyrefem.boundaries.sliding import SlidingLaw
 from tyrefem.cards import Card, Text
 from tyrefem.drive import Drive
 from tyrefem.effects import Effect, EffectOf
-from tyrefem.errors import InputError, nearest
+from tyrefem.errors import InputError
 from tyrefem.footprint import TR_R_64, FootprintLaw
 from tyrefem.loading import TrR64, VerticalStiffness
 from tyrefem.quantity import Unit
+from tyrefem.strain.given import GivenEnergy
 
 
 class MeshChoice(Card):
     """How the section is meshed.
 
+    ``through`` is the least number of elements through every layer: 1 will do for the thin plies of a radial.
     ``cell`` is quadrilaterals for the mapped mesher and triangles for gmsh where not given. ``file`` takes a user's
     own mesh with named groups in place of a mesher: ``names`` maps the file's names to the section's, ``axes`` says
     which coordinates are (r, z), ``unit`` their unit.
@@ -34,6 +35,7 @@ class MeshChoice(Card):
     size: Annotated[float, Unit("m", gt=1e-4, lt=0.5)] = 3e-3
     cell: Literal["quad", "tri"] | None = None
     element: Literal["P1", "P2"] = "P2"
+    through: Annotated[int, Field(ge=1, le=50)] = 3
     section: Literal["half", "full"] = "half"
     file: str | None = None
     names: dict[str, str] = Field(default_factory=dict)
@@ -46,14 +48,23 @@ class Mechanics(Card):
 
     ``loss_convention``: ``nasa``, W = pi U tan d (eq 25, where U stands for E' e0^2), or ``sinusoid``,
     W = 2 pi U tan d with U = E' e0^2 / 2. ``poisson_term`` is c_a = 1 - nu_pt nu_tp (eq 7a), 0.75 an estimate.
+    ``strain``: ``arcs``, the NASA report's bias tyre, or ``given``, the energies of the table ``energy`` (which only
+    this law reads).
     """
 
-    strain: Literal["arcs"] = "arcs"
+    strain: Literal["arcs", "given"] = "arcs"
+    energy: GivenEnergy | None = None
     load_law: Annotated[TrR64 | VerticalStiffness, Field(discriminator="law")] = TrR64()
     footprint: Annotated[FootprintLaw, Field(discriminator="law")] = TR_R_64
     loss_convention: Literal["nasa", "sinusoid"] = "nasa"
     poisson_term: Annotated[float, Unit("1", ge=0, le=1)] = 0.75
     membrane_shear: bool = True
+
+    @model_validator(mode="after")
+    def _energy_where_given(self) -> Mechanics:
+        if self.strain == "given" and self.energy is None:
+            raise InputError('strain = "given" needs the table [mechanics.energy]', field="strain")
+        return self
 
 
 class Boundaries(Card):
@@ -138,9 +149,6 @@ class MeasuredEntry(Card):
     time_offset: Annotated[float, Unit("s")] = 0.0
 
 
-REGIONS = ("carcass", "tread", "sidewall", "bead")
-
-
 class StudyCard(Card):
     """A study.toml, its references to other cards not yet followed."""
 
@@ -160,18 +168,6 @@ class StudyCard(Card):
     cases: Text | None = None
     effects: tuple[Annotated[Effect, EffectOf()], ...] = ()
     diagnosis: DiagnosisChoice = DiagnosisChoice()
-
-    @model_validator(mode="before")
-    @classmethod
-    def _measured_and_regions(cls, data: Any) -> Any:
-        if isinstance(data, Mapping) and isinstance(data.get("materials"), Mapping):
-            for region in data["materials"]:
-                if region not in REGIONS:
-                    raise InputError(f"unknown region '{region}'{nearest(str(region), REGIONS)}", field="materials")
-            missing = [region for region in REGIONS if region not in data["materials"]]
-            if missing:
-                raise InputError(f"no material card for region '{missing[0]}'", field="materials")
-        return data
 
     @model_validator(mode="after")
     def _sensor_names(self) -> StudyCard:

@@ -100,6 +100,8 @@ def _strain(name: str, values: dict[str, Any]) -> tuple[Any, dict[str, Any]]:
     from tyrefem.studies import study
 
     found = study(name, values)
+    if found.card.mechanics.strain != "arcs":
+        raise InputError('the picture of the strain cycle needs strain = "arcs"', field="mechanics.strain", file=name)
     case = RollingTyre(found).schedule.cases[0][-1]
     facts = {
         "load_N": case.load,

@@ -7,9 +7,10 @@ from typing import TYPE_CHECKING, Annotated, ClassVar
 import numpy as np
 
 from tyrefem.effects.effect import Array, Effect, Factor, Prior
-from tyrefem.effects.shapes import deflection_ratio, revolutions
+from tyrefem.effects.shapes import deflection_ratio, no_carcass, revolutions
 
 if TYPE_CHECKING:
+    from tyrefem.studies import Study
     from tyrefem.surroundings import Surroundings
 
 
@@ -56,3 +57,8 @@ class BeltEdgeShear(Effect):
         across = (section.midline_offset(s, depth) - section.thickness("carcass", s) / 2) / self.ACROSS
         here = np.exp(-(along**2 + across**2) / 2)
         return np.asarray(self.loss * revolutions(tyre, t) * deflection_ratio(tyre, t) ** 2 * here)
+
+    @classmethod
+    def refusal(cls, study: Study) -> str | None:
+        """The place is measured from the region 'carcass'."""
+        return no_carcass(study)

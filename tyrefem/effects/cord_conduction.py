@@ -5,8 +5,10 @@ from __future__ import annotations
 from typing import TYPE_CHECKING, Annotated, ClassVar
 
 from tyrefem.effects.effect import Array, Effect, Factor, Prior
+from tyrefem.effects.shapes import no_carcass
 
 if TYPE_CHECKING:
+    from tyrefem.studies import Study
     from tyrefem.surroundings import Surroundings
 
 
@@ -26,3 +28,8 @@ class CordConduction(Effect):
     def conductivity_factor(self, tyre: Surroundings, region: str, T: Array) -> tuple[Factor, Factor]:
         """1 + gain along the plies of the carcass."""
         return (1 + self.gain, 1.0) if region == "carcass" else (1.0, 1.0)
+
+    @classmethod
+    def refusal(cls, study: Study) -> str | None:
+        """A section of plies and belts has no region 'carcass': its cards give the conductivity along the cords."""
+        return no_carcass(study)

@@ -8,6 +8,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 if TYPE_CHECKING:
+    from tyrefem.studies import Study
     from tyrefem.surroundings import Surroundings
 
 Array = NDArray[np.float64]
@@ -17,6 +18,12 @@ REFERENCE_SPEED = 10.0
 SLOWEST = 1.0
 #: Range in which laws linear or exponential in temperature are used; held beyond (a trial step may stray), degC.
 COLDEST, HOTTEST = -50.0, 250.0
+
+
+def no_carcass(study: Study) -> str | None:
+    """Why an effect that is placed by the region 'carcass' has no meaning in a study; None where there is one."""
+    section = study.section
+    return None if "carcass" in section.regions else f"section '{section.name}' has no region 'carcass'"
 
 
 def speed_ratio(tyre: Surroundings, t: float) -> float:

@@ -8,7 +8,7 @@ from itertools import pairwise
 import numpy as np
 from numpy.typing import NDArray
 
-from tyrefem.meshing.spacing import graded
+from tyrefem.meshing.spacing import graded, knots
 from tyrefem.section.outlines import face
 from tyrefem.section.section import Section
 
@@ -40,6 +40,7 @@ def make_blocks(section: Section, size: float, through: int) -> Blocks:
     """Blocks whose sides have edges near ``size``, shorter in thin layers and at the outer face."""
     length, n = section.line.length, len(section.layers)
     spans = np.array([0.0, *section.marks, length])
+    kinks = knots(section, size)
     along: dict[tuple[int, int], Array] = {}
     for i in range(n + 1):
 
@@ -47,9 +48,9 @@ def make_blocks(section: Section, size: float, through: int) -> Blocks:
             return _edge_length(section, i, s, size, through) / _stretch(section, i, s)
 
         for k, (start, end) in enumerate(pairwise(spans)):
-            knots = np.unique([start, *(s for s in section.breaks if start + 1e-9 < s < end - 1e-9), end])
-            runs = [graded(a, b, wanted)[:-1] for a, b in pairwise(knots)]
-            along[i, k] = face(section, i, np.concatenate([*runs, knots[-1:]]))
+            stops = np.unique([start, *(s for s in kinks if start + 1e-9 < s < end - 1e-9), end])
+            runs = [graded(a, b, wanted)[:-1] for a, b in pairwise(stops)]
+            along[i, k] = face(section, i, np.concatenate([*runs, stops[-1:]]))
     across = {(i, k): _across(section, i, s, size, through) for i in range(n) for k, s in enumerate(spans)}
     for (i, k), points in across.items():
         for other, end in ((i, 0), (i + 1, -1)):

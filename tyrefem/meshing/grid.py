@@ -8,7 +8,7 @@ from itertools import pairwise
 import numpy as np
 from numpy.typing import NDArray
 
-from tyrefem.meshing.spacing import graded, row_fractions, rows_needed
+from tyrefem.meshing.spacing import graded, knots, row_fractions, rows_needed
 from tyrefem.section.outlines import stations
 from tyrefem.section.section import Section
 
@@ -82,6 +82,5 @@ def _stations(section: Section, size: float, rows: list[int]) -> Array:
             thin = np.minimum(thin, ASPECT * row)
         return np.minimum(np.minimum(size, rise), thin)
 
-    knots = section.breaks
-    runs = [graded(a, b, wanted)[:-1] for a, b in pairwise(knots)]
+    runs = [graded(a, b, wanted)[:-1] for a, b in pairwise(knots(section, size))]
     return np.concatenate([*runs, [length]])

@@ -3,11 +3,26 @@
 from __future__ import annotations
 
 from collections.abc import Callable
+from typing import TYPE_CHECKING
 
 import numpy as np
 from numpy.typing import NDArray
 
+if TYPE_CHECKING:
+    from tyrefem.section.section import Section
+
 Array = NDArray[np.float64]
+#: A kink of the geometry nearer than this share of the size to another grid line gets none of its own.
+KINK_SHARE = 0.25
+
+
+def knots(section: Section, size: float) -> Array:
+    """Stations that need a line of the mesh of ``size`` [m]: all marks, and the kinks not too near to another one."""
+    kept = [0.0, *section.marks, section.line.length]
+    for s in section.breaks:
+        if min(abs(s - other) for other in kept) > KINK_SHARE * size:
+            kept.append(s)
+    return np.unique(kept)
 
 
 def graded(start: float, end: float, size: Callable[[Array], Array], least: int = 1) -> Array:

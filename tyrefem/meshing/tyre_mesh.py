@@ -56,6 +56,11 @@ class TyreMesh:
         """Signed area of every element [m2]."""
         return polygon_areas(self._corners)
 
+    @cached_property
+    def _stations(self) -> Array:
+        """|s| of the elements' corners, (n_corners, n_elements) [m]."""
+        return np.asarray(np.abs(self.section.locate(self.mesh.p.T)[0])[self.mesh.t])
+
     def area(self, region: str) -> float:
         """Area of a region of the mesh [m2]."""
         return float(self.element_areas[self.mesh.subdomains[region]].sum())
@@ -76,7 +81,7 @@ class TyreMesh:
         ------
         InputError : a station cuts through elements; stations of ``section.breaks`` never do.
         """
-        s = np.abs(self.section.locate(self._corners)[0])
+        s = self._stations
         middle = (s.mean(axis=0) > start) & (s.mean(axis=0) < end)
         inside = (s > start - 1e-6) & (s < end + 1e-6)
         outside = (s < start + 1e-6) | (s > end - 1e-6)

@@ -61,7 +61,7 @@ def heat_source_figure(result: Result) -> Figure:
     factor_u, unit_u = si(max(float(u.max()) for u in energies), "J/m³")
     factor_q, unit_q = si(max(float(q.max()) for q in sources), "W/m³")
     rows = [_row(zone, total) for zone in zones]
-    names = [f"{zone.name}: {zone.title}" for zone in zones]
+    names = [zone.title if zone.name == zone.title else f"{zone.name}: {zone.title}" for zone in zones]
     drawn = canvas(result.study.section, names, rows, bars=2)
     top_u = max(float(u.max()) for u in energies) / factor_u or 1.0
     top_q = max(float(q.max()) for q in sources) / factor_q or 1.0

@@ -25,7 +25,8 @@ def mesh_figure(tyre_mesh: TyreMesh) -> Figure:
     tall = 5.6 if tyre_mesh.section.half else 4.6
     scale = (high[1] - low[1]) / tall
     wide = (high[0] - low[0]) / scale
-    drawn = figure(max(wide + 0.9 + 2.4, 7.4), tall + 0.3 + 0.5 + TITLE)
+    legend = max(2.4, 0.075 * max(len(f"{region}: 1000 elements") for region in tyre_mesh.section.regions) + 0.5)
+    drawn = figure(max(wide + 0.9 + legend, 7.4), tall + 0.3 + 0.5 + TITLE)
     axes = add_axes(drawn, 0.7, 0.5, wide + 0.2, tall + 0.3)
     axes.set_xlim(low[0] - 0.1 * scale, high[0] + 0.1 * scale)
     axes.set_ylim(low[1] - 0.15 * scale, high[1] + 0.15 * scale)

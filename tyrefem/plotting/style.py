@@ -18,7 +18,11 @@ Array = NDArray[np.float64]
 PALETTE = ("#0072B2", "#D55E00", "#009E73", "#CC79A7", "#56B4E9", "#E69F00", "#000000", "#8C510A")
 DASHES: tuple[Any, ...] = ("-", (0, (5, 1.5)), (0, (1.2, 1.2)), (0, (6, 1.5, 1.2, 1.5)))
 #: Light fills of regions, by their order in the section.
-FILLS = ("#f3d9b1", "#bcd4e6", "#cfe3c4", "#e3cfe0", "#e0e0e0", "#f5efb8")
+FILLS = (
+    "#f3d9b1", "#bcd4e6", "#cfe3c4", "#e3cfe0", "#e0e0e0", "#f5efb8",
+    "#d9a58b", "#8fb3d1", "#9cc59a", "#b9a0c8", "#b5b5b5", "#d8c766",
+    "#f2b6b6", "#a8dadc", "#c9d36b", "#d7bfa6", "#8aa29e", "#e6a5cf",
+)  # fmt: skip
 INK, QUIET = "#1b1b1b", "#6a6a6a"
 GENERATED, SLIDING, STORED, LOST = "#D55E00", "#8C510A", "#0072B2", "#009E73"
 #: Perceptually uniform; the second for quantities other than temperature.

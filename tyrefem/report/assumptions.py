@@ -27,6 +27,10 @@ SLIDING = {
     "between tread and road as they conduct; wear, water, tread gaps, camber and the strain of braking and cornering "
     "are left out.",
 }
+GIVEN = (
+    "The study gives every region's strain energy, in proportion to the deflection squared: temperatures and rolling "
+    "resistance are as good as these numbers."
+)
 LOCKED = {
     "A locked wheel's section stands for its patch": "The section modelled is the one on the road, and conduction "
     "along the circumference is neglected: afterwards the tyre is as hot all round as at that patch, and the heat "
@@ -41,16 +45,20 @@ def assumptions(study: Study, estimates: list[str]) -> list[tuple[str, str]]:
     slip = SLIDING if any(phase.slides for phase in drive.phases) else FREE
     locked = LOCKED if any(drive.locked_since(start) is not None for start in drive.starts) else {}
     always = [*ALWAYS.items()]
+    given = mechanics.energy if mechanics.strain == "given" else None
+    if given is not None:
+        always[0] = ("Strain energy given, not computed", f"{GIVEN} Their source: {given.source}.")
     found = [always[0], *slip.items(), *locked.items(), *always[1:]]
     cycle = (
-        "The strain energy of that change times tan δ is lost once per revolution (convention "
+        "The strain energy times tan δ is lost once per revolution (convention "
         f"{mechanics.loss_convention}); higher harmonics and the frequency dependence of tan δ are neglected."
     )
     found.insert(1, ("One loss cycle per revolution", cycle))
     if mechanics.load_law.law == "tr-r-64":
         memory = "The load-deflection formula is quoted from memory of NASA TR R-64; a measured stiffness is better."
         found.append(("Load and deflection from memory", memory))
-    found.append(("Footprint from memory", "The footprint's length is that of NASA TR R-64, quoted from memory."))
+    if mechanics.footprint.law == "tr-r-64":
+        found.append(("Footprint from memory", "The footprint's length is that of NASA TR R-64, quoted from memory."))
     if estimates:
         found.append(("Estimated material numbers", f"Marked in the table of materials: {'; '.join(estimates)}."))
     measured = (
@@ -58,6 +66,8 @@ def assumptions(study: Study, estimates: list[str]) -> list[tuple[str, str]]:
         if study.measured
         else "No measured temperatures belong to this study."
     )
+    if given is not None:
+        return [*found, ("Validation", f"The strain energy is given, so nothing of it is validated. {measured}")]
     scan = (
         "The model follows Clark & Dodge (1980), whose measured temperature curves are illegible in the scan, so it "
         f"has not been validated against them. {measured}"

@@ -13,6 +13,7 @@ from tyrefem.report.words import number
 
 if TYPE_CHECKING:
     from tyrefem.cards import Card
+    from tyrefem.material_elasticity import Cords
     from tyrefem.materials import MaterialCard
     from tyrefem.studies import Study
 
@@ -52,6 +53,21 @@ def _properties(card: MaterialCard) -> Iterator[tuple[str, Any, str]]:
         texts = [] if angle is None else [f"crown angle {number(math.degrees(angle))}°"]
         texts += [] if shear is None else [f"ply shear modulus {number(shear / 1e6)} MPa"]
         yield "cords", card.cord, ", ".join(texts)
+    if card.elasticity is not None:
+        moduli = f"G {number(card.elasticity.initial_shear_modulus / 1e6)} MPa"
+        yield "elasticity", card.elasticity, f"{card.elasticity.law}, {moduli}"
+    if card.cords is not None:
+        yield "cords", card.cords, _cords(card.cords)
+
+
+def _cords(cords: Cords) -> str:
+    texts = [
+        f"{number(cords.modulus / 1e9)} GPa",
+        f"diameter {number(cords.diameter * 1e3)} mm",
+        f"{number(cords.ends)} ends/m in {cords.plies} {'ply' if cords.plies == 1 else 'plies'}",
+        f"at {number(math.degrees(cords.angle))}°",
+    ]
+    return ", ".join(texts)
 
 
 def _law(law: Any, unit: str) -> str:
@@ -81,11 +97,21 @@ def boundary_rows(study: Study) -> list[list[str]]:
 def mechanics_rows(study: Study) -> list[list[str]]:
     """Name and value of every choice about strain and load."""
     mechanics = study.card.mechanics
-    law = mechanics.load_law
-    return [
+    law, energy = mechanics.load_law, mechanics.energy if mechanics.strain == "given" else None
+    rows = [
         ["strain cycle", mechanics.strain],
         ["load and deflection", "; ".join([str(law.law), *_numbers(law)])],
         ["loss convention", mechanics.loss_convention],
+    ]
+    if energy is not None:
+        load = f"{number(energy.load)} N, {number(energy.pressure / 1e3)} kPa"
+        rows.append(["strain energy given for", f"{load}; {energy.source}"])
+        for region, table in energy.regions.items():
+            places = (f"{number(u / 1e3)} at s = {number(s * 1e3)} mm" for s, u in table)
+            rows.append([f"U of {region} [kJ/m³]", number(table[0][1] / 1e3) if len(table) == 1 else ", ".join(places)])
+        return rows
+    return [
+        *rows,
         ["Poisson term c_a", number(mechanics.poisson_term)],
         ["membrane shear", "counted" if mechanics.membrane_shear else "left out"],
     ]

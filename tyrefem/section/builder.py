@@ -174,11 +174,26 @@ def _division(parts: tuple[PartCard, ...], marks: dict[str, float], length: floa
         if isinstance(part.to, str) and part.to not in marks:
             needed = part.to.replace("_start", "_length")
             raise InputError(f"'{part.to}' needs parameters.{needed}", field=here)
-        ends.append(length if part.to is None else marks[part.to] if isinstance(part.to, str) else part.to)
+        ends.append(length if part.to is None else _end(part, marks, length, here))
     try:
         return Division(tuple(part.name for part in parts), tuple(ends))
     except InputError as error:
         raise error.within(field=field) from None
+
+
+def _end(part: PartCard, marks: dict[str, float], length: float, field: str) -> float:
+    """Where a part ends [m]: at a mark, so far from the crown, or (negative) so far before the bead."""
+    if isinstance(part.to, str):
+        return marks[part.to]
+    assert part.to is not None
+    end = part.to if part.to > 0 else length + part.to
+    if not 0 < end < length:
+        raise InputError(
+            f"'{part.name}' ends {abs(part.to):.4g} m from the {'crown' if part.to > 0 else 'bead'}, beyond the"
+            f" section, whose meridian is {length:.4g} m long",
+            field=field,
+        )
+    return end
 
 
 def _profile(layer: LayerCard, regions: Division, scale: Mapping[str, float], length: float, field: str) -> Profile:

@@ -42,12 +42,15 @@ def _points(value: Any) -> tuple[tuple[float, float], ...]:
 
 
 def _end(value: Any) -> float | str:
-    """A mark's name, or a length along the meridian."""
+    """A mark's name, or a length along the meridian; a negative one counts back from the bead."""
     if isinstance(value, str) and value.replace("_", "").isalpha():
         if value not in MARKS:
             raise InputError(f"no mark '{value}'{nearest(value, MARKS)}; or a length like '2.2 in'")
         return value
-    return Unit("m", gt=0)(value)
+    length = Unit("m")(value)
+    if length == 0:
+        raise InputError(f"{value!r} is the crown: a part ends behind it, or (negative) before the bead")
+    return length
 
 
 Lengths = Annotated[tuple[float, ...], BeforeValidator(_lengths)]
@@ -58,7 +61,10 @@ Scale = Annotated[float, Unit("1", gt=0)]
 
 
 class PartCard(Card):
-    """A named part of the meridian, from where the one before ends up to ``to``; the last has no ``to``."""
+    """A named part of the meridian, from where the one before ends up to ``to``; the last has no ``to``.
+
+    ``to`` is a mark, a length from the crown, or a negative length: so far before the bead.
+    """
 
     name: Text
     to: End | None = None
@@ -114,7 +120,7 @@ class RatingCard(Card):
     diameter: PositiveLength
     load: Annotated[float, Unit("N", gt=0)]
     pressure: Annotated[float, Unit("Pa", gt=0)]
-    cord_angle: Annotated[float, Unit("rad", gt=0, lt=1.5707)]
+    cord_angle: Annotated[float, Unit("rad", gt=0, le=1.5708)]
     bead_wire_area: Annotated[float, Unit("m**2", gt=0)]
     bead_bundles: Annotated[int, Field(ge=1, le=20)]
     source: Text

@@ -35,7 +35,10 @@ class Division:
         start = 0.0
         for name, end in zip(self.names, self.ends, strict=True):
             if not end > start + 1e-9:
-                raise InputError(f"'{name}' never appears: it begins at s = {start:g} m and ends at {end:g} m")
+                raise InputError(
+                    f"'{name}' never appears: it begins at s = {start:g} m, where the part before it ends, and ends at"
+                    f" {end:g} m; parts follow each other from crown to bead and cannot overlap"
+                )
             start = end
 
     def at(self, s: ArrayLike) -> NDArray[np.str_]:

@@ -25,6 +25,7 @@ def check_possible(section: Section) -> None:
     s = stations(section, 0.0, length, length / 120)
     _no_folding(section, np.concatenate([s, _both_sides(section.breaks)]))
     _apart(section, s)
+    _belts(section, s)
 
 
 def _both_sides(breaks: tuple[float, ...]) -> Array:
@@ -58,6 +59,19 @@ def _no_folding(section: Section, s: Array) -> None:
             f" meridian whose radius of curvature is {1 / abs(section.line.curvature(s)[where]):.3g} m",
             field="layers",
         )
+
+
+def _belts(section: Section, s: Array) -> None:
+    """Regions with 'belt' in their name end before the section turns inwards again."""
+    widest = float(s[int(np.argmax(section.line.position(s)[:, 1]))])
+    for index, layer in enumerate(section.layers):
+        for name, _, end in layer.regions.parts():
+            if "belt" in name and end > widest:
+                raise InputError(
+                    f"belt '{name}' is wider than the section: it ends {end:.4g} m from the crown, and the section"
+                    f" turns inwards {widest:.4g} m from it",
+                    field=f"layers.{index}.regions",
+                )
 
 
 def _apart(section: Section, s: Array) -> None:

@@ -1,7 +1,7 @@
 """The strain cycle of a rolling tyre: load case -> strain-energy density, zone by zone.
 
 A provider offers ``zones`` (name, region and extent of each) and ``energy_density(zone, points)`` in J/m3.
-`arcs` is the NASA report's; `tyrefem.study.Mechanics` names the provider a study uses.
+`arcs` is the NASA report's, `given` takes the study's own numbers; `tyrefem.study_card.Mechanics` names the provider.
 """
 
 from __future__ import annotations
