@@ -87,6 +87,10 @@ def _provider(study: Study) -> Callable[[LoadCase], StrainCycle]:
     """The study's strain law: from a load case to its strain cycle."""
     if study.card.mechanics.strain == "given":
         return _given(study)
+    if study.card.mechanics.strain == "fem":
+        from tyrefem.strain import fem
+
+        return fem.provider(study)
     moduli = stiffness(study)
     return lambda case: _cycle(study, moduli, case)
 

@@ -52,7 +52,7 @@ class Mechanics(Card):
     this law reads).
     """
 
-    strain: Literal["arcs", "given"] = "arcs"
+    strain: Literal["arcs", "fem", "given"] = "arcs"
     energy: GivenEnergy | None = None
     load_law: Annotated[TrR64 | VerticalStiffness, Field(discriminator="law")] = TrR64()
     footprint: Annotated[FootprintLaw, Field(discriminator="law")] = TR_R_64

@@ -1,0 +1,101 @@
+"""Time and memory of footprint and loss by harmonics, against mesh and harmonics, and against hexahedra.
+
+    python benchmarks/footprint.py [--quick]
+
+Prints the tables of docs/footprint.md and, as its last line, one JSON object: seconds and peak memory of the half
+section with about 5000 nodes and 40 harmonics, and how much longer one small three-dimensional solve takes.
+"""
+
+from __future__ import annotations
+
+import argparse
+import json
+import resource
+import time
+
+from tyrefem.footprint.contact import Pressing
+from tyrefem.footprint.cycle import StrainCycle
+from tyrefem.footprint.hexahedra import Hexahedra, angles_near_contact
+from tyrefem.footprint.loss import RevolutionLoss
+from tyrefem.footprint.loss_tangent import OfTemperature
+from tyrefem.footprint.plain import PlainTyre
+
+MESHES = ((24, (1, 1, 1)), (60, (1, 1, 2)), (130, (1, 2, 6)), (240, (2, 2, 6)))
+HARMONICS = (20, 40, 80, 160)
+DEFLECTION = 0.02
+
+
+def peak() -> float:
+    """Largest memory of this process so far, MB."""
+    return resource.getrusage(resource.RUSAGE_SELF).ru_maxrss / 1024
+
+
+def by_harmonics(along: int, through: tuple[int, int, int], harmonics: int) -> dict[str, float]:
+    """Seconds of each step for one mesh."""
+    state = PlainTyre().state(along=along, through=through)
+    began = time.perf_counter()
+    pressing = Pressing(state)
+    _ = pressing.harmonics.matrices
+    assembled = time.perf_counter()
+    found = pressing.at_load(3000.0, harmonics)
+    touched = time.perf_counter()
+    loss = RevolutionLoss(StrainCycle(found), dict.fromkeys(state.mesh.subdomains, OfTemperature(0.15)), 20.0)
+    coefficient = loss.coefficient
+    ended = time.perf_counter()
+    return {
+        "nodes": pressing.harmonics.elements.basis.N,
+        "assembly": assembled - began,
+        "contact": touched - assembled,
+        "loss": ended - touched,
+        "total": ended - began,
+        "deflection": found.deflection,
+        "coefficient": coefficient,
+        "peak": peak(),
+    }
+
+
+def against_hexahedra() -> dict[str, float]:
+    """The same small tyre both ways."""
+    state = PlainTyre().state(along=10)
+    began = time.perf_counter()
+    flat = Pressing(state).at_deflection(DEFLECTION, 54)
+    middle = time.perf_counter()
+    solid = Hexahedra(state, angles_near_contact(0.35, 10, 8))
+    pressed = solid.at_deflection(DEFLECTION)
+    ended = time.perf_counter()
+    return {
+        "harmonics_s": middle - began,
+        "hexahedra_s": ended - middle,
+        "unknowns": 3 * solid.basis.N,
+        "load_ratio": flat.load / pressed.load,
+    }
+
+
+def main() -> None:
+    """Run the tables."""
+    parser = argparse.ArgumentParser(description=__doc__.split("\n")[0])
+    parser.add_argument("--quick", action="store_true", help="only the mesh of about 5000 nodes with 40 harmonics")
+    quick = parser.parse_args().quick
+    print("| nodes | harmonics | assembly, s | contact at 3 kN, s | fields and loss, s | total, s | peak memory, MB |")
+    print("|---|---|---|---|---|---|---|")
+    cases = [(mesh, n) for mesh in MESHES[:3] for n in HARMONICS] + [(MESHES[3], 40)]
+    goal: dict[str, float] = {}
+    for (along, through), n in [(MESHES[2], 40)] if quick else cases:
+        row = by_harmonics(along, through, n)
+        parts = " | ".join(f"{row[name]:.2f}" for name in ("assembly", "contact", "loss", "total"))
+        print(f"| {row['nodes']:.0f} | {n} | {parts} | {row['peak']:.0f} |", flush=True)
+        if (along, n) == (MESHES[2][0], 40):
+            goal = row
+    solid = against_hexahedra()
+    ratio = solid["hexahedra_s"] / solid["harmonics_s"]
+    print(
+        f"\nhexahedra with {solid['unknowns']:.0f} unknowns: {solid['hexahedra_s']:.1f} s, by harmonics "
+        f"{solid['harmonics_s']:.2f} s, {ratio:.0f} times less; load {solid['load_ratio']:.4f} of theirs"
+    )
+    print(
+        json.dumps({"seconds": round(goal["total"], 2), "peak_MB": round(goal["peak"]), "hexahedra": round(ratio, 1)})
+    )
+
+
+if __name__ == "__main__":
+    main()

@@ -1,0 +1,191 @@
+"""Contact: complementarity, Hertz, convergence, drum, camber, impossible loads."""
+
+from __future__ import annotations
+
+import itertools
+import math
+
+import numpy as np
+import pytest
+from footprint_bodies import block
+from hypothesis import given, settings
+from hypothesis import strategies as st
+
+from tyrefem.errors import InputError
+from tyrefem.footprint.complementarity import contact_forces
+from tyrefem.footprint.compliance import interpolation, solved_harmonics
+from tyrefem.footprint.contact import Pressing
+from tyrefem.footprint.plain import PlainTyre, stress_free
+from tyrefem.footprint.road import Road
+
+
+@pytest.fixture(scope="module")
+def tyre() -> Pressing:
+    return Pressing(PlainTyre().state(along=14))
+
+
+@settings(max_examples=30, deadline=None)
+@given(st.integers(0, 10**6), st.integers(1, 25))
+def test_forces_never_pull_and_nothing_penetrates(seed: int, size: int) -> None:
+    rng = np.random.default_rng(seed)
+    root = rng.normal(size=(size, size))
+    compliance = root @ root.T + 0.05 * np.eye(size)
+    gaps = rng.normal(size=size)
+    forces, closed = contact_forces(compliance, gaps)
+    left = gaps + compliance @ forces
+    assert forces.min() >= 0
+    assert left.min() > -1e-8
+    assert np.abs(forces * left).max() < 1e-8 * max(forces.max(), 1.0)
+    assert not forces[~closed].any()
+
+
+@pytest.mark.parametrize("harmonics", [24, 54])
+def test_footprint_is_complementary_and_carries_its_load(tyre: Pressing, harmonics: int) -> None:
+    found = tyre.at_deflection(0.02, harmonics)
+    assert found.pressure.min() >= 0
+    assert found.gaps.min() > -1e-12
+    assert np.abs(found.forces * found.gaps).max() < 1e-9 * found.forces.max() * 0.02
+    assert found.pressure_integral == pytest.approx(found.load, rel=1e-12)
+    # The whole contact lies within the angles that were allowed to touch.
+    assert not found.pressure[-1].any()
+
+
+def test_work_of_the_forces_is_the_elastic_energy_of_all_harmonics(tyre: Pressing) -> None:
+    """1/2 sum of forces times displacements = sum of pi/2 u_n K_n u_n (pi for n = 0), both halves."""
+    found = tyre.at_deflection(0.015, 24)  # every harmonic is solved, none interpolated
+    energy = sum(
+        (np.pi if n == 0 else np.pi / 2) * u @ (tyre.harmonics.stiffness(n) @ u) for n, u in enumerate(found.amplitudes)
+    )
+    assert 2 * energy == pytest.approx(found.work, rel=1e-9)
+
+
+def test_the_displacement_field_meets_the_road(tyre: Pressing) -> None:
+    """Summed from the amplitudes, the tread in contact lies at the loaded radius, within a harmonic's resolution."""
+    found = tyre.at_deflection(0.02, 80)
+    nodes, n = tyre.tread.nodes, np.arange(81)[:, None]
+    t = found.grid.angles[1]
+    u = found.amplitudes.reshape(81, -1, 3)[:, nodes]
+    u_r, u_t = (np.cos(n * t) * u[:, :, 0]).sum(axis=0), (np.sin(n * t) * u[:, :, 2]).sum(axis=0)
+    down = (tyre.tread.places[0] + u_r) * math.cos(t) - u_t * math.sin(t)
+    assert down == pytest.approx(np.full_like(down, found.loaded_radius), abs=2.5e-4)
+
+
+def test_stiffness_is_the_slope_of_the_load(tyre: Pressing) -> None:
+    h = 2e-6
+    loads = [tyre.at_deflection(0.0201 + s * h, 36).load for s in (-1, 1)]
+    assert tyre.at_deflection(0.0201, 36).stiffness == pytest.approx((loads[1] - loads[0]) / (2 * h), rel=1e-6)
+
+
+def test_deflection_of_a_load_and_load_of_a_deflection_agree(tyre: Pressing) -> None:
+    loaded = tyre.at_load(3000.0, 36)
+    assert loaded.load == pytest.approx(3000.0, rel=1e-8)
+    assert tyre.at_deflection(loaded.deflection, 36).load == pytest.approx(3000.0, rel=1e-7)
+
+
+def test_load_grows_faster_than_the_deflection_and_the_footprint_with_it(tyre: Pressing) -> None:
+    found = [tyre.at_deflection(d, 54) for d in (0.004, 0.01, 0.02, 0.03)]
+    loads, areas = [f.load for f in found], [f.area for f in found]
+    assert all(b > a for a, b in itertools.pairwise(areas))
+    assert loads[1] / 0.01 > loads[0] / 0.004
+    assert found[2].rolling_radius > found[2].loaded_radius
+    assert found[2].rolling_radius < tyre.reach
+
+
+def test_hertz_line_contact_of_a_solid_roller() -> None:
+    """Plane strain, incompressible: a = sqrt(4 F' R/(pi E*)), p0 = 2 F'/(pi a), E* = 4 G (Johnson 1985)."""
+    shear, width = 1e6, 0.02
+    r = np.concatenate([np.linspace(0.25, 0.7, 7), 1 - 0.3 * np.linspace(1, 0, 15)[1:] ** 1.8])
+    mesh = block(
+        r,
+        [0.0, width],
+        rim=lambda r, z: r < 0.251,
+        road=lambda r, z: r > 0.9999,
+        symmetry=lambda r, z: np.isin(z, (0, width)),
+    )
+    roller = Pressing(stress_free(mesh, shear, 1e4 * shear))
+    found = roller.at_deflection(0.008, 400)
+    per_width = found.load / (2 * width)
+    half = math.sqrt(4 * per_width / (math.pi * 4 * shear))
+    middle = found.pressure[:, 1]
+    assert found.length / 2 == pytest.approx(half, rel=0.03)
+    assert middle[0] == pytest.approx(2 * per_width / (math.pi * half), rel=0.015)
+    x = found.grid.angles
+    inside = x < 0.8 * half
+    ellipse = middle[0] * np.sqrt(1 - (x[inside] / half) ** 2)
+    assert middle[inside] == pytest.approx(ellipse, rel=0.02)
+
+
+def test_more_harmonics_converge(tyre: Pressing) -> None:
+    works = [tyre.at_deflection(0.02, n).work for n in (12, 24, 48, 96)]
+    changes = np.abs(np.diff(works)) / works[-1]
+    assert changes[-1] < 1e-3
+    assert changes[0] > 3 * changes[2]
+
+
+def test_finer_meshes_converge() -> None:
+    loads = [Pressing(PlainTyre().state(along=n)).at_deflection(0.02, 24).load for n in (8, 16, 32)]
+    assert abs(loads[2] - loads[1]) < 0.02 * loads[2]
+    assert abs(loads[1] - loads[0]) > abs(loads[2] - loads[1])
+
+
+def test_error_measure_is_met_and_reported(tyre: Pressing) -> None:
+    found = tyre.solve(load=3000.0, tolerance=0.01)
+    assert found.error <= 0.01
+    finest = tyre.at_load(3000.0, 120, found)
+    assert found.deflection == pytest.approx(finest.deflection, rel=0.01)
+    assert found.work == pytest.approx(finest.work, rel=0.01)
+
+
+def test_interpolated_harmonics_are_nearly_the_solved_ones(tyre: Pressing) -> None:
+    weights = interpolation(60)
+    assert weights.sum(axis=1) == pytest.approx(1.0)
+    assert set(range(25)) < set(solved_harmonics(60))
+    guess = tyre.tread.up_to(60)[40]
+    exact = tyre.tread.solved(40)
+    assert 40 not in solved_harmonics(60)
+    assert np.abs(guess - exact).max() < 2e-4 * np.abs(exact).max()
+
+
+def test_a_large_drum_is_a_flat_road_and_a_small_one_is_softer(tyre: Pressing) -> None:
+    state, flat = tyre.state, tyre.at_deflection(0.02, 36)
+    assert Pressing(state, Road(1e4)).at_deflection(0.02, 36).load == pytest.approx(flat.load, rel=1e-4)
+    drum = Pressing(state, Road(1.7)).at_deflection(0.02, 54)
+    assert drum.load < 0.98 * flat.load
+    assert drum.length < flat.length
+    assert drum.gaps.min() > -1e-9
+
+
+def test_pressure_stiffens() -> None:
+    soft, hard = (Pressing(PlainTyre().state(pressure=p, along=10)).at_deflection(0.015, 24).load for p in (1.2e5, 2e5))
+    assert 1.15 * soft < hard < 2e5 / 1.2e5 * soft
+
+
+def test_camber_loads_one_shoulder_and_the_full_section_repeats_the_half() -> None:
+    body = PlainTyre(half=False).state(along=10)
+    half = Pressing(PlainTyre().state(along=10)).at_deflection(0.015, 24)
+    upright = Pressing(body).at_deflection(0.015, 24)
+    assert upright.load == pytest.approx(half.load, rel=1e-9)
+    tilted = Pressing(body, Road(camber=math.radians(2))).at_deflection(0.015, 24)
+    z = tilted.grid.tread.places[1]
+    moment = (tilted.pressure.sum(axis=0) * tilted.grid.tread.widths[0] * z).sum()
+    assert moment > 0.1 * (tilted.pressure.sum(axis=0) * tilted.grid.tread.widths[0] * abs(z)).sum()
+    mirrored = Pressing(body, Road(camber=math.radians(-2))).at_deflection(0.015, 24)
+    assert mirrored.pressure[:, ::-1] == pytest.approx(tilted.pressure, abs=1e-6 * tilted.pressure.max())
+
+
+def test_impossible_requests_get_one_clear_error(tyre: Pressing) -> None:
+    with pytest.raises(InputError, match=r"cannot carry .* N: the crown meets the rim"):
+        tyre.at_load(1e6, 24)
+    with pytest.raises(InputError, match=r"less than .* where the crown meets the rim"):
+        tyre.at_deflection(0.2, 24)
+    with pytest.raises(InputError, match="at least 0"):
+        tyre.at_deflection(-0.01, 24)
+    with pytest.raises(InputError, match="must be positive"):
+        tyre.at_load(-5.0, 24)
+    with pytest.raises(InputError, match="exactly one"):
+        tyre.solve()
+    with pytest.raises(InputError, match="camber needs a full section"):
+        Pressing(tyre.state, Road(camber=0.1))
+    with pytest.raises(InputError, match="drum"):
+        Road(drum_diameter=-1.0)
+    assert tyre.at_deflection(0.0, 24).load == 0

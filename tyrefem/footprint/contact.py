@@ -1,0 +1,221 @@
+"""The footprint: frictionless contact of the tread with a road, at a given deflection or load."""
+
+from __future__ import annotations
+
+import functools
+import math
+from dataclasses import dataclass, field
+from typing import Any
+
+import numpy as np
+from numpy.typing import NDArray
+
+from tyrefem.errors import InputError
+from tyrefem.footprint.complementarity import contact_forces
+from tyrefem.footprint.compliance import TreadCompliance
+from tyrefem.footprint.grid import ContactGrid
+from tyrefem.footprint.harmonics import Harmonics
+from tyrefem.footprint.pressed import Footprint
+from tyrefem.footprint.road import Road
+from tyrefem.solid.state import Prestressed
+
+Array = NDArray[np.float64]
+#: Harmonics tried in turn until the error measure is met.
+LADDER = (24, 36, 54, 80, 120, 180, 270)
+FLAT = Road()
+
+
+@dataclass(frozen=True, eq=False)
+class Pressing:
+    """A tyre that can be pressed on a road; compliances are remembered between loads and numbers of harmonics.
+
+    Parameters
+    ----------
+    state : the inflated tyre.
+    road : flat or drum, camber (camber needs a full section).
+
+    Raises
+    ------
+    InputError : camber on a half section.
+    """
+
+    state: Prestressed
+    road: Road = FLAT
+    _grids: dict[int, ContactGrid] = field(default_factory=dict, init=False, repr=False)
+
+    def __post_init__(self) -> None:
+        if self.road.camber and self.state.symmetric in self.state.mesh.boundaries:
+            raise InputError("camber needs a full section; this one is a half", field="camber")
+
+    @functools.cached_property
+    def harmonics(self) -> Harmonics:
+        """Stiffness of every harmonic."""
+        return Harmonics(self.state)
+
+    @functools.cached_property
+    def tread(self) -> TreadCompliance:
+        """Compliance of the tread."""
+        return TreadCompliance(self.harmonics)
+
+    @functools.cached_property
+    def reach(self) -> float:
+        """How far the free tyre reaches towards the road, m."""
+        return self.road.lowest(self.tread.places)
+
+    @functools.cached_property
+    def bottoming(self) -> float:
+        """Deflection at which the crown's inner surface would meet the highest held point (the rim's flange), m."""
+        elements, state = self.harmonics.elements, self.state
+        held = [elements.nodes[0, elements.boundary_nodes(name)].max() for name in state.fixed]
+        if not held or not state.pressure:
+            return float(max(0.9 * (self.reach - max(held, default=0.0)), 0.0))
+        inner = elements.nodes[0, elements.boundary_nodes(state.pressurised)].max()
+        return float(inner - max(held))
+
+    def _grid(self, harmonics: int, deflection: float) -> ContactGrid:
+        """Angles that may touch: the part of the free tyre below the road and a third beyond."""
+        radius = self.reach
+        round_drum = 1.0 / (1.0 + 2 * radius / self.road.drum_diameter)
+        half_angle = math.acos(max(1 - deflection * round_drum / radius, -0.5))
+        needed = min(math.ceil(1.35 * half_angle * harmonics / np.pi) + 3, harmonics)
+        if harmonics not in self._grids or self._grids[harmonics].n_angles < needed:
+            self._grids[harmonics] = ContactGrid(self.tread, harmonics, min(needed + 2, harmonics))
+        return self._grids[harmonics]
+
+    def at_deflection(
+        self, deflection: float, harmonics: int, start: Footprint | None = None, correction: Array | None = None
+    ) -> Footprint:
+        """The footprint at a deflection, m, with harmonics up to a number.
+
+        On a flat road the gap is linear in the displacement, (r + u_r) cos t - u_t sin t, and the first solution is
+        final; on a drum its direction is renewed until forces settle to 1e-6. ``start``: a footprint near by, whose
+        contacts are tried first; ``correction``: amplitudes (harmonics + 1, n_dofs), m, added to the linear response.
+
+        Raises
+        ------
+        InputError : the deflection is negative or would press the crown on the rim.
+        """
+        if not 0 <= deflection < self.bottoming:
+            raise InputError(
+                f"a deflection of {deflection * 1e3:.4g} mm is impossible; it must be at least 0 and less than "
+                f"{self.bottoming * 1e3:.4g} mm, where the crown meets the rim",
+                field="deflection",
+            )
+        grid = self._grid(harmonics, deflection)
+        distance = self.reach - deflection
+        size = len(grid.areas)
+        moved, closed = np.zeros((len(self.tread.components), size)), np.zeros(size, dtype=bool)
+        if start is not None and start.grid is grid:
+            closed = start.forces > 0
+        forces, direction = np.zeros(size), np.zeros_like(moved)
+        offset = np.zeros_like(moved) if correction is None else grid.displacements(correction)
+        moved = offset.copy()
+        for _ in range(30):
+            gaps, normals = self._gaps(grid, moved, distance)
+            turned = grid.along(normals)
+            compliance = np.einsum("ak,akbl,bl->kl", turned, grid.blocks, turned, optimize=True)
+            before, free = forces, gaps + np.einsum("ck,ck->k", turned, moved - offset)
+            forces, closed = contact_forces(compliance, free, closed if closed.any() else None)
+            direction = turned
+            moved = offset - np.einsum("akbl,bl->ak", grid.blocks, turned * forces, optimize=True)
+            if math.isinf(self.road.drum_diameter) or np.abs(forces - before).max() <= 1e-6 * forces.max(initial=0.0):
+                break
+        leads = self.road.normal @ normals
+        index = np.flatnonzero(closed)
+        stiffness = 0.0
+        if len(index):
+            stiffness = float(leads[index] @ np.linalg.solve(compliance[np.ix_(index, index)], leads[index]))
+        both = 2.0 if self.tread.half else 1.0
+        left = free + compliance @ forces
+        return Footprint(
+            self,
+            grid,
+            deflection,
+            float(both * leads @ forces),
+            both * stiffness,
+            forces,
+            direction,
+            moved,
+            left,
+            correction=correction,
+        )
+
+    def _gaps(self, grid: ContactGrid, moved: Array, distance: float) -> tuple[Array, Array]:
+        """Gaps and normals in the middle of the hats; the free tyre's gap averaged with the hat by two points."""
+        aside, free = grid.step / math.sqrt(6), np.zeros_like(moved)
+        ahead, here, behind = (self.road.gaps(grid.places(free, shift), distance)[0] for shift in (aside, 0.0, -aside))
+        gaps, normals = self.road.gaps(grid.places(moved, 0.0), distance)
+        return gaps + (ahead + behind) / 2 - here, normals
+
+    def at_load(self, load: float, harmonics: int, start: Footprint | None = None) -> Footprint:
+        """The footprint under a load, N, both sides of the tyre: Newton on the deflection.
+
+        Raises
+        ------
+        InputError : the load is not positive, or more than the tyre can carry before the crown meets the rim.
+        """
+        if not load > 0:
+            raise InputError(f"the load must be positive, not {load:g} N", field="load")
+        low, high = 0.0, self.bottoming
+        deflection = start.deflection if start is not None else 0.02 * high
+        found = self.at_deflection(deflection, harmonics)
+        for _ in range(40):
+            if abs(found.load - load) <= 1e-8 * load:
+                return found
+            low, high = (deflection, high) if found.load < load else (low, deflection)
+            step = (load - found.load) / found.stiffness if found.stiffness else high
+            deflection = deflection + step
+            if not low < deflection < high:
+                deflection = (low + high) / 2
+            if high - low < 1e-9 * self.bottoming and high == self.bottoming:
+                break
+            found = self.at_deflection(deflection, harmonics, found)
+        most = self.at_deflection(self.bottoming * (1 - 1e-9), harmonics).load
+        raise InputError(
+            f"the tyre cannot carry {load:.5g} N: the crown meets the rim at {most:.5g} N "
+            f"({self.bottoming * 1e3:.4g} mm)",
+            field="load",
+        )
+
+    def solve(
+        self, *, deflection: float | None = None, load: float | None = None, tolerance: float = 0.01
+    ) -> Footprint:
+        """The footprint with as many harmonics as the error measure asks for.
+
+        The number grows until load, deflection and elastic work change by less than ``tolerance``, and the area in
+        contact by less than five times that; the last change is reported as ``error``.
+
+        Raises
+        ------
+        InputError : not exactly one of deflection and load; what `at_deflection` and `at_load` raise; no convergence.
+        """
+        if (deflection is None) == (load is None):
+            raise InputError("give exactly one of 'deflection' and 'load'")
+        before: Footprint | None = None
+        for count in LADDER:
+            if deflection is not None:
+                found = self.at_deflection(deflection, count)
+            else:
+                assert load is not None
+                found = self.at_load(load, count, before)
+            if before is not None:
+                found = found.compared(before)
+                if found.error <= tolerance:
+                    return found
+            before = found
+        assert before is not None
+        raise InputError(
+            f"{LADDER[-1]} harmonics leave an error of {before.error:.2g}, more than the tolerance {tolerance:g}",
+            field="tolerance",
+        )
+
+
+def footprint(state: Prestressed, road: Road = FLAT, **wanted: Any) -> Footprint:
+    """The footprint of a tyre: `Pressing.solve` in one call.
+
+    >>> from tyrefem.footprint.plain import PlainTyre
+    >>> found = footprint(PlainTyre().state(along=10), load=2000.0, tolerance=0.05)
+    >>> round(found.load), found.harmonics
+    (2000, 54)
+    """
+    return Pressing(state, road).solve(**wanted)

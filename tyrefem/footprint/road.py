@@ -1,0 +1,73 @@
+"""What a tyre is pressed against: a flat road or a drum, its plane tilted by camber."""
+
+from __future__ import annotations
+
+import math
+from dataclasses import dataclass
+
+import numpy as np
+from numpy.typing import NDArray
+
+from tyrefem.errors import InputError
+
+Array = NDArray[np.float64]
+
+
+@dataclass(frozen=True)
+class Road:
+    """A flat road, or the outside of a drum whose axis is parallel to the road and square to the travel.
+
+    Coordinates are (x forward, y down, z along the wheel's axis) from the wheel's centre; the road's top is at
+    ``distance`` along its normal (0, cos camber, sin camber).
+
+    Parameters
+    ----------
+    drum_diameter : m; infinite for a flat road.
+    camber : rad; positive: the side z > 0 comes down.
+
+    >>> gap, _ = Road().gaps(np.array([[0.0], [0.28], [0.0]]), distance=0.30)
+    >>> round(float(gap[0]), 6)
+    0.02
+    """
+
+    drum_diameter: float = math.inf
+    camber: float = 0.0
+
+    def __post_init__(self) -> None:
+        if not self.drum_diameter > 0:
+            raise InputError(
+                "the diameter of the drum must be positive; infinite is a flat road", field="drum_diameter"
+            )
+        if not abs(self.camber) < 0.6:
+            raise InputError("camber must lie between -0.6 and 0.6 rad", field="camber")
+
+    def turned(self, points: Array) -> Array:
+        """(3, ...) points with y along the road's normal."""
+        cos, sin = math.cos(self.camber), math.sin(self.camber)
+        x, y, z = points
+        return np.stack([x, cos * y + sin * z, cos * z - sin * y])
+
+    def lowest(self, nodes: Array) -> float:
+        """How far the free tyre (nodes (2, n) in (r, z)) reaches towards the road, m."""
+        r, z = nodes
+        return float(self.turned(np.stack([np.zeros_like(r), r, z]))[1].max())
+
+    def gaps(self, points: Array, distance: float) -> tuple[Array, Array]:
+        """Gap of points (3, ...), m, and unit vectors (3, ...) from them into the road."""
+        x, y, _ = self.turned(points)
+        if math.isinf(self.drum_diameter):
+            gap, along, down = distance - y, np.zeros_like(y), np.ones_like(y)
+        else:
+            radius = self.drum_diameter / 2
+            depth = distance + radius - y
+            length = np.hypot(x, depth)
+            # sqrt(x^2 + depth^2) - radius without the loss of digits on a large drum.
+            gap = (x * x + (depth - radius) * (depth + radius)) / (length + radius)
+            along, down = -x / length, depth / length
+        cos, sin = math.cos(self.camber), math.sin(self.camber)
+        return gap, np.stack([along, cos * down, sin * down])
+
+    @property
+    def normal(self) -> Array:
+        """(3,) direction of the load, into the road."""
+        return np.array([0.0, math.cos(self.camber), math.sin(self.camber)])

@@ -1,0 +1,198 @@
+"""The footprint by harmonics: pressure map, deformed section, strain cycle of a point, energy and loss by harmonic."""
+
+from __future__ import annotations
+
+import math
+from typing import TYPE_CHECKING, Any
+
+import numpy as np
+from numpy.typing import NDArray
+
+from tyrefem.plotting.style import (
+    ENERGY_MAP,
+    FONT,
+    INK,
+    PALETTE,
+    QUIET,
+    TITLE,
+    add_axes,
+    figure,
+    line_style,
+    section_axes,
+    si,
+    tidy,
+    title,
+)
+
+if TYPE_CHECKING:
+    from matplotlib.axes import Axes
+    from matplotlib.figure import Figure
+
+    from tyrefem.footprint.cycle import StrainCycle
+    from tyrefem.footprint.loss import RevolutionLoss
+    from tyrefem.footprint.pressed import Footprint
+
+Array = NDArray[np.float64]
+LABELS = {"rr": "e_rr", "zz": "e_zz", "tt": "e_θθ", "rz": "γ_rz", "rt": "γ_rθ", "zt": "γ_zθ"}
+
+
+def _described(found: Footprint) -> str:
+    road = found.pressing.road
+    drum = "flat road" if math.isinf(road.drum_diameter) else f"drum Ø {road.drum_diameter:.3g} m"
+    camber = f", camber {math.degrees(road.camber):.3g}°" if road.camber else ""
+    return (
+        f"{found.load / 1e3:.3f} kN at {found.deflection * 1e3:.1f} mm, {found.pressing.state.pressure / 1e3:.0f} kPa, "
+        f"{drum}{camber}, {found.harmonics} harmonics"
+    )
+
+
+def pressure_map_figure(found: Footprint) -> Figure:
+    """Contact pressure over the footprint, both sides, and along its two middle lines."""
+    from matplotlib.ticker import MaxNLocator
+
+    drawn = figure(10.4, 4.4 + TITLE)
+    x, z, pressure = pressure_map(found)
+    scale, unit = si(float(np.median(pressure[pressure > 0])) if pressure.any() else 0.0, "Pa")
+    axes = add_axes(drawn, 0.75, 0.55, 4.3, 3.7)
+    # Pressure peaks at the tread's edge: the colours serve what lies below the highest 3 % of the contact.
+    usual = float(np.quantile(pressure[pressure > 0], 0.97)) if pressure.any() else 1.0
+    levels = np.linspace(0, usual / scale, 16)
+    filled = axes.contourf(x * 1e3, z * 1e3, pressure / scale, levels=levels, cmap=ENERGY_MAP, extend="max")
+    axes.contour(x * 1e3, z * 1e3, pressure / scale, levels=[1e-6 * levels[-1]], colors=INK, linewidths=0.8)
+    axes.set_aspect("equal", adjustable="box")
+    reach = 0.65e3 * found.length + 5
+    axes.set_xlim(-reach, reach)
+    axes.set_xlabel("along the road x [mm]", fontsize=FONT)
+    axes.set_ylabel("across z [mm]", fontsize=FONT)
+    tidy(axes, grid=False)
+    bar = drawn.colorbar(filled, cax=add_axes(drawn, 5.2, 0.75, 0.14, 3.3), ticks=MaxNLocator(6))
+    bar.set_label(f"contact pressure [{unit}]", fontsize=FONT)
+    bar.ax.tick_params(labelsize=FONT)
+    middle, ahead = int(np.abs(z).argmin()), int(np.abs(x).argmin())
+    along, across = add_axes(drawn, 6.85, 2.75, 3.3, 1.55), add_axes(drawn, 6.85, 0.55, 3.3, 1.55)
+    near = np.abs(x) * 1e3 <= reach
+    along.plot(x[near] * 1e3, pressure[middle, near] / scale, "o-", ms=2.5, lw=1.2, color=PALETTE[0])
+    across.plot(z * 1e3, pressure[:, ahead] / scale, "o-", ms=2.5, lw=1.2, color=PALETTE[1])
+    inflation = found.pressing.state.pressure
+    for panel, name in (
+        (along, "x [mm] at the middle of the tread"),
+        (across, "z [mm] at the middle of the footprint"),
+    ):
+        if inflation:
+            panel.axhline(inflation / scale, color=QUIET, lw=0.8, ls=(0, (5, 1.5)))
+        panel.set_xlabel(name, fontsize=FONT)
+        panel.set_ylabel(f"pressure [{unit}]", fontsize=FONT)
+        panel.set_ylim(bottom=0)
+        tidy(panel)
+    title(
+        drawn, "Contact pressure",
+        f"{_described(found)}: {found.length * 1e3:.0f} × {found.width * 1e3:.0f} mm, {found.area * 1e4:.0f} cm², mean "
+        f"{found.mean_pressure / 1e3:.0f} kPa; dashed: inflation",
+    )  # fmt: skip
+    return drawn
+
+
+def pressure_map(found: Footprint) -> tuple[Array, Array, Array]:
+    """x (a,), z (b,) in m and pressure (b, a) in Pa over the whole footprint, mirrored where only half was solved."""
+    angles, (r, z) = found.grid.angles, found.grid.tread.places
+    x = np.concatenate([-angles[:0:-1], angles]) * float(r.mean())
+    pressure = np.concatenate([found.pressure[:0:-1], found.pressure]).T
+    if found.pressing.tread.half:
+        keep = z > 1e-9
+        z, pressure = np.concatenate([-z[keep][::-1], z]), np.vstack([pressure[keep][::-1], pressure])
+    return x, z, pressure
+
+
+def strain_history_figure(cycle: StrainCycle, places: dict[str, tuple[float, float]], count: int = 361) -> Figure:
+    """The six strains round the wheel at named places (r, z), m."""
+    drawn = figure(10.4, 0.1 + 2.3 * len(places) + TITLE)
+    angles = np.linspace(-np.pi, np.pi, count)
+    height = float(drawn.get_size_inches()[1])
+    for number, (name, (r, z)) in enumerate(places.items()):
+        axes = add_axes(drawn, 0.8, height - TITLE - 2.3 * (number + 1) + 0.45, 8.2, 1.7)
+        for k, (component, history) in enumerate(zip(LABELS.values(), cycle.at(r, z, angles), strict=True)):
+            axes.plot(np.degrees(angles), 100 * history, lw=1.3, label=component, **line_style(k))
+        axes.set_title(f"{name} (r {r * 1e3:.0f}, z {z * 1e3:.0f} mm)", fontsize=FONT, loc="left", color=INK)
+        axes.set_ylabel("strain [%]", fontsize=FONT)
+        axes.set_xlim(-180, 180)
+        axes.set_xticks(range(-180, 181, 45))
+        tidy(axes)
+        if number == 0:
+            axes.legend(fontsize=FONT, frameon=False, loc="upper left", bbox_to_anchor=(1.01, 1.05))
+    axes.set_xlabel("angle from the middle of the footprint [°]", fontsize=FONT)
+    title(drawn, "Strain round the wheel, beyond inflation", _described(cycle.footprint))
+    return drawn
+
+
+def harmonics_figure(loss: RevolutionLoss) -> Figure:
+    """Elastic energy and loss per revolution by harmonic, and where the loss arises."""
+    drawn = figure(10.4, 4.2 + TITLE)
+    cycle = loss.cycle
+    n = np.arange(1, cycle.footprint.harmonics + 1)
+    stored = np.array([loss.total(products) / 4 for products in cycle.storage_products])[1:]
+    left = add_axes(drawn, 0.8, 2.6, 3.9, 1.6), add_axes(drawn, 0.8, 0.55, 3.9, 1.6)
+    panels = zip(left, ((stored, "energy"), (loss.by_harmonic[1:], "loss")), PALETTE, strict=False)
+    for axes, (values, name), colour in panels:
+        scale, unit = si(float(values.max()), "J")
+        axes.bar(n, values / scale, color=colour, width=0.8)
+        axes.set_ylabel(f"{name} [{unit}]", fontsize=FONT)
+        axes.set_xlim(0, len(n) + 1)
+        tidy(axes)
+        share = axes.twinx()
+        share.plot(n, 100 * np.cumsum(values) / values.sum(), color=QUIET, lw=1.0)
+        share.set_ylim(0, 105)
+        share.set_ylabel("sum [%]", fontsize=FONT, color=QUIET)
+        share.tick_params(labelsize=FONT, colors=QUIET)
+        share.spines["top"].set_visible(False)
+    left[1].set_xlabel("harmonic", fontsize=FONT)
+    axes = add_axes(drawn, 6.2, 0.55, 3.1, 3.65)
+    weights = cycle.elements.weights
+    density = (loss.density * weights).sum(axis=1) / weights.sum(axis=1)
+    scale, unit = si(float(density.max()), "J/m³")
+    painted = _cells(axes, cycle.elements.mesh, density / scale)
+    section_axes(axes)
+    bar = drawn.colorbar(painted, cax=add_axes(drawn, 9.45, 0.75, 0.14, 3.2))
+    bar.set_label(f"loss per revolution [{unit}]", fontsize=FONT)
+    bar.ax.tick_params(labelsize=FONT)
+    title(
+        drawn, "Energy and loss by harmonic of the revolution",
+        f"{_described(cycle.footprint)}; {loss.energy:.1f} J per revolution, rolling resistance "
+        f"{loss.rolling_resistance:.1f} N, coefficient {loss.coefficient:.4f}",
+    )  # fmt: skip
+    return drawn
+
+
+def deformed_figure(found: Footprint, angles: tuple[float, ...] = (0.0, 0.2, math.pi)) -> Figure:
+    """The section at angles from the middle of the footprint (deformed, coloured outlines) over the inflated one."""
+    drawn = figure(6.4, 4.6 + TITLE)
+    axes = add_axes(drawn, 0.8, 0.6, 5.3, 4.0)
+    elements = found.pressing.harmonics.elements
+    mesh, n = elements.mesh, np.arange(found.harmonics + 1)
+    u = found.amplitudes.reshape(len(n), -1, 3)
+    vertices = elements.basis.nodal_dofs[0]
+    outline = mesh.facets[:, mesh.boundary_facets()]
+    for number, angle in enumerate((None, *angles)):
+        r, z = elements.nodes[:, vertices]
+        if angle is not None:
+            moved = np.tensordot(np.cos(n * angle), u[:, vertices, :2], axes=1)
+            r, z = r + moved[:, 0], z + moved[:, 1]
+        style = {"color": QUIET, "ls": "-", "lw": 0.8} if angle is None else line_style(number - 1) | {"lw": 1.4}
+        name = "inflated" if angle is None else f"at {math.degrees(angle):.0f}°"
+        for k, pair in enumerate(outline.T):
+            axes.plot(z[pair] * 1e3, r[pair] * 1e3, label=name if k == 0 else None, **style)
+    axes.legend(fontsize=FONT, frameon=False)
+    section_axes(axes)
+    title(drawn, "Section before and under load", _described(found))
+    return drawn
+
+
+def _cells(axes: Axes, mesh: Any, values: Array) -> Any:
+    """Paint one value per element."""
+    from matplotlib.collections import PolyCollection
+
+    corners = mesh.p[:, mesh.t].transpose(2, 1, 0)[..., ::-1] * 1e3
+    painted = PolyCollection(list(corners), array=values, cmap=ENERGY_MAP, edgecolors="none")
+    painted.set_clim(0, float(values.max()))
+    axes.add_collection(painted)
+    axes.autoscale_view()
+    return painted

@@ -1,0 +1,1 @@
+"""Large-displacement mechanics of the cross-section: compounds, cord layers, inflation."""

@@ -1,0 +1,43 @@
+"""The state of an inflated body, as a small further motion sees it."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from typing import Any
+
+import numpy as np
+from numpy.typing import NDArray
+
+Array = NDArray[np.float64]
+
+
+@dataclass(frozen=True, eq=False)
+class Prestressed:
+    """An axisymmetric body in its present (deformed) configuration.
+
+    Components run rr, zz, tt, rz, rt, zt, with engineering shears; points are the 3 x 3 Gauss points of
+    ``skfem.Basis(mesh, ElementQuad2(), intorder=5)``.
+
+    Parameters
+    ----------
+    mesh : skfem ``MeshQuad``, (r, z) in m, subdomains and boundaries named.
+    stress : (6, n_elements, n_points) Cauchy stress, Pa.
+    tangent : (6, 6, n_elements, n_points) c with d(Truesdell stress) = c : e, Pa, without the bulk stiffness.
+    bulk : (n_elements, n_points) bulk stiffness, Pa, that acts on the projected dilatation.
+    storage : (6, 6, n_elements, n_points) the part of ``tangent`` that dissipates, Pa.
+    pressure : gauge pressure, Pa, that follows the boundary ``pressurised``.
+    fixed : boundaries that are held.
+    pressurised, tread : boundaries under pressure, and that may touch the road.
+    symmetric : boundary on the mid plane of a half section, where u_z = 0; a mesh without it is a full section.
+    """
+
+    mesh: Any
+    stress: Array
+    tangent: Array
+    bulk: Array
+    storage: Array
+    pressure: float
+    fixed: tuple[str, ...] = ("rim",)
+    pressurised: str = "contained_air"
+    tread: str = "road"
+    symmetric: str = "symmetry"
