@@ -1,0 +1,61 @@
+"""The strain law "fem" as a study uses it: the same loss as the footprint's own account, and a radial that runs."""
+
+from __future__ import annotations
+
+import pytest
+
+import tyrefem as tf
+from tyrefem.errors import InputError
+from tyrefem.footprint.loss import RevolutionLoss
+from tyrefem.footprint.loss_tangent import OfTemperature
+from tyrefem.mechanics import cycle_schedule
+from tyrefem.strain.fem import FiniteElements
+
+FEM = {"mechanics.strain": "fem", "mesh.size": "8 mm"}
+BRIEF = {"drive.duration": "60 s"}
+
+
+def bias(**changes: str) -> tf.Study:
+    return tf.study("nasa-22x5.5-8pr", {**FEM, **BRIEF, **changes})
+
+
+def test_the_heat_of_a_run_is_the_loss_of_all_harmonics() -> None:
+    study = bias()
+    schedule = cycle_schedule(study)
+    cycle = schedule.cycles[0][0]
+    assert isinstance(cycle, FiniteElements)
+    from tyrefem.footprint.cycle import StrainCycle
+
+    laws = {region: OfTemperature(study.materials[region].loss_tangent) for region in cycle.tyre.body.parts}
+    initial, speed = study.card.drive.initial, study.card.drive.phases[0].speed.start
+    own = RevolutionLoss(StrainCycle(cycle.footprint), laws, speed, initial)
+    cold = study.run().rolling_resistance.cold_force
+    # Other quadrature: nearest Gauss points at the nodes of the thermal mesh.
+    assert cold == pytest.approx(own.rolling_resistance, rel=0.05)
+
+
+def test_the_loss_convention_does_not_change_what_harmonics_lose() -> None:
+    first, second = (bias(**{"mechanics.loss_convention": one}).run() for one in ("nasa", "sinusoid"))
+    assert first.rolling_resistance.cold_force == pytest.approx(second.rolling_resistance.cold_force, rel=1e-9)
+
+
+def test_rolling_resistance_rises_about_in_proportion_to_the_load() -> None:
+    light, heavy = (bias(**{"drive.load": one}).run().rolling_resistance.cold_force for one in ("2000 lbf", "2700 lbf"))
+    # That its coefficient hardly depends on the load is why it is stated as a coefficient.
+    assert heavy / light == pytest.approx(2.7 / 2.0, rel=0.1)
+
+
+def test_a_passenger_radial_loses_what_such_tyres_do_and_is_hottest_at_the_belt_edge() -> None:
+    study = tf.study("passenger-205-55r16", {"mechanics.strain": "fem", "mesh.size": "6 mm"})
+    result = study.run()
+    # Usual passenger tyres: 0.006 to 0.014.
+    assert 0.005 < result.rolling_resistance.coefficient < 0.014
+    hottest = result.extremes.iloc[1:].sort_values("temperature_degC").iloc[-1]
+    # The second belt ends 80 mm from the crown: the field knows the belt edge to be the hottest place.
+    assert hottest["s_m"] == pytest.approx(0.08, abs=0.015)
+    assert result.heat_budget.imbalance < 1e-6
+
+
+def test_a_tyre_without_pressure_carries_nothing() -> None:
+    with pytest.raises(InputError, match="drive.load: .* at 0 kPa"):
+        bias(**{"drive.pressure": "0 kPa"}).run()
