@@ -57,5 +57,5 @@ def test_a_passenger_radial_loses_what_such_tyres_do_and_is_hottest_at_the_belt_
 
 
 def test_a_tyre_without_pressure_carries_nothing() -> None:
-    with pytest.raises(InputError, match="drive.load: .* at 0 kPa"):
+    with pytest.raises(InputError, match=r"drive.load: .* at 0 kPa"):
         bias(**{"drive.pressure": "0 kPa"}).run()
