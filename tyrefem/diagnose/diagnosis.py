@@ -241,7 +241,7 @@ def _look(
         lacking = [one for member in best.members for one in member.unknowns]
         if judgement.verdict == UNEXPLAINED:
             # Nothing is named: the study gets the heat of unknown origin that is more than two sd from none.
-            lacking = [one for one in unknown if abs(missing.values[one]) > 2 * missing.sd[one]]
+            lacking = [one for one in unknown if abs(missing.values.get(one, 0.0)) > 2 * missing.sd.get(one, 1.0)]
             values = {one: x for one, x in missing.values.items() if one in lacking or one not in unknown}
             sd = missing.sd
         change = changes(gap, values, sd, lacking, [one.name for one in trials])

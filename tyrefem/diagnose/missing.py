@@ -5,6 +5,7 @@ from __future__ import annotations
 import dataclasses
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass
+from itertools import pairwise
 
 import numpy as np
 from numpy.typing import NDArray
@@ -20,6 +21,8 @@ Array = NDArray[np.float64]
 STATIONS = 7
 #: Prior of the missing heat: a share of the hottest zone's hysteresis. Of a missing flux: W/m2. Estimates.
 HEAT, FLUX = 4e4, 400.0
+#: A single source may be so many times stronger than a patch of many; and so many sources are sought.
+SPREAD, SOURCES = 3.0, 3
 
 
 def patches(study: Study) -> tuple[Unknown, ...]:
@@ -45,6 +48,7 @@ class MissingHeat:
     stations : (n,) m along the meridian. heat, heat_sd : (n_runs, n) W/m3. flux, flux_sd : (n_runs, n) W/m2.
     runs, speeds : names and fastest speeds (m/s) of the fitted runs. log_evidence : of the data, comparable with the
         sets'. region : where most of the missing heat is. watts : (n,) W, mean over the runs, by station.
+    kind : "heat" inside (W/m3), or "flux" through the surface (W/m2).
     values, sd : every unknown fitted along, and the patches (mean over the runs): x and its standard deviation.
     """
 
@@ -61,13 +65,7 @@ class MissingHeat:
     watts: Array
     values: dict[Unknown, float]
     sd: dict[Unknown, float]
-
-    @property
-    def kind(self) -> str:
-        """Is it heat inside (W/m3), or a flux through the surface (W/m2)?"""
-        heat = float((np.abs(self.heat.mean(axis=0)) / self.heat_sd.mean(axis=0)).max())
-        flux = float((np.abs(self.flux.mean(axis=0)) / self.flux_sd.mean(axis=0)).max())
-        return "heat" if heat >= flux else "flux"
+    kind: str
 
 
 def missing_heat(gap: Gap, unknown: Sequence[Unknown], about: Explained) -> MissingHeat:
@@ -88,15 +86,57 @@ def missing_heat(gap: Gap, unknown: Sequence[Unknown], about: Explained) -> Miss
 def missing_heat_fitted(
     gap: Gap, unknown: Sequence[Unknown], null: Explained, tick: Callable[[], None] | None = None
 ) -> MissingHeat:
-    """The same in the full model: the shared patches are fitted to convergence, and the runs' own parts about that."""
-    whole = (Candidate("not-in-the-catalogue", (), tuple(unknown)),)
+    """The same about a fit of the full model with the few patches that explain most, see `pursuit`.
+
+    They say where the missing heat is; the fit, with base numbers and sensors, how much.
+    """
+    chosen = pursuit(gap, unknown)
+    whole = (Candidate("not-in-the-catalogue", (), chosen),)
     first = refined(gap, [whole], tick, {whole: null} if null.close else {})
     one = polished(gap, first, tick)[0]
-    other = [number for number, each in enumerate(one.unknowns) if each not in unknown]
-    shared = [one.unknowns.index(each) for each in unknown]
+    other = [number for number, each in enumerate(one.unknowns) if each not in chosen]
+    origin = gap.linear(gap.fitted)
+    shared = origin.jacobian[:, origin.columns(unknown)].copy()
+    for each in chosen:
+        shared[:, unknown.index(each)] = one.jacobian[:, one.unknowns.index(each)]
     kept = tuple(one.unknowns[number] for number in other)
-    point = _Point(kept, one.data, one.jacobian[:, other], one.jacobian[:, shared])
-    return dataclasses.replace(_estimated(gap, unknown, point), values=one.values, sd=one.sd)
+    found = _estimated(gap, unknown, _Point(kept, one.data, one.jacobian[:, other], shared), chosen[0])
+    return dataclasses.replace(found, values=one.values, sd=one.sd)
+
+
+def pursuit(gap: Gap, unknown: Sequence[Unknown], most: int = SOURCES) -> tuple[Unknown, ...]:
+    """The patches that explain the data best, one after the other while the evidence rises by 3; at least one.
+
+    Each is judged in the linear model about the study as it is, with a heat of its own in every run that may not be
+    negative, so that a single source is not split into sources and sinks side by side.
+    """
+    linear = gap.linear(gap.fitted)
+    n = gap.nuisance
+    low, high = (np.array([getattr(one, which) for one in linear.unknowns[:n]]) for which in ("low", "high"))
+    ends = np.cumsum([0, *(len(gap.whitened[i]) for i in gap.fitted)])
+
+    def evidence(patches: Sequence[Unknown]) -> float:
+        columns, sd = [linear.jacobian[:, :n]], [linear.sd[:n]]
+        for one in patches:
+            own = np.zeros((len(linear.data), len(ends) - 1))
+            for run, (start, end) in enumerate(pairwise(ends)):
+                own[start:end, run] = linear.jacobian[start:end, linear.place[one]]
+            columns.append(own)
+            sd.append(np.full(own.shape[1], SPREAD * one.sd))
+        J, more = np.hstack(columns), len(patches) * (len(ends) - 1)
+        limits = np.concatenate([low, np.zeros(more)]), np.concatenate([high, np.full(more, np.inf)])
+        return fit(J.T @ J, J.T @ linear.data, np.concatenate(sd), *limits).log_evidence
+
+    chosen: list[Unknown] = []
+    best = -np.inf
+    while len(chosen) < most:
+        found = [(evidence([*chosen, one]), number) for number, one in enumerate(unknown) if one not in chosen]
+        value, number = max(found)
+        if chosen and value < best + 3:
+            break
+        best = value
+        chosen.append(unknown[number])
+    return tuple(chosen)
 
 
 @dataclass(frozen=True, eq=False)
@@ -109,7 +149,7 @@ class _Point:
     patches: Array
 
 
-def _estimated(gap: Gap, unknown: Sequence[Unknown], about: _Point) -> MissingHeat:
+def _estimated(gap: Gap, unknown: Sequence[Unknown], about: _Point, chosen: Unknown | None = None) -> MissingHeat:
     trials = gap.lab.bench.trials
     shared, own = about.patches, []
     ends = np.cumsum([len(gap.whitened[i]) for i in gap.fitted])
@@ -138,8 +178,8 @@ def _estimated(gap: Gap, unknown: Sequence[Unknown], about: _Point) -> MissingHe
     study = gap.lab.bench.study
     stations = np.array([float(dict(one.choice)["station"].split()[0]) for one in unknown[:half]])
     watts = _watts(study, stations, mean[:, :half].mean(axis=0), mean[:, half:].mean(axis=0))
-    score = _score(mean, spread, half)
-    worst = int(np.argmax(score))
+    first = int(np.argmax(_score(mean, spread, half))) if chosen is None else unknown.index(chosen)
+    worst = first % half
     s, depth = np.array([stations[worst]]), study.section.total_thickness([stations[worst]]) / 2
     drives = [gap.lab.bench.driven(study, i).card.drive for i in gap.fitted]
     return MissingHeat(
@@ -156,7 +196,14 @@ def _estimated(gap: Gap, unknown: Sequence[Unknown], about: _Point) -> MissingHe
         watts,
         dict(zip((*about.unknowns, *unknown), map(float, [*solution.mean[:n], *mean.mean(axis=0)]), strict=True)),
         dict(zip((*about.unknowns, *unknown), map(float, [*solution.sd[:n], *spread.mean(axis=0)]), strict=True)),
+        _kind(mean, spread, half) if chosen is None else "heat" if first < half else "flux",
     )
+
+
+def _kind(mean: Array, spread: Array, half: int) -> str:
+    """Where the surest patch is."""
+    ratio = np.abs(mean.mean(axis=0)) / spread.mean(axis=0)
+    return "heat" if ratio[:half].max() >= ratio[half:].max() else "flux"
 
 
 def _score(mean: Array, spread: Array, half: int) -> Array:

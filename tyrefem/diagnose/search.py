@@ -17,8 +17,9 @@ from tyrefem.diagnose.unknowns import Candidate, Unknown
 BATCH, MOST = 4, 14
 #: Leading fits that are carried on to convergence after every batch.
 POLISHED = 2
-#: So often a fit is carried on; not at all with a misfit of more than the second times the number of readings, and not
-#: twice with more than the third. No effect is only carried on before anything else with less than the last.
+#: So often a fit is carried on; not at all where not even the linear model promises a misfit of less than the second
+#: times the number of readings, and not twice with more than the third. No effect is only carried on before anything
+#: else with less than the last.
 CARRIED, LOST, DOUBTED, NONE = 2, 50.0, 3.0, 10.0
 #: Heat of unknown origin explains the data better by this much, ln, than any set of the catalogue: no more are fitted.
 HOPELESS = 500.0
@@ -95,8 +96,12 @@ class _Search:
 
     def _worth_carrying(self, members: Members) -> bool:
         one, often = self.done[members], self.polished[members]
-        most = DOUBTED if often else LOST if self.singles else NONE
-        return not one.finished and often < CARRIED and one.misfit < most * one.readings
+        if one.finished or often >= CARRIED:
+            return False
+        if often or not self.singles:
+            return one.misfit < (DOUBTED if often else NONE) * one.readings
+        # The first steps of a strong effect may still be far off; what the linear model promises counts.
+        return -2 * one.log_evidence < LOST * one.readings
 
     @property
     def singles(self) -> list[Members]:
