@@ -19,9 +19,17 @@ ALWAYS = {
 }
 
 
+#: Effects that are exceptions to free, straight rolling of a new tyre.
+BESIDE = ("tread-slip", "yaw", "camber", "worn-tread", "brake-heat", "brake-power")
 FREE = {
     "Free, straight rolling": "No slip, steering, camber, braking or wear: no heat from sliding in the footprint.",
 }
+FEM = (
+    "A small deflection about the inflated tyre",
+    "The section is inflated in large displacement and pressed on the road by Fourier harmonics of small motion about "
+    "that state: without friction, and with too much load at a large deflection. Nothing of it is compared with a "
+    "measured tyre.",
+)
 SLIDING = {
     "Friction even over the footprint": "All of the footprint slides at one speed under one pressure. Its heat divides "
     "between tread and road as they conduct; wear, water, tread gaps, camber and the strain of braking and cornering "
@@ -48,12 +56,24 @@ def assumptions(study: Study, estimates: list[str]) -> list[tuple[str, str]]:
     given = mechanics.energy if mechanics.strain == "given" else None
     if given is not None:
         always[0] = ("Strain energy given, not computed", f"{GIVEN} Their source: {given.source}.")
+    if mechanics.strain == "fem":
+        always[0] = FEM
+    if slip is FREE and any(effect.name in BESIDE for effect in study.effects):
+        slip = {name: f"{text} What the study's effects add stands beside this." for name, text in FREE.items()}
     found = [always[0], *slip.items(), *locked.items(), *always[1:]]
     cycle = (
         "The strain energy times tan δ is lost once per revolution (convention "
         f"{mechanics.loss_convention}); higher harmonics and the frequency dependence of tan δ are neglected."
     )
-    found.insert(1, ("One loss cycle per revolution", cycle))
+    every = (
+        "Every harmonic of the strain round the wheel loses π tan δ of its energy per cycle; tan δ depends on "
+        "temperature, not on frequency."
+    )
+    harmonics = ("Loss of every harmonic", every)
+    found.insert(1, harmonics if mechanics.strain == "fem" else ("One loss cycle per revolution", cycle))
+    if study.effects:
+        added = "; ".join(dict.fromkeys(f"{one.name}: {one.sentence.rstrip('.')}" for one in study.effects))
+        found.append(("Effects beside the base model", f"{added}. Each says in the study where its values come from."))
     if mechanics.load_law.law == "tr-r-64":
         memory = "The load-deflection formula is quoted from memory of NASA TR R-64; a measured stiffness is better."
         found.append(("Load and deflection from memory", memory))
@@ -66,6 +86,8 @@ def assumptions(study: Study, estimates: list[str]) -> list[tuple[str, str]]:
         if study.measured
         else "No measured temperatures belong to this study."
     )
+    if mechanics.strain == "fem":
+        return [*found, ("Validation", f"The strain cycle by finite elements is verified, not validated. {measured}")]
     if given is not None:
         return [*found, ("Validation", f"The strain energy is given, so nothing of it is validated. {measured}")]
     scan = (
