@@ -89,6 +89,8 @@ def test_interruption_leaves_what_is_finished(here: Path) -> None:
     with subprocess.Popen(
         command("run", NASA, *BARE, *long), stdout=subprocess.PIPE, stderr=theirs, text=True,
         env=os.environ | {"TERM": "xterm"},
+        # A shell that runs the tests in the background has them ignore it.
+        preexec_fn=lambda: signal.signal(signal.SIGINT, signal.SIG_DFL),
     ) as running:  # fmt: skip
         os.close(theirs)
         said = b""

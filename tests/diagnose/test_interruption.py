@@ -19,8 +19,10 @@ def test_interruption_keeps_what_is_finished_and_nothing_else(case: Case, tmp_pa
         "--set", "drive.load=2710 lbf",
     ]  # fmt: skip
     with subprocess.Popen(
-        command, stdout=subprocess.PIPE, stderr=subprocess.PIPE, text=True, start_new_session=True
-    ) as running:
+        command, stdout=subprocess.PIPE, stderr=subprocess.PIPE, text=True, start_new_session=True,
+        # A shell that runs the tests in the background has them ignore it.
+        preexec_fn=lambda: signal.signal(signal.SIGINT, signal.SIG_DFL),
+    ) as running:  # fmt: skip
         try:
             until = time.monotonic() + 240
             while not list(out.rglob("*.npz")) and running.poll() is None and time.monotonic() < until:
