@@ -1,0 +1,141 @@
+"""`tyrefem press`: inflate a study's tyre by finite elements and press it on the road."""
+
+from __future__ import annotations
+
+import math
+from pathlib import Path
+from typing import TYPE_CHECKING, Annotated, Any
+
+import typer
+
+from tyrefem.cli.common import JsonOption, SetOption, StudyArgument, fail, print_json, settings, writable_folder
+from tyrefem.errors import InputError
+
+if TYPE_CHECKING:
+    from tyrefem.footprint.press import Pressed
+    from tyrefem.studies import Study
+
+#: What may be given: option and unit.
+OPTIONS = {
+    "pressure": ("--pressure", "Pa"),
+    "load": ("--load", "N"),
+    "deflection": ("--deflection", "m"),
+    "drum_diameter": ("--drum", "m"),
+}
+
+
+def press(
+    study: StudyArgument,
+    pressure: Annotated[str | None, typer.Option(help="Gauge pressure, e.g. '83 psi'.")] = None,
+    load: Annotated[str | None, typer.Option(help="Load of the tyre, e.g. '12 kN'.")] = None,
+    deflection: Annotated[str | None, typer.Option(help="Instead of a load, e.g. '20 mm'.")] = None,
+    drum: Annotated[str | None, typer.Option(metavar="DIAMETER", help="On a drum, e.g. '1.7 m', or 'flat'.")] = None,
+    out: Annotated[Path | None, typer.Option("--out", help="Folder; default: results/STUDY-press.")] = None,
+    as_json: JsonOption = False,
+    changes: SetOption = None,
+) -> None:
+    """Inflate the tyre by finite elements and press it on the road; by default as in the drive's first phase."""
+    from tyrefem.footprint.press import press as pressed_by
+    from tyrefem.output import atomic_folder, write_json
+    from tyrefem.studies import study as load_study
+
+    texts = {"pressure": pressure, "load": load, "deflection": deflection, "drum_diameter": drum}
+    given = {name: _read(name, text) for name, text in texts.items() if text is not None}
+    found = load_study(study, settings(changes))
+    folder = writable_folder(out or Path("results") / f"{found.name}-press")
+    try:
+        result = pressed_by(found, **given)
+        summary, curve = result.summary(), result.curve()
+    except InputError as error:
+        raise _placed(error, given, found) from None
+    with atomic_folder(folder) as temporary:
+        write_json(summary, temporary / "press.json")
+        rows = "".join(f"{deflection:.9g},{load:.9g}\n" for deflection, load in curve)
+        (temporary / "load-deflection.csv").write_text(f"deflection_m,load_N\n{rows}", encoding="utf-8")
+        for name, picture in _pictures(result, curve).items():
+            (temporary / name).write_bytes(picture)
+    if result.footprint.unstable:
+        many = ", ".join(map(str, result.footprint.unstable))
+        fail(f"warning: motions of negative stiffness in harmonics {many}: the footprint there is in doubt")
+    if as_json:
+        print_json(summary)
+        return
+    typer.echo(_words(result))
+    typer.echo(f"results in {folder}")
+
+
+def _read(name: str, text: str) -> float:
+    from tyrefem.quantity import Unit
+
+    option, unit = OPTIONS[name]
+    if name == "drum_diameter" and text.strip() == "flat":
+        return math.inf
+    try:
+        return Unit(unit, gt=0)(text)
+    except InputError as error:
+        raise error.within(field=option) from None
+
+
+def _placed(error: InputError, given: dict[str, float], study: Study) -> InputError:
+    """The error at the option that was given, or at the study's drive that gave the value."""
+    if error.field in given:
+        return InputError(error.message, field=OPTIONS[error.field][0])
+    if error.field in OPTIONS:
+        placed = InputError(error.message, field=f"drive.phases.0.{error.field}", file=study.file)
+        return study.as_written(placed)
+    return error if error.file else InputError(error.message, field=error.field, file=study.file)
+
+
+def _pictures(result: Pressed, curve: Any) -> dict[str, bytes]:
+    from tyrefem.plotting.footprint import pressure_map_figure
+    from tyrefem.plotting.inflation import inflation_figure, load_deflection_figure
+    from tyrefem.plotting.style import png
+
+    return {
+        "section.png": png(inflation_figure(result.tyre, result.study.name)),
+        "pressure.png": png(pressure_map_figure(result.footprint)),
+        "load-deflection.png": png(load_deflection_figure(result, curve)),
+    }
+
+
+def _words(result: Pressed) -> str:
+    tyre, found, loss = result.tyre, result.footprint, result.loss
+    drum = result.pressing.road.drum_diameter
+    road = "flat road" if math.isinf(drum) else f"drum of {drum:.4g} m"
+    bead = "no bead wires" if result.bead_tension is None else f"{result.bead_tension / 1e3:.2f} kN"
+    lines = [
+        result.study.title,
+        f"  inflated            {tyre.pressure / 1e3:.1f} kPa: radius {tyre.radius_growth * 1e3:+.2f} mm, width "
+        f"{tyre.width_growth * 1e3:+.2f} mm; bead tension {bead}",
+    ]
+    for region, layer in tyre.cord_tensions.items():
+        least, mean, greatest = (100 * strain for strain in layer.strain)
+        if layer.tension is None:
+            force = f"{layer.stress[1] / 1e6:.3g} MPa in the layer on average"
+        else:
+            force = "{:.3g} / {:.3g} / {:.3g} N a cord".format(*layer.tension)
+        lines.append(f"  cords of {region:10} {least:.2f} / {mean:.2f} / {greatest:.2f} % (least, mean, most), {force}")
+    lines += [
+        f"  {road:19} {found.load:.1f} N at {found.deflection * 1e3:.2f} mm; stiffness "
+        f"{result.secant_stiffness / 1e3:.1f} N/mm secant, {found.stiffness / 1e3:.1f} N/mm tangent",
+        f"  footprint           {found.length * 1e3:.1f} mm long, {found.width * 1e3:.1f} mm wide, "
+        f"{found.area * 1e4:.1f} cm2; pressure {found.mean_pressure / 1e3:.0f} kPa mean, "
+        f"{result.peak_pressure / 1e3:.0f} kPa peak",
+        f"  rolling radius      {found.rolling_radius * 1e3:.2f} mm (loaded {found.loaded_radius * 1e3:.2f} mm)",
+        "  rolling resistance  the wheel stands"
+        if loss is None
+        else f"  rolling resistance  {loss.rolling_resistance:.1f} N, coefficient {loss.coefficient:.5f} at "
+        f"{result.speed:.4g} m/s and {loss.temperature:.4g} degC",
+        f"  harmonics           {found.harmonics}, error {found.error:.2%} (allowed {result.tolerance:.0%}); "
+        f"{tyre.body.rings.n_nodes} nodes",
+    ]
+    return "\n".join(lines)
+
+
+#: Place among the commands.
+ORDER = 45
+
+
+def register(app: typer.Typer) -> None:
+    """Add the command."""
+    app.command()(press)

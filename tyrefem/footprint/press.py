@@ -1,0 +1,187 @@
+"""A study's tyre, inflated and pressed on the road: what the command `tyrefem press` tells."""
+
+from __future__ import annotations
+
+import functools
+from dataclasses import dataclass
+from typing import TYPE_CHECKING, Any
+
+import numpy as np
+from numpy.typing import NDArray
+
+from tyrefem.errors import InputError
+from tyrefem.footprint.road import Road
+from tyrefem.strain.fem import TOLERANCE, mechanical_mesh
+
+if TYPE_CHECKING:
+    from tyrefem.footprint.contact import Pressing
+    from tyrefem.footprint.loss import RevolutionLoss
+    from tyrefem.footprint.pressed import Footprint
+    from tyrefem.meshing.tyre_mesh import TyreMesh
+    from tyrefem.solid.inflation import Inflation
+    from tyrefem.studies import Study
+
+Array = NDArray[np.float64]
+#: The curve of load over deflection goes this much further than the footprint, or to just before the rim.
+BEYOND = 1.25
+BEFORE_RIM = 0.98
+
+
+@dataclass(frozen=True, eq=False)
+class Pressed:
+    """A study's tyre under one pressure and one load. Made by `press`.
+
+    Parameters
+    ----------
+    study : the study. mesh : the mechanical mesh. tyre : the inflated tyre. footprint : the tyre on the road.
+    tolerance : change with the number of harmonics that was allowed.
+    """
+
+    study: Study
+    mesh: TyreMesh
+    tyre: Inflation
+    footprint: Footprint
+    tolerance: float = TOLERANCE
+
+    @property
+    def pressing(self) -> Pressing:
+        """The inflated tyre and its road."""
+        return self.footprint.pressing
+
+    @property
+    def bead_tension(self) -> float | None:
+        """Hoop force of one bead, N; None: the section has no bead wires."""
+        try:
+            return self.tyre.bead_tension
+        except InputError:
+            return None
+
+    @property
+    def secant_stiffness(self) -> float:
+        """Load over deflection, N/m."""
+        return self.footprint.load / self.footprint.deflection
+
+    @property
+    def peak_pressure(self) -> float:
+        """Greatest contact pressure, Pa: at a tread's sharp edge it depends on the mesh."""
+        return float(self.footprint.pressure.max())
+
+    @property
+    def speed(self) -> float:
+        """Speed of the drive's first phase, m/s: where it starts, or where it ends if it starts at rest."""
+        ramp = self.study.card.drive.phases[0].speed
+        return float(ramp.start or ramp.end)
+
+    @functools.cached_property
+    def loss(self) -> RevolutionLoss | None:
+        """Loss per revolution at `speed` and the drive's initial temperature; None: the wheel stands."""
+        from tyrefem.footprint.cycle import StrainCycle
+        from tyrefem.footprint.loss import RevolutionLoss
+        from tyrefem.footprint.loss_tangent import OfTemperature
+
+        if not self.speed:
+            return None
+        laws = {region: OfTemperature(self.study.materials[region].loss_tangent) for region in self.tyre.body.parts}
+        return RevolutionLoss(StrainCycle(self.footprint), laws, self.speed, self.study.card.drive.initial)
+
+    def curve(self, count: int = 10) -> Array:
+        """(count + 1, 2) deflection, m, and load, N, from the free tyre on, with as many harmonics as the footprint."""
+        last = min(BEYOND * self.footprint.deflection, BEFORE_RIM * self.pressing.bottoming)
+        deflections = np.linspace(0.0, last, count + 1)
+        # The largest first: its grid of angles serves the others.
+        loads = [self.pressing.at_deflection(float(one), self.footprint.harmonics).load for one in deflections[:0:-1]]
+        return np.column_stack([deflections, [0.0, *loads[::-1]]])
+
+    def summary(self) -> dict[str, Any]:
+        """Everything in SI, as the keys say; versions, mesh and tolerance."""
+        from tyrefem.summary import versions
+
+        found, loss = self.footprint, self.loss
+        cords = {
+            region: {"strain": layer.strain, "stress_Pa": layer.stress, "tension_N": layer.tension}
+            for region, layer in self.tyre.cord_tensions.items()
+        }
+        return {
+            "study": self.study.name,
+            "title": self.study.title,
+            "pressure_Pa": self.tyre.pressure,
+            "drum_diameter_m": self.pressing.road.drum_diameter,
+            "radius_growth_m": self.tyre.radius_growth,
+            "width_growth_m": self.tyre.width_growth,
+            "cords_least_mean_greatest": cords,
+            "bead_tension_N": self.bead_tension,
+            "load_N": found.load,
+            "deflection_m": found.deflection,
+            "bottoming_deflection_m": self.pressing.bottoming,
+            "secant_stiffness_N_m": self.secant_stiffness,
+            "tangent_stiffness_N_m": found.stiffness,
+            "footprint_length_m": found.length,
+            "footprint_width_m": found.width,
+            "footprint_area_m2": found.area,
+            "mean_contact_pressure_Pa": found.mean_pressure,
+            "peak_contact_pressure_Pa": self.peak_pressure,
+            "loaded_radius_m": found.loaded_radius,
+            "rolling_radius_m": found.rolling_radius,
+            "speed_m_s": self.speed,
+            "temperature_degC": self.study.card.drive.initial,
+            "loss_per_revolution_J": loss.energy if loss else None,
+            "rolling_resistance_N": loss.rolling_resistance if loss else None,
+            "rolling_resistance_coefficient": loss.coefficient if loss else None,
+            "harmonics": found.harmonics,
+            "error": found.error,
+            "tolerance": self.tolerance,
+            "unstable_harmonics": list(found.unstable),
+            "mesh": {**self.mesh.summary(), "nodes_of_nine_node_elements": self.tyre.body.rings.n_nodes},
+            "versions": versions(),
+        }
+
+
+def press(
+    study: Study | str,
+    *,
+    pressure: float | None = None,
+    load: float | None = None,
+    deflection: float | None = None,
+    drum_diameter: float | None = None,
+    tolerance: float = TOLERANCE,
+) -> Pressed:
+    """Inflate a study's tyre and press it on the road; what is not given is that of the drive's first phase's start.
+
+    Parameters
+    ----------
+    study : a study, or its name.
+    pressure : Pa above the ambient, positive.
+    load, deflection : N or m, positive; at most one of them.
+    drum_diameter : m; infinite for a flat road.
+    tolerance : change with the number of harmonics that the footprint may keep.
+
+    Raises
+    ------
+    InputError : a value that is not positive; both load and deflection; no equilibrium; more than the tyre can carry.
+
+    >>> from tyrefem import study
+    >>> found = press(study("nasa-22x5.5-8pr", {"mesh.size": "12 mm"}), deflection=0.015)
+    >>> found.footprint.deflection, 3e5 < found.secant_stiffness < 6e5
+    (0.015, True)
+    """
+    from tyrefem.footprint.contact import Pressing
+    from tyrefem.solid.inflation import inflate
+    from tyrefem.studies import study as load_study
+
+    chosen = load_study(study) if isinstance(study, str) else study
+    phase = chosen.card.drive.phases[0]
+    if load is not None and deflection is not None:
+        raise InputError("give a load or a deflection, not both", field="load")
+    if load is None and deflection is None:
+        load = None if phase.load is None else phase.load.start
+        deflection = None if phase.deflection is None else phase.deflection.start
+    pressure = phase.pressure.start if pressure is None else pressure
+    wanted = {"pressure": (pressure, "Pa"), "load": (load, "N"), "deflection": (deflection, "m")}
+    for name, (value, unit) in wanted.items():
+        if value is not None and not value > 0:
+            raise InputError(f"must be more than 0 {unit}, not {value:g} {unit}", field=name)
+    mesh = mechanical_mesh(chosen)
+    tyre = inflate(chosen, pressure, mesh)
+    road = Road(phase.drum_diameter if drum_diameter is None else drum_diameter)
+    found = Pressing(tyre.state, road).solve(load=load, deflection=deflection, tolerance=tolerance)
+    return Pressed(chosen, mesh, tyre, found, tolerance)
