@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import io
 import itertools
+from dataclasses import replace
 
 import numpy as np
 import pytest
@@ -12,7 +13,7 @@ from tyrefem.errors import InputError
 from tyrefem.plotting import pictures, write_pictures
 from tyrefem.plotting.budget import budget_figure, waterfall
 from tyrefem.plotting.cells import linear_cells, triangles
-from tyrefem.plotting.heat_source import heat_source_figure, zone_heat
+from tyrefem.plotting.heat_source import ZoneHeat, heat_source_figure, scale_top, zone_heat
 from tyrefem.plotting.histories import histories_figure
 from tyrefem.plotting.labels import spread
 from tyrefem.plotting.mesh import mesh_figure
@@ -166,6 +167,42 @@ def test_heat_source_powers_add_up_to_the_drag(result):
     for zone in zones:
         assert f"{zone.name}: {zone.title}" in shown
         assert any(f"({100 * zone.power / total:.1f} %)" in text for text in shown)
+
+
+def strip(values, widths):
+    """A zone of strips 1 m high, each of its own value."""
+    edges = np.concatenate([[0.0], np.cumsum(widths)])
+    points = np.concatenate([[[a, 0], [b, 0], [b, 1], [a, 1]] for a, b in itertools.pairwise(edges)]).T
+    corners = np.concatenate(
+        [[[4 * i, 4 * i + 1, 4 * i + 2], [4 * i, 4 * i + 2, 4 * i + 3]] for i in range(len(widths))]
+    )
+    nodal = np.repeat(values, 4)
+    return ZoneHeat("one", "one", np.asarray(points, dtype=float), corners, nodal, nodal, 1.0)
+
+
+@pytest.mark.parametrize(("peak_width", "top"), [(0.005, 2.0), (0.05, 50.0)])
+def test_a_colour_scale_spans_99_percent_of_the_area(peak_width, top):
+    zone = strip([1.0, 2.0, 50.0], [0.5, 0.5 - peak_width, peak_width])
+    assert scale_top([zone], [zone.energy]) == top
+
+
+def test_heat_in_a_sliver_only_still_has_a_scale():
+    zone = strip([0.0, 3.0], [0.999, 0.001])
+    assert scale_top([zone], [zone.source]) == 3.0
+
+
+def test_a_peak_beyond_the_heat_scale_is_told_by_an_arrow_and_its_value(result, monkeypatch):
+    from tyrefem.plotting import heat_source
+
+    zones = zone_heat(result, len(result.times) - 1)
+    highest = max(range(len(zones)), key=lambda n: zones[n].source.max())
+    peaked = zones[highest].source.copy()
+    peaked[int(peaked.argmax())] = 1e9
+    zones[highest] = replace(zones[highest], source=peaked)
+    monkeypatch.setattr(heat_source, "zone_heat", lambda *_: zones)
+    bars = [axes for axes in heat_source_figure(result).axes if "heat source q" in axes.get_ylabel()]
+    assert len(bars) == 1
+    assert float(bars[0].get_ylabel().split(", peak ")[1]) > 1000 * bars[0].get_ylim()[1]
 
 
 def test_zones_keep_their_own_values_at_a_common_border(result):

@@ -11,6 +11,7 @@ from scipy.optimize import brentq
 from solid_bodies import skewed, torus, tube
 
 from tyrefem.errors import InputError
+from tyrefem.solid import newton
 from tyrefem.solid.body import Body, Part
 from tyrefem.solid.compounds import mooney_rivlin, neo_hookean
 from tyrefem.solid.cords import CordLayer
@@ -158,6 +159,22 @@ def test_a_burst_is_one_error_that_says_where() -> None:
         InputError, match=r"no equilibrium beyond [\d.]+% of 900 kPa \(load step \d+\).*mm, region 'rubber'"
     ):
         equilibrium(tube(3, neo_hookean(1e6)), 9e5, NewtonChoice(smallest_step=0.02, iterations=12))
+
+
+def test_a_first_step_that_fails_is_halved_without_being_tried_twice(monkeypatch: pytest.MonkeyPatch) -> None:
+    tried: list[float] = []
+    inner = newton._newton
+
+    def recorded(body: Body, start: np.ndarray, pressure: float, choice: NewtonChoice) -> object:
+        tried.append(pressure)
+        return inner(body, start, pressure, choice)
+
+    monkeypatch.setattr(newton, "_newton", recorded)
+    found = equilibrium(tube(3, neo_hookean(1e6)), 4e5, NewtonChoice(first_step=1.0, iterations=3))
+    assert len(found.steps) > 1
+    assert found.steps[-1] == 1.0
+    # From rest there is one start only: the same failure again would cost twice.
+    assert tried[:2] == [4e5, 2e5]
 
 
 def test_unknown_names_are_named() -> None:

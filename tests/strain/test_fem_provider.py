@@ -56,6 +56,20 @@ def test_a_passenger_radial_loses_what_such_tyres_do_and_is_hottest_at_the_belt_
     assert result.heat_budget.imbalance < 1e-6
 
 
+def test_an_aircraft_radial_is_stable_and_its_bodys_plies_stay_tight() -> None:
+    study = tf.study("aircraft-radial", {"mechanics.strain": "fem", "mesh.size": "6 mm", **BRIEF})
+    result = study.run()
+    cycle = result.tyre.schedule.cycles[0][0]
+    assert isinstance(cycle, FiniteElements)
+    # No compressed cords that would buckle: the linearised footprint may be trusted.
+    assert not cycle.footprint.unstable
+    assert cycle.tyre.cord_tensions["body-plies"].strain[0] > 0
+    assert cycle.tyre.cord_tensions["inner-belts"].strain[0] > 0
+    # A membrane alone carries load / pressure on its footprint; the section's stiffness takes some of it.
+    assert 0.5 < cycle.footprint.area * cycle.case.pressure / cycle.case.load < 1.2
+    assert 0.005 < result.rolling_resistance.coefficient < 0.02
+
+
 def test_a_tyre_without_pressure_carries_nothing() -> None:
     with pytest.raises(InputError, match=r"drive.load: .* at 0 kPa"):
         bias(**{"drive.pressure": "0 kPa"}).run()

@@ -76,13 +76,15 @@ class Canvas:
         align = "right" if sign > 0 else "left"
         column(self.axes, ordered, x, self.low + 0.1 * self.scale, top, gap=self.gap, align=align)
 
-    def color_bar(self, image: Any, label: str, *, side: float = 1.0, ticks: Any = None) -> Any:
-        """A colour bar right (1) or left (-1) of everything."""
+    def color_bar(
+        self, image: Any, label: str, *, side: float = 1.0, ticks: Any = None, extend: str | None = None
+    ) -> Any:
+        """A colour bar right (1) or left (-1) of everything; ``extend``: "max" for values beyond its end."""
         width, height = (float(v) for v in self.figure.get_size_inches())
         box = self.axes.get_position()
         left = width - BAR + 0.05 if side > 0 else 0.62
         axes = add_axes(self.figure, left, box.y0 * height, 0.16, box.height * height)
-        bar = self.figure.colorbar(image, cax=axes, ticks=ticks)
+        bar = self.figure.colorbar(image, cax=axes, ticks=ticks, extend=extend)
         if side < 0:
             axes.yaxis.set_ticks_position("left")
             axes.yaxis.set_label_position("left")

@@ -19,6 +19,8 @@ if TYPE_CHECKING:
     from tyrefem.result import Result
 
 Array = NDArray[np.float64]
+#: Share of the section's area that a colour scale spans; what is above has the last colour.
+SPANNED = 0.99
 
 
 @dataclass(frozen=True)
@@ -58,27 +60,48 @@ def heat_source_figure(result: Result) -> Figure:
     zones = zone_heat(result, len(result.times) - 1 if i is None else i)
     total = sum(zone.power for zone in zones)
     energies, sources = [zone.energy for zone in zones], [zone.source for zone in zones]
-    factor_u, unit_u = si(max(float(u.max()) for u in energies), "J/m³")
-    factor_q, unit_q = si(max(float(q.max()) for q in sources), "W/m³")
+    top_u, top_q = scale_top(zones, energies), scale_top(zones, sources)
+    factor_u, unit_u = si(top_u, "J/m³")
+    factor_q, unit_q = si(top_q, "W/m³")
     rows = [_row(zone, total) for zone in zones]
     names = [zone.title if zone.name == zone.title else f"{zone.name}: {zone.title}" for zone in zones]
     drawn = canvas(result.study.section, names, rows, bars=2)
-    top_u = max(float(u.max()) for u in energies) / factor_u or 1.0
-    top_q = max(float(q.max()) for q in sources) / factor_q or 1.0
     left = right = None
     for zone in zones:
-        left = _half(drawn, zone, zone.energy / factor_u, -1.0, ENERGY_MAP, top_u)
-        right = _half(drawn, zone, zone.source / factor_q, 1.0, temperature_map(), top_q)
+        left = _half(drawn, zone, zone.energy / factor_u, -1.0, ENERGY_MAP, top_u / factor_u or 1.0)
+        right = _half(drawn, zone, zone.source / factor_q, 1.0, temperature_map(), top_q / factor_q or 1.0)
     draw_outlines(drawn.axes, result.study.section, color="#505050", width=0.7)
     drawn.axes.plot([0, 0], [drawn.section.place(0.0, 0.0)[0] * 1e3, drawn.high], color="white", lw=2.5, zorder=4)
-    drawn.color_bar(left, f"strain energy per cycle U [{unit_u}]", side=-1.0)
-    drawn.color_bar(right, f"heat source q [{unit_q}]")
+    _bar(drawn, left, "strain energy per cycle U", unit_u, max(float(u.max()) for u in energies) / factor_u, -1.0)
+    _bar(drawn, right, "heat source q", unit_q, max(float(q.max()) for q in sources) / factor_q, 1.0)
     anchors = [_anchor(drawn, zone) for zone in zones]
     order = sorted(range(len(zones)), key=lambda n: -anchors[n][1])
     drawn.beside([Label(names[n], -anchors[n][0], anchors[n][1]) for n in order], -1.0)
     drawn.beside([Label(rows[n], anchors[n][0], anchors[n][1]) for n in order], 1.0)
     title(drawn.figure, result.study.title, _subtitle(result, i, total))
     return drawn.figure
+
+
+def scale_top(zones: list[ZoneHeat], values: list[Array]) -> float:
+    """The value that 99 % of the section's area does not exceed: one peak must not darken the whole picture."""
+    areas, means = [], []
+    for zone, value in zip(zones, values, strict=True):
+        r, z = zone.points[:, zone.corners.T]
+        areas.append(np.abs((r[1] - r[0]) * (z[2] - z[0]) - (r[2] - r[0]) * (z[1] - z[0])) / 2)
+        means.append(value[zone.corners].mean(axis=1))
+    area, mean = np.concatenate(areas), np.concatenate(means)
+    order = np.argsort(mean)
+    below = np.cumsum(area[order])
+    place = min(int(np.searchsorted(below, SPANNED * below[-1])), len(order) - 1)
+    # Heat in less than a hundredth of the area: its own peak is the scale.
+    return float(mean[order[place]]) or max(float(value.max()) for value in values)
+
+
+def _bar(drawn: Canvas, image: Any, label: str, unit: str, peak: float, side: float) -> None:
+    """A colour bar; an arrow at its end, and the peak in its label, where values go beyond it."""
+    beyond = peak > 1.001 * image.norm.vmax
+    text = f"{label} [{unit}]" + (f", peak {peak:{digits(peak)}}" if beyond else "")
+    drawn.color_bar(image, text, side=side, extend="max" if beyond else "neither")
 
 
 def _row(zone: ZoneHeat, total: float) -> str:

@@ -69,6 +69,8 @@ def equilibrium(body: Body, pressure: float, choice: NewtonChoice | None = None)
             try:
                 found, history = _newton(body, guess, aim * pressure, choice)
             except _StuckError:
+                if not last:
+                    raise
                 found, history = _newton(body, now, aim * pressure, choice)
         except _StuckError as stuck:
             step = (aim - reached) / 2
