@@ -154,7 +154,7 @@ class Explained:
 
 
 class _Refinement:
-    """One set on its way: asks for simulations at ``trial_point`` and takes what they say.
+    """One set on its way: asks for simulations at its `point` and takes what they say.
 
     Gauss-Newton within a region of trust, a box of so many prior standard deviations about the last good point: a step
     that makes the fit worse, or leads to no possible tyre, shrinks it, and the next is proposed with what was learnt.
