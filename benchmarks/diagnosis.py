@@ -15,9 +15,10 @@ import time
 
 import tyrefem as tf
 from tyrefem.compare.experiment import experiments
-from tyrefem.diagnose.diagnosis import diagnose, responses, unknowns_of
 from tyrefem.diagnose.laboratory import Bench, laboratory
+from tyrefem.diagnose.responses import responses, unknowns_of
 from tyrefem.diagnose.trials import trial
+from tyrefem.diagnose.workflow import diagnose
 from tyrefem.result import GAS
 
 

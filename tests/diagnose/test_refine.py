@@ -11,7 +11,9 @@ import pytest
 from numpy.typing import NDArray
 from scipy.optimize import minimize
 
-from tyrefem.diagnose.refine import Explained, Gap, polished, refined
+from tyrefem.diagnose.explained import Explained
+from tyrefem.diagnose.gap import Gap
+from tyrefem.diagnose.refine import polished, refined
 from tyrefem.diagnose.unknowns import Candidate, Unknown
 from tyrefem.effects.effect import Parameter, Prior
 

@@ -6,15 +6,17 @@ import importlib
 from typing import TYPE_CHECKING, Any
 
 if TYPE_CHECKING:
-    from tyrefem.diagnose.diagnosis import Diagnosis, diagnose
+    from tyrefem.diagnose.diagnosis import Diagnosis
+    from tyrefem.diagnose.workflow import diagnose
 
 __all__ = ["Diagnosis", "diagnose"]
+_MODULES = {"Diagnosis": "diagnosis", "diagnose": "workflow"}
 
 
 def __getattr__(name: str) -> Any:
-    if name not in __all__:
+    if name not in _MODULES:
         raise AttributeError(f"module 'tyrefem.diagnose' has no attribute '{name}'")
-    return getattr(importlib.import_module("tyrefem.diagnose.diagnosis"), name)
+    return getattr(importlib.import_module(f"tyrefem.diagnose.{_MODULES[name]}"), name)
 
 
 def __dir__() -> list[str]:

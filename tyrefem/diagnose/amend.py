@@ -9,7 +9,7 @@ from typing import Any
 
 import numpy as np
 
-from tyrefem.diagnose.refine import Gap
+from tyrefem.diagnose.gap import Gap
 from tyrefem.diagnose.unknowns import Unknown, with_values
 from tyrefem.dotted import scaled, value_at
 from tyrefem.studies import Study

@@ -11,11 +11,12 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
-from tyrefem.diagnose.diagnosis import Diagnosis, diagnose, gap_of
+from tyrefem.diagnose.diagnosis import Diagnosis
 from tyrefem.diagnose.evidence import Members
+from tyrefem.diagnose.gap import Gap
 from tyrefem.diagnose.isolability import MARGIN, margins, planned, rivals_of
 from tyrefem.diagnose.laboratory import Bench, Response, laboratory
-from tyrefem.diagnose.refine import Gap
+from tyrefem.diagnose.responses import gap_of
 from tyrefem.diagnose.sets import Prior
 from tyrefem.diagnose.strangers import HotRing, Lamp
 from tyrefem.diagnose.truth import Logger, own_mesh, record
@@ -27,6 +28,7 @@ from tyrefem.diagnose.unknowns import (
     sensor_unknowns,
     with_values,
 )
+from tyrefem.diagnose.workflow import diagnose
 from tyrefem.effects import Effect
 from tyrefem.measured import MeasuredRun
 from tyrefem.studies import Study

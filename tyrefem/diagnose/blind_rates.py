@@ -14,9 +14,9 @@ from pathlib import Path
 from typing import Any
 
 from tyrefem.diagnose.blind import Outcome, cases, run_case
-from tyrefem.diagnose.diagnosis import responses, unknowns_of
 from tyrefem.diagnose.isolability import planned
 from tyrefem.diagnose.laboratory import Bench, Response, laboratory
+from tyrefem.diagnose.responses import responses, unknowns_of
 from tyrefem.diagnose.truth import own_mesh
 from tyrefem.errors import InputError
 from tyrefem.output import atomic_path, jsonable

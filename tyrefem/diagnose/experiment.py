@@ -9,8 +9,9 @@ import numpy as np
 from numpy.typing import NDArray
 
 from tyrefem.diagnose.evidence import Members
+from tyrefem.diagnose.explained import Explained
+from tyrefem.diagnose.gap import Gap
 from tyrefem.diagnose.laboratory import Bench
-from tyrefem.diagnose.refine import Explained, Gap
 from tyrefem.diagnose.trials import Series, Trial
 from tyrefem.diagnose.verdict import Judgement, Standing
 from tyrefem.errors import InputError

@@ -10,8 +10,10 @@ from itertools import pairwise
 import numpy as np
 from numpy.typing import NDArray
 
+from tyrefem.diagnose.explained import Explained
+from tyrefem.diagnose.gap import Gap
 from tyrefem.diagnose.gauss import fit
-from tyrefem.diagnose.refine import Explained, Gap, polished, refined
+from tyrefem.diagnose.refine import polished, refined
 from tyrefem.diagnose.unknowns import Candidate, Unknown, of_effect
 from tyrefem.effects import catalogue
 from tyrefem.studies import Study

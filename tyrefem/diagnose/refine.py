@@ -3,17 +3,15 @@
 from __future__ import annotations
 
 from collections.abc import Callable, Mapping, Sequence
-from dataclasses import dataclass
-from functools import cached_property
 from typing import Any
 
 import numpy as np
 from numpy.typing import NDArray
-from scipy.stats import chi2
 
-from tyrefem.diagnose.evidence import Linear, Members
+from tyrefem.diagnose.evidence import Members
+from tyrefem.diagnose.explained import Explained, explained
+from tyrefem.diagnose.gap import Gap
 from tyrefem.diagnose.gauss import Fit, fit
-from tyrefem.diagnose.laboratory import Laboratory, Response
 from tyrefem.diagnose.unknowns import Unknown
 
 Array = NDArray[np.float64]
@@ -22,8 +20,6 @@ Array = NDArray[np.float64]
 CLOSE, ASTRAY = 1.0, 6.0
 #: A fit has converged when the linear model about it promises no more than this drop of the misfit.
 SETTLED = 0.5
-#: A fit with a misfit of so many times the number of readings nearly explains them.
-NEARLY = 1.3
 #: With more than the first the fit is given up when a step leaves more than the second of the misfit.
 FAR_OFF, SLOW = 3.0, 0.9
 FIRST_STEPS, MORE_STEPS, MORE_TANGENTS = 4, 14, 4
@@ -32,128 +28,7 @@ FIRST_STEPS, MORE_STEPS, MORE_TANGENTS = 4, 14, 4
 RADIUS, SHORTER, WIDER, TINY = 3.0, 0.4, 2.0, 0.01
 
 
-@dataclass(frozen=True, eq=False)
-class Gap:
-    """What is measured minus what the study says, and how it changes with every unknown.
-
-    Parameters
-    ----------
-    lab : simulates. unknowns : nuisance first. nuisance : how many belong to every model.
-    correction : per trial, what the study's own mesh adds to the coarse one. jacobians : per trial (n_blocks, k).
-    responses : what these were sampled from; of use for other data at the same drives.
-    """
-
-    lab: Laboratory
-    unknowns: tuple[Unknown, ...]
-    nuisance: int
-    correction: tuple[Array, ...]
-    computed: tuple[Array, ...]
-    jacobians: tuple[Array, ...]
-    responses: tuple[Response, ...] = ()
-
-    @property
-    def fitted(self) -> list[int]:
-        """Numbers of the trials that are fitted."""
-        return [i for i, one in enumerate(self.lab.bench.trials) if not one.hold_out]
-
-    @property
-    def held_out(self) -> list[int]:
-        """Numbers of the trials that are held out."""
-        return [i for i, one in enumerate(self.lab.bench.trials) if one.hold_out]
-
-    @cached_property
-    def _start(self) -> tuple[float, ...]:
-        bench = self.lab.bench
-        return tuple(bench.driven(bench.study, i).card.drive.initial for i in range(len(bench.trials)))
-
-    def corrected(self, number: int, computed: Array) -> Array:
-        """Lean block means of a trial with what the study's own mesh adds.
-
-        That was found at x = 0; the error of a mesh grows with the rise above the start, so it is scaled by the rises.
-        """
-        start, own = self._start[number], self.computed[number]
-        rise = own - start
-        ratio = np.where(np.abs(rise) > 1.0, (computed - start) / np.where(rise == 0, 1.0, rise), 1.0)
-        return np.asarray(computed + self.correction[number] * np.clip(ratio, 0.2, 5.0))
-
-    def residual(self, number: int, computed: Array) -> Array:
-        """Whitened measured - computed of one trial, from lean block means."""
-        trial = self.lab.bench.trials[number]
-        return trial.whitened(trial.measured - self.corrected(number, computed))
-
-    @cached_property
-    def whitened(self) -> tuple[Array, ...]:
-        """Whitened jacobian of every trial."""
-        return tuple(one.whitened(J) for one, J in zip(self.lab.bench.trials, self.jacobians, strict=True))
-
-    def linear(self, trials: Sequence[int]) -> Linear:
-        """The linear model of some trials about x = 0."""
-        data = np.concatenate([self.residual(i, self.computed[i]) for i in trials])
-        return Linear(self.unknowns, self.nuisance, data, np.vstack([self.whitened[i] for i in trials]))
-
-
-@dataclass(frozen=True, eq=False)
-class Explained:
-    """A set of effects fitted to the data.
-
-    Parameters
-    ----------
-    members : the set. unknowns : everything fitted. fit : posterior. log_evidence : ln p(fitted data | set).
-    computed : trial -> block means of the fitted model, corrected for the mesh. misfit : |r|^2 + |x/sd|^2.
-    readings : number of fitted blocks. held_out : ln p(held-out data | fitted data, set). steps : simulations.
-    """
-
-    members: Members
-    unknowns: tuple[Unknown, ...]
-    fit: Fit
-    log_evidence: float
-    computed: dict[int, Array]
-    misfit: float
-    readings: int
-    held_out: float
-    held_out_p: float
-    steps: int
-    converged: bool
-    #: Linear model of the fitted trials about the fit, d = J x + e: whitened data and jacobian of ``unknowns``.
-    data: Array
-    jacobian: Array
-    refinement: _Refinement
-
-    @property
-    def close(self) -> bool:
-        """Converged, and not far from a misfit that noise makes: a place to start a larger set from."""
-        return self.converged and self.misfit < NEARLY * self.readings
-
-    @property
-    def finished(self) -> bool:
-        """Nothing is gained by going on: converged, with all shape parameters fitted."""
-        return self.converged and not self.refinement.shapes
-
-    @cached_property
-    def values(self) -> dict[Unknown, float]:
-        """Unknown -> x; 1 for what is simply there."""
-        fitted = dict(zip(self.unknowns, (float(x) for x in self.fit.mean), strict=True))
-        return fitted | {one: 1.0 for member in self.members for one in member.presence}
-
-    @cached_property
-    def sd(self) -> dict[Unknown, float]:
-        """Unknown -> posterior standard deviation of x."""
-        fitted = dict(zip(self.unknowns, (float(x) for x in self.fit.sd), strict=True))
-        return fitted | {one: 0.0 for member in self.members for one in member.presence}
-
-    @property
-    def p_value(self) -> float:
-        """Probability of a misfit at least as large, were the model right: chi-squared with one degree per block."""
-        return float(chi2.sf(self.misfit, self.readings))
-
-    @property
-    def at_bound(self) -> tuple[str, ...]:
-        """Keys of the effects' amplitudes that ended on a bound."""
-        own = {one for member in self.members for one in member.amplitudes}
-        return tuple(one.key for one, held in zip(self.unknowns, self.fit.at_bound, strict=True) if held and one in own)
-
-
-class _Refinement:
+class Refinement:
     """One set on its way: asks for simulations at its `point` and takes what they say.
 
     Gauss-Newton within a region of trust, a box of so many prior standard deviations about the last good point: a step
@@ -196,9 +71,9 @@ class _Refinement:
 
     @property
     def point(self) -> dict[Unknown, float]:
-        return self._named(self.trial)
+        return self.named(self.trial)
 
-    def _named(self, x: Array) -> dict[Unknown, float]:
+    def named(self, x: Array) -> dict[Unknown, float]:
         return dict(zip(self.unknowns, (float(one) for one in x), strict=True)) | dict.fromkeys(self.fixed, 1.0)
 
     @property
@@ -211,12 +86,12 @@ class _Refinement:
         low, high = np.maximum(low, self.x - radius * sd), np.minimum(high, self.x + radius * sd)
         return fit(self.J.T @ self.J, self.J.T @ (self.r + self.J @ self.x), sd, low, high)
 
-    def _misfit(self, r: Array, x: Array) -> float:
+    def misfit(self, r: Array, x: Array) -> float:
         return float(r @ r + ((x / self._prior[0]) ** 2).sum())
 
     def _drop(self, x: Array) -> float:
         """Drop of the misfit that the linear model promises at a point."""
-        return self._misfit(self.r, self.x) - self._misfit(self.r - self.J @ (x - self.x), x)
+        return self.misfit(self.r, self.x) - self.misfit(self.r - self.J @ (x - self.x), x)
 
     @property
     def promised(self) -> float:
@@ -245,7 +120,7 @@ class _Refinement:
             return
         r = np.concatenate([self.gap.residual(i, computed[i]) for i in self.gap.fitted])
         missed = (self.r - self.J @ step) - r
-        promised, gained = self._drop(self.trial), self._misfit(self.r, self.x) - self._misfit(r, self.trial)
+        promised, gained = self._drop(self.trial), self.misfit(self.r, self.x) - self.misfit(r, self.trial)
         if reach > 0:
             # Broyden: the smallest change of J (in units of the priors) that would have predicted this simulation.
             self.J = self.J + np.outer(missed, step / sd**2) / float(((step / sd) ** 2).sum())
@@ -261,7 +136,7 @@ class _Refinement:
         if first:
             self._new_tangents(())
             return
-        now = self._misfit(r, self.x)
+        now = self.misfit(r, self.x)
         slow = self.matters and now > max(FAR_OFF * len(r), SLOW * (now + gained))
         if (self.shapes or float(np.linalg.norm(missed)) > ASTRAY) and self._may_learn and not slow:
             self._learn()
@@ -296,7 +171,7 @@ class _Refinement:
         """The method of the bench to ask, and with what."""
         fitted = self.gap.fitted
         if self.wants_tangents:
-            return "jacobian", [(i, tuple(self.unknowns), self._named(self.x)) for i in fitted]
+            return "jacobian", [(i, tuple(self.unknowns), self.named(self.x)) for i in fitted]
         return "predict", [(i, self.point) for i in fitted]
 
     def take(self, answers: Sequence[Array]) -> None:
@@ -321,7 +196,7 @@ def refined(
     These are first fits, in few steps: see `polished`. ``starts``: the fit of a part of a set to begin with; else the
     study as it is.
     """
-    return _run(gap, [_Refinement(gap, members, (starts or {}).get(members)) for members in sets], tick)
+    return _run(gap, [Refinement(gap, members, (starts or {}).get(members)) for members in sets], tick)
 
 
 def polished(gap: Gap, fits: Sequence[Explained], tick: Callable[[], None] | None = None) -> list[Explained]:
@@ -331,7 +206,7 @@ def polished(gap: Gap, fits: Sequence[Explained], tick: Callable[[], None] | Non
     return _run(gap, [one.refinement for one in fits], tick)
 
 
-def _run(gap: Gap, running: Sequence[_Refinement], tick: Callable[[], None] | None) -> list[Explained]:
+def _run(gap: Gap, running: Sequence[Refinement], tick: Callable[[], None] | None) -> list[Explained]:
     while active := [one for one in running if not one.done]:
         for method in ("predict", "jacobian"):
             asking = [one for one in active if one.questions()[0] == method]
@@ -339,51 +214,4 @@ def _run(gap: Gap, running: Sequence[_Refinement], tick: Callable[[], None] | No
             width = len(gap.fitted)
             for number, one in enumerate(asking):
                 one.take(answers[number * width : (number + 1) * width])
-    return [_explained(gap, one) for one in running]
-
-
-def _explained(gap: Gap, one: _Refinement) -> Explained:
-    values = one._named(one.x)
-    computed = {i: gap.corrected(i, one.computed[i]) for i in gap.fitted}
-    log_held, p_held = 0.0, 1.0
-    if gap.held_out:
-        answers = gap.lab.ask("predict", [(i, values) for i in gap.held_out])
-        columns = [gap.unknowns.index(unknown) for unknown in one.unknowns if unknown in gap.unknowns]
-        kept = [k for k, unknown in enumerate(one.unknowns) if unknown in gap.unknowns]
-        r, J = [], []
-        for i, answer in zip(gap.held_out, answers, strict=True):
-            computed[i] = gap.corrected(i, answer)
-            r.append(gap.residual(i, answer))
-            J.append(gap.whitened[i][:, columns])
-        if not np.isfinite(np.concatenate(r)).all():
-            # The held-out drive is not possible with these values: it rejects them.
-            r = [np.full(len(one), 1e3) for one in r]
-        log_held, p_held = _predictive(np.concatenate(r), np.vstack(J), one.best.covariance[np.ix_(kept, kept)])
-    effective = one.r + one.J @ one.x
-    # What the linear model promises is believed of a first fit, which may be carried on; not of one that was.
-    doubted = one.promised / 2 if one.matters else 0.0
-    return Explained(
-        one.members,
-        tuple(one.unknowns),
-        Fit(one.x, one.best.covariance, one.best.log_evidence, one.best.at_bound),
-        one.best.log_evidence - float(effective @ effective) / 2 - doubted,
-        computed,
-        one._misfit(one.r, one.x),
-        len(one.r),
-        log_held,
-        p_held,
-        one.steps,
-        one.converged,
-        effective,
-        one.J,
-        one,
-    )
-
-
-def _predictive(r: Array, J: Array, covariance: Array) -> tuple[float, float]:
-    """ln N(r; 0, 1 + J C J^T) up to a constant, and the chi-squared probability of r."""
-    spread = np.eye(len(r)) + J @ covariance @ J.T
-    root = np.linalg.cholesky(spread)
-    z = np.linalg.solve(root, r)
-    square = float(z @ z)
-    return float(-square / 2 - np.log(np.diag(root)).sum()), float(chi2.sf(square, len(r)))
+    return [explained(gap, one) for one in running]

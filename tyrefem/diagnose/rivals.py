@@ -12,7 +12,7 @@ from tyrefem.diagnose.where import rms
 
 if TYPE_CHECKING:
     from tyrefem.diagnose.diagnosis import Diagnosis
-    from tyrefem.diagnose.refine import Explained
+    from tyrefem.diagnose.explained import Explained
 
 #: Sets that a record lists at most.
 MOST_SETS = 30

@@ -9,7 +9,9 @@ from collections.abc import Callable, Iterable, Sequence
 import numpy as np
 
 from tyrefem.diagnose.evidence import Linear, Members
-from tyrefem.diagnose.refine import Explained, Gap, polished, refined
+from tyrefem.diagnose.explained import Explained
+from tyrefem.diagnose.gap import Gap
+from tyrefem.diagnose.refine import polished, refined
 from tyrefem.diagnose.sets import Prior, screened
 from tyrefem.diagnose.unknowns import Candidate, Unknown
 

@@ -7,7 +7,7 @@ from collections.abc import Callable, Sequence
 from dataclasses import dataclass
 
 from tyrefem.diagnose.evidence import Members
-from tyrefem.diagnose.refine import Explained
+from tyrefem.diagnose.explained import Explained
 
 IDENTIFIED, CONFOUNDED, UNEXPLAINED, NO_GAP = "identified", "confounded", "unexplained", "no gap"
 #: A set is named when it is this probable; sets of joint probability up to the second are reported.

@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING
 import numpy as np
 from numpy.typing import NDArray
 
-from tyrefem.diagnose.refine import Gap
+from tyrefem.diagnose.gap import Gap
 from tyrefem.diagnose.trials import Series
 
 if TYPE_CHECKING:

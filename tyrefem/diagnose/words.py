@@ -15,7 +15,7 @@ from tyrefem.report.words import place
 
 if TYPE_CHECKING:
     from tyrefem.diagnose.diagnosis import Diagnosis
-    from tyrefem.diagnose.refine import Explained
+    from tyrefem.diagnose.explained import Explained
 
 #: Unit of a parameter, SI -> factor and unit in which a person reads it.
 READ = {

@@ -1,0 +1,224 @@
+"""The diagnosis: find the gap, name what is missing, judge, add it, show that the gap shrinks."""
+
+from __future__ import annotations
+
+import functools
+import math
+import time
+from collections.abc import Callable, Iterable, Mapping, Sequence
+from dataclasses import replace
+from typing import Any
+
+from tyrefem.compare.experiment import Table, experiments
+from tyrefem.diagnose.amend import Change, amended, changes
+from tyrefem.diagnose.diagnosis import Diagnosis
+from tyrefem.diagnose.explained import Explained
+from tyrefem.diagnose.gap import Gap
+from tyrefem.diagnose.laboratory import Bench, Response, laboratory
+from tyrefem.diagnose.missing import MissingHeat, missing_heat, missing_heat_fitted, patches
+from tyrefem.diagnose.progress_store import ProgressStore
+from tyrefem.diagnose.refine import refined
+from tyrefem.diagnose.responses import Tick, gap_of
+from tyrefem.diagnose.search import Scored, search
+from tyrefem.diagnose.sets import Prior
+from tyrefem.diagnose.trials import trial
+from tyrefem.diagnose.unknowns import Candidate, Unknown, candidates
+from tyrefem.diagnose.verdict import (
+    CONFOUNDED,
+    IDENTIFIED,
+    IMPROBABLE,
+    OUTSIDE,
+    UNEXPLAINED,
+    Judgement,
+    judge,
+    standings,
+)
+from tyrefem.errors import InputError
+from tyrefem.studies import Study
+
+#: Diagnoses at most, each of what the one before it has left.
+LOOKS = 3
+#: Heat of unknown origin that the linear model puts this far, or less, below the best set is fitted in the full model.
+NEAR = 10.0
+
+
+def diagnose(
+    study: Study,
+    table: Table | None = None,
+    *,
+    ignore: Iterable[str] = (),
+    rename: Mapping[str, str] | None = None,
+    largest: int = 3,
+    workers: int = 1,
+    progress: Tick | None = None,
+    known: Sequence[Response] | None = None,
+    rerun: bool = True,
+    store: ProgressStore | None = None,
+    looks: int = LOOKS,
+) -> Diagnosis:
+    """Find where study and data disagree, name the missing effect, add it and show what is left.
+
+    What is identified is added, and the amended study is held against the same data again, until nothing more is
+    identified: see `Diagnosis.again`.
+
+    Parameters
+    ----------
+    study : the study; its cards and sensors state what is uncertain, its ``[diagnosis]`` table the rest.
+    table : CSV file or runs; None = the study's own ``[[measured]]`` entries. ignore, rename : see `compare`.
+    largest : effects at most in a set. workers : processes. progress : called with (what is done, number, of how many).
+    known : responses of the runs' drives already at hand (see `responses`), for many diagnoses of one layout.
+    rerun : run the amended study on its own mesh at the end; else ``after`` is the fit's own prediction.
+    store : where finished simulations are kept, so that an interrupted diagnosis takes them up again.
+    looks : diagnoses at most.
+
+    Raises
+    ------
+    InputError : as `compare`; or every run is held out.
+    """
+    found: list[Diagnosis] = []
+    while not found or (found[-1].verdict == IDENTIFIED and len(found) < looks):
+        number = len(found)
+        found.append(
+            _look(
+                found[-1].study if found else study,
+                table,
+                ignore=ignore,
+                rename=rename,
+                largest=largest,
+                workers=workers,
+                tick=_numbered(progress, number),
+                known=None if number else known,
+                rerun=rerun,
+                store=store and store.look(number),
+            )
+        )
+    result = found.pop()
+    while found:
+        result = replace(found.pop(), again=result)
+    return result
+
+
+def _numbered(progress: Tick | None, number: int) -> Tick:
+    if progress is None:
+        return lambda what, done, total: None
+    if not number:
+        return progress
+    return lambda what, done, total: progress(f"{what}, look {number + 1}", done, total)
+
+
+def _look(
+    study: Study,
+    table: Table | None,
+    *,
+    ignore: Iterable[str],
+    rename: Mapping[str, str] | None,
+    largest: int,
+    workers: int,
+    tick: Tick,
+    known: Sequence[Response] | None,
+    rerun: bool,
+    store: ProgressStore | None,
+) -> Diagnosis:
+    """One diagnosis."""
+    began = time.perf_counter()
+    planned = experiments(study, table, ignore=ignore, rename=rename)
+    trials = tuple(one for one in (trial(each, study) for each in planned) if one.series)
+    if not any(not one.hold_out for one in trials):
+        raise InputError("no reading within the simulated drive in any run that is not held out", file=study.file)
+    bench = Bench(study, trials)
+    if store is not None and store.open(bench):
+        tick(f"taking up {store.taken_up} simulations", 0, 0)
+    with laboratory(bench, workers, store) as lab:
+        gap = gap_of(lab, tick, known)
+        counted = _Counted(tick)
+        found = candidates(study)
+        prior = Prior(found, study.card.diagnosis.effects_expected)
+        scored, missing = _named(gap, study, found, prior, largest, counted)
+        explained = {one.members: one for _, _, one in scored if one is not None}
+
+        def fitted(members: tuple[Candidate, ...]) -> Explained | None:
+            if members not in explained:
+                explained[members] = refined(gap, [members])[0]
+            return explained[members]
+
+        null = explained[()]
+        judgement = judge(standings(scored, _outside(study) + missing.log_evidence), fitted)
+        best = judgement.best.explained or (null if judgement.best.unexplained else fitted(judgement.best.members))
+        assert best is not None
+        values, sd, lacking = _lacking(study, judgement, best, missing)
+        change = changes(gap, values, sd, lacking, [one.name for one in trials])
+        tick("running the amended study", 0, 0)
+        after = _after(gap, change if rerun else None, values)
+        further: Mapping[str, Any] = {}
+        if judgement.verdict == CONFOUNDED:
+            from tyrefem.diagnose.experiment import next_experiment
+
+            tick("looking for the experiment that decides", 0, 0)
+            further = next_experiment(gap, judgement, fitted)
+    before = {i: gap.corrected(i, gap.computed[i]) for i in range(len(trials))}
+    return Diagnosis(
+        study, amended(study, change), judgement, gap, found, null, best, missing, change, before, after, further,
+        time.perf_counter() - began,
+    )  # fmt: skip
+
+
+class _Counted:
+    """Counts the simulations of the fits, of which nobody knows beforehand how many there will be."""
+
+    def __init__(self, tick: Tick) -> None:
+        self.tick, self.done = tick, 0
+
+    def __call__(self, what: str) -> None:
+        self.done += 1
+        self.tick(what, self.done, 0)
+
+
+def _outside(study: Study) -> float:
+    """ln of the prior probability that what is missing is not in the catalogue."""
+    return math.log(study.card.diagnosis.effects_expected * OUTSIDE)
+
+
+def _named(
+    gap: Gap, study: Study, found: tuple[Candidate, ...], prior: Prior, largest: int, count: Callable[[str], None]
+) -> tuple[list[Scored], MissingHeat]:
+    """All sets with their scores, and heat of unknown origin: in the full model where it may matter."""
+    unknown, outside = patches(study), _outside(study)
+
+    @functools.cache
+    def linear(null: Explained) -> MissingHeat:
+        return missing_heat(gap, unknown, null)
+
+    def elsewhere(null: Explained) -> float:
+        return outside + linear(null).log_evidence
+
+    scored = search(gap, found, prior, largest=largest, tick=count, outside=elsewhere)
+    null = next(one for _, members, one in scored if one is not None and not members)
+    missing = linear(null)
+    score, _, ahead = scored[0]
+    doubtful = ahead is None or min(ahead.p_value, ahead.held_out_p) < IMPROBABLE
+    if doubtful or outside + missing.log_evidence > score - NEAR:
+        missing = missing_heat_fitted(gap, unknown, null, lambda: count("fitting heat of unknown origin"))
+    return scored, missing
+
+
+def _lacking(
+    study: Study, judgement: Judgement, best: Explained, missing: MissingHeat
+) -> tuple[Mapping[Unknown, float], Mapping[Unknown, float], list[Unknown]]:
+    """Values and sd of the unknowns, and which of them the study lacks."""
+    if judgement.verdict != UNEXPLAINED:
+        return best.values, best.sd, [one for member in best.members for one in member.unknowns]
+    # Nothing is named: the study gets the heat of unknown origin that is more than two sd from none.
+    unknown = patches(study)
+    lacking = [one for one in unknown if abs(missing.values.get(one, 0.0)) > 2 * missing.sd.get(one, 1.0)]
+    return {one: x for one, x in missing.values.items() if one in lacking or one not in unknown}, missing.sd, lacking
+
+
+def _after(gap: Gap, change: tuple[Change, ...] | None, values: Mapping[Unknown, float]) -> dict[int, Any]:
+    """Block means of every trial with the changes, on the study's own mesh; as fitted, if there are None."""
+    bench = gap.lab.bench
+    numbers = range(len(bench.trials))
+    if change is None:
+        answers = gap.lab.ask("predict", [(i, values) for i in numbers])
+        return {i: gap.corrected(i, answer) for i, answer in enumerate(answers)}
+    driven = [amended(bench.driven(bench.study, i), change) for i in numbers]
+    return dict(enumerate(gap.lab.ask("full", list(enumerate(driven)))))
