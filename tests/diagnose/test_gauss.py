@@ -81,3 +81,15 @@ def test_a_needless_parameter_costs_what_occam_says() -> None:
     # Without any pull from the data: -ln(1 + (sd/sigma)^2)/2.
     gram, sd = np.array([[4.0]]), np.array([3.0])
     assert fit(gram, np.zeros(1), sd, *FREE).log_evidence == pytest.approx(-np.log(1 + 4 * 9) / 2)
+
+
+@pytest.mark.parametrize("beyond", [0.5, 3.0])
+def test_beyond_says_how_far_the_data_want_a_parameter_off_its_bound(beyond: float) -> None:
+    J, _, sd = _problem(2, 3)
+    free = fit(J.T @ J, np.zeros(3), sd, *(np.repeat(one, 3) for one in FREE))
+    # Data whose best place is so many of its standard deviations above the bound 1 of the first parameter.
+    wanted = np.array([1.0 + beyond * free.sd[0], 0.3, -0.2])
+    overlap = (J.T @ J + np.diag(sd**-2.0)) @ wanted
+    high = np.array([1.0, np.inf, np.inf])
+    found = fit(J.T @ J, overlap, sd, np.full(3, -np.inf), high)
+    np.testing.assert_allclose(found.beyond, [beyond, 0.0, 0.0], rtol=1e-9)

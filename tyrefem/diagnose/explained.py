@@ -21,6 +21,8 @@ if TYPE_CHECKING:
 Array = NDArray[np.float64]
 #: A fit with a misfit of so many times the number of readings nearly explains them.
 NEARLY = 1.3
+#: So many standard deviations beyond a bound that physics sets, and the fit counts as one that ends there.
+PRESSED = 2.0
 
 
 @dataclass(frozen=True, eq=False)
@@ -79,9 +81,13 @@ class Explained:
 
     @property
     def at_bound(self) -> tuple[str, ...]:
-        """Keys of the effects' amplitudes that ended on a bound."""
+        """Keys of the effects' amplitudes that ended on a bound, and that the data want beyond it.
+
+        An emissivity of 0.95 is, in half of all noise, best fitted by 1: that is no sign of another cause.
+        """
         own = {one for member in self.members for one in member.amplitudes}
-        return tuple(one.key for one, held in zip(self.unknowns, self.fit.at_bound, strict=True) if held and one in own)
+        pairs = zip(self.unknowns, self.fit.beyond, strict=True)
+        return tuple(one.key for one, beyond in pairs if beyond > PRESSED and one in own)
 
 
 def explained(gap: Gap, one: Refinement) -> Explained:
@@ -108,7 +114,7 @@ def explained(gap: Gap, one: Refinement) -> Explained:
     return Explained(
         one.members,
         tuple(one.unknowns),
-        Fit(one.x, one.best.covariance, one.best.log_evidence, one.best.at_bound),
+        Fit(one.x, one.best.covariance, one.best.log_evidence, one.best.at_bound, one.best.beyond),
         one.best.log_evidence - float(effective @ effective) / 2 - doubted,
         computed,
         one.misfit(one.r, one.x),

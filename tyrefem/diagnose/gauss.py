@@ -16,13 +16,15 @@ Array = NDArray[np.float64]
 class Fit:
     """A fit: ``mean`` (k,) within the bounds, ``covariance`` (k, k), log evidence, and which are at a bound.
 
-    ``log_evidence`` leaves out -(1/2) |d|^2 and the constants that every model on the same data shares.
+    ``log_evidence`` leaves out -(1/2) |d|^2 and the constants that every model on the same data shares. ``beyond``
+    (k,): by how many standard deviations the data want a parameter beyond the bound that it is at; 0 elsewhere.
     """
 
     mean: Array
     covariance: Array
     log_evidence: float
     at_bound: NDArray[np.bool_]
+    beyond: Array
 
     @property
     def sd(self) -> Array:
@@ -46,7 +48,7 @@ def fit(gram: Array, overlap: Array, sd: Array, low: Array, high: Array) -> Fit:
     """
     k = len(sd)
     if k == 0:
-        return Fit(np.zeros(0), np.zeros((0, 0)), 0.0, np.zeros(0, dtype=bool))
+        return Fit(np.zeros(0), np.zeros((0, 0)), 0.0, np.zeros(0, dtype=bool), np.zeros(0))
     scaled = gram * sd[:, None] * sd[None, :]
     matrix = np.eye(k) + scaled
     factor = cho_factor(matrix, lower=True)
@@ -68,7 +70,9 @@ def fit(gram: Array, overlap: Array, sd: Array, low: Array, high: Array) -> Fit:
         worst = int(np.argmax(np.maximum(low_z - z, z - high_z) / spread))
         held[worst] = True
         z = _held(matrix, right, np.clip(z, low_z, high_z), held)
-    return Fit(z * sd, covariance_z * sd[:, None] * sd[None, :], log_evidence, held)
+    # The slope of the misfit at a bound, over what it would be one standard deviation off the best place.
+    beyond = np.where(held, np.abs(right - matrix @ z) * spread, 0.0)
+    return Fit(z * sd, covariance_z * sd[:, None] * sd[None, :], log_evidence, held, beyond)
 
 
 def _held(matrix: Array, right: Array, z: Array, held: NDArray[np.bool_]) -> Array:

@@ -102,8 +102,8 @@ def judge(ranked: Sequence[Standing], explained: Callable[[Members], Explained |
     """The verdict on sets ranked by probability.
 
     A set is *identified* when it is part of the truth with at least 90 % and all of it with at least 50 % probability,
-    no amplitude is at a bound, the misfit is one that noise makes, and the held-out runs do not reject it. Without such
-    a set: *no gap* if no effect is the most probable,
+    no amplitude is pressed against a bound, the misfit is one that noise makes, and the held-out runs do not reject
+    it. Without such a set: *no gap* if no effect is the most probable,
     *unexplained* if the cause is outside the catalogue or the best set does not fit, else *confounded*.
     """
     best = ranked[0]
@@ -136,7 +136,7 @@ def judge(ranked: Sequence[Standing], explained: Callable[[Members], Explained |
         reasons.append(f"the held-out runs reject {best.key} (probability {fit.held_out_p:.1g})")
         return verdict(UNEXPLAINED)
     if fit is not None and fit.at_bound:
-        reasons.append("at a bound that physics sets: " + ", ".join(fit.at_bound))
+        reasons.append("the data want it beyond a bound that physics sets: " + ", ".join(fit.at_bound))
         return verdict(CONFOUNDED)
     sure = probability(ranked)
     if sure >= SURE and best.probability >= WHOLE:

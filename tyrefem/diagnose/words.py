@@ -147,7 +147,7 @@ def _confounded(d: Diagnosis, closing: str) -> tuple[str, ...]:
         if best.members:
             first += f" Most probable: {clauses}."
     if d.best.at_bound:
-        first += " The fit ends on a bound that physics sets, so it is not taken for certain."
+        first += " The data want it beyond a bound that physics sets, so it is not taken for certain."
     decides = next_words(d)
     return (first, *([decides] if decides else []), closing)
 
