@@ -21,6 +21,8 @@ if TYPE_CHECKING:
 Array = NDArray[np.float64]
 #: A fit with a misfit of so many times the number of readings nearly explains them.
 NEARLY = 1.3
+#: A misfit that noise makes with at least this probability is nothing unusual.
+USUAL = 0.01
 #: So many standard deviations beyond a bound that physics sets, and the fit counts as one that ends there.
 PRESSED = 2.0
 
@@ -54,8 +56,11 @@ class Explained:
 
     @property
     def close(self) -> bool:
-        """Converged, and not far from a misfit that noise makes: a place to start a larger set from."""
-        return self.converged and self.misfit < NEARLY * self.readings
+        """Not far from a misfit that noise makes: a place to judge larger sets from, and to start them from.
+
+        A fit that has not converged must already fit as well as noise lets the truth.
+        """
+        return self.misfit < NEARLY * self.readings and (self.converged or self.p_value > USUAL)
 
     @property
     def finished(self) -> bool:
