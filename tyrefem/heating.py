@@ -11,8 +11,9 @@ import numpy as np
 from numpy.typing import NDArray
 
 from tyrefem.drive import Drive
+from tyrefem.footprint.loss_tangent import Loss
 from tyrefem.loading import LoadCase
-from tyrefem.strain import StrainCycle
+from tyrefem.strain import ORDERS, StrainCycle
 
 Array = NDArray[np.float64]
 
@@ -79,6 +80,10 @@ class CycleSchedule:
 class HeatSource:
     """q = U tan(delta)(T) v / (2 r_r), W/m3, of one zone (Clark & Dodge 1980, eq 26); twice that for ``sinusoid``.
 
+    Where tan delta depends on frequency (``over_frequency``), q = v / (2 r_r) sum_n U_n tan(delta)(n f, T), f the
+    revolutions per second and U_n the share of the cycle that runs n times per revolution; one for all where the
+    strain law knows one cycle only.
+
     Called by the conduction solver with nodes x (2, n), time t (s) and temperatures T (n,), degC. The strain energy at
     the nodes is evaluated once per load case, as the solver passes the same x at every call.
     """
@@ -87,14 +92,15 @@ class HeatSource:
     schedule: CycleSchedule
     loss_tangent: Callable[[Array], Array]
     loss_factor: float = 1.0
+    over_frequency: Loss | None = None
     _nodes: Array | None = field(default=None, init=False, repr=False)
     _energies: dict[tuple[int, int], Array] = field(default_factory=dict, init=False, repr=False)
+    _spectra: dict[tuple[int, int], Array] = field(default_factory=dict, init=False, repr=False)
     _losses: tuple[float, Array] | None = field(default=None, init=False, repr=False)
 
     def energy_density(self, x: Array, t: float) -> Array:
         """U, J/m3, at nodes and time."""
-        if self._nodes is not x:
-            self._nodes, self._energies, self._losses = x, {}, None
+        self._meet(x)
         total: Array = np.zeros(x.shape[1])
         for phase, knot, weight in self.schedule.weights(t):
             if (phase, knot) not in self._energies:
@@ -103,13 +109,53 @@ class HeatSource:
             total = total + weight * self._energies[phase, knot]
         return total
 
+    def spectrum(self, x: Array, t: float) -> Array:
+        """(orders, n) U, J/m3, at nodes and time, by how often per revolution it runs: the first of `strain.ORDERS`."""
+        self._meet(x)
+        parts = []
+        for phase, knot, weight in self.schedule.weights(t):
+            if (phase, knot) not in self._spectra:
+                cycle = self.schedule.cycles[phase][knot]
+                own = getattr(cycle, "spectrum", None)
+                one = cycle.energy_density(self.zone, x)[None] if own is None else own(self.zone, x)
+                self._spectra[phase, knot] = np.asarray(one)
+            parts.append(weight * self._spectra[phase, knot])
+        total: Array = np.zeros((max(len(part) for part in parts), x.shape[1]))
+        for part in parts:
+            total[: len(part)] += part
+        return total
+
+    def _meet(self, x: Array) -> None:
+        if self._nodes is not x:
+            self._nodes, self._losses = x, None
+            self._energies.clear()
+            self._spectra.clear()
+
     def __call__(self, x: Array, t: float, T: Array) -> Array:
         rate = self.loss_factor * self.schedule.revolution_rate(t)
         if rate == 0:
             return np.zeros(x.shape[1])
         if self._nodes is not x or self._losses is None or self._losses[0] != t:
-            self._losses = t, rate * self.energy_density(x, t)
-        return self._losses[1] * self.loss_tangent(T)
+            work = self.energy_density if self.over_frequency is None else self.spectrum
+            self._losses = t, rate * work(x, t)
+        losses = self._losses[1]
+        if self.over_frequency is None:
+            return losses * self.loss_tangent(T)
+        frequency = self.schedule.revolution_rate(t) / np.pi
+        heat: Array = np.zeros(x.shape[1])
+        for order, loss in zip(ORDERS, losses, strict=False):
+            if loss.any():
+                heat += loss * self.over_frequency(order * frequency, T)
+        return heat
+
+
+def warming_knots(count: int) -> Sequence[float]:
+    """Fractions of a phase at which strain cycles follow the temperature: closer at its start, where it rises fast.
+
+    >>> warming_knots(5)
+    (0.0, 0.0625, 0.25, 0.5625, 1.0)
+    """
+    return tuple(float(x) for x in np.linspace(0.0, 1.0, count) ** 2)
 
 
 def ramp_knots(changes: bool, count: int = 9) -> Sequence[float]:

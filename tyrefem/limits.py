@@ -21,4 +21,5 @@ def warnings_of(result: Result) -> tuple[str, ...]:
         for state in result.phases
         if state.propagation_depth > SHALLOW * tread
     )
-    return deep + (() if result.sliding is None else result.sliding.warnings)
+    apart = () if result.feedback is None else result.feedback.warnings
+    return apart + deep + (() if result.sliding is None else result.sliding.warnings)

@@ -10,6 +10,7 @@ from pydantic import Field, model_validator
 from tyrefem.cards import Card, PositiveLength, Text
 from tyrefem.errors import InputError
 from tyrefem.quantity import Unit
+from tyrefem.softening import Softening
 
 Modulus = Annotated[float, Unit("Pa", gt=0, le=1e12)]
 Constant = Annotated[float, Unit("Pa", ge=-1e9, le=1e9)]
@@ -35,6 +36,11 @@ class RubberLaw(Card):
     def bulk(self) -> float:
         """kappa [Pa]: the card's, or 100 times the shear modulus."""
         return self.bulk_modulus or BULK_RATIO * self.initial_shear_modulus
+
+    def times(self, factor: float) -> Self:
+        """The law with every shear constant times a factor; a bulk modulus that is given stays."""
+        names = ("shear_modulus", "c10", "c01", "c20", "c30")
+        return self.model_copy(update={name: factor * getattr(self, name) for name in names if hasattr(self, name)})
 
     @model_validator(mode="after")
     def _hard_to_compress(self) -> Self:
@@ -126,6 +132,7 @@ class Cords(Card):
     pairs : half of the cords at +angle, half at -angle.
     thickness_share : part of the layer's thickness that holds the cords.
     loss_tangent : of the cords themselves; where not given they lose nothing.
+    softening : of the cords as they warm; where not given they keep their modulus.
 
     Raises
     ------
@@ -148,6 +155,7 @@ class Cords(Card):
     pairs: bool = True
     thickness_share: Annotated[float, Unit("1", gt=0, le=1)] = 1.0
     loss_tangent: Annotated[float, Unit("1", ge=0, le=2)] | None = None
+    softening: Softening | None = None
     source: Text
     relative_sd: Annotated[float, Unit("1", ge=0, lt=1)] | None = None
 
@@ -166,6 +174,12 @@ class Cords(Card):
                 f" {self.ends / self.plies * self.diameter:.3g}, at most 1 is possible",
                 field="ends",
             )
+        if self.compression_modulus is not None and self.compression_modulus > self.modulus:
+            raise InputError(
+                f"{self.compression_modulus:.4g} Pa must be at most the modulus in tension, {self.modulus:.4g} Pa:"
+                " compressed cords buckle",
+                field="compression_modulus",
+            )
         if self.lift and self.angle_radius is None:
             raise InputError("missing; the lift law needs the radius where the angle is given", field="angle_radius")
         return self
@@ -174,6 +188,11 @@ class Cords(Card):
     def in_compression(self) -> float:
         """Modulus in compression [Pa]."""
         return self.modulus if self.compression_modulus is None else self.compression_modulus
+
+    def times(self, factor: float) -> Cords:
+        """The cords with their moduli times a factor."""
+        weaker = None if self.compression_modulus is None else factor * self.compression_modulus
+        return self.model_copy(update={"modulus": factor * self.modulus, "compression_modulus": weaker})
 
     def volume_fraction(self, thickness: float) -> float:
         """v_c = ends pi d^2 / (4 h) of a layer ``thickness`` h [m] thick.

@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 import functools
-from dataclasses import dataclass
 from pathlib import Path
 from typing import Annotated, Any, ClassVar, Literal
 
@@ -13,56 +12,16 @@ from pydantic import model_validator
 
 from tyrefem.cards import Card, Temperature, Text
 from tyrefem.errors import InputError
+from tyrefem.footprint.loss_tangent import Loss
+from tyrefem.loss_frequency import LossFrequency, loss_over_frequency
 from tyrefem.material_elasticity import Cords, Elasticity
+from tyrefem.property_table import PropertyTable, Sourced, columns
 from tyrefem.quantity import Unit
+from tyrefem.softening import Softening
 
 Array = NDArray[np.float64]
 #: From absolute zero to the highest temperature that a card may name, degC.
 _RUBBER = (-273.15, 2000.0)
-
-
-class Sourced(Card):
-    """A property: every one names its source; a guess says ``estimate: ...``."""
-
-    source: Text
-    #: Relative standard deviation of the number, where the source or an estimate gives one.
-    relative_sd: Annotated[float, Unit("1", ge=0, lt=1)] | None = None
-
-
-@dataclass(frozen=True)
-class PropertyTable:
-    """A property tabulated over temperature: linear between rows, constant beyond the ends.
-
-    >>> k = PropertyTable((20.0, 100.0), (0.20, 0.24))
-    >>> float(k(60.0)), float(k(500.0))
-    (0.22, 0.24)
-    """
-
-    temperatures: tuple[float, ...]
-    values: tuple[float, ...]
-
-    def __call__(self, temperature: Array | float) -> Array:
-        return np.asarray(np.interp(temperature, self.temperatures, self.values))
-
-
-def _columns(rows: list[list[Any]], units: tuple[str, ...]) -> list[tuple[float, ...]]:
-    """Columns of a table of quantities whose first column, the temperature, must rise."""
-    if len(rows) < 2:
-        raise InputError("needs at least two rows", field="table")
-    parsed = []
-    for number, row in enumerate(rows):
-        if not isinstance(row, list | tuple) or len(row) != len(units):
-            message = f"row must have {len(units)} entries in {', '.join(units)}"
-            raise InputError(message, field=f"table.{number}")
-        try:
-            pairs = zip(row, units, strict=True)
-            parsed.append([Unit(unit, gt=None if unit == "degC" else 0)(cell) for cell, unit in pairs])
-        except InputError as error:
-            raise error.within(field=f"table.{number}") from None
-    columns = list(zip(*parsed, strict=True))
-    if any(later <= earlier for earlier, later in zip(columns[0], columns[0][1:], strict=False)):
-        raise InputError("temperatures must rise from row to row, without duplicates", field="table")
-    return columns
 
 
 class Conductivity(Sourced):
@@ -91,8 +50,8 @@ class Conductivity(Sourced):
     def _tables(self) -> list[PropertyTable]:
         rows = self.table or []
         width = len(rows[0]) if rows and isinstance(rows[0], list) else 2
-        columns = _columns(rows, ("degC", *[self.UNIT] * (2 if width == 3 else 1)))
-        return [PropertyTable(columns[0], values) for values in columns[1:]]
+        found = columns(rows, ("degC", *[self.UNIT] * (2 if width == 3 else 1)))
+        return [PropertyTable(found[0], values) for values in found[1:]]
 
     @property
     def orthotropic(self) -> bool:
@@ -124,7 +83,7 @@ class Scalar(Sourced):
         if (self.value is None) == (self.table is None):
             raise InputError("give exactly one of 'value' and 'table'")
         if self.table is not None:
-            _columns(self.table, ("degC", self.UNIT))
+            columns(self.table, ("degC", self.UNIT))
         else:
             self._at("value", self.value)
         return self
@@ -139,7 +98,7 @@ class Scalar(Sourced):
         """A number, or a function of temperature (degC)."""
         if self.table is None:
             return self._at("value", self.value)
-        temperatures, values = _columns(self.table, ("degC", self.UNIT))
+        temperatures, values = columns(self.table, ("degC", self.UNIT))
         return PropertyTable(temperatures, values)
 
     def at(self, temperature: float) -> float:
@@ -170,18 +129,24 @@ class LossTangent(Sourced):
     """tan delta and its temperature law.
 
     ``exponential``: tan d = value exp(-rate (T - at))  (Clark & Dodge 1980, table 3, note 5, with
-    rate = 0.0148 per kelvin); ``constant``; ``table``: rows ``[T, tan delta]``.
+    rate = 0.0148 per kelvin); ``constant``; ``table``: rows ``[T, tan delta]``; ``frequency``: the table or Prony
+    series of ``frequency`` with its shift says everything. With the other laws ``frequency`` carries them from its
+    reference frequency to others; without it tan delta is the same at every frequency.
     """
 
-    law: Literal["exponential", "constant", "table"] = "exponential"
+    law: Literal["exponential", "constant", "table", "frequency"] = "exponential"
     value: Annotated[float, Unit("1", ge=0, le=10)] | None = None
     at: Temperature = 25.0
     rate: Annotated[float, Unit("1/delta_degC", ge=-0.1, le=0.2)] | None = None
     table: list[list[Any]] | None = None
+    frequency: LossFrequency | None = None
 
     @model_validator(mode="after")
     def _complete(self) -> LossTangent:
-        if self.law == "table":
+        if self.law == "frequency":
+            if self.frequency is None or self.frequency.law == "power":
+                raise InputError("the law 'frequency' needs the table 'frequency' with the law 'table' or 'prony'")
+        elif self.law == "table":
             if self.table is None:
                 raise InputError("the law 'table' needs 'table'")
             _ = self._tabulated
@@ -193,10 +158,18 @@ class LossTangent(Sourced):
 
     @functools.cached_property
     def _tabulated(self) -> PropertyTable:
-        return PropertyTable(*_columns(self.table or [], ("degC", "1")))
+        return PropertyTable(*columns(self.table or [], ("degC", "1")))
+
+    @functools.cached_property
+    def over_frequency(self) -> Loss:
+        """tan delta(f, T): called with a frequency, Hz, and temperatures, degC."""
+        return loss_over_frequency(self, self.frequency, master=self.law == "frequency")
 
     def __call__(self, temperature: Array | float) -> Array:
-        """tan delta at temperatures in degC, same shape."""
+        """tan delta at temperatures in degC, same shape; at the reference frequency, if it depends on frequency."""
+        if self.law == "frequency":
+            assert self.frequency is not None
+            return self.over_frequency(self.frequency.reference, np.asarray(temperature, dtype=float))
         if self.law == "table":
             return self._tabulated(temperature)
         value = self.value or 0.0
@@ -210,12 +183,24 @@ class LossTangent(Sourced):
 class Cord(Sourced):
     """Bias plies: crown angle to the circumference, and the in-plane shear modulus of the ply pair."""
 
-    crown_angle: Annotated[float, Unit("rad", gt=0)] | None = None
+    crown_angle: Annotated[float, Unit("rad", gt=0, le=1.5708)] | None = None
     ply_shear_modulus: Annotated[float, Unit("Pa", gt=0)] | None = None
+    softening: Softening | None = None
+
+
+class ThermalExpansion(Sourced):
+    """Linear expansion of the compound, and of its cords along themselves, from the stress-free temperature."""
+
+    coefficient: Annotated[float, Unit("1/delta_degC", ge=0, le=1e-3)]
+    cords: Annotated[float, Unit("1/delta_degC", ge=-1e-4, le=1e-3)] = 0.0
+    stress_free: Temperature = 25.0
 
 
 class MaterialCard(Card):
-    """One compound or composite. Read with `material`."""
+    """One compound or composite. Read with `material`.
+
+    ``softening`` acts on every modulus of the compound; cords have their own, in their own table, or none.
+    """
 
     kind: ClassVar[str] = "material"
     title: Text
@@ -229,6 +214,30 @@ class MaterialCard(Card):
     cord: Cord | None = None
     elasticity: Elasticity | None = None
     cords: Cords | None = None
+    softening: Softening | None = None
+    expansion: ThermalExpansion | None = None
+
+    @property
+    def softens(self) -> bool:
+        """Does any modulus depend on temperature?"""
+        return any(one is not None and one.softening is not None for one in (self, self.cord, self.cords))
+
+    def warmed(self, temperature: float) -> MaterialCard:
+        """The card with the moduli that it has at a temperature, degC."""
+        changes: dict[str, Any] = {}
+        if self.softening is not None:
+            factor = self.softening(temperature)
+            for name in ("shear_modulus", "youngs_modulus"):
+                if (modulus := getattr(self, name)) is not None:
+                    changes[name] = modulus.model_copy(update={"value": factor * modulus.value})
+            if self.elasticity is not None:
+                changes["elasticity"] = self.elasticity.times(factor)
+        if self.cord is not None and self.cord.softening is not None and self.cord.ply_shear_modulus is not None:
+            softened = self.cord.softening(temperature) * self.cord.ply_shear_modulus
+            changes["cord"] = self.cord.model_copy(update={"ply_shear_modulus": softened})
+        if self.cords is not None and self.cords.softening is not None:
+            changes["cords"] = self.cords.times(self.cords.softening(temperature))
+        return self.model_copy(update=changes) if changes else self
 
     def heat_capacity(self) -> Any:
         """Volumetric heat capacity rho c, J/m3/K: a number or a function of temperature."""

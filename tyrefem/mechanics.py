@@ -6,6 +6,7 @@ from collections.abc import Callable
 
 import numpy as np
 
+from tyrefem.boundaries.contained_air import ATMOSPHERE
 from tyrefem.errors import InputError
 from tyrefem.footprint import GivenFootprint
 from tyrefem.heating import CycleSchedule, ramp_knots
@@ -66,21 +67,51 @@ def cycle_schedule(study: Study) -> CycleSchedule:
     ------
     InputError : a load or deflection that the section cannot take; names the phase.
     """
-    _check_footprint(study)
-    cycle = _provider(study)
+    solver = KnotSolver(study)
     knots, cases, cycles = [], [], []
     for number, phase in enumerate(study.card.drive.phases):
         fractions = tuple(ramp_knots(phase.changes_load))
-        try:
-            phase_cases = tuple(_load_case(study, number, fraction) for fraction in fractions)
-            phase_cycles = tuple(cycle(case) for case in phase_cases)
-        except InputError as error:
-            placed = error.within(field=f"drive.phases.{phase.name}", file=study.file)
-            raise study.as_written(placed) from None
+        found = [solver.solve(number, fraction) for fraction in fractions]
         knots.append(fractions)
-        cases.append(phase_cases)
-        cycles.append(phase_cycles)
+        cases.append(tuple(case for case, _ in found))
+        cycles.append(tuple(cycle for _, cycle in found))
     return CycleSchedule(study.card.drive, tuple(knots), tuple(cases), tuple(cycles))
+
+
+class KnotSolver:
+    """Load case and strain cycle of a moment of a study's drive."""
+
+    def __init__(self, study: Study) -> None:
+        _check_footprint(study)
+        self.study, self._cycle = study, _provider(study)
+
+    def case(self, number: int, fraction: float, pressure_ratio: float = 1.0) -> LoadCase:
+        """The load case at a fraction of a phase; ``pressure_ratio``: absolute pressure over the drive's.
+
+        Raises
+        ------
+        InputError : a load or deflection that the section cannot take; names the phase.
+        """
+        try:
+            return _load_case(self.study, number, fraction, pressure_ratio)
+        except InputError as error:
+            raise self._placed(error, number) from None
+
+    def cycle(self, number: int, case: LoadCase) -> StrainCycle:
+        """The strain cycle of a load case of a phase; raises as `case`."""
+        try:
+            return self._cycle(case)
+        except InputError as error:
+            raise self._placed(error, number) from None
+
+    def solve(self, number: int, fraction: float) -> tuple[LoadCase, StrainCycle]:
+        """Both, at the drive's own pressure."""
+        case = self.case(number, fraction)
+        return case, self.cycle(number, case)
+
+    def _placed(self, error: InputError, number: int) -> InputError:
+        name = self.study.card.drive.phases[number].name
+        return self.study.as_written(error.within(field=f"drive.phases.{name}", file=self.study.file))
 
 
 def _provider(study: Study) -> Callable[[LoadCase], StrainCycle]:
@@ -91,6 +122,10 @@ def _provider(study: Study) -> Callable[[LoadCase], StrainCycle]:
         from tyrefem.strain import fem
 
         return fem.provider(study)
+    if study.card.mechanics.strain == "barrel":
+        from tyrefem.strain import barrel
+
+        return barrel.provider(study)
     moduli = stiffness(study)
     return lambda case: _cycle(study, moduli, case)
 
@@ -101,7 +136,17 @@ def _given(study: Study) -> Callable[[LoadCase], StrainCycle]:
     if section.rating is None:
         raise InputError("the strain law 'given' needs the section's [rating]", field="section.rating")
     deflection = study.card.mechanics.load_law.deflection(energy.load, energy.pressure, section.rating)
-    return lambda case: Given(section, energy.regions, deflection, case)
+    softened = _softened(study, energy.temperature)
+    return lambda case: Given(section, energy.regions, deflection, case, softened)
+
+
+def _softened(study: Study, given: float | None) -> dict[str, float]:
+    """Region -> modulus of its compound over that at the temperature where its energy was given."""
+    warm = study.temperatures
+    if warm is None or given is None:
+        return {}
+    laws = {region: card.softening for region, card in study.materials.items()}
+    return {region: law(warm[region]) / law(given) for region, law in laws.items() if law is not None}
 
 
 def _check_footprint(study: Study) -> None:
@@ -123,14 +168,17 @@ def _cycle(study: Study, moduli: Stiffness, case: LoadCase) -> Arcs:
     return cycle
 
 
-def _load_case(study: Study, number: int, fraction: float) -> LoadCase:
+def _load_case(study: Study, number: int, fraction: float, pressure_ratio: float = 1.0) -> LoadCase:
     phase, section = study.card.drive.phases[number], study.section
     assert section.rating is not None
+    pressure = phase.pressure.at(fraction)
+    # Written so that a ratio of 1 leaves the pressure as it is, to the bit.
+    pressure = pressure + (pressure + ATMOSPHERE) * (pressure_ratio - 1)
     return load_case(
         study.card.mechanics.load_law,
         section.rating,
         outer_radius=section.outer_diameter / 2,
-        pressure=phase.pressure.at(fraction),
+        pressure=pressure,
         load=None if phase.load is None else phase.load.at(fraction),
         deflection=None if phase.deflection is None else phase.deflection.at(fraction),
         drum_diameter=phase.drum_diameter,

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import functools
+from collections.abc import Callable
 from dataclasses import dataclass
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
@@ -22,6 +23,7 @@ if TYPE_CHECKING:
     import pandas as pd
 
     from tyrefem.conduction.history import History
+    from tyrefem.feedback import FeedbackOutcome
     from tyrefem.rolling import RollingTyre
     from tyrefem.studies import Study
 
@@ -40,6 +42,8 @@ class Result:
     field_times: Array
     #: Wall time of the run, s.
     wall_time: float
+    #: How the feedback of temperature on the strain cycle went; None for a study without it.
+    feedback: FeedbackOutcome | None = None
 
     # -- temperatures ------------------------------------------------------------------------------------------------
 
@@ -51,6 +55,10 @@ class Result:
     def at(self, points: ArrayLike) -> Array:
         """Temperatures at points (n_points, 2) in (r, z), m: (n_times, n_points), degC."""
         return np.asarray(self.history.at(points))
+
+    def temperature_field(self, i: int = -1) -> Callable[[Array], Array]:
+        """T(x), degC, at ``times[i]`` of places (2, n) in (r, z), m: what `tyrefem.solid.inflation.inflate` takes."""
+        return lambda x: self.history.field(i).at(self._inside(np.asarray(x).T))
 
     @functools.cached_property
     def sensor_places(self) -> dict[str, tuple[float, float]]:

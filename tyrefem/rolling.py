@@ -14,6 +14,7 @@ from numpy.typing import NDArray
 from tyrefem.boundaries.rim import Lumped
 from tyrefem.conduction import Conduction, Film, Material, Reservoir
 from tyrefem.effects.acting import Source
+from tyrefem.errors import InputError
 from tyrefem.heat_budget import FRICTION
 from tyrefem.heating import LOSS_FACTOR, REMEMBERED, CycleSchedule, HeatSource
 from tyrefem.meshing import TyreMesh
@@ -30,15 +31,19 @@ class RollingTyre(Surroundings):
     """A study made into a conduction problem. Everything is built once, on demand.
 
     ``like``: another tyre, whose mesh (and so the operators assembled on it) is taken if the section is the same.
+    ``cycles``: strain cycles in place of those at the drive's own pressure and the cards' moduli.
     """
 
     like: RollingTyre | None = None
+    cycles: CycleSchedule | None = None
 
     def _as_in_like(self, tables: tuple[str, ...], ports: tuple[str, ...]) -> bool:
         """Are these tables of the study, the section, and the effects at these ports those of ``like``?"""
         if self.like is None:
             return False
         own, other = self.study, self.like.study
+        if "mechanics" in tables and self.cycles is not self.like.cycles:
+            return False
         return (
             own.section is other.section
             and all(own.data.get(table) == other.data.get(table) for table in tables)
@@ -48,6 +53,8 @@ class RollingTyre(Surroundings):
     @functools.cached_property
     def schedule(self) -> CycleSchedule:
         """Load cases and strain cycles of every phase."""
+        if self.cycles is not None:
+            return self.cycles
         if self._as_in_like(("drive", "mechanics"), ()):
             assert self.like is not None
             own, other = self.study.materials, self.like.study.materials
@@ -133,19 +140,15 @@ class RollingTyre(Surroundings):
     def _gas_capacity(self) -> float | None:
         law = self.study.card.boundaries.contained_air
         pressure = self.drive.phases[0].pressure.start
-        capacity = law.heat_capacity(self.study.section.gas_volume(), pressure, self._gas_start)
+        capacity = law.heat_capacity(self.study.section.gas_volume(), pressure, law.start(self.drive.initial))
         return None if capacity is None else self.acting.gas_capacity(capacity)
-
-    @property
-    def _gas_start(self) -> float:
-        initial = self.study.card.boundaries.contained_air.initial
-        return self.drive.initial if initial is None else initial
 
     def _reservoirs(self) -> dict[str, Reservoir]:
         found: dict[str, Reservoir] = {}
         rim, share = self.study.card.boundaries.rim, 0.5 if self.study.section.half else 1.0
         if self._gas_capacity is not None:
-            found[GAS] = Reservoir(self._gas_capacity, self._gas_start)
+            start = self.study.card.boundaries.contained_air.start(self.drive.initial)
+            found[GAS] = Reservoir(self._gas_capacity, start)
         if isinstance(rim, Lumped):
             exchanges: list[tuple[float, Any]] = [(rim.cooling * share, self.ambient)]
             if self._gas_capacity is not None and rim.air > 0:
@@ -157,11 +160,12 @@ class RollingTyre(Surroundings):
     @functools.cached_property
     def hysteresis(self) -> dict[str, HeatSource]:
         """Zone -> heat of its strain cycle."""
-        factor = LOSS_FACTOR[self.study.card.mechanics.loss_convention]
-        return {
-            zone.name: HeatSource(zone.name, self.schedule, self.study.materials[zone.region].loss_tangent, factor)
-            for zone in self.schedule.zones
-        }
+        factor, found = LOSS_FACTOR[self.study.card.mechanics.loss_convention], {}
+        for zone in self.schedule.zones:
+            law = self.study.materials[zone.region].loss_tangent
+            over_frequency = None if law.frequency is None else law.over_frequency
+            found[zone.name] = HeatSource(zone.name, self.schedule, law, factor, over_frequency)
+        return found
 
     @functools.cached_property
     def sources(self) -> dict[str, Source]:
@@ -184,7 +188,19 @@ class RollingTyre(Surroundings):
 
     @functools.cached_property
     def problem(self) -> Conduction:
-        """The conduction problem."""
+        """The conduction problem.
+
+        Raises
+        ------
+        InputError : the study has feedback, and strain cycles that follow its temperatures are not given.
+        """
+        if self.cycles is None and self.study.card.mechanics.feedback is not None:
+            raise InputError(
+                "only a run finds strain cycles that follow the temperature; a diagnosis takes them as they are at the "
+                "drive's pressure: leave the table away and let the effect 'pressure-rise' stand for the warm air",
+                field="mechanics.feedback",
+                file=self.study.file,
+            )
         return Conduction(
             self.mesh.mesh,
             self.bodies,
@@ -203,10 +219,18 @@ def _of_time(law: Callable[[float], float]) -> Callable[[Any, float], float]:
 
 
 def run(study: Study, progress: Callable[[float], None] | None = None, like: RollingTyre | None = None) -> Result:
-    """Simulate a study's drive; ``like``: see `RollingTyre`."""
+    """Simulate a study's drive; ``like``: see `RollingTyre`. With ``mechanics.feedback``: `tyrefem.feedback.run`."""
+    if study.card.mechanics.feedback is not None:
+        from tyrefem import feedback
+
+        return feedback.run(study, progress, like)
+    return simulate(RollingTyre(study, like), progress)
+
+
+def simulate(tyre: RollingTyre, progress: Callable[[float], None] | None = None) -> Result:
+    """Simulate a tyre's drive with the strain cycles that it has."""
     began = clock.perf_counter()
-    tyre = RollingTyre(study, like)
-    end = tyre.drive.end
+    study, end = tyre.study, tyre.drive.end
     every = study.card.output.every
     fields = np.linspace(0.0, end, study.card.output.fields)
     readings = np.concatenate([np.arange(0.0, end, every), tyre.drive.starts, tyre.sliding.readings, fields, [end]])

@@ -132,6 +132,22 @@ class Study:
                 raise error if error.file else error.within(field=f"materials.{region}", file=self.file) from None
         return found
 
+    def warmed(self, temperatures: Mapping[str, float]) -> Study:
+        """This study with the moduli that its cards have at the mean temperatures of the regions, degC.
+
+        What it is made of is shared; it is for finding strain cycles, not for writing or changing.
+        """
+        study = object.__new__(Study)
+        study.__dict__.update(self.__dict__)
+        cards = {region: card.warmed(temperatures[region]) for region, card in self.materials.items()}
+        study.__dict__.update(materials=cards, temperatures=dict(temperatures))
+        return study
+
+    @functools.cached_property
+    def temperatures(self) -> Mapping[str, float] | None:
+        """Mean temperature of each region that the moduli are at, degC; None: as the cards give them."""
+        return None
+
     @property
     def title(self) -> str:
         """One line for people."""

@@ -18,6 +18,7 @@ from tyrefem.effects import Effect, EffectOf
 from tyrefem.errors import InputError
 from tyrefem.footprint import TR_R_64, FootprintLaw
 from tyrefem.loading import TrR64, VerticalStiffness
+from tyrefem.published import Published
 from tyrefem.quantity import Unit
 from tyrefem.strain.given import GivenEnergy
 
@@ -43,22 +44,42 @@ class MeshChoice(Card):
     unit: str = "m"
 
 
+class Feedback(Card):
+    """How temperatures act back on the strain cycle: `tyrefem.feedback`.
+
+    ``pressure``: the gauge pressure follows the contained air's temperature, so that the deflection at given load
+    falls as it warms. ``modulus``: moduli follow the ``softening`` of the cards at each region's mean temperature.
+    ``knots``: strain cycles over every phase of constant load. ``tolerance``: temperatures of the strain cycles and
+    of the run they give differ by less; ``iterations``: runs at most.
+    """
+
+    pressure: bool = True
+    modulus: bool = True
+    knots: Annotated[int, Field(ge=2, le=200)] = 9
+    tolerance: Annotated[float, Unit("delta_degC", gt=0, le=20)] = 0.1
+    iterations: Annotated[int, Field(ge=1, le=200)] = 20
+
+
 class Mechanics(Card):
     """How the strain cycle is found.
 
     ``loss_convention``: ``nasa``, W = pi U tan d (eq 25, where U stands for E' e0^2), or ``sinusoid``,
     W = 2 pi U tan d with U = E' e0^2 / 2. ``poisson_term`` is c_a = 1 - nu_pt nu_tp (eq 7a), 0.75 an estimate.
-    ``strain``: ``arcs``, the NASA report's bias tyre, or ``given``, the energies of the table ``energy`` (which only
-    this law reads).
+    ``strain``: ``arcs``, the NASA report's bias tyre; ``barrel``, its deformation by finite elements; ``fem``, the
+    footprint by finite elements; or ``given``, the energies of the table ``energy`` (which only this law reads).
+    ``revolution``: of ``fem``, all harmonics each at its own frequency, or one cycle as in the report. ``feedback``:
+    temperatures act back on the strain cycle; without this table they do not.
     """
 
-    strain: Literal["arcs", "fem", "given"] = "arcs"
+    strain: Literal["arcs", "barrel", "fem", "given"] = "arcs"
     energy: GivenEnergy | None = None
     load_law: Annotated[TrR64 | VerticalStiffness, Field(discriminator="law")] = TrR64()
     footprint: Annotated[FootprintLaw, Field(discriminator="law")] = TR_R_64
     loss_convention: Literal["nasa", "sinusoid"] = "nasa"
     poisson_term: Annotated[float, Unit("1", ge=0, le=1)] = 0.75
     membrane_shear: bool = True
+    revolution: Literal["harmonics", "one-cycle"] = "harmonics"
+    feedback: Feedback | None = None
 
     @model_validator(mode="after")
     def _energy_where_given(self) -> Mechanics:
@@ -168,6 +189,7 @@ class StudyCard(Card):
     cases: Text | None = None
     effects: tuple[Annotated[Effect, EffectOf()], ...] = ()
     diagnosis: DiagnosisChoice = DiagnosisChoice()
+    published: Published = Published()
 
     @model_validator(mode="after")
     def _sensor_names(self) -> StudyCard:

@@ -10,6 +10,7 @@ from typing import TYPE_CHECKING, Any
 
 import tyrefem
 from tyrefem.output import atomic_path, write_json
+from tyrefem.published import of_run
 
 if TYPE_CHECKING:
     from tyrefem.result import Result
@@ -46,6 +47,7 @@ def summary(result: Result) -> dict[str, Any]:
             "cold_force_N": resistance.cold_force,
             "cold_coefficient": resistance.cold_coefficient,
         },
+        "published": [one.to_dict() for one in of_run(result)],
         "contained_air": {
             "temperature_degC": float(result.gas_temperature[-1]),
             "gauge_pressure_Pa": float(result.gas_pressure[-1]),
@@ -57,6 +59,7 @@ def summary(result: Result) -> dict[str, Any]:
         "extremes": result.extremes.to_dict("records"),
         "heat_budget": result.heat_budget.to_dict(),
         **({} if result.sliding is None else {"sliding": result.sliding.to_dict()}),
+        **({} if result.feedback is None else {"feedback": result.feedback.to_dict()}),
         "warnings": list(result.warnings),
         "phases": [asdict(phase) for phase in result.phases],
         "mesh": result.tyre.mesh.summary() | {"element": study.card.mesh.element},

@@ -6,6 +6,7 @@ import logging
 import subprocess
 import sys
 from pathlib import Path
+from typing import Any
 
 from tyrefem.output import atomic_path
 
@@ -15,7 +16,7 @@ _LOG = logging.getLogger(__name__)
 
 
 def screenshot(source: str | Path, png: str | Path, *, timeout: float = PATIENCE) -> Path | None:
-    """Draw the temperature of a .pvd (its last time) or .vtu file into a PNG.
+    """Draw the temperature of a .pvd (its last time) or .vtu file, or a pressed tyre's contact, into a PNG.
 
     Returns None, with one line in the log, where the machine cannot render; never raises for that.
     """
@@ -47,8 +48,6 @@ def _last_line(text: str) -> str:
 def _draw(source: Path, png: Path) -> None:
     import pyvista
 
-    from tyrefem.plotting.style import temperature_map
-
     if source.suffix == ".pvd":
         reader = pyvista.get_reader(str(source))
         reader.set_active_time_value(reader.time_values[-1])
@@ -57,6 +56,20 @@ def _draw(source: Path, png: Path) -> None:
         grid = pyvista.read(str(source))
     plotter = pyvista.Plotter(off_screen=True, window_size=(1200, 900))
     plotter.set_background("white")
+    bar = {
+        "title": "temperature [degC]", "color": "black", "vertical": True, "position_x": 0.87, "position_y": 0.2,
+        "height": 0.6, "width": 0.07, "fmt": "%.0f",
+    }  # fmt: skip
+    if "contact_pressure_Pa" in grid.point_data:
+        _add_pressed(plotter, grid, bar | {"title": "contact pressure [kPa]"})
+    else:
+        _add_temperature(plotter, grid, bar)
+    plotter.screenshot(str(png))
+
+
+def _add_temperature(plotter: Any, grid: Any, bar: dict[str, Any]) -> None:
+    from tyrefem.plotting.style import temperature_map
+
     flat = grid.bounds[5] - grid.bounds[4] < 1e-9
     if not flat:
         # A quarter cut away shows the inside; a half tyre gets its mirror image.
@@ -64,10 +77,6 @@ def _draw(source: Path, png: Path) -> None:
         grid = grid.extract_cells(~((centres[:, 1] > 0) & (centres[:, 2] > 0)))
         if grid.bounds[0] > -1e-6:
             grid = grid.merge(grid.reflect((1.0, 0.0, 0.0)))
-    bar = {
-        "title": "temperature [degC]", "color": "black", "vertical": True, "position_x": 0.87, "position_y": 0.2,
-        "height": 0.6, "width": 0.07, "fmt": "%.0f",
-    }  # fmt: skip
     plotter.add_mesh(
         grid, scalars="temperature_degC", cmap=temperature_map(), scalar_bar_args=bar, ambient=0.45, diffuse=0.6
     )
@@ -75,7 +84,24 @@ def _draw(source: Path, png: Path) -> None:
     if not flat:
         plotter.camera.azimuth, plotter.camera.elevation = 40.0, 25.0
         plotter.camera.zoom(1.35)
-    plotter.screenshot(str(png))
+
+
+def _add_pressed(plotter: Any, grid: Any, bar: dict[str, Any]) -> None:
+    """The tyre from below and aside, grey where nothing touches, so that the flat is seen."""
+    import numpy as np
+
+    surface = grid.extract_surface(algorithm="dataset_surface")
+    pressure = np.asarray(surface["contact_pressure_Pa"]) / 1e3
+    surface["contact pressure"] = np.where(pressure > 0, pressure, np.nan)
+    touching = pressure[pressure > 0]
+    most = float(np.quantile(touching, 0.97)) if len(touching) else 1.0
+    plotter.add_mesh(
+        surface, scalars="contact pressure", cmap="viridis", clim=(0, most), nan_color="#c8c8c8", scalar_bar_args=bar,
+        ambient=0.35, diffuse=0.7, smooth_shading=False,
+    )  # fmt: skip
+    plotter.view_xy()
+    plotter.camera.azimuth, plotter.camera.elevation = 55.0, -28.0
+    plotter.camera.zoom(1.35)
 
 
 if __name__ == "__main__":

@@ -7,6 +7,7 @@ P2 elements become quadratic cells; the ring is cut into linear cells on all the
 from __future__ import annotations
 
 import re
+from collections.abc import Mapping
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 from xml.sax.saxutils import escape
@@ -128,7 +129,7 @@ def _write(result: Result, folder: Path, name: str, shape: _Plane | _Ring) -> Pa
         )
         with atomic_path(file) as temporary:
             meshio.write(temporary, mesh, file_format="vtu", binary=True)
-            _add_fields(temporary, {**names, "TimeValue": float(result.times[i])})
+            add_fields(temporary, {**names, "TimeValue": float(result.times[i])})
         entries.append(f'    <DataSet timestep="{float(result.times[i])!r}" group="" part="0" file="{file.name}"/>')
     return _write_collection(result, folder / f"{name}.pvd", names, entries)
 
@@ -185,7 +186,7 @@ def _cell_means(result: Result, i: int) -> tuple[Array, Array]:
     return source, energy
 
 
-def _add_fields(path: Path, fields: dict[str, float]) -> None:
+def add_fields(path: Path, fields: Mapping[str, float]) -> None:
     """Put field data (which meshio does not write) into a .vtu file."""
     rows = []
     for name, value in fields.items():

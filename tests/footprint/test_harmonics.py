@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+from contextlib import suppress
+
 import numpy as np
 import pytest
 from footprint_bodies import block, half_torus
@@ -173,3 +175,23 @@ def test_unknown_boundary_names_the_nearest() -> None:
     mesh = block([1.0, 1.1], [0.0, 0.1], rim=lambda r, z: z < 1e-9)
     with pytest.raises(InputError, match="did you mean 'rim'"):
         Harmonics(stress_free(mesh, 1e6, 1e8, fixed=("rims",)))
+
+
+def test_buckling_is_found_where_the_hoop_is_compressed() -> None:
+    """Hoop stress - s adds - s n^2/r^2 u^2: a ring's upper half, under more than rubber can bear, buckles there."""
+    from dataclasses import replace
+
+    mesh = block(np.linspace(0.9, 1.0, 3), np.linspace(0, 0.4, 9), low=lambda r, z: z < 1e-9)
+    free = stress_free(mesh, 1e6, 1e8, fixed=("low",))
+    stress = np.zeros_like(free.stress)
+    upper = mesh.p[1, mesh.t].mean(axis=0) > 0.2
+    stress[2, upper] = -2e6
+    harmonics = Harmonics(replace(free, stress=stress))
+    free_of_stress = Harmonics(free)
+    free_of_stress.compliance(60, free_of_stress.free[:3])
+    assert free_of_stress.negative_pivots[60] == 0
+    assert not free_of_stress.buckling_place
+    with suppress(InputError):
+        harmonics.compliance(60, harmonics.free[:3])
+    assert harmonics.negative_pivots[60] > 0
+    assert harmonics.buckling_place[60][1] > 0.2

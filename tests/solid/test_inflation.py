@@ -60,6 +60,8 @@ def test_state_is_in_balance_in_its_own_place() -> None:
     # v = (r, z): int sigma : grad v r dA = int sigma : 1 r dA = v . (inner forces).
     trace = float((stress[:3].sum(axis=0) * weights * points[0]).sum())
     inner = tyre.body.residual(tyre.displacement, 0.0).reshape(-1, 2)
+    for flange in tyre.body.flanges:
+        inner = inner + flange.force(tyre.places).reshape(-1, 2)
     assert trace == pytest.approx(float((inner * tyre.places.T).sum()), rel=1e-6)
 
 

@@ -27,6 +27,10 @@ class ContainedAirLaw(Law):
     #: Start temperature; the drive's initial temperature where not given.
     initial: Temperature | None = None
 
+    def start(self, initial: float) -> float:
+        """The gas's temperature at the start of a drive whose initial temperature is given, degC."""
+        return initial if self.initial is None else self.initial
+
     @abstractmethod
     def heat_capacity(self, volume: float, pressure: float, temperature: float) -> float | None:
         """J/K of a volume (m3) filled to a gauge pressure (Pa) at a temperature (degC); None: it stays as it is."""
@@ -62,6 +66,10 @@ class Held(ContainedAirLaw):
 
     law: Literal["held"]
     temperature: Temperature
+
+    def start(self, initial: float) -> float:
+        """Where it is held, degC."""
+        return self.temperature
 
     def heat_capacity(self, volume: float, pressure: float, temperature: float) -> None:
         """None: it stays as it is."""

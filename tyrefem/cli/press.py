@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import math
 from pathlib import Path
-from typing import TYPE_CHECKING, Annotated, Any
+from typing import TYPE_CHECKING, Annotated
 
 import typer
 
@@ -21,6 +21,7 @@ OPTIONS = {
     "load": ("--load", "N"),
     "deflection": ("--deflection", "m"),
     "drum_diameter": ("--drum", "m"),
+    "camber": ("--camber", "rad"),
 }
 
 
@@ -30,35 +31,46 @@ def press(
     load: Annotated[str | None, typer.Option(help="Load of the tyre, e.g. '12 kN'.")] = None,
     deflection: Annotated[str | None, typer.Option(help="Instead of a load, e.g. '20 mm'.")] = None,
     drum: Annotated[str | None, typer.Option(metavar="DIAMETER", help="On a drum, e.g. '1.7 m', or 'flat'.")] = None,
+    camber: Annotated[str | None, typer.Option(help="E.g. '2 deg'; positive: the side z > 0 comes down.")] = None,
+    at: Annotated[
+        list[str] | None, typer.Option(metavar="PLACE", help="Strain cycle here: 'r, z' or a region. Repeatable.")
+    ] = None,
+    balanced: Annotated[
+        bool, typer.Option("--balanced", help="Green's strains in place of linearised ones: slower.")
+    ] = False,
+    pictures: Annotated[bool, typer.Option(help="Draw the PNG pictures.")] = True,
+    vtk: Annotated[bool, typer.Option(help="Write the whole deformed tyre, tyre.vtu.")] = True,
     out: Annotated[Path | None, typer.Option("--out", help="Folder; default: results/STUDY-press.")] = None,
     as_json: JsonOption = False,
     changes: SetOption = None,
 ) -> None:
     """Inflate the tyre by finite elements and press it on the road; by default as in the drive's first phase."""
     from tyrefem.footprint.press import press as pressed_by
-    from tyrefem.output import atomic_folder, write_json
+    from tyrefem.footprint.press_files import write_files
+    from tyrefem.footprint.press_places import cycle_places, read_place
+    from tyrefem.output import atomic_folder
     from tyrefem.studies import study as load_study
 
-    texts = {"pressure": pressure, "load": load, "deflection": deflection, "drum_diameter": drum}
+    texts = {"pressure": pressure, "load": load, "deflection": deflection, "drum_diameter": drum, "camber": camber}
     given = {name: _read(name, text) for name, text in texts.items() if text is not None}
     found = load_study(study, settings(changes))
     folder = writable_folder(out or Path("results") / f"{found.name}-press")
     try:
-        result = pressed_by(found, **given)
-        summary, curve = result.summary(), result.curve()
+        for place in at or ():
+            read_place(found.section, place)
+        result = pressed_by(found, **given, balanced=balanced)
+        places = cycle_places(result, at or ())
+        curve = result.curve()
     except InputError as error:
         raise _placed(error, given, found) from None
     with atomic_folder(folder) as temporary:
-        write_json(summary, temporary / "press.json")
-        rows = "".join(f"{deflection:.9g},{load:.9g}\n" for deflection, load in curve)
-        (temporary / "load-deflection.csv").write_text(f"deflection_m,load_N\n{rows}", encoding="utf-8")
-        for name, picture in _pictures(result, curve).items():
-            (temporary / name).write_bytes(picture)
+        write_files(result, temporary, places, curve, pictures=pictures, vtk=vtk)
     if result.footprint.unstable:
         many = ", ".join(map(str, result.footprint.unstable))
-        fail(f"warning: motions of negative stiffness in harmonics {many}: the footprint there is in doubt")
+        where = result.footprint.unstable_place
+        fail(f"warning: motions of negative stiffness in harmonics {many}: the footprint there is in doubt ({where})")
     if as_json:
-        print_json(summary)
+        print_json(result.summary())
         return
     typer.echo(_words(result))
     typer.echo(f"results in {folder}")
@@ -71,13 +83,15 @@ def _read(name: str, text: str) -> float:
     if name == "drum_diameter" and text.strip() == "flat":
         return math.inf
     try:
-        return Unit(unit, gt=0)(text)
+        return Unit(unit)(text) if name == "camber" else Unit(unit, gt=0)(text)
     except InputError as error:
         raise error.within(field=option) from None
 
 
 def _placed(error: InputError, given: dict[str, float], study: Study) -> InputError:
     """The error at the option that was given, or at the study's drive that gave the value."""
+    if error.field == "at":
+        return InputError(error.message, field="--at")
     if error.field in given:
         return InputError(error.message, field=OPTIONS[error.field][0])
     if error.field in OPTIONS:
@@ -86,22 +100,12 @@ def _placed(error: InputError, given: dict[str, float], study: Study) -> InputEr
     return error if error.file else InputError(error.message, field=error.field, file=study.file)
 
 
-def _pictures(result: Pressed, curve: Any) -> dict[str, bytes]:
-    from tyrefem.plotting.footprint import pressure_map_figure
-    from tyrefem.plotting.inflation import inflation_figure, load_deflection_figure
-    from tyrefem.plotting.style import png
-
-    return {
-        "section.png": png(inflation_figure(result.tyre, result.study.name)),
-        "pressure.png": png(pressure_map_figure(result.footprint)),
-        "load-deflection.png": png(load_deflection_figure(result, curve)),
-    }
-
-
 def _words(result: Pressed) -> str:
     tyre, found, loss = result.tyre, result.footprint, result.loss
     drum = result.pressing.road.drum_diameter
     road = "flat road" if math.isinf(drum) else f"drum of {drum:.4g} m"
+    camber = math.degrees(result.pressing.road.camber)
+    leaning = f"; camber {camber:.3g} deg" if camber else ""
     bead = "no bead wires" if result.bead_tension is None else f"{result.bead_tension / 1e3:.2f} kN"
     lines = [
         result.study.title,
@@ -117,7 +121,7 @@ def _words(result: Pressed) -> str:
         lines.append(f"  cords of {region:10} {least:.2f} / {mean:.2f} / {greatest:.2f} % (least, mean, most), {force}")
     lines += [
         f"  {road:19} {found.load:.1f} N at {found.deflection * 1e3:.2f} mm; stiffness "
-        f"{result.secant_stiffness / 1e3:.1f} N/mm secant, {found.stiffness / 1e3:.1f} N/mm tangent",
+        f"{result.secant_stiffness / 1e3:.1f} N/mm secant, {found.stiffness / 1e3:.1f} N/mm tangent{leaning}",
         f"  footprint           {found.length * 1e3:.1f} mm long, {found.width * 1e3:.1f} mm wide, "
         f"{found.area * 1e4:.1f} cm2; pressure {found.mean_pressure / 1e3:.0f} kPa mean, "
         f"{result.peak_pressure / 1e3:.0f} kPa peak",
@@ -126,10 +130,19 @@ def _words(result: Pressed) -> str:
         if loss is None
         else f"  rolling resistance  {loss.rolling_resistance:.1f} N, coefficient {loss.coefficient:.5f} at "
         f"{result.speed:.4g} m/s and {loss.temperature:.4g} degC",
-        f"  harmonics           {found.harmonics}, error {found.error:.2%} (allowed {result.tolerance:.0%}); "
-        f"{tyre.body.rings.n_nodes} nodes",
+        f"  harmonics           {found.harmonics}, {_accuracy(result)}; {tyre.body.rings.n_nodes} nodes",
+        "  strains             {}; linear ones leave out {:.0%} of themselves on average, {:.0%} in the {}".format(
+            "Green's, in balance" if result.balanced else "linearised", *result.left_out
+        ),
     ]
+    lines += [f"  {one.words}" for one in result.published]
     return "\n".join(lines)
+
+
+def _accuracy(result: Pressed) -> str:
+    if result.balanced:
+        return "balanced to 0.1 %"
+    return f"error {result.footprint.error:.2%} (allowed {result.tolerance:.0%})"
 
 
 #: Place among the commands.

@@ -71,6 +71,7 @@ def _single(study: Study, folder: Path, pictures: bool, vtk: bool, revolved: boo
 
 def _words(result: Result) -> str:
     peak, region = result.extremes.iloc[0], result.summary()["hottest"]["region"]
+    from tyrefem.published import of_run
     from tyrefem.sliding.listing import phase_lines
 
     resistance, budget = result.rolling_resistance, result.heat_budget
@@ -87,6 +88,9 @@ def _words(result: Result) -> str:
         f"{budget.total('stored') / 1e3:.1f} kJ, lost {budget.total('lost') / 1e3:.1f} kJ; "
         f"closes to {budget.imbalance:.0e}",
     ]
+    if result.feedback is not None:
+        lines.append(f"  feedback            {result.feedback.words}")
+    lines += [f"  {one.words}" for one in of_run(result)]
     if result.sliding is not None:
         lines += list(phase_lines(result.sliding))
     return "\n".join(lines)

@@ -39,5 +39,8 @@ class PressureRise(Effect):
 
     @classmethod
     def refusal(cls, study: Study) -> str | None:
-        """A drive at a given deflection does not feel the pressure."""
+        """A drive at a given deflection does not feel the pressure; feedback raises it already."""
+        feedback = study.card.mechanics.feedback
+        if feedback is not None and feedback.pressure:
+            return "the pressure rises with the contained air already: mechanics.feedback.pressure"
         return no_load(study)

@@ -95,7 +95,7 @@ class TreadCompliance:
     @functools.cached_property
     def widths(self) -> tuple[Array, Array]:
         """Length of the outline and of its axial projection that belong to each node, (m,), m."""
-        facets = self.harmonics.elements.boundary(self.harmonics.state.tread)
+        facets = self.harmonics.elements.facet_basis(self.harmonics.state.tread)
         values = np.stack([np.broadcast_to(np.asarray(f[0]), facets.dx.shape) for f in facets.basis], axis=0)
         length, axial = np.zeros((2, self.harmonics.elements.nodes.shape[1]))
         across = np.abs(np.asarray(facets.normals)[0])

@@ -67,6 +67,7 @@ class Pressing:
         """Deflection at which the crown's inner surface would meet the highest held point (the rim's flange), m."""
         elements, state = self.harmonics.elements, self.state
         held = [elements.nodes[0, elements.boundary_nodes(name)].max() for name in state.fixed]
+        held += [state.rim_top] if state.rim_top else []
         if not held or not state.pressure:
             return float(max(0.9 * (self.reach - max(held, default=0.0)), 0.0))
         inner = elements.nodes[0, elements.boundary_nodes(state.pressurised)].max()

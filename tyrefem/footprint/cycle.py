@@ -125,6 +125,19 @@ class StrainCycle:
             found[n] = ((storage @ e) * e).sum(axis=(-2, -1))
         return found
 
+    def largest_energy(self, count: int = 180) -> Array:
+        """(n_elements, n_points) U = 1/2 de : C' : de at its largest over the angle, J/m3.
+
+        de is the strain less that opposite the footprint, where the tyre is as inflated.
+        """
+        largest = np.zeros(self.elements.radii.shape)
+        storage = np.moveaxis(self.footprint.pressing.state.storage, (0, 1), (-2, -1))
+        away = self.strain(np.array([np.pi]))[..., 0]
+        for t in np.linspace(0, np.pi, count):
+            e = np.moveaxis(self.strain(np.array([t]))[..., 0] - away, 0, -1)[..., None]
+            largest = np.maximum(largest, 0.5 * ((storage @ e) * e).sum(axis=(-2, -1)))
+        return largest
+
     def coarseness(self, angles: Array | None = None) -> Array:
         """(n_elements,) how far the linearised strain is from Green's, by element: root of the ratio of
         int |H' H / 2|^2 to int |e|^2 over section and revolution (tensor norms).
@@ -154,8 +167,8 @@ class StrainCycle:
         found = np.zeros((3, 3, *elements.radii.shape))
         for direction in (0, 1):
             found[:, direction] = np.einsum("epa,eac->cep", elements.gradients[direction], value)
-        at = np.einsum("epa,eac->cep", elements.values, value)
-        found[:, 2] = np.einsum("epa,eac->cep", elements.values, turned)
+        at = np.einsum("pa,eac->cep", elements.values, value)
+        found[:, 2] = np.einsum("pa,eac->cep", elements.values, turned)
         found[0, 2] -= at[2]
         found[2, 2] += at[0]
         found[:, 2] /= elements.radii

@@ -1,25 +1,24 @@
-"""Nine-node quadrilaterals of a section: strains, gradients and projected dilatation of a Fourier harmonic."""
+"""Nine-node rings in a Fourier harmonic: strains and projected dilatation."""
 
 from __future__ import annotations
 
 import functools
 from dataclasses import dataclass
-from typing import Any
 
 import numpy as np
 from numpy.typing import NDArray
 
+from tyrefem.solid.elements import Rings
+
 Array = NDArray[np.float64]
 Indices = NDArray[np.int64]
-#: 3 x 3 Gauss points on quadrilaterals.
-INTORDER = 5
 #: Nodes of an element, displacement components (r, z, t) of a node.
 NODES, COMPONENTS = 9, 3
 
 
 @dataclass(frozen=True, eq=False)
-class SectionElements:
-    """Shape functions of a quadrilateral mesh in (r, z), and the strains of the harmonic
+class SectionElements(Rings):
+    """Nine-node rings, and their strains in the harmonic
 
     u = (u_r cos n t, u_z cos n t, u_t sin n t):  e_n = e_0 + n e_1,
 
@@ -34,57 +33,16 @@ class SectionElements:
     (27, (1, 9))
     """
 
-    mesh: Any
-
-    @functools.cached_property
-    def basis(self) -> Any:
-        """scikit-fem basis of the scalar biquadratic element."""
-        import skfem
-
-        return skfem.Basis(self.mesh, skfem.ElementQuad2(), intorder=INTORDER)
-
-    @functools.cached_property
-    def nodes(self) -> Array:
-        """(2, n_nodes) places of all nodes, m."""
-        return np.asarray(self.basis.doflocs)
-
     @property
     def n_dofs(self) -> int:
         """Degrees of freedom of a harmonic."""
-        return COMPONENTS * int(self.basis.N)
+        return COMPONENTS * self.n_nodes
 
     @functools.cached_property
     def dofs(self) -> Indices:
         """(n_elements, 27) degrees of freedom of an element, in the order 3 a + c."""
-        nodes = np.asarray(self.basis.element_dofs, dtype=np.int64).T
+        nodes = self.element_nodes
         return (COMPONENTS * nodes[:, :, None] + np.arange(COMPONENTS)).reshape(len(nodes), -1)
-
-    @functools.cached_property
-    def radii(self) -> Array:
-        """(n_elements, n_points) radius of the Gauss points, m."""
-        return np.asarray(self.basis.global_coordinates())[0]
-
-    @functools.cached_property
-    def points(self) -> Array:
-        """(2, n_elements, n_points) Gauss points in (r, z), m."""
-        return np.asarray(self.basis.global_coordinates())
-
-    @functools.cached_property
-    def weights(self) -> Array:
-        """(n_elements, n_points) r dA, m3 per radian."""
-        return np.asarray(self.basis.dx) * self.radii
-
-    @functools.cached_property
-    def values(self) -> Array:
-        """(n_elements, n_points, 9) shape functions."""
-        shape = (*self.radii.shape, NODES)
-        functions = [np.broadcast_to(np.asarray(f[0]), self.radii.shape) for f in self.basis.basis]
-        return np.stack(functions, axis=-1).reshape(shape)
-
-    @functools.cached_property
-    def gradients(self) -> Array:
-        """(2, n_elements, n_points, 9) derivatives of the shape functions by r and z, 1/m."""
-        return np.stack([np.asarray(f[0].grad) for f in self.basis.basis], axis=-1)
 
     @functools.cached_property
     def strains(self) -> tuple[Array, Array]:
@@ -103,15 +61,6 @@ class SectionElements:
         linear[..., 5, :, 1] = -over_r
         shape = (*self.radii.shape, 6, NODES * COMPONENTS)
         return constant.reshape(shape), linear.reshape(shape)
-
-    @functools.cached_property
-    def linear_functions(self) -> Array:
-        """(n_elements, n_points, 3): 1, xi, eta, of each element made orthonormal with weight r dA."""
-        xi, eta = 2 * np.asarray(self.basis.X) - 1
-        functions = np.stack([np.ones_like(xi), xi, eta], axis=-1)
-        mass = np.einsum("eq,qa,qb->eab", self.weights, functions, functions)
-        inverse = np.linalg.inv(np.linalg.cholesky(mass))
-        return np.asarray(np.einsum("eab,qb->eqa", inverse, functions))
 
     @functools.cached_property
     def dilatations(self) -> tuple[Array, Array]:
@@ -140,15 +89,3 @@ class SectionElements:
         constant, linear = self.dilatations
         local = np.asarray(displacement)[self.dofs][:, :, None]
         return np.asarray((constant @ local + n * (linear @ local))[..., 0])
-
-    def boundary(self, name: str) -> Any:
-        """Facet basis of a named boundary."""
-        import skfem
-
-        facets = np.asarray(self.mesh.boundaries[name])
-        return skfem.FacetBasis(self.mesh, skfem.ElementQuad2(), facets=facets, intorder=INTORDER)
-
-    def boundary_nodes(self, name: str) -> Indices:
-        """Sorted node numbers of a named boundary."""
-        facets = np.asarray(self.mesh.boundaries[name])
-        return np.unique(self.basis.get_dofs(facets=facets).flatten()).astype(np.int64)

@@ -27,7 +27,7 @@ def along_wall(facets: Any) -> tuple[Indices, Array, Array, Array, Array, Array]
 
 def pressure_load(elements: SectionElements, boundary: str) -> Array:
     """(n_dofs,) load per radian of unit pressure on a boundary, n = 0: - int n . v r ds, m2."""
-    dofs, values, _, normals, radii, weights = along_wall(elements.boundary(boundary))
+    dofs, values, _, normals, radii, weights = along_wall(elements.facet_basis(boundary))
     local = np.zeros((*values.shape[::2], COMPONENTS))
     for component in (0, 1):
         local[..., component] = -np.einsum("fqa,fq->fa", values, normals[component] * radii * weights)
@@ -47,7 +47,7 @@ def follower_stiffness(elements: SectionElements, boundary: str) -> tuple[Indice
     ' along the wall, (n_r, n_z) outwards of the body; made symmetric, which alters nothing where the wall closes on
     itself, ends on a held edge or on the mid plane.
     """
-    dofs, values, along, (n_r, n_z), radii, weights = along_wall(elements.boundary(boundary))
+    dofs, values, along, (n_r, n_z), radii, weights = along_wall(elements.facet_basis(boundary))
     n_faces, nodes = values.shape[::2]
     constant, linear = np.zeros((2, n_faces, nodes, COMPONENTS, nodes, COMPONENTS))
     by_r = np.einsum("fqa,fqb,fq->fab", values, values, n_r * weights)

@@ -31,8 +31,8 @@ class Harmonics:
 
     d_n : dilatation projected on the linear polynomials of each element (Q2/P1-discontinuous: no locking);
     H : gradient, rows (u_r,r, u_r,z, -(n u_r + u_t)/r), (u_z,r, u_z,z, -n u_z/r), (u_t,r, u_t,z, (n u_t + u_r)/r);
-    P_n : stiffness of the following pressure (`follower`). Everything is per radian: the energy of an amplitude u
-    round the wheel is pi/2 u K_n u, and pi u K_0 u for n = 0.
+    P_n : stiffness of the following pressure (`follower`). The state's ``support`` is added to A. Everything is per
+    radian: the energy of an amplitude u round the wheel is pi/2 u K_n u, and pi u K_0 u for n = 0.
 
     Raises
     ------
@@ -43,6 +43,8 @@ class Harmonics:
     state: Prestressed
     #: Harmonic -> number of motions with negative stiffness found when `compliance` was solved: cords that buckle.
     negative_pivots: dict[int, int] = field(default_factory=dict, init=False, repr=False)
+    #: Lowest such harmonic -> the place (r, z), m, where one of its motions of negative stiffness is largest.
+    buckling_place: dict[int, tuple[float, float]] = field(default_factory=dict, init=False, repr=False)
     _orders: dict[bytes, Indices] = field(default_factory=dict, init=False, repr=False)
 
     def __post_init__(self) -> None:
@@ -109,6 +111,12 @@ class Harmonics:
             columns.append(np.tile(wall, (1, wall.shape[1])).ravel())
             for parts, matrix in zip(data, (constant, linear, np.zeros_like(constant)), strict=True):
                 parts.append(self.state.pressure * matrix.ravel())
+        if self.state.support is not None:
+            support = self.state.support.tocoo()
+            rows.append(support.row)
+            columns.append(support.col)
+            for parts, values in zip(data, (support.data, *2 * [np.zeros(support.nnz)]), strict=True):
+                parts.append(values)
         place = (np.concatenate(rows), np.concatenate(columns))
         found = [sp.coo_matrix((np.concatenate(parts), place), shape=(n, n)).tocsc() for parts in data]
         return found[0], found[1], found[2]
@@ -194,11 +202,26 @@ class Harmonics:
             raise InputError(f"harmonic {n:g} has no stiffness: nothing holds the body") from None
         k, upper = len(dofs), factor.U
         self.negative_pivots[n] = int((upper.diagonal() < 0).sum())
+        if self.negative_pivots[n] and n < min(self.buckling_place, default=n + 1):
+            self.buckling_place.clear()
+            self.buckling_place[n] = self._largest(order, upper)
         condensed = (factor.L[-k:, -k:] @ upper[-k:, -k:]).toarray()
         try:
             return np.asarray(cho_solve(cho_factor((condensed + condensed.T) / 2), np.eye(k)))
         except LinAlgError:
             raise InputError(f"the state is not stable: harmonic {n:g} has negative stiffness") from None
+
+    def _largest(self, order: Indices, upper: Any) -> tuple[float, float]:
+        """Where the motion of the most negative pivot is largest: U x = e_i; x K x has the pivot's sign."""
+        from scipy.sparse.linalg import spsolve_triangular
+
+        pivot = int(upper.diagonal().argmin())
+        unit = np.zeros(pivot + 1)
+        unit[pivot] = 1.0
+        motion = spsolve_triangular(upper[: pivot + 1, : pivot + 1].tocsr(), unit, lower=False)
+        node = int(order[int(np.abs(motion).argmax())]) // COMPONENTS
+        r, z = self.elements.nodes[:, node]
+        return float(r), float(z)
 
     def inflated_by(self, pressure: float) -> Array:
         """(n_dofs,) small axisymmetric displacement, m, under ``pressure`` (Pa) more on the wall: K_0 u = p F."""

@@ -10,8 +10,10 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
+from tyrefem.errors import InputError
 from tyrefem.footprint.complementarity import contact_forces
-from tyrefem.footprint.elements import COMPONENTS, INTORDER, SectionElements
+from tyrefem.footprint.elements import COMPONENTS, SectionElements
+from tyrefem.solid.elements import INTORDER
 from tyrefem.solid.state import Prestressed
 
 Array = NDArray[np.float64]
@@ -34,10 +36,18 @@ class Hexahedra:
 
     The equations are those of `Harmonics` with d/dt in place of n, the dilatation projected over each element's section
     at each of its three angles; u_t = 0 at both ends. Flat road, upright.
+
+    Raises
+    ------
+    InputError : a state that lies on a rim's flange: only fixed boundaries are known here.
     """
 
     state: Prestressed
     angles: Array
+
+    def __post_init__(self) -> None:
+        if self.state.support is not None and self.state.support.nnz:
+            raise InputError("hexahedra know fixed boundaries only, not a rim's flange", field="support")
 
     @functools.cached_property
     def basis(self) -> Any:

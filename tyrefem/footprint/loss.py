@@ -82,17 +82,11 @@ class RevolutionLoss:
     def one_cycle_density(self, convention: str = "nasa", count: int = 180) -> Array:
         """(n_elements, n_points) J/m3 if the revolution were one cycle, as in the NASA report: pi U tan d(f).
 
-        U = 1/2 de : C' : de at its largest over the angle, de the strain less that opposite the footprint, where the
-        tyre is as inflated; ``sinusoid`` takes 2 pi, exact for one sinusoid of amplitude de.
+        U is `StrainCycle.largest_energy`; ``sinusoid`` takes 2 pi, exact for one sinusoid of that amplitude.
         """
         if convention not in ONE_CYCLE:
             raise InputError(f"no convention '{convention}'{nearest(convention, ONE_CYCLE)}")
-        cycle, largest = self.cycle, np.zeros(self.cycle.elements.radii.shape)
-        storage = np.moveaxis(cycle.footprint.pressing.state.storage, (0, 1), (-2, -1))
-        away = cycle.strain(np.array([np.pi]))[..., 0]
-        for t in np.linspace(0, np.pi, count):
-            e = np.moveaxis(cycle.strain(np.array([t]))[..., 0] - away, 0, -1)[..., None]
-            largest = np.maximum(largest, 0.5 * ((storage @ e) * e).sum(axis=(-2, -1)))
+        largest = self.cycle.largest_energy(count)
         return np.asarray(ONE_CYCLE[convention] * self.tangent(self.frequency) * largest)
 
     def total(self, density: Array) -> float:
@@ -104,6 +98,13 @@ class RevolutionLoss:
     def by_harmonic(self) -> Array:
         """(harmonics + 1,) energy lost per revolution by each harmonic, J."""
         return np.array([self.total(density) for density in self.densities])
+
+    @functools.cached_property
+    def stored_by_harmonic(self) -> Array:
+        """(harmonics + 1,) elastic energy of each harmonic's strain in what loses energy, mean over the wheel, J."""
+        stored = np.array([self.total(products) / 4 for products in self.cycle.storage_products])
+        stored[0] *= 2
+        return stored
 
     @functools.cached_property
     def by_region(self) -> dict[str, float]:

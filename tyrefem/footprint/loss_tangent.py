@@ -68,6 +68,24 @@ class PowerLaw:
 
 
 @dataclass(frozen=True)
+class Relative:
+    """tan d = law(T) m(f, T) / m(f_ref, T): what ``law`` says at f_ref, carried to other frequencies by ``master``.
+
+    >>> maxwell = Prony(1.0, (2.0,), (1.0,))
+    >>> round(float(Relative(0.1, maxwell, 0.5 / np.pi)(0.5 / np.pi, np.array(20.0))), 9)
+    0.1
+    """
+
+    law: Callable[[Array], Array] | float
+    master: Loss
+    reference: float = 10.0
+
+    def __call__(self, frequency: float, temperature: Array) -> Array:
+        ratio = self.master(frequency, temperature) / self.master(self.reference, temperature)
+        return np.asarray(OfTemperature(self.law)(frequency, temperature) * ratio)
+
+
+@dataclass(frozen=True)
 class FrequencyTable:
     """tan d tabulated over f (Hz), linear in log f, constant beyond the ends; ``shift`` multiplies f by a_T."""
 

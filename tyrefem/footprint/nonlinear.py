@@ -137,7 +137,7 @@ class NonlinearForces:
         elements, state = self.harmonics.elements, self.harmonics.state
         if not state.pressure:
             return np.zeros((self.highest + 1, elements.n_dofs))
-        dofs, values, along, _, _, weights = along_wall(elements.boundary(state.pressurised))
+        dofs, values, along, _, _, weights = along_wall(elements.facet_basis(state.pressurised))
         u = np.asarray(amplitudes)[:, dofs].reshape(len(amplitudes), len(dofs), -1, COMPONENTS)
         (cos, sin), n = self._waves, np.arange(self.highest + 1)[:, None, None]
         r, z, t = np.moveaxis(np.einsum("fqa,nfak->nfqk", values, u), -1, 0)

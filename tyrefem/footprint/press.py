@@ -15,9 +15,11 @@ from tyrefem.strain.fem import TOLERANCE, mechanical_mesh
 
 if TYPE_CHECKING:
     from tyrefem.footprint.contact import Pressing
+    from tyrefem.footprint.cycle import StrainCycle
     from tyrefem.footprint.loss import RevolutionLoss
     from tyrefem.footprint.pressed import Footprint
     from tyrefem.meshing.tyre_mesh import TyreMesh
+    from tyrefem.published import Comparison
     from tyrefem.solid.inflation import Inflation
     from tyrefem.studies import Study
 
@@ -25,6 +27,10 @@ Array = NDArray[np.float64]
 #: The curve of load over deflection goes this much further than the footprint, or to just before the rim.
 BEYOND = 1.25
 BEFORE_RIM = 0.98
+#: Harmonics of a balance at most: its cost rises with their square.
+BALANCED = 36
+#: A narrower drum, over the tyre's diameter, is an obstacle, which these harmonics and linear contact do not resolve.
+SMALLEST_DRUM = 0.1
 
 
 @dataclass(frozen=True, eq=False)
@@ -34,7 +40,7 @@ class Pressed:
     Parameters
     ----------
     study : the study. mesh : the mechanical mesh. tyre : the inflated tyre. footprint : the tyre on the road.
-    tolerance : change with the number of harmonics that was allowed.
+    tolerance : change with the number of harmonics that was allowed. balanced : in balance with Green's strains.
     """
 
     study: Study
@@ -42,6 +48,7 @@ class Pressed:
     tyre: Inflation
     footprint: Footprint
     tolerance: float = TOLERANCE
+    balanced: bool = False
 
     @property
     def pressing(self) -> Pressing:
@@ -73,16 +80,41 @@ class Pressed:
         return float(ramp.start or ramp.end)
 
     @functools.cached_property
+    def cycle(self) -> StrainCycle:
+        """Strains round the wheel."""
+        from tyrefem.footprint.cycle import StrainCycle
+
+        return StrainCycle(self.footprint)
+
+    @functools.cached_property
+    def left_out(self) -> tuple[float, float, str]:
+        """What linearised strains leave out of Green's, over themselves (`StrainCycle.coarseness`): root mean square by
+        volume, the greatest of an element, and its region."""
+        coarse = self.cycle.coarseness()
+        worst = int(np.argmax(coarse))
+        volumes = self.cycle.elements.weights.sum(axis=1)
+        mean = float(np.sqrt((coarse**2 * volumes).sum() / volumes.sum()))
+        return mean, float(coarse[worst]), self.tyre.body.rings.region_of(worst)
+
+    @functools.cached_property
     def loss(self) -> RevolutionLoss | None:
         """Loss per revolution at `speed` and the drive's initial temperature; None: the wheel stands."""
-        from tyrefem.footprint.cycle import StrainCycle
         from tyrefem.footprint.loss import RevolutionLoss
-        from tyrefem.footprint.loss_tangent import OfTemperature
 
         if not self.speed:
             return None
-        laws = {region: OfTemperature(self.study.materials[region].loss_tangent) for region in self.tyre.body.parts}
-        return RevolutionLoss(StrainCycle(self.footprint), laws, self.speed, self.study.card.drive.initial)
+        laws = {region: self.study.materials[region].loss_tangent.over_frequency for region in self.tyre.body.parts}
+        return RevolutionLoss(self.cycle, laws, self.speed, self.study.card.drive.initial)
+
+    @property
+    def published(self) -> tuple[Comparison, ...]:
+        """The results beside the study's published ranges."""
+        from tyrefem.published import compared, of_footprint
+
+        values = of_footprint(self.footprint)
+        if self.loss is not None:
+            values["rolling_resistance_coefficient"] = self.loss.coefficient
+        return compared(self.study.card.published, values)
 
     def curve(self, count: int = 10) -> Array:
         """(count + 1, 2) deflection, m, and load, N, from the free tyre on, with as many harmonics as the footprint."""
@@ -106,6 +138,7 @@ class Pressed:
             "title": self.study.title,
             "pressure_Pa": self.tyre.pressure,
             "drum_diameter_m": self.pressing.road.drum_diameter,
+            "camber_rad": self.pressing.road.camber,
             "radius_growth_m": self.tyre.radius_growth,
             "width_growth_m": self.tyre.width_growth,
             "cords_least_mean_greatest": cords,
@@ -127,8 +160,11 @@ class Pressed:
             "loss_per_revolution_J": loss.energy if loss else None,
             "rolling_resistance_N": loss.rolling_resistance if loss else None,
             "rolling_resistance_coefficient": loss.coefficient if loss else None,
+            "published": [one.to_dict() for one in self.published],
             "harmonics": found.harmonics,
             "error": found.error,
+            "balanced": self.balanced,
+            "left_out_by_linear_strains": dict(zip(("mean", "greatest", "region"), self.left_out, strict=True)),
             "tolerance": self.tolerance,
             "unstable_harmonics": list(found.unstable),
             "mesh": {**self.mesh.summary(), "nodes_of_nine_node_elements": self.tyre.body.rings.n_nodes},
@@ -143,7 +179,9 @@ def press(
     load: float | None = None,
     deflection: float | None = None,
     drum_diameter: float | None = None,
+    camber: float = 0.0,
     tolerance: float = TOLERANCE,
+    balanced: bool = False,
 ) -> Pressed:
     """Inflate a study's tyre and press it on the road; what is not given is that of the drive's first phase's start.
 
@@ -153,7 +191,9 @@ def press(
     pressure : Pa above the ambient, positive.
     load, deflection : N or m, positive; at most one of them.
     drum_diameter : m; infinite for a flat road.
+    camber : rad; positive: the side z > 0 comes down. A half section is made whole by its mirror image.
     tolerance : change with the number of harmonics that the footprint may keep.
+    balanced : Green's strains instead of linearised ones (`footprint.balance`): slower, and not to every deflection.
 
     Raises
     ------
@@ -180,8 +220,23 @@ def press(
     for name, (value, unit) in wanted.items():
         if value is not None and not value > 0:
             raise InputError(f"must be more than 0 {unit}, not {value:g} {unit}", field=name)
+    smallest = SMALLEST_DRUM * chosen.section.outer_diameter
+    drum = phase.drum_diameter if drum_diameter is None else drum_diameter
+    if 0 < drum < smallest:
+        raise InputError(
+            f"a drum of {drum * 1e3:.4g} mm is too small: at least a tenth of the tyre, {smallest * 1e3:.0f} mm",
+            field="drum_diameter",
+        )
+    road = Road(drum, camber)
+    if camber and chosen.section.half:
+        chosen = chosen.replace({"mesh.section": "full"})
     mesh = mechanical_mesh(chosen)
     tyre = inflate(chosen, pressure, mesh)
-    road = Road(phase.drum_diameter if drum_diameter is None else drum_diameter)
-    found = Pressing(tyre.state, road).solve(load=load, deflection=deflection, tolerance=tolerance)
-    return Pressed(chosen, mesh, tyre, found, tolerance)
+    pressing = Pressing(tyre.state, road)
+    found = pressing.solve(load=load, deflection=deflection, tolerance=tolerance)
+    if balanced:
+        from tyrefem.footprint.balance import Balance
+
+        balance = Balance(pressing, min(found.harmonics, BALANCED))
+        found = balance.at_load(load) if load is not None else balance.at_deflection(found.deflection)
+    return Pressed(chosen, mesh, tyre, found, tolerance, balanced)

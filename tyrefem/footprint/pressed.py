@@ -58,6 +58,18 @@ class Footprint:
         return tuple(n for n, count in sorted(self.pressing.harmonics.negative_pivots.items()) if count)
 
     @property
+    def unstable_place(self) -> str | None:
+        """Where the lowest of `unstable` has such a motion: region and place; None: there is none."""
+        for n, (r, z) in self.pressing.harmonics.buckling_place.items():
+            elements = self.pressing.harmonics.elements
+            distance = np.hypot(elements.points[0] - r, elements.points[1] - z).min(axis=1)
+            element = int(distance.argmin())
+            names = [name for name, members in (elements.mesh.subdomains or {}).items() if element in members]
+            region = f"region '{names[0]}' at " if names else ""
+            return f"harmonic {n}: {region}(r, z) = ({r * 1e3:.1f}, {z * 1e3:.1f}) mm"
+        return None
+
+    @property
     def work(self) -> float:
         """Elastic work of the contact, J: half of force times displacement."""
         both = 2.0 if self.pressing.tread.half else 1.0

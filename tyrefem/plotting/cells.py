@@ -18,6 +18,11 @@ _PARTS: dict[int, tuple[tuple[int, ...], ...]] = {
 }
 
 
+def parts_of(unknowns: int) -> tuple[tuple[int, ...], ...]:
+    """Local unknowns of the linear cells that an element of so many unknowns is cut into."""
+    return _PARTS[unknowns]
+
+
 def linear_cells(operators: Any, elements: Array | None = None) -> tuple[Array, Array]:
     """Cells (3 or 4, n), numbers of unknowns, and the element (n,) that each is part of.
 
@@ -27,7 +32,7 @@ def linear_cells(operators: Any, elements: Array | None = None) -> tuple[Array, 
     """
     dofs = np.asarray(operators.element_dofs)
     chosen = np.arange(dofs.shape[1]) if elements is None else np.asarray(elements)
-    parts = _PARTS[dofs.shape[0]]
+    parts = parts_of(dofs.shape[0])
     cells = np.concatenate([dofs[list(part)][:, chosen] for part in parts], axis=1)
     return cells, np.tile(chosen, len(parts))
 

@@ -36,7 +36,8 @@ Array = NDArray[np.float64]
 LABELS = {"rr": "e_rr", "zz": "e_zz", "tt": "e_θθ", "rz": "γ_rz", "rt": "γ_rθ", "zt": "γ_zθ"}
 
 
-def _described(found: Footprint) -> str:
+def described(found: Footprint) -> str:
+    """Load, deflection, pressure, road and number of harmonics in a line."""
     road = found.pressing.road
     drum = "flat road" if math.isinf(road.drum_diameter) else f"drum Ø {road.drum_diameter:.3g} m"
     camber = f", camber {math.degrees(road.camber):.3g}°" if road.camber else ""
@@ -86,7 +87,7 @@ def pressure_map_figure(found: Footprint) -> Figure:
         tidy(panel)
     title(
         drawn, "Contact pressure",
-        f"{_described(found)}: {found.length * 1e3:.0f} × {found.width * 1e3:.0f} mm, {found.area * 1e4:.0f} cm², mean "
+        f"{described(found)}: {found.length * 1e3:.0f} × {found.width * 1e3:.0f} mm, {found.area * 1e4:.0f} cm², mean "
         f"{found.mean_pressure / 1e3:.0f} kPa; dashed: inflation",
     )  # fmt: skip
     return drawn
@@ -120,7 +121,7 @@ def strain_history_figure(cycle: StrainCycle, places: dict[str, tuple[float, flo
         if number == 0:
             axes.legend(fontsize=FONT, frameon=False, loc="upper left", bbox_to_anchor=(1.01, 1.05))
     axes.set_xlabel("angle from the middle of the footprint [°]", fontsize=FONT)
-    title(drawn, "Strain round the wheel, beyond inflation", _described(cycle.footprint))
+    title(drawn, "Strain round the wheel, beyond inflation", described(cycle.footprint))
     return drawn
 
 
@@ -129,7 +130,7 @@ def harmonics_figure(loss: RevolutionLoss) -> Figure:
     drawn = figure(10.4, 4.2 + TITLE)
     cycle = loss.cycle
     n = np.arange(1, cycle.footprint.harmonics + 1)
-    stored = np.array([loss.total(products) / 4 for products in cycle.storage_products])[1:]
+    stored = loss.stored_by_harmonic[1:]
     left = add_axes(drawn, 0.8, 2.6, 3.9, 1.6), add_axes(drawn, 0.8, 0.55, 3.9, 1.6)
     panels = zip(left, ((stored, "energy"), (loss.by_harmonic[1:], "loss")), PALETTE, strict=False)
     for axes, (values, name), colour in panels:
@@ -156,7 +157,7 @@ def harmonics_figure(loss: RevolutionLoss) -> Figure:
     bar.ax.tick_params(labelsize=FONT)
     title(
         drawn, "Energy and loss by harmonic of the revolution",
-        f"{_described(cycle.footprint)}; {loss.energy:.1f} J per revolution, rolling resistance "
+        f"{described(cycle.footprint)}; {loss.energy:.1f} J per revolution, rolling resistance "
         f"{loss.rolling_resistance:.1f} N, coefficient {loss.coefficient:.4f}",
     )  # fmt: skip
     return drawn
@@ -164,25 +165,32 @@ def harmonics_figure(loss: RevolutionLoss) -> Figure:
 
 def deformed_figure(found: Footprint, angles: tuple[float, ...] = (0.0, 0.2, math.pi)) -> Figure:
     """The section at angles from the middle of the footprint (deformed, coloured outlines) over the inflated one."""
-    drawn = figure(6.4, 4.6 + TITLE)
-    axes = add_axes(drawn, 0.8, 0.6, 5.3, 4.0)
+    from matplotlib.collections import LineCollection
+
     elements = found.pressing.harmonics.elements
     mesh, n = elements.mesh, np.arange(found.harmonics + 1)
     u = found.amplitudes.reshape(len(n), -1, 3)
     vertices = elements.basis.nodal_dofs[0]
-    outline = mesh.facets[:, mesh.boundary_facets()]
-    for number, angle in enumerate((None, *angles)):
-        r, z = elements.nodes[:, vertices]
-        if angle is not None:
-            moved = np.tensordot(np.cos(n * angle), u[:, vertices, :2], axes=1)
-            r, z = r + moved[:, 0], z + moved[:, 1]
-        style = {"color": QUIET, "ls": "-", "lw": 0.8} if angle is None else line_style(number - 1) | {"lw": 1.4}
-        name = "inflated" if angle is None else f"at {math.degrees(angle):.0f}°"
-        for k, pair in enumerate(outline.T):
-            axes.plot(z[pair] * 1e3, r[pair] * 1e3, label=name if k == 0 else None, **style)
-    axes.legend(fontsize=FONT, frameon=False)
+    outline = mesh.facets[:, mesh.boundary_facets()].T
+    shapes = [elements.nodes[:, vertices]]
+    for angle in angles:
+        shapes.append(shapes[0] + np.tensordot(np.cos(n * angle), u[:, vertices, :2], axes=1).T)
+    everything = np.concatenate(shapes, axis=1) * 1e3
+    (low_r, low_z), (high_r, high_z) = everything.min(axis=1) - 3, everything.max(axis=1) + 3
+    tall = 4.0 if found.pressing.tread.half else 3.2
+    wide = (high_z - low_z) * tall / (high_r - low_r)
+    drawn = figure(max(wide + 2.7, 6.4), tall + 0.65 + TITLE)
+    axes = add_axes(drawn, 0.8, 0.6, wide, tall)
+    for number, (r, z) in enumerate(shapes):
+        style = {"color": QUIET, "ls": "-", "lw": 0.8} if number == 0 else line_style(number - 1) | {"lw": 1.4}
+        name = "inflated" if number == 0 else f"at {math.degrees(angles[number - 1]):.0f}°"
+        lines = np.stack([z[outline], r[outline]], axis=-1) * 1e3
+        axes.add_collection(LineCollection(list(lines), label=name, **style))
     section_axes(axes)
-    title(drawn, "Section before and under load", _described(found))
+    axes.set_xlim(low_z, high_z)
+    axes.set_ylim(low_r, high_r)
+    axes.legend(fontsize=FONT, frameon=False, loc="upper left", bbox_to_anchor=(1.02, 1.0))
+    title(drawn, "Section before and under load", described(found))
     return drawn
 
 

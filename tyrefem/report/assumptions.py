@@ -6,6 +6,7 @@ from typing import TYPE_CHECKING
 
 if TYPE_CHECKING:
     from tyrefem.studies import Study
+    from tyrefem.study_card import Feedback
 
 ALWAYS = {
     "Axisymmetric deformation": "A material point passes once per revolution from the inflated section to the section "
@@ -30,6 +31,12 @@ FEM = (
     "that state: without friction, and with too much load at a large deflection. Nothing of it is compared with a "
     "measured tyre.",
 )
+BARREL = (
+    "Every meridian deflected alike, by finite elements",
+    "The section is inflated in large displacement and the whole tyre pressed inside a rigid cylinder, as the report "
+    "assumes: each hoop is shortened, none is bent flat. Nothing of it is compared with a measured tyre.",
+)
+BY_ELEMENTS = {"fem": FEM, "barrel": BARREL}
 SLIDING = {
     "Friction even over the footprint": "All of the footprint slides at one speed under one pressure. Its heat divides "
     "between tread and road as they conduct; wear, water, tread gaps, camber and the strain of braking and cornering "
@@ -56,21 +63,25 @@ def assumptions(study: Study, estimates: list[str]) -> list[tuple[str, str]]:
     given = mechanics.energy if mechanics.strain == "given" else None
     if given is not None:
         always[0] = ("Strain energy given, not computed", f"{GIVEN} Their source: {given.source}.")
-    if mechanics.strain == "fem":
-        always[0] = FEM
+    if mechanics.strain in BY_ELEMENTS:
+        always[0] = BY_ELEMENTS[mechanics.strain]
+    if mechanics.feedback is not None:
+        always[-1] = ("Feedback of temperature on the strain cycle", _feedback(mechanics.feedback))
     if slip is FREE and any(effect.name in BESIDE for effect in study.effects):
         slip = {name: f"{text} What the study's effects add stands beside this." for name, text in FREE.items()}
     found = [always[0], *slip.items(), *locked.items(), *always[1:]]
+    over_frequency = [region for region, card in study.materials.items() if card.loss_tangent.frequency is not None]
+    laws = "depends on temperature, not on frequency"
+    if over_frequency:
+        laws = f"depends on temperature, and on frequency in: {', '.join(over_frequency)}"
     cycle = (
         "The strain energy times tan δ is lost once per revolution (convention "
-        f"{mechanics.loss_convention}); higher harmonics and the frequency dependence of tan δ are neglected."
+        f"{mechanics.loss_convention}); higher harmonics are neglected. tan δ {laws}."
     )
-    every = (
-        "Every harmonic of the strain round the wheel loses π tan δ of its energy per cycle; tan δ depends on "
-        "temperature, not on frequency."
-    )
+    every = f"Every harmonic of the strain round the wheel loses π tan δ of its energy per cycle; tan δ {laws}."
     harmonics = ("Loss of every harmonic", every)
-    found.insert(1, harmonics if mechanics.strain == "fem" else ("One loss cycle per revolution", cycle))
+    by_harmonic = mechanics.strain == "fem" and mechanics.revolution == "harmonics"
+    found.insert(1, harmonics if by_harmonic else ("One loss cycle per revolution", cycle))
     if study.effects:
         added = "; ".join(dict.fromkeys(f"{one.name}: {one.sentence.rstrip('.')}" for one in study.effects))
         found.append(("Effects beside the base model", f"{added}. Each says in the study where its values come from."))
@@ -86,7 +97,7 @@ def assumptions(study: Study, estimates: list[str]) -> list[tuple[str, str]]:
         if study.measured
         else "No measured temperatures belong to this study."
     )
-    if mechanics.strain == "fem":
+    if mechanics.strain in BY_ELEMENTS:
         return [*found, ("Validation", f"The strain cycle by finite elements is verified, not validated. {measured}")]
     if given is not None:
         return [*found, ("Validation", f"The strain energy is given, so nothing of it is validated. {measured}")]
@@ -95,3 +106,12 @@ def assumptions(study: Study, estimates: list[str]) -> list[tuple[str, str]]:
         f"has not been validated against them. {measured}"
     )
     return [*found, ("Validation", scan)]
+
+
+def _feedback(choice: Feedback) -> str:
+    acting = [text for on, text in ((choice.pressure, "its pressure"), (choice.modulus, "every modulus")) if on]
+    return (
+        "The contained air has one temperature and a constant volume. What follows the temperature: "
+        f"{' and '.join(acting) or 'nothing'}. A modulus is taken at its region's mean temperature, where the card "
+        "gives a softening."
+    )

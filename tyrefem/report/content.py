@@ -105,11 +105,17 @@ def headline(result: Result) -> list[dict[str, str]]:
             {
                 "label": "Deflection",
                 "value": f"{loaded.deflection * 1e3:.1f} mm",
-                "note": f"footprint {loaded.footprint_length * 1e3:.0f} mm, {100 * loaded.road_fraction:.1f} % of a "
+                "note": f"{_warming(result)}footprint {loaded.footprint_length * 1e3:.0f} mm, "
+                f"{100 * loaded.road_fraction:.1f} % of a "
                 f"revolution on the road{several}",
             }
         )
     return cards
+
+
+def _warming(result: Result) -> str:
+    """What the feedback of temperature did to the deflection; nothing where there is none."""
+    return "" if result.feedback is None else f"{result.feedback.words}; "
 
 
 def _rubbed(result: Result) -> str:

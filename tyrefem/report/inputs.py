@@ -14,8 +14,10 @@ from tyrefem.report.words import number
 if TYPE_CHECKING:
     from tyrefem.cards import Card
     from tyrefem.material_elasticity import Cords
-    from tyrefem.materials import MaterialCard
+    from tyrefem.materials import LossTangent, MaterialCard
+    from tyrefem.softening import Softening
     from tyrefem.studies import Study
+    from tyrefem.study_card import Mechanics
 
 
 def material_rows(study: Study) -> tuple[list[dict[str, Any]], list[str]]:
@@ -40,11 +42,10 @@ def _properties(card: MaterialCard) -> Iterator[tuple[str, Any, str]]:
         yield "conductivity", k, _law(k.law(), "W/m/K")
     yield "density", card.density, _law(card.density.law(), "kg/m³")
     yield "specific heat", card.specific_heat, _law(card.specific_heat.law(), "J/kg/K")
-    if loss.law == "exponential":
-        law = f"{number(loss.value or 0)} exp(−{number(loss.rate or 0)} (T − {number(loss.at)} °C))"
-    else:
-        law = number(loss.value or 0) if loss.law == "constant" else f"table of {len(loss.table or [])} rows"
-    yield "tan δ", loss, law
+    yield "tan δ", loss, _loss(loss)
+    for label, entry in (("softening", card.softening), ("softening of the cords", _cord_softening(card))):
+        if entry is not None:
+            yield label, entry, _softening(entry)
     for label, modulus in (("shear modulus", card.shear_modulus), ("Young's modulus", card.youngs_modulus)):
         if modulus is not None:
             yield label, modulus, f"{number(modulus.value / 1e6)} MPa"
@@ -56,8 +57,34 @@ def _properties(card: MaterialCard) -> Iterator[tuple[str, Any, str]]:
     if card.elasticity is not None:
         moduli = f"G {number(card.elasticity.initial_shear_modulus / 1e6)} MPa"
         yield "elasticity", card.elasticity, f"{card.elasticity.law}, {moduli}"
+    if card.expansion is not None:
+        yield "thermal expansion", card.expansion, f"{number(card.expansion.coefficient * 1e6)} 1e-6/K"
     if card.cords is not None:
         yield "cords", card.cords, _cords(card.cords)
+
+
+def _loss(loss: LossTangent) -> str:
+    if loss.law == "exponential":
+        law = f"{number(loss.value or 0)} exp(−{number(loss.rate or 0)} (T − {number(loss.at)} °C))"
+    else:
+        law = number(loss.value or 0) if loss.law == "constant" else f"table of {len(loss.table or [])} rows"
+    over = loss.frequency
+    if over is None:
+        return law
+    if loss.law == "frequency":
+        return f"{over.law} over frequency"
+    shape = f"(f / {number(over.reference)} Hz)^{number(over.exponent)}" if over.law == "power" else f"{over.law}"
+    return f"{law}, over frequency {shape}"
+
+
+def _cord_softening(card: MaterialCard) -> Softening | None:
+    return next((one.softening for one in (card.cord, card.cords) if one is not None and one.softening), None)
+
+
+def _softening(law: Softening) -> str:
+    if law.law == "table":
+        return f"table of {len(law.table or [])} rows"
+    return f"modulus times exp(−{number(law.rate or 0)} (T − {number(law.at)} °C))"
 
 
 def _cords(cords: Cords) -> str:
@@ -102,6 +129,7 @@ def mechanics_rows(study: Study) -> list[list[str]]:
         ["strain cycle", mechanics.strain],
         ["load and deflection", "; ".join([str(law.law), *_numbers(law)])],
         ["loss convention", mechanics.loss_convention],
+        *_feedback(mechanics),
     ]
     if energy is not None:
         load = f"{number(energy.load)} N, {number(energy.pressure / 1e3)} kPa"
@@ -115,6 +143,14 @@ def mechanics_rows(study: Study) -> list[list[str]]:
         ["Poisson term c_a", number(mechanics.poisson_term)],
         ["membrane shear", "counted" if mechanics.membrane_shear else "left out"],
     ]
+
+
+def _feedback(mechanics: Mechanics) -> list[list[str]]:
+    choice = mechanics.feedback
+    if choice is None:
+        return []
+    acting = [text for on, text in ((choice.pressure, "pressure"), (choice.modulus, "modulus")) if on]
+    return [["feedback of temperature", f"{' and '.join(acting) or 'nothing'}, within {number(choice.tolerance)} K"]]
 
 
 def effect_rows(study: Study) -> list[list[str]]:

@@ -140,6 +140,7 @@ def _section(card: SectionCard, name: str, half: bool, line: Line) -> Section:
         nominal_width=card.parameters.nominal_width,
         inner_volume=card.parameters.inner_volume,
         half=half,
+        flange_radius=card.parameters.flange_radius,
     )
 
 

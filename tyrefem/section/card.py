@@ -108,6 +108,7 @@ class ParametersCard(Card):
     meridian_length: PositiveLength | None = None
     bead_length: PositiveLength | None = None
     rim_length: PositiveLength | None = None
+    flange_radius: PositiveLength | None = None
     inner_volume: Annotated[float, Unit("m**3", gt=0)] | None = None
     thickness_scale: dict[str, Scale] = {}  # noqa: RUF012
     source: Text

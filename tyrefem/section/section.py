@@ -38,6 +38,7 @@ class Section:
     rating : rated load and pressure, bead wire; None where unknown.
     nominal_width : w of the report's shear formula and of the shoulder [m].
     inner_volume : measured air volume of the whole tyre [m3]; None: from the geometry.
+    flange_radius : of the rim's flange [m]; None where unknown.
     half : only z >= 0, with the boundary ``symmetry`` at the mid plane.
     as_built : the layers before wear; None: ``layers``. They place the meridian.
 
@@ -67,6 +68,7 @@ class Section:
     inner_volume: float | None = None
     half: bool = True
     as_built: tuple[Layer, ...] | None = None
+    flange_radius: float | None = None
 
     def __post_init__(self) -> None:
         from tyrefem.section.possible import check_possible

@@ -14,6 +14,7 @@ from tyrefem.errors import InputError, nearest
 from tyrefem.solid.compounds import Compound, determinant
 from tyrefem.solid.cords import CordLayer
 from tyrefem.solid.elements import Indices, PressedWall, Rings
+from tyrefem.solid.rim import Flange
 from tyrefem.solid.state import Prestressed
 from tyrefem.solid.voigt import SYMMETRIC_UNIT, UNIT, outer, over
 
@@ -44,6 +45,7 @@ class Body:
     parts : region -> what it is made of; every element belongs to one region.
     held : boundary -> components held: ``"rz"``, ``"r"`` or ``"z"``.
     pressurised : boundaries under the following pressure.
+    flanges : rigid rings on which the body may lie.
 
     Raises
     ------
@@ -54,6 +56,7 @@ class Body:
     parts: Mapping[str, Part]
     held: Mapping[str, str]
     pressurised: str = "contained_air"
+    flanges: tuple[Flange, ...] = ()
 
     def __post_init__(self) -> None:
         regions = self.mesh.subdomains or {}
@@ -133,18 +136,21 @@ class Body:
         f = self.deformation(displacement)
         dilatation = self.pressure(determinant(f)) / self.bulk[:, None]
         density = self._gathered(f, "energy", ())[0] + self.bulk[:, None] / 2 * dilatation**2
-        return float((density * self.rings.weights).sum())
+        lying = sum(flange.energy(self.rings.nodes + displacement) for flange in self.flanges)
+        return float((density * self.rings.weights).sum() + lying)
 
     # -- forces and stiffness ----------------------------------------------------------------------------------------
 
     def residual(self, displacement: Array, pressure: float) -> Array:
-        """(2 n_nodes,) inner forces less those of ``pressure`` (Pa), N per radian."""
+        """(2 n_nodes,) inner forces less those of ``pressure`` (Pa) and of the flanges, N per radian."""
         f = self.deformation(displacement)
         stress, _, _ = self._stresses(f)
         strains, _ = self._strains(displacement, f)
         local = np.einsum("eqcd,ceq->ed", strains, stress[:4] * self.rings.weights, optimize=True)
         found = np.zeros(2 * self.rings.n_nodes)
         np.add.at(found, self._dofs, local)
+        for flange in self.flanges:
+            found -= flange.force(self.rings.nodes + displacement)
         return found - pressure * self.load(displacement)
 
     def load(self, displacement: Array) -> Array:
@@ -173,7 +179,13 @@ class Body:
         columns = np.concatenate([np.tile(dofs, (1, size)).ravel(), np.tile(wall, (1, 6)).ravel()])
         data = np.concatenate([matrix.ravel(), follower.ravel()])
         n = 2 * self.rings.n_nodes
-        return sp.coo_matrix((data, (rows, columns)), shape=(n, n)).tocsc()
+        found = sp.coo_matrix((data, (rows, columns)), shape=(n, n)).tocsc()
+        return found + self._support(displacement, 2) if self.flanges else found
+
+    def _support(self, displacement: Array, components: int) -> Any:
+        """Stiffness of the flanges: sparse, ``components`` at each node."""
+        places = self.rings.nodes + displacement
+        return sum(flange.stiffness_matrix(places, components) for flange in self.flanges)
 
     @functools.cached_property
     def _dofs(self) -> Indices:
@@ -246,6 +258,8 @@ class Body:
         return Prestressed(
             self.moved(displacement), stress / volume, tangent / volume, bulk, losing / volume, pressure,
             fixed=fixed, pressurised=self.pressurised,
+            support=self._support(displacement, 3) if self.flanges else None,
+            rim_top=max((flange.centre[0] + flange.radius for flange in self.flanges), default=0.0),
         )  # fmt: skip
 
 

@@ -1,4 +1,7 @@
-"""Nine-node rings: shape functions, the linear functions of the projected dilatation, edges under pressure."""
+"""Nine-node rings: shape functions, Gauss points, projected dilatation, boundaries, edges under pressure.
+
+Large displacements take them as they are; harmonics (`tyrefem.footprint.elements`) build their strains on them.
+"""
 
 from __future__ import annotations
 
@@ -33,7 +36,7 @@ class Rings:
         import skfem
 
         if not isinstance(self.mesh, skfem.MeshQuad):
-            raise InputError("large displacements need a mesh of quadrilaterals; mesh.cell = 'quad'", field="mesh.cell")
+            raise InputError("finite-element mechanics needs quadrilaterals: mesh.cell = 'quad'", field="mesh.cell")
 
     @functools.cached_property
     def basis(self) -> Any:
@@ -62,10 +65,15 @@ class Rings:
         """(2, n_elements, n_points) Gauss points, m."""
         return np.asarray(self.basis.global_coordinates())
 
+    @property
+    def radii(self) -> Array:
+        """(n_elements, n_points) radius of the Gauss points, m."""
+        return np.asarray(self.points[0])
+
     @functools.cached_property
     def weights(self) -> Array:
         """(n_elements, n_points) r dA, m3 per radian."""
-        return np.asarray(self.basis.dx) * self.points[0]
+        return np.asarray(self.basis.dx) * self.radii
 
     @functools.cached_property
     def values(self) -> Array:
@@ -101,6 +109,12 @@ class Rings:
     def boundary_nodes(self, name: str) -> Indices:
         """Sorted nodes of a named boundary."""
         return np.unique(self.basis.get_dofs(facets=self.boundary(name)).flatten()).astype(np.int64)
+
+    def facet_basis(self, name: str) -> Any:
+        """scikit-fem basis on the facets of a named boundary."""
+        import skfem
+
+        return skfem.FacetBasis(self.mesh, skfem.ElementQuad2(), facets=self.boundary(name), intorder=INTORDER)
 
     def region_of(self, element: int) -> str:
         """Name of the region that holds an element."""

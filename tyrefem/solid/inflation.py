@@ -134,7 +134,11 @@ def _spread(values: Array, weights: Array) -> tuple[float, float, float]:
 
 
 def inflate(
-    study: Study | str, pressure: float | None = None, mesh: TyreMesh | None = None, choice: NewtonChoice | None = None
+    study: Study | str,
+    pressure: float | None = None,
+    mesh: TyreMesh | None = None,
+    choice: NewtonChoice | None = None,
+    temperature: Any = None,
 ) -> Inflation:
     """Inflate a study's tyre.
 
@@ -143,6 +147,7 @@ def inflate(
     study : a study, or its name.
     pressure : Pa above the ambient; by default that of the drive's first phase.
     mesh : a mesh of the study's section in quadrilaterals; by default the study's own.
+    temperature : degC, as `tyrefem.solid.thermal.warm` takes it; by default nothing expands.
 
     Raises
     ------
@@ -165,7 +170,12 @@ def inflate(
         raise InputError(f"must be a pressure of 0 Pa or more, not {pressure:g}", field="pressure")
     body = tyre_body(chosen, mesh)
     try:
-        found = equilibrium(body, pressure, choice)
+        if temperature is None:
+            return Inflation(body, equilibrium(body, pressure, choice), chosen.section.half)
+        from tyrefem.solid import thermal
+
+        warmed = thermal.warm(body, temperature, thermal.expansions(chosen))
+        found = thermal.relaxed(warmed, equilibrium(body, pressure, choice))
     except InputError as error:
         raise error if error.file else InputError(error.message, field=error.field, file=chosen.file) from None
-    return Inflation(body, found, chosen.section.half)
+    return Inflation(warmed, found, chosen.section.half)

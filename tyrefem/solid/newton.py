@@ -14,6 +14,8 @@ from tyrefem.solid.compounds import determinant
 Array = NDArray[np.float64]
 #: A Newton step of this share of the largest coordinate alters nothing that can be computed.
 ROUND_OFF = 1e-13
+#: A load step of at most so many evaluations is followed by one twice as large.
+EASY = 12
 
 
 @dataclass(frozen=True)
@@ -25,10 +27,10 @@ class NewtonChoice:
     """
 
     tolerance: float = 1e-8
-    iterations: int = 20
-    first_step: float = 0.25
+    iterations: int = 25
+    first_step: float = 0.5
     smallest_step: float = 1e-3
-    line_search: int = 2
+    line_search: int = 3
 
 
 @dataclass(frozen=True, eq=False)
@@ -84,7 +86,7 @@ def equilibrium(body: Body, pressure: float, choice: NewtonChoice | None = None)
         before, now, last, reached = now, found, aim - reached, aim
         steps.append(aim)
         residuals.append(history)
-        step *= 2.0 if len(history) <= 7 else 1.0
+        step *= 2.0 if len(history) <= EASY else 1.0
     return Equilibrium(now, pressure, tuple(steps), tuple(residuals))
 
 

@@ -28,6 +28,9 @@ class Prestressed:
     pressure : gauge pressure, Pa, that follows the boundary ``pressurised``.
     fixed : boundaries that are held.
     pressurised, tread : boundaries under pressure, and that may touch the road.
+    support : sparse (3 n_nodes, 3 n_nodes) stiffness of what the body lies on, N/m per radian, component c of (r, z, t)
+        of node i at 3 i + c; alike for every harmonic. None: nothing but ``fixed``.
+    rim_top : largest radius of the rim, m, where it is more than that of ``fixed``.
     symmetric : boundary on the mid plane of a half section, where u_z = 0; a mesh without it is a full section.
     """
 
@@ -41,3 +44,5 @@ class Prestressed:
     pressurised: str = "contained_air"
     tread: str = "road"
     symmetric: str = "symmetry"
+    support: Any = None
+    rim_top: float = 0.0

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
@@ -13,6 +13,7 @@ from tyrefem.solid.body import Body, Part
 from tyrefem.solid.compounds import Compound, neo_hookean
 from tyrefem.solid.cords import CordLayer, lifted_angle, lifted_ends
 from tyrefem.solid.elements import Rings
+from tyrefem.solid.rim import FLANGE_RADIUS, SEAT, on_rim
 
 if TYPE_CHECKING:
     from tyrefem.materials import MaterialCard
@@ -22,10 +23,16 @@ if TYPE_CHECKING:
 Array = NDArray[np.float64]
 #: Temperature, degC, at which the losses of cords and rubber are compared.
 LOSS_TEMPERATURE = 60.0
+#: A layer carries so much of its rubber's shear modulus in compression along the cords. Estimate: wavy cords buckle
+#: below the limit of straight ones, which is 1.
+BUCKLING = 0.5
+#: Crown angles, deg, of plies whose cords' stiffness follows from the ply shear modulus.
+BIAS_ANGLES = (10.0, 80.0)
 
 
 def tyre_body(study: Study, mesh: TyreMesh | None = None) -> Body:
-    """The body of a study's tyre on its mesh: held at the rim, u_z = 0 on the mid plane of a half section.
+    """The body of a study's tyre on its mesh: held on the rim's seat, lying on its flanges; u_z = 0 on the mid plane
+    of a half section.
 
     A region's compound is its card's ``[elasticity]``, or neo-Hookean with its ``shear_modulus`` (that of the carcass
     where it has none). Its cords are the card's ``[cords]``; or bias plies with v_c E = 4 G_p / sin^2(2 a), from
@@ -43,8 +50,9 @@ def tyre_body(study: Study, mesh: TyreMesh | None = None) -> Body:
             parts[region] = reader.part(region)
         except InputError as error:
             raise error if error.file else error.within(field=f"materials.{region}", file=study.file) from None
-    held = {"rim": "rz", **({"symmetry": "z"} if study.section.half else {})}
-    return Body(meshed.mesh, parts, held)
+    named, flanges = on_rim(meshed.mesh, study.section.flange_radius or FLANGE_RADIUS)
+    held = {SEAT: "rz", **({"symmetry": "z"} if study.section.half else {})}
+    return Body(named, parts, held, flanges=flanges)
 
 
 @dataclass(frozen=True, eq=False)
@@ -56,12 +64,17 @@ class _Reader:
     def part(self, region: str) -> Part:
         card = self.study.materials[region]
         cords = getattr(card, "cords", None)
+        compound = self.compound(card)
         if cords is not None:
             own = getattr(cords, "loss_tangent", None) or 0.0
             ratio = own / max(float(card.loss_tangent(LOSS_TEMPERATURE)), 1e-12)
-            return Part(self.compound(card), (self.layer(region, cords),), ratio)
+            return Part(compound, (self._limited(self.layer(region, cords), compound),), ratio)
         layer = self.bias_plies(region, card) or self.bead_wire(region, card)
-        return Part(self.compound(card), (layer,) if layer else ())
+        return Part(compound, (self._limited(layer, compound),) if layer else ())
+
+    @staticmethod
+    def _limited(layer: CordLayer, compound: Compound) -> CordLayer:
+        return replace(layer, limit=BUCKLING * compound.shear_modulus)
 
     def compound(self, card: MaterialCard) -> Compound:
         law = getattr(card, "elasticity", None)
@@ -99,6 +112,13 @@ class _Reader:
         angle = (rating.cord_angle if rating else None) or card.cord.crown_angle
         if not angle:
             raise InputError("neither the section nor the card gives the crown cord angle", field="cord.crown_angle")
+        if not BIAS_ANGLES[0] <= np.degrees(angle) <= BIAS_ANGLES[1]:
+            # v_c E = 4 G_p / sin^2(2 a) has no bound at 0 and 90 deg.
+            raise InputError(
+                f"a ply shear modulus tells the cords' stiffness for crown angles of {BIAS_ANGLES[0]:g} to "
+                f"{BIAS_ANGLES[1]:g} deg, not {np.degrees(angle):.4g} deg; give the card [cords]",
+                field="cord.crown_angle",
+            )
         points, meridian, _ = self._places(region)
         crown = float(self.study.section.line.position(np.zeros(1))[0, 0])
         # Beyond the crown's midline the plies' outer half would pass the lift law's radius: the midline's angle holds.

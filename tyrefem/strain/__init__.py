@@ -2,6 +2,7 @@
 
 A provider offers ``zones`` (name, region and extent of each) and ``energy_density(zone, points)`` in J/m3.
 `arcs` is the NASA report's, `given` takes the study's own numbers; `tyrefem.study_card.Mechanics` names the provider.
+One that knows the harmonics of its cycle may also offer ``spectrum(zone, points)``: U by its `ORDERS`, (orders, n).
 """
 
 from __future__ import annotations
@@ -13,6 +14,11 @@ import numpy as np
 from numpy.typing import NDArray
 
 Array = NDArray[np.float64]
+
+#: Steps per octave of `ORDERS`.
+_STEPS = 4
+#: Cycles per revolution by which the strain energy of harmonics is kept: 1, 2^(1/4), 2^(1/2), ... to 362.
+ORDERS = tuple(float(x) for x in 2 ** (np.arange(8.5 * _STEPS + 1) / _STEPS))
 
 
 @dataclass(frozen=True)
@@ -35,3 +41,25 @@ class StrainCycle(Protocol):
 
     def energy_density(self, zone: str, points: Array) -> Array:
         """Strain energy per cycle U, J/m3, at points (2, n) in (r, z)."""
+
+
+def by_order(harmonics: Array) -> Array:
+    """(orders, ...) what harmonics (n + 1, ...) carry, shared between the two `ORDERS` next to each, linear in log n.
+
+    Their sum is within 0.1 % of that of the harmonics themselves for a power law of frequency with the exponent 0.3,
+    and within 0.4 % for a single Maxwell element.
+
+    >>> by_order(np.array([0.0, 1.0, 5.0, 8.0])).round(3).tolist()
+    [1.0, 0.0, 0.0, 0.0, 5.0, 0.0, 5.281, 2.719]
+    """
+    place = _STEPS * np.log2(np.arange(1, len(harmonics)))
+    if len(place) == 0:
+        return np.zeros((1, *np.shape(harmonics)[1:]))
+    below = np.floor(place + 1e-9).astype(int)
+    above = np.maximum(place - below, 0.0)
+    found = np.zeros((int(np.ceil(place[-1] - 1e-9)) + 1, *np.shape(harmonics)[1:]))
+    for n, (order, share) in enumerate(zip(below, above, strict=True), start=1):
+        found[order] += (1 - share) * harmonics[n]
+        if share > 1e-9:
+            found[order + 1] += share * harmonics[n]
+    return found

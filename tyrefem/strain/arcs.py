@@ -27,6 +27,17 @@ STEEPEST_SLOPE = math.sqrt(2.0) * math.exp(-0.5)
 CONTACT_PRESSURE = 1.5
 
 
+def report_zones(shoulder: float) -> tuple[Zone, ...]:
+    """Regions I to V of the report, the shoulder at a distance from the crown, m."""
+    return (
+        Zone("I", "carcass", "carcass under the tread", 0.0, shoulder),
+        Zone("II", "tread", "tread rubber"),
+        Zone("III", "carcass", "sidewall carcass", shoulder),
+        Zone("IV", "sidewall", "sidewall rubber"),
+        Zone("V", "bead", "bead"),
+    )
+
+
 @dataclass(frozen=True)
 class Stiffness:
     """What the strain energy needs of the materials. SI."""
@@ -76,14 +87,7 @@ class Arcs:
     @property
     def zones(self) -> tuple[Zone, ...]:
         """Regions I to V of the report."""
-        shoulder = self.section.line.shoulder_s
-        return (
-            Zone("I", "carcass", "carcass under the tread", 0.0, shoulder),
-            Zone("II", "tread", "tread rubber"),
-            Zone("III", "carcass", "sidewall carcass", shoulder),
-            Zone("IV", "sidewall", "sidewall rubber"),
-            Zone("V", "bead", "bead"),
-        )
+        return report_zones(self.section.line.shoulder_s)
 
     # -- geometry ----------------------------------------------------------------------------------------------
 

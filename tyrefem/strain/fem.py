@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import functools
 from collections.abc import Callable
-from dataclasses import dataclass, field
+from dataclasses import dataclass
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
@@ -12,7 +12,8 @@ from numpy.typing import NDArray
 
 from tyrefem.errors import InputError
 from tyrefem.heating import LOSS_FACTOR
-from tyrefem.strain import StrainCycle, Zone
+from tyrefem.strain import StrainCycle, Zone, by_order
+from tyrefem.strain.gauss_points import GaussPoints
 
 if TYPE_CHECKING:
     from tyrefem.loading import LoadCase
@@ -25,6 +26,8 @@ Array = NDArray[np.float64]
 TOLERANCE = 0.02
 #: Nine-node elements are this much larger than those of the study's mesh.
 COARSER = 2.0
+#: Pressures, roads and loads that a provider remembers.
+REMEMBERED = 16
 
 
 @dataclass(frozen=True, eq=False)
@@ -33,7 +36,9 @@ class FiniteElements:
 
     A harmonic n runs n cycles per revolution, each of which loses pi tan d e_n : C' : e_n, so that the heat
     f U tan d v / (2 R_c) of `heating` is the loss of all harmonics per revolution of 2 pi R: whatever the loss
-    convention's factor f and the load case's rolling radius R_c. tan d is the card's, alike at every harmonic.
+    convention's factor f and the load case's rolling radius R_c. `spectrum` keeps the harmonics apart, for a tan d
+    that depends on frequency. ``one_cycle``: U is the energy of the largest change of strain, as if the revolution
+    were one cycle; then f counts.
 
     Parameters
     ----------
@@ -45,53 +50,74 @@ class FiniteElements:
     footprint: Any
     case: LoadCase
     factor: float = 1.0
+    one_cycle: bool = False
 
     @property
     def zones(self) -> tuple[Zone, ...]:
         """The regions."""
         return tuple(Zone(region, region, region) for region in self.tyre.body.parts)
 
+    @property
+    def found_deflection(self) -> float:
+        """The footprint's own deflection, m: the case's is the load law's."""
+        return 0.0 if self.footprint is None else float(self.footprint.deflection)
+
     @functools.cached_property
-    def density(self) -> Array:
-        """(n_elements, n_points) U, J/m3, at the Gauss points of the mechanical mesh."""
+    def densities(self) -> Array:
+        """(orders, n_elements, n_points) U, J/m3, at the Gauss points of the mechanical mesh, by `strain.ORDERS`."""
         if self.footprint is None:
-            return np.zeros(self.tyre.body.rings.weights.shape)
+            return np.zeros((1, *self.tyre.body.rings.weights.shape))
         from tyrefem.footprint.cycle import StrainCycle as Harmonics
 
-        products = Harmonics(self.footprint).storage_products
-        orders = np.arange(len(products))[:, None, None]
+        cycle = Harmonics(self.footprint)
         radii = self.case.rolling_radius / self.footprint.rolling_radius
-        return np.asarray((orders * products).sum(axis=0) * radii / self.factor)
+        if self.one_cycle:
+            return np.asarray(cycle.largest_energy()[None] * radii)
+        products = cycle.storage_products
+        orders = np.arange(len(products))[:, None, None]
+        return np.asarray(by_order(orders * products) * radii / self.factor)
+
+    @property
+    def density(self) -> Array:
+        """(n_elements, n_points) U, J/m3, at the Gauss points of the mechanical mesh."""
+        return np.asarray(self.densities.sum(axis=0))
+
+    @functools.cached_property
+    def _points(self) -> GaussPoints:
+        return GaussPoints(self.tyre.body.rings)
 
     def energy_density(self, zone: str, points: Array) -> Array:
-        """U, J/m3, at points (2, n) in (r, z) of the undeformed section: from the four nearest Gauss points of the
-        region, weighted with 1 / distance^2."""
-        tree, values = self._places(zone)
-        count = min(4, len(values))
-        distance, nearest = tree.query(np.asarray(points, dtype=float).T, k=count)
-        weights = 1 / (distance.reshape(-1, count) ** 2 + 1e-12)
-        return np.asarray((weights * values[nearest.reshape(-1, count)]).sum(axis=1) / weights.sum(axis=1))
+        """U, J/m3, at points (2, n) in (r, z) of a region of the undeformed section."""
+        return self._points.interpolate(self.density, zone, points)
 
-    def _places(self, zone: str) -> tuple[Any, Array]:
-        if zone not in self._trees:
-            from scipy.spatial import cKDTree
-
-            members = self.tyre.body.mesh.subdomains[zone]
-            places = self.tyre.body.rings.points[:, members].reshape(2, -1).T
-            self._trees[zone] = (cKDTree(places), self.density[members].ravel())
-        return self._trees[zone]
-
-    _trees: dict[str, tuple[Any, Array]] = field(default_factory=dict, init=False, repr=False)
+    def spectrum(self, zone: str, points: Array) -> Array:
+        """(orders, n) the same by `strain.ORDERS`."""
+        return self._points.interpolate(self.densities, zone, points)
 
 
 def mechanical_mesh(study: Study) -> TyreMesh:
-    """The study's own mesh file; otherwise one of nine-node elements twice as large as the study asks for."""
+    """The study's own mesh file; gmsh's quadrilaterals where the study asks for these; otherwise a mapped mesh of
+    nine-node elements twice as large as the study asks for, also beside gmsh's triangles (nine-node elements need
+    quadrilaterals; energies go over by region and place).
+
+    Raises
+    ------
+    InputError : a size too coarse or too fine for the section.
+    """
     from tyrefem import meshing
 
     choice = study.card.mesh
     if choice.file is not None:
         return study.mesh()
-    return meshing.build(study.section, mesher="mapped", size=COARSER * choice.size, cell="quad", through=1)
+    own = choice.mesher == "gmsh" and choice.cell == "quad"
+    mesher, size = ("gmsh", choice.size) if own else ("mapped", COARSER * choice.size)
+    try:
+        return meshing.build(study.section, mesher=mesher, size=size, cell="quad", through=1)
+    except InputError as error:
+        if own:
+            raise error.within(field="mesh", file=study.file) from None
+        message = f"the mesh of the mechanics, {COARSER:g} times as coarse: {error.message}"
+        raise InputError(message, field=f"mesh.{error.field}", file=study.file) from None
 
 
 def provider(study: Study) -> Callable[[LoadCase], StrainCycle]:
@@ -105,8 +131,9 @@ def provider(study: Study) -> Callable[[LoadCase], StrainCycle]:
     InputError : when called: no equilibrium, or a load that the tyre cannot carry.
     """
     factor = LOSS_FACTOR[study.card.mechanics.loss_convention]
+    one_cycle = study.card.mechanics.revolution == "one-cycle"
 
-    @functools.cache
+    @functools.lru_cache(REMEMBERED)
     def inflated(pressure: float) -> Inflation:
         from tyrefem.solid.inflation import inflate
 
@@ -114,19 +141,19 @@ def provider(study: Study) -> Callable[[LoadCase], StrainCycle]:
             raise InputError("the strain law 'fem' needs an inflated tyre", field="pressure")
         return inflate(study, pressure, mechanical_mesh(study))
 
-    @functools.cache
+    @functools.lru_cache(REMEMBERED)
     def pressing(pressure: float, drum: float) -> Any:
         from tyrefem.footprint.contact import Pressing
         from tyrefem.footprint.road import Road
 
         return Pressing(inflated(pressure).state, Road(drum_diameter=drum))
 
-    @functools.cache
+    @functools.lru_cache(REMEMBERED)
     def pressed(load: float, pressure: float, drum: float) -> Any:
         return pressing(pressure, drum).solve(load=load, tolerance=TOLERANCE) if load > 0 else None
 
     def cycle(case: LoadCase) -> StrainCycle:
         footprint = pressed(case.load, case.pressure, case.drum_diameter)
-        return FiniteElements(inflated(case.pressure), footprint, case, factor)
+        return FiniteElements(inflated(case.pressure), footprint, case, factor, one_cycle)
 
     return cycle

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+from dataclasses import dataclass, field
 from itertools import pairwise
 from typing import TYPE_CHECKING, Annotated, Any
 
@@ -10,7 +10,7 @@ import numpy as np
 from numpy.typing import NDArray
 from pydantic import BeforeValidator, Field
 
-from tyrefem.cards import Card, Text
+from tyrefem.cards import Card, Temperature, Text
 from tyrefem.errors import InputError, nearest
 from tyrefem.quantity import Unit
 from tyrefem.strain import Zone
@@ -41,10 +41,13 @@ class GivenEnergy(Card):
     """Strain energy per cycle U, J/m3, of every region at one load and pressure.
 
     ``regions``: a number, or rows of distance from the crown and energy, linear between them and constant beyond.
+    ``temperature``: at which the energies hold, degC; where it is given they follow the modulus (with
+    ``mechanics.feedback``).
     """
 
     load: Annotated[float, Unit("N", gt=0)]
     pressure: Annotated[float, Unit("Pa", gt=0)]
+    temperature: Temperature | None = None
     regions: dict[str, Annotated[Rows, BeforeValidator(_rows)]] = Field(min_length=1)
     source: Text
 
@@ -61,7 +64,9 @@ class GivenEnergy(Card):
 
 @dataclass(frozen=True, eq=False)
 class Given:
-    """U = U_given(s) (D / D_given)^2: linear elasticity carries the given energy to other deflections D [m].
+    """U = U_given(s) (D / D_given)^2 m: linear elasticity carries the given energy to other deflections D [m].
+
+    m, ``softened``, is a region's modulus over that at which the energy was given; 1 where not given.
 
     >>> from tyrefem.loading import LoadCase
     >>> from tyrefem.section import load
@@ -76,6 +81,7 @@ class Given:
     regions: Mapping[str, Rows]
     deflection: float
     case: LoadCase
+    softened: Mapping[str, float] = field(default_factory=dict)
 
     @property
     def zones(self) -> tuple[Zone, ...]:
@@ -86,4 +92,5 @@ class Given:
         """U, J/m3, at points (2, n) of a region."""
         s, _ = self.section.locate(np.asarray(points, dtype=float).T)
         stations, energies = np.transpose(self.regions[zone])
-        return np.asarray(np.interp(np.abs(s), stations, energies) * (self.case.deflection / self.deflection) ** 2)
+        factor = (self.case.deflection / self.deflection) ** 2 * self.softened.get(zone, 1.0)
+        return np.asarray(np.interp(np.abs(s), stations, energies) * factor)

@@ -1,0 +1,160 @@
+"""An inflated body in a rigid cylinder: closed forms, complementarity, work and its derivatives."""
+
+from __future__ import annotations
+
+import functools
+from itertools import pairwise
+
+import numpy as np
+import pytest
+from scipy.integrate import quad
+from solid_bodies import END, tube
+
+import tyrefem as tf
+from tyrefem.errors import InputError
+from tyrefem.meshing import build
+from tyrefem.solid.body import Body
+from tyrefem.solid.compounds import neo_hookean
+from tyrefem.solid.cylinder import CylinderChoice
+from tyrefem.solid.flattening import Flattened, bottoming, flatten
+from tyrefem.solid.inflation import Inflation, inflate
+from tyrefem.solid.newton import equilibrium
+
+SHEAR, INNER, OUTER, HEIGHT = 1e6, 1.0, 2.0, 0.5
+
+
+def ring(n: int = 6, bulk: float = 1e8, pressure: float = 0.0) -> Inflation:
+    """A ring without ends (plane strain) whose outer side may touch."""
+    plain = tube(n, neo_hookean(SHEAR, bulk), inner=INNER, outer=OUTER, height=HEIGHT)
+    mesh = plain.mesh.with_boundaries({"road": lambda x: x[0] > OUTER - END})
+    body = Body(mesh, plain.parts, plain.held)
+    return Inflation(body, equilibrium(body, pressure), half=False)
+
+
+@functools.cache
+def bias_tyre(pressure: float = 572e3) -> Inflation:
+    study = tf.study("nasa-22x5.5-8pr")
+    return inflate(study, pressure, build(study.section, size=16e-3, through=1))
+
+
+@functools.cache
+def pressed(deflection: float) -> Flattened:
+    return flatten(bias_tyre(), deflection)
+
+
+def potential(found: Flattened) -> float:
+    """Elastic energy less p V, J of the whole tyre; V per radian is int r^2 dz / 2 along the wall."""
+    body, wall = found.tyre.body, found.tyre.body.wall
+    (r, _, dz), _, _, weights = wall._along(found.places)
+    volume = float((wall.outwards[:, None] * weights * r * r / 2 * dz).sum())
+    sides = 2 if found.tyre.half else 1
+    # The wall's outward normal points into the gas.
+    return 2 * np.pi * sides * (body.energy(found.displacement) + found.tyre.pressure * volume)
+
+
+def test_lame_ring_pressed_from_outside() -> None:
+    """u = A r + B/r with u(b) = -D and no stress at r = a; pressure of the cylinder and strain energy likewise."""
+    bulk, d = 1e8, 1e-6
+    found = flatten(ring(8, bulk), d)
+    lame, a, b = bulk - 2 * SHEAR / 3, INNER, OUTER
+    # 2 (lambda + G) A = 2 G B / a^2
+    ratio = a**2 * (lame + SHEAR) / SHEAR
+    A = -d / (b + ratio / b)
+    B = A * ratio
+    r = found.tyre.body.rings.nodes[0]
+    np.testing.assert_allclose(found.displacement[0], A * r + B / r, atol=2e-5 * d)
+    pressure = -(2 * (lame + SHEAR) * A - 2 * SHEAR * B / b**2)
+    assert found.force == pytest.approx(2 * np.pi * b * HEIGHT * pressure, rel=1e-4)
+    assert found.stiffness == pytest.approx(found.force / d, rel=1e-4)
+    points = found.tyre.body.rings.points[0]
+    hoop, radial = A + B / points**2, A - B / points**2
+    np.testing.assert_allclose(found.strain[2], hoop, atol=1e-3 * np.abs(hoop).max())
+    np.testing.assert_allclose(found.strain[0], radial, atol=5e-3 * np.abs(radial).max())
+
+
+def test_large_flattening_of_an_incompressible_ring() -> None:
+    """r^2 = R^2 + k, pressure of the cylinder int G (x^2 - x^-2) dr/r, x = r/R, with k = (b - D)^2 - b^2."""
+    d = 0.2
+    k = (OUTER - d) ** 2 - OUTER**2
+
+    def slope(R: float) -> float:
+        x2 = 1 + k / R**2
+        return SHEAR * (x2 - 1 / x2) * R / (R * R + k)
+
+    exact = -quad(slope, INNER, OUTER)[0]
+    # The bore is at 49 % of its radius; 1e5 is nearly incompressible (ten times less: ten times the error).
+    force = flatten(ring(6, 1e5 * SHEAR), d).force
+    assert force / (2 * np.pi * (OUTER - d) * HEIGHT) == pytest.approx(exact, rel=6e-4)
+
+
+def test_a_pressed_ring_takes_its_pressure_through() -> None:
+    """At the deflection that undoes inflation the ring is unstrained in its bore: cylinder and gas press alike."""
+    pressure = 2e5
+    blown = ring(6, 1e4 * SHEAR, pressure)
+    growth = blown.places[0].max() - OUTER
+    found = flatten(blown, growth)
+    # Incompressible and back at its own radius: stress is -p everywhere, and so is the cylinder's pressure.
+    assert found.force / (2 * np.pi * OUTER * HEIGHT) == pytest.approx(pressure, rel=1e-3)
+
+
+@pytest.mark.parametrize("deflection", [2e-3, 12e-3])
+def test_complementarity(deflection: float) -> None:
+    """No node beyond the cylinder, none pulled by it, and no force across a gap; the inside in balance."""
+    found = pressed(deflection)
+    assert found.gaps.min() > -1e-12
+    assert found.forces.min() >= 0
+    assert (found.forces * found.gaps).max() < 1e-12 * found.force * deflection
+    touched = found.forces > 0
+    assert 0 < touched.sum() < len(touched)
+    body = found.tyre.body
+    residual = body.residual(found.displacement, found.tyre.pressure)
+    residual[2 * found.nodes] += found.forces
+    assert np.abs(residual[body.free]).max() < 1e-8 * found.forces.sum()
+
+
+def test_contact_spreads_with_the_deflection() -> None:
+    assert 0 < pressed(2e-3).width < pressed(12e-3).width < 0.13
+
+
+def test_force_is_the_derivative_of_the_potential() -> None:
+    """d(elastic energy - p V)/dD = F, and dF/dD is the stiffness of the linearised contact."""
+    h, found = 2e-5, pressed(12e-3)
+    less, more = (flatten(bias_tyre(), 12e-3 + x, pressed(2e-3)) for x in (-h, h))
+    slope = (potential(more) - potential(less)) / (2 * h)
+    assert found.force == pytest.approx(slope, rel=1e-5)
+    # No node comes into contact between the two.
+    assert ((less.forces > 0) == (more.forces > 0)).all()
+    assert found.stiffness == pytest.approx((more.force - less.force) / (2 * h), rel=1e-3)
+    assert found.stiffness > 0
+
+
+def test_newton_is_quadratic_once_the_contact_is_found() -> None:
+    found = flatten(ring(4), 0.05)
+    for history in found.residuals:
+        errors = [e for e in history[1:] if 1e-8 < e < 0.3]
+        for before, after in pairwise(errors):
+            assert after < 30 * before**1.8
+
+
+def test_the_way_there_does_not_matter() -> None:
+    """From a smaller deflection or from none: the same place."""
+    direct, staged = pressed(12e-3), flatten(bias_tyre(), 12e-3, pressed(2e-3))
+    np.testing.assert_allclose(direct.displacement, staged.displacement, atol=1e-8)
+    assert staged.steps[: len(pressed(2e-3).steps)] == pressed(2e-3).steps
+
+
+def test_no_deflection_is_the_inflated_tyre() -> None:
+    found = flatten(bias_tyre(), 0.0)
+    assert found.force == found.stiffness == found.width == 0
+    assert np.abs(found.strain).max() < 1e-12
+
+
+def test_impossible_deflections() -> None:
+    tyre = bias_tyre()
+    with pytest.raises(InputError, match=r"deflection of 200 mm is impossible; .* where the crown meets the rim"):
+        flatten(tyre, 0.2)
+    with pytest.raises(InputError, match="deflection of -1 mm is impossible"):
+        flatten(tyre, -1e-3)
+    with pytest.raises(InputError, match=r"no equilibrium beyond [\d.]+ mm; .* mm, region '\w+'"):
+        flatten(ring(2), 0.2, choice=CylinderChoice(iterations=2, smallest_step=5e-3))
+    assert 0.05 < bottoming(tyre) < 0.1

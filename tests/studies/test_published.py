@@ -1,0 +1,56 @@
+"""Published ranges stand beside results and change none of them."""
+
+from __future__ import annotations
+
+import pytest
+
+import tyrefem as tf
+from tyrefem.published import Comparison, compared, of_run
+
+RADIALS = ("passenger-205-55r16", "truck-295-80r22.5", "aircraft-radial")
+
+
+@pytest.mark.parametrize("name", RADIALS)
+def test_the_radials_name_ranges_with_their_source(name: str) -> None:
+    published = tf.study(name).card.published
+    assert published.vertical_stiffness is not None
+    for quantity in type(published).model_fields:
+        known = getattr(published, quantity)
+        if known is not None:
+            low, high = known.between
+            assert 0 < low < high
+            # A recollection or a guess is called one.
+            assert any(word in known.source for word in ("Regulation", "from memory", "estimate"))
+            middle = (low + high) / 2
+            verdicts = [compared(published, {quantity: one})[0].inside for one in (0.9 * low, middle, 1.1 * high)]
+            assert verdicts == [False, True, False]
+
+
+def test_label_classes_of_c3_tyres() -> None:
+    """Regulation (EC) 1222/2009 annex I part A: class A ends at 4.0, class E at 8.0 kg/t."""
+    known = tf.study("truck-295-80r22.5").card.published.rolling_resistance_coefficient
+    assert known is not None
+    assert known.between == (0.004, 0.008)
+
+
+def test_words_and_json() -> None:
+    found = Comparison("footprint_length", 0.11, 0.12, 0.15, "a book")
+    assert found.words == "footprint length 110, published 120 to 150 mm: outside (a book)"
+    assert found.to_dict()["verdict"] == "outside"
+    assert found.to_dict()["unit"] == "m"
+
+
+def test_a_run_tells_its_own_beside_them() -> None:
+    """A given strain cycle knows no footprint; the coefficient is the run's own."""
+    study = tf.study(
+        "passenger-205-55r16",
+        {"mesh.size": "12 mm", "mesh.element": "P1", "drive.duration": "60 s", "numerics.tolerance": "1 delta_degC"},
+    )
+    result = study.run()
+    (only,) = of_run(result)
+    assert only.quantity == "rolling_resistance_coefficient"
+    assert only.value == result.rolling_resistance.coefficient
+    assert result.summary()["published"] == [only.to_dict()]
+    without = study.replace({"published": {}}).run()
+    assert of_run(without) == ()
+    assert without.rolling_resistance.coefficient == only.value

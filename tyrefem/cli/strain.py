@@ -1,0 +1,97 @@
+"""`tyrefem strain`: one study by every strain law, strain energy and temperatures side by side."""
+
+from __future__ import annotations
+
+from pathlib import Path
+from typing import TYPE_CHECKING, Annotated
+
+import typer
+
+from tyrefem.cli.common import JsonOption, SetOption, StudyArgument, fail, print_json, settings, writable_folder
+from tyrefem.errors import InputError, nearest
+
+if TYPE_CHECKING:
+    from tyrefem.strain.comparison import LawComparison
+
+#: Kind of row -> heading and factor of the printed table.
+KINDS = {
+    "deflection": ("", 1e3),
+    "energy": ("strain energy, largest change, J", 1.0),
+    "density": ("its mean, kJ/m3", 1e-3),
+    "heating": ("energy that heats, all cycles of a revolution, J", 1.0),
+    "coefficient": ("rolling resistance coefficient, 1/1000", 1e3),
+    "temperature": ("temperature at the end (hottest: ever), degC", 1.0),
+}
+
+
+def strain(
+    study: StudyArgument,
+    law: Annotated[
+        list[str] | None, typer.Option("--law", help="arcs, barrel or fem; repeatable. Default: all.")
+    ] = None,
+    out: Annotated[Path | None, typer.Option("--out", help="Folder; default: results/STUDY-strain.")] = None,
+    as_json: JsonOption = False,
+    changes: SetOption = None,
+) -> None:
+    """Run a study by every strain law: strain energy by region and temperatures side by side."""
+    from tyrefem.output import atomic_folder, write_json
+    from tyrefem.strain.comparison import LAWS, compare_laws
+    from tyrefem.studies import study as load_study
+
+    wanted = tuple(dict.fromkeys(law or LAWS))
+    for one in wanted:
+        if one not in LAWS:
+            raise InputError(f"no strain law '{one}' to compare{nearest(one, LAWS)}", field="--law")
+    chosen = load_study(study, settings(changes))
+    folder = writable_folder(out or Path("results") / f"{chosen.name}-strain")
+    found = compare_laws(chosen, wanted)
+    summary = found.summary()
+    with atomic_folder(folder) as temporary:
+        write_json(summary, temporary / "strain.json")
+        found.table().to_csv(temporary / "strain.csv", index=False)
+        (temporary / "strain.png").write_bytes(_picture(found))
+    for refused, why in found.refused.items():
+        fail(f"warning: the strain law '{refused}' has no answer: {why}")
+    if as_json:
+        print_json(summary)
+        return
+    _print(found)
+    typer.echo(f"results in {folder}")
+
+
+def _picture(found: LawComparison) -> bytes:
+    from tyrefem.plotting.strain_laws import strain_laws_figure
+    from tyrefem.plotting.style import png
+
+    return png(strain_laws_figure(found))
+
+
+def _print(found: LawComparison) -> None:
+    from rich.console import Console
+    from rich.table import Table
+
+    titles = {part.name: part.name if part.name == part.title else f"{part.name} {part.title}" for part in found.parts}
+    laws = [outcome.law for outcome in found.outcomes]
+    table = Table(title=found.study.title, title_justify="left", title_style="bold")
+    table.add_column("")
+    for one in laws:
+        table.add_column(one, justify="right")
+    before = "deflection"
+    for row in found.table().to_dict("records"):
+        heading, factor = KINDS[row["kind"]]
+        if row["kind"] != before:
+            before = row["kind"]
+            table.add_section()
+            table.add_row(f"[bold]{heading}[/bold]")
+        name = "deflection, mm" if row["kind"] == "deflection" else titles.get(row["name"], row["name"])
+        table.add_row(name, *(f"{factor * row[one]:.2f}" for one in laws))
+    Console(highlight=False).print(table)
+
+
+#: Place among the commands.
+ORDER = 46
+
+
+def register(app: typer.Typer) -> None:
+    """Add the command."""
+    app.command()(strain)
