@@ -72,7 +72,7 @@ SHOWN = {
     "footprint_length": ("m", "mm", ".0f"),
     "footprint_width": ("m", "mm", ".0f"),
     "footprint_area": ("m**2", "cm**2", ".0f"),
-    "rolling_resistance_coefficient": ("1", "1", ".4f"),
+    "rolling_resistance_coefficient": ("1", "1", ".5f"),
 }
 
 
