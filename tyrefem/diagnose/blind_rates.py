@@ -13,13 +13,14 @@ from itertools import pairwise
 from pathlib import Path
 from typing import Any
 
+import tyrefem
 from tyrefem.diagnose.blind import Outcome, cases, run_case
 from tyrefem.diagnose.isolability import planned
 from tyrefem.diagnose.laboratory import Bench, Response, laboratory
 from tyrefem.diagnose.responses import responses, unknowns_of
 from tyrefem.diagnose.truth import own_mesh
 from tyrefem.errors import InputError
-from tyrefem.output import atomic_path, jsonable
+from tyrefem.output import atomic_path, jsonable, write_json
 from tyrefem.processes import processes
 from tyrefem.result import GAS
 from tyrefem.studies import Study
@@ -115,7 +116,11 @@ class Blind:
         """Stated probability against the share that was right, of the verdicts 'identified'."""
         found = []
         for low, high in pairwise(BINS):
-            own = [row for row in self.rows if row["verdict"] == "identified" and low < row["probability"] <= high]
+            own = [
+                row
+                for row in self.rows
+                if row["verdict"] == "identified" and low < min(row["probability"], 1.0) <= high
+            ]
             if own:
                 mean = sum(row["probability"] for row in own) / len(own)
                 held = _rate(own, lambda row: bool(row["hidden"]) and set(row["named"]) <= set(row["hidden"]))
@@ -204,11 +209,11 @@ def _case(number: int, count: int, seed: int) -> Row:
 def run_blind(
     study: Study, count: int, seed: int, folder: Path, workers: int = 1, tick: Callable[[int], None] | None = None
 ) -> Blind:
-    """Run cases side by side; every finished one is kept in ``folder``/cases, and ``folder``/blind.json at the end.
+    """Run cases side by side; every finished one is kept in ``folder``/cases; at the end blind.json and blind.png.
 
-    Cases already there (same study, count and seed) are not run again.
+    Cases already there (same study, count, seed and version) are not run again.
     """
-    text = json.dumps([jsonable(dict(study.data)), count, seed], sort_keys=True, default=str)
+    text = json.dumps([jsonable(dict(study.data)), count, seed, tyrefem.__version__], sort_keys=True, default=str)
     tag = hashlib.sha256(text.encode()).hexdigest()[:12]
     store = folder / "cases"
     store.mkdir(parents=True, exist_ok=True)
@@ -226,8 +231,12 @@ def run_blind(
             if tick:
                 tick(len(rows))
     found = Blind(study.name, seed, tuple(rows[number] for number in sorted(rows)))
-    with atomic_path(folder / "blind.json") as temporary:
-        temporary.write_text(json.dumps(jsonable(found.to_dict()), indent=1) + "\n", encoding="utf-8")
+    write_json(found.to_dict(), folder / "blind.json")
+    from tyrefem.diagnose.blind_picture import picture
+    from tyrefem.plotting.style import png
+
+    with atomic_path(folder / "blind.png") as temporary:
+        temporary.write_bytes(png(picture(found)))
     return found
 
 
