@@ -6,6 +6,7 @@ from collections.abc import Callable
 from dataclasses import dataclass, replace
 from typing import TYPE_CHECKING, Any
 
+from tyrefem.strain import deflection
 from tyrefem.warm_cycles import WarmCycles
 from tyrefem.warmth import Warmth
 
@@ -141,8 +142,8 @@ def run(
 
 def _contact(schedule: CycleSchedule, time: float) -> Contact:
     """Of the strain law where it finds a deflection of its own, else of the load law."""
-    deflection = 0.0
-    for phase, knot, weight in schedule.weights(time):
-        case, cycle = schedule.cases[phase][knot], schedule.cycles[phase][knot]
-        deflection += weight * getattr(cycle, "found_deflection", case.deflection)
-    return Contact(time, schedule.mean(lambda case: case.pressure, time), deflection)
+    found = sum(
+        weight * deflection(schedule.cycles[phase][knot], schedule.cases[phase][knot])
+        for phase, knot, weight in schedule.weights(time)
+    )
+    return Contact(time, schedule.mean(lambda case: case.pressure, time), found)

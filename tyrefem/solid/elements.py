@@ -110,6 +110,11 @@ class Rings:
         """Sorted nodes of a named boundary."""
         return np.unique(self.basis.get_dofs(facets=self.boundary(name)).flatten()).astype(np.int64)
 
+    def edge_nodes(self, facets: Indices) -> Indices:
+        """(n_facets, 3) nodes of facets: end, end, middle; their functions are `edge_functions`."""
+        ends = np.asarray(self.basis.nodal_dofs)[0][np.asarray(self.mesh.facets)[:, facets]]
+        return np.vstack([ends, np.asarray(self.basis.facet_dofs)[0][facets]]).T.astype(np.int64)
+
     def facet_basis(self, name: str) -> Any:
         """scikit-fem basis on the facets of a named boundary."""
         import skfem
@@ -120,6 +125,13 @@ class Rings:
         """Name of the region that holds an element."""
         found = [name for name, members in (self.mesh.subdomains or {}).items() if element in members]
         return found[0] if found else "no region"
+
+
+def edge_functions(count: int) -> tuple[Array, Array, Array]:
+    """Values and derivatives (count, 3 nodes) at Gauss points of [-1, 1], and weights (count,); end, end, middle."""
+    x, weights = np.polynomial.legendre.leggauss(count)
+    values = np.stack([x * (x - 1) / 2, x * (x + 1) / 2, 1 - x * x], axis=-1)
+    return values, np.stack([x - 0.5, x + 0.5, -2 * x], axis=-1), weights
 
 
 @dataclass(frozen=True, eq=False)
@@ -135,9 +147,7 @@ class PressedWall:
     @functools.cached_property
     def nodes(self) -> Indices:
         """(n_edges, 3): end, end, middle."""
-        facets, basis = self.rings.boundary(self.boundary), self.rings.basis
-        ends = np.asarray(basis.nodal_dofs)[0][np.asarray(self.rings.mesh.facets)[:, facets]]
-        return np.vstack([ends, np.asarray(basis.facet_dofs)[0][facets]]).T.astype(np.int64)
+        return self.rings.edge_nodes(self.rings.boundary(self.boundary))
 
     @functools.cached_property
     def outwards(self) -> Array:
@@ -147,13 +157,6 @@ class PressedWall:
         centre = mesh.p[:, mesh.t[:, mesh.f2t[0, facets]]].mean(axis=1)
         out, along = (start + end) / 2 - centre, end - start
         return np.sign(out[0] * along[1] - out[1] * along[0])
-
-    @functools.cached_property
-    def _functions(self) -> tuple[Array, Array, Array]:
-        """Values and derivatives (3 points, 3 nodes) on [-1, 1], weights (3,)."""
-        x, weights = np.polynomial.legendre.leggauss(3)
-        values = np.stack([x * (x - 1) / 2, x * (x + 1) / 2, 1 - x * x], axis=-1)
-        return values, np.stack([x - 0.5, x + 0.5, -2 * x], axis=-1), weights
 
     def force(self, places: Array) -> Array:
         """(n_edges, 3, 2) force of unit pressure at nodes (2, n_nodes), m2 per radian."""
@@ -176,6 +179,6 @@ class PressedWall:
         return found
 
     def _along(self, places: Array) -> tuple[tuple[Array, Array, Array], Array, Array, Array]:
-        values, slopes, weights = self._functions
+        values, slopes, weights = edge_functions(3)
         r, z = places[:, self.nodes]
         return (r @ values.T, r @ slopes.T, z @ slopes.T), values, slopes, weights

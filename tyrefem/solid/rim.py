@@ -9,7 +9,7 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
-from tyrefem.solid.elements import Indices, Rings
+from tyrefem.solid.elements import Indices, Rings, edge_functions
 
 Array = NDArray[np.float64]
 #: Radius of a flange, m, where the section gives none. Estimate: rims have 8 to 13 mm.
@@ -51,15 +51,12 @@ class Flange:
     @functools.cached_property
     def nodes(self) -> Indices:
         """(n_edges, 3): end, end, middle."""
-        basis, facets = self.rings.basis, self._facets
-        ends = np.asarray(basis.nodal_dofs)[0][np.asarray(self.rings.mesh.facets)[:, facets]]
-        return np.vstack([ends, np.asarray(basis.facet_dofs)[0][facets]]).T.astype(np.int64)
+        return self.rings.edge_nodes(self._facets)
 
     @functools.cached_property
     def _functions(self) -> tuple[Array, Array]:
         """Values (5 points, 3 nodes); weights r0 ds0 (n_edges, 5), m2 per radian."""
-        x, w = np.polynomial.legendre.leggauss(5)
-        values = np.stack([x * (x - 1) / 2, x * (x + 1) / 2, 1 - x * x], axis=-1)
+        values, _, w = edge_functions(5)
         places = self.rings.nodes[:, self.nodes]
         length = np.hypot(*(places[..., 1] - places[..., 0]))
         return values, places[0] @ values.T * w * length[:, None] / 2

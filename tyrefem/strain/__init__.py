@@ -8,10 +8,13 @@ One that knows the harmonics of its cycle may also offer ``spectrum(zone, points
 from __future__ import annotations
 
 from dataclasses import dataclass
-from typing import Protocol
+from typing import TYPE_CHECKING, Protocol
 
 import numpy as np
 from numpy.typing import NDArray
+
+if TYPE_CHECKING:
+    from tyrefem.loading import LoadCase
 
 Array = NDArray[np.float64]
 
@@ -41,6 +44,11 @@ class StrainCycle(Protocol):
 
     def energy_density(self, zone: str, points: Array) -> Array:
         """Strain energy per cycle U, J/m3, at points (2, n) in (r, z)."""
+
+
+def deflection(cycle: StrainCycle, case: LoadCase) -> float:
+    """Deflection of a strain cycle, m: the load law's, where the provider does not find one of its own."""
+    return float(getattr(cycle, "found_deflection", case.deflection))
 
 
 def by_order(harmonics: Array) -> Array:

@@ -10,7 +10,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from tyrefem.errors import InputError
-from tyrefem.strain import StrainCycle, Zone
+from tyrefem.strain import StrainCycle, Zone, deflection
 from tyrefem.strain.gauss_points import GaussPoints
 
 if TYPE_CHECKING:
@@ -49,9 +49,7 @@ class LawOutcome:
     @property
     def deflection(self) -> float:
         """Of the tyre in the load case, m: the load law's, or the footprint's own."""
-        footprint = getattr(self.cycle, "footprint", None)
-        case = self.result.tyre.schedule.cases[self.phase][self.knot]
-        return float(case.deflection if footprint is None else footprint.deflection)
+        return deflection(self.cycle, self.result.tyre.schedule.cases[self.phase][self.knot])
 
     def heating_density(self, part: Zone, points: Array) -> Array:
         """U that makes the heat, J/m3, at points (2, n) of a part: for ``fem`` that of all harmonics together."""
