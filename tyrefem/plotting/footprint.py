@@ -66,7 +66,9 @@ def pressure_map_figure(found: Footprint) -> Figure:
     axes.set_xlabel("along the road x [mm]", fontsize=FONT)
     axes.set_ylabel("across z [mm]", fontsize=FONT)
     tidy(axes, grid=False)
-    bar = drawn.colorbar(filled, cax=add_axes(drawn, 5.2, 0.75, 0.14, 3.3), ticks=MaxNLocator(6))
+    # A tick beyond the highest level would be drawn on top of it.
+    ticks = [tick for tick in MaxNLocator(6).tick_values(0.0, levels[-1]) if tick <= levels[-1]]
+    bar = drawn.colorbar(filled, cax=add_axes(drawn, 5.2, 0.75, 0.14, 3.3), ticks=ticks)
     bar.set_label(f"contact pressure [{unit}]", fontsize=FONT)
     bar.ax.tick_params(labelsize=FONT)
     middle, ahead = int(np.abs(z).argmin()), int(np.abs(x).argmin())
