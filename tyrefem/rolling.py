@@ -230,11 +230,8 @@ def run(study: Study, progress: Callable[[float], None] | None = None, like: Rol
 def simulate(tyre: RollingTyre, progress: Callable[[float], None] | None = None) -> Result:
     """Simulate a tyre's drive with the strain cycles that it has."""
     began = clock.perf_counter()
-    study, end = tyre.study, tyre.drive.end
-    every = study.card.output.every
-    fields = np.linspace(0.0, end, study.card.output.fields)
-    readings = np.concatenate([np.arange(0.0, end, every), tyre.drive.starts, tyre.sliding.readings, fields, [end]])
-    times = np.unique(np.round(readings, 9))
+    study = tyre.study
+    times, fields = output_times(tyre)
     history = tyre.problem.transient(
         times,
         tyre.drive.initial,
@@ -243,3 +240,12 @@ def simulate(tyre: RollingTyre, progress: Callable[[float], None] | None = None)
         progress=progress,
     )
     return Result(study, tyre, history, fields, clock.perf_counter() - began)
+
+
+def output_times(tyre: RollingTyre) -> tuple[Array, Array]:
+    """Times of the readings, and of the fields that are written out, s."""
+    end, output = tyre.drive.end, tyre.study.card.output
+    fields = np.linspace(0.0, end, output.fields)
+    starts = tyre.drive.starts
+    readings = np.concatenate([np.arange(0.0, end, output.every), starts, tyre.sliding.readings, fields, [end]])
+    return np.unique(np.round(readings, 9)), fields

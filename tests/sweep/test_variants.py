@@ -1,0 +1,113 @@
+"""What varies, and which variants are made of it."""
+
+from __future__ import annotations
+
+from pathlib import Path
+
+import numpy as np
+import pytest
+from hypothesis import given
+from hypothesis import strategies as st
+
+from tyrefem import study
+from tyrefem.errors import InputError
+from tyrefem.quantity import parse
+from tyrefem.studies import Study
+from tyrefem.sweep.card import SweepCard
+from tyrefem.sweep.plan import plan_of, planned
+from tyrefem.sweep.varied import Varied
+
+
+@pytest.fixture(scope="module")
+def tyre() -> Study:
+    return study("nasa-22x5.5-8pr")
+
+
+def test_grid_is_every_combination(tyre: Study) -> None:
+    plan = plan_of(tyre, {"drive.speed": ("10 mph", "40 mph", 4), "drive.pressure": ["80 psi", "90 psi"]})
+    assert [dict(one) for one in plan.variants[:3]] == [
+        {"drive.speed": "10 mph", "drive.pressure": "80 psi"},
+        {"drive.speed": "10 mph", "drive.pressure": "90 psi"},
+        {"drive.speed": "20 mph", "drive.pressure": "80 psi"},
+    ]
+    assert len(plan.variants) == 8
+    assert plan.row(2) == {"variant": "3", "drive.speed [mph]": 20.0, "drive.pressure [psi]": 80.0}
+
+
+@pytest.mark.parametrize("sample", ["latin-hypercube", "sobol"])
+def test_samples_fill_the_box_and_come_again_with_their_seed(tyre: Study, sample: str) -> None:
+    box = {
+        "drive.speed": ("5 m/s", "15 m/s"),
+        "materials.tread.loss_tangent.value": {"factor": [0.5, 2.0], "scale": "log"},
+    }
+    first, again, other = (plan_of(tyre, box, sample=sample, count=16, seed=seed).variants for seed in (3, 3, 4))
+    assert first == again
+    assert first != other
+    speeds = np.array([parse(one["drive.speed"], "m/s") for one in first])
+    # One in every sixteenth of the range: what both samples promise of each number alone.
+    assert sorted(((speeds - 5) / 10 * 16).astype(int).tolist()) == list(range(16))
+
+
+def test_sobol_sample_is_rounded_up_to_a_power_of_two(tyre: Study) -> None:
+    assert len(plan_of(tyre, {"drive.speed": ("5 m/s", "15 m/s")}, sample="sobol", count=20).variants) == 32
+
+
+@given(place=st.floats(0, 1), low=st.floats(1e-3, 1e3), width=st.floats(1e-2, 1e3), log=st.booleans())
+def test_a_value_is_within_its_range_and_read_back_as_it_was_written(
+    place: float, low: float, width: float, log: bool
+) -> None:
+    one = Varied("drive.speed", "m/s", low=low, high=low + width, log=log)
+    value = parse(one.at(place), "m/s")
+    assert low * (1 - 1e-8) <= value <= (low + width) * (1 + 1e-8)
+    assert one.of(one.at(place)) == pytest.approx(value, rel=1e-12)
+
+
+def test_factor_is_on_what_the_card_says(tyre: Study) -> None:
+    plan = plan_of(tyre, {"materials.tread.loss_tangent.value": {"factor": [0.5, 1.5], "levels": 2}})
+    stated = tyre.materials["tread"].loss_tangent.value
+    values = [tyre.replace(one).materials["tread"].loss_tangent.value for one in plan.variants]
+    assert stated is not None
+    assert values == pytest.approx([0.5 * stated, 1.5 * stated])
+
+
+def test_cards_are_swapped(tyre: Study) -> None:
+    plan = plan_of(tyre, {"materials.tread": ["nasa-tread", "rubber-tread-passenger"]})
+    densities = [tyre.replace(one).materials["tread"].loss_tangent for one in plan.variants]
+    assert densities[0] != densities[1]
+    assert plan.row(1)["materials.tread"] == "rubber-tread-passenger"
+
+
+def test_list_from_csv(tyre: Study, tmp_path: Path) -> None:
+    (tmp_path / "list.csv").write_text("name,drive.speed [mph],drive.load [lbf]\nslow,10,2000\nfast,30,\n")
+    plan = planned(tyre, SweepCard.check({"study": "x", "sample": "list", "cases": "list.csv"}), tmp_path)
+    assert plan.names == ("slow", "fast")
+    assert [dict(one) for one in plan.variants] == [
+        {"drive.speed": "10 mph", "drive.load": "2000 lbf"},
+        {"drive.speed": "30 mph"},
+    ]
+
+
+@pytest.mark.parametrize(
+    ("vary", "said"),
+    [
+        ({"drive.sped": ("10 mph", "20 mph")}, "sped"),
+        ({"drive.speed": ("10 mph", "20 m/s")}, "same unit"),
+        ({"drive.speed": ("20 mph", "10 mph")}, "below"),
+        ({"drive.speed": ("10", "20")}, "unit"),
+        ({"drive.load": ("1000 lbf", "1e9 lbf")}, "load"),
+        ({"drive.speed": ["10 mph", "10 mph"]}, "twice"),
+        ({"drive.speed": {"from": "0 mph", "to": "10 mph", "scale": "log"}}, "positive"),
+        ({"materials.tread": ["nasa-tread", "nasa-tred"]}, "nasa-tread"),
+        ({"materials.tread.loss_tangent.value": {"factor": [2.0, 1.0]}}, "rising"),
+        ({"drive.speed": {"values": ["1 mph"], "from": "1 mph", "to": "2 mph"}}, "one of"),
+    ],
+)
+def test_nonsense_is_refused_before_anything_runs(tyre: Study, vary: dict[str, object], said: str) -> None:
+    with pytest.raises(InputError, match=said):
+        plan_of(tyre, vary)
+
+
+def test_two_variants_of_a_list_that_are_the_same_are_refused(tyre: Study, tmp_path: Path) -> None:
+    (tmp_path / "list.csv").write_text("name,drive.speed [mph]\none,10\ntwo,10\n")
+    with pytest.raises(InputError, match=r"'one' and 'two' are the same"):
+        planned(tyre, SweepCard.check({"study": "x", "sample": "list", "cases": "list.csv"}), tmp_path)

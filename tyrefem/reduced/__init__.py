@@ -1,0 +1,1 @@
+"""Reduced models: a rolling tyre's temperatures from a few dozen numbers instead of thousands."""

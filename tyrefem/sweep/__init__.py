@@ -1,0 +1,1 @@
+"""Design studies: many variants of one study, answers in a table, and what they say to a designer."""

@@ -1,0 +1,150 @@
+"""A plan: one study, what varies, and every variant of it. Refused before anything runs if it makes no sense."""
+
+from __future__ import annotations
+
+import functools
+import hashlib
+import json
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass
+from pathlib import Path
+from typing import Any
+
+from tyrefem.errors import InputError
+from tyrefem.studies import Study
+from tyrefem.sweep.bundle import Bundle, bundle
+from tyrefem.sweep.card import LimitCard, SweepCard, VaryCard
+from tyrefem.sweep.samples import drawn, grid, listed, without_repeats
+from tyrefem.sweep.task import Task
+from tyrefem.sweep.varied import Varied, varied
+
+
+@dataclass(frozen=True, eq=False)
+class Plan:
+    """The variants of a study.
+
+    Parameters
+    ----------
+    study : the study. varied : what varies; empty where the variants come from a list. variants : changes of each.
+    names : of the variants. limits : answer -> what it must keep to. time_to : see `answers`. how : of the sample, in
+        words that are recorded.
+    """
+
+    study: Study
+    varied: tuple[Varied, ...]
+    variants: tuple[Mapping[str, Any], ...]
+    names: tuple[str, ...]
+    limits: Mapping[str, LimitCard]
+    time_to: float | None
+    how: Mapping[str, Any]
+
+    @functools.cached_property
+    def packed(self) -> Bundle:
+        """The study as it is sent to workers."""
+        return bundle(self.study)
+
+    @functools.cached_property
+    def digest(self) -> str:
+        """Of the study, its files, and every variant in its order."""
+        text = json.dumps([self.packed.digest, list(self.variants), self.time_to], sort_keys=True, default=str)
+        return hashlib.sha256(text.encode()).hexdigest()[:16]
+
+    @property
+    def keys(self) -> list[str]:
+        """Dotted names that any variant changes, in order."""
+        return list(dict.fromkeys(key for one in self.variants for key in one))
+
+    def task(self, number: int) -> Task:
+        """The work of a variant."""
+        return Task(number, self.packed, self.variants[number], self.time_to)
+
+    def row(self, number: int) -> dict[str, Any]:
+        """What a table shows of a variant: its name and the values that it has."""
+        by_key, changes = {one.key: one for one in self.varied}, self.variants[number]
+        shown = {
+            (by_key[key].heading if key in by_key else key): (by_key[key].of(value) if key in by_key else value)
+            for key, value in changes.items()
+        }
+        return {"variant": self.names[number], **shown}
+
+
+def planned(study: Study, card: SweepCard, near: Path | None = None) -> Plan:
+    """The variants that a sweep file asks for.
+
+    Raises
+    ------
+    InputError : a name that the study does not have, a value that it refuses, two variants that are the same.
+    """
+    names: Sequence[str]
+    if card.sample == "list":
+        assert card.cases is not None
+        path = (near or Path()) / card.cases
+        variants, names = listed(path)
+        chosen: tuple[Varied, ...] = ()
+        try:
+            without_repeats(variants, names)
+            _sensible(study, [(f"variant '{name}'", one) for name, one in zip(names, variants, strict=True)])
+        except InputError as error:
+            raise error if error.file else error.within(file=path) from None
+    else:
+        chosen = tuple(varied(study, key, one) for key, one in card.vary.items())
+        _sensible(study, [("", {one.key: value}) for one in chosen for value in one.ends])
+        if card.sample == "grid":
+            variants = grid(chosen)
+        else:
+            assert card.count is not None
+            variants = drawn(chosen, card.sample, card.count, card.seed)
+        names = [str(number + 1) for number in range(len(variants))]
+        without_repeats(variants, names)
+    how = {"sample": card.sample, "count": len(variants), "seed": card.seed if card.sample != "grid" else None}
+    return Plan(study, chosen, tuple(variants), tuple(names), dict(card.limits), card.time_to, how)
+
+
+def plan_of(
+    study: Study,
+    vary: Mapping[str, Any],
+    *,
+    sample: str = "grid",
+    count: int | None = None,
+    seed: int = 1,
+    limits: Mapping[str, Any] | None = None,
+    time_to: str | None = None,
+) -> Plan:
+    """The same from Python: ``{"drive.speed": ("10 mph", "40 mph"), "materials.tread": ["soft", "hard"]}``.
+
+    A pair (tuple) is a range, a list its values, a mapping what a sweep file would say.
+    """
+    data = {
+        "study": study.name,
+        "vary": {key: _vary(value) for key, value in vary.items()},
+        "sample": sample,
+        "seed": seed,
+        **({} if count is None else {"count": count}),
+        "limits": dict(limits or {}),
+        **({} if time_to is None else {"time_to": time_to}),
+    }
+    return planned(study, SweepCard.check(data))
+
+
+def _vary(value: Any) -> Any:
+    if isinstance(value, Mapping | VaryCard):
+        return value
+    if isinstance(value, tuple):
+        if len(value) not in (2, 3):
+            raise InputError(f"a range is (from, to) or (from, to, levels), not {value!r}", field="vary")
+        return {"from": value[0], "to": value[1], **({"levels": value[2]} if len(value) == 3 else {})}
+    if hasattr(value, "tolist"):
+        value = value.tolist()
+    if isinstance(value, list):
+        return {"values": value}
+    raise InputError(f"a list of values or a tuple (from, to), not {value!r:.60}", field="vary")
+
+
+def _sensible(study: Study, trials: Sequence[tuple[str, Mapping[str, Any]]]) -> None:
+    """Build the study of each; the first that is refused names itself."""
+    for name, changes in trials:
+        try:
+            study.replace(changes)
+        except InputError as error:
+            shown = ", ".join(f"{key} = {value!r}" for key, value in changes.items())
+            raise InputError(f"{name or 'a variant'} with {shown}: {error.message}", field=error.field) from None

@@ -1,0 +1,115 @@
+"""Results of a sweep on disk: a line per variant, appended whole, so that a killed sweep goes on where it was."""
+
+from __future__ import annotations
+
+import json
+import os
+from collections.abc import Iterator, Mapping
+from dataclasses import dataclass, field
+from pathlib import Path
+from typing import Any
+
+from tyrefem.errors import InputError
+from tyrefem.output import jsonable
+
+#: File of the lines, in the sweep's folder.
+NAME = "variants.jsonl"
+
+
+@dataclass(eq=False)
+class Store:
+    """The finished variants of one plan.
+
+    The first line says which plan; every other one is ``{"variant": n, "answers": {...}}`` or ``{"variant": n,
+    "failure": "..."}``, or a ``{"note": name, "value": ...}``. A line is written in one piece and forced to disk; what
+    a kill tore off is cut away.
+
+    Parameters
+    ----------
+    folder : the sweep's folder. digest : of the plan.
+    """
+
+    folder: Path
+    digest: str
+    done: dict[int, dict[str, Any]] = field(default_factory=dict)
+    #: What else was noted, by name: the certificate of a reduced model.
+    notes: dict[str, Any] = field(default_factory=dict)
+    _file: Any = None
+
+    @property
+    def path(self) -> Path:
+        """The file."""
+        return self.folder / NAME
+
+    def open(self, *, restart: bool = False) -> int:
+        """Take up what is there; the number of finished variants.
+
+        Raises
+        ------
+        InputError : the folder holds another sweep, or cannot be written.
+        """
+        try:
+            self.folder.mkdir(parents=True, exist_ok=True)
+            if restart:
+                self.path.unlink(missing_ok=True)
+            whole = self._read() if self.path.exists() else 0
+            self._file = open(self.path, "ab")  # noqa: SIM115 - kept open, closed by `close`
+            self._file.truncate(whole)
+            if not whole:
+                self._write({"plan": self.digest})
+        except OSError as error:
+            raise InputError(f"cannot be written: {error.strerror or error}", file=self.path) from None
+        return len(self.done)
+
+    def _read(self) -> int:
+        """Read every whole line; the number of bytes that they take."""
+        content = self.path.read_bytes()
+        whole = content.rfind(b"\n") + 1
+        lines = content[:whole].splitlines()
+        if not lines:
+            return 0
+        try:
+            first, *others = [json.loads(line) for line in lines]
+            found = {int(one["variant"]): one for one in others if "note" not in one}
+            notes = {str(one["note"]): one["value"] for one in others if "note" in one}
+        except (ValueError, KeyError, TypeError):
+            raise InputError("is not a file of finished variants", file=self.path) from None
+        if first.get("plan") != self.digest:
+            raise InputError(
+                "holds the variants of another sweep (another study, version or plan); choose another folder with"
+                " --out, or begin anew with --restart",
+                file=self.path,
+            )
+        self.done, self.notes = found, notes
+        return whole
+
+    def add(self, found: Mapping[int, Mapping[str, Any]]) -> None:
+        """Keep the outcomes of some variants; a second one of the same variant is left out."""
+        entries = {n: {"variant": n, **outcome} for n, outcome in found.items() if n not in self.done}
+        self._write(*entries.values())
+        self.done |= entries
+
+    def note(self, name: str, value: Any) -> None:
+        """Keep something that belongs to all variants."""
+        self._write({"note": name, "value": value})
+        self.notes[name] = value
+
+    def _write(self, *entries: Mapping[str, Any]) -> None:
+        self._file.write("".join(json.dumps(jsonable(entry)) + "\n" for entry in entries).encode())
+        self._file.flush()
+        os.fsync(self._file.fileno())
+
+    def close(self) -> None:
+        """No more lines."""
+        if self._file is not None:
+            self._file.close()
+            self._file = None
+
+    def __enter__(self) -> Store:
+        return self
+
+    def __exit__(self, *_: object) -> None:
+        self.close()
+
+    def __iter__(self) -> Iterator[dict[str, Any]]:
+        return iter(self.done.values())
