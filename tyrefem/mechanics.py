@@ -78,6 +78,21 @@ def cycle_schedule(study: Study) -> CycleSchedule:
     return CycleSchedule(study.card.drive, tuple(knots), tuple(cases), tuple(cycles))
 
 
+def check_cases(study: Study) -> None:
+    """Refuse loads and deflections that the section cannot take, as far as that is known without finite elements.
+
+    Raises
+    ------
+    InputError : names the phase.
+    """
+    solver, cheap = KnotSolver(study), study.card.mechanics.strain in ("arcs", "given")
+    for number, phase in enumerate(study.card.drive.phases):
+        for fraction in ramp_knots(phase.changes_load):
+            case = solver.case(number, fraction)
+            if cheap:
+                solver.cycle(number, case)
+
+
 class KnotSolver:
     """Load case and strain cycle of a moment of a study's drive."""
 

@@ -2,11 +2,13 @@
 
 from __future__ import annotations
 
+import os
 import signal
+import threading
 from collections.abc import Callable, Iterator
 from concurrent.futures import ProcessPoolExecutor
 from contextlib import contextmanager
-from multiprocessing import active_children, get_context, resource_tracker
+from multiprocessing import active_children, get_context, parent_process, resource_tracker
 from typing import Any
 
 from threadpoolctl import threadpool_limits
@@ -17,7 +19,7 @@ def processes(count: int, begin: Callable[..., None] | None = None, *given: Any)
     """So many fresh processes with one thread for linear algebra each; ``begin(*given)`` starts every one.
 
     Ctrl-C is the parent's alone: workers never see it, even while they start, and are ended with whatever they are at
-    when the parent leaves the block by an exception.
+    when the parent leaves the block by an exception. They end themselves where the parent is killed.
 
     >>> with processes(1) as pool:
     ...     pool.submit(abs, -3).result()
@@ -39,9 +41,18 @@ def processes(count: int, begin: Callable[..., None] | None = None, *given: Any)
 
 
 def _begin(begin: Callable[..., None] | None, given: tuple[Any, ...]) -> None:
+    threading.Thread(target=_end_with_parent, daemon=True).start()
     threadpool_limits(1, user_api="blas")
     if begin is not None:
         begin(*given)
+
+
+def _end_with_parent() -> None:
+    """A parent that was killed cannot end its workers: they see to it themselves."""
+    parent = parent_process()
+    if parent is not None:
+        parent.join()
+        os._exit(1)
 
 
 @contextmanager

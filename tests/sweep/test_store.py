@@ -46,7 +46,8 @@ def test_another_plan_is_refused_and_nothing_lost(tmp_path: Path) -> None:
     with pytest.raises(InputError, match="another sweep"):
         Store(tmp_path, "other").open()
     assert (tmp_path / NAME).read_bytes() == before
-    assert Store(tmp_path, "other").open(restart=True) == 0
+    with Store(tmp_path, "other") as anew:
+        assert anew.open(restart=True) == 0
 
 
 def test_a_file_of_something_else_is_refused(tmp_path: Path) -> None:

@@ -84,8 +84,9 @@ def sweep(
     if len(found.failed) > 10:
         fail(f"... and {len(found.failed) - 10} more; all are in {folder / 'sweep.csv'}")
     if found.interrupted:
-        kept = f"interrupted; {len(found.outcomes)} of {len(plan.variants)} variants are kept, the same command goes on"
-        raise typer.Exit(fail(kept, 130))
+        count = f"{len(found.outcomes)} of {len(plan.variants)} variants"
+        kept = f"{found.interrupted}; {count} are kept, the same command goes on"
+        raise typer.Exit(fail(kept, 130 if found.interrupted == "interrupted" else 1))
     if found.failed:
         raise typer.Exit(1)
 

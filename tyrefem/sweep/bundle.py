@@ -11,9 +11,14 @@ from dataclasses import dataclass
 from pathlib import Path
 from typing import Any
 
+import tyrefem
 from tyrefem import library
 from tyrefem.errors import InputError
 from tyrefem.studies import Study
+
+
+class VersionError(RuntimeError):
+    """The packer's and the worker's package differ."""
 
 
 @dataclass(frozen=True)
@@ -23,23 +28,30 @@ class Bundle:
     Parameters
     ----------
     name : of the study. data : the study, its references into ``files``. files : name -> bytes.
+    version : of the package that packed it.
     """
 
     name: str
     data: Mapping[str, Any]
     files: Mapping[str, bytes]
+    version: str = tyrefem.__version__
 
     @property
     def digest(self) -> str:
         """What the study says and all its files hold, shipped cards included by the package's version."""
-        import tyrefem
-
         heads = {name: hashlib.sha256(content).hexdigest() for name, content in sorted(self.files.items())}
-        text = json.dumps([tyrefem.__version__, self.name, self.data, heads], sort_keys=True, default=str)
+        text = json.dumps([self.version, self.name, self.data, heads], sort_keys=True, default=str)
         return hashlib.sha256(text.encode()).hexdigest()[:16]
 
     def unpacked(self, folder: Path) -> Study:
-        """The study again, its files in a folder."""
+        """The study again, its files in a folder.
+
+        Raises
+        ------
+        VersionError : another version of the package would answer differently.
+        """
+        if self.version != tyrefem.__version__:
+            raise VersionError(f"asked by tyrefem {self.version}, but this worker has {tyrefem.__version__}")
         for name, content in self.files.items():
             (folder / name).write_bytes(content)
         return Study(self.name, self.data, None, folder)

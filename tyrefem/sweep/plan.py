@@ -11,6 +11,7 @@ from pathlib import Path
 from typing import Any
 
 from tyrefem.errors import InputError
+from tyrefem.mechanics import check_cases
 from tyrefem.studies import Study
 from tyrefem.sweep.bundle import Bundle, bundle
 from tyrefem.sweep.card import LimitCard, SweepCard, VaryCard
@@ -141,10 +142,10 @@ def _vary(value: Any) -> Any:
 
 
 def _sensible(study: Study, trials: Sequence[tuple[str, Mapping[str, Any]]]) -> None:
-    """Build the study of each; the first that is refused names itself."""
+    """Build the study and the load cases of each; the first that is refused names itself."""
     for name, changes in trials:
         try:
-            study.replace(changes)
+            check_cases(study.replace(changes))
         except InputError as error:
             shown = ", ".join(f"{key} = {value!r}" for key, value in changes.items())
             raise InputError(f"{name or 'a variant'} with {shown}: {error.message}", field=error.field) from None

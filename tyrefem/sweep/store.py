@@ -58,6 +58,7 @@ class Store:
             if not whole:
                 self._write({"plan": self.digest})
         except OSError as error:
+            self.close()
             raise InputError(f"cannot be written: {error.strerror or error}", file=self.path) from None
         return len(self.done)
 

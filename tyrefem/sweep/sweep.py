@@ -13,7 +13,7 @@ import numpy as np
 
 from tyrefem.errors import InputError, nearest
 from tyrefem.sweep.plan import Plan
-from tyrefem.sweep.schedulers import Here, Scheduler
+from tyrefem.sweep.schedulers import ClusterLostError, Here, Scheduler
 from tyrefem.sweep.store import Store
 from tyrefem.sweep.task import perform
 
@@ -39,7 +39,7 @@ class Sweep:
     ----------
     plan : the variants. outcomes : number -> ``{"answers": ..., "by": "full" | "reduced"}`` or ``{"failure": ...}``.
     certificate : of the reduced model; None: every answer is that of a full run. why_full : why none was used.
-    seconds : wall time. taken_up : how many were finished before. interrupted : whether some were never run.
+    seconds : wall time. taken_up : how many were finished before. interrupted : why some were not run; empty: all were.
     """
 
     plan: Plan
@@ -48,7 +48,7 @@ class Sweep:
     why_full: str = ""
     seconds: float = 0.0
     taken_up: int = 0
-    interrupted: bool = False
+    interrupted: str = ""
 
     @functools.cached_property
     def table(self) -> pd.DataFrame:
@@ -125,7 +125,7 @@ def sweep(
     reduced : ``never``: full runs only; ``auto``: a reduced model where many variants are left and it is certified,
         full runs otherwise; ``always``: refuse where it is not certified. tolerance : K, of the certificate.
 
-    Ctrl-C ends the sweep with what is finished, `Sweep.interrupted` being True.
+    Ctrl-C, or a cluster that is lost, ends the sweep with what is finished; `Sweep.interrupted` says why.
 
     Raises
     ------
@@ -136,7 +136,7 @@ def sweep(
     store = None if folder is None else Store(folder, f"{plan.digest}-{reduced}-{tolerance:g}")
     outcomes: dict[int, dict[str, Any]] = {}
     certificate: Certificate | None = None
-    why, taken, interrupted = "", 0, False
+    why, taken, interrupted = "", 0, ""
     try:
         if store is not None:
             taken = store.open(restart=restart)
@@ -151,7 +151,9 @@ def sweep(
         for place, outcome in scheduler.outcomes(perform, [plan.task(number) for number in left]):
             keep({left[place]: outcome if "failure" in outcome else {**outcome, "by": "full"}})
     except KeyboardInterrupt:
-        interrupted = True
+        interrupted = "interrupted"
+    except ClusterLostError as error:
+        interrupted = str(error)
     finally:
         if store is not None:
             store.close()

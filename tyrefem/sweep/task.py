@@ -9,7 +9,7 @@ from dataclasses import dataclass
 from typing import Any
 
 from tyrefem.studies import Study
-from tyrefem.sweep.bundle import Bundle, Unpacked
+from tyrefem.sweep.bundle import Bundle, Unpacked, VersionError
 
 
 @dataclass(frozen=True)
@@ -59,5 +59,7 @@ def perform(task: Task) -> dict[str, Any]:
         return {"answers": answers(result, task.time_to)}
     except (InputError, SolverError) as error:
         return {"failure": str(error)}
+    except VersionError:
+        raise
     except Exception as error:  # a defect; it is named as what it is
         return {"failure": f"defect, please report: {type(error).__name__}: {error}"}
