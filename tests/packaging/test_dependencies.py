@@ -54,7 +54,7 @@ def test_documentation_names_every_dependency() -> None:
     rows = {tuple(cell.strip() for cell in line.split("|")[1:-1]) for line in text.splitlines() if line.count("|") == 5}
     written = {row[0]: row[3] for row in rows if row[0] not in ("Package", "---")}
     wanted = dict.fromkeys(named(PROJECT["dependencies"]), "-")
-    for extra in ("gmsh", "test", "dev"):
+    for extra in EXTRAS:
         for name in named(EXTRAS[extra]):
             wanted[name] = f"{wanted[name]}, {extra}" if name in wanted else extra
     assert written == wanted

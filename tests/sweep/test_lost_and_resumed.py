@@ -17,8 +17,9 @@ import psutil
 import pytest
 
 from tyrefem import study
+from tyrefem.sweep.cluster import Dask
 from tyrefem.sweep.plan import Plan, plan_of
-from tyrefem.sweep.schedulers import Dask, Outcome
+from tyrefem.sweep.schedulers import Outcome
 from tyrefem.sweep.store import NAME
 from tyrefem.sweep.sweep import Sweep, sweep
 

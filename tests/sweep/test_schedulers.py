@@ -10,7 +10,8 @@ from typing import Any
 import pytest
 
 from tyrefem.errors import InputError
-from tyrefem.sweep.schedulers import Dask, Here, Local
+from tyrefem.sweep.cluster import Dask
+from tyrefem.sweep.schedulers import Here, Local
 
 
 def squared(task: Any) -> dict[str, Any]:
@@ -40,6 +41,28 @@ def test_in_this_process() -> None:
 def test_local_processes_answer_everything() -> None:
     found = dict(Local(2).outcomes(squared, list(range(12))))
     assert {n: one["answers"]["x"] for n, one in found.items()} == {n: n**2 for n in range(12)}
+
+
+def added(task: int, common: list[float]) -> dict[str, Any]:
+    return {"answers": {"x": task + common[0], "process": os.getpid()}}
+
+
+def test_what_is_common_to_all_tasks_reaches_every_worker() -> None:
+    found = dict(Local(2).outcomes(added, list(range(6)), [0.5]))
+    assert {n: one["answers"]["x"] for n, one in found.items()} == {n: n + 0.5 for n in range(6)}
+    assert dict(Here().outcomes(added, [1], [0.5]))[0]["answers"]["x"] == 1.5
+
+
+def test_processes_are_kept_from_one_call_to_the_next_and_replaced_when_one_dies(tmp_path: Path) -> None:
+    with Local(1) as scheduler:
+        first, second = (dict(scheduler.outcomes(added, [1, 2], [0.0])) for _ in "ab")
+        assert {one["answers"]["process"] for one in (*first.values(), *second.values())} == {
+            first[0]["answers"]["process"]
+        }
+        found = list(scheduler.outcomes(dies_the_first_time, [(3, str(tmp_path))]))
+        assert found == [(0, {"answers": {"x": 3.0}})]
+        third = dict(scheduler.outcomes(added, [1], [0.0]))
+        assert third[0]["answers"]["process"] != first[0]["answers"]["process"]
 
 
 def test_a_process_that_is_killed_costs_nothing(tmp_path: Path) -> None:

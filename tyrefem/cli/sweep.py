@@ -84,8 +84,8 @@ def sweep(
     if len(found.failed) > 10:
         fail(f"... and {len(found.failed) - 10} more; all are in {folder / 'sweep.csv'}")
     if found.interrupted:
-        count = f"{len(found.outcomes)} of {len(plan.variants)} variants"
-        kept = f"{found.interrupted}; {count} are kept, the same command goes on"
+        finished = f"{len(found.outcomes)} of {len(plan.variants)} variants"
+        kept = f"{found.interrupted}; {finished} are kept, the same command goes on"
         raise typer.Exit(fail(kept, 130 if found.interrupted == "interrupted" else 1))
     if found.failed:
         raise typer.Exit(1)
@@ -174,7 +174,8 @@ def _limit(text: str) -> tuple[str, dict[str, float]]:
 
 
 def _scheduler(address: str | None, workers: int | None) -> Scheduler:
-    from tyrefem.sweep.schedulers import Dask, Here, Local
+    from tyrefem.sweep.cluster import Dask
+    from tyrefem.sweep.schedulers import Here, Local
 
     if address is not None:
         return Dask(address)

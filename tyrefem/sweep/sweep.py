@@ -12,8 +12,9 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 
 from tyrefem.errors import InputError, nearest
+from tyrefem.sweep.cluster import ClusterLostError
 from tyrefem.sweep.plan import Plan
-from tyrefem.sweep.schedulers import ClusterLostError, Here, Scheduler
+from tyrefem.sweep.schedulers import Here, Scheduler
 from tyrefem.sweep.store import Store
 from tyrefem.sweep.task import perform
 
