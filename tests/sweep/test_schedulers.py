@@ -4,14 +4,18 @@ from __future__ import annotations
 
 import os
 import signal
+from collections.abc import Iterator, Sequence
 from pathlib import Path
 from typing import Any
 
 import pytest
 
+from tyrefem import study
 from tyrefem.errors import InputError
 from tyrefem.sweep.cluster import Dask
+from tyrefem.sweep.plan import plan_of
 from tyrefem.sweep.schedulers import Here, Local
+from tyrefem.sweep.sweep import sweep
 
 
 def squared(task: Any) -> dict[str, Any]:
@@ -81,3 +85,26 @@ def test_a_task_that_kills_its_process_is_named_and_the_others_go_on() -> None:
 def test_no_scheduler_there_is_one_clear_error() -> None:
     with pytest.raises(InputError, match=r"no Dask scheduler at 'tcp://127\.0\.0\.1:9'"):
         Dask("tcp://127.0.0.1:9", timeout=1.0)
+
+
+class Tearing:
+    """A scheduler that loses every piece of work of several variants, as a dying worker does."""
+
+    def __init__(self) -> None:
+        self.lost = 0
+
+    def outcomes(self, work: Any, tasks: Sequence[Any], common: Any = None) -> Iterator[tuple[int, dict[str, Any]]]:
+        for place, task in enumerate(tasks):
+            torn = isinstance(task, list)
+            self.lost += torn
+            yield place, {"failure": "died"} if torn else work(task)
+
+
+def test_variants_of_a_lost_piece_are_tried_one_by_one(monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setattr("tyrefem.sweep.sweep.SINGLE", 2)
+    tyre = study("nasa-22x5.5-8pr", {"mesh.size": "12 mm", "numerics.tolerance": "0.5 K", "drive.duration": "20 s"})
+    scheduler = Tearing()
+    found = sweep(plan_of(tyre, {"drive.speed": ("10 mph", "20 mph", 4)}), scheduler=scheduler)
+    assert scheduler.lost == 2
+    assert found.complete
+    assert not found.failed

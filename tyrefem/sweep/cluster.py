@@ -66,14 +66,14 @@ class Dask:
     def _check_versions(self) -> None:
         import tyrefem
 
-        def version() -> str:
+        def installed() -> str:
             """Travels as code, so that a worker without the package can say so."""
             from importlib import import_module
             from importlib.util import find_spec
 
             return str(import_module("tyrefem").__version__) if find_spec("tyrefem") else ""
 
-        found = self.client.run(version)
+        found = self.client.run(installed)
         wrong = {worker: version for worker, version in found.items() if version != tyrefem.__version__}
         if wrong:
             worker, version = next(iter(wrong.items()))

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import functools
 import time
-from collections.abc import Callable, Mapping
+from collections.abc import Callable, Mapping, Sequence
 from dataclasses import asdict, dataclass
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
@@ -16,7 +16,7 @@ from tyrefem.sweep.cluster import ClusterLostError
 from tyrefem.sweep.plan import Plan
 from tyrefem.sweep.schedulers import Here, Scheduler
 from tyrefem.sweep.store import Store
-from tyrefem.sweep.task import perform
+from tyrefem.sweep.task import perform, perform_all
 
 if TYPE_CHECKING:
     import pandas as pd
@@ -26,8 +26,8 @@ if TYPE_CHECKING:
 Tick = Callable[[str, int, int], None]
 #: Fewer variants than this per number that varies are run in full: training would cost as much.
 WORTH_TRAINING = 12
-#: Variants of one piece of reduced work.
-PIECE = 64
+#: Variants of one piece of work at most; so many variants are run one by one.
+PIECE, SINGLE = 64, 2000
 #: Under this name a sweep's folder keeps the certificate of the reduced model.
 CERTIFICATE = "certificate"
 
@@ -149,8 +149,7 @@ def sweep(
             found, why = _reduced(plan, left, scheduler, reduced, tolerance, keep, tick)
             certificate = found or certificate
             left = [number for number in left if number not in outcomes]
-        for place, outcome in scheduler.outcomes(perform, [plan.task(number) for number in left]):
-            keep({left[place]: outcome if "failure" in outcome else {**outcome, "by": "full"}})
+        _full(plan, left, scheduler, keep)
     except KeyboardInterrupt:
         interrupted = "interrupted"
     except ClusterLostError as error:
@@ -177,6 +176,30 @@ class _Keep:
         if self.store is not None:
             self.store.add(found)
         self.tick()
+
+
+def _full(plan: Plan, left: Sequence[int], scheduler: Scheduler, keep: _Keep, most: int = PIECE) -> None:
+    """Run variants in full, so many together that a scheduler is not kept busy by counting them."""
+    size = min(max(len(left) // SINGLE, 1), most)
+    if size == 1:
+        for place, outcome in scheduler.outcomes(perform, [plan.task(number) for number in left]):
+            keep({left[place]: _by(outcome, "full")})
+        return
+    pieces = [left[first : first + size] for first in range(0, len(left), size)]
+    lost: list[int] = []
+    for place, outcome in scheduler.outcomes(perform_all, [[plan.task(n) for n in piece] for piece in pieces]):
+        piece = pieces[place]
+        if "outcomes" in outcome:
+            keep({n: _by(one, "full") for n, one in zip(piece, outcome["outcomes"], strict=True)})
+        else:
+            lost += piece
+    if lost:
+        # One of them took its worker down: the others are not to suffer for it.
+        _full(plan, lost, scheduler, keep, 1)
+
+
+def _by(outcome: dict[str, Any], how: str) -> dict[str, Any]:
+    return outcome if "failure" in outcome else {**outcome, "by": how}
 
 
 def _certificate(noted: Mapping[str, Any] | None) -> Certificate | None:

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import functools
 import threading
-from collections.abc import Mapping
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 from typing import Any
 
@@ -40,6 +40,11 @@ def unpacked(packed: Bundle) -> Study:
 
 #: The tyre that this thread ran last: its mesh and operators serve the next variant where they are the same.
 _last = threading.local()
+
+
+def perform_all(tasks: Sequence[Task]) -> dict[str, Any]:
+    """``{"outcomes": [...]}``: several variants one after the other."""
+    return {"outcomes": [perform(task) for task in tasks]}
 
 
 def perform(task: Task) -> dict[str, Any]:
