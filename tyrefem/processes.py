@@ -33,8 +33,9 @@ def processes(count: int, begin: Callable[..., None] | None = None, *given: Any)
             with _interruptible():
                 yield pool
         except BaseException:
-            # Nobody wants the simulations that are still running.
-            pool.shutdown(wait=False, cancel_futures=True)
+            # Nobody wants the simulations that are still running. Tasks that wait are not cancelled: Python 3.11's pool
+            # prints a traceback when it finds such among those whose processes have ended.
+            pool.shutdown(wait=False)
             for worker in set(active_children()) - before:
                 worker.terminate()
             raise

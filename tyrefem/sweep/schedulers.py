@@ -88,17 +88,13 @@ class Local:
 
         waiting = deque(places)
         with self._processes(len(places)) as pool:
-            try:
-                while waiting or running:
-                    while waiting and len(running) < self.workers * AHEAD:
-                        place = waiting.popleft()
-                        running[pool.submit(_worked, work, tasks[place], file)] = place
-                    for future in wait(running, return_when=FIRST_COMPLETED).done:
-                        outcome = future.result()
-                        yield running.pop(future), outcome
-            finally:
-                for future in running:
-                    future.cancel()
+            while waiting or running:
+                while waiting and len(running) < self.workers * AHEAD:
+                    place = waiting.popleft()
+                    running[pool.submit(_worked, work, tasks[place], file)] = place
+                for future in wait(running, return_when=FIRST_COMPLETED).done:
+                    outcome = future.result()
+                    yield running.pop(future), outcome
 
     @contextmanager
     def _processes(self, tasks: int) -> Iterator[Executor]:
