@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import json
 import os
+import sys
 from collections.abc import Iterator, Mapping
 from dataclasses import dataclass, field
 from pathlib import Path
@@ -70,7 +71,7 @@ class Store:
         if not lines:
             return 0
         try:
-            first, *others = [json.loads(line) for line in lines]
+            first, *others = [json.loads(line, object_pairs_hook=_shared) for line in lines]
             found = {int(one["variant"]): one for one in others if "note" not in one}
             notes = {str(one["note"]): one["value"] for one in others if "note" in one}
         except (ValueError, KeyError, TypeError):
@@ -114,3 +115,8 @@ class Store:
 
     def __iter__(self) -> Iterator[dict[str, Any]]:
         return iter(self.done.values())
+
+
+def _shared(pairs: list[tuple[str, Any]]) -> dict[str, Any]:
+    """A mapping whose names are kept in memory once, for all variants."""
+    return {sys.intern(name): value for name, value in pairs}
