@@ -1,11 +1,21 @@
 """A tyre's temperatures in real time: a reduced model read from one file, stepped with numpy and nothing else.
 
-This module imports only numpy and the standard library; it may be copied beside the file and used without tyrefem.
+This module imports only numpy and the standard library: copy it beside the file and use both without tyrefem.
+
+    from realtime import Inputs, RealTimeTyre
+    tyre = RealTimeTyre("tyre.npz")
+    inputs = Inputs(speed=9.0, load=12e3, pressure=572e3, ambient=25.0, road_temperature=30.0)
+    for second in range(600):
+        tyre.step(1.0, inputs)
+    print(dict(zip(tyre.names, tyre.outputs)))
 """
 
 from __future__ import annotations
 
 import json
+import math
+import zipfile
+import zlib
 from dataclasses import dataclass
 from pathlib import Path
 from typing import Any
@@ -14,134 +24,305 @@ import numpy as np
 from numpy.typing import NDArray
 
 Array = NDArray[np.float64]
-FORMAT = "tyrefem real-time model 1"
-INPUTS = ("speed", "load", "pressure", "ambient", "road_temperature")
-#: ROS2 (Verwer et al. 1999): second order with any matrix in place of the Jacobian; L-stable with this coefficient.
-_GAMMA = 1 - 1 / np.sqrt(2)
+FORMAT = "tyrefem real-time model 2"
+#: Unit of every input.
+INPUTS = {"speed": "m/s", "load": "N", "pressure": "Pa", "ambient": "degC", "road_temperature": "degC"}
+ATMOSPHERE, KELVIN = 101325.0, 273.15
+#: (1 - e^-z)/z ~ sum_j b_j / (1 + GAMMA z)^j, from one inverse: e^-z to 2.1e-4 for all z >= 0, to z^4 for small z, and
+#: 0 for stiff modes (minimax fit of these constraints; Norsett 1978 calls them restricted approximations).
+GAMMA = 0.1608
+PHI = (
+    0.1608,
+    0.1639717308400497,
+    0.06893187963217337,
+    1.0202519078323518,
+    -3.387098780818439,
+    7.08426579225682,
+    -5.651785392907301,
+    1.5406628631643458,
+)
+#: (z - 1 + e^-z)/z^2 the same way: heat that changes linearly during a step.
+PHI_2 = (0.1608, 0.14191575456053127, 0.19728424543946896)
+#: Longer steps are split, s: into equal parts.
+LONGEST = 5.0
+#: Slower wheels stand, m/s: the road takes heat from a tread that turns only.
+STANDSTILL = 1e-6
 
 
 @dataclass(frozen=True)
 class Inputs:
-    """What acts on the tyre during a step: m/s, N, Pa (gauge, cold), degC, degC."""
+    """What acts on the tyre during a step: m/s, N, Pa (gauge, cold), degC, degC (None: as the ambient)."""
 
     speed: float
     load: float
     pressure: float
     ambient: float
-    road_temperature: float
+    road_temperature: float | None = None
 
 
 class RealTimeTyre:
-    """A tyre that is stepped.
-
-    >>> # tyre = RealTimeTyre("tyre.npz"); tyre.step(1.0, Inputs(9.0, 12e3, 572e3, 25.0, 25.0)); tyre.readings
+    """A tyre that is stepped: y' = f(y, inputs), y the modes of the temperature field, the contained air and the rim.
 
     Parameters
     ----------
-    file : written by `tyrefem.reduced.export.export`.
+    file : written by `tyrefem export`. clamp : move inputs that are outside the certified box to its edge, and say so
+        in `clamped`, in place of raising.
 
     Raises
     ------
     ValueError : not such a file, or of another format.
     """
 
-    def __init__(self, file: str | Path) -> None:
-        with np.load(file, allow_pickle=False) as stored:
-            data = {name: stored[name] for name in stored.files}
-        if "about" not in data:
-            raise ValueError(f"{file}: is not a real-time model")
-        self.about: dict[str, Any] = json.loads(str(data.pop("about")))
-        if self.about.get("format") != FORMAT:
-            raise ValueError(f"{file}: is a '{self.about.get('format')}', not a '{FORMAT}'")
-        self._data = data
-        self.M, self.K, self.stack = data["mass"], data["conduction"], data["exchange"]
-        self.loads = data["exchange_load"]
-        self.size = int(data["at_samples"].shape[1])
-        self.output, self.names = data["output"], list(self.about["outputs"])
-        self._matrix_of: tuple[Any, ...] = ()
-        self.reset(float(self.about["initial"]))
+    def __init__(self, file: str | Path, *, clamp: bool = False) -> None:
+        try:
+            # Opened here: numpy leaves what is no whole archive open.
+            with open(file, "rb") as stream, zipfile.ZipFile(stream), np.load(stream, allow_pickle=False) as stored:
+                data = {name: stored[name] for name in stored.files}
+            about = json.loads(str(data.pop("about")))
+        except FileNotFoundError:
+            raise
+        except (OSError, ValueError, KeyError, TypeError, AttributeError, EOFError, zipfile.BadZipFile, zlib.error):
+            raise ValueError(f"{file}: is not a real-time model") from None
+        if about.get("format") != FORMAT:
+            raise ValueError(f"{file}: is a '{about.get('format')}', not a '{FORMAT}'")
+        self.about: dict[str, Any] = about
+        self.clamp, self.clamped = clamp, []  # type: bool, list[str]
+        self._data = self.arrays = data
+        self.names: list[str] = [one["name"] for one in about["outputs"]]
+        self.units: list[str] = [one["unit"] for one in about["outputs"]]
+        #: Input -> the range that the model was certified in, SI.
+        self.box = {name: (float(low), float(high)) for name, (low, high) in about["box"].items()}
+        # Every array is looked up once: a step takes a few dozen microseconds.
+        self._rates, self._exchange = data["rates"], data["exchange"].reshape(len(data["exchange"]), -1)
+        self._size, self._n = len(data["rates"]), len(data["rates"]) + len(data["capacity"])
+        self._samples, self._heating = data["at_samples"], data["heating"]
+        width = data["loss_table"].shape[1]
+        self._loss, self._row = data["loss_table"].ravel(), data["loss_row"].astype(np.intp) * width
+        self._cold, self._per_kelvin, self._last = float(data["loss_axis"][0]), 1 / data["loss_axis"][1], width - 1.001
+        tables = (Table(data[f"{name}_table"], data[f"{name}_axes"]) for name in ("film", "heat", "bend"))
+        self._films, self._heat, self._bend = tables
+        self._read, self._lag, self._power = data["read"], data["lag"], data["power"]
+        hot = np.zeros((len(data["hot"]), self._n))
+        hot[:, : self._size] = data["hot"]
+        self._rows = np.vstack([self._read, hot])
+        self._slow = np.flatnonzero(self._lag > 0)
+        self.reset()
+
+    def reset(self, temperature: float | None = None) -> None:
+        """Everything at one temperature, degC (without: that of the study); the first step fills the tyre."""
+        start = float(self.about["initial"] if temperature is None else temperature)
+        self.time, self._start, self._filled = 0.0, start, math.nan
+        own = self._data["lumped_start"]
+        self._y = np.concatenate([start * self._data["even"], np.where(np.isnan(own), start, own)])
+        self._air_start = float(self._y[self._size]) if len(self._data["gas"]) else float(self._data["held"])
+        self._late = np.full(len(self._slow), start)
+        self._key: tuple[float, ...] = ()
+        self._inputs: Inputs | None = None
+        self._mass = np.concatenate([np.ones(self._size), self._data["capacity"]])
 
     @property
-    def box(self) -> dict[str, tuple[float, float]]:
-        """Input -> the range that the model was certified in, SI."""
-        return {name: (float(low), float(high)) for name, (low, high) in self.about["box"].items()}
+    def state(self) -> Array:
+        """Everything that the next step and the outputs depend on, to be kept and given back."""
+        now = [math.nan] * len(INPUTS) if self._inputs is None else _five(self._inputs)
+        return np.concatenate([[self.time, self._start, self._filled, *now], self._y, self._late])
 
-    def reset(self, temperature: float) -> None:
-        """Everything at one temperature, degC."""
-        self.time = 0.0
-        self.state = np.zeros(len(self.M))
-        self.state[0] = temperature / float(self._data["even"])
-        self.state[self.size :] = temperature
+    @state.setter
+    def state(self, state: Array) -> None:
+        kept, first = np.array(state, dtype=float), 3 + len(INPUTS)
+        if kept.shape != (first + self._n + len(self._slow),):
+            raise ValueError(f"a state of this model has {first + self._n + len(self._slow)} numbers")
+        self.reset(float(kept[1]))
+        self.time, filled = float(kept[0]), float(kept[2])
+        self._y, self._late = kept[first : first + self._n], kept[first + self._n :]
+        if not math.isnan(filled):
+            self._fill(filled)
+        if not math.isnan(kept[3]):
+            self._inputs = Inputs(*kept[3:first].tolist())
+            load, pressure = self._inputs.load, self._inputs.pressure
+            self._per_metre = self._heat(self._bent(load, pressure), pressure)
 
-    def outside(self, inputs: Inputs) -> list[str]:
-        """Inputs that are outside the certified box, in words."""
-        found = []
-        for name, (low, high) in self.box.items():
-            value = getattr(inputs, name)
-            if not low - 1e-9 * abs(low) <= value <= high + 1e-9 * abs(high):
-                found.append(f"{name} = {value:g} is outside {low:g} to {high:g}")
-        return found
+    def _fill(self, pressure: float) -> None:
+        """Heat capacity of the contained air: that of the gas filled in at the start, as in a full run."""
+        self._filled = pressure
+        gas = self._data["gas"]
+        if len(gas):
+            self._mass[self._size] = gas[0] + gas[1] * (pressure + ATMOSPHERE) / (self._air_start + KELVIN)
 
-    def step(self, dt: float, inputs: Inputs) -> Array:
-        """Go on by ``dt`` seconds under steady inputs; the readings after it.
+    def checked(self, inputs: Inputs) -> Inputs:
+        """Inputs that are within the box.
+
+        Raises
+        ------
+        ValueError : an input that is no number; one outside the box, unless ``clamp`` is set.
+        """
+        found, self.clamped = [], []
+        for (name, (low, high)), value in zip(self.box.items(), _five(inputs), strict=True):
+            near = 1e-9 * max(abs(low), abs(high))
+            if not low - near <= value <= high + near:
+                said = f"{name} = {value:g} is outside {low:g} to {high:g} {INPUTS[name]}"
+                if not self.clamp or math.isnan(value):
+                    raise ValueError(said)
+                self.clamped.append(said)
+            found.append(min(max(float(value), low), high))
+        return Inputs(*found)
+
+    def step(self, dt: float, inputs: Inputs, later: Inputs | None = None) -> Array:
+        """Go on by ``dt`` seconds; the `outputs` after it.
+
+        Inputs stay the same, or go linearly to those at the end of the step, ``later``: temperatures do so, speed, load
+        and pressure act by their mean.
 
         Raises
         ------
         ValueError : an input outside the certified box, or a step that is not positive.
         """
-        if not dt > 0:
+        if not 0 < dt < math.inf:
             raise ValueError(f"a step must be positive, not {dt:g} s")
-        if wrong := self.outside(inputs):
-            raise ValueError("; ".join(wrong))
-        A, inverse, constant, heat = self._at(dt, inputs)
-        m, y, load = self.size, self.state, self._data["source_load"]
+        first = self.checked(inputs)
+        said, last = self.clamped, first if later is None else self.checked(later)
+        self.clamped = list(dict.fromkeys(said + self.clamped)) if later is not None else said
+        if math.isnan(self._filled):
+            self._fill(first.pressure)
+        parts = math.ceil(dt / LONGEST - 1e-9)
+        a, b = np.array(_five(first)), np.array(_five(last))
+        for k in range(parts):
+            self._go(dt / parts, a + (b - a) * (k / parts), a + (b - a) * ((k + 1) / parts))
+        if last != self._inputs:
+            self._inputs, self._per_metre = last, self._heat(self._bent(last.load, last.pressure), last.pressure)
+        return self.outputs
+
+    def _go(self, h: float, first: Array, last: Array) -> None:
+        speed, load, pressure = ((first[:3] + last[:3]) / 2).tolist()
+        A, inverse, sinks, heat = self._at(h, speed, load, pressure)
+        m, y, mass = self._size, self._y, self._mass
+        before = self._read[self._slow] @ y if len(self._slow) else y
+        constant = sinks @ (1.0, first[3], first[4], self._start)
         rate = constant - A @ y
-        rate[:m] += load @ (heat * self._loss_tangent(y))
-        k1 = inverse @ rate
-        guess = y + dt * k1
-        rate = constant - A @ guess
-        rate[:m] += load @ (heat * self._loss_tangent(guess))
-        k2 = inverse @ (rate - 2 * (self.M @ k1))
-        self.state = y + dt * (1.5 * k1 + 0.5 * k2)
-        self.time += dt
-        return self.readings
+        made = heat * self._loss_tangent(y)
+        rate[:m] += self._heating @ made
+        u = inverse @ rate
+        change = PHI[0] * u
+        for b in PHI[1:]:
+            u = inverse @ (mass * u)
+            change += b * u
+        guess = y + h * change
+        more = sinks @ (1.0, last[3], last[4], self._start) - constant
+        more[:m] += self._heating @ (heat * self._loss_tangent(guess) - made)
+        u = inverse @ more
+        change = PHI_2[0] * u
+        for b in PHI_2[1:]:
+            u = inverse @ (mass * u)
+            change += b * u
+        self._y = guess + h * change
+        self.time += h
+        if len(self._slow):
+            # Exact for a temperature that is linear during the step.
+            after, lag = self._read[self._slow] @ self._y, self._lag[self._slow]
+            behind = lag * (after - before) / h
+            self._late = after - behind + (self._late - before + behind) * np.exp(-h / lag)
+
+    def _at(self, h: float, speed: float, load: float, pressure: float) -> tuple[Array, Array, Array, Array]:
+        """K + sum h R, the inverse of a step, heat from (1, ambient, road, start), heat per unit of tan delta."""
+        key = h, speed, load, pressure, self._filled
+        if self._key != key:
+            bent = self._bent(load, pressure)
+            films = self._films(math.sqrt(speed), bent, pressure)
+            if speed < STANDSTILL:
+                films = self._data["film_standing"]
+            A = (films @ self._exchange).reshape(self._n, self._n)
+            A.flat[: self._size * (self._n + 1) : self._n + 1] += self._rates
+            W = GAMMA * h * A
+            W.flat[:: self._n + 1] += self._mass
+            sinks = self._data["exchange_load"].T @ (films[:, None] * self._data["sink"])
+            self._key = key
+            self._known = A, inverse(W), sinks, speed * self._heat(bent, pressure)
+        return self._known
+
+    def _bent(self, load: float, pressure: float) -> float:
+        """Root of the deflection."""
+        return float(self._bend(math.sqrt(load), pressure)[0])
+
+    def _loss_tangent(self, y: Array) -> Array:
+        """tan delta at the samples."""
+        place = (self._samples @ y[: self._size] - self._cold) * self._per_kelvin
+        place = np.minimum(np.maximum(place, 0.0), self._last)
+        left = place.astype(np.intp)
+        place -= left
+        left += self._row
+        below = self._loss[left]
+        return np.asarray(below + place * (self._loss[left + 1] - below))
 
     @property
-    def readings(self) -> Array:
-        """Temperatures of `names`, degC."""
-        return np.asarray(self.output @ self.state)
+    def outputs(self) -> Array:
+        """Values of `names` in `units`: sensors, rim, contained air, hottest point, pressure, rolling resistance.
 
-    def _at(self, dt: float, inputs: Inputs) -> tuple[Array, Array, Array, Array]:
-        key = (dt, inputs)
-        if self._matrix_of[:1] != (key,):
-            films = _interpolated(self._data, "film", (np.sqrt(inputs.speed), inputs.load, inputs.pressure))
-            sinks = self._data["sink"] @ np.array([1.0, inputs.ambient, inputs.road_temperature])
-            A = self.K + np.tensordot(films, self.stack, axes=1)
-            constant = (films * sinks) @ self.loads
-            heat = inputs.speed * _interpolated(self._data, "heat", (inputs.load, inputs.pressure))
-            self._matrix_of = (key, A, np.linalg.inv(self.M + _GAMMA * dt * A), constant, heat)
-        return self._matrix_of[1:]  # type: ignore[return-value]
-
-    def _loss_tangent(self, state: Array) -> Array:
-        """tan delta at the samples."""
-        grid, table = self._data["loss_grid"], self._data["loss_table"]
-        T = self._data["at_samples"] @ state[: self.size]
-        place = np.clip((T - grid[0]) / (grid[1] - grid[0]), 0.0, len(grid) - 1.000001)
-        left = place.astype(int)
-        zone = self._data["zone_of_sample"]
-        below, above = table[zone, left], table[zone, left + 1]
-        return np.asarray(below + (place - left) * (above - below))
+        The last two follow from the inputs of the last step: NaN before the first.
+        """
+        found = np.empty(len(self.names))
+        seen, inputs = self._rows @ self._y, self._inputs
+        read = len(self._read)
+        found[:read] = seen[:read]
+        found[self._slow] = self._late
+        air = float(self._y[self._size]) if len(self._data["gas"]) else self._air_start
+        pressure = resistance = math.nan
+        if inputs is not None:
+            pressure = (inputs.pressure + ATMOSPHERE) * (air + KELVIN) / (self._air_start + KELVIN) - ATMOSPHERE
+            resistance = 0.0
+            if inputs.speed >= STANDSTILL:
+                resistance = float(self._power @ (self._per_metre * self._loss_tangent(self._y)))
+        found[read:] = air, seen[read:].max(), pressure, resistance
+        return found
 
 
-def _interpolated(data: dict[str, Array], name: str, place: tuple[float, ...]) -> Array:
-    """A table over a grid of axes ``NAME_axis_0``, ...: linear in every axis."""
-    values = data[f"{name}_table"]
-    for number, x in enumerate(place):
-        axis = data[f"{name}_axis_{number}"]
-        if len(axis) == 1:
-            values = values[0]
-            continue
-        left = min(max(int(np.searchsorted(axis, x, side="right")) - 1, 0), len(axis) - 2)
-        part = (x - axis[left]) / (axis[left + 1] - axis[left])
-        values = (1 - part) * values[left] + part * values[left + 1]
-    return np.asarray(values)
+def _five(inputs: Inputs) -> list[float]:
+    road = inputs.ambient if inputs.road_temperature is None else inputs.road_temperature
+    return [inputs.speed, inputs.load, inputs.pressure, inputs.ambient, road]
+
+
+class Table:
+    """Values on even axes: cubic through the four nearest points of every axis, fewer where an axis has fewer."""
+
+    def __init__(self, values: Array, axes: Array) -> None:
+        self.shape, self.axes = values.shape, [tuple(axis) for axis in np.asarray(axes)[:, :2].tolist()]
+        self.values = np.ascontiguousarray(values.reshape(len(values), -1))
+
+    def __call__(self, *place: float) -> Array:
+        found = self.values
+        for number, (x, (low, high)) in enumerate(zip(place, self.axes, strict=True)):
+            n = self.shape[number]
+            if n > 1:
+                u, width = (x - low) / (high - low) * (n - 1), min(4, n)
+                first = min(max(int(u) - 1, 0), n - width)
+                found = lagrange(u - first, width) @ found[first : first + width]
+            found = found.reshape(self.shape[number + 1], -1)
+        return found[:, 0]
+
+
+def lagrange(u: float, width: int) -> Array:
+    """Weights of values at 0, 1, ..., width - 1 in their polynomial at u.
+
+    >>> lagrange(0.5, 2).tolist(), lagrange(1.5, 4).tolist()
+    ([0.5, 0.5], [-0.0625, 0.5625, 0.5625, -0.0625])
+    """
+    if width == 4:
+        a, b, c = u - 1, u - 2, u - 3
+        return np.array([a * b * c / -6, u * b * c / 2, u * a * c / -2, u * a * b / 6])
+    if width == 3:
+        return np.array([(u - 1) * (u - 2) / 2, u * (2 - u), u * (u - 1) / 2])
+    return np.array([1 - u, u])
+
+
+def inverse(W: Array) -> Array:
+    """Inverse of a symmetric positive matrix by two halves: half the time of LAPACK's general one at this size.
+
+    >>> inverse(np.array([[2.0, 1.0], [1.0, 2.0]])).round(6).tolist()
+    [[0.666667, -0.333333], [-0.333333, 0.666667]]
+    """
+    k = len(W) // 2
+    first = np.linalg.inv(W[:k, :k])
+    across = first @ W[:k, k:]
+    second = np.linalg.inv(W[k:, k:] - W[k:, :k] @ across)
+    corner = across @ second
+    found = np.empty_like(W)
+    found[:k, :k], found[:k, k:], found[k:, :k], found[k:, k:] = first + corner @ across.T, -corner, -corner.T, second
+    return found

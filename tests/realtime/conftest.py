@@ -1,0 +1,51 @@
+"""A small tyre's real-time model, made once."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from pathlib import Path
+
+import pytest
+
+import tyrefem
+from tyrefem.reduced import certify, tables
+from tyrefem.studies import Study
+
+
+@dataclass(frozen=True)
+class Exported:
+    study: Study
+    file: Path
+    certificate: certify.Certificate
+
+
+RANGES = {
+    "speed": ("0 m/s", "12 m/s"),
+    "load": ("9 kN", "13 kN"),
+    "pressure": ("520 kPa", "600 kPa"),
+    "ambient": ("10 degC", "30 degC"),
+    "road_temperature": ("10 degC", "40 degC"),
+}
+
+
+@pytest.fixture(scope="session")
+def exported(tmp_path_factory: pytest.TempPathFactory) -> Exported:
+    study = tyrefem.study(
+        "nasa-22x5.5-8pr",
+        {
+            "mesh.size": "12 mm",
+            "mesh.through": 1,
+            "sensors": {
+                "skin": {"s": "0.3 in", "depth": "0.62 in"},
+                "slow": {"s": "2 in", "depth": "0.1 in", "lag": "4 s"},
+            },
+            "boundaries.rim": {"law": "lumped", "mass": "4 kg", "cooling": "2 W/K", "air": "0.5 W/K"},
+        },
+    )
+    with pytest.MonkeyPatch.context() as patch:
+        patch.setattr(tables, "POINTS", {"speed": 9, "bend": 11, "pressure": 4})
+        patch.setattr(certify, "LEARN", 3)
+        patch.setattr(certify, "FRESH", 2)
+        file = tmp_path_factory.mktemp("realtime") / "tyre.npz"
+        certificate = certify.export(study, file, ranges=RANGES, duration=80.0, tolerance=0.3)
+    return Exported(study, file, certificate)

@@ -1,0 +1,87 @@
+"""`tyrefem export`: refusals before any work, and what the box is without being asked."""
+
+from __future__ import annotations
+
+from dataclasses import astuple
+
+import fmpy
+import numpy as np
+import pytest
+
+import tyrefem
+from tyrefem.cli import main
+from tyrefem.errors import InputError
+from tyrefem.fmu import write_fmu
+from tyrefem.fmu.description import variable_names
+from tyrefem.realtime import INPUTS, Inputs, RealTimeTyre
+from tyrefem.reduced import certify, tables
+from tyrefem.reduced.certify import export
+from tyrefem.reduced.driving import box_of
+
+STUDY = "nasa-22x5.5-8pr"
+
+
+@pytest.mark.parametrize(
+    ("arguments", "said"),
+    [
+        (["--out", "tyre.txt"], "must end with .npz"),
+        (["--speed", "1:2:3"], "is not FROM:TO"),
+        (["--speed", "30 mph:10 mph"], "from a lower to a higher value"),
+        (["--load", "-1 kN:10 kN"], "must be positive"),
+        (["--pressure", "20 degC:30 degC"], "pressure"),
+        (["--load", "10 kN:200 kN", "--set", "mesh.size=12 mm"], "deflects the tyre"),
+        (["--tolerance", "0 K"], "must be positive"),
+        (["--set", "mechanics.feedback.pressure=true"], "feedback"),
+        (["--set", "drive.slip_ratio=0.1"], "slip"),
+    ],
+)
+def test_bad_input_ends_with_2_and_one_line(arguments, said, tmp_path, monkeypatch, capsys):
+    monkeypatch.chdir(tmp_path)
+    assert main(["export", STUDY, *arguments]) == 2
+    errors = capsys.readouterr().err
+    assert errors.count("\n") == 1
+    assert said in errors
+    assert list(tmp_path.iterdir()) == []
+
+
+def test_the_box_without_being_asked():
+    study = tyrefem.study(STUDY)
+    ranges = box_of(study).ranges
+    speed = study.card.drive.phases[0].speed.start
+    assert ranges["speed"] == pytest.approx((0.0, 1.5 * speed))
+    assert ranges["ambient"] == pytest.approx((5.0, 45.0))
+    with pytest.raises(InputError, match="did you mean 'speed'"):
+        box_of(study, {"sped": (0.0, 1.0)})
+    with pytest.raises(InputError, match="deflection"):
+        box_of(study.replace({"drive.deflection": "1 in"}))
+
+
+def test_effects_on_the_heat_are_refused(tmp_path):
+    study = tyrefem.study(STUDY, {"mesh.size": "12 mm", "effects": [{"name": "standing-wave", "gain": 1.0}]})
+    with pytest.raises(InputError, match="effects"):
+        export(study, tmp_path / "tyre.npz")
+
+
+def test_a_box_without_width_no_sensors_held_air_and_a_tolerance_that_cannot_be_met(tmp_path, monkeypatch):
+    monkeypatch.setattr(tables, "POINTS", {"speed": 5, "bend": 4, "pressure": 4})
+    for name, value in {"LEARN": 1, "FRESH": 1, "ROUNDS": 1}.items():
+        monkeypatch.setattr(certify, name, value)
+    held = {"law": "held", "temperature": "35 degC"}
+    changes = {"mesh.size": "12 mm", "mesh.through": 1, "sensors": {}, "boundaries.contained_air": held}
+    study = tyrefem.study(STUDY, changes)
+    ranges = {"load": ("12 kN",), "pressure": ("560 kPa",), "ambient": (20.0, 20.0)}
+    with pytest.raises(InputError, match="still differ by"):
+        export(study, tmp_path / "no.npz", ranges=ranges, duration=40.0, tolerance=1e-7)
+    assert not (tmp_path / "no.npz").exists()
+    found = export(study, tmp_path / "tyre.npz", ranges=ranges, duration=40.0, tolerance=1.0)
+    assert found.worst < 1.0
+    tyre = RealTimeTyre(tmp_path / "tyre.npz")
+    assert tyre.names == ["contained-air", "hottest", "gas_pressure", "rolling_resistance"]
+    inputs = Inputs(8.0, 12e3, 560e3, 20.0, 30.0)
+    ends = [tyre.step(1.0, inputs) for _ in range(20)][-1]
+    assert ends[0] == 35.0
+    assert ends[2] == pytest.approx(560e3)
+    unit = str(write_fmu(tmp_path / "tyre.npz", tmp_path / "tyre.fmu"))
+    start = dict(zip(INPUTS, astuple(inputs), strict=True))
+    run = fmpy.simulate_fmu(unit, stop_time=20.0, output_interval=1.0, start_values=start, output=variable_names(tyre))
+    np.testing.assert_allclose(list(run[-1])[1:], ends, rtol=1e-9)

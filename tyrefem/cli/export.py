@@ -1,0 +1,139 @@
+"""`tyrefem export`: a real-time model of a study in one file, certified; on request as an FMU too."""
+
+from __future__ import annotations
+
+import os
+from pathlib import Path
+from typing import TYPE_CHECKING, Annotated
+
+import typer
+
+from tyrefem.cli.common import JsonOption, SetOption, StudyArgument, fail, print_json, settings, writable_folder
+from tyrefem.errors import InputError
+
+if TYPE_CHECKING:
+    from tyrefem.reduced.certify import Certificate
+
+
+def _range(text: str | None, name: str) -> dict[str, tuple[str, str]]:
+    """A range of an input.
+
+    >>> _range("0 mph:30 mph", "speed"), _range("83 psi", "pressure"), _range(None, "load")
+    ({'speed': ('0 mph', '30 mph')}, {'pressure': ('83 psi', '83 psi')}, {})
+    """
+    if text is None:
+        return {}
+    ends = [part.strip() for part in text.split(":")]
+    if len(ends) > 2 or not all(ends):
+        raise InputError(f"'{text}' is not FROM:TO, e.g. '10 mph:40 mph'", field=f"--{name.replace('_', '-')}")
+    return {name: (ends[0], ends[-1])}
+
+
+def export(
+    study: StudyArgument,
+    out: Annotated[Path | None, typer.Option("--out", help="File; default: results/STUDY.npz.")] = None,
+    speed: Annotated[
+        str | None, typer.Option(metavar="FROM:TO", help="Range of the speed; default: 0 to 1.5 times the study's.")
+    ] = None,
+    load: Annotated[
+        str | None, typer.Option(metavar="FROM:TO", help="Of the load; default: 0.5 to 1.25 times the study's.")
+    ] = None,
+    pressure: Annotated[
+        str | None, typer.Option(metavar="FROM:TO", help="Of the cold gauge pressure; default: 0.8 to 1.2 times.")
+    ] = None,
+    ambient: Annotated[
+        str | None, typer.Option(metavar="FROM:TO", help="Of the ambient; default: 20 K about the study's.")
+    ] = None,
+    road_temperature: Annotated[
+        str | None, typer.Option(metavar="FROM:TO", help="Of the road; default: 20 K below to 40 K above.")
+    ] = None,
+    tolerance: Annotated[str, typer.Option(help="Error of any temperature that the certificate allows.")] = "0.2 K",
+    duration: Annotated[
+        str | None, typer.Option(help="Of the drives it is trained and certified with; default: the study's.")
+    ] = None,
+    changes: SetOption = None,
+    fmu: Annotated[bool, typer.Option("--fmu", help="Write an FMU (FMI 2.0, co-simulation) beside the file.")] = False,
+    workers: Annotated[int | None, typer.Option(min=1, help="Processes; default: one per core.")] = None,
+    as_json: JsonOption = False,
+) -> None:
+    """Export a real-time model: inputs speed, load, pressure, ambient, road; outputs sensors, contained air.
+
+    It is trained on full runs of the study in the ranges, certified on fresh ones, and stepped by tyrefem/realtime.py
+    with numpy alone.
+    """
+    from tyrefem.cli.sweep import several
+    from tyrefem.quantity import parse
+    from tyrefem.reduced.certify import export as write
+    from tyrefem.studies import study as loaded
+    from tyrefem.sweep.schedulers import Here, Local
+
+    given: dict[str, tuple[str, str]] = {}
+    inputs = {"speed": speed, "load": load, "pressure": pressure, "ambient": ambient}
+    for name, text in {**inputs, "road_temperature": road_temperature}.items():
+        given |= _range(text, name)
+    chosen = loaded(study, settings(changes))
+    path = out or Path("results") / f"{chosen.name}.npz"
+    if path.suffix != ".npz":
+        raise InputError(f"'{path}' must end with .npz", field="--out")
+    writable_folder(path.parent)
+    allowed = parse(tolerance, "delta_degC")
+    if not allowed > 0:
+        raise InputError(f"must be positive, not {tolerance}", field="--tolerance")
+    lasting = None if duration is None else parse(duration, "s")
+    if lasting is not None and not lasting >= 1:
+        raise InputError(f"must be a second or more, not {duration}", field="--duration")
+    count = workers or os.cpu_count() or 1
+    with several(quiet=as_json) as tick:
+        certificate = write(
+            chosen,
+            path,
+            ranges=given,
+            tolerance=allowed,
+            duration=lasting,
+            scheduler=Local(count) if count > 1 else Here(),
+            progress=tick,
+        )
+    files = {"file": path}
+    if fmu:
+        from tyrefem.fmu import write_fmu
+
+        files["fmu"] = write_fmu(path, path.with_suffix(".fmu"))
+    if as_json:
+        print_json({**vars(certificate), **{name: str(one) for name, one in files.items()}})
+        return
+    for line in words(certificate):
+        typer.echo(line)
+    for one in files.values():
+        typer.echo(f"wrote {one} ({one.stat().st_size / 1e3:.0f} kB)")
+    if fmu and not has_binary(files["fmu"]):
+        fail("no C compiler was found: the FMU holds its source only; the importing tool has to compile it")
+
+
+def has_binary(path: Path) -> bool:
+    """Does an FMU hold a compiled library?"""
+    import zipfile
+
+    with zipfile.ZipFile(path) as stored:
+        return any(name.startswith("binaries/") for name in stored.namelist())
+
+
+def words(certificate: Certificate) -> list[str]:
+    """What a person reads of a certificate."""
+    found = [
+        f"trained on {certificate.trained_on} full runs, certified on {certificate.cases[0]} steady and "
+        f"{certificate.cases[1]} changing ones of {certificate.duration:g} s in steps of 1 s: "
+        f"largest error {certificate.worst:.3g} K (allowed {certificate.tolerance:g} K)"
+    ]
+    for kind, errors in (("steady", certificate.steady), ("changing", certificate.driven)):
+        said = ", ".join(f"{name} {one:.2g}" for name, one in errors.items() if name != "rolling_resistance")
+        found.append(f"  {kind}, K: {said}; rolling resistance {errors['rolling_resistance']:.2g} N")
+    return found
+
+
+#: Place among the commands.
+ORDER = 16
+
+
+def register(app: typer.Typer) -> None:
+    """Add the command."""
+    app.command()(export)

@@ -1,0 +1,171 @@
+"""A real-time model trained on full runs of drives in its box, and certified on fresh ones."""
+
+from __future__ import annotations
+
+import tempfile
+from collections.abc import Callable, Mapping, Sequence
+from dataclasses import dataclass
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+from numpy.typing import NDArray
+
+from tyrefem.errors import InputError
+from tyrefem.realtime import RealTimeTyre
+from tyrefem.reduced.driving import NAMES, Box, Course, box_of, random_course, steady
+from tyrefem.reduced.exam import Certificate, Exam, certificate, differences, sit
+from tyrefem.reduced.export import arrays_of, outputs_of, write
+from tyrefem.reduced.model import NotReducibleError
+from tyrefem.reduced.tables import Probe
+from tyrefem.reduced.train import Fineness, Snapshots, trained
+from tyrefem.rolling import RollingTyre
+from tyrefem.studies import Study
+from tyrefem.summary import versions
+from tyrefem.sweep.bundle import bundle
+from tyrefem.sweep.schedulers import Here, Scheduler
+
+Array = NDArray[np.float64]
+#: Random drives to learn from, fresh steady and random ones to certify with, and rounds of both.
+LEARN, FRESH, ROUNDS = 6, 4, 4
+#: Few modes: a step costs their square, and its matrix their cube.
+FINENESS = Fineness(modes_tolerance=2e-4, source_tolerance=2e-6, most_modes=60, most_sources=60, fields=40)
+#: Readings of a full run at most: the longer the drive, the rarer.
+READINGS = 900
+
+
+def export(
+    study: Study,
+    path: str | Path,
+    *,
+    ranges: Mapping[str, tuple[Any, Any]] | None = None,
+    tolerance: float = 0.2,
+    duration: float | None = None,
+    scheduler: Scheduler | None = None,
+    choice: Fineness | None = None,
+    seed: int = 11,
+    progress: Callable[[str, int, int], None] | None = None,
+) -> Certificate:
+    """Train a real-time model of a study, certify it, and write it to one file.
+
+    Parameters
+    ----------
+    path : ``.npz`` file. ranges : input -> (from, to), see `box_of`. tolerance : K, of every temperature of fresh full
+    runs. duration : of the drives it learns from and is certified with, s; that of the study's drive.
+
+    Raises
+    ------
+    InputError : the box holds loads that the tyre cannot carry; a study that a reduced model cannot follow; the
+        tolerance was not reached.
+    """
+    if study.card.mechanics.feedback is not None:
+        raise InputError("a real-time model has no feedback of temperature on the strain cycle", field="mechanics")
+    tick = progress or (lambda what, done, total: None)
+    scheduler, choice = scheduler or Here(), choice or FINENESS
+    box, horizon = box_of(study, ranges), float(duration or study.card.drive.end)
+    tick("tables", 0, 1)
+    tool = _Tool(study, box, horizon, choice, tick, scheduler)
+    tick("tables", 1, 1)
+    cube = np.random.default_rng(seed).random((ROUNDS * FRESH, 5))
+    courses = [steady(box, place, horizon) for place in _corners()]
+    courses += [random_course(box, horizon, 1000 * seed + k) for k in range(LEARN)]
+    learnt, between = tool.full(courses, "training"), tool.tables.errors(tool.probe)
+    for number in range(ROUNDS):
+        arrays = tool.model(learnt)
+        fresh = [steady(box, place, horizon) for place in cube[number * FRESH : (number + 1) * FRESH]]
+        fresh += [random_course(box, horizon, 2000 * seed + number * FRESH + k) for k in range(FRESH)]
+        full = tool.full(fresh, "certifying")
+        about = tool.about()
+        with tempfile.TemporaryDirectory() as folder:
+            tyre = RealTimeTyre(write(Path(folder) / "tyre.npz", arrays, about))
+        errors = [differences(tyre, course, one) for course, one in zip(fresh, full, strict=True)]
+        found = certificate(errors, tolerance, len(learnt), horizon, between)
+        if found.worst <= tolerance:
+            write(path, arrays, {**about, "certificate": vars(found)})
+            return found
+        learnt += full
+    name, error = max(((n, e) for one in errors for n, e in one.items() if n != "rolling_resistance"), key=_second)
+    raise NotReducibleError(
+        f"after {found.trained_on} full runs fresh ones still differ by {error:.3g} K at '{name}'; allowed: "
+        f"{tolerance:g} K: a smaller box or a larger tolerance"
+    )
+
+
+def _second(pair: tuple[str, float]) -> float:
+    return pair[1]
+
+
+def _corners() -> list[Array]:
+    """The middle; all that warms together, and all that cools."""
+    warm = np.array([name != "pressure" for name in NAMES], dtype=float)
+    return [np.full(5, 0.5), warm, 1 - warm]
+
+
+@dataclass(eq=False)
+class _Tool:
+    study: Study
+    box: Box
+    horizon: float
+    choice: Fineness
+    tick: Callable[[str, int, int], None]
+    scheduler: Scheduler
+
+    def __post_init__(self) -> None:
+        middle = steady(self.box, np.full(5, 0.5), self.horizon)
+        self.base = RollingTyre(middle.study(self.study))
+        self.probe = Probe(self.study, self.box, self.base)
+        self.tables = self.probe.tables()
+        self.packed = bundle(self.study)
+        self.every = max(1.0, float(np.ceil(self.horizon / READINGS)))
+
+    def full(self, courses: Sequence[Course], what: str) -> list[dict[str, Any]]:
+        """Full runs of drives."""
+        exams = [Exam(self.packed, course, self.every, self.choice.fields) for course in courses]
+        outcomes: dict[int, dict[str, Any]] = {}
+        for place, outcome in self.scheduler.outcomes(sit, exams):
+            if "failure" in outcome:
+                raise InputError(f"a full run failed: {outcome['failure']}")
+            outcomes[place] = outcome
+            self.tick(what, len(outcomes), len(exams))
+        return [outcomes[place] for place in range(len(exams))]
+
+    def model(self, learnt: Sequence[Mapping[str, Any]]) -> dict[str, Any]:
+        """Arrays of a model of what was learnt."""
+        taught: list[Snapshots] = [one["snapshots"] for one in learnt]
+        none = np.zeros((0, taught[0].fields.shape[1]))
+        self.reduced = trained(self.base, [*taught, Snapshots(none, self._sources(taught))], choice=self.choice)
+        hot = np.unique(np.concatenate([one["hot"] for one in learnt]))
+        return arrays_of(self.reduced, self.probe, self.tables, hot)
+
+    def _sources(self, taught: Sequence[Snapshots]) -> Array:
+        """Heat sources at all loads and pressures of the tables, at a cold, a middling and a hot field."""
+        ends = np.array([one.fields[-1] for one in taught])
+        order = np.argsort(ends.max(axis=1))
+        ops, found = self.base.problem.operators, []
+        for field in ends[[order[0], order[len(order) // 2], order[-1]]]:
+            laws = [source.loss_tangent(field[ops.dofs(zone)]) for zone, source in self.base.hysteresis.items()]
+            found.append(self.tables.heat.reshape(-1, self.tables.heat.shape[-1]) * np.concatenate(laws))
+        return np.vstack(found)
+
+    def _start(self) -> dict[str, float]:
+        """The study's inputs at its start, within the box."""
+        phase, found = self.study.card.drive.phases[0], {}
+        for name in NAMES:
+            low, high = self.box.ranges[name]
+            ramp = getattr(phase, name) or (phase.ambient if name == "road_temperature" else None)
+            found[name] = min(max((low + high) / 2 if ramp is None else ramp.start, low), high)
+        return found
+
+    def about(self) -> dict[str, Any]:
+        """What the file says of itself."""
+        balance = self.reduced.balance(self.base)
+        return {
+            "study": self.study.name,
+            "title": self.study.title,
+            "box": {name: list(self.box.ranges[name]) for name in NAMES},
+            "outputs": outputs_of(self.study, balance),
+            "initial": self.study.card.drive.initial,
+            "start": self._start(),
+            "modes": self.reduced.size,
+            "versions": versions(),
+        }
