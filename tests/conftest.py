@@ -42,3 +42,9 @@ def needs_gmsh() -> None:
 def needs_rendering() -> None:
     """pyvista can draw off screen; else skip, or fail where TYREFEM_REQUIRE_LIBRARIES is set."""
     _needs("off-screen rendering", _RENDER)
+
+
+@pytest.fixture(scope="session")
+def needs_compiler() -> None:
+    """There is a C compiler; else skip, or fail where TYREFEM_REQUIRE_LIBRARIES is set."""
+    _needs("a C compiler", "import shutil; assert shutil.which('cc'), 'cc is not installed'")

@@ -62,7 +62,9 @@ def test_effects_on_the_heat_are_refused(tmp_path):
         export(study, tmp_path / "tyre.npz")
 
 
-def test_a_box_without_width_no_sensors_held_air_and_a_tolerance_that_cannot_be_met(tmp_path, monkeypatch):
+def test_a_box_without_width_no_sensors_held_air_and_a_tolerance_that_cannot_be_met(
+    needs_compiler, tmp_path, monkeypatch
+):
     monkeypatch.setattr(tables, "POINTS", {"speed": 5, "bend": 4, "pressure": 4})
     for name, value in {"LEARN": 1, "FRESH": 1, "ROUNDS": 1}.items():
         monkeypatch.setattr(certify, name, value)
