@@ -10,7 +10,9 @@ from typing import Any
 from tyrefem.cards import merged, read_toml
 from tyrefem.errors import InputError, nearest
 
-FOLDERS = {"section": "geometry", "material": "materials", "study": "studies"}
+FOLDERS = {"section": "geometry", "material": "materials", "study": "studies", "sweep": "studies"}
+#: Kinds that are a folder each, named by it, with this file in it.
+FILES = {"study": "study.toml", "sweep": "sweep.toml"}
 #: Environment variable with the user's own library folders, separated as in PATH.
 SEARCH_PATH = "TYREFEM_PATH"
 
@@ -40,11 +42,11 @@ def names(kind: str, near: Path | None = None) -> dict[str, Path]:
     >>> "nasa-tread" in names("material")
     True
     """
-    pattern = "*/study.toml" if kind == "study" else "*.toml"
+    pattern = f"*/{FILES[kind]}" if kind in FILES else "*.toml"
     found: dict[str, Path] = {}
     for root in roots(near):
         for path in sorted((root / FOLDERS[kind]).glob(pattern)):
-            found.setdefault(path.parent.name if kind == "study" else path.stem, path)
+            found.setdefault(path.parent.name if kind in FILES else path.stem, path)
     return found
 
 
@@ -60,17 +62,17 @@ def find(kind: str, name: str, near: Path | None = None) -> Path:
     if looks_like_path:
         options = [path] if path.is_absolute() or near is None else [near / path, path]
         for option in options:
-            if kind == "study" and os.path.isdir(option):
-                option = option / "study.toml"
+            if kind in FILES and os.path.isdir(option):
+                option = option / FILES[kind]
             if os.path.isfile(option):
                 return option
         raise InputError(f"no {kind} file '{name}'")
     for root in roots(near):
-        path_here = root / FOLDERS[kind] / (f"{name}/study.toml" if kind == "study" else f"{name}.toml")
+        path_here = root / FOLDERS[kind] / (f"{name}/{FILES[kind]}" if kind in FILES else f"{name}.toml")
         if os.path.isfile(path_here):
             return path_here
-    if kind == "study" and os.path.isfile(path / "study.toml"):
-        return path / "study.toml"
+    if kind in FILES and os.path.isfile(path / FILES[kind]):
+        return path / FILES[kind]
     raise InputError(f"no {kind} named '{name}'{nearest(name, names(kind, near))}")
 
 
@@ -96,7 +98,7 @@ def load(kind: str, reference: object, near: Path | None = None) -> tuple[dict[s
     if not isinstance(reference, str) or not reference:
         raise InputError(f"{reference!r} is not the name or path of a {kind} card")
     path = find(kind, reference, near)
-    name = path.parent.name if kind == "study" else path.stem
+    name = path.parent.name if kind in FILES else path.stem
     return merged(read_toml(path), changes), path, name
 
 

@@ -27,6 +27,7 @@ if TYPE_CHECKING:
     from tyrefem.meshing import TyreMesh
     from tyrefem.result import Result
     from tyrefem.section import Section
+    from tyrefem.sweep.design import Design
 
     Progress = Callable[[float], None]
 
@@ -352,6 +353,22 @@ class Study:
         from tyrefem.diagnose import diagnose
 
         return diagnose(self, table, **options)
+
+    def sweep(self, vary: Mapping[str, Any] | None = None, **options: Any) -> Design:
+        """Many variants of the study, and what they say: response, Pareto front, tornado, indices, optimum, envelope.
+
+        ``vary``: dotted name -> tuple (from, to) or (from, to, levels), list of values, or what a sweep file says.
+        Options: every other key of a sweep file (docs/sweeps.md), and those of
+        `tyrefem.sweep.questions.Questions.answered`.
+
+        >>> coarse = study("nasa-22x5.5-8pr", {"mesh.size": "12 mm", "drive.duration": "60 s"})
+        >>> found = coarse.sweep({"drive.speed": ["10 mph", "20 mph"]}, limits={"hottest_degC": {"below": 35}})
+        >>> found.table["feasible"].tolist()
+        [True, False]
+        """
+        from tyrefem.sweep.questions import asked_of
+
+        return asked_of(self, vary, **options)
 
     @property
     def is_campaign(self) -> bool:

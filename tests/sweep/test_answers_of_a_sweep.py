@@ -2,21 +2,36 @@
 
 from __future__ import annotations
 
+import math
+from collections.abc import Callable
+from pathlib import Path
 from typing import Any
 
 import numpy as np
 import pandas as pd
 import pytest
+from hypothesis import given
+from hypothesis import strategies as st
 
 from tyrefem import study
 from tyrefem.errors import InputError
+from tyrefem.reduced.surrogate import Certificate
 from tyrefem.studies import Study
+from tyrefem.sweep.answers import TIME_TO, answer_names
+from tyrefem.sweep.card import EnvelopeCard, OptimiseCard
 from tyrefem.sweep.envelope import envelope
-from tyrefem.sweep.indices import indices, indices_plan
+from tyrefem.sweep.indices import Indices, indices
+from tyrefem.sweep.operating_points import checked_pairs
+from tyrefem.sweep.optimum import optimum
 from tyrefem.sweep.pareto import front, undominated
-from tyrefem.sweep.plan import plan_of
+from tyrefem.sweep.plan import Plan, plan_of
+from tyrefem.sweep.responses import Responses, main_effects
+from tyrefem.sweep.samples import drawn
 from tyrefem.sweep.sweep import Sweep, sweep
-from tyrefem.sweep.tornado import tornado, tornado_plan
+from tyrefem.sweep.tornado import Tornado, tornado_plan
+from tyrefem.sweep.varied import Varied
+
+SALTELLI = {"sample": "saltelli", "seed": 1}
 
 
 @pytest.fixture(scope="module")
@@ -65,15 +80,6 @@ def test_one_failing_variant_is_recorded_and_the_sweep_goes_on(tyre: Study) -> N
     assert len(found.failed) + int((found.table["failure"] == "").sum()) == 4
 
 
-@pytest.mark.parametrize("count", [1, 40])
-def test_the_front_beats_everything_else(count: int) -> None:
-    values = np.random.default_rng(1).random((count, 3))
-    kept = undominated(values)
-    for i in range(count):
-        beaten = any((values[j] <= values[i]).all() and (values[j] < values[i]).any() for j in range(count))
-        assert kept[i] == (not beaten)
-
-
 def test_front_knows_what_is_better_and_refuses_unknown_answers(swept: Sweep) -> None:
     best = front(swept.table, {"hottest_degC": "min"})
     assert best["hottest_degC"].tolist() == [swept.table["hottest_degC"].min()]
@@ -83,51 +89,233 @@ def test_front_knows_what_is_better_and_refuses_unknown_answers(swept: Sweep) ->
         front(swept.table, {"hotest_degC": "min"})
 
 
+class Formula:
+    """Answers by a formula of the changed numbers in place of runs: what a search must find is known."""
+
+    def __init__(self, formula: Callable[[list[float]], float], answer: str = "hottest_degC") -> None:
+        self.formula, self.answer, self.asked = formula, answer, 0
+
+    def outcomes(self, work: Any, tasks: Any, common: Any = None) -> Any:
+        for place, task in enumerate(tasks):
+            self.asked += 1
+            numbers = [float(str(value).split()[0]) for value in task.changes.values()]
+            # The study as it is changes nothing.
+            value = self.formula(numbers) if numbers else 99.0
+            found = {self.answer: value, "gas_pressure_Pa": numbers[0] if numbers else 0.0}
+            yield place, {"answers": found} if math.isfinite(value) else {"failure": "burst"}
+
+
+def ishigami(numbers: list[float]) -> float:
+    x, y, z = (float(one) for one in numbers)
+    return math.sin(x) + 7 * math.sin(y) ** 2 + 0.1 * z**4 * math.sin(x)
+
+
+def test_indices_of_the_ishigami_function(tyre: Study) -> None:
+    box = dict.fromkeys(("sensors.crown-inner.noise", "sensors.crown-inner.accuracy", "sensors.crown-inner.lag_sd"))
+    varied = tuple(Varied(key, "K", low=-math.pi, high=math.pi) for key in box)
+    variants = drawn(varied, "saltelli", 512, 1)
+    plan = Plan(tyre, varied, tuple(variants), tuple(map(str, range(len(variants)))), {}, None, SALTELLI)
+    found = indices(sweep(plan, scheduler=Formula(ishigami), reduced="never"), "hottest_degC").set_index("number")
+    # Ishigami & Homma (1990), a = 7, b = 0.1: variance 13.845, shares of the three alone and with all others.
+    exact = {"first": [0.3139, 0.4424, 0.0], "total": [0.5576, 0.4424, 0.2437]}
+    for column, values in exact.items():
+        for key, value in zip(box, values, strict=True):
+            assert found.loc[key, column] == pytest.approx(value, abs=0.06)
+            assert abs(found.loc[key, column] - value) < 2 * found.loc[key, f"{column}_95"] + 0.01
+
+
+def test_indices_need_their_sample_and_every_variant(swept: Sweep, tyre: Study) -> None:
+    with pytest.raises(InputError, match="saltelli"):
+        indices(swept, "hottest_degC")
+    box = {"drive.speed": ("10 m/s", "11 m/s"), "drive.ambient": ("10 degC", "11 degC")}
+    plan = plan_of(tyre, box, sample="saltelli", count=4)
+    burst = sweep(plan, scheduler=Formula(lambda x: math.inf if x[0] > 10.5 else x[0]), reduced="never")
+    with pytest.raises(InputError, match="variants have no 'hottest_degC'"):
+        indices(burst, "hottest_degC")
+    assert "No Sobol indices" in Indices(burst, ("hottest_degC",)).words[0]
+    with pytest.raises(InputError, match="power of two"):
+        plan_of(tyre, box, sample="saltelli", count=5)
+
+
 def test_tornado_moves_every_number_alone(tyre: Study) -> None:
     given = {"materials.tread.loss_tangent.value": 0.2, "materials.carcass.loss_tangent.value": 0.1}
-    found = tornado(sweep(tornado_plan(tyre, given)), "hottest_degC")
-    assert set(found["number"]) == set(given)
-    assert (found["more"] > 0).all()
-    assert (found["less"] < 0).all()
-    assert found["range"].is_monotonic_decreasing
+    found = Tornado(sweep(tornado_plan(tyre, given)), ("hottest_degC",))
+    table = found.of("hottest_degC")
+    assert set(table["number"]) == set(given)
+    assert (table["more"] > 0).all()
+    assert (table["less"] < 0).all()
+    assert table["range"].is_monotonic_decreasing
+    assert table["nominal"].iloc[0] == pytest.approx(tyre.run().history.maximum.temperature, abs=1e-6)
+    assert "is moved most by materials." in found.words[0]
 
 
-class _Formula:
-    """Answers by a formula in place of runs: its Sobol indices are known."""
-
-    def outcomes(self, work: Any, tasks: Any) -> Any:
-        for place, task in enumerate(tasks):
-            x = float(task.changes["drive.speed"].split()[0])
-            y = float(task.changes["drive.ambient"].split()[0])
-            yield place, {"answers": {"hottest_degC": 2.0 * x + y}}
+def test_tornado_takes_the_tolerances_that_cards_state(tyre: Study) -> None:
+    plan = tornado_plan(tyre)
+    assert plan.how["tolerances"] == tyre.uncertainty
+    assert len(plan.variants) == 2 * len(tyre.uncertainty) + 1
+    with pytest.raises(InputError, match="did you mean 'tread'"):
+        tornado_plan(tyre, {"materials.tred.loss_tangent.value": 0.2})
 
 
-def test_indices_of_a_sum_are_its_shares_of_variance(tyre: Study) -> None:
-    plan = plan_of(tyre, {"drive.speed": ("10 m/s", "11 m/s"), "drive.ambient": ("10 degC", "11 degC")})
-    wanted = indices_plan(tyre, plan.varied, 256)
-    found = indices(sweep(wanted, scheduler=_Formula(), reduced="never"), "hottest_degC").set_index("number")
-    assert found.loc["drive.speed", "first"] == pytest.approx(0.8, abs=0.02)
-    assert found.loc["drive.ambient", "total"] == pytest.approx(0.2, abs=0.02)
+BOX = {"drive.speed": ("10 m/s", "20 m/s"), "drive.ambient": ("10 degC", "30 degC")}
 
 
-class _Heating:
-    """A tyre whose temperature is 20 + speed x load."""
+def test_optimum_of_a_bowl(tyre: Study) -> None:
+    plan = plan_of(tyre, BOX, optimise={"minimise": "hottest_degC"})
+    bowl = Formula(lambda x: (x[0] - 13) ** 2 + (x[1] - 22) ** 2 + 40)
+    found = optimum(plan, OptimiseCard(minimise="hottest_degC", runs=600), scheduler=bowl, reduced="never")
+    assert found.full["hottest_degC"] == pytest.approx(40.0, abs=0.05)
+    assert float(found.changes["drive.speed"].split()[0]) == pytest.approx(13.0, abs=0.3)
+    assert len(found.table) <= 600
+    assert found.table["best_so_far"].is_monotonic_decreasing
+    assert found.table["best_so_far"].iloc[-1] == found.full["hottest_degC"]
 
-    def outcomes(self, work: Any, tasks: Any) -> Any:
-        for place, task in enumerate(tasks):
-            speed = float(task.changes["drive.speed"].split()[0])
-            load = float(task.changes["drive.load"].split()[0])
-            yield place, {"answers": {"hottest_degC": 20.0 + speed * load}}
+
+def test_optimum_keeps_its_limits(tyre: Study) -> None:
+    plan = plan_of(tyre, BOX, limits={"gas_pressure_Pa": {"above": 15.0}}, optimise={"minimise": "hottest_degC"})
+    found = optimum(plan, OptimiseCard(minimise="hottest_degC", runs=600), scheduler=Formula(sum), reduced="never")
+    assert found.full["hottest_degC"] == pytest.approx(25.0, abs=0.1)
+    assert found.full["gas_pressure_Pa"] > 15.0
+    beyond = plan_of(tyre, BOX, limits={"gas_pressure_Pa": {"above": 30.0}}, optimise={"minimise": "hottest_degC"})
+    none = optimum(beyond, OptimiseCard(minimise="hottest_degC", runs=60), scheduler=Formula(sum), reduced="never")
+    assert none.best is None
+    assert "no variant keeps the limits" in none.words[0]
+
+
+def test_optimum_of_listed_values_tries_every_combination_once(tyre: Study) -> None:
+    box = {"drive.speed": ["10 m/s", "11 m/s", "12 m/s"], "drive.ambient": ["10 degC", "20 degC"]}
+    plan = plan_of(tyre, box, optimise={"maximise": "hottest_degC"})
+    scheduler = Formula(lambda x: x[0] * x[1])
+    found = optimum(plan, OptimiseCard(maximise="hottest_degC"), scheduler=scheduler, reduced="never")
+    assert found.exhaustive
+    assert found.changes == {"drive.speed": "12 m/s", "drive.ambient": "20 degC"}
+    assert scheduler.asked == 6 + 1  # and the study as it is
+
+
+def test_a_search_passes_over_failures_and_mixes_lists_with_ranges(tyre: Study) -> None:
+    box = {"drive.speed": ("10 m/s", "20 m/s"), "drive.ambient": ["10 degC", "20 degC", "30 degC"]}
+    plan = plan_of(tyre, box, optimise={"minimise": "hottest_degC"})
+    # Ends of the list are dearer, and below 12 m/s there is no answer.
+    broken = Formula(lambda x: math.inf if x[0] < 12 else 1000 + x[0] + 50 * (x[1] != 20))
+    found = optimum(plan, OptimiseCard(minimise="hottest_degC", runs=400), scheduler=broken, reduced="never")
+    assert found.full["hottest_degC"] == pytest.approx(1012.0, abs=0.2)
+    assert found.changes["drive.ambient"] == "20 degC"
+    assert (found.table["failure"] != "").any()
+
+
+def test_an_interrupted_search_goes_on_without_running_anything_twice(tyre: Study, tmp_path: Path) -> None:
+    plan, card = (
+        plan_of(tyre, BOX, optimise={"minimise": "hottest_degC"}),
+        OptimiseCard(minimise="hottest_degC", runs=60),
+    )
+    first, again = Formula(sum), Formula(sum)
+    one = optimum(plan, card, scheduler=first, folder=tmp_path, reduced="never")
+    other = optimum(plan, card, scheduler=again, folder=tmp_path, reduced="never")
+    assert again.asked == 1  # the study as it is
+    assert first.asked == len(one.table) + 1
+    assert other.changes == one.changes
+    assert other.swept.taken_up == len(one.table)
+
+
+class Optimist:
+    """A reduced model that says half a kelvin too little, and knows it."""
+
+    certificate = Certificate({"hottest_degC": 0.5}, cases=4, worst=0.5, tolerance=1.0, trained_on=11)
+
+
+def test_what_a_reduced_model_finds_keeps_its_limits_in_a_full_run(
+    tyre: Study, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    def by_model(_model: Any, _plan: Any, variants: list[dict[str, str]], _scheduler: Any) -> Any:
+        for place, changes in enumerate(variants):
+            low = sum(float(value.split()[0]) for value in changes.values()) - 0.5
+            yield {place: {"answers": {"hottest_degC": low, "gas_pressure_Pa": 0.0}, "by": "reduced"}}
+
+    monkeypatch.setattr("tyrefem.reduced.surrogate.surrogate", lambda *_, **__: Optimist())
+    monkeypatch.setattr("tyrefem.sweep.sweep.by_model", by_model)
+    limits = {"hottest_degC": {"below": 40.0}}
+    plan, scheduler = plan_of(tyre, BOX, limits=limits, optimise={"maximise": "hottest_degC"}), Formula(sum)
+    found = optimum(plan, OptimiseCard(maximise="hottest_degC", runs=400), scheduler=scheduler)
+    assert 39.7 < found.full["hottest_degC"] < 40.0
+    assert scheduler.asked == 2  # the study as it is, and the best variant
+    assert "good to 0.5 K" in found.words[-1]
+    by = found.table["by"]
+    assert found.table["error_K"][by == "reduced"].eq(0.5).all()
+    assert found.table["error_K"][by == "full"].eq(0.0).all()
+
+
+def heated(numbers: list[float]) -> float:
+    """A tyre whose temperature is 20 + load x speed."""
+    load, _, speed = numbers
+    return 20.0 + load * speed
 
 
 def test_the_envelope_ends_where_the_limit_is_reached(tyre: Study) -> None:
-    found = envelope(tyre, ["2 kN", "5 kN", "1000 kN"], ["500 kPa"], limit=120.0, scheduler=_Heating())
+    card = EnvelopeCard(below=120.0, loads=("2 kN", "5 kN", "8 kN"), pressures=("500 kPa",))
+    found = envelope(tyre, card, scheduler=Formula(heated), reduced="never")
     speeds = found.table["speed_m_s"].tolist()
-    assert speeds[0] == pytest.approx(50.0, rel=0.01)
-    assert speeds[1] == pytest.approx(20.0, rel=0.01)
-    assert np.isnan(speeds[2])
-    assert found.table["at_limit"].tolist() == [True, True, False]
+    assert speeds == pytest.approx([50.0, 20.0, 12.5], rel=0.005)
+    assert found.table["at_limit"].all()
     assert found.runs < 30
+    # Load x speed is the same everywhere: 100 kN m/s = 36.7 t km/h.
+    assert found.rating["tkph"].tolist() == pytest.approx([100 / 9.80665 * 3.6], rel=0.005)
+
+
+def test_the_envelope_says_where_no_speed_or_every_speed_is_safe(tyre: Study) -> None:
+    card = EnvelopeCard(below=25.0, loads=("2 kN", "8 kN"), pressures=("500 kPa",), slowest="1 m/s", fastest="2 m/s")
+    found = envelope(tyre, card, scheduler=Formula(heated), reduced="never")
+    assert found.table["speed_m_s"].iloc[0] == pytest.approx(2.0)
+    assert np.isnan(found.table["speed_m_s"].iloc[1])
+    assert not found.table["at_limit"].any()
+    assert "and more with 2 kN, no speed with 8 kN" in found.words[1]
+    assert np.isnan(found.rating["tkph"].iloc[0])
+
+
+def test_a_heavier_tyre_must_go_slower_and_what_it_says_is_true(tyre: Study) -> None:
+    card = EnvelopeCard(below=40.0, loads=("2000 lbf", "2700 lbf", "3400 lbf"))
+    found = envelope(tyre, card, reduced="never")
+    speeds = found.table["speed_m_s"]
+    assert (np.diff(speeds) < 0).all()
+    row = found.table.iloc[1]
+    at = {"drive.load": "2700 lbf", "drive.speed": f"{row['speed_m_s']} m/s"}
+    assert tyre.replace(at).run().history.maximum.temperature == pytest.approx(row["hottest_degC"], abs=1e-3)
+    assert 39.9 < row["hottest_degC"] < 40.0
+
+
+@pytest.mark.parametrize(
+    ("said", "told"),
+    [
+        ({"answer": "hotest_degC"}, "did you mean 'hottest_degC'"),
+        ({"loads": ("2 kN", "2000 N")}, "given twice"),
+        ({"loads": ("2 kg",)}, "not a unit of this quantity"),
+        ({"slowest": "9 m/s", "fastest": "3 m/s"}, "no range of speeds"),
+    ],
+)
+def test_an_envelope_that_makes_no_sense_is_refused(tyre: Study, said: dict[str, Any], told: str) -> None:
+    with pytest.raises(InputError, match=told):
+        checked_pairs(tyre, EnvelopeCard(below=100.0, **said))
+
+
+def test_what_a_steeper_loss_tangent_does_is_in_the_words(swept: Sweep) -> None:
+    effects = main_effects(swept, "hottest_degC").set_index("number")["effect"]
+    assert (effects > 0).all()
+    told = " ".join(Responses(swept).words)
+    assert f"{int(swept.table['feasible'].sum())} of 6 variants keep the limits" in told
+
+
+def test_names_of_answers_are_known_before_anything_runs(swept: Sweep, tyre: Study) -> None:
+    text = {"hottest_region"}
+    assert set(answer_names(tyre, 35.0)) == set(swept.answers) - text
+    assert TIME_TO not in answer_names(tyre)
+
+
+@given(st.lists(st.tuples(*3 * [st.integers(0, 4)]), min_size=1, max_size=30))
+def test_the_front_is_what_comparing_all_pairs_gives(rows: list[tuple[int, ...]]) -> None:
+    values = np.array(rows, dtype=float)
+    kept = undominated(values)
+    for one, mark in zip(values, kept, strict=True):
+        beaten = any((other <= one).all() and (other < one).any() for other in values)
+        assert mark == (not beaten)
 
 
 def test_an_empty_sweep_has_an_empty_table(tyre: Study) -> None:

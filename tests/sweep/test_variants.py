@@ -13,8 +13,10 @@ from tyrefem import study
 from tyrefem.errors import InputError
 from tyrefem.quantity import parse
 from tyrefem.studies import Study
+from tyrefem.sweep import task
 from tyrefem.sweep.card import SweepCard
 from tyrefem.sweep.plan import plan_of, planned
+from tyrefem.sweep.task import perform
 from tyrefem.sweep.varied import Varied
 
 
@@ -111,3 +113,28 @@ def test_two_variants_of_a_list_that_are_the_same_are_refused(tyre: Study, tmp_p
     (tmp_path / "list.csv").write_text("name,drive.speed [mph]\none,10\ntwo,10\n")
     with pytest.raises(InputError, match=r"'one' and 'two' are the same"):
         planned(tyre, SweepCard.check({"study": "x", "sample": "list", "cases": "list.csv"}), tmp_path)
+
+
+def test_variants_that_bend_alike_share_mesh_and_strain_cycle() -> None:
+    coarse = study("nasa-22x5.5-8pr", {"mesh.size": "12 mm", "numerics.tolerance": "0.5 K", "drive.duration": "60 s"})
+    box = {"section.cord_angle": ["33 deg", "37 deg"], "materials.tread.loss_tangent.value": [0.1, 0.2, 0.3]}
+    plan = plan_of(coarse, box)
+    alone = {n: coarse.replace(plan.variants[n]).run().history.maximum.temperature for n in (1, 5)}
+    # Back and forth between the sections, as tasks of other processes in between leave them.
+    order = (0, 3, 1, 4, 2, 5)
+    found = {n: perform(plan.task(n))["answers"]["hottest_degC"] for n in order}
+    assert {n: found[n] for n in alone} == pytest.approx(alone, abs=1e-9)
+    tyres = task._recent.tyres
+    assert len(tyres) == task.REMEMBERED
+    assert len({id(tyre.schedule) for tyre in tyres}) == 2
+    assert len({id(tyre.mesh) for tyre in tyres}) == 2
+
+
+def test_a_swapped_card_does_not_wipe_out_what_varies_in_it(tyre: Study) -> None:
+    box = {"materials.tread.loss_tangent.value": [0.1, 0.3], "materials.tread": ["nasa-tread", "rubber-tread-aircraft"]}
+    plan = plan_of(tyre, box)
+    cards = [tyre.replace(one).materials["tread"] for one in plan.variants]
+    assert [card.loss_tangent.value for card in cards] == [0.1, 0.3, 0.1, 0.3]
+    assert len({card.title for card in cards}) == 2
+    with pytest.raises(InputError, match=r"a factor on what 'materials\.tread' swaps"):
+        plan_of(tyre, box | {"materials.tread.loss_tangent.value": {"factor": [0.8, 1.2]}})

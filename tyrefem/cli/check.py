@@ -15,14 +15,17 @@ if TYPE_CHECKING:
 
 
 def check(
-    file: Annotated[str, typer.Argument(metavar="FILE", help="A study, section or material (TOML), or a table (CSV).")],
+    file: Annotated[
+        str, typer.Argument(metavar="FILE", help="A study, sweep, section or material (TOML), or a table (CSV).")
+    ],
 ) -> None:
     """Check a file without running it; says the first thing that is wrong."""
     path = Path(file)
     if path.is_dir():
-        path = path / ("rig.toml" if (path / "rig.toml").is_file() else "study.toml")
+        names = ("rig.toml", "sweep.toml", "study.toml")
+        path = path / next((name for name in names if (path / name).is_file()), "study.toml")
         if not path.is_file():
-            raise InputError("a folder without a study.toml", file=file)
+            raise InputError("a folder without a study.toml, sweep.toml or rig.toml", file=file)
     if not os.path.lexists(path):
         raise InputError("no such file", file=file)
     typer.echo(f"{path}: {_card(path) if path.suffix.lower() == '.toml' else _table(path)}")
@@ -52,6 +55,10 @@ def _card(path: Path) -> str:
 
         rig = RigCard.check(data, path)
         return f"a laser rig, {len(rig.layers)} layer(s), {len(rig.sensors)} sensors, {len(rig.runs)} run(s)"
+    if isinstance(data.get("study"), str):
+        from tyrefem.sweep.questions import loaded
+
+        return f"a sweep: {loaded(str(path.resolve())).words}"
     if "layers" in data or "line" in data:
         from tyrefem.section import load
 

@@ -8,7 +8,7 @@ import typer
 
 from tyrefem.errors import InputError, nearest
 
-KINDS = {"sections": "section", "materials": "material", "studies": "study"}
+KINDS = {"sections": "section", "materials": "material", "studies": "study", "sweeps": "sweep"}
 
 
 def complete_kinds(incomplete: str) -> list[str]:
@@ -18,10 +18,11 @@ def complete_kinds(incomplete: str) -> list[str]:
 
 def show_list(
     kind: Annotated[
-        str, typer.Argument(help="sections, materials, studies, laws or effects.", autocompletion=complete_kinds)
+        str,
+        typer.Argument(help="sections, materials, studies, sweeps, laws or effects.", autocompletion=complete_kinds),
     ] = "studies",
 ) -> None:
-    """List sections, materials or studies by name, the boundary laws, or the effects."""
+    """List sections, materials, studies or sweeps by name, the boundary laws, or the effects."""
     if kind == "laws":
         _laws()
         return

@@ -1,4 +1,4 @@
-"""`tyrefem show`: draw or print a section, material, study, mesh, strain cycle or effect."""
+"""`tyrefem show`: draw or print a section, material, study, sweep, mesh, strain cycle or effect."""
 
 from __future__ import annotations
 
@@ -10,7 +10,7 @@ import typer
 from tyrefem.cli.common import SetOption, settings
 from tyrefem.errors import InputError, nearest
 
-KINDS = ("section", "material", "study", "mesh", "strain", "effect")
+KINDS = ("section", "material", "study", "sweep", "mesh", "strain", "effect")
 
 
 def complete_kinds(incomplete: str) -> list[str]:
@@ -39,14 +39,14 @@ def show(
         Path | None, typer.Option("--out", help="PNG to write (a mesh: also .msh, .vtu); default: KIND-NAME.png.")
     ] = None,
 ) -> None:
-    """Show a card: `section`, `mesh` and `strain` are drawn to a PNG; `material`, `study` and `effect` printed."""
+    """Show a card: `section`, `mesh` and `strain` drawn to a PNG; `material`, `study`, `sweep` and `effect` printed."""
     if kind not in KINDS:
         raise InputError(f"no kind '{kind}'{nearest(kind, KINDS)}")
     values = settings(changes)
     if kind == "effect":
         _effect(name)
         return
-    if kind in ("material", "study"):
+    if kind in ("material", "study", "sweep"):
         _print(kind, name, values)
         return
     if kind == "mesh" and out is not None and out.suffix in (".msh", ".vtu", ".vtk"):
@@ -139,6 +139,7 @@ def _print(kind: str, name: str, values: dict[str, Any]) -> None:
     import tomli_w
 
     from tyrefem import library
+    from tyrefem.cards import read_toml
     from tyrefem.dotted import changed
     from tyrefem.materials import MaterialCard
     from tyrefem.studies import study
@@ -147,6 +148,14 @@ def _print(kind: str, name: str, values: dict[str, Any]) -> None:
     if kind == "study":
         found = study(name, values)
         data, path = dict(found.data), found.file
+    elif kind == "sweep":
+        from tyrefem.sweep.questions import loaded
+
+        path = library.find("sweep", name)
+        typer.echo(f"# {loaded(str(path), values).words}")
+        data = read_toml(path)
+        if values:
+            data["change"] = {**data.get("change", {}), **values}
     else:
         data, file, _ = library.load("material", name)
         for key, value in values.items():

@@ -1,43 +1,131 @@
-"""`tyrefem sweep`: many variants of a study, one table of answers and one page."""
+"""`tyrefem sweep`: many variants of a study, what they say, and one page of it."""
 
 from __future__ import annotations
 
 import os
-import re
+import sys
 from collections.abc import Callable, Iterator
-from contextlib import contextmanager
+from contextlib import AbstractContextManager, contextmanager
 from pathlib import Path
 from typing import TYPE_CHECKING, Annotated, Any
 
 import typer
 
-from tyrefem.cli.common import JsonOption, SetOption, fail, print_json, settings, writable_folder
-from tyrefem.errors import InputError
+from tyrefem.cli.common import JsonOption, SetOption, complete_studies, fail, print_json, settings, writable_folder
+from tyrefem.errors import InputError, nearest
 
 if TYPE_CHECKING:
-    from tyrefem.sweep.plan import Plan
+    from tyrefem.sweep.design import Design
+    from tyrefem.sweep.questions import Questions
     from tyrefem.sweep.schedulers import Scheduler
+
+#: Groups of options in the help.
+VARIANTS, ANSWERS = "Variants", "Answers"
+#: Failures that are told one by one.
+TOLD = 10
+
+
+def complete(incomplete: str) -> list[str]:
+    """Names of sweep files and studies for shell completion."""
+    from tyrefem import library
+
+    return [name for name in library.names("sweep") if name.startswith(incomplete)] + complete_studies(incomplete)
 
 
 def sweep(
-    study: Annotated[str, typer.Argument(metavar="STUDY|FILE", help="A study's name or path, or a sweep file.")],
+    study: Annotated[
+        str,
+        typer.Argument(metavar="STUDY|FILE", help="A study, or a sweep file: name or path.", autocompletion=complete),
+    ],
     vary: Annotated[
         list[str] | None,
         typer.Option(
             "--vary",
             metavar="KEY=VALUES",
-            help="'drive.speed=10 mph:40 mph:4' (from, to, levels), 'materials.tread=soft,hard', "
-            "'materials.tread.loss_tangent.value=x0.8:x1.2' (factors). Repeatable.",
+            help="FROM:TO or FROM:TO:LEVELS, a list A,B, or factors x0.8:x1.2. Repeatable.",
+            rich_help_panel=VARIANTS,
         ),
     ] = None,
-    sample: Annotated[str, typer.Option(help="grid, latin-hypercube, sobol or list.")] = "grid",
-    count: Annotated[int | None, typer.Option(min=1, help="How many variants; not of a grid.")] = None,
-    seed: Annotated[int, typer.Option(min=0, help="Seed of the sample.")] = 1,
-    cases: Annotated[str | None, typer.Option(help="CSV file of variants (sample 'list').")] = None,
-    limit: Annotated[
-        list[str] | None, typer.Option("--limit", metavar="ANSWER<VALUE", help="E.g. 'hottest_degC<110'. Repeatable.")
+    sample: Annotated[
+        str | None,
+        typer.Option(help="grid (default), latin-hypercube, sobol, saltelli or list.", rich_help_panel=VARIANTS),
     ] = None,
-    time_to: Annotated[str | None, typer.Option(help="Temperature whose first reaching is an answer.")] = None,
+    count: Annotated[
+        int | None, typer.Option(min=1, help="How many variants; not of a grid or list.", rich_help_panel=VARIANTS)
+    ] = None,
+    seed: Annotated[
+        int | None, typer.Option(min=0, help="Seed of the sample; default 1.", rich_help_panel=VARIANTS)
+    ] = None,
+    cases: Annotated[
+        str | None, typer.Option(help="CSV file of variants (sample 'list').", rich_help_panel=VARIANTS)
+    ] = None,
+    limit: Annotated[
+        list[str] | None,
+        typer.Option(
+            "--limit", metavar="ANSWER<VALUE", help="E.g. 'hottest_degC<110'. Repeatable.", rich_help_panel=VARIANTS
+        ),
+    ] = None,
+    time_to: Annotated[
+        str | None, typer.Option(help="Temperature whose first reaching is an answer.", rich_help_panel=VARIANTS)
+    ] = None,
+    answer: Annotated[
+        list[str] | None,
+        typer.Option(
+            "--answer",
+            help="Answer that is drawn and judged; default: temperature, rolling resistance.",
+            rich_help_panel=ANSWERS,
+        ),
+    ] = None,
+    pareto: Annotated[
+        list[str] | None,
+        typer.Option(
+            "--pareto", metavar="ANSWER=min|max", help="Aim of the front. Repeatable.", rich_help_panel=ANSWERS
+        ),
+    ] = None,
+    indices: Annotated[
+        int | None,
+        typer.Option(
+            metavar="N", help="Sobol indices: Saltelli's sample of base N, a power of two.", rich_help_panel=ANSWERS
+        ),
+    ] = None,
+    tornado: Annotated[
+        bool, typer.Option("--tornado", help="Which tolerance matters.", rich_help_panel=ANSWERS)
+    ] = False,
+    tolerance_of: Annotated[
+        list[str] | None,
+        typer.Option(
+            "--tolerance-of",
+            metavar="KEY=5%",
+            help="Of the tornado; default: what cards state. Repeatable.",
+            rich_help_panel=ANSWERS,
+        ),
+    ] = None,
+    minimise: Annotated[
+        str | None, typer.Option(metavar="ANSWER", help="Search the smallest, within limits.", rich_help_panel=ANSWERS)
+    ] = None,
+    maximise: Annotated[
+        str | None, typer.Option(metavar="ANSWER", help="Search the largest, within limits.", rich_help_panel=ANSWERS)
+    ] = None,
+    runs: Annotated[
+        int | None, typer.Option(min=20, help="Variants that the search may try; default 400.", rich_help_panel=ANSWERS)
+    ] = None,
+    envelope: Annotated[
+        str | None,
+        typer.Option(
+            metavar="ANSWER<VALUE",
+            help="Largest speed that keeps this, over load and pressure.",
+            rich_help_panel=ANSWERS,
+        ),
+    ] = None,
+    loads: Annotated[
+        str | None, typer.Option(help="Of the envelope: '1000 lbf,2000 lbf'.", rich_help_panel=ANSWERS)
+    ] = None,
+    pressures: Annotated[
+        str | None, typer.Option(help="Of the envelope: '70 psi,83 psi'.", rich_help_panel=ANSWERS)
+    ] = None,
+    speeds: Annotated[
+        str | None, typer.Option(metavar="FROM:TO", help="Of the envelope: '1 m/s:60 m/s'.", rich_help_panel=ANSWERS)
+    ] = None,
     changes: SetOption = None,
     out: Annotated[Path | None, typer.Option("--out", help="Folder; default: results/STUDY-sweep.")] = None,
     reduced: Annotated[str, typer.Option(help="Use a certified reduced model: auto, never, always.")] = "auto",
@@ -50,144 +138,115 @@ def sweep(
     pictures: Annotated[bool, typer.Option(help="Draw the pictures and the page.")] = True,
     as_json: JsonOption = False,
 ) -> None:
-    """Answer many variants of a study: a table (CSV, Parquet), pictures and one page.
+    """Answer many variants of a study: tables (CSV, Parquet), pictures and one page.
 
-    Finished variants are kept: the same command goes on where an interrupted or killed one was.
+    Response curves and maps, Pareto front, Sobol indices, tornado, optimum, safe envelope. Finished variants are kept:
+    the same command goes on where an interrupted or killed one was.
     """
+    from tyrefem.cli.sweep_flags import asked
     from tyrefem.quantity import parse
     from tyrefem.sweep.output import write
-    from tyrefem.sweep.sweep import sweep as run
 
     if reduced not in ("auto", "never", "always"):
         raise InputError(f"'{reduced}' is not allowed; allowed: auto, never, always", field="--reduced")
-    plan = _plan(study, vary, sample, count, seed, cases, limit, time_to, settings(changes))
-    folder = writable_folder(out or Path("results") / f"{plan.study.name}-sweep")
+    allowed = parse(tolerance, "delta_degC")
+    said = asked(
+        vary=vary, sample=sample, count=count, seed=seed, cases=cases, limit=limit, time_to=time_to, answer=answer,
+        pareto=pareto, indices=indices, tornado=tornado, tolerance_of=tolerance_of, minimise=minimise,
+        maximise=maximise, runs=runs, envelope=envelope, loads=loads, pressures=pressures, speeds=speeds,
+    )  # fmt: skip
+    name, wanted = _questions(study, said, settings(changes))
+    folder = writable_folder(out or Path("results") / f"{name}-sweep")
     with several(quiet=as_json) as tick:
-        found = run(
-            plan,
-            scheduler=_scheduler(scheduler, workers),
+        found = _answered(
+            wanted,
+            _scheduler(scheduler, workers),
             folder=folder,
             restart=restart,
             reduced=reduced,
-            tolerance=parse(tolerance, "delta_degC"),
+            tolerance=allowed,
             progress=tick,
         )
-    summary = write(found, folder, pictures=pictures)
+        tick("drawing", 0, 1)
+        summary = write(found, folder, pictures=pictures)
     if as_json:
         print_json(summary)
     else:
         for line in summary["words"]:
             typer.echo(line)
         typer.echo(f"results in {folder}" + (f"; read {folder / 'sweep.html'}" if pictures else ""))
-    for name, reason in list(found.failed.items())[:10]:
-        fail(f"variant {name}: {reason}")
-    if len(found.failed) > 10:
-        fail(f"... and {len(found.failed) - 10} more; all are in {folder / 'sweep.csv'}")
+    for variant, reason in list(found.failed.items())[:TOLD]:
+        fail(f"variant {variant}: {reason}")
+    if len(found.failed) > TOLD:
+        fail(f"... and {len(found.failed) - TOLD} more; all are in {folder / 'sweep.csv'}")
     if found.interrupted:
-        finished = f"{len(found.outcomes)} of {len(plan.variants)} variants"
-        kept = f"{found.interrupted}; {finished} are kept, the same command goes on"
+        kept = f"{found.interrupted}; what is finished is in {folder}, the same command goes on"
         raise typer.Exit(fail(kept, 130 if found.interrupted == "interrupted" else 1))
     if found.failed:
         raise typer.Exit(1)
 
 
-def _plan(
-    study: str,
-    vary: list[str] | None,
-    sample: str,
-    count: int | None,
-    seed: int,
-    cases: str | None,
-    limit: list[str] | None,
-    time_to: str | None,
-    changes: dict[str, Any],
-) -> Plan:
+def _questions(name: str, said: dict[str, Any], changes: dict[str, Any]) -> tuple[str, Questions]:
+    """What is asked, of a sweep file or of a study, and a name for its folder."""
+    from tyrefem import library
     from tyrefem.cards import read_toml
     from tyrefem.studies import study as load
     from tyrefem.sweep.card import SweepCard
-    from tyrefem.sweep.plan import planned
+    from tyrefem.sweep.questions import loaded, questions
 
-    path, near, data = Path(study), None, {}
-    if path.suffix == ".toml" and path.is_file() and "study" in (written := read_toml(path)):
-        data, near = dict(written), path.parent
-    else:
-        data = {"study": study, "sample": sample, "seed": seed}
-    if cases is not None:
-        data |= {"cases": cases, "sample": "list"}
-    if count is not None:
-        data["count"] = count
-    if time_to is not None:
-        data["time_to"] = time_to
-    data["vary"] = {**data.get("vary", {}), **dict(_varied(one) for one in vary or [])}
-    data["limits"] = {**data.get("limits", {}), **dict(_limit(one) for one in limit or [])}
-    card = SweepCard.check(data, path if near else None)
-    name = card.study
-    if near is not None and (near / name).exists():
-        name = str(near / name)
-    return planned(load(name, {**card.change, **changes}), card, near)
+    path = Path(name)
+    is_file = path.suffix == ".toml" and path.is_file() and "study" in read_toml(path)
+    if is_file or (path / "sweep.toml").is_file() or name in library.names("sweep"):
+        found = library.find("sweep", name)
+        stem = found.parent.resolve().name if found.name == "sweep.toml" else found.stem
+        return stem, loaded(name, changes, **said)
+    if path.suffix != ".toml" and os.sep not in name and name not in library.names("study") and not path.is_dir():
+        raise InputError(
+            f"no study or sweep named '{name}'{nearest(name, [*library.names('study'), *library.names('sweep')])}"
+        )
+    study = load(name, changes)
+    return study.name, questions(study, SweepCard.check({"study": name, **said}), Path())
 
 
-def _varied(text: str) -> tuple[str, dict[str, Any]]:
-    """One ``--vary``.
-
-    >>> _varied("drive.speed=10 mph:40 mph:4")
-    ('drive.speed', {'from': '10 mph', 'to': '40 mph', 'levels': 4})
-    >>> _varied("materials.tread=soft,hard")
-    ('materials.tread', {'values': ['soft', 'hard']})
-    """
-    key, equals, values = text.partition("=")
-    if not equals or not key.strip() or not values.strip():
-        raise InputError(f"'{text}' is not KEY=VALUES, e.g. 'drive.speed=10 mph:40 mph:4'", field="--vary")
-    parts = [part.strip() for part in values.split(":")]
-    if len(parts) == 1:
-        return key.strip(), {"values": [_plain(part.strip()) for part in values.split(",")]}
-    if len(parts) > 3:
-        raise InputError(f"'{values}' has more than from:to:levels", field="--vary")
-    levels: dict[str, Any] = {}
-    if len(parts) == 3:
-        if not parts[2].isdigit():
-            raise InputError(f"'{parts[2]}' is not a number of levels", field="--vary")
-        levels = {"levels": int(parts[2])}
-    if parts[0].startswith("x") and parts[1].startswith("x"):
-        try:
-            return key.strip(), {"factor": [float(parts[0][1:]), float(parts[1][1:])], **levels}
-        except ValueError:
-            raise InputError(f"'{values}' are not two factors, e.g. x0.8:x1.2", field="--vary") from None
-    return key.strip(), {"from": _plain(parts[0]), "to": _plain(parts[1]), **levels}
+class _InterruptedError(Exception):
+    """Processes that are at work are ended, not waited for."""
 
 
-def _plain(text: str) -> str | float:
+def _answered(wanted: Questions, scheduler: AbstractContextManager[Scheduler], **options: Any) -> Design:
     try:
-        return float(text)
-    except ValueError:
-        return text
+        with scheduler as where:
+            found = wanted.answered(scheduler=where, **options)
+            if found.interrupted:
+                raise _InterruptedError
+    except _InterruptedError:
+        pass
+    return found
 
 
-def _limit(text: str) -> tuple[str, dict[str, float]]:
-    match = re.fullmatch(r"\s*([\w .+-]+?)\s*([<>])\s*([-+\d.eE]+)\s*", text)
-    if match is None:
-        raise InputError(f"'{text}' is not ANSWER<VALUE or ANSWER>VALUE, e.g. 'hottest_degC<110'", field="--limit")
-    try:
-        return match[1], {"below" if match[2] == "<" else "above": float(match[3])}
-    except ValueError:
-        raise InputError(f"'{match[3]}' is not a number", field="--limit") from None
-
-
-def _scheduler(address: str | None, workers: int | None) -> Scheduler:
+@contextmanager
+def _scheduler(address: str | None, workers: int | None) -> Iterator[Scheduler]:
+    """Where variants run, kept for all questions of the command."""
     from tyrefem.sweep.cluster import Dask
     from tyrefem.sweep.schedulers import Here, Local
 
     if address is not None:
-        return Dask(address)
+        cluster = Dask(address)
+        try:
+            yield cluster
+        finally:
+            cluster.close()
+        return
     count = workers or os.cpu_count() or 1
-    return Local(count) if count > 1 else Here()
+    if count == 1:
+        yield Here()
+        return
+    with Local(count) as processes:
+        yield processes
 
 
 @contextmanager
 def several(*, quiet: bool = False) -> Iterator[Callable[[str, int, int], None]]:
     """A function that takes what is done, how many, and of how many; a bar with the time left on a terminal."""
-    import sys
-
     if quiet or not sys.stderr.isatty():
         yield lambda what, done, total: None
         return

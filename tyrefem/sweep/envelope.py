@@ -3,168 +3,184 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Callable, Mapping, Sequence
+from collections.abc import Callable, Iterator, Mapping
 from dataclasses import dataclass
+from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
-from tyrefem.errors import InputError
 from tyrefem.quantity import parse
 from tyrefem.studies import Study
+from tyrefem.sweep.answer_words import name_of, shown
+from tyrefem.sweep.asked import Asked
+from tyrefem.sweep.card import EnvelopeCard
+from tyrefem.sweep.operating_points import checked_pairs, operating, speed_range
 from tyrefem.sweep.plan import Plan
 from tyrefem.sweep.schedulers import Here, Scheduler
-from tyrefem.sweep.task import perform
+from tyrefem.sweep.speed_search import SpeedSearch
+from tyrefem.sweep.varied import Varied
 
 if TYPE_CHECKING:
     import pandas as pd
+    from matplotlib.figure import Figure
 
-#: The speed is found to this share of the range searched.
-FINE = 1e-3
+    from tyrefem.reduced.surrogate import Certificate
+
 #: Rounds of bisection and interpolation at most.
 ROUNDS = 14
+#: Runs per load and pressure that are expected, to judge whether training pays.
+EXPECTED = 7
 
 
-@dataclass(frozen=True)
+@dataclass(frozen=True, eq=False)
 class Envelope:
     """What a tyre may be driven at.
 
     Parameters
     ----------
-    table : load, pressure, ``speed_m_s`` (NaN: too hot at any speed searched), ``at_limit`` (False: below the limit
-        even at the highest speed searched), the answer there, runs.
-    limit : of the answer. answer : its name.
+    study : the study. card : what was asked. runs : how many. certificate : of a reduced model, if one answered.
+    table : a row per load and pressure: as written and in SI, ``speed_m_s`` (NaN: the limit is broken at any speed
+        searched), ``at_limit`` (False: it is kept even at the highest), the answer there, ``tkph`` = load x speed in
+        t km/h, ``by``, ``error_K``, ``failure``.
     """
 
+    study: Study
+    card: EnvelopeCard
     table: pd.DataFrame
-    answer: str
-    limit: float
     runs: int
+    certificate: Certificate | None = None
+    why_full: str = ""
+
+    name = "envelope"
+    heading = "Safe operating envelope"
 
     @property
-    def tkph(self) -> pd.DataFrame:
-        """Load x speed of every row, t km/h: the rating that earth-mover tyres are sold by, here from the model."""
-        table = self.table[["load", "pressure"]].copy()
-        table["tkph"] = self.table["load_N"] / 9.80665e3 * self.table["speed_m_s"] * 3.6
-        return table
+    def rating(self) -> pd.DataFrame:
+        """Per pressure: the load x speed, t km/h, that is safe at every load tried (a TKPH-like rating).
+
+        The product is smallest at one of the loads; below it the tyre is below the limit at all of them. NaN: at some
+        load no speed is.
+        """
+        groups = self.table.groupby("pressure", sort=False)
+        return groups["tkph"].min().where(groups["speed_m_s"].count() == groups.size()).rename("tkph").reset_index()
+
+    @property
+    def words(self) -> list[str]:
+        """The answer in sentences."""
+        answer, end = self.card.answer, self.study.card.drive.end
+        told = [f"The {name_of(answer)} stays below {shown(answer, self.card.below)} in a drive of {end:g} s:"]
+        for pressure, rows in self.table.groupby("pressure", sort=False):
+            told.append(f"at {pressure} up to {', '.join(map(_speed_words, rows.to_dict('records')))}.")
+        safe = self.rating.dropna(subset=["tkph"]).to_dict("records")
+        rated = [f"{row['tkph']:.0f} t km/h at {row['pressure']}" for row in safe]
+        if rated:
+            told.append(f"Load times speed that is safe at every one of these loads: {', '.join(rated)}.")
+        by = f"{self.runs} full runs"
+        if self.certificate is not None:
+            by = f"{self.runs} variants by a reduced model, temperatures good to {self.certificate.worst:.2g} K"
+        told.append(f"Found by {by}.")
+        return told
+
+    def figures(self) -> Iterator[tuple[str, str, Figure]]:
+        """Speed over load, a curve per pressure."""
+        from tyrefem.sweep.answer_pictures import envelope as drawn
+
+        if self.table["speed_m_s"].notna().any():
+            yield "envelope", "Below each curve the tyre keeps the limit; grey: equal load times speed", drawn(self)
+
+    def to_dict(self) -> dict[str, Any]:
+        """JSON-ready."""
+        return {
+            "asked": self.card.model_dump(),
+            "rows": self.table.to_dict("records"),
+            "rating_tkph": self.rating.to_dict("records"),
+            "runs": self.runs,
+            "why_full_runs": self.why_full,
+            "words": self.words,
+        }
+
+
+def _speed_words(row: Mapping[Any, Any]) -> str:
+    if row["failure"]:
+        return f"(failed) with {row['load']}"
+    if math.isnan(row["speed_m_s"]):
+        return f"no speed with {row['load']}"
+    beyond = "" if row["at_limit"] else " and more"
+    return f"{row['speed_m_s'] * 3.6:.0f} km/h{beyond} with {row['load']}"
 
 
 def envelope(
     study: Study,
-    loads: Sequence[str],
-    pressures: Sequence[str],
+    card: EnvelopeCard,
     *,
-    limit: float,
-    answer: str = "hottest_degC",
-    slowest: str = "1 m/s",
-    fastest: str = "60 m/s",
-    fixed: Mapping[str, Any] | None = None,
     scheduler: Scheduler | None = None,
-    progress: Callable[[int, int], None] | None = None,
+    folder: Path | None = None,
+    restart: bool = False,
+    reduced: str = "auto",
+    tolerance: float = 0.01,
+    progress: Callable[[str, int, int], None] | None = None,
 ) -> Envelope:
     """The largest speed at which an answer stays below a limit, for every load and pressure.
 
     The answer must rise with speed. All pairs are searched at once: each round runs one speed of every pair that is not
     settled, by false position kept within bisection (the Illinois rule).
 
-    Parameters
-    ----------
-    loads, pressures : with units. limit : in the answer's unit. slowest, fastest : speeds searched.
-    fixed : values changed first.
-
     Raises
     ------
-    InputError : speeds that are no range.
+    InputError : speeds that are no range, an unknown answer, a load or pressure that the study refuses.
     """
     import pandas as pd
 
-    low, high = parse(slowest, "m/s"), parse(fastest, "m/s")
-    if not 0 < low < high:
-        raise InputError(f"'{slowest}' to '{fastest}' is no range of speeds", field="speed")
-    study = study.replace(dict(fixed or {}))
-    pairs = [(load, pressure) for load in loads for pressure in pressures]
-    searches = [_Search(low, high, limit) for _ in pairs]
-    scheduler, runs = scheduler or Here(), 0
-    for _ in range(ROUNDS):
-        asking = [n for n, one in enumerate(searches) if not one.settled]
-        if not asking:
-            break
-        variants = tuple(
-            {"drive.load": pairs[n][0], "drive.pressure": pairs[n][1], "drive.speed": f"{searches[n].next:.6g} m/s"}
-            for n in asking
-        )
-        plan = Plan(study, (), variants, tuple(map(str, asking)), {}, None, {})
-        for place, outcome in scheduler.outcomes(perform, [plan.task(k) for k in range(len(variants))]):
-            searches[asking[place]].take(outcome, answer)
-            runs += 1
+    low, high = speed_range(card)
+    pairs = checked_pairs(study, card)
+    sizes = [(parse(load, "N"), parse(pressure, "Pa")) for load, pressure in pairs]
+    searches = [SpeedSearch(low, high, card.below) for _ in pairs]
+    scheduler = scheduler or Here()
+    plan = Plan(study, _box(sizes, low, high), (), (), {}, None, {"sample": "envelope"})
+    asked = Asked(
+        plan, scheduler, folder=folder, restart=restart, reduced=reduced, tolerance=tolerance,
+        expected=EXPECTED * len(pairs), progress=progress,
+    )  # fmt: skip
+    by: list[str] = [""] * len(pairs)
+    with asked:
+        asked.train()
+        for _ in range(ROUNDS):
+            waiting = [n for n, one in enumerate(searches) if not one.settled]
             if progress is not None:
-                progress(sum(one.settled for one in searches), len(searches))
+                progress("envelope", len(searches) - len(waiting), len(searches))
+            if not waiting:
+                break
+            found = asked([operating(pairs[n], f"{searches[n].next:.6g} m/s") for n in waiting])
+            for n, outcome in zip(waiting, found, strict=True):
+                searches[n].take(outcome, card.answer)
+                by[n] = outcome.get("by", "")
+    error = {"reduced": asked.certificate.worst if asked.certificate else math.nan, "full": 0.0}
     rows = [
         {
             "load": load,
             "pressure": pressure,
-            "load_N": parse(load, "N"),
-            "pressure_Pa": parse(pressure, "Pa"),
+            "load_N": newton,
+            "pressure_Pa": pascal,
             "speed_m_s": one.speed,
+            "speed_km_h": one.speed * 3.6,
             "at_limit": one.bracketed,
-            answer: one.value,
+            card.answer: one.value,
+            "tkph": newton / 9806.65 * one.speed * 3.6,
+            "by": how,
+            "error_K": error.get(how, math.nan),
             "failure": one.failure,
         }
-        for (load, pressure), one in zip(pairs, searches, strict=True)
+        for (load, pressure), (newton, pascal), one, how in zip(pairs, sizes, searches, by, strict=True)
     ]
-    return Envelope(pd.DataFrame(rows), answer, limit, runs)
+    return Envelope(study, card, pd.DataFrame(rows), len(asked.outcomes), asked.certificate, asked.why_full)
 
 
-class _Search:
-    """The speed at which one answer reaches the limit."""
-
-    def __init__(self, low: float, high: float, limit: float) -> None:
-        self.low, self.high, self.limit, self.fine = low, high, limit, FINE * (high - low)
-        self.at_low = self.at_high = math.nan
-        self.failure, self.value, self._speed = "", math.nan, math.nan
-        self.settled = self.bracketed = False
-        self._kept = 0
-
-    @property
-    def next(self) -> float:
-        """Speed to try."""
-        if math.isnan(self.at_low):
-            return self.low
-        if math.isnan(self.at_high):
-            return self.high
-        a, b = self.at_low - self.limit, self.at_high - self.limit
-        middle = self.low - a * (self.high - self.low) / (b - a)
-        margin = 0.02 * (self.high - self.low)
-        return min(max(middle, self.low + margin), self.high - margin)
-
-    @property
-    def speed(self) -> float:
-        """Speed found; NaN: none."""
-        return self._speed
-
-    def take(self, outcome: Mapping[str, Any], answer: str) -> None:
-        """An outcome at `next`."""
-        speed = self.next
-        if "failure" in outcome:
-            self.failure, self.settled = outcome["failure"], True
-            return
-        value = float(outcome["answers"][answer])
-        if math.isnan(self.at_low):
-            self.at_low = value
-            if value >= self.limit:
-                self.settled, self.value = True, value
-        elif math.isnan(self.at_high):
-            self.at_high = value
-            if value < self.limit:
-                self.settled, self.value, self._speed = True, value, self.high
-        elif value < self.limit:
-            self.low, self.at_low, self.value, self._speed = speed, value, value, speed
-            # Illinois: an end that stays twice counts half, so that the other one moves.
-            self.at_high = self.limit + (self.at_high - self.limit) / 2 if self._kept > 0 else self.at_high
-            self._kept = max(self._kept, 0) + 1
-        else:
-            self.high, self.at_high = speed, value
-            self.at_low = self.limit + (self.at_low - self.limit) / 2 if self._kept < 0 else self.at_low
-            self._kept = min(self._kept, 0) - 1
-        if not self.settled and not math.isnan(self.at_high):
-            self.bracketed = True
-            close = self.high - self.low < self.fine or abs(self.value - self.limit) < 1e-3 * abs(self.limit)
-            self.settled = close and not math.isnan(self._speed)
+def _box(sizes: list[tuple[float, float]], low: float, high: float) -> tuple[Varied, ...]:
+    """What a reduced model would have to cover."""
+    found = [Varied("drive.speed", "m/s", low=low, high=high)]
+    for key, unit, values in (
+        ("drive.load", "N", [a for a, _ in sizes]),
+        ("drive.pressure", "Pa", [b for _, b in sizes]),
+    ):
+        if min(values) < max(values):
+            found.append(Varied(key, unit, low=min(values), high=max(values)))
+    return tuple(found)

@@ -1,33 +1,36 @@
-"""A sweep's folder: table as CSV and Parquet, certificate, summary, pictures, page."""
+"""A design study's folder: every table as CSV and Parquet, pictures, summary, page."""
 
 from __future__ import annotations
 
+import importlib.metadata
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
 from tyrefem.output import atomic_path, write_json
 from tyrefem.summary import versions
-from tyrefem.sweep.pareto import front
 from tyrefem.sweep.sweep import Sweep
 
 if TYPE_CHECKING:
     import pandas as pd
 
+    from tyrefem.sweep.design import Design
 
-def write(found: Sweep, folder: Path, *, pictures: bool = True) -> dict[str, Any]:
-    """Write ``sweep.csv``, ``sweep.parquet``, ``pareto.csv``, ``summary.json`` and the page; returns the summary."""
-    table = found.table
-    write_table(table, folder / "sweep")
-    best = front(table)
-    if len(best):
-        with atomic_path(folder / "pareto.csv") as temporary:
-            best.to_csv(temporary, index=False, float_format="%.9g")
-    summary = summarised(found, best)
+
+def write(found: Design, folder: Path, *, pictures: bool = True) -> dict[str, Any]:
+    """Write ``NAME.csv`` and ``.parquet`` of every part, ``summary.json`` and the page; returns the summary.
+
+    ``errors.csv`` is there where a reduced model answered: the largest error of every answer in fresh full runs.
+    """
+    for part in found.parts:
+        write_table(part.table, folder / part.name)
+    if found.swept is not None and found.swept.certificate is not None:
+        write_errors(found.swept, folder / "errors.csv")
+    summary = summarised(found)
     write_json(summary, folder / "summary.json")
     if pictures:
         from tyrefem.sweep.page import write_page
 
-        write_page(found, best, summary, folder / "sweep.html")
+        write_page(found, summary, folder)
     return summary
 
 
@@ -39,31 +42,44 @@ def write_table(table: pd.DataFrame, stem: Path) -> None:
         table.to_parquet(temporary, index=False)
 
 
-def summarised(found: Sweep, best: pd.DataFrame) -> dict[str, Any]:
-    """What `summary.json` holds: how the variants were chosen and answered, versions, and the words for people."""
-    plan, certificate = found.plan, found.certificate
-    by = [one.get("by", "failed") for one in found.outcomes.values()]
-    counts = {how: by.count(how) for how in ("full", "reduced", "failed")}
+def write_errors(found: Sweep, path: Path) -> None:
+    """What the reduced model's answers may be wrong by, as found on fresh full runs."""
+    import pandas as pd
+
+    assert found.certificate is not None
+    errors = pd.DataFrame({"answer": list(found.certificate.errors), "error": list(found.certificate.errors.values())})
+    with atomic_path(path) as temporary:
+        errors.to_csv(temporary, index=False, float_format="%.3g")
+
+
+def summarised(found: Design) -> dict[str, Any]:
+    """What `summary.json` holds: how the variants were chosen and answered, every answer, versions, words."""
+    study, card = found.study, found.card
     return {
-        "study": plan.study.name,
-        "title": plan.study.title,
-        "complete": found.complete,
-        "variants": len(plan.variants),
-        "finished": counts,
-        "varied": [
-            {
-                "key": one.key,
-                "unit": one.unit,
-                "values": list(one.values),
-                "from": one.low,
-                "to": one.high,
-                "log": one.log,
-            }
-            for one in plan.varied
-        ],
-        "sample": dict(plan.how),
-        "limits": {name: limit.model_dump(exclude_none=True) for name, limit in plan.limits.items()},
-        "time_to_degC": plan.time_to,
+        "study": study.name,
+        "title": card.title or study.title,
+        "complete": not found.interrupted and (found.swept is None or found.swept.complete),
+        "asked": card.model_dump(exclude_none=True, by_alias=True),
+        **({} if found.swept is None else {"sample": of_sample(found.swept)}),
+        **{part.name: part.to_dict() for part in found.parts},
+        "failures": found.failed,
+        "tolerance_K": study.tolerance,
+        "mesh": study.card.mesh.model_dump(),
+        "versions": versions() | {"SALib": importlib.metadata.version("SALib")},
+        "random_seed": card.seed,
+        "input": dict(study.data),
+        "words": spoken(found),
+    }
+
+
+def of_sample(found: Sweep) -> dict[str, Any]:
+    """The variants of the sample and who answered them."""
+    by = [one.get("by", "failed") for one in found.outcomes.values()]
+    certificate = found.certificate
+    return {
+        **found.plan.how,
+        "variants": len(found.plan.variants),
+        "finished": {how: by.count(how) for how in ("full", "reduced", "failed")},
         "reduced_model": None
         if certificate is None
         else {
@@ -74,42 +90,34 @@ def summarised(found: Sweep, best: pd.DataFrame) -> dict[str, Any]:
             "largest_errors": dict(certificate.errors),
         },
         "why_full_runs": found.why_full,
-        "pareto": best["variant"].tolist() if len(best) else [],
-        "failures": found.failed,
         "seconds": found.seconds,
         "taken_up": found.taken_up,
-        "tolerance_K": plan.study.tolerance,
-        "mesh": plan.study.card.mesh.model_dump(),
-        "versions": versions(),
-        "random_seed": plan.how.get("seed"),
-        "input": dict(plan.study.data),
-        "words": words(found, best, counts),
     }
 
 
-def words(found: Sweep, best: pd.DataFrame, counts: dict[str, int]) -> list[str]:
-    """A few lines for people."""
-    plan, table, certificate = found.plan, found.table, found.certificate
-    lines = [plan.study.title, f"  {len(found.outcomes)} of {len(plan.variants)} variants in {found.seconds:.1f} s"]
-    if found.taken_up:
-        lines[-1] += f", {found.taken_up} of them taken up"
-    if certificate is not None:
-        lines.append(
-            f"  {counts['reduced']} by a reduced model from {certificate.trained_on} runs; within"
-            f" {certificate.worst:.2g} K of {certificate.cases} fresh full runs"
-        )
-    elif found.why_full:
-        lines.append(f"  all by full runs: {found.why_full}")
-    done = table[table["failure"] == ""] if len(table) else table
-    if len(done) and plan.limits:
-        lines.append(f"  {int(done['feasible'].sum())} of {len(done)} keep to the limits")
-    if len(done):
-        for name, form in (("hottest_degC", "{:.1f} degC"), ("rolling_resistance_coefficient", "{:.5f}")):
-            low, high = done.loc[done[name].idxmin()], done.loc[done[name].idxmax()]
-            lines.append(
-                f"  {name:32s} {form.format(low[name])} (variant {low['variant']}) to {form.format(high[name])} "
-                f"(variant {high['variant']})"
-            )
-    if len(best):
-        lines.append(f"  Pareto front: {len(best)} variants, in pareto.csv")
+def spoken(found: Design) -> list[str]:
+    """A few lines for people: title, how the variants were answered, every answer under its heading."""
+    lines = [found.card.title or found.study.title]
+    if found.swept is not None:
+        lines.append(f"  {how_answered(found.swept)}")
+    for part in found.parts:
+        if part.words:
+            lines.append(f"{part.heading}:")
+            lines += [f"  {line}" for line in part.words]
     return lines
+
+
+def how_answered(found: Sweep) -> str:
+    """How many variants, in which time, by what."""
+    certificate = found.certificate
+    told = f"{len(found.outcomes)} of {len(found.plan.variants)} variants in {found.seconds:.1f} s"
+    told += f", {found.taken_up} of them taken up" if found.taken_up else ""
+    if certificate is not None:
+        reduced = sum(one.get("by") == "reduced" for one in found.outcomes.values())
+        told += (
+            f"; {reduced} by a reduced model from {certificate.trained_on} runs, within {certificate.worst:.2g} K of"
+            f" {certificate.cases} fresh full runs"
+        )
+    elif found.outcomes:
+        told += "; all by full runs" + (f" ({found.why_full})" if found.why_full else "")
+    return told

@@ -1,78 +1,170 @@
-"""A sweep as one self-contained HTML page: what it says first, then pictures, then every variant."""
+"""A design study as one self-contained HTML page: the answers in words first, then each with its picture and table."""
 
 from __future__ import annotations
 
 import base64
-import itertools
-from collections.abc import Iterator
+from collections.abc import Mapping
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
 from tyrefem.output import atomic_path
+from tyrefem.sweep.answer_words import difference_unit, name_of, shown
 from tyrefem.sweep.sweep import Sweep
 
 if TYPE_CHECKING:
     import pandas as pd
 
-#: Rows of the page's table; all are in sweep.csv.
-ROWS = 500
-#: Answers in the page's table.
+    from tyrefem.sweep.design import Design, Part
+
+#: Rows of the page's tables; all are in the files.
+ROWS, ROWS_OF_VARIANTS = 60, 500
+#: Answers in the page's table of variants.
 COLUMNS = (
     "hottest_degC", "hottest_region", "contained-air_degC", "rolling_resistance_coefficient", "gradient_K_m", "mass_kg",
     "time_to_limit_s",
 )  # fmt: skip
 
 
-def write_page(found: Sweep, best: pd.DataFrame, summary: dict[str, Any], path: Path) -> Path:
-    """Write the page."""
-    from jinja2 import Environment, FileSystemLoader, StrictUndefined
+def write_page(found: Design, summary: Mapping[str, Any], folder: Path) -> Path:
+    """Write ``sweep.html``, and the pictures as PNG files in ``pictures``."""
+    from jinja2 import Environment, PackageLoader, StrictUndefined
 
     environment = Environment(
-        loader=FileSystemLoader(Path(__file__).parent), autoescape=True, undefined=StrictUndefined,
-        trim_blocks=True, lstrip_blocks=True,
+        loader=PackageLoader("tyrefem.sweep", "."), autoescape=True, undefined=StrictUndefined, trim_blocks=True,
+        lstrip_blocks=True,
     )  # fmt: skip
-    table = found.table
-    certificate = found.certificate
-    errors = {} if certificate is None else dict(certificate.errors)
-    columns = [name for name in COLUMNS if name in table]
-    headings = [one.heading for one in found.plan.varied] or [key for key in found.plan.keys if key in table]
+    swept = found.swept or (found.optimum.swept if found.optimum is not None else None)
     page = environment.get_template("page.html").render(
-        title=found.plan.study.title,
-        words=summary["words"][1:],
-        pictures=[(words, base64.b64encode(png).decode("ascii")) for words, png in pictures(found, best)],
-        headings=headings,
-        columns=columns,
-        errors=errors,
-        rows=table.head(ROWS).to_dict("records"),
-        total=len(table),
-        front=set(best["variant"]) if len(best) else set(),
+        title=summary["title"],
+        study=found.study,
+        how="" if found.swept is None else summary["words"][1].strip(),
+        interrupted=found.interrupted,
+        numbers=_numbers(found),
+        parts=[_part(part, folder) for part in found.parts],
+        variants=None if swept is None else _variants(found, swept),
         failed=found.failed,
-        certificate=certificate,
+        assumed=_assumed(found),
         versions=summary["versions"],
     )
+    path = folder / "sweep.html"
     with atomic_path(path) as temporary:
         temporary.write_text(page, encoding="utf-8")
     return path
 
 
-def pictures(found: Sweep, best: pd.DataFrame) -> Iterator[tuple[str, bytes]]:
-    """(what it shows, PNG) of a sweep."""
+def _part(part: Part, folder: Path) -> dict[str, Any]:
+    """Heading, words, pictures and table of an answer."""
     from tyrefem.plotting.style import png
-    from tyrefem.sweep.pictures import curves, numeric, pareto, response_map
 
-    table = found.table
-    done = table[table["failure"] == ""]
-    if len(done) < 2:
-        return
-    answers = [name for name in ("hottest_degC", "rolling_resistance_coefficient") if done[name].nunique() > 1]
-    if "time_to_limit_s" in done and done["time_to_limit_s"].nunique() > 1:
-        answers.append("time_to_limit_s")
-    if len(best) and len(answers) >= 2:
-        yield "Temperature against rolling resistance", png(pareto(found, best, answers[1], answers[0]))
-    names = numeric(found)
-    if len(names) >= 2:
-        for x, y in itertools.islice(itertools.combinations(names, 2), 3):
-            yield f"Highest temperature over {x} and {y}", png(response_map(found, x, y, "hottest_degC"))
-    for answer in answers:
-        for x in names[:4]:
-            yield f"{answer} over {x}", png(curves(found, x, answer))
+    drawn = []
+    for name, caption, picture in part.figures():
+        content = png(picture)
+        with atomic_path(folder / "pictures" / f"{name}.png") as temporary:
+            temporary.write_bytes(content)
+        drawn.append((caption, base64.b64encode(content).decode("ascii")))
+    # The variants have a table of their own at the end.
+    table = None if part.name in ("sweep", "optimum", "pareto") else _cells(part.table)
+    return {"name": part.name, "heading": part.heading, "words": part.words, "pictures": drawn, "table": table}
+
+
+def _cells(table: pd.DataFrame) -> dict[str, Any]:
+    table = table.drop(columns=[name for name in ("failure",) if name in table and not table[name].any()])
+    rows = [[cell(value) for value in row] for row in table.head(ROWS).itertuples(index=False)]
+    return {"columns": list(table.columns), "rows": rows, "total": len(table)}
+
+
+def cell(value: Any, digits: int = 5) -> str:
+    """A table's cell: numbers short, nothing for NaN."""
+    if isinstance(value, bool):
+        return "yes" if value else "no"
+    if isinstance(value, int | float):
+        return "" if value != value else f"{value:.{digits}g}"
+    return "" if value is None else str(value)
+
+
+def _variants(found: Design, swept: Sweep) -> dict[str, Any]:
+    table, certificate = found.table, swept.certificate
+    errors = {} if certificate is None else dict(certificate.errors)
+    wanted = dict.fromkeys((*found.card.answers, *found.card.limits, *COLUMNS))
+    columns = [name for name in wanted if name in table]
+    headings = [one.heading for one in swept.plan.varied] or [key for key in swept.plan.keys if key in table]
+    best = set(found.pareto["variant"]) if found.swept is not None and "hottest_degC" in table else set()
+    if found.swept is None and found.optimum is not None and found.optimum.best is not None:
+        best = {swept.plan.names[found.optimum.best]}
+    rows = []
+    for row in table.head(ROWS_OF_VARIANTS).to_dict("records"):
+        cells = [row["variant"], *(cell(row[name]) for name in headings)]
+        for name in columns:
+            error = errors.get(name) if row["by"] == "reduced" else None
+            stated = f" ± {error:.1g}" if error is not None else ""
+            cells.append(cell(row[name]) + stated if cell(row[name]) else "")
+        kind = "front" if row["variant"] in best else "" if row["feasible"] else "out"
+        rows.append({"cells": [*cells, row["by"] or "failed"], "kind": kind})
+    return {
+        "columns": ["variant", *headings, *columns, "by"],
+        "rows": rows,
+        "total": len(table),
+        "certificate": certificate,
+        "file": "sweep" if found.swept is not None else "optimum",
+    }
+
+
+def _numbers(found: Design) -> list[dict[str, str]]:
+    """The few numbers to see first."""
+    cards: list[dict[str, str]] = []
+    if found.optimum is not None and found.optimum.best is not None:
+        answer = found.optimum.answer
+        label = f"{'smallest' if found.optimum.card.minimise else 'largest'} {name_of(answer)}"
+        value = shown(answer, found.optimum.full[answer])
+        cards.append({"label": label, "value": value, "note": found.optimum.where})
+    if found.swept is not None and found.swept.outcomes:
+        from tyrefem.sweep.responses import finished, judged
+
+        table = finished(found.swept)
+        for answer in judged(found.swept, found.card.answers)[:3]:
+            low, high = float(table[answer].min()), float(table[answer].max())
+            certificate = found.swept.certificate
+            error = None if certificate is None else certificate.errors.get(answer)
+            note = f"over {len(table)} variants" + ("" if error is None else f"; each ± {shown(answer, error, 1)}")
+            cards.append({"label": name_of(answer), "value": f"{low:.4g} – {shown(answer, high)}", "note": note})
+    if found.tornado is not None:
+        for answer in found.tornado.answers[:2]:
+            rows = found.tornado.of(answer).dropna(subset=["range"])
+            if len(rows):
+                value = f"± {rows.iloc[0]['range'] / 2:.2g} {difference_unit(answer)}".strip()
+                cards.append(
+                    {"label": f"{name_of(answer)}: widest tolerance", "value": value, "note": rows.iloc[0]["number"]}
+                )
+    if found.envelope is not None:
+        rated = found.envelope.rating.dropna(subset=["tkph"]).head(2).to_dict("records")
+        cards += [
+            {
+                "label": "safe load × speed",
+                "value": f"{row['tkph']:.0f} t km/h",
+                "note": f"at {row['pressure']}, every load tried",
+            }
+            for row in rated
+        ]
+    return cards
+
+
+def _assumed(found: Design) -> list[str]:
+    """What every reader has to know."""
+    told = [
+        "Every variant is the whole study with some values changed: what its cards and laws assume holds here too.",
+        f"Time integration to {found.study.tolerance:g} K; mesh of {found.study.card.mesh.size * 1e3:g} mm.",
+    ]
+    if found.indices is not None:
+        told.append("Sobol indices: numbers uniform in their ranges and independent of each other.")
+    if found.tornado is not None:
+        told.append(
+            "Tornado: one standard deviation each unless given; together: independent, the answer linear in them."
+        )
+    if found.envelope is not None:
+        told.append(
+            "Envelope: the answer must rise with speed. Load times speed in t km/h is what earth-mover tyres are"
+            " rated by, here of this model, ambient temperature and length of drive: no maker's rating."
+        )
+    if found.optimum is not None and not found.optimum.exhaustive:
+        told.append("Optimum: a search with a seed, no proof that there is none better.")
+    return told

@@ -2,8 +2,9 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping
-from typing import TYPE_CHECKING
+from collections.abc import Iterator, Mapping
+from dataclasses import dataclass
+from typing import TYPE_CHECKING, Any
 
 import numpy as np
 from numpy.typing import NDArray
@@ -12,6 +13,9 @@ from tyrefem.errors import InputError, nearest
 
 if TYPE_CHECKING:
     import pandas as pd
+    from matplotlib.figure import Figure
+
+    from tyrefem.sweep.sweep import Sweep
 
 Array = NDArray[np.float64]
 #: What a designer weighs, unless he says otherwise: all the smaller the better.
@@ -24,12 +28,18 @@ def undominated(values: Array) -> NDArray[np.bool_]:
     >>> undominated(np.array([[1.0, 2.0], [2.0, 1.0], [2.0, 2.0]])).tolist()
     [True, True, False]
     """
-    found = np.isfinite(values).all(axis=1)
+    found: NDArray[np.bool_] = np.asarray(np.isfinite(values).all(axis=1))
     for i in np.flatnonzero(found):
         others = values[found]
         if ((others <= values[i]).all(axis=1) & (others < values[i]).any(axis=1)).any():
             found[i] = False
     return found
+
+
+def usual_aims(table: pd.DataFrame) -> dict[str, str]:
+    """Temperature, rolling resistance and mass, all the smaller the better, where they vary."""
+    feasible = table[table["feasible"]]
+    return {name: "min" for name in USUAL if name in feasible and feasible[name].nunique() > 1}
 
 
 def front(table: pd.DataFrame, aims: Mapping[str, str] | None = None) -> pd.DataFrame:
@@ -44,7 +54,7 @@ def front(table: pd.DataFrame, aims: Mapping[str, str] | None = None) -> pd.Data
     InputError : an answer that the table does not have, an aim that is neither.
     """
     feasible = table[table["feasible"]]
-    aims = aims or {name: "min" for name in USUAL if name in feasible and feasible[name].nunique() > 1}
+    aims = aims or usual_aims(table)
     for name, aim in aims.items():
         if name not in table:
             raise InputError(f"no answer '{name}'{nearest(name, table.columns)}", field="pareto")
@@ -54,3 +64,65 @@ def front(table: pd.DataFrame, aims: Mapping[str, str] | None = None) -> pd.Data
         return feasible.iloc[:0]
     signed = np.column_stack([feasible[name] * (1 if aim == "min" else -1) for name, aim in aims.items()])
     return feasible[undominated(signed)].sort_values(next(iter(aims)))
+
+
+@dataclass(frozen=True, eq=False)
+class ParetoFront:
+    """The front of a sweep; ``aims`` as of `front`."""
+
+    swept: Sweep
+    aims: Mapping[str, str]
+
+    name = "pareto"
+    heading = "What is given up for what"
+
+    @property
+    def chosen(self) -> dict[str, str]:
+        """Answer -> aim."""
+        return dict(self.aims) or usual_aims(self.swept.table)
+
+    @property
+    def table(self) -> pd.DataFrame:
+        """The variants on the front, sorted by the first aim."""
+        return front(self.swept.table, self.chosen)
+
+    @property
+    def words(self) -> list[str]:
+        """The answer in sentences."""
+        from tyrefem.sweep.answer_words import name_of, shown
+        from tyrefem.sweep.responses import extreme, named
+
+        table, aims = self.table, self.chosen
+        if len(aims) < 2 or table.empty:
+            return []
+        feasible = int(self.swept.table["feasible"].sum())
+        together = ", ".join(("" if aim == "min" else "large ") + name_of(name) for name, aim in aims.items())
+        told = [f"{len(table)} of {feasible} variants are beaten by none in {together} together."]
+        best: dict[str, tuple[Mapping[str, Any], list[str]]] = {}
+        for name, aim in aims.items():
+            row = extreme(table, name, least=aim == "min")
+            best.setdefault(str(row["variant"]), (row, []))[1].append(name)
+        for row, names in best.values():
+            values = ", ".join(f"{name_of(name)} {shown(name, row[name])}" for name in aims)
+            told.append(f"Best in {' and '.join(map(name_of, names))}: {named(self.swept, row)}; {values}.")
+        return told
+
+    def figures(self) -> Iterator[tuple[str, str, Figure]]:
+        """The front in every pair of aims."""
+        import itertools
+
+        from tyrefem.sweep.answer_words import name_of
+        from tyrefem.sweep.pictures import pareto
+
+        aims = [name for name in self.chosen if name in self.swept.table]
+        for y, x in itertools.combinations(aims, 2):
+            if len(self.table):
+                yield (
+                    f"pareto-{y}-{x}",
+                    f"{name_of(y)} against {name_of(x)}; the front is of all aims together",
+                    pareto(self.swept, self.table, x, y),
+                )
+
+    def to_dict(self) -> dict[str, Any]:
+        """JSON-ready."""
+        return {"aims": self.chosen, "variants": self.table["variant"].tolist(), "words": self.words}

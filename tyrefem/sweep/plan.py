@@ -13,6 +13,7 @@ from typing import Any
 from tyrefem.errors import InputError
 from tyrefem.mechanics import check_cases
 from tyrefem.studies import Study
+from tyrefem.sweep.answers import check_answer
 from tyrefem.sweep.bundle import Bundle, bundle
 from tyrefem.sweep.card import LimitCard, SweepCard, VaryCard
 from tyrefem.sweep.samples import drawn, grid, listed, without_repeats
@@ -76,55 +77,71 @@ def planned(study: Study, card: SweepCard, near: Path | None = None) -> Plan:
     ------
     InputError : a name that the study does not have, a value that it refuses, two variants that are the same.
     """
+    for name in (*card.limits, *card.answers, *card.pareto):
+        try:
+            check_answer(name, study, card.time_to)
+        except InputError as error:
+            table = next(one for one in ("limits", "answers", "pareto") if name in getattr(card, one))
+            raise error.within(field=table) from None
     names: Sequence[str]
-    if card.sample == "list":
+    if card.chosen == "list":
         assert card.cases is not None
         path = (near or Path()) / card.cases
         variants, names = listed(path)
         chosen: tuple[Varied, ...] = ()
         try:
             without_repeats(variants, names)
-            _sensible(study, [(f"variant '{name}'", one) for name, one in zip(names, variants, strict=True)])
+            sensible(study, [(f"variant '{name}'", one) for name, one in zip(names, variants, strict=True)])
         except InputError as error:
             raise error if error.file else error.within(file=path) from None
     else:
-        chosen = tuple(varied(study, key, one) for key, one in card.vary.items())
-        _sensible(study, [("", {one.key: value}) for one in chosen for value in one.ends])
-        if card.sample == "grid":
+        chosen = tuple(varied(study, key, one) for key, one in _outer_first(card.vary).items())
+        sensible(study, [("", {one.key: value}) for one in chosen for value in one.ends])
+        if not card.sampled:
+            variants = []
+        elif card.chosen == "grid":
             variants = grid(chosen)
         else:
             assert card.count is not None
-            variants = drawn(chosen, card.sample, card.count, card.seed)
+            variants = drawn(chosen, card.chosen, card.count, card.seed)
         names = [str(number + 1) for number in range(len(variants))]
-        without_repeats(variants, names)
-    how = {"sample": card.sample, "count": len(variants), "seed": card.seed if card.sample != "grid" else None}
+        if card.chosen != "saltelli":
+            without_repeats(variants, names)
+    seed = card.seed if card.chosen in ("latin-hypercube", "sobol", "saltelli") else None
+    how = {"sample": card.chosen if card.sampled else None, "count": len(variants), "seed": seed}
     return Plan(study, chosen, tuple(variants), tuple(names), dict(card.limits), card.time_to, how)
 
 
-def plan_of(
-    study: Study,
-    vary: Mapping[str, Any],
-    *,
-    sample: str = "grid",
-    count: int | None = None,
-    seed: int = 1,
-    limits: Mapping[str, Any] | None = None,
-    time_to: str | None = None,
-) -> Plan:
-    """The same from Python: ``{"drive.speed": ("10 mph", "40 mph"), "materials.tread": ["soft", "hard"]}``.
+def _outer_first(vary: Mapping[str, VaryCard]) -> dict[str, VaryCard]:
+    """A swapped card or section before what varies in it, which it would wipe out otherwise."""
+    within = {key: outer for key in vary for outer in vary if key.startswith(f"{outer}.")}
+    for key, outer in within.items():
+        if vary[key].factor is not None:
+            raise InputError(f"a factor on what '{outer}' swaps has no meaning: give values", field=f"vary.{key}")
+    if not within:
+        return dict(vary)
+    return dict(sorted(vary.items(), key=lambda entry: entry[0].count(".")))
 
-    A pair (tuple) is a range, a list its values, a mapping what a sweep file would say.
+
+def card_of(study: Study, vary: Mapping[str, Any] | None = None, **said: Any) -> SweepCard:
+    """A sweep file's content from Python.
+
+    ``vary``: e.g. ``{"drive.speed": ("10 mph", "40 mph"), "materials.tread": ["soft", "hard"]}``.
+
+    A pair (tuple) is a range, a third entry its levels, a list its values, a mapping what a sweep file would say.
+    ``said``: every other key of a sweep file; None: not said.
     """
-    data = {
-        "study": study.name,
-        "vary": {key: _vary(value) for key, value in vary.items()},
-        "sample": sample,
-        "seed": seed,
-        **({} if count is None else {"count": count}),
-        "limits": dict(limits or {}),
-        **({} if time_to is None else {"time_to": time_to}),
-    }
-    return planned(study, SweepCard.check(data))
+    data = {key: value for key, value in said.items() if value is not None}
+    if vary:
+        data["vary"] = {key: _vary(value) for key, value in vary.items()}
+    if "cases" in data:
+        data.setdefault("sample", "list")
+    return SweepCard.check({"study": study.name, **data})
+
+
+def plan_of(study: Study, vary: Mapping[str, Any], **said: Any) -> Plan:
+    """The variants of `card_of`."""
+    return planned(study, card_of(study, vary, **said))
 
 
 def _vary(value: Any) -> Any:
@@ -141,7 +158,7 @@ def _vary(value: Any) -> Any:
     raise InputError(f"a list of values or a tuple (from, to), not {value!r:.60}", field="vary")
 
 
-def _sensible(study: Study, trials: Sequence[tuple[str, Mapping[str, Any]]]) -> None:
+def sensible(study: Study, trials: Sequence[tuple[str, Mapping[str, Any]]]) -> None:
     """Build the study and the load cases of each; the first that is refused names itself."""
     for name, changes in trials:
         try:

@@ -1,4 +1,4 @@
-"""Which variants: grids, Latin hypercubes, Sobol sequences, lists from CSV."""
+"""Which variants: grids, Latin hypercubes, Sobol sequences, Saltelli's sample, lists from CSV."""
 
 from __future__ import annotations
 
@@ -33,17 +33,34 @@ def grid(varied: Sequence[Varied]) -> list[dict[str, Any]]:
 
 
 def places(varied: Sequence[Varied], sample: str, count: int, seed: int) -> Array:
-    """(count, n) places in the unit cube. A Sobol sequence has a power of two of them: rounded up."""
+    """Places in the unit cube, one row each: ``count`` of a Latin hypercube.
+
+    A Sobol sequence has a power of two of them, rounded up. Saltelli's sample (2010), which Sobol indices need, has
+    ``count``, a power of two, times the numbers and two more.
+    """
     from scipy.stats import qmc
 
+    if sample == "saltelli":
+        from SALib.sample import sobol
+
+        if count < 2 or count & (count - 1):
+            raise InputError(f"Saltelli's sample needs a power of two, e.g. 64, not {count}", field="count")
+        if len(varied) < 2:
+            raise InputError("Sobol indices need at least two numbers that vary", field="vary")
+        return np.asarray(sobol.sample(problem(varied), count, calc_second_order=False, seed=seed))
     rng = np.random.default_rng(seed)
     if sample == "latin-hypercube":
         return np.asarray(qmc.LatinHypercube(len(varied), rng=rng).random(count))
     return np.asarray(qmc.Sobol(len(varied), rng=rng).random_base2(max(math.ceil(math.log2(count)), 0)))
 
 
+def problem(varied: Sequence[Varied]) -> dict[str, Any]:
+    """What SALib wants to know: names and bounds (the unit cube: `Varied.at` takes it from there)."""
+    return {"num_vars": len(varied), "names": [one.key for one in varied], "bounds": [[0.0, 1.0]] * len(varied)}
+
+
 def drawn(varied: Sequence[Varied], sample: str, count: int, seed: int) -> list[dict[str, Any]]:
-    """A Latin hypercube or Sobol sample as changes of the study."""
+    """A sample as changes of the study."""
     return [
         {one.key: one.at(float(u)) for one, u in zip(varied, row, strict=True)}
         for row in places(varied, sample, count, seed)
@@ -64,5 +81,5 @@ def without_repeats(variants: Sequence[dict[str, Any]], names: Sequence[str]) ->
     for changes, name in zip(variants, names, strict=True):
         key = repr(sorted((key, str(value)) for key, value in changes.items()))
         if key in seen:
-            raise InputError(f"variants '{seen[key]}' and '{name}' are the same")
+            raise InputError(f"variants '{seen[key]}' and '{name}' are the same: a variant is wanted once")
         seen[key] = name

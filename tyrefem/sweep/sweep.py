@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import functools
 import time
-from collections.abc import Callable, Mapping, Sequence
+from collections.abc import Callable, Iterator, Mapping, Sequence
 from dataclasses import asdict, dataclass
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
@@ -21,7 +21,7 @@ from tyrefem.sweep.task import perform, perform_all
 if TYPE_CHECKING:
     import pandas as pd
 
-    from tyrefem.reduced.surrogate import Certificate
+    from tyrefem.reduced.surrogate import Certificate, Surrogate
 
 Tick = Callable[[str, int, int], None]
 #: Fewer variants than this per number that varies are run in full: training would cost as much.
@@ -214,7 +214,6 @@ def _reduced(
     """Answer what a certified reduced model can; its certificate, or why there is none."""
     from tyrefem.reduced.model import NotReducibleError
     from tyrefem.reduced.surrogate import surrogate
-    from tyrefem.reduced.work import ReducedTask, perform_reduced
 
     if how == "auto" and len(left) < WORTH_TRAINING * max(len(plan.varied), 1):
         return None, f"{len(left)} variants are too few to train for"
@@ -225,18 +224,20 @@ def _reduced(
             raise
         return None, str(error)
     keep.note(CERTIFICATE, asdict(trained.certificate))
-    packed = trained.packed(plan.packed)
-    pieces = [left[first : first + PIECE] for first in range(0, len(left), PIECE)]
-    tasks = [ReducedTask(packed, [plan.variants[n] for n in piece], plan.time_to) for piece in pieces]
-    for place, outcome in scheduler.outcomes(perform_reduced, tasks):
-        if "outcomes" in outcome:
-            pairs = zip(pieces[place], outcome["outcomes"], strict=True)
-            # What could not be reduced is left for full runs.
-            keep(
-                {
-                    n: ({**one, "by": "reduced"} if "answers" in one else one)
-                    for n, one in pairs
-                    if "not_reducible" not in one
-                }
-            )
+    for found in by_model(trained, plan, [plan.variants[n] for n in left], scheduler):
+        keep({left[place]: outcome for place, outcome in found.items()})
     return trained.certificate, ""
+
+
+def by_model(
+    trained: Surrogate, plan: Plan, variants: Sequence[Mapping[str, Any]], scheduler: Scheduler
+) -> Iterator[dict[int, dict[str, Any]]]:
+    """Outcomes of variants, by place, as pieces are finished; what could not be reduced is left out, for full runs."""
+    from tyrefem.reduced.work import ReducedTask, perform_reduced
+
+    packed = trained.packed(plan.packed)
+    firsts = range(0, len(variants), PIECE)
+    tasks = [ReducedTask(packed, list(variants[first : first + PIECE]), plan.time_to) for first in firsts]
+    for number, outcome in scheduler.outcomes(perform_reduced, tasks):
+        found = enumerate(outcome.get("outcomes", ()), firsts[number])
+        yield {place: _by(one, "reduced") for place, one in found if "not_reducible" not in one}

@@ -3,13 +3,17 @@
 from __future__ import annotations
 
 import functools
+import gc
 import threading
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
-from typing import Any
+from typing import TYPE_CHECKING, Any
 
 from tyrefem.studies import Study
 from tyrefem.sweep.bundle import Bundle, Unpacked, VersionError
+
+if TYPE_CHECKING:
+    from tyrefem.rolling import RollingTyre
 
 
 @dataclass(frozen=True)
@@ -38,8 +42,34 @@ def unpacked(packed: Bundle) -> Study:
     return _shelf().study(packed)
 
 
-#: The tyre that this thread ran last: its mesh and operators serve the next variant where they are the same.
-_last = threading.local()
+#: Tyres that a thread ran last: mesh, operators and strain cycles serve the next variant where they are the same.
+REMEMBERED = 4
+_recent = threading.local()
+
+
+def _most_alike(study: Study) -> RollingTyre | None:
+    """The tyre among the last ones from which most can be taken over."""
+    tyres: list[RollingTyre] = _recent.__dict__.setdefault("tyres", [])
+    return max(tyres, key=lambda tyre: _alike(study, tyre.study), default=None)
+
+
+def _alike(study: Study, other: Study) -> tuple[bool, bool, int]:
+    """Same section; same strain cycle as far as the study says; how many materials are the same."""
+    same = [study.data.get(table) == other.data.get(table) for table in ("section", "mesh", "drive", "mechanics")]
+    mine, theirs = study.data["materials"], other.data["materials"]
+    return same[0] and same[1], same[2] and same[3], sum(mine[region] == theirs.get(region) for region in mine)
+
+
+def _remember(tyre: RollingTyre) -> None:
+    """Keep a tyre; it must not hold those before it alive."""
+    object.__setattr__(tyre, "like", None)
+    tyres: list[RollingTyre] = _recent.tyres
+    forgotten = tyres[REMEMBERED - 1 :]
+    tyres[:] = [tyre, *tyres[: REMEMBERED - 1]]
+    if any(all(one.mesh is not other.mesh for other in tyres) for one in forgotten):
+        # A mesh that goes takes its operators with it, tens of MB that refer to each other.
+        del forgotten
+        gc.collect()
 
 
 def perform_all(tasks: Sequence[Task]) -> dict[str, Any]:
@@ -56,12 +86,15 @@ def perform(task: Task) -> dict[str, Any]:
 
     try:
         study = unpacked(task.packed).replace(task.changes)
-        before = getattr(_last, "tyre", None)
+        before = _most_alike(study)
+        if before is not None:
+            study = unpacked(task.packed).replace(task.changes, like=before.study)
         result = run(study, like=before)
-        _last.tyre = result.tyre
         if result.history.interrupted:
             raise KeyboardInterrupt
-        return {"answers": answers(result, task.time_to)}
+        found = answers(result, task.time_to)
+        _remember(result.tyre)
+        return {"answers": found}
     except (InputError, SolverError) as error:
         return {"failure": str(error)}
     except VersionError:

@@ -2,17 +2,22 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping
+import functools
+import math
+from collections.abc import Iterator, Mapping
+from dataclasses import dataclass
 from typing import TYPE_CHECKING, Any
 
 from tyrefem.errors import InputError
 from tyrefem.studies import Study
-from tyrefem.sweep.plan import Plan
+from tyrefem.sweep.answer_words import difference_unit, name_of, shown
+from tyrefem.sweep.plan import Plan, sensible
 from tyrefem.sweep.sweep import Sweep
 from tyrefem.sweep.varied import DIGITS, scaled_value
 
 if TYPE_CHECKING:
     import pandas as pd
+    from matplotlib.figure import Figure
 
 
 def tolerances(study: Study, only: Mapping[str, float] | None = None) -> dict[str, float]:
@@ -35,30 +40,111 @@ def tornado_plan(study: Study, given: Mapping[str, float] | None = None, time_to
     """The study as it is, then every number at 1 - tolerance and 1 + tolerance, the others as they are."""
     variants: list[dict[str, Any]] = [{}]
     names = ["as it is"]
-    for key, part in tolerances(study, given).items():
+    parts = tolerances(study, given)
+    for key, part in parts.items():
         for sign, word in ((-1, "less"), (1, "more")):
             variants.append({key: scaled_value(study, key, 1 + sign * part, DIGITS)})
             names.append(f"{key}, {part:.3g} {word}")
-    how = {"sample": "tolerances", "count": len(variants), "seed": None}
+    sensible(study, list(zip(names, variants, strict=True)))
+    how = {"sample": "tolerances", "count": len(variants), "seed": None, "tolerances": parts}
     return Plan(study, (), tuple(variants), tuple(names), {}, time_to, how)
 
 
-def tornado(swept: Sweep, answer: str) -> pd.DataFrame:
-    """Per number: the answer with less and with more of it, both less the answer as it is; the widest first.
+@dataclass(frozen=True, eq=False)
+class Tornado:
+    """How far every tolerance alone moves the answers.
 
-    Columns ``number``, ``less``, ``more``, ``range``, in the answer's unit.
+    Parameters
+    ----------
+    swept : of `tornado_plan`. answers : the answers that are judged.
     """
-    import pandas as pd
 
-    plan, outcomes = swept.plan, swept.outcomes
+    swept: Sweep
+    answers: tuple[str, ...]
 
-    def value(n: int) -> float:
-        found = outcomes.get(n, {}).get("answers", {}).get(answer)
-        return float("nan") if found is None else float(found)
+    name = "tornado"
+    heading = "Which tolerance matters"
 
-    base, rows = value(0), []
-    for n in range(1, len(plan.variants), 2):
-        (key,) = plan.variants[n]
-        less, more = value(n) - base, value(n + 1) - base
-        rows.append({"number": key, "less": less, "more": more, "range": max(less, more, 0.0) - min(less, more, 0.0)})
-    return pd.DataFrame(rows).sort_values("range", ascending=False, ignore_index=True)
+    @functools.cached_property
+    def table(self) -> pd.DataFrame:
+        """Per answer and number: ``nominal``, ``less`` and ``more`` (changes of the answer), ``range``; widest first.
+
+        ``tolerance`` is the share by which the number was moved; all else is in the answer's unit.
+        """
+        import pandas as pd
+
+        plan, rows = self.swept.plan, []
+        for answer in self.answers:
+            base = self._value(0, answer)
+            for n in range(1, len(plan.variants), 2):
+                (key,) = plan.variants[n]
+                less, more = (self._value(m, answer) - base for m in (n, n + 1))
+                width = max(less, more, 0.0) - min(less, more, 0.0) if math.isfinite(less + more) else math.nan
+                rows.append(
+                    {
+                        "answer": answer,
+                        "number": key,
+                        "tolerance": plan.how["tolerances"][key],
+                        "nominal": base,
+                        "less": less,
+                        "more": more,
+                        "range": width,
+                        "failure": "; ".join(filter(None, (self._failure(m) for m in (0, n, n + 1)))),
+                    }
+                )
+        order = {answer: number for number, answer in enumerate(self.answers)}
+        table = pd.DataFrame(rows)
+        keys = table["answer"].map(order)
+        return table.assign(_order=keys).sort_values(
+            ["_order", "range"], ascending=[True, False], ignore_index=True
+        ).drop(columns="_order")  # fmt: skip
+
+    def of(self, answer: str) -> pd.DataFrame:
+        """The rows of one answer, widest first."""
+        table = self.table
+        return table[table["answer"] == answer].drop(columns="answer").reset_index(drop=True)
+
+    def _value(self, n: int, answer: str) -> float:
+        found = self.swept.outcomes.get(n, {}).get("answers", {}).get(answer)
+        return math.nan if found is None else float(found)
+
+    def _failure(self, n: int) -> str:
+        return str(self.swept.outcomes.get(n, {"failure": "not run"}).get("failure", ""))
+
+    @property
+    def words(self) -> list[str]:
+        """The answer in sentences."""
+        told = []
+        for answer in self.answers:
+            rows = self.of(answer).dropna(subset=["range"]).to_dict("records")
+            if not rows:
+                continue
+            unit, first = difference_unit(answer), rows[0]
+            together = math.sqrt(sum((row["range"] / 2) ** 2 for row in rows))
+            others = [f"{row['number']} (±{row['range'] / 2:.2g})" for row in rows[1:3] if row["range"] > 0]
+            told += [
+                f"The {name_of(answer)}, {shown(answer, first['nominal'])} as it is, is moved most by "
+                + f"{first['number']}: ±{first['range'] / 2:.2g} {unit}".rstrip()
+                + f" for ±{100 * first['tolerance']:.3g} %"
+                + "".join(f", then {one}" for one in others)
+                + "."
+            ]
+            if len(rows) > 1:
+                told.append(f"All {len(rows)} together, if independent: ±{together:.2g} {unit}".rstrip() + ".")
+        failed = self.swept.failed
+        return told + ([f"{len(failed)} of {len(self.swept.plan.variants)} runs failed."] if failed else [])
+
+    def figures(self) -> Iterator[tuple[str, str, Figure]]:
+        """One picture per answer."""
+        from tyrefem.sweep.answer_pictures import tornado
+
+        for answer in self.answers:
+            yield (
+                f"tornado-{answer}",
+                f"{name_of(answer)}: every number alone, less and more by its tolerance",
+                tornado(self, answer),
+            )
+
+    def to_dict(self) -> dict[str, Any]:
+        """JSON-ready."""
+        return {"rows": self.table.to_dict("records"), "failures": self.swept.failed, "words": self.words}

@@ -49,8 +49,9 @@ class Varied:
 
     @property
     def heading(self) -> str:
-        """Column of a table: ``drive.speed [mph]``."""
-        return f"{self.key} [{self.unit}]" if self.unit else self.key
+        """Column of a table: ``drive.speed [mph]``; of a factor ``NAME [x]``."""
+        unit = self.unit or ("x" if self.nominal is not None else "")
+        return f"{self.key} [{unit}]" if unit else self.key
 
     def number(self, place: float) -> float:
         """The number at a place of [0, 1] of a continuous range, in `unit`."""
@@ -130,7 +131,7 @@ def _listed(key: str, values: list[Any]) -> Varied:
     seen: list[Any] = []
     for value in values:
         if value in seen:
-            raise InputError(f"{value!r} is given twice", field=f"vary.{key}")
+            raise InputError(f"{value!r} is given twice")
         seen.append(value)
     unit = units.pop() if len(units) == 1 and all(amounts) else ""
     return Varied(key, unit, tuple(values), levels=len(values))

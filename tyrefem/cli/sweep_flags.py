@@ -1,0 +1,171 @@
+"""The flags of `tyrefem sweep` as the keys of a sweep file."""
+
+from __future__ import annotations
+
+import re
+from pathlib import Path
+from typing import Any
+
+from tyrefem.errors import InputError
+
+
+def asked(
+    *,
+    vary: list[str] | None = None,
+    sample: str | None = None,
+    count: int | None = None,
+    seed: int | None = None,
+    cases: str | None = None,
+    limit: list[str] | None = None,
+    time_to: str | None = None,
+    answer: list[str] | None = None,
+    pareto: list[str] | None = None,
+    indices: int | None = None,
+    tornado: bool = False,
+    tolerance_of: list[str] | None = None,
+    minimise: str | None = None,
+    maximise: str | None = None,
+    runs: int | None = None,
+    envelope: str | None = None,
+    loads: str | None = None,
+    pressures: str | None = None,
+    speeds: str | None = None,
+) -> dict[str, Any]:
+    """What the flags say, as a sweep file would; nothing for what they do not say."""
+    if indices is not None and (sample is not None or count is not None):
+        raise InputError("has a sample of its own: leave --sample and --count out", field="--indices")
+    if cases is not None and sample is None:
+        sample = "list"
+    said: dict[str, Any] = {
+        "vary": dict(varied(one) for one in vary or []) or None,
+        "sample": "saltelli" if indices is not None else sample,
+        "count": count if indices is None else indices,
+        "seed": seed,
+        # What is typed is relative to here, what a file says to the file.
+        "cases": None if cases is None else str(Path(cases).absolute()),
+        "limits": _limits(limit or []) or None,
+        "time_to": time_to,
+        "answers": answer or None,
+        "pareto": dict(_aim(one) for one in pareto or []) or None,
+        "tornado": {"tolerances": dict(_tolerance(one) for one in tolerance_of or [])} if tornado else None,
+        "optimise": _optimise(minimise, maximise, runs, seed),
+        "envelope": _envelope(envelope, loads, pressures, speeds),
+    }
+    if tolerance_of and not tornado:
+        raise InputError("goes with --tornado", field="--tolerance-of")
+    return {key: value for key, value in said.items() if value is not None}
+
+
+def varied(text: str) -> tuple[str, dict[str, Any]]:
+    """One ``--vary``.
+
+    >>> varied("drive.speed=10 mph:40 mph:4")
+    ('drive.speed', {'from': '10 mph', 'to': '40 mph', 'levels': 4})
+    >>> varied("materials.tread=soft,hard")
+    ('materials.tread', {'values': ['soft', 'hard']})
+    >>> varied("materials.tread.loss_tangent.value=x0.8:x1.2")
+    ('materials.tread.loss_tangent.value', {'factor': [0.8, 1.2]})
+    """
+    key, values = _pair(text, "--vary", "drive.speed=10 mph:40 mph:4")
+    parts = [part.strip() for part in values.split(":")]
+    if len(parts) == 1:
+        return key, {"values": [_plain(part) for part in _listed(values, "--vary")]}
+    if len(parts) > 3:
+        raise InputError(f"'{values}' has more than from:to:levels", field="--vary")
+    levels: dict[str, Any] = {}
+    if len(parts) == 3:
+        if not parts[2].isdigit():
+            raise InputError(f"'{parts[2]}' is not a number of levels", field="--vary")
+        levels = {"levels": int(parts[2])}
+    if parts[0].startswith("x") and parts[1].startswith("x"):
+        try:
+            return key, {"factor": [float(parts[0][1:]), float(parts[1][1:])], **levels}
+        except ValueError:
+            raise InputError(f"'{values}' are not two factors, e.g. x0.8:x1.2", field="--vary") from None
+    return key, {"from": _plain(parts[0]), "to": _plain(parts[1]), **levels}
+
+
+def _pair(text: str, flag: str, example: str) -> tuple[str, str]:
+    key, equals, value = text.partition("=")
+    if not equals or not key.strip() or not value.strip():
+        raise InputError(f"'{text}' is not KEY=VALUE, e.g. '{example}'", field=flag)
+    return key.strip(), value.strip()
+
+
+def _listed(text: str, flag: str) -> list[str]:
+    parts = [part.strip() for part in text.split(",")]
+    if not all(parts):
+        raise InputError(f"'{text}' has an empty entry between its commas", field=flag)
+    return parts
+
+
+def _plain(text: str) -> str | float:
+    try:
+        return float(text)
+    except ValueError:
+        return text
+
+
+def _bound(text: str, flag: str) -> tuple[str, str, float]:
+    match = re.fullmatch(r"\s*([\w .+-]+?)\s*([<>])\s*([-+\d.eE]+)\s*", text)
+    if match is None:
+        raise InputError(
+            f"'{text}' is not ANSWER<VALUE or ANSWER>VALUE, the value without a unit, e.g. 'hottest_degC<110'",
+            field=flag,
+        )
+    try:
+        return match[1], match[2], float(match[3])
+    except ValueError:
+        raise InputError(f"'{match[3]}' is not a number", field=flag) from None
+
+
+def _limits(texts: list[str]) -> dict[str, dict[str, float]]:
+    found: dict[str, dict[str, float]] = {}
+    for text in texts:
+        name, sign, value = _bound(text, "--limit")
+        key = "below" if sign == "<" else "above"
+        if key in found.setdefault(name, {}):
+            raise InputError(f"'{name}' is limited twice", field="--limit")
+        found[name][key] = value
+    return found
+
+
+def _aim(text: str) -> tuple[str, str]:
+    return _pair(text, "--pareto", "hottest_degC=min")
+
+
+def _tolerance(text: str) -> tuple[str, str]:
+    key, value = _pair(text, "--tolerance-of", "materials.tread.loss_tangent.value=10%")
+    return key, value.replace("%", " %") if " " not in value else value
+
+
+def _optimise(minimise: str | None, maximise: str | None, runs: int | None, seed: int | None) -> dict[str, Any] | None:
+    if minimise is None and maximise is None:
+        if runs is not None:
+            raise InputError("goes with --minimise or --maximise", field="--runs")
+        return None
+    said = {"minimise": minimise, "maximise": maximise, "runs": runs, "seed": seed}
+    return {key: value for key, value in said.items() if value is not None}
+
+
+def _envelope(text: str | None, loads: str | None, pressures: str | None, speeds: str | None) -> dict[str, Any] | None:
+    if text is None:
+        given = {"--loads": loads, "--pressures": pressures, "--speeds": speeds}
+        for flag, value in given.items():
+            if value is not None:
+                raise InputError("goes with --envelope", field=flag)
+        return None
+    answer, sign, bound = _bound(text, "--envelope")
+    if sign != "<":
+        raise InputError(f"'{text}' must be ANSWER<VALUE, e.g. 'hottest_degC<110'", field="--envelope")
+    said: dict[str, Any] = {"below": bound, "answer": answer}
+    if loads is not None:
+        said["loads"] = _listed(loads, "--loads")
+    if pressures is not None:
+        said["pressures"] = _listed(pressures, "--pressures")
+    if speeds is not None:
+        slow, colon, fast = speeds.partition(":")
+        if not colon:
+            raise InputError(f"'{speeds}' is not FROM:TO, e.g. '1 m/s:60 m/s'", field="--speeds")
+        said |= {"slowest": slow.strip(), "fastest": fast.strip()}
+    return said

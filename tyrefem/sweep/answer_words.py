@@ -1,0 +1,50 @@
+"""Answers as people read them: a name in words, a unit, a number."""
+
+from __future__ import annotations
+
+#: Answers that have words of their own.
+WORDS = {
+    "hottest_degC": "highest temperature",
+    "rolling_resistance_coefficient": "rolling resistance coefficient",
+    "rolling_resistance_N": "rolling resistance",
+    "contained-air_degC": "contained air at the end",
+    "gradient_K_m": "steepest gradient through the carcass",
+    "mass_kg": "mass",
+    "time_to_limit_s": "time to the temperature asked for",
+}
+_UNITS = {
+    "_degC": "°C", "_K_m": "K/m", "_Pa": "Pa", "_kg": "kg", "_J": "J", "_N": "N", "_time_s": "s", "_limit_s": "s",
+    "_m": "m",
+}  # fmt: skip
+
+
+def shown(name: str, value: float, digits: int = 4) -> str:
+    """An answer as a person reads it.
+
+    >>> shown("hottest_degC", 81.234), shown("rolling_resistance_coefficient", 0.01)
+    ('81.23 °C', '0.01')
+    """
+    number = f"{value:.{digits}g}"
+    return f"{number} {unit_of(name)}".strip()
+
+
+def name_of(answer: str) -> str:
+    """An answer in words.
+
+    >>> name_of("hottest_degC"), name_of("crown-inner_max_degC")
+    ('highest temperature', 'crown-inner max')
+    """
+    return WORDS.get(answer, answer.removesuffix("_degC").replace("_", " "))
+
+
+def unit_of(name: str) -> str:
+    """Unit of an answer, from the end of its name; temperatures in °C, shares and coefficients none."""
+    for end, unit in _UNITS.items():
+        if name.endswith(end):
+            return unit
+    return ""
+
+
+def difference_unit(name: str) -> str:
+    """Unit of a difference of two such answers: of temperatures K."""
+    return "K" if name.endswith("_degC") else unit_of(name)

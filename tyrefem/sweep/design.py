@@ -1,0 +1,119 @@
+"""A design study: everything that a sweep file asks of a study, checked before anything runs, and the answers."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+from dataclasses import dataclass
+from pathlib import Path
+from typing import TYPE_CHECKING, Any, Protocol
+
+from tyrefem.errors import InputError
+from tyrefem.studies import Study
+from tyrefem.sweep.card import SweepCard
+from tyrefem.sweep.envelope import Envelope
+from tyrefem.sweep.indices import Indices
+from tyrefem.sweep.optimum import Optimum
+from tyrefem.sweep.pareto import ParetoFront
+from tyrefem.sweep.responses import Responses, judged
+from tyrefem.sweep.sweep import Sweep
+from tyrefem.sweep.tornado import Tornado
+
+if TYPE_CHECKING:
+    import pandas as pd
+    from matplotlib.figure import Figure
+
+
+class Part(Protocol):
+    """One answer: a table, words, pictures. Its folder of finished variants and its files have its ``name``."""
+
+    name: str
+    heading: str
+
+    @property
+    def table(self) -> pd.DataFrame:
+        """To take away."""
+        ...
+
+    @property
+    def words(self) -> list[str]:
+        """Sentences."""
+        ...
+
+    def figures(self) -> Iterator[tuple[str, str, Figure]]:
+        """(file name without ending, caption, picture)."""
+        ...
+
+    def to_dict(self) -> dict[str, Any]:
+        """JSON-ready."""
+        ...
+
+
+@dataclass(frozen=True, eq=False)
+class Design:
+    """The answers to a design study.
+
+    Parameters
+    ----------
+    study, card : what was asked. swept : the variants of the sample; None: none were asked for.
+    tornado, optimum, envelope : the answers asked for, else None. interrupted : why some were not reached; empty: none.
+    """
+
+    study: Study
+    card: SweepCard
+    swept: Sweep | None
+    tornado: Tornado | None = None
+    optimum: Optimum | None = None
+    envelope: Envelope | None = None
+    interrupted: str = ""
+
+    @property
+    def parts(self) -> tuple[Part, ...]:
+        """All answers, in the order in which they are told."""
+        found: list[Part] = []
+        if self.optimum is not None:
+            found.append(self.optimum)
+        if self.swept is not None and self.swept.outcomes:
+            found.append(Responses(self.swept, self.card.answers))
+            found.append(ParetoFront(self.swept, dict(self.card.pareto)))
+        found += [one for one in (self.indices, self.tornado, self.envelope) if one is not None]
+        return tuple(found)
+
+    @property
+    def table(self) -> pd.DataFrame:
+        """A row per variant: see `Sweep.table`; without a sample those that the optimiser evaluated."""
+        if self.swept is not None:
+            return self.swept.table
+        if self.optimum is not None:
+            return self.optimum.table
+        raise InputError("no variants were asked for")
+
+    @property
+    def pareto(self) -> pd.DataFrame:
+        """The variants that no other beats: see `tyrefem.sweep.pareto.front`."""
+        from tyrefem.sweep.pareto import front
+
+        return front(self.table, dict(self.card.pareto))
+
+    @property
+    def indices(self) -> Indices | None:
+        """Sobol indices, of a Saltelli sample."""
+        if self.swept is None or self.swept.plan.how.get("sample") != "saltelli" or not self.swept.complete:
+            return None
+        return Indices(self.swept, tuple(judged(self.swept, self.card.answers)))
+
+    @property
+    def failed(self) -> dict[str, str]:
+        """Variant -> why it has no answers."""
+        return {} if self.swept is None else self.swept.failed
+
+    @property
+    def words(self) -> list[str]:
+        """All answers in sentences."""
+        return [line for part in self.parts for line in part.words]
+
+    def save(self, folder: str | Path, *, pictures: bool = True) -> Path:
+        """Write every table (CSV and Parquet), ``summary.json``, and with pictures the PNG files and ``sweep.html``."""
+        from tyrefem.sweep.output import write
+
+        write(self, Path(folder), pictures=pictures)
+        return Path(folder)

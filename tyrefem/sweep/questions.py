@@ -1,0 +1,150 @@
+"""What a sweep file asks of a study, checked before anything runs."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Mapping
+from dataclasses import dataclass
+from pathlib import Path
+from typing import Any
+
+from tyrefem.errors import InputError
+from tyrefem.studies import Study
+from tyrefem.sweep.answers import check_answer
+from tyrefem.sweep.card import SweepCard
+from tyrefem.sweep.cluster import ClusterLostError
+from tyrefem.sweep.design import Design
+from tyrefem.sweep.envelope import Envelope, envelope
+from tyrefem.sweep.operating_points import checked_pairs
+from tyrefem.sweep.optimum import Optimum, optimum
+from tyrefem.sweep.plan import Plan, card_of, planned
+from tyrefem.sweep.responses import judged
+from tyrefem.sweep.schedulers import Scheduler
+from tyrefem.sweep.sweep import sweep
+from tyrefem.sweep.tornado import Tornado, tornado_plan
+
+
+@dataclass(frozen=True, eq=False)
+class Questions:
+    """What a sweep file asks of a study; all of it makes sense.
+
+    Parameters
+    ----------
+    plan : the variants of the sample, maybe none, with what varies. tornado : variants of the tolerances.
+    """
+
+    study: Study
+    card: SweepCard
+    plan: Plan
+    tornado: Plan | None
+
+    @property
+    def words(self) -> str:
+        """One line of what would be run."""
+        parts = [f"{len(self.plan.variants)} variants"] if self.card.sampled else []
+        if self.card.optimise is not None:
+            parts.append(f"an optimum of {self.card.optimise.answer} by {self.card.optimise.runs} variants at most")
+        if self.tornado is not None:
+            parts.append(f"a tornado of {(len(self.tornado.variants) - 1) // 2} tolerances")
+        if self.card.envelope is not None:
+            parts.append(f"an envelope of {len(checked_pairs(self.study, self.card.envelope))} loads and pressures")
+        return f"{', '.join(parts)}; study {self.study.name}"
+
+    def answered(
+        self,
+        *,
+        scheduler: Scheduler | None = None,
+        folder: Path | None = None,
+        restart: bool = False,
+        reduced: str = "auto",
+        tolerance: float = 0.01,
+        progress: Callable[[str, int, int], None] | None = None,
+    ) -> Design:
+        """Run what is needed; parameters as of `tyrefem.sweep.sweep.sweep`. Ctrl-C keeps what is finished.
+
+        A `Local` scheduler used as a context manager keeps its processes from one question to the next.
+        """
+        card = self.card
+
+        def options(name: str | None) -> dict[str, Any]:
+            place = folder if folder is None or name is None else folder / name
+            return {
+                "scheduler": scheduler, "folder": place, "restart": restart, "reduced": reduced,
+                "tolerance": tolerance, "progress": progress,
+            }  # fmt: skip
+
+        swept = tornado = best = safe = None
+        interrupted = ""
+        try:
+            if card.sampled:
+                swept = sweep(self.plan, **options(None))
+                interrupted = swept.interrupted
+            if self.tornado is not None and not interrupted:
+                moved = sweep(self.tornado, **options(Tornado.name) | {"reduced": "never"})
+                answers = card.answers or tuple(judged(moved)) or ("hottest_degC",)
+                tornado, interrupted = Tornado(moved, answers), moved.interrupted
+            if card.optimise is not None and not interrupted:
+                best = optimum(self.plan, card.optimise, known=swept, **options(Optimum.name))
+            if card.envelope is not None and not interrupted:
+                safe = envelope(self.study, card.envelope, **options(Envelope.name))
+        except KeyboardInterrupt:
+            interrupted = "interrupted"
+        except ClusterLostError as error:
+            interrupted = str(error)
+        return Design(self.study, card, swept, tornado, best, safe, interrupted)
+
+
+def questions(study: Study, card: SweepCard, near: Path | None = None) -> Questions:
+    """What a sweep file asks, or the first thing that makes no sense.
+
+    Raises
+    ------
+    InputError : a name, value or answer that the study does not have; two variants that are the same.
+    """
+    plan = planned(study, card, near)
+    try:
+        tornado = None if card.tornado is None else tornado_plan(study, card.tornado.tolerances, card.time_to)
+    except InputError as error:
+        raise error if error.file else error.within(field="tornado") from None
+    if card.optimise is not None:
+        try:
+            check_answer(card.optimise.answer, study, card.time_to)
+        except InputError as error:
+            raise error.within(field="optimise") from None
+    if card.envelope is not None:
+        checked_pairs(study, card.envelope)
+    return Questions(study, card, plan, tornado)
+
+
+#: What `Questions.answered` takes; everything else that `asked_of` is given is a key of a sweep file.
+RUN_OPTIONS = ("scheduler", "folder", "restart", "reduced", "tolerance", "progress")
+
+
+def asked_of(study: Study, vary: Mapping[str, Any] | None = None, **options: Any) -> Design:
+    """The answers to what `card_of` and `Questions.answered` take: `Study.sweep`."""
+    run = {name: options.pop(name) for name in RUN_OPTIONS if name in options}
+    if isinstance(run.get("folder"), str):
+        run["folder"] = Path(run["folder"])
+    return questions(study, card_of(study, vary, **options)).answered(**run)
+
+
+def loaded(name: str, changes: Mapping[str, Any] | None = None, **said: Any) -> Questions:
+    """The questions of a sweep file by name or path, the study's values changed by dotted names.
+
+    ``said``: keys of the file said otherwise; tables (``vary``, ``limits``) are laid over the file's.
+
+    >>> loaded("crown-angle").words
+    '100 variants, an optimum of mass_kg by 160 variants at most; study nasa-22x5.5-8pr'
+    """
+    from tyrefem import library
+    from tyrefem.cards import read_toml
+
+    path = library.find("sweep", name)
+    data = read_toml(path)
+    for key, value in said.items():
+        both = isinstance(value, Mapping) and isinstance(data.get(key), Mapping)
+        data[key] = {**data[key], **value} if both else value
+    card = SweepCard.check(data, path)
+    try:
+        return questions(card.load_study(path.parent, changes), card, path.parent)
+    except InputError as error:
+        raise error if error.file else error.within(file=path) from None

@@ -1,0 +1,200 @@
+"""What a sweep's table says at first sight: the best and the worst variant, and what moves an answer."""
+
+from __future__ import annotations
+
+import itertools
+from collections.abc import Iterator, Mapping
+from dataclasses import dataclass
+from typing import TYPE_CHECKING, Any
+
+import numpy as np
+
+from tyrefem.sweep.answer_words import difference_unit, name_of, shown
+from tyrefem.sweep.answers import TIME_TO
+from tyrefem.sweep.sweep import Sweep
+
+if TYPE_CHECKING:
+    import pandas as pd
+    from matplotlib.figure import Figure
+
+#: Answers that are drawn and judged, unless a sweep file says otherwise.
+USUAL = ("hottest_degC", "rolling_resistance_coefficient")
+#: Maps and curves of an answer, at most.
+MOST_MAPS, MOST_CURVES = 3, 4
+#: A number with more values than this has its effect from a straight line, not from means at its levels.
+MOST_LEVELS = 12
+
+
+def judged(found: Sweep, wanted: tuple[str, ...] = ()) -> list[str]:
+    """Answers that are drawn and judged: those wanted, else the usual ones; only such that vary."""
+    table = finished(found)
+    names = wanted or (*USUAL, *([TIME_TO] if found.plan.time_to is not None else []))
+    return [name for name in names if name in table and table[name].nunique() > 1]
+
+
+def finished(found: Sweep) -> pd.DataFrame:
+    """The rows that have answers."""
+    return found.table[found.table["failure"] == ""]
+
+
+def numeric(found: Sweep) -> list[str]:
+    """Headings of the varied numbers that make an axis."""
+    table = found.table
+    return [
+        one.heading
+        for one in found.plan.varied
+        if one.heading in table and table[one.heading].dtype.kind in "if" and table[one.heading].nunique() > 1
+    ]
+
+
+def main_effects(found: Sweep, answer: str) -> pd.DataFrame:
+    """How far each varied number moves an answer on average over the others; the strongest first.
+
+    Columns ``number``, ``low``, ``high`` (its ends; of a card or word the values with the lowest and highest mean) and
+    ``effect``, the answer's change from one to the other. From means at the levels where they are few, else from a
+    straight line fitted to all numbers together.
+    """
+    import pandas as pd
+
+    table, rows = finished(found).dropna(subset=[answer]), []
+    lines = [name for name in numeric(found) if table[name].nunique() > MOST_LEVELS]
+    slopes = _slopes(table, lines, answer)
+    for one in found.plan.varied:
+        name = one.heading
+        if name not in table or table[name].nunique() < 2:
+            continue
+        if name in slopes:
+            low, high = float(table[name].min()), float(table[name].max())
+            rows.append({"number": name, "low": low, "high": high, "effect": slopes[name] * (high - low)})
+            continue
+        means = table.groupby(name)[answer].mean()
+        values = means.to_numpy(dtype=float)
+        first, last = (0, -1) if name in numeric(found) else (int(values.argmin()), int(values.argmax()))
+        effect = float(values[last] - values[first])
+        rows.append({"number": name, "low": means.index[first], "high": means.index[last], "effect": effect})
+    effects = pd.DataFrame(rows, columns=["number", "low", "high", "effect"])
+    order = effects["effect"].abs().sort_values(ascending=False).index
+    return effects.loc[order].reset_index(drop=True)
+
+
+def _slopes(table: pd.DataFrame, names: list[str], answer: str) -> dict[str, float]:
+    if not names or len(table) <= len(names) + 1:
+        return {}
+    x = table[names].to_numpy(dtype=float)
+    scaled = (x - x.mean(axis=0)) / x.std(axis=0)
+    values = table[answer].to_numpy(dtype=float)
+    found, *_ = np.linalg.lstsq(np.column_stack([np.ones(len(x)), scaled]), values, rcond=None)
+    return dict(zip(names, (found[1:] / x.std(axis=0)).tolist(), strict=True))
+
+
+def words(found: Sweep, wanted: tuple[str, ...] = ()) -> list[str]:
+    """The answer in sentences: range of every judged answer, where, and what moves it."""
+    told = []
+    table = finished(found)
+    limited = bool(found.plan.limits) and len(table) > 0
+    if limited:
+        told.append(f"{int(table['feasible'].sum())} of {len(table)} variants keep the limits.")
+    for answer in judged(found, wanted):
+        kept = table[table["feasible"]] if limited and table["feasible"].any() else table
+        low, high = extreme(kept, answer, least=True), extreme(kept, answer, least=False)
+        told.append(
+            f"{capital(name_of(answer))}{' of those' if limited else ''}: from {shown(answer, low[answer])} "
+            f"({named(found, low)}) to {shown(answer, high[answer])} ({named(found, high)})."
+        )
+        effects = main_effects(found, answer)
+        if len(effects):
+            unit = difference_unit(answer)
+            moved = "; ".join(_moved(row, unit) for row in effects.to_dict("records"))
+            told.append(f"What moves the {name_of(answer)}, on average over the others: {moved}.")
+    return told
+
+
+def _moved(row: Mapping[Any, Any], unit: str) -> str:
+    ends = f"{_value(row['low'])} → {_value(row['high'])}{_unit(row['number'])}"
+    return f"{short(row['number'])}, {ends}, {row['effect']:+.3g} {unit}".rstrip()
+
+
+def extreme(table: pd.DataFrame, answer: str, *, least: bool) -> Mapping[str, Any]:
+    """The row with the smallest or largest answer."""
+    values = table[answer].to_numpy(dtype=float)
+    place = int(np.nanargmin(values) if least else np.nanargmax(values))
+    return {str(name): value for name, value in table.iloc[place].items()}
+
+
+def named(found: Sweep, row: Any) -> str:
+    """A variant with what it changes."""
+    headings = [one.heading for one in found.plan.varied]
+    values = ", ".join(f"{short(name)} {_value(row[name])}{_unit(name)}" for name in headings if name in row)
+    return f"variant {row['variant']}: {values}" if values else f"variant {row['variant']}"
+
+
+def capital(words: str) -> str:
+    """A sentence's beginning."""
+    return words[:1].upper() + words[1:]
+
+
+def short(heading: str) -> str:
+    """A varied name without its unit and the table it stands in."""
+    return heading.split(" [")[0].split(".", 1)[-1]
+
+
+def _unit(heading: str) -> str:
+    unit = heading.split(" [")[1].rstrip("]") if " [" in heading else ""
+    return {"": "", "x": "×", "deg": "°", "degC": " °C"}.get(unit, f" {unit}")
+
+
+def _value(value: Any) -> str:
+    return f"{value:.4g}" if isinstance(value, int | float | np.number) else str(value)
+
+
+@dataclass(frozen=True, eq=False)
+class Responses:
+    """The variants of a sweep and what moves their answers; ``wanted``: the answers that are drawn and judged."""
+
+    swept: Sweep
+    wanted: tuple[str, ...] = ()
+
+    name = "sweep"
+    heading = "What the variants say"
+
+    @property
+    def table(self) -> pd.DataFrame:
+        """See `Sweep.table`."""
+        return self.swept.table
+
+    @property
+    def words(self) -> list[str]:
+        """The answer in sentences."""
+        return words(self.swept, self.wanted)
+
+    def figures(self) -> Iterator[tuple[str, str, Figure]]:
+        """Maps over the two or three numbers that move the answer most, and curves over every number."""
+        from tyrefem.sweep.pictures import curves, response_map
+
+        if len(finished(self.swept)) < 2:
+            return
+        axes = numeric(self.swept)
+        for answer in judged(self.swept, self.wanted):
+            order = [name for name in main_effects(self.swept, answer)["number"] if name in axes]
+            for x, y in list(itertools.combinations(order[:MOST_MAPS], 2)):
+                yield (
+                    _file("map", answer, x, y),
+                    f"{name_of(answer)} over {x} and {y}; mean over the other numbers",
+                    response_map(self.swept, x, y, answer),
+                )
+            for x in order[:MOST_CURVES]:
+                yield _file("curves", answer, x), f"{name_of(answer)} over {x}", curves(self.swept, x, answer)
+            cards = [one.heading for one in self.swept.plan.varied if one.heading not in axes]
+            for name in cards if not axes else []:
+                yield _file("bars", answer, name), f"{name_of(answer)} by {name}", curves(self.swept, name, answer)
+
+    def to_dict(self) -> dict[str, Any]:
+        """JSON-ready."""
+        found = {
+            answer: main_effects(self.swept, answer).to_dict("records") for answer in judged(self.swept, self.wanted)
+        }
+        return {"main_effects": found, "words": self.words}
+
+
+def _file(*parts: str) -> str:
+    return "-".join(short(part).replace(".", "-").replace(" ", "-") for part in parts)
