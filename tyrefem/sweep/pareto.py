@@ -28,11 +28,15 @@ def undominated(values: Array) -> NDArray[np.bool_]:
     >>> undominated(np.array([[1.0, 2.0], [2.0, 1.0], [2.0, 2.0]])).tolist()
     [True, True, False]
     """
-    found: NDArray[np.bool_] = np.asarray(np.isfinite(values).all(axis=1))
-    for i in np.flatnonzero(found):
-        others = values[found]
-        if ((others <= values[i]).all(axis=1) & (others < values[i]).any(axis=1)).any():
-            found[i] = False
+    found = np.zeros(len(values), dtype=np.bool_)
+    finite = np.flatnonzero(np.isfinite(values).all(axis=1))
+    best = np.empty((0, values.shape[1]))
+    # Sorted, a row can only be beaten by one before it: the front so far is all it has to be held against.
+    for i in finite[np.lexsort(values[finite].T[::-1])]:
+        worse = (best <= values[i]).all(axis=1)
+        if not (worse & (best < values[i]).any(axis=1)).any():
+            found[i] = True
+            best = np.vstack([best, values[i]])
     return found
 
 

@@ -50,8 +50,8 @@ def places(varied: Sequence[Varied], sample: str, count: int, seed: int) -> Arra
         return np.asarray(sobol.sample(problem(varied), count, calc_second_order=False, seed=seed))
     rng = np.random.default_rng(seed)
     if sample == "latin-hypercube":
-        return np.asarray(qmc.LatinHypercube(len(varied), rng=rng).random(count))
-    return np.asarray(qmc.Sobol(len(varied), rng=rng).random_base2(max(math.ceil(math.log2(count)), 0)))
+        return np.asarray(qmc.LatinHypercube(len(varied), seed=rng).random(count))
+    return np.asarray(qmc.Sobol(len(varied), seed=rng).random_base2(max(math.ceil(math.log2(count)), 0)))
 
 
 def problem(varied: Sequence[Varied]) -> dict[str, Any]:
