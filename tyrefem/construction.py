@@ -21,6 +21,8 @@ Array = NDArray[np.float64]
 def region_thickness(section: Section, region: str) -> Array:
     """Least and greatest thickness [m] of the layer where it is this region, over all its pieces."""
     section.require_region(region)
+    if section.wrapping is not None and region == section.wrap:
+        return np.full(2, section.wrapping.thickness)
     values = []
     for piece in section.pieces:
         if piece.region == region:

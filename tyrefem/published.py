@@ -56,7 +56,8 @@ class Ratio(_Range):
 class Published(Card):
     """The table ``[published]`` of a study, all of it optional.
 
-    ``vertical_stiffness`` is load over deflection at the drive's first load; the footprint is that of a smooth tread.
+    ``vertical_stiffness`` is load over deflection at the drive's first load; length and width are the
+    footprint's outline, the area is what touches, less the grooves that the section draws.
     """
 
     vertical_stiffness: Stiffness | None = None
@@ -98,11 +99,22 @@ class Comparison:
         >>> print(Comparison("vertical_stiffness", 226e3, 180e3, 220e3, "a book").words)
         vertical stiffness 226, published 180 to 220 N/mm: outside (a book)
         """
+        quantity, value, between, verdict, source = self.cells
+        number, _, unit = value.partition(" ")
+        return f"{quantity} {number}, published {between}{' ' if unit else ''}{unit}: {verdict} ({source})"
+
+    @property
+    def cells(self) -> list[str]:
+        """A row of a table: quantity, result with its unit, published range, verdict, source.
+
+        >>> Comparison("footprint_length", 0.13, 0.12, 0.15, "a book").cells
+        ['footprint length', '130 mm', '120 to 150', 'inside', 'a book']
+        """
         unit, shown, digits = SHOWN[self.quantity]
         value, low, high = (format(convert(one, unit, shown), digits) for one in (self.value, self.low, self.high))
         name = "" if shown == "1" else f" {shown.replace('**', '')}"
         verdict = "inside" if self.inside else "outside"
-        return f"{self.quantity.replace('_', ' ')} {value}, published {low} to {high}{name}: {verdict} ({self.source})"
+        return [self.quantity.replace("_", " "), value + name, f"{low} to {high}", verdict, self.source]
 
     def to_dict(self) -> dict[str, Any]:
         """For JSON."""

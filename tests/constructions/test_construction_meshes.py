@@ -28,8 +28,9 @@ def test_mapped_quadrilaterals(name, fineness):
     section = RADIALS[name].section
     mesh = build(section, size=RADIALS[name].size / fineness, through=1)
     faithful(mesh, section, 4e-3)
-    # Right angles within 30 deg; ten rows of length per row of thickness, and what grading adds.
-    assert mesh.quality["scaled_jacobian"] > np.cos(np.radians(31))
+    # Right angles within 34 deg (where the tread thins out); ten rows of length per row of thickness, and what grading
+    # adds.
+    assert mesh.quality["scaled_jacobian"] > np.cos(np.radians(34))
     assert mesh.quality["edge_ratio"] < 15
 
 

@@ -2,10 +2,13 @@
 
 from __future__ import annotations
 
+import html
+
 import pytest
 
 import tyrefem as tf
 from tyrefem.published import Comparison, compared, of_run
+from tyrefem.report import render
 
 RADIALS = ("passenger-205-55r16", "truck-295-80r22.5", "aircraft-radial")
 
@@ -33,6 +36,18 @@ def test_label_classes_of_c3_tyres() -> None:
     assert known.between == (0.004, 0.008)
 
 
+def test_the_gross_area_of_the_truck_tyre_by_the_tire_and_rim_association() -> None:
+    """Design guide 3-24R2: 39.8 - 0.315 P + 0.00887 L + 0.000938 V square inches, V = 3.14 (H + D_r) S H, inches."""
+    study = tf.study("truck-295-80r22.5")
+    phase = study.card.drive.phases[0]
+    height, width, rim = 0.8 * 295 / 25.4, 298 / 25.4, 22.5
+    volume = 3.14 * (height + rim) * width * height
+    gross = 39.8 - 0.315 * phase.pressure.start / 6894.757 + 0.00887 * phase.load.start / 4.448222 + 0.000938 * volume
+    known = study.card.published.footprint_area
+    assert known is not None
+    assert known.between == pytest.approx((0.70 * gross * 0.0254**2, 0.85 * gross * 0.0254**2), rel=5e-3)
+
+
 def test_words_and_json() -> None:
     found = Comparison("footprint_length", 0.11, 0.12, 0.15, "a book")
     assert found.words == "footprint length 110, published 120 to 150 mm: outside (a book)"
@@ -44,13 +59,24 @@ def test_a_run_tells_its_own_beside_them() -> None:
     """A given strain cycle knows no footprint; the coefficient is the run's own."""
     study = tf.study(
         "passenger-205-55r16",
-        {"mesh.size": "12 mm", "mesh.element": "P1", "drive.duration": "60 s", "numerics.tolerance": "1 delta_degC"},
+        {
+            "mechanics.strain": "given",
+            "mesh.size": "12 mm",
+            "mesh.element": "P1",
+            "drive.duration": "60 s",
+            "numerics.tolerance": "1 delta_degC",
+        },
     )
     result = study.run()
     (only,) = of_run(result)
     assert only.quantity == "rolling_resistance_coefficient"
     assert only.value == result.rolling_resistance.coefficient
     assert result.summary()["published"] == [only.to_dict()]
+    page = render(result)
+    assert "Beside published ranges" in page
+    for cell in only.cells:
+        assert html.escape(cell, quote=False) in html.unescape(page).replace("&", "&amp;")
     without = study.replace({"published": {}}).run()
+    assert "Beside published ranges" not in render(without)
     assert of_run(without) == ()
     assert without.rolling_resistance.coefficient == only.value

@@ -104,6 +104,17 @@ class TreadCompliance:
         return length[self.nodes], axial[self.nodes]
 
     @functools.cached_property
+    def grooves(self) -> Array:
+        """(n, 2) axial stretches that the tread leaves out, m: between its facets, and at the mid plane of a half."""
+        mesh, tread = self.harmonics.state.mesh, self.harmonics.state.tread
+        ends = np.sort(mesh.p[1, mesh.facets[:, mesh.boundaries[tread]]], axis=0)
+        low, high = ends[:, np.argsort(ends[0])]
+        reached = np.maximum.accumulate(high)
+        starts = np.concatenate([[0.0 if self.half else low[0]], reached[:-1]])
+        open_ = low - starts > 1e-6
+        return np.stack([starts[open_], low[open_]], axis=1)
+
+    @functools.cached_property
     def dofs(self) -> Indices:
         """(components, m) degrees of freedom that are loaded."""
         return np.stack([COMPONENTS * self.nodes + c for c in self.components])

@@ -120,17 +120,22 @@ class Footprint:
 
     @property
     def width(self) -> float:
-        """Axial extent of the contact, m: the nodes that touch anywhere, each with its share of the tread."""
+        """Axial extent of the contact, m: the nodes that touch anywhere, each with its share of the tread, and the
+        grooves between them."""
         _, axial = self.grid.tread.widths
         both = 2.0 if self.pressing.tread.half else 1.0
         touching = np.flatnonzero(self.pressure.max(axis=0) > 0)
         if not len(touching):
             return 0.0
-        return float(both * axial[touching.min() : touching.max() + 1].sum())
+        reached = axial[touching.min() : touching.max() + 1].sum()
+        z, grooves = self.grid.tread.places[1], self.grid.tread.grooves
+        least = 0.0 if self.pressing.tread.half else z[touching.min()]
+        within = (grooves[:, 0] > least - 1e-6) & (grooves[:, 1] < z[touching.max()] + 1e-6)
+        return float(both * (reached + np.diff(grooves[within], axis=1).sum()))
 
     @property
     def area(self) -> float:
-        """Area in contact, m2."""
+        """Area in contact, m2, without that of grooves."""
         _, axial = self.grid.tread.widths
         both = 2.0 if self.pressing.tread.half else 1.0
         return float(both * 2 * (self.half_lengths * axial).sum())

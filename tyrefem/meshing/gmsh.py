@@ -80,8 +80,11 @@ def _draw(geometry: Any, section: Section, blocks: Blocks) -> Any:
     across = {place: lines(side) for place, side in blocks.across.items()}
     n, last = len(section.layers), len(blocks.spans) - 1
     groups: dict[str, list[Any]] = {}
+    hollow = {k for k in range(last) if section.in_groove(blocks.middle(k))}
     for i, layer in enumerate(section.layers):
         for k in range(last):
+            if i == n - 1 and k in hollow:
+                continue
             back = [-line for line in reversed(along[i + 1, k])] + [-line for line in reversed(across[i, k])]
             loop = geometry.add_curve_loop([*along[i, k], *across[i, k + 1], *back])
             name = str(layer.regions.at(blocks.middle(k)))
@@ -89,9 +92,14 @@ def _draw(geometry: Any, section: Section, blocks: Blocks) -> Any:
     edges: dict[str, list[Any]] = {"contained_air": [], "symmetry": []}
     for k in range(last):
         edges["contained_air"] += along[0, k]
-        edges.setdefault(str(section.outer.at(blocks.middle(k))), []).extend(along[n, k])
-    for i in range(n):
+        if k in hollow:
+            walls = [line for side in (k, k + 1) if side > 0 for line in across[n - 1, side]]
+            edges.setdefault(section.groove_boundary, []).extend([*along[n - 1, k], *walls])
+        else:
+            edges.setdefault(str(section.outer.at(blocks.middle(k))), []).extend(along[n, k])
+    for i in range(n if 0 not in hollow else n - 1):
         edges["symmetry"] += across[i, 0]
+    for i in range(n):
         edges[section.outer.names[-1]] += across[i, last]
     for name, members in [*groups.items(), *edges.items()]:
         geometry.add_physical(members, name)

@@ -8,8 +8,8 @@ import numpy as np
 from numpy.typing import NDArray
 
 from tyrefem.meshing.grid import Grid, make_grid
-from tyrefem.meshing.named import mirrored, named_mesh
-from tyrefem.section.section import Section
+from tyrefem.meshing.named import bare_edges, mirrored, named_mesh
+from tyrefem.section.section import GROOVE, Section
 
 Indices = NDArray[np.int64]
 
@@ -29,8 +29,13 @@ def mapped_mesh(section: Section, size: float, cell: str, through: int) -> Any:
         elements, names = _triangles(points, quads), np.repeat(names, 2)
     else:
         elements = quads
+    edges = _edges(half, grid, node)
+    if half.grooves:
+        elements, names = elements[names != GROOVE], names[names != GROOVE]
+        walls = bare_edges(elements, edges.values())
+        edges[half.groove_boundary] = np.concatenate([edges[half.groove_boundary], walls])
     regions = {name: np.flatnonzero(names == name) for name in half.regions}
-    mesh = named_mesh(points, elements, regions, _edges(half, grid, node))
+    mesh = named_mesh(points, elements, regions, edges)
     return mesh if section.half else mirrored(mesh)
 
 
@@ -45,12 +50,13 @@ def _edges(section: Section, grid: Grid, node: Indices) -> dict[str, Indices]:
     def along(line: Indices) -> Indices:
         return np.stack([line[:-1], line[1:]], axis=1)
 
-    outer = along(node[-1])
-    names = section.outer.at((grid.s[:-1] + grid.s[1:]) / 2)
-    edges = {name: outer[names == name] for name in dict.fromkeys(section.outer.names)}
+    outer, middle = along(node[-1]), (grid.s[:-1] + grid.s[1:]) / 2
+    names, rubber = section.outer.at(middle), ~section.in_groove(middle)
+    edges = {name: outer[(names == name) & rubber] for name in dict.fromkeys(section.outer.names)}
     last = section.outer.names[-1]
     edges[last] = np.concatenate([edges[last], along(node[:, -1])])
-    return {"contained_air": along(node[0]), **edges, "symmetry": along(node[:, 0])}
+    cut = grid.layer == len(section.layers) - 1 if section.in_groove(middle[0]) else np.zeros(len(grid.layer), bool)
+    return {"contained_air": along(node[0]), **edges, "symmetry": along(node[:, 0])[~cut]}
 
 
 def _triangles(points: NDArray[np.float64], quads: Indices) -> Indices:

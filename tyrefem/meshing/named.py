@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping
+from collections.abc import Iterable, Mapping
 from typing import Any
 
 import numpy as np
@@ -36,6 +36,14 @@ def named_mesh(points: Array, elements: Indices, regions: Mapping[str, Indices],
     return mesh.with_subdomains({name: np.sort(np.unique(found)) for name, found in regions.items()}).with_boundaries(
         {name: find_facets(mesh, new_number[pairs]) for name, pairs in edges.items()}
     )
+
+
+def bare_edges(elements: Indices, named: Iterable[Indices]) -> Indices:
+    """Node pairs (n, 2) that belong to one element (n, 3 or 4) only and to none of the named boundaries."""
+    pairs = np.sort(np.stack([elements, np.roll(elements, -1, axis=1)], axis=-1).reshape(-1, 2), axis=1)
+    single, counts = np.unique(pairs, axis=0, return_counts=True)
+    known = {(int(a), int(b)) for group in named for a, b in np.sort(group, axis=1)}
+    return np.array([pair for pair in single[counts == 1] if (int(pair[0]), int(pair[1])) not in known]).reshape(-1, 2)
 
 
 def find_facets(mesh: Any, pairs: Indices) -> Indices:

@@ -106,13 +106,12 @@ class TyreMesh:
 
     @cached_property
     def along_meridian(self) -> Callable[[Array], Array]:
-        """Unit vector along the meridian at points (2, n): the direction of the plies. The same function every time."""
+        """Unit vector along the meridian at points (2, n): the direction of the plies, which turn in the section's
+        region `wrap`. The same function every time."""
         section = self.section
 
         def direction(x: Array) -> Array:
-            s, _ = section.locate(np.asarray(x).T)
-            n_r, n_z = np.moveaxis(section.line.normal(s), -1, 0)
-            return np.array([-n_z, n_r])
+            return np.ascontiguousarray(np.moveaxis(section.ply_direction(np.asarray(x).T), -1, 0))
 
         return direction
 

@@ -96,14 +96,21 @@ def pressure_map_figure(found: Footprint) -> Figure:
 
 
 def pressure_map(found: Footprint) -> tuple[Array, Array, Array]:
-    """x (a,), z (b,) in m and pressure (b, a) in Pa over the whole footprint, mirrored where only half was solved."""
+    """x (a,), z (b,) in m and pressure (b, a) in Pa over the whole footprint, mirrored where only half was solved;
+    zero in the tread's grooves."""
     angles, (r, z) = found.grid.angles, found.grid.tread.places
     x = np.concatenate([-angles[:0:-1], angles]) * float(r.mean())
     pressure = np.concatenate([found.pressure[:0:-1], found.pressure]).T
     if found.pressing.tread.half:
         keep = z > 1e-9
         z, pressure = np.concatenate([-z[keep][::-1], z]), np.vstack([pressure[keep][::-1], pressure])
-    return x, z, pressure
+    edge = 1e-6
+    for low, high in found.grid.tread.grooves:
+        for start, end in {(low, high), (-high, -low)} if found.pressing.tread.half else {(low, high)}:
+            at = np.array([start + edge, end - edge])
+            z, pressure = np.concatenate([z, at]), np.vstack([pressure, np.zeros((2, len(x)))])
+    order = np.argsort(z, kind="stable")
+    return x, z[order], pressure[order]
 
 
 def strain_history_figure(cycle: StrainCycle, places: dict[str, tuple[float, float]], count: int = 361) -> Figure:

@@ -70,8 +70,10 @@ def column(
     # Their order is given, so each wants to be no higher than the one before.
     wanted = np.minimum.accumulate([min(max(label.y, low), high) for label in labels])
     places = -spread(-wanted, gap_now)
-    places += max(low - places.min(), 0.0)
-    places -= max(places.max() - high, 0.0)
+    # Up from the lower end, then down from the upper: together they fit.
+    rising = gap_now * np.arange(len(places))
+    places = np.maximum.accumulate((np.maximum(places, low) - rising[::-1])[::-1])[::-1] + rising[::-1]
+    places = np.minimum.accumulate(np.minimum(places, high) + rising) - rising
     nearer = 0.25 * gap * (1 if align == "right" else -1)
     for label, y in zip(labels, places, strict=True):
         _write(axes, label, x, float(y), size, align)

@@ -7,6 +7,7 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
+from tyrefem.published import of_run
 from tyrefem.report.assumptions import assumptions
 from tyrefem.report.inputs import boundary_rows, effect_rows, material_rows, mechanics_rows, section_sources, study_text
 from tyrefem.report.sliding import sliding_card, sliding_rows
@@ -33,6 +34,7 @@ def content(result: Result) -> dict[str, Any]:
         "warnings": result.warnings,
         "sliding": sliding_rows(result),
         "headline": headline(result),
+        "published": [one.cells for one in of_run(result)],
         "sensors": _sensors(result),
         "extremes": _extremes(result),
         "phases": [_phase(result, phase) for phase in result.phases],

@@ -9,7 +9,7 @@ from pathlib import Path
 
 import numpy as np
 
-from tyrefem.errors import InputError
+from tyrefem.errors import InputError, nearest
 from tyrefem.library import load as load_card
 from tyrefem.section.card import LayerCard, PartCard, SectionCard
 from tyrefem.section.division import Division
@@ -17,7 +17,7 @@ from tyrefem.section.layer import Layer, Rating
 from tyrefem.section.layup import Layup
 from tyrefem.section.line import Line, TwoArcs
 from tyrefem.section.profile import Profile
-from tyrefem.section.section import Section
+from tyrefem.section.section import GROOVE, Section
 from tyrefem.section.spline import SplineLine
 
 
@@ -130,18 +130,49 @@ def _section(card: SectionCard, name: str, half: bool, line: Line) -> Section:
     rating = None
     if card.rating is not None:
         rating = Rating(**{key: value for key, value in card.rating if key != "source"})
-    return Section(
+    outer = _division(card.boundaries, _marks(card, line), line.length, "boundaries")
+    section = Section(
         name=name,
         line=line,
-        layers=_layers(card, line),
+        layers=_grooved(card, _layers(card, line), outer),
         reference=card.line.reference,
-        outer=_division(card.boundaries, _marks(card, line), line.length, "boundaries"),
+        outer=outer,
         rating=rating,
         nominal_width=card.parameters.nominal_width,
         inner_volume=card.parameters.inner_volume,
         half=half,
         flange_radius=card.parameters.flange_radius,
+        wrap=card.wrap.region if card.wrap else None,
+        groove_boundary=card.grooves.boundary if card.grooves else "outside_air",
     )
+    try:
+        _ = section.wrapping
+    except InputError as error:
+        raise error if error.field else error.within(field="wrap.region") from None
+    return section
+
+
+def _grooved(card: SectionCard, layers: tuple[Layer, ...], outer: Division) -> tuple[Layer, ...]:
+    """The layers with the grooves cut out of the outermost."""
+    grooves = card.grooves
+    if grooves is None or grooves.width == 0:
+        return layers
+    if grooves.boundary not in outer.names:
+        hint = nearest(grooves.boundary, outer.names)
+        raise InputError(f"no boundary '{grooves.boundary}'{hint}", field="grooves.boundary")
+    *inner, tread = layers
+    regions, road = tread.regions, outer.ends[0]
+    for index, middle in enumerate(grooves.at):
+        start, end = max(middle - grooves.width / 2, 0.0), middle + grooves.width / 2
+        try:
+            if end >= road:
+                raise InputError(
+                    f"ends {end:.4g} m from the crown, beyond '{outer.names[0]}', which ends at {road:.4g} m"
+                )
+            regions = regions.cut(start, end, GROOVE)
+        except InputError as error:
+            raise InputError(f"groove at {middle:.4g} m: {error.message}", field=f"grooves.at.{index}") from None
+    return (*inner, replace(tread, regions=regions))
 
 
 def _marks(card: SectionCard, line: Line) -> dict[str, float]:

@@ -114,6 +114,25 @@ class ParametersCard(Card):
     source: Text
 
 
+class GroovesCard(Card):
+    """Circumferential grooves, cut through the outermost layer: middles ``at`` along the meridian, all one ``width``.
+
+    ``boundary`` names what their walls and bottoms belong to. A width of 0 leaves the tread smooth.
+    """
+
+    at: Lengths
+    width: Annotated[float, Unit("m", ge=0)]
+    boundary: Text = "outside_air"
+    source: Text
+
+
+class WrapCard(Card):
+    """The ``region`` in which plies leave the inner layer, run across the layers and on into the turn-up."""
+
+    region: Text
+    source: Text
+
+
 class RatingCard(Card):
     """Rated load and pressure, nominal size, cords and bead wire."""
 
@@ -143,6 +162,8 @@ class SectionCard(Card):
     parameters: ParametersCard
     layers: Annotated[tuple[LayerCard, ...], Field(min_length=1)]
     boundaries: Annotated[tuple[PartCard, ...], Field(min_length=1)]
+    grooves: GroovesCard | None = None
+    wrap: WrapCard | None = None
     rating: RatingCard | None = None
 
     @model_validator(mode="after")

@@ -46,6 +46,29 @@ class Division:
         s = np.abs(np.asarray(s, dtype=float))
         return np.asarray(self.names)[np.searchsorted(np.asarray(self.ends[:-1]) + 1e-12, s)]
 
+    def cut(self, start: float, end: float, name: str) -> Division:
+        """The same with what lies between two stations under another name.
+
+        Raises
+        ------
+        InputError : the stretch is not all within one part.
+
+        >>> Division(("tread",), (0.1,)).cut(0.02, 0.03, "groove").parts()
+        [('tread', 0.0, 0.02), ('groove', 0.02, 0.03), ('tread', 0.03, 0.1)]
+        """
+        pieces: list[tuple[str, float]] = []
+        begin, found = 0.0, False
+        for part, stop in zip(self.names, self.ends, strict=True):
+            if begin - 1e-9 <= start and end < stop - 1e-9:
+                found = True
+                pieces += [(part, start)] if start > begin + 1e-9 else []
+                pieces.append((name, end))
+            pieces.append((part, stop))
+            begin = stop
+        if not found:
+            raise InputError(f"'{name}' from {start:.4g} to {end:.4g} m does not lie within one part of it")
+        return Division(tuple(part for part, _ in pieces), tuple(stop for _, stop in pieces))
+
     def parts(self) -> list[tuple[str, float, float]]:
         """(name, start, end) of each part, neighbours of the same name joined."""
         parts: list[tuple[str, float, float]] = []

@@ -57,16 +57,33 @@ def boundary_lines(section: Section, name: str, spacing: float) -> list[Array]:
     for part, start, end in section.outer.parts():
         if part != name:
             continue
-        line = face(section, n, stations(section, start, end, spacing))
-        if end == section.outer.ends[-1]:
-            line = np.concatenate([line, end_face[-2::-1]])
-        if not section.half and start == 0:
-            lines.append(np.concatenate([line[:0:-1] * _MIRROR, line]))
-            continue
-        lines.append(line)
-        if not section.half:
-            lines.append(line * _MIRROR)
+        for low, high in _ribs(section, start, end):
+            line = face(section, n, stations(section, low, high, spacing))
+            if high == section.outer.ends[-1]:
+                line = np.concatenate([line, end_face[-2::-1]])
+            if not section.half and low == 0:
+                lines.append(np.concatenate([line[:0:-1] * _MIRROR, line]))
+                continue
+            lines.append(line)
+            if not section.half:
+                lines.append(line * _MIRROR)
+    for low, high in section.grooves if name == section.groove_boundary else ():
+        bottom = face(section, n - 1, stations(section, low, high, spacing))
+        top = face(section, n, np.array([low, high]))
+        line = np.concatenate([top[:1] if low > 0 else bottom[:0], bottom, top[1:]])
+        lines += [line] if section.half else [line, line * _MIRROR]
     return lines
+
+
+def _ribs(section: Section, start: float, end: float) -> list[tuple[float, float]]:
+    """What grooves leave of a stretch of the outer face."""
+    ribs, begin = [], start
+    for low, high in section.grooves:
+        if start <= low < end:
+            if low > begin:
+                ribs.append((begin, low))
+            begin = high
+    return [*ribs, (begin, end)]
 
 
 def _signed_stations(section: Section, start: float, end: float, spacing: float) -> Array:

@@ -15,8 +15,11 @@ from tyrefem.section.division import Division
 from tyrefem.section.layer import Layer, Piece, Rating
 from tyrefem.section.layup import Layup
 from tyrefem.section.line import Line
+from tyrefem.section.wrap import Wrap
 
 Array = NDArray[np.float64]
+#: Name of what is cut out of the outermost layer: no region, not meshed.
+GROOVE = "groove"
 
 
 @dataclass(frozen=True)
@@ -39,7 +42,9 @@ class Section:
     nominal_width : w of the report's shear formula and of the shoulder [m].
     inner_volume : measured air volume of the whole tyre [m3]; None: from the geometry.
     flange_radius : of the rim's flange [m]; None where unknown.
+    groove_boundary : boundary of the walls and bottoms of the parts of the outermost layer that are named `GROOVE`.
     half : only z >= 0, with the boundary ``symmetry`` at the mid plane.
+    wrap : region in which plies run round the bead, across the layers; None: there is none.
     as_built : the layers before wear; None: ``layers``. They place the meridian.
 
     Raises
@@ -69,6 +74,8 @@ class Section:
     half: bool = True
     as_built: tuple[Layer, ...] | None = None
     flange_radius: float | None = None
+    groove_boundary: str = "outside_air"
+    wrap: str | None = None
 
     def __post_init__(self) -> None:
         from tyrefem.section.possible import check_possible
@@ -99,7 +106,21 @@ class Section:
             Piece(index, start, end, name)
             for index, layer in enumerate(self.layers)
             for name, start, end in layer.regions.parts()
+            if name != GROOVE
         )
+
+    @cached_property
+    def grooves(self) -> tuple[tuple[float, float], ...]:
+        """(start, end) of every circumferential groove of the side z >= 0 along the meridian [m]."""
+        return tuple((start, end) for name, start, end in self.layers[-1].regions.parts() if name == GROOVE)
+
+    def in_groove(self, s: ArrayLike) -> NDArray[np.bool_]:
+        """Whether stations lie across a groove; on its walls they do not."""
+        x = np.abs(np.asarray(s, dtype=float))
+        found = np.zeros(x.shape, dtype=bool)
+        for start, end in self.grooves:
+            found |= (x > start + 1e-9) & (x < end - 1e-9)
+        return found
 
     @cached_property
     def breaks(self) -> tuple[float, ...]:
@@ -120,6 +141,11 @@ class Section:
         for layer in self.layers:
             ends.update(layer.regions.ends[:-1])
         return tuple(s for s in self.breaks if any(abs(s - end) < 1e-9 for end in ends))
+
+    @cached_property
+    def wrapping(self) -> Wrap | None:
+        """How the plies run in the region `wrap`; None: there is none."""
+        return None if self.wrap is None else Wrap(self, self.wrap)
 
     def require_region(self, name: str) -> None:
         """Raise `InputError` unless ``name`` is a region."""
@@ -171,6 +197,17 @@ class Section:
         s = self._x(s)
         return s, y - self.interfaces(s)[0]
 
+    def ply_direction(self, points: ArrayLike) -> Array:
+        """Unit vectors (..., 2) in (r, z) along which a radial ply runs at points (..., 2): the meridian's; in the
+        region `wrap` round the bead."""
+        s, y = self.line.nearest(points)
+        normal = self.line.normal(s)
+        along = np.stack([-normal[..., 1], normal[..., 0]], axis=-1)
+        if self.wrapping is None:
+            return along
+        forward, outward = self.wrapping.direction(s, y)
+        return np.asarray(forward[..., None] * along + outward[..., None] * normal)
+
     def clamp(self, s: ArrayLike, depth: ArrayLike, margin: float = 0.0) -> tuple[Array, Array]:
         """The nearest (s, depth) inside the rubber, at least ``margin`` [m] from its surface."""
         end = self.line.length - margin
@@ -199,7 +236,7 @@ class Section:
         return np.asarray((faces[index] + faces[index + 1]) / 2)
 
     def region_at(self, s: ArrayLike, depth: ArrayLike) -> NDArray[np.str_]:
-        """The region at (s, depth), same shape; beyond the surface, that of the nearest layer."""
+        """The region at (s, depth), same shape; beyond the surface, that of the nearest layer; `GROOVE` in a groove."""
         s, depth = np.broadcast_arrays(self._x(s), np.asarray(depth, dtype=float))
         faces = self.interfaces(s)
         index = sum(
@@ -213,7 +250,9 @@ class Section:
         points = np.asarray(points, dtype=float)
         s, depth = self.locate(points)
         inside = (np.abs(s) <= self.line.length + tolerance) & (depth >= -tolerance)
-        inside &= depth <= self.total_thickness(s) + tolerance
+        faces = self.interfaces(self._x(s))
+        highest = np.where(self.in_groove(s), faces[-2], faces[-1])
+        inside &= depth <= highest - faces[0] + tolerance
         return inside & (points[..., 1] >= -tolerance) if self.half else inside
 
     # Shape
@@ -287,7 +326,8 @@ class Section:
         if region not in outer.regions.names:
             raise InputError(f"region '{region}' is not on the outside of section '{self.name}' and cannot wear")
         profile = outer.thickness
-        left = np.where(outer.regions.at(profile.s) == region, 1.0 - fraction, 1.0)
+        names = outer.regions.at(profile.s)
+        left = np.where((names == region) | (names == GROOVE), 1.0 - fraction, 1.0)
         thinner = replace(profile, values=tuple((np.asarray(profile.values) * left).tolist()))
         layers = (*inner, replace(outer, thickness=thinner))
         return replace(self, layers=layers, as_built=self.built_layers)

@@ -145,6 +145,8 @@ class _Reader:
 
     def _thickness(self, region: str, s: Array) -> Array:
         section = self.study.section
+        if section.wrapping is not None and region == section.wrap:
+            return np.full(s.shape, section.wrapping.thickness)
         pieces = [piece for piece in section.pieces if piece.region == region]
         total = np.zeros(s.shape)
         for piece in pieces:
