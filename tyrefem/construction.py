@@ -69,5 +69,8 @@ def masses(section: Section, materials: Mapping[str, MaterialCard], temperature:
 
     The tread counts as drawn, without grooves.
     """
-    whole = section.as_full()
-    return {region: whole.volume(region) * materials[region].density.at(temperature) for region in whole.regions}
+    volumes: dict[str, float] = section.__dict__.setdefault("_whole_volumes", {})
+    if not volumes:
+        whole = section.as_full()
+        volumes |= {region: whole.volume(region) for region in whole.regions}
+    return {region: volume * materials[region].density.at(temperature) for region, volume in volumes.items()}

@@ -109,21 +109,20 @@ def _split(value: object, unit: str, wanted: str) -> tuple[float, str]:
 
 
 def _convert(magnitude: float, text: str, unit: str, value: object, wanted: str) -> float:
-    units = registry()
     if len(text) > 60:
         raise InputError(f"{text[:60]!r}... is not a unit; expected {wanted}")
     if not _UNIT.fullmatch(text) or re.search(r"\)\s*(?:\*\*|\^)", text):
         raise InputError(f"'{text}' in {value!r} is not a unit; expected {wanted}")
     try:
-        given = units.parse_units(text)
+        given = _named(text)
     except Exception as error:  # pint raises many kinds for text that is not a unit
         raise InputError(f"unknown unit '{text}' in {value!r}; expected {wanted}") from error
-    if unit == "delta_degC" and str(given) in ("degree_Celsius", "degree_Fahrenheit"):
-        difference = "delta_degC" if "Celsius" in str(given) else "delta_degF"
+    if unit == "delta_degC" and given in ("degree_Celsius", "degree_Fahrenheit"):
+        difference = "delta_degC" if "Celsius" in given else "delta_degF"
         raise InputError(
             f"{value!r} is a temperature, but a difference of temperatures is wanted: write '{difference}'"
         )
-    if unit == "degC" and "delta" in str(given):
+    if unit == "degC" and "delta" in given:
         raise InputError(f"{value!r} is a difference of temperatures, but a temperature is wanted: 'degC'")
     try:
         result = _converted(magnitude, text, unit)
@@ -136,9 +135,25 @@ def _convert(magnitude: float, text: str, unit: str, value: object, wanted: str)
     return result
 
 
-@functools.lru_cache(maxsize=4096)
+@functools.lru_cache(maxsize=512)
+def _named(text: str) -> str:
+    """What pint calls a unit; raises as pint does."""
+    return str(registry().parse_units(text))
+
+
 def _converted(magnitude: float, text: str, unit: str) -> float:
-    """A study is read again for every variant of it, with mostly the same numbers: pint is asked once."""
+    """A study is read again for every variant of it, with mostly the same units: pint is asked once."""
+    factor = _factor(text, unit)
+    return _by_pint(magnitude, text, unit) if factor is None else magnitude * factor
+
+
+@functools.lru_cache(maxsize=512)
+def _factor(text: str, unit: str) -> float | None:
+    """What pint multiplies by; None for a unit with an offset."""
+    return None if _by_pint(0.0, text, unit) != 0.0 else _by_pint(1.0, text, unit)
+
+
+def _by_pint(magnitude: float, text: str, unit: str) -> float:
     units = registry()
     target = "dimensionless" if unit == "1" else unit
     return float(units.Quantity(magnitude, units.parse_units(text)).to(target).magnitude)

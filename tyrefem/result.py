@@ -15,14 +15,15 @@ from tyrefem.boundaries.contained_air import ATMOSPHERE, KELVIN
 from tyrefem.heat_budget import HeatBudget, whole_tyre
 from tyrefem.limits import warnings_of
 from tyrefem.phase_state import PhaseState, phase_states
-from tyrefem.rolling_resistance import RollingResistance, rolling_reading, rolling_resistance
+from tyrefem.rolling_resistance import RollingResistance, just_before, rolling_reading, rolling_resistance
 from tyrefem.sensors import recorded, true_places
 from tyrefem.sliding.outcome import SlidingOutcome, sliding_outcome
+from tyrefem.wall import inside, wall_of
 
 if TYPE_CHECKING:
     import pandas as pd
 
-    from tyrefem.conduction.history import History
+    from tyrefem.conduction.history import History, Peak
     from tyrefem.feedback import FeedbackOutcome
     from tyrefem.rolling import RollingTyre
     from tyrefem.studies import Study
@@ -68,8 +69,7 @@ class Result:
     def _inside(self, points: ArrayLike) -> Array:
         """Points moved by the sag of straight-sided elements at most, so that a surface point is in the mesh."""
         section = self.study.section
-        s, depth = section.locate(np.asarray(points, dtype=float).reshape(-1, 2))
-        return np.asarray(section.place(*section.clamp(s, depth, self.tyre.mesh.size**2 / 0.1)))
+        return inside(section, self.tyre.mesh.size, *section.locate(np.asarray(points, dtype=float).reshape(-1, 2)))
 
     @property
     def sensor_points(self) -> Array:
@@ -81,14 +81,22 @@ class Result:
         """``time_s``, one column per sensor (lag applied), the contained air, and a lumped rim; degC."""
         import pandas as pd
 
-        columns: dict[str, Any] = {"time_s": self.times}
-        if self.sensor_places:
-            temperatures = self.at(self.sensor_points)
-            columns |= recorded(self.study, self.times, temperatures)
-        return pd.DataFrame(columns | {GAS: self.gas_temperature} | self._rim_column())
+        lumped = {GAS: self.gas_temperature}
+        if self.rim_temperature is not None:
+            lumped[RIM] = self.rim_temperature
+        return pd.DataFrame({"time_s": self.times, **self.recorded, **lumped})
 
-    def _rim_column(self) -> dict[str, Array]:
-        return {RIM: np.asarray(self.history.reservoirs[RIM])} if RIM in self.history.reservoirs else {}
+    @functools.cached_property
+    def recorded(self) -> dict[str, Array]:
+        """Sensor -> what the logger recorded, (n_times,) degC."""
+        if not self.sensor_places:
+            return {}
+        return recorded(self.study, self.times, self.at(self.sensor_points))
+
+    @property
+    def rim_temperature(self) -> Array | None:
+        """A lumped rim, (n_times,) degC; None where the rim's temperature is given."""
+        return np.asarray(self.history.reservoirs[RIM]) if RIM in self.history.reservoirs else None
 
     @functools.cached_property
     def gas_temperature(self) -> Array:
@@ -103,9 +111,21 @@ class Result:
 
         p + p_atm = (p_phase + p_atm) T / T_start, p_phase being the drive's (cold) pressure.
         """
-        cold = np.array([self.study.card.drive.value("pressure", t) for t in self.times])
-        start = self.gas_temperature[0] + KELVIN
-        return np.asarray((cold + ATMOSPHERE) * (self.gas_temperature + KELVIN) / start - ATMOSPHERE)
+        return np.array([self.pressure_at(i) for i in range(len(self.times))])
+
+    def pressure_at(self, i: int) -> float:
+        """The same at ``times[i]``, Pa."""
+        cold = self.study.card.drive.value("pressure", float(self.times[i])) or 0.0
+        start, now = self.gas_temperature[0] + KELVIN, self.gas_temperature[i] + KELVIN
+        return float((cold + ATMOSPHERE) * now / start - ATMOSPHERE)
+
+    @functools.cached_property
+    def wall_gradient(self) -> tuple[Array, Array]:
+        """s (k,) m along the meridian, and |T inner - T outer| / thickness there at the end, K/m."""
+        wall = wall_of(self.study.section, self.tyre.mesh.size)
+        field = self.history.field(len(self.times) - 1)
+        inner, outer = (np.asarray(field.at(points)) for points in (wall.inner, wall.outer))
+        return wall.s, np.abs(inner - outer) / wall.thickness
 
     @functools.cached_property
     def gradient_at_sensors(self) -> pd.DataFrame:
@@ -137,9 +157,8 @@ class Result:
         import pandas as pd
 
         rows = []
-        peaks = {"tyre": self.history.maximum} | dict(self.history.region_maximum)
-        for region, peak in peaks.items():
-            s, depth = self.study.section.locate(np.array([peak.point]))
+        for region, peak in self.peaks.items():
+            s, depth = self.place_of(peak)
             rows.append(
                 {
                     "region": region,
@@ -147,11 +166,26 @@ class Result:
                     "time_s": peak.time,
                     "r_m": peak.point[0],
                     "z_m": peak.point[1],
-                    "s_m": float(s[0]),
-                    "depth_m": float(depth[0]),
+                    "s_m": s,
+                    "depth_m": depth,
                 }
             )
         return pd.DataFrame(rows)
+
+    @property
+    def peaks(self) -> dict[str, Peak]:
+        """Highest temperature of the ``tyre`` and of every region over the whole run."""
+        return {"tyre": self.history.maximum} | dict(self.history.region_maximum)
+
+    def place_of(self, peak: Peak) -> tuple[float, float]:
+        """(s, depth) of a peak, m."""
+        s, depth = self.study.section.locate(np.array([peak.point]))
+        return float(s[0]), float(depth[0])
+
+    @property
+    def highest(self) -> Array:
+        """Hottest node over time, (n_times,) degC."""
+        return np.asarray(self.history.values).max(axis=1)
 
     # -- heat --------------------------------------------------------------------------------------------------------
 
@@ -160,6 +194,33 @@ class Result:
         """W and J per region and boundary of the whole tyre; generated = stored + lost."""
         titles = {zone.name: zone.title for zone in self.tyre.schedule.zones}
         return whole_tyre(self.history.budget, titles, self.study.section.half, self.tyre.condition_names)
+
+    @property
+    def end_budget(self) -> HeatBudget:
+        """The heat budget; what is asked of it is its end."""
+        return self.heat_budget
+
+    @functools.cached_property
+    def _generated(self) -> tuple[Array, Array]:
+        energies, powers = self.heat_budget.energies, self.heat_budget.powers
+        rows = [[series[key] for key in energies if key[0] == "generated"] for series in (energies, powers)]
+        energy, power = (np.sum(each, axis=0) + np.zeros(len(self.times)) for each in rows)
+        return energy, power
+
+    def generated(self, i: int) -> tuple[float, float]:
+        """Heat of hysteresis in the whole tyre until ``times[i]``, J, and then, W."""
+        energy, power = self._generated
+        return float(energy[i]), float(power[i])
+
+    def cold_power(self, t: float) -> float:
+        """Power of hysteresis in the whole tyre with every point at the drive's initial temperature, W."""
+        problem, initial = self.tyre.problem, self.study.card.drive.initial
+        total = 0.0
+        for zone, source in self.tyre.sources.items():
+            nodes = problem.points(zone)
+            q = source(nodes, t, np.full(nodes.shape[1], initial))
+            total += float((problem.operators.source(zone) @ q).sum())
+        return total * (2.0 if self.study.section.half else 1.0)
 
     def heat_source(self, i: int) -> dict[str, tuple[Array, Array]]:
         """Zone -> (nodes (2, n), q (n,) W/m3) at ``times[i]``, from the zone's side of its borders."""
@@ -174,8 +235,7 @@ class Result:
 
     def just_before(self, i: int) -> float:
         """The time ``times[i]``, seen from before: at the end of a phase, that phase still counts."""
-        t = float(self.times[i])
-        return t - 1e-9 * max(t, 1.0) if i else t
+        return just_before(self.times, i)
 
     def _nodal(self, field: Any, zone: str) -> Array:
         return np.asarray(field.values[self.tyre.problem.operators.dofs(zone)])

@@ -3,12 +3,15 @@
 from __future__ import annotations
 
 from dataclasses import dataclass
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, Protocol
 
 import numpy as np
+from numpy.typing import NDArray
 
 if TYPE_CHECKING:
-    from tyrefem.result import Result
+    from tyrefem.rolling import RollingTyre
+
+Array = NDArray[np.float64]
 
 #: A wheel that turns slower than this share of its free speed hardly rolls (a judgement).
 TURNS = 0.01
@@ -30,41 +33,60 @@ class RollingResistance:
     cold_coefficient: float
 
 
-def rolling_reading(result: Result) -> int | None:
+class Rolled(Protocol):
+    """What rolling resistance needs of a run."""
+
+    @property
+    def tyre(self) -> RollingTyre:
+        """Its drive and load cases."""
+        ...
+
+    @property
+    def times(self) -> Array:
+        """Times of the readings, (n,) s."""
+        ...
+
+    def generated(self, i: int) -> tuple[float, float]:
+        """Heat of hysteresis in the whole tyre until ``times[i]``, J, and then, W."""
+        ...
+
+    def cold_power(self, t: float) -> float:
+        """The same at the drive's initial temperature, W."""
+        ...
+
+
+def rolling_reading(result: Rolled) -> int | None:
     """Number of the last reading of the rolling phase that made the most heat; None for a tyre that never rolls."""
-    drive, energy = result.study.card.drive, np.zeros(len(result.times))
-    for (kind, _), series in result.heat_budget.energies.items():
-        energy = energy + series if kind == "generated" else energy
+    tyre = result.tyre
+    drive = tyre.drive
     best: tuple[float, int] | None = None
-    for start, phase, state in zip(drive.starts, drive.phases, result.phases, strict=True):
-        if phase.speed.end <= 0 or state.load <= 0 or start >= result.times[-1]:
+    for start, phase in zip(drive.starts, drive.phases, strict=True):
+        t = (start + phase.duration) * (1 - 1e-12)
+        load = tyre.schedule.mean(lambda case: case.load, t)
+        if phase.speed.end <= 0 or load <= 0 or start >= result.times[-1]:
             continue
-        if result.tyre.rolling_speed(state.end * (1 - 1e-12)) <= TURNS * state.speed:
+        if tyre.rolling_speed(t) <= TURNS * tyre.speed(t):
             continue
         end = min(start + phase.duration, float(result.times[-1]))
         first, last = (int(np.searchsorted(result.times, t - 1e-6)) for t in (start, end))
-        heat = float(energy[last] - energy[first])
+        heat = result.generated(last)[0] - result.generated(first)[0]
         best = max(best, (heat, last)) if best else (heat, last)
     return None if best is None else best[1]
 
 
-def rolling_resistance(result: Result) -> RollingResistance:
+def rolling_resistance(result: Rolled) -> RollingResistance:
     """Force, N, and coefficient at the `rolling_reading`."""
-    i = result.rolling_reading
+    i = rolling_reading(result)
     if i is None:
         return RollingResistance("", 0.0, 0.0, 0.0, 0.0)
-    t, drive, tyre = result.just_before(i), result.study.card.drive, result.tyre
+    t, drive, tyre = just_before(result.times, i), result.tyre.drive, result.tyre
     phase = drive.phases[drive.locate(t)[0]].name
     speed, load = tyre.speed(t), float(tyre.schedule.mean(lambda case: case.load, t))
-    force, cold = float(result.heat_budget.power("generated")[i]) / speed, _cold_power(result, t) / speed
+    force, cold = result.generated(i)[1] / speed, result.cold_power(t) / speed
     return RollingResistance(phase, force, force / load, cold, cold / load)
 
 
-def _cold_power(result: Result, t: float) -> float:
-    problem, initial = result.tyre.problem, result.study.card.drive.initial
-    total = 0.0
-    for zone, source in result.tyre.sources.items():
-        nodes = problem.points(zone)
-        q = source(nodes, t, np.full(nodes.shape[1], initial))
-        total += float((problem.operators.source(zone) @ q).sum())
-    return total * (2.0 if result.study.section.half else 1.0)
+def just_before(times: Array, i: int) -> float:
+    """The time ``times[i]``, seen from before: at the end of a phase, that phase still counts."""
+    t = float(times[i])
+    return t - 1e-9 * max(t, 1.0) if i else t

@@ -45,7 +45,7 @@ class History:
     times : (n_times,) s; values : (n_times, n) degC at the unknowns.
     reservoirs : name -> (n_times,) degC.
     budget : the heat budget at `times`.
-    maximum : hottest point over all accepted steps; region_maximum : the same by region.
+    maximum : hottest point over all accepted steps and requested times; region_maximum : the same by region.
     steps : what it cost; interrupted : True if the run was stopped before its last time.
     """
 

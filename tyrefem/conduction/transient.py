@@ -69,7 +69,7 @@ class Integration:
         self._jump(low)
         b.settle(low, self.y.u, self.y.g)
         b.freeze(low, self.y)
-        self._look(first)
+        self._look(first, self.y)
         t, h = first, self._first_step(low, last - first)
         while t < last:
             h = self._rung(min(h, self.max_step))
@@ -131,7 +131,7 @@ class Integration:
         self.kept += b.reservoir_stored(step.y.g, end.g)
         self.y = end
         self.accepted += 1
-        self._look(t_new)
+        self._look(t_new, self.y)
 
     def _output(self, step: Step, theta: float, end: State | None, seen: float) -> None:
         b = self.balance
@@ -140,6 +140,7 @@ class Integration:
         if end is None and theta > 0:
             b.settle(t, y.u, y.g)
         slope = step.slope(theta)
+        self._look(self.times[len(self.values)], y)
         self.values.append(y.u.copy())
         self.gas.append(y.g.copy())
         self.tally.record(
@@ -150,10 +151,10 @@ class Integration:
             self.kept + b.reservoir_stored(step.y.g, y.g),
         )
 
-    def _look(self, t: float) -> None:
+    def _look(self, t: float, y: State) -> None:
         """Remember the hottest points."""
         for j, dofs in enumerate(self._regions):
-            u = self.y.u if dofs is None else self.y.u[dofs]
+            u = y.u if dofs is None else y.u[dofs]
             i = int(np.argmax(u))
             if u[i] > self._peaks[j][0]:
                 self._peaks[j] = (float(u[i]), i if dofs is None else int(dofs[i]), t)

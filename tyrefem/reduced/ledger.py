@@ -7,7 +7,7 @@ from typing import TYPE_CHECKING
 import numpy as np
 from numpy.typing import NDArray
 
-from tyrefem.conduction.budget import Tally
+from tyrefem.conduction.budget import Budget, Tally
 from tyrefem.conduction.history import History, Peak, Steps
 from tyrefem.reduced.model import ReducedBalance
 
@@ -21,34 +21,37 @@ class Ledger:
     """Powers by zone, by film, by exchange and power of reservoirs."""
 
     def __init__(self, balance: ReducedBalance) -> None:
-        self.b = balance
-        model = balance.model
-        self.rows = np.zeros((len(balance.exchanges), len(balance.start)))
-        self.areas = np.zeros(len(balance.exchanges))
-        self.given = np.array([one[1] is not None for one in balance.exchanges])
-        names, m = list(balance.reservoirs), model.size
-        for j, (side, _, film) in enumerate(balance.films):
-            _, r, area = model.surfaces[side]
-            self.rows[j, :m], self.areas[j] = -r, area
-            if isinstance(film.sink, str):
-                self.rows[j, m + names.index(film.sink)] = area
-        j = len(balance.films)
-        for i, name in enumerate(names):
-            for _, other in balance.reservoirs[name].exchanges:
-                self.rows[j, m + i], self.areas[j] = -1.0, 1.0
-                if isinstance(other, str):
-                    self.rows[j, m + names.index(other)] = 1.0
-                j += 1
+        self.b, self.at = balance, balance.exchanges
 
     @property
     def width(self) -> int:
         """Number of entries."""
-        return len(self.b.model.zones) + len(self.b.exchanges) + len(self.b.reservoirs)
+        return len(self.b.model.zones) + len(self.at.areas) + len(self.b.reservoirs)
 
     def powers(self, moment: Moment, q: Array, y: Array) -> Array:
         """(B, width) W of sources q (B, n_samples) and states y (B, n)."""
-        exchanged = moment.films * (y @ self.rows.T + np.where(self.given, moment.sinks * self.areas, 0.0))
+        at = self.at
+        exchanged = moment.films * (y @ at.rows.T + np.where(at.given, moment.sinks * at.areas, 0.0))
         return np.concatenate([q @ self.b.model.power.T, exchanged, moment.powers], axis=1)
+
+    def rest(self, q: Array, films: Array, sinks: Array, powers: Array, frozen: Array, y: Array) -> Array:
+        """(B, width, k) W but for what frozen films (B, n_exchanges) exchange with states y (B, n, k)."""
+        at, count = self.at, y.shape[2]
+        exchanged = films * np.where(at.given[:, None], sinks * at.areas[:, None], 0.0)
+        if films.shape[2] > 1:
+            exchanged = exchanged + (films - frozen[:, :, None]) * (at.rows @ y)
+        parts = [
+            self.b.model.power @ q,
+            *(np.broadcast_to(one, (*one.shape[:2], count)) for one in (exchanged, powers)),
+        ]
+        return np.concatenate(parts, axis=1)
+
+    def frozen(self, films: Array, y: Array) -> Array:
+        """(B, width, k) W, or J, of frozen films (B, n_exchanges) with states, or their integrals, y (B, n, k)."""
+        found = np.zeros((len(y), self.width, y.shape[2]))
+        first = len(self.b.model.zones)
+        found[:, first : first + films.shape[1]] = films[:, :, None] * (self.at.rows @ y)
+        return found
 
     def entries(self) -> list[tuple[str, str, int]]:
         names = list(self.b.reservoirs)
@@ -58,25 +61,16 @@ class Ledger:
         return found + [("reservoir", name, -1) for name in names]
 
 
-def history(
-    balance: ReducedBalance,
-    times: Array,
-    states: Array,
-    slopes: Array,
-    records: Array,
-    energies: Array,
-    steps: int,
-) -> History:
-    """The history of states (n_times, n) at times (s)."""
+def budget(
+    balance: ReducedBalance, times: Array, states: Array, slopes: Array, powers: Array, energies: Array
+) -> Budget:
+    """The budget at times (s) of states (n_times, n), the drive's start being that of the balance."""
     model, m, names = balance.model, balance.model.size, list(balance.reservoirs)
-    ops = model.operators
-    values = states[:, :m] @ model.V.T
-    capacity = {region: balance.bodies[region][2] * model.stored_row[region] for region in balance.bodies}
-    rows = np.array(list(capacity.values()))
-    stored = (states[:, :m] - states[0, :m]) @ rows.T
+    rows = np.array([balance.bodies[region][2] * model.stored_row[region] for region in balance.bodies])
+    stored = (states[:, :m] - balance.start[:m]) @ rows.T
     storing = slopes[:, :m] @ rows.T
     heat = np.array([float(one.heat_capacity) for one in balance.reservoirs.values()])  # type: ignore[arg-type]
-    held = (states[:, m:] - states[0, m:]) * heat
+    held = (states[:, m:] - balance.start[m:]) * heat
     into = {(side, number): film.sink for side, number, film in balance.films if isinstance(film.sink, str)}
     between: dict[tuple[str, int], tuple[str, str | None]] = {(name, -1): (name, None) for name in names}
     for name in names:
@@ -84,16 +78,26 @@ def history(
             between[name, i] = (name, other if isinstance(other, str) else None)
     tally = Tally(Ledger(balance).entries(), list(balance.bodies), names, into, between)
     for i in range(len(times)):
-        tally.record(energies[i], records[i], stored[i], storing[i], held[i])
+        tally.record(energies[i], powers[i], stored[i], storing[i], held[i])
+    return tally.budget(times)
+
+
+def history(
+    balance: ReducedBalance, times: Array, states: Array, found: Budget, looked: tuple[Array, Array], steps: int
+) -> History:
+    """The history of states (n_times, n) at times (s), with its budget; ``looked``: times and states of the peaks."""
+    model, m = balance.model, balance.model.size
+    ops, (when, seen) = model.operators, looked
+    own = seen[:, :m] @ model.V.T
     return History(
         operators=ops,
         materials=balance.tyre.bodies,
         times=times,
-        values=values,
-        reservoirs={name: states[:, m + i] for i, name in enumerate(names)},
-        budget=tally.budget(times),
-        maximum=_peak(ops.points, times, values, None),
-        region_maximum={region: _peak(ops.points, times, values, ops.dofs(region)) for region in balance.bodies},
+        values=states[:, :m] @ model.V.T,
+        reservoirs={name: states[:, m + i] for i, name in enumerate(balance.reservoirs)},
+        budget=found,
+        maximum=_peak(ops.points, when, own, None),
+        region_maximum={region: _peak(ops.points, when, own, ops.dofs(region)) for region in balance.bodies},
         steps=Steps(steps, 0, 0, 2 * steps),
     )
 

@@ -3,19 +3,24 @@
 from __future__ import annotations
 
 import functools
-from collections.abc import Mapping, Sequence
-from dataclasses import dataclass
+from collections.abc import Mapping
+from dataclasses import dataclass, field
 from typing import Any
 
 import numpy as np
 from numpy.typing import NDArray
 
-from tyrefem.conduction import Film, Material, Reservoir
+from tyrefem.conduction import Film, Material
 from tyrefem.conduction.conditions import is_number
 from tyrefem.conduction.operators import Operators
+from tyrefem.conduction.points import located
 from tyrefem.errors import InputError
+from tyrefem.reduced.balance import Exchanges, Layout, ReducedBalance
+from tyrefem.reduced.modes import CHOICE
 from tyrefem.rolling import RollingTyre
+from tyrefem.wall import wall_of
 
+__all__ = ["NotReducibleError", "ReducedBalance", "ReducedModel"]
 Array = NDArray[np.float64]
 
 
@@ -40,6 +45,8 @@ class ReducedModel:
     V: Array
     samples: Mapping[str, Array]
     nodes_from_samples: Array
+    #: Region -> its nodes that were about the hottest in training; others are looked at once.
+    hot: Mapping[str, NDArray[np.intp]] = field(default_factory=dict)
 
     @property
     def operators(self) -> Operators:
@@ -50,6 +57,11 @@ class ReducedModel:
     def size(self) -> int:
         """Number of modes."""
         return int(self.V.shape[1])
+
+    @functools.cached_property
+    def layouts(self) -> dict[Layout, Exchanges]:
+        """What `exchanges` has built."""
+        return {}
 
     @functools.cached_property
     def mass(self) -> dict[str, Array]:
@@ -86,6 +98,50 @@ class ReducedModel:
             row[surface.dofs] = surface.load(1.0)
             found[side] = (self._projected(data), row @ self.V, float(row.sum()))
         return found
+
+    @functools.cached_property
+    def regions(self) -> dict[str, NDArray[np.intp]]:
+        """Region -> its nodes."""
+        return {region: self.operators.dofs(region) for region in self.base.bodies}
+
+    @functools.cached_property
+    def wall(self) -> tuple[Array, Array, Array, Array]:
+        """s (k,) m, thickness (k,) m, and (k, m) modes at the inner and the outer surface there."""
+        wall = wall_of(self.base.study.section, self.base.mesh.size)
+        inner, outer = (self.rows(points) for points in (wall.inner, wall.outer))
+        return wall.s, wall.thickness, inner, outer
+
+    def rows(self, points: Array) -> Array:
+        """(k, m): modes at points (k, 2) in (r, z), m; found once."""
+        key = np.asarray(points, dtype=float).tobytes()
+        if key not in self._rows:
+            if len(self._rows) > 64:
+                self._rows.clear()
+            self._rows[key] = np.asarray(located(self.operators, points).value() @ self.V)
+        return self._rows[key]
+
+    @functools.cached_property
+    def _rows(self) -> dict[bytes, Array]:
+        return {}
+
+    @functools.cached_property
+    def node_places(self) -> dict[tuple[float, float], tuple[float, float]]:
+        """(r, z) -> (s, depth), m, of nodes that were asked for."""
+        return {}
+
+    @functools.cached_property
+    def places(self) -> dict[Any, Array]:
+        """Stated places of sensors -> where they are in the mesh."""
+        return {}
+
+    @functools.cached_property
+    def watched(self) -> Array:
+        """(m, m): modes at as many nodes, where they differ most; what is small there is small everywhere."""
+        from scipy.linalg import qr
+
+        some = self.V[:: max(len(self.V) // CHOICE, 1)]
+        _, _, pivots = qr(some.T, pivoting=True, mode="economic")
+        return some[pivots[: self.size]]
 
     @functools.cached_property
     def zones(self) -> list[str]:
@@ -142,6 +198,8 @@ class ReducedModel:
         ------
         NotReducibleError : another mesh, properties that depend on temperature, fluxes, radiation, sliding.
         """
+        if tyre.study.card.mechanics.feedback is not None and tyre.cycles is None:
+            raise NotReducibleError("strain cycles that follow the temperature")
         if tyre.mesh is not self.base.mesh:
             raise NotReducibleError("another mesh: geometry, strain zones or [mesh] differ")
         bodies = {region: _constant(region, body) for region, body in tyre.bodies.items()}
@@ -165,91 +223,3 @@ def _constant(region: str, body: Material) -> tuple[float, float, float]:
         raise NotReducibleError(f"conductivity or heat capacity of '{region}' depends on temperature")
     along, across = k if isinstance(k, tuple | list) else (k, k)
     return float(along), float(across), float(body.heat_capacity)  # type: ignore[arg-type]
-
-
-class ReducedBalance:
-    """M y' = A(t) y + b(t) + sources, y = (a, reservoirs)."""
-
-    def __init__(
-        self,
-        model: ReducedModel,
-        tyre: RollingTyre,
-        bodies: Mapping[str, tuple[float, float, float]],
-        films: Sequence[tuple[str, int, Film]],
-        reservoirs: Mapping[str, Reservoir],
-    ) -> None:
-        self.model, self.tyre, self.bodies, self.films, self.reservoirs = model, tyre, bodies, films, reservoirs
-        m, names = model.size, list(reservoirs)
-        n = m + len(names)
-        self.M = np.zeros((n, n))
-        self.K = np.zeros((n, n))
-        for region, (along, across, capacity) in bodies.items():
-            self.M[:m, :m] += capacity * model.mass[region]
-            first, second = model.conduction[region]
-            self.K[:m, :m] += along * first + across * second
-        for i, name in enumerate(names):
-            self.M[m + i, m + i] = float(reservoirs[name].heat_capacity)  # type: ignore[arg-type]
-        #: (coefficient(t), sink(t) or None, matrix (n, n), load (n,)) of everything that exchanges heat.
-        self.exchanges: list[tuple[Any, Any, Array, Array]] = []
-        for side, _, film in films:
-            R, r, area = model.surfaces[side]
-            matrix, load = np.zeros((n, n)), np.zeros(n)
-            matrix[:m, :m] = R
-            if isinstance(film.sink, str):
-                g = m + names.index(film.sink)
-                matrix[:m, g] = -r
-                matrix[g, :m] = -r
-                matrix[g, g] = area
-            else:
-                load[:m] = r
-            self.exchanges.append((film.h, None if isinstance(film.sink, str) else film.sink, matrix, load))
-        for i, name in enumerate(names):
-            for conductance, other in reservoirs[name].exchanges:
-                matrix, load = np.zeros((n, n)), np.zeros(n)
-                matrix[m + i, m + i] = 1.0
-                if isinstance(other, str):
-                    j = m + names.index(other)
-                    matrix[m + i, j] = matrix[j, m + i] = -1.0
-                    matrix[j, j] = 1.0
-                else:
-                    load[m + i] = 1.0
-                self.exchanges.append(
-                    (_timed(conductance), None if isinstance(other, str) else _timed(other), matrix, load)
-                )
-        self.stack = np.array([one[2] for one in self.exchanges]).reshape(len(self.exchanges), n, n)
-        self.loads = np.array([one[3] for one in self.exchanges]).reshape(len(self.exchanges), n)
-        self.start = np.zeros(n)
-        initial = tyre.drive.initial
-        # The first mode is even: V a = initial.
-        self.start[0] = initial / model.V[0, 0]
-        for i, name in enumerate(names):
-            own = reservoirs[name].initial
-            self.start[m + i] = initial if own is None else own
-
-    def coefficients(self, t: float) -> tuple[Array, Array]:
-        """(films and conductances, their sinks) at a time."""
-        h = np.array([_value(one[0], t) for one in self.exchanges])
-        sinks = np.array([0.0 if one[1] is None else _value(one[1], t) for one in self.exchanges])
-        return h, sinks
-
-    def source(self, t: float, a: Array) -> Array:
-        """(n_samples,) W/m3 at the samples."""
-        model = self.model
-        T = model.at_samples @ a
-        q = np.empty(len(T))
-        for zone, part in model.sample_slices.items():
-            q[part] = self.tyre.sources[zone](model.sample_points[zone], t, T[part])
-        return q
-
-    def powers(self, t: float) -> list[float]:
-        """W put into every reservoir from outside."""
-        return [_value(_timed(one.power), t) for one in self.reservoirs.values()]
-
-
-def _timed(datum: Any) -> Any:
-    return (lambda _x, t: datum(t)) if callable(datum) else datum
-
-
-def _value(datum: Any, t: float) -> float:
-    """A number, or a function of time that does not vary in space."""
-    return float(datum(None, t)) if callable(datum) else float(datum)

@@ -6,6 +6,8 @@ import numpy as np
 from numpy.typing import NDArray
 
 Array = NDArray[np.float64]
+#: Places are chosen among about so many.
+CHOICE = 3000
 
 
 def modes(snapshots: Array, weight: Array, tolerance: float, most: int) -> Array:
@@ -32,7 +34,18 @@ def modes(snapshots: Array, weight: Array, tolerance: float, most: int) -> Array
     count = min(int(np.argmax(left_out <= tolerance)), most - 1)
     count = min(count, int((values > 1e-13 * max(values[0], 1e-300)).sum()))
     found = (left[:, :count].T @ rest) / root / np.sqrt(values[:count])[:, None]
-    return np.linalg.qr(np.column_stack([even, *found]) * root[:, None])[0] / root[:, None]
+    # What is even stays exactly the first mode.
+    rest = found * root
+    return np.column_stack(
+        [even / np.linalg.norm(root), orthonormal((rest - np.outer(rest @ root, root)).T) / root[:, None]]
+    )
+
+
+def orthonormal(X: Array) -> Array:
+    """Columns that are nearly orthogonal made so, by Cholesky's factor of their products, twice."""
+    for _ in range(2):
+        X = np.linalg.solve(np.linalg.cholesky(X.T @ X), X.T).T
+    return X
 
 
 def places(fields: Array, tolerance: float, most: int, spare: float = 1.5) -> tuple[Array, Array]:
@@ -57,12 +70,15 @@ def places(fields: Array, tolerance: float, most: int, spare: float = 1.5) -> tu
     left_out = np.sqrt(np.append(np.cumsum(values[::-1])[::-1], 0.0) / max(values.sum(), 1e-300))
     count = max(min(int(np.argmax(left_out <= tolerance)), most), 1)
     count = min(count, int((values > 1e-13 * values[0]).sum()))
-    U = np.linalg.qr((fields.T @ left[:, :count]) / np.sqrt(values[:count]))[0]
+    U = orthonormal((fields.T @ left[:, :count]) / np.sqrt(values[:count]))
     wanted = min(int(np.ceil(spare * count)), U.shape[0])
-    _, _, pivots = qr(U.T, pivoting=True, mode="economic")
-    chosen = list(pivots[:count])
+    # Of a fine mesh's nodes a part is enough to choose from.
+    some = np.arange(0, len(U), max(len(U) // CHOICE, 1))
+    _, _, pivots = qr(U[some].T, pivoting=True, mode="economic")
+    chosen = list(some[pivots[:count]])
     # More places: where the leverage of the modes is largest among those left.
-    leverage = (U**2).sum(axis=1)
+    leverage = np.full(len(U), -1.0)
+    leverage[some] = (U[some] ** 2).sum(axis=1)
     leverage[chosen] = -1.0
     chosen += list(np.argsort(leverage)[::-1][: wanted - count])
     numbers = np.sort(np.array(chosen))

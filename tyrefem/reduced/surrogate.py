@@ -2,61 +2,51 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Mapping, Sequence
+from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import dataclass
 from typing import Any
 
 import numpy as np
 from numpy.typing import NDArray
 
+from tyrefem.dotted import all_changed, value_at
 from tyrefem.errors import InputError
 from tyrefem.reduced.batch import Batch
-from tyrefem.reduced.model import NotReducibleError, ReducedModel
-from tyrefem.reduced.train import Fineness, Snapshots, snapshots, source_snapshots, trained
-from tyrefem.reduced.work import Packed
-from tyrefem.result import Result
-from tyrefem.rolling import RollingTyre, output_times, run
+from tyrefem.reduced.model import NotReducibleError, ReducedBalance, ReducedModel
+from tyrefem.reduced.readout import Readout
+from tyrefem.reduced.school import School, Tick
+from tyrefem.reduced.train import Fineness
+from tyrefem.reduced.variant import Variant
+from tyrefem.reduced.work import Packed, pack
+from tyrefem.rolling import RollingTyre, output_times
 from tyrefem.studies import Study
 from tyrefem.sweep.answers import answers
 from tyrefem.sweep.bundle import Bundle
 from tyrefem.sweep.plan import Plan
 from tyrefem.sweep.schedulers import Here, Scheduler
-from tyrefem.sweep.task import Task, unpacked
 from tyrefem.sweep.varied import Varied
 
 Array = NDArray[np.float64]
 #: Variants marched side by side.
-SIDE_BY_SIDE = 64
-#: Full runs to begin with per number that varies, and at least; fresh ones to certify with; rounds at most.
-PER_NUMBER, LEAST, FRESH, ROUNDS = 1.5, 5, 4, 3
-#: Time error of the training runs over the study's: snapshots need not be that good, certification is.
-COARSER = 20.0
-#: Variants whose heat sources are looked at without running them.
-SOURCES = 24
+SIDE_BY_SIDE = 32
+#: K, of the reduced model's time integration; see `Batch`.
+TIME_TOLERANCE = 0.1
+#: Fresh full runs that a certificate is made of; how often it is tried.
+FRESH, TRIALS = 3, 3
+#: Time error of the training runs over the wanted tolerance: snapshots need not be good, certification is.
+COARSER = 100.0
+#: K: no full run is asked for a smaller time error. What is to be nearer than that fails for a reason.
+FINEST = 1e-3
+#: Rounds of corrections before the first certificate.
+ROUNDS = 3
+#: Largest correction of a round over the tolerance that ends the rounds: what is left is a fraction of it.
+ENOUGH = 1.0
+#: Share of the tolerance that the fresh runs may take up: the few of them do not show the worst case.
+SAFETY = 0.8
 
 
-@dataclass(frozen=True, eq=False)
-class Lesson:
-    """Work of a training run: the answers and snapshots of one variant."""
-
-    task: Task
-    fields: int
-    coarser: float = 1.0
-
-
-def learn(lesson: Lesson) -> dict[str, Any]:
-    """Done in a worker: ``{"snapshots", "answers"}`` or ``{"failure"}``."""
-    from tyrefem.conduction import SolverError
-
-    task = lesson.task
-    try:
-        study = unpacked(task.packed).replace(task.changes)
-        if lesson.coarser > 1:
-            study = study.replace({"numerics.tolerance": f"{study.tolerance * lesson.coarser:.6g} delta_degC"})
-        result = run(study)
-        return {"snapshots": snapshots(result, lesson.fields), "answers": answers(result, task.time_to)}
-    except (InputError, SolverError) as error:
-        return {"failure": str(error)}
+#: Tables of a study that no temperature depends on.
+UNSEEN = ("title", "measured", "cases", "diagnosis", "uncertainty")
 
 
 @dataclass(frozen=True, eq=False)
@@ -66,7 +56,8 @@ class Certificate:
     Parameters
     ----------
     errors : answer -> largest difference to full runs that it had not learnt from. cases : how many of them.
-    worst : largest error of any temperature answer, K. tolerance : what was asked for, K. trained_on : full runs.
+    worst : largest error of any temperature answer, K. tolerance : what was asked for, K. trained_on : full runs, or
+        what is left of them where some failed, and corrections. amended : corrections alone.
     """
 
     errors: Mapping[str, float]
@@ -74,11 +65,12 @@ class Certificate:
     worst: float
     tolerance: float
     trained_on: int
+    amended: int = 0
 
     @property
     def good(self) -> bool:
-        """Is it within the tolerance?"""
-        return self.worst <= self.tolerance
+        """Is it within the tolerance, with some room?"""
+        return self.worst <= SAFETY * self.tolerance
 
 
 @dataclass(frozen=True, eq=False)
@@ -92,38 +84,79 @@ class Surrogate:
 
     def packed(self, base: Bundle) -> Packed:
         """To be sent to other processes; ``base`` is the study it was made for."""
-        return Packed(base, self.model.V, self.model.samples, self.model.nodes_from_samples)
+        return pack(self.model, base)
 
     def answers(self, studies: Sequence[Study]) -> list[dict[str, Any]]:
-        """Outcomes of variants, marched side by side; one that cannot be reduced says so in ``not_reducible``."""
-        return reduced_answers(self.model, studies, self.time_to)
+        """``{"answers"}`` of studies, marched side by side; ``{"not_reducible": why}`` of one that is outside the box,
+        or differs in something that the box does not vary."""
+        reasons = [outside(study, self.model.base.study, self.varied) for study in studies]
+        found: list[dict[str, Any]] = [{"not_reducible": why} for why in reasons]
+        inside = [number for number, why in enumerate(reasons) if not why]
+        outcomes = reduced_answers(self.model, [studies[number] for number in inside], self.time_to)
+        for number, outcome in zip(inside, outcomes, strict=True):
+            found[number] = outcome
+        return found
+
+
+def outside(study: Study, base: Study, varied: Sequence[Varied]) -> str:
+    """Why a study is not in a box about another; empty: it is."""
+    for one in varied:
+        value = value_at(study.data, one.key, study.folder)
+        if not one.contains(value):
+            return f"'{one.key}' = {value!r} is outside the box of the reduced model"
+    same = {one.key: one.at(0.5) for one in varied}
+    mine, theirs = (all_changed(each.data, same) for each in (study, base))
+    for key in dict.fromkeys([*mine, *theirs]):
+        if key not in UNSEEN and mine.get(key) != theirs.get(key):
+            name = next((f"{key}.{k}" for k in _keys(mine, theirs, key)), key)
+            return f"'{name}' is not what it was in the study that the reduced model was made for"
+    return ""
+
+
+def _keys(mine: Mapping[str, Any], theirs: Mapping[str, Any], key: str) -> list[str]:
+    first, second = mine.get(key), theirs.get(key)
+    if not isinstance(first, Mapping) or not isinstance(second, Mapping):
+        return []
+    return [k for k in dict.fromkeys([*first, *second]) if first.get(k) != second.get(k)]
 
 
 def reduced_answers(model: ReducedModel, studies: Sequence[Study], time_to: float | None) -> list[dict[str, Any]]:
     """``{"answers"}``, ``{"failure"}`` or ``{"not_reducible"}`` per study."""
     found: list[dict[str, Any]] = [{} for _ in studies]
-    groups: dict[Any, list[tuple[int, Any]]] = {}
+    for number, outcome in reduced_outcomes(model, studies):
+        found[number] = {"answers": answers(outcome, time_to)} if isinstance(outcome, Variant) else outcome
+    return found
+
+
+def reduced_outcomes(
+    model: ReducedModel, studies: Sequence[Study], tolerance: float = TIME_TOLERANCE
+) -> Iterator[tuple[int, Variant | dict[str, str]]]:
+    """(number, variant) of every study, marched side by side; or ``{"failure"}`` or ``{"not_reducible"}``.
+
+    Parameters
+    ----------
+    tolerance : K, of time integration.
+    """
+    groups: dict[Any, list[tuple[int, ReducedBalance]]] = {}
     for number, study in enumerate(studies):
         tyre = RollingTyre(study, model.base)
         try:
             balance = model.balance(tyre)
         except NotReducibleError as error:
-            found[number] = {"not_reducible": str(error)}
+            yield number, {"not_reducible": str(error)}
         except InputError as error:
-            found[number] = {"failure": str(error)}
+            yield number, {"failure": str(error)}
         else:
-            key = tyre.drive.starts, tyre.drive.end, tuple(balance.reservoirs)
+            output = study.card.output
+            key = tyre.drive.starts, tyre.drive.end, tyre.schedule.knots, balance.layout, output.every, output.fields
             groups.setdefault(key, []).append((number, balance))
     for members in groups.values():
         for first in range(0, len(members), SIDE_BY_SIDE):
             part = members[first : first + SIDE_BY_SIDE]
-            marched = Batch(model, [balance for _, balance in part]).march()
-            for place, (number, balance) in enumerate(part):
-                tyre = balance.tyre
-                times, fields = output_times(tyre)
-                result = Result(tyre.study, tyre, marched.history(place, times), fields, 0.0)
-                found[number] = {"answers": answers(result, time_to)}
-    return found
+            marched = Batch(model, [balance for _, balance in part], tolerance).march()
+            readout = Readout(marched, output_times(part[0][1].tyre)[0])
+            for place, (number, _) in enumerate(part):
+                yield number, Variant(readout, place)
 
 
 def temperature_error(one: Mapping[str, Any], other: Mapping[str, Any]) -> float:
@@ -138,7 +171,7 @@ def surrogate(
     scheduler: Scheduler | None = None,
     choice: Fineness | None = None,
     seed: int = 7,
-    progress: Callable[[str, int, int], None] | None = None,
+    progress: Tick | None = None,
 ) -> Surrogate:
     """Train a reduced model for a plan's box, and try it on fresh full runs.
 
@@ -150,90 +183,53 @@ def surrogate(
     ------
     NotReducibleError : the box varies what a reduced model cannot follow, or the tolerance was not reached.
     """
+    check_varied(plan)
+    tick = progress or (lambda what, done, total: None)
+    lesson = School(plan, scheduler or Here(), choice or Fineness.of(tolerance), tick, seed)
+    # The middle and two opposite corners: the rest of the box is learnt from residuals.
+    count = len(plan.varied)
+    places = [np.full(count, 0.5), np.zeros(count), np.ones(count)]
+    lesson.run(places, COARSER * max(tolerance, FINEST), "training", asked=False)
+    certificate: Certificate | None = None
+    for trial in range(TRIALS):
+        model = lesson.rounds(1 if trial else ROUNDS, ENOUGH * tolerance)
+        places = lesson.fresh(FRESH)
+        known = len(lesson.learnt)
+        full = lesson.run(places, min(plan.study.tolerance, max(tolerance, FINEST)), "certifying", asked=True)
+        reduced = reduced_answers(model, [plan.study.replace(lesson.variant(one)) for one in places], plan.time_to)
+        refused = next((one["not_reducible"] for one in reduced if "not_reducible" in one), None)
+        if refused is not None:
+            raise NotReducibleError(refused)
+        both = [pair for pair in zip(reduced, full, strict=True) if all("answers" in one for one in pair)]
+        pairs = [(a["answers"], b["answers"]) for a, b in both]
+        if not pairs:
+            raise NotReducibleError("no run to certify with succeeded")
+        certificate = certified(pairs, tolerance, known, lesson.amended)
+        if certificate.good:
+            return Surrogate(model, plan.varied, certificate, plan.time_to)
+    assert certificate is not None
+    raise NotReducibleError(
+        f"after {certificate.amended} corrections fresh runs are still off by {certificate.worst:.3g} K;"
+        f" allowed: {SAFETY:g} x {tolerance:g} K"
+    )
+
+
+def certified(
+    pairs: Sequence[tuple[Mapping[str, Any], Mapping[str, Any]]], tolerance: float, trained_on: int, amended: int
+) -> Certificate:
+    """The certificate of pairs (reduced, full) of answers."""
+    names = [name for name, value in pairs[0][1].items() if isinstance(value, float)]
+    errors = {name: max(abs(a[name] - b[name]) for a, b in pairs) for name in names}
+    worst = max(temperature_error(a, b) for a, b in pairs)
+    return Certificate(errors, len(pairs), worst, tolerance, trained_on, amended)
+
+
+def check_varied(plan: Plan) -> None:
+    """Raise `NotReducibleError` where what a plan varies cannot be followed on one mesh."""
     if not plan.varied:
         raise NotReducibleError("variants from a list have no box to train in")
     for one in plan.varied:
         if one.key.split(".")[0] in ("section", "mesh", "output", "numerics"):
             raise NotReducibleError(f"'{one.key}' changes the mesh or the numbers' precision")
-    scheduler, choice = scheduler or Here(), choice or Fineness()
-    tick = progress or (lambda what, done, total: None)
-    from scipy.stats import qmc
-
-    count = max(int(np.ceil(PER_NUMBER * len(plan.varied))) + 2, LEAST)
-    base = RollingTyre(plan.study)
-    cube = qmc.Halton(len(plan.varied), seed=seed).random(count + ROUNDS * FRESH + SOURCES)
-    training, rest = [*_corners(len(plan.varied)), *cube[:count]], list(cube[count:])
-    # Learnt points are stretched to the faces of the box: inside is then interpolation.
-    training = [np.clip(0.5 + 1.15 * (place - 0.5), 0.0, 1.0) for place in training]
-
-    def variant(place: Array) -> dict[str, Any]:
-        return {one.key: one.at(float(u)) for one, u in zip(plan.varied, place, strict=True)}
-
-    def taught(places: Sequence[Array], coarser: float, what: str) -> list[dict[str, Any]]:
-        lessons = [
-            Lesson(Task(n, plan.packed, variant(place), plan.time_to), choice.fields, coarser)
-            for n, place in enumerate(places)
-        ]
-        outcomes: dict[int, dict[str, Any]] = {}
-        for place, outcome in scheduler.outcomes(learn, lessons):
-            outcomes[place] = outcome
-            tick(what, len(outcomes), len(lessons))
-        found = [outcomes[n] for n in range(len(lessons)) if "failure" not in outcomes[n]]
-        if not found:
-            raise NotReducibleError(f"no training run succeeded: {outcomes[0].get('failure')}")
-        return found
-
-    learnt: list[Snapshots] = [one["snapshots"] for one in taught(training, COARSER, "training")]
-    certificate: Certificate | None = None
-    for _ in range(ROUNDS):
-        fresh, rest = rest[:FRESH], rest[FRESH:]
-        more = _more_sources(plan, base, variant, rest[-SOURCES:], learnt)
-        model = trained(base, learnt, more, choice)
-        full = taught(fresh, 1.0, "certifying")
-        studies = [plan.study.replace(variant(place)) for place in fresh]
-        outcomes = reduced_answers(model, studies, plan.time_to)
-        refused = next((one["not_reducible"] for one in outcomes if "not_reducible" in one), None)
-        if refused is not None:
-            raise NotReducibleError(refused)
-        pairs = [(a["answers"], b["answers"]) for a, b in zip(outcomes, full, strict=True) if "answers" in a]
-        errors = {
-            name: max(abs(a[name] - b[name]) for a, b in pairs)
-            for name in pairs[0][1]
-            if isinstance(pairs[0][1][name], float)
-        }
-        worst = max(temperature_error(a, b) for a, b in pairs)
-        certificate = Certificate(errors, len(pairs), worst, tolerance, len(learnt))
-        if certificate.good:
-            return Surrogate(model, plan.varied, certificate, plan.time_to)
-        learnt += [one["snapshots"] for one in full]
-    assert certificate is not None
-    raise NotReducibleError(
-        f"after {certificate.trained_on} training runs fresh ones are still off by {certificate.worst:.3g} K;"
-        f" allowed: {tolerance:g} K"
-    )
-
-
-def _corners(count: int) -> list[Array]:
-    """The middle, and the two opposite corners."""
-    return [np.full(count, 0.5), np.zeros(count), np.ones(count)]
-
-
-def _more_sources(
-    plan: Plan,
-    base: RollingTyre,
-    variant: Callable[[Array], Mapping[str, Any]],
-    places: Sequence[Array],
-    learnt: Sequence[Snapshots],
-) -> Array | None:
-    """Heat sources of further variants at the hottest and the coldest end fields that were learnt."""
-    ends = np.array([one.fields[-1] for one in learnt])
-    order = np.argsort(ends.max(axis=1))
-    likely = ends[[order[0], order[len(order) // 2], order[-1]]]
-    found = []
-    for place in places:
-        try:
-            tyre = RollingTyre(plan.study.replace(variant(place)), base)
-            found.append(source_snapshots(tyre, likely))
-        except InputError:
-            continue
-    return np.vstack(found) if found else None
+    if plan.study.card.mechanics.feedback is not None:
+        raise NotReducibleError("strain cycles that follow the temperature")

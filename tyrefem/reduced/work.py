@@ -25,13 +25,14 @@ class Packed:
 
     Parameters
     ----------
-    base : the study it was made for. V, samples, nodes_from_samples : as `ReducedModel` has them.
+    base : the study it was made for. V, samples, nodes_from_samples, hot : as `ReducedModel` has them.
     """
 
     base: Bundle
     V: Array
     samples: Mapping[str, Array]
     nodes_from_samples: Array
+    hot: Mapping[str, NDArray[np.intp]]
 
     @functools.cached_property
     def digest(self) -> str:
@@ -41,15 +42,35 @@ class Packed:
     def unpacked(self) -> ReducedModel:
         """The model again, once per process."""
         if self.digest not in _MODELS:
-            from tyrefem.sweep.task import unpacked
-
             _MODELS.clear()
-            base = RollingTyre(unpacked(self.base))
-            _MODELS[self.digest] = ReducedModel(base, self.V, self.samples, self.nodes_from_samples)
+            _MODELS[self.digest] = ReducedModel(
+                base_of(self.base), self.V, self.samples, self.nodes_from_samples, self.hot
+            )
         return _MODELS[self.digest]
 
 
+def base_of(packed: Bundle) -> RollingTyre:
+    """The tyre of a study, whose mesh and operators serve all its variants; once per process."""
+    if packed.digest not in _BASES:
+        from tyrefem.sweep.task import unpacked
+
+        remember(packed, RollingTyre(unpacked(packed)))
+    return _BASES[packed.digest]
+
+
+def remember(packed: Bundle, base: RollingTyre) -> None:
+    """Let this tyre be the one that `base_of` gives here."""
+    _BASES.clear()
+    _BASES[packed.digest] = base
+
+
+def pack(model: ReducedModel, base: Bundle) -> Packed:
+    """A model to be sent to other processes; ``base`` is the study it was made for."""
+    return Packed(base, model.V, model.samples, model.nodes_from_samples, model.hot)
+
+
 _MODELS: dict[str, ReducedModel] = {}
+_BASES: dict[str, RollingTyre] = {}
 
 
 @dataclass(frozen=True, eq=False)

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from dataclasses import dataclass
+from functools import cached_property
 from typing import Protocol
 
 import numpy as np
@@ -79,17 +80,17 @@ class TwoArcs:
                 field="parameters.sidewall_radius",
             )
 
-    @property
+    @cached_property
     def shoulder_angle(self) -> float:
         """theta_c, the angle of the crown arc [rad]."""
         return float(np.arcsin(self.shoulder_x / self.crown_radius))
 
-    @property
+    @cached_property
     def shoulder_s(self) -> float:
         """S_c, the meridian length from the crown to the shoulder [m]."""
         return self.crown_radius * self.shoulder_angle
 
-    @property
+    @cached_property
     def sidewall_angle(self) -> float:
         """theta, the angle of the sidewall arc [rad]."""
         return (self.length - self.shoulder_s) / self.sidewall_radius
@@ -99,13 +100,13 @@ class TwoArcs:
         """Where the curvature jumps [m]."""
         return (self.shoulder_s,)
 
-    @property
+    @cached_property
     def shoulder(self) -> tuple[float, float]:
         """(x_c, y_c) of the shoulder in the report's axes: axial distance, radius [m]."""
         r, z = self.position(self.shoulder_s)
         return float(z), float(r)
 
-    @property
+    @cached_property
     def bead(self) -> tuple[float, float]:
         """(x_B, y_B) of the bead in the report's axes: axial distance, radius [m]."""
         r, z = self.position(self.length)

@@ -287,6 +287,10 @@ class Section:
         """
         if self.inner_volume is not None:
             return self.inner_volume / 2 if self.half else self.inner_volume
+        return self._gas_volume
+
+    @cached_property
+    def _gas_volume(self) -> float:
         return measures.gas_volume(self)
 
     @cached_property

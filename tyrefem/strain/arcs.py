@@ -65,6 +65,48 @@ class Strains:
     carcass_thickness: Array
 
 
+@dataclass(frozen=True)
+class Places:
+    """Where points (2, n) are, whatever the load: s, distance y from the carcass midline, thickness of the carcass,
+    radius of the meridian, and, of the sidewall, fraction of its arc and distance from the meridian."""
+
+    points: Array
+    s: Array
+    y: Array
+    thickness: Array
+    radius: Array
+    fraction: Array
+    offset: Array
+
+
+#: Sets of points of which a section keeps the places.
+REMEMBERED = 32
+
+
+def places(section: Any, at_crown: bool, points: Array) -> Places:
+    """The places of points of the crown or the sidewall; remembered for arrays that come back."""
+    known = section.__dict__.setdefault("_arc_places", {})
+    found: Places | None = known.get((at_crown, id(points)))
+    if found is not None and found.points is points:
+        return found
+    line = section.line
+    s, depth = section.locate(points.T)
+    s = np.minimum(np.abs(s), line.length)
+    y = np.asarray(section.midline_offset(s, depth))
+    s = np.minimum(s, line.shoulder_s) if at_crown else np.maximum(s, line.shoulder_s)
+    fraction, offset = s, s
+    if not at_crown:
+        fraction = (s - line.shoulder_s) / (line.length - line.shoulder_s)
+        # A half section's points, or the mirrored half's: either way the side with z >= 0.
+        offset = np.sum((np.abs(points.T) - line.position(s)) * line.normal(s), axis=1)
+    thickness = np.asarray(section.thickness("carcass", s))
+    found = Places(points, s, y, thickness, line.position(s)[:, 0], fraction, offset)
+    if len(known) >= REMEMBERED:
+        known.clear()
+    known[at_crown, id(points)] = found
+    return found
+
+
 @dataclass(frozen=True, eq=False)
 class Arcs:
     """The strain cycle of one load case on one section (SI units).
@@ -119,10 +161,7 @@ class Arcs:
     def deflected(self) -> DeflectedArcs:
         """The sidewall arc under the footprint's centre."""
         line = self.section.line
-        s = np.linspace(line.shoulder_s, line.length, 101)
-        stiffness = self._carcass_thickness(s) * self.stiffness.carcass.meridional(line.position(s)[:, 0])
-        compliance = float(np.trapezoid(1 / stiffness, s) / (line.length - line.shoulder_s))
-        return deflected_sidewall(line, self._deflection, compliance, self.case.pressure)
+        return deflected_sidewall(line, self._deflection, self._of_plies[0], self.case.pressure)
 
     def _carcass_thickness(self, s: Array) -> Array:
         return np.asarray(self.section.thickness("carcass", s))
@@ -142,62 +181,59 @@ class Arcs:
             self._membrane_change(np.array(line.shoulder[1]), np.array(line.crown_midline_radius - self._deflection))
         )
 
-    @functools.cached_property
-    def _cot2_integral(self) -> tuple[Array, Array]:
-        s = np.linspace(0.0, self.section.line.length, 401)
-        cot2 = self.stiffness.carcass.cot2(self.section.line.position(s)[:, 0])
-        return s, np.concatenate([[0.0], np.cumsum((cot2[1:] + cot2[:-1]) / 2 * np.diff(s))])
+    @property
+    def _of_plies(self) -> tuple[float, Array, Array]:
+        """Mean of 1/(h_c E_phi) over the sidewall, and s and the integral of cot^2 from the crown to it: the same for
+        all load cases."""
+        known: dict[Any, tuple[float, Array, Array]] = self.section.__dict__.setdefault("_arc_plies", {})
+        plies, line = self.stiffness.carcass, self.section.line
+        if plies not in known:
+            side = np.linspace(line.shoulder_s, line.length, 101)
+            stiffness = self._carcass_thickness(side) * plies.meridional(line.position(side)[:, 0])
+            compliance = float(np.trapezoid(1 / stiffness, side) / (line.length - line.shoulder_s))
+            s = np.linspace(0.0, line.length, 401)
+            cot2 = plies.cot2(line.position(s)[:, 0])
+            integral = np.concatenate([[0.0], np.cumsum((cot2[1:] + cot2[:-1]) / 2 * np.diff(s))])
+            if len(known) >= REMEMBERED:
+                known.clear()
+            known[plies] = compliance, s, integral
+        return known[plies]
 
     def _shear_force(self, s: Array, membrane_change: Array) -> Array:
         """N = (0.858/w) (N_phi,A - N_phi,B) int cot^2(alpha) ds from the crown (D5)."""
         return np.asarray(
-            STEEPEST_SLOPE / self.section.rating.width * -membrane_change * np.interp(s, *self._cot2_integral)
+            STEEPEST_SLOPE / self.section.rating.width * -membrane_change * np.interp(s, *self._of_plies[1:])
         )
 
     # -- strains -----------------------------------------------------------------------------------------------
 
     def strains(self, zone: str, points: Array) -> Strains:
         """Strain cycle at points (2, n) of zones I to IV."""
-        s, depth = self.section.locate(np.asarray(points).T)
-        s = np.minimum(np.abs(s), self.section.line.length)
-        y = np.asarray(self.section.midline_offset(s, depth))
         at_crown = zone in ("I", "II")
-        return (self._crown if at_crown else self._sidewall)(s, y, np.asarray(points).T)
+        return (self._crown if at_crown else self._sidewall)(places(self.section, at_crown, np.asarray(points)))
 
-    def _crown(self, s: Array, y: Array, _points: Array) -> Strains:
+    def _crown(self, at: Places) -> Strains:
         plies, line, case = self.stiffness.carcass, self.section.line, self.case
-        s = np.minimum(s, line.shoulder_s)
-        radius = line.position(s)[:, 0]
-        hoop = -self._deflection / radius - y * (1 / radius + 2 / case.drum_diameter)
-        modulus = plies.meridional(radius)
-        thickness = self._carcass_thickness(s)
-        membrane = np.full_like(s, self._shoulder_change)
-        stress = membrane / thickness - modulus * y / line.crown_radius
-        return self._strains(s, radius, hoop, stress, membrane, thickness)
+        hoop = -self._deflection / at.radius - at.y * (1 / at.radius + 2 / case.drum_diameter)
+        membrane = np.full_like(at.s, self._shoulder_change)
+        stress = membrane / at.thickness - plies.meridional(at.radius) * at.y / line.crown_radius
+        return self._strains(at, hoop, stress, membrane)
 
-    def _sidewall(self, s: Array, y: Array, points: Array) -> Strains:
+    def _sidewall(self, at: Places) -> Strains:
         plies, line = self.stiffness.carcass, self.section.line
-        s = np.maximum(s, line.shoulder_s)
-        radius = line.position(s)[:, 0]
-        fraction = (s - line.shoulder_s) / (line.length - line.shoulder_s)
-        # A half section's points, or the mirrored half's: either way the side with z >= 0.
-        offset = np.sum((np.abs(points) - line.position(s)) * line.normal(s), axis=1)
-        before, _ = self.inflated.place(fraction, offset)
-        after, _ = self.deflected.place(fraction, offset)
+        before, _ = self.inflated.place(at.fraction, at.offset)
+        after, _ = self.deflected.place(at.fraction, at.offset)
         hoop = (after - before) / before
-        midline_after, _ = self.deflected.place(fraction, np.zeros_like(s))
-        membrane = self._membrane_change(radius, midline_after)
-        thickness = self._carcass_thickness(s)
-        bending = plies.meridional(radius) * y * (1 / self.deflected.radius - 1 / line.sidewall_radius)
-        return self._strains(s, radius, hoop, membrane / thickness + bending, membrane, thickness)
+        midline_after, _ = self.deflected.place(at.fraction, np.zeros_like(at.s))
+        membrane = self._membrane_change(at.radius, midline_after)
+        bending = plies.meridional(at.radius) * at.y * (1 / self.deflected.radius - 1 / line.sidewall_radius)
+        return self._strains(at, hoop, membrane / at.thickness + bending, membrane)
 
-    def _strains(
-        self, s: Array, radius: Array, hoop: Array, stress: Array, membrane: Array, thickness: Array
-    ) -> Strains:
+    def _strains(self, at: Places, hoop: Array, stress: Array, membrane: Array) -> Strains:
         plies, k = self.stiffness.carcass, self._scale
-        meridional = plies.poisson_term * stress / plies.meridional(radius) - plies.poisson(radius) * hoop
-        shear = self._shear_force(s, membrane)
-        return Strains(radius, k * hoop, k * meridional, k * stress, k * shear, thickness)
+        meridional = plies.poisson_term * stress / plies.meridional(at.radius) - plies.poisson(at.radius) * hoop
+        shear = self._shear_force(at.s, membrane)
+        return Strains(at.radius, k * hoop, k * meridional, k * stress, k * shear, at.thickness)
 
     # -- energies ----------------------------------------------------------------------------------------------
 

@@ -77,12 +77,14 @@ def deflected_sidewall(line: Any, deflection: float, membrane_compliance: float,
 
     # From R_1 downwards the arc closes up; the first sign change is the wanted root.
     radii = np.linspace(line.sidewall_radius, 0.25 * line.sidewall_radius, 400)
-    radii = radii[[0 < stretched(r) / r < 2 * math.pi for r in radii]]
-    values = [gap(r) for r in radii]
-    for upper, lower, above, below in zip(radii, radii[1:], values, values[1:], strict=False):
-        if above >= 0 >= below and shoulder[1] > bead[1]:
-            radius = _bisected(gap, float(lower), float(upper))
-            return sidewall_arc(shoulder, bead, radius, stretched(radius))
+    lengths = length * (1 + pressure * (radii - line.sidewall_radius) * membrane_compliance)
+    possible = (lengths > 0) & (lengths < 2 * math.pi * radii)
+    radii, lengths = radii[possible], lengths[possible]
+    values = 2 * radii * np.sin(lengths / (2 * radii)) - chord
+    closes = np.flatnonzero((values[:-1] >= 0) & (values[1:] <= 0))
+    if len(closes) and shoulder[1] > bead[1]:
+        radius = _bisected(gap, float(radii[closes[0] + 1]), float(radii[closes[0]]))
+        return sidewall_arc(shoulder, bead, radius, stretched(radius))
     raise InputError(
         f"a deflection of {deflection * 1e3:.1f} mm is impossible for this section: with the crown flattened the "
         f"shoulder is {(shoulder[1] - bead[1]) * 1e3:.1f} mm above the bead, and no sidewall arc of "

@@ -17,13 +17,13 @@ from tyrefem.result import GAS, RIM
 from tyrefem.slip import slides
 
 if TYPE_CHECKING:
-    from tyrefem.result import Result
     from tyrefem.studies import Study
+    from tyrefem.sweep.outcome import Outcome
 
 Answers = dict[str, Any]
 #: Present only where a temperature to be reached was given.
 TIME_TO = "time_to_limit_s"
-Function = Callable[["Result", float | None], Answers]
+Function = Callable[["Outcome", float | None], Answers]
 #: Names of a function's answers for a study; ``*`` stands for any name.
 Names = Callable[["Study"], list[str]]
 _FUNCTIONS: list[tuple[Function, Names]] = []
@@ -39,7 +39,7 @@ def answer(names: Names) -> Callable[[Function], Function]:
     return add
 
 
-def answers(result: Result, time_to: float | None = None) -> Answers:
+def answers(result: Outcome, time_to: float | None = None) -> Answers:
     """Every answer of a run by name, the unit at its end; SI units and degC.
 
     Parameters
@@ -77,27 +77,27 @@ def check_answer(name: str, study: Study, time_to: float | None = None) -> None:
         *(f"{region}_max_degC" for region in study.section.regions),
     ]
 )
-def hottest(result: Result, _: float | None) -> Answers:
+def hottest(result: Outcome, _: float | None) -> Answers:
     """Highest temperature over the run, its place and time; per region."""
-    peaks = result.history.region_maximum
-    peak, place = result.history.maximum, result.extremes.iloc[0]
+    peaks = dict(result.peaks)
+    peak = peaks.pop("tyre")
+    along, depth = result.place_of(peak)
     return {
         "hottest_degC": float(peak.temperature),
         "hottest_region": max(peaks, key=lambda region: peaks[region].temperature),
-        "hottest_s_m": float(place.s_m),
-        "hottest_depth_m": float(place.depth_m),
+        "hottest_s_m": along,
+        "hottest_depth_m": depth,
         "hottest_time_s": float(peak.time),
         **{f"{region}_max_degC": float(one.temperature) for region, one in peaks.items()},
     }
 
 
 @answer(lambda study: [f"{name}{end}" for end in ("_degC", "_max_degC") for name in study.sensors])
-def sensors(result: Result, _: float | None) -> Answers:
+def sensors(result: Outcome, _: float | None) -> Answers:
     """Every sensor at the end and at its highest."""
-    readings = result.readings
-    names = [name for name in readings.columns if name not in ("time_s", GAS, RIM)]
-    return {f"{name}_degC": float(readings[name].iloc[-1]) for name in names} | {
-        f"{name}_max_degC": float(readings[name].max()) for name in names
+    read = result.recorded
+    return {f"{name}_degC": float(series[-1]) for name, series in read.items()} | {
+        f"{name}_max_degC": float(series.max()) for name, series in read.items()
     }
 
 
@@ -107,26 +107,20 @@ def sensors(result: Result, _: float | None) -> Answers:
         *([f"{RIM}_degC"] if isinstance(study.card.boundaries.rim, Lumped) else []),
     ]
 )
-def gas(result: Result, _: float | None) -> Answers:
+def gas(result: Outcome, _: float | None) -> Answers:
     """Contained air at the end; a lumped rim."""
     found = {
         f"{GAS}_degC": float(result.gas_temperature[-1]),
-        "gas_pressure_Pa": float(result.gas_pressure[-1]),
+        "gas_pressure_Pa": result.pressure_at(len(result.times) - 1),
     }
-    return found | ({f"{RIM}_degC": float(result.readings[RIM].iloc[-1])} if RIM in result.readings else {})
+    rim = result.rim_temperature
+    return found if rim is None else found | {f"{RIM}_degC": float(rim[-1])}
 
 
 @answer(lambda _: ["gradient_K_m", "gradient_s_m"])
-def gradient(result: Result, _: float | None) -> Answers:
+def gradient(result: Outcome, _: float | None) -> Answers:
     """Steepest mean gradient from the inner to the outer surface at the end, K/m, and where."""
-    section = result.study.section
-    lowest = 0.0 if section.half else -section.line.length
-    s = np.linspace(lowest, section.line.length, 41)[1:-1]
-    thickness = section.total_thickness(s)
-    ends = [result._inside(section.place(s, depth)) for depth in (np.zeros_like(s), thickness)]
-    field = result.history.field(len(result.times) - 1)
-    inner, outer = (np.asarray(field.at(points)) for points in ends)
-    steep = np.abs(inner - outer) / thickness
+    s, steep = result.wall_gradient
     i = int(np.argmax(steep))
     return {"gradient_K_m": float(steep[i]), "gradient_s_m": float(s[i])}
 
@@ -134,7 +128,7 @@ def gradient(result: Result, _: float | None) -> Answers:
 @answer(
     lambda _: [f"rolling_resistance_{end}" for end in ("N", "coefficient", "coefficient_cold")],
 )
-def resistance(result: Result, _: float | None) -> Answers:
+def resistance(result: Outcome, _: float | None) -> Answers:
     """Rolling resistance of hysteresis, warm and cold."""
     found = result.rolling_resistance
     return {
@@ -153,16 +147,20 @@ def resistance(result: Result, _: float | None) -> Answers:
         "heat_J",
     ]
 )
-def shares(result: Result, _: float | None) -> Answers:
+def shares(result: Outcome, _: float | None) -> Answers:
     """Parts of the heat budget over all heat that came into the rubber."""
-    table = result.heat_budget.table
-    chosen = table[table["kind"].isin(["lost", "stored"])]
-    found = {f"{row['kind']}_{row['name']}_share": float(row["share"]) for row in chosen.to_dict("records")}
-    return found | {"heat_J": result.heat_budget.made}
+    budget = result.end_budget
+    made = budget.made
+    found = {
+        f"{kind}_{name}_share": float(series[-1]) / made if made > 0 else float("nan")
+        for (kind, name), series in budget.energies.items()
+        if kind in ("lost", "stored")
+    }
+    return found | {"heat_J": made}
 
 
 @answer(lambda _: ["mass_kg"])
-def mass(result: Result, _: float | None) -> Answers:
+def mass(result: Outcome, _: float | None) -> Answers:
     """Mass of the whole tyre, kg."""
     from tyrefem.construction import masses
 
@@ -171,18 +169,21 @@ def mass(result: Result, _: float | None) -> Answers:
 
 
 @answer(lambda _: ["load_N", "deflection_m"])
-def drive(result: Result, _: float | None) -> Answers:
+def drive(result: Outcome, _: float | None) -> Answers:
     """Load and deflection of the last phase."""
-    phase = result.phases[-1]
-    return {"load_N": phase.load, "deflection_m": phase.deflection}
+    schedule, end = result.tyre.schedule, result.tyre.drive.end * (1 - 1e-12)
+    return {
+        "load_N": schedule.mean(lambda case: case.load, end),
+        "deflection_m": schedule.mean(lambda case: case.deflection, end),
+    }
 
 
 @answer(lambda _: [TIME_TO])
-def time_to_limit(result: Result, time_to: float | None) -> Answers:
+def time_to_limit(result: Outcome, time_to: float | None) -> Answers:
     """When the hottest node first reaches a temperature, s; NaN: not within the drive. Linear between readings."""
     if time_to is None:
         return {}
-    highest = np.asarray(result.history.values).max(axis=1)
+    highest = result.highest
     above = np.flatnonzero(highest >= time_to)
     if not len(above):
         return {TIME_TO: float("nan")}

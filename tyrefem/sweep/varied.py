@@ -11,6 +11,7 @@ import numpy as np
 
 from tyrefem.dotted import scaled, value_at
 from tyrefem.errors import InputError
+from tyrefem.quantity import parse
 from tyrefem.sweep.card import VaryCard
 
 if TYPE_CHECKING:
@@ -85,6 +86,26 @@ class Varied:
         if self.nominal is not None:
             return _ratio(value, self.nominal)
         return _amount(value)[0]
+
+    def contains(self, value: Any) -> bool:
+        """Is a value, as a study writes it, one that this takes?
+
+        >>> Varied("drive.speed", "mph", low=10.0, high=40.0).contains("10 m/s")
+        True
+        """
+        if self.values:
+            return value in self.values
+        try:
+            if self.nominal is not None:
+                number = _ratio(value, self.nominal)
+            else:
+                number, unit = _amount(value)
+                if unit != self.unit:
+                    number = parse(value, self.unit or "1")
+        except InputError:
+            return False
+        room = 1e-9 * max(abs(self.low), abs(self.high))
+        return self.low - room <= number <= self.high + room
 
     @property
     def grid(self) -> list[Any]:

@@ -1,0 +1,220 @@
+"""A reduced model against full runs: within its certificate inside its box, refused or left alone elsewhere."""
+
+from __future__ import annotations
+
+import json
+
+import numpy as np
+import pytest
+from scipy.integrate import simpson
+
+from tyrefem import study
+from tyrefem.reduced.model import NotReducibleError
+from tyrefem.reduced.readout import Readout
+from tyrefem.reduced.surrogate import Surrogate, reduced_outcomes, surrogate, temperature_error
+from tyrefem.reduced.variant import Variant
+from tyrefem.reduced.work import ReducedTask, pack, perform_reduced
+from tyrefem.rolling import RollingTyre, output_times, run
+from tyrefem.studies import Study
+from tyrefem.sweep.answers import answers
+from tyrefem.sweep.plan import Plan, plan_of
+from tyrefem.sweep.sweep import Sweep, sweep
+from tyrefem.sweep.task import perform
+
+BOX = {
+    "drive.speed": ("12 mph", "25 mph"),
+    "drive.load": ("2200 lbf", "3200 lbf"),
+    "materials.carcass.conductivity.value": ("0.18 W/m/K", "0.3 W/m/K"),
+}
+
+
+@pytest.fixture(scope="module")
+def tyre() -> Study:
+    return study("nasa-22x5.5-8pr", {"mesh.size": "12 mm", "drive.duration": "300 s", "output.every": "10 s"})
+
+
+@pytest.fixture(scope="module")
+def plan(tyre: Study) -> Plan:
+    return plan_of(tyre, BOX, sample="sobol", count=40, time_to="40 degC")
+
+
+@pytest.fixture(scope="module")
+def found(plan: Plan) -> Surrogate:
+    return surrogate(plan, tolerance=0.01)
+
+
+@pytest.fixture(scope="module")
+def variants(found: Surrogate, plan: Plan) -> list[Variant]:
+    studies = [plan.study.replace(plan.variants[number]) for number in (5, 17, 30)]
+    outcomes = [one for _, one in reduced_outcomes(found.model, studies)]
+    assert all(isinstance(one, Variant) for one in outcomes)
+    return outcomes  # type: ignore[return-value]
+
+
+def test_fresh_full_runs_are_met_within_the_tolerance(found: Surrogate, plan: Plan) -> None:
+    assert found.certificate.good
+    packed = pack(found.model, plan.packed)
+    for number in (3, 29):
+        reduced = perform_reduced(ReducedTask(packed, [plan.variants[number]], plan.time_to))["outcomes"][0]["answers"]
+        full = perform(plan.task(number))["answers"]
+        assert set(reduced) == set(full)
+        assert temperature_error(reduced, full) < 0.01
+        assert reduced["rolling_resistance_N"] == pytest.approx(full["rolling_resistance_N"], rel=1e-3)
+        assert reduced["time_to_limit_s"] == pytest.approx(full["time_to_limit_s"], abs=0.1)
+        assert reduced["hottest_region"] == full["hottest_region"]
+        assert reduced["lost_road contact_share"] == pytest.approx(full["lost_road contact_share"], abs=1e-4)
+
+
+def test_answers_are_those_of_the_whole_result(variants: list[Variant]) -> None:
+    for one in variants:
+        light, whole = answers(one, 40.0), answers(one.result, 40.0)
+        assert list(light) == list(whole)
+        for name, value in light.items():
+            # What the tyre loses when cold is summed over sample nodes in place of all.
+            close = 1e-4 if name.endswith("_cold") else 1e-9
+            assert value == whole[name] if isinstance(value, str) else value == pytest.approx(whole[name], rel=close)
+
+
+def test_a_reduced_budget_closes(variants: list[Variant]) -> None:
+    for one in variants:
+        budget = one.result.heat_budget
+        assert budget.imbalance < 1e-10
+        # Energy is the integral of power: by Simpson, but for the first readings, where powers change fast.
+        power = budget.power("generated")[5:]
+        energy = sum(series for (kind, _), series in budget.energies.items() if kind == "generated")
+        assert energy[-1] - energy[5] == pytest.approx(float(simpson(power, x=one.times[5:])), rel=1e-5)
+
+
+def test_variants_do_not_depend_on_their_company(found: Surrogate, plan: Plan) -> None:
+    studies = [plan.study.replace(plan.variants[number]) for number in (0, 9, 11)]
+    together, alone = found.answers(studies)[1]["answers"], found.answers(studies[1:2])[0]["answers"]
+    assert temperature_error(together, alone) < 1e-3
+
+
+def test_a_sweep_says_how_large_the_error_may_be(plan: Plan) -> None:
+    swept: Sweep = sweep(plan, tolerance=0.02)
+    assert swept.certificate is not None
+    assert (swept.table["by"] == "reduced").all()
+    assert (swept.table["error_K"] == swept.certificate.worst).all()
+    assert swept.certificate.worst <= 0.02
+    assert swept.certificate.errors["hottest_degC"] <= swept.certificate.worst
+
+
+def test_outside_its_box_it_is_not_asked(found: Surrogate, tyre: Study) -> None:
+    inside = tyre.replace({"drive.speed": "20 mph", "drive.load": "2500 lbf"})
+    assert "answers" in found.answers([inside])[0]
+    for key, value in (("drive.speed", "40 mph"), ("drive.load", "1000 lbf")):
+        refused = found.answers([inside.replace({key: value})])[0]["not_reducible"]
+        assert key in refused
+        assert "box" in refused
+    # What the box does not vary at all is as the study has it.
+    other = found.answers([inside.replace({"drive.ambient": "5 degC"})])[0]["not_reducible"]
+    assert "drive.ambient" in other
+
+
+def test_another_mesh_is_refused(found: Surrogate, tyre: Study) -> None:
+    finer = tyre.replace({"mesh.size": "11 mm"})
+    with pytest.raises(NotReducibleError, match="mesh"):
+        found.model.balance(RollingTyre(finer, found.model.base))
+
+
+def test_above_its_tolerance_it_falls_back_to_full_runs(tyre: Study, monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setattr("tyrefem.reduced.surrogate.TRIALS", 1)
+    monkeypatch.setattr("tyrefem.reduced.surrogate.ROUNDS", 1)
+    few = plan_of(
+        tyre.replace({"drive.duration": "20 s", "mesh.size": "25 mm", "mesh.element": "P1"}),
+        {"drive.speed": ("10 mph", "40 mph")},
+        sample="sobol",
+        count=12,
+    )
+    swept = sweep(few, tolerance=1e-9)
+    assert (swept.table["by"] == "full").all()
+    assert swept.certificate is None
+    assert "still off by" in swept.why_full
+    assert "x 1e-09 K" in swept.why_full
+    with pytest.raises(NotReducibleError):
+        sweep(few, tolerance=1e-9, reduced="always")
+
+
+@pytest.mark.parametrize(
+    ("changes", "key", "ends", "why"),
+    [
+        ({}, "section.tread_thickness", ("10 mm", "12 mm"), "changes the mesh"),
+        ({"mechanics.feedback": {}}, "drive.speed", ("10 mph", "20 mph"), "strain cycles that follow"),
+        ({"drive.slip_ratio": "0.1"}, "drive.speed", ("10 mph", "20 mph"), "Flux"),
+    ],
+)
+def test_what_cannot_be_reduced_says_why(
+    tyre: Study, changes: dict[str, object], key: str, ends: tuple[str, str], why: str
+) -> None:
+    varied = Plan(
+        changed := tyre.replace({"drive.duration": "20 s", **changes}),
+        plan_of(tyre, {"drive.speed": ends}).varied if key == "drive.speed" else (_named(key),),
+        (),
+        (),
+        {},
+        None,
+        {},
+    )
+    assert changed is varied.study
+    with pytest.raises(NotReducibleError, match=why):
+        surrogate(varied)
+
+
+def _named(key: str) -> object:
+    from tyrefem.sweep.varied import Varied
+
+    return Varied(key, "mm", low=10.0, high=12.0)
+
+
+def test_phases_ramps_and_a_lumped_rim() -> None:
+    taxi = study("nasa-taxi-takeoff", {"mesh.size": "25 mm", "output.every": "30 s"})
+    phases = [dict(one) for one in taxi.data["drive"]["phases"]]
+    for one, seconds in zip(phases, (60, 10, 20, 40), strict=True):
+        one["duration"] = f"{seconds} s"
+    short = taxi.replace({"drive.phases": phases})
+    plan = plan_of(short, {"materials.tread.loss_tangent.value": {"factor": [0.8, 1.2]}}, sample="sobol", count=12)
+    found = surrogate(plan, tolerance=0.05)
+    full = run(plan.study.replace(plan.variants[7]), like=found.model.base)
+    ((_, one),) = reduced_outcomes(found.model, [plan.study.replace(plan.variants[7])])
+    assert isinstance(one, Variant)
+    assert temperature_error(answers(one), answers(full)) < 0.05
+    assert np.abs(one.result.history.values - full.history.values).max() < 0.1
+    assert one.result.heat_budget.imbalance < 1e-10
+    assert one.rolling_resistance.phase == full.rolling_resistance.phase
+
+
+def test_a_full_section_is_its_half_twice(tyre: Study) -> None:
+    whole = tyre.replace({"mesh.section": "full", "drive.duration": "60 s"})
+    plan = plan_of(whole, {"drive.ambient": ("15 degC", "25 degC")}, sample="sobol", count=12)
+    found = surrogate(plan, tolerance=0.02)
+    both = whole.replace({"drive.ambient": "18 degC"})
+    reduced = found.answers([both])[0]["answers"]
+    half = answers(run(both.replace({"mesh.section": "half"})))
+    assert reduced["hottest_degC"] == pytest.approx(half["hottest_degC"], abs=0.05)
+    assert reduced["heat_J"] == pytest.approx(half["heat_J"], rel=2e-3)
+
+
+def test_the_hottest_place_is_found_where_training_never_saw_it(found: Surrogate, plan: Plan) -> None:
+    from dataclasses import replace
+
+    studies = [plan.study.replace(plan.variants[2])]
+    blind = replace(found.model, hot={region: dofs[:1] for region, dofs in found.model.regions.items()})
+    ((_, seen),) = reduced_outcomes(found.model, studies)
+    ((_, looked),) = reduced_outcomes(blind, studies)
+    assert isinstance(seen, Variant)
+    assert isinstance(looked, Variant)
+    assert looked.peaks["tyre"].temperature == pytest.approx(seen.peaks["tyre"].temperature, abs=1e-9)
+    assert looked.peaks["tyre"].point == seen.peaks["tyre"].point
+    assert isinstance(looked.readout, Readout)
+    assert np.array_equal(looked.times, output_times(looked.tyre)[0])
+
+
+def test_a_model_travels_as_arrays(found: Surrogate, plan: Plan) -> None:
+    import pickle
+
+    packed = pickle.loads(pickle.dumps(pack(found.model, plan.packed)))
+    there = perform_reduced(ReducedTask(packed, [plan.variants[1]], None))["outcomes"][0]["answers"]
+    here = found.answers([plan.study.replace(plan.variants[1])])[0]["answers"]
+    assert temperature_error(there, here) < 1e-9
+    assert json.dumps(there)

@@ -1,0 +1,145 @@
+"""Teaching a reduced model: full runs, and corrections by residuals, wherever the scheduler has room."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Mapping, Sequence
+from dataclasses import dataclass
+from typing import Any
+
+import numpy as np
+from numpy.typing import NDArray
+
+from tyrefem.errors import InputError
+from tyrefem.reduced.model import NotReducibleError, ReducedModel
+from tyrefem.reduced.residual import corrected
+from tyrefem.reduced.train import Fineness, Snapshots, snapshots, trained, training_run
+from tyrefem.reduced.work import Packed, base_of, pack, remember
+from tyrefem.rolling import RollingTyre, run
+from tyrefem.sweep.answers import answers
+from tyrefem.sweep.plan import Plan
+from tyrefem.sweep.schedulers import Scheduler
+from tyrefem.sweep.task import Task
+
+Array = NDArray[np.float64]
+Tick = Callable[[str, int, int], None]
+#: Variants corrected by residuals in a round, per number that varies and at least.
+PER_NUMBER, LEAST = 2.0, 10
+#: Horizons of the corrections over the duration of a phase, in turns.
+HORIZONS = (0.1, 0.5)
+#: Places of the box are stretched about its middle: corners are interpolated between, not extrapolated to.
+STRETCH = 1.25
+
+
+@dataclass(frozen=True, eq=False)
+class Lesson:
+    """Work of a full run: snapshots of one variant, and its answers.
+
+    Parameters
+    ----------
+    fields : temperature fields taken of it. time_tolerance : K, of the run. asked : whether answers are wanted.
+    """
+
+    task: Task
+    fields: int
+    time_tolerance: float
+    asked: bool
+
+
+def learn(lesson: Lesson) -> dict[str, Any]:
+    """Done in a worker: ``{"snapshots", "answers"}`` or ``{"failure"}``."""
+    from tyrefem.conduction import SolverError
+
+    task, base = lesson.task, base_of(lesson.task.packed)
+    try:
+        study = base.study.replace(task.changes)
+        if not lesson.asked:
+            return {"snapshots": training_run(RollingTyre(study, base), lesson.time_tolerance)}
+        result = run(study.replace({"numerics.tolerance": f"{lesson.time_tolerance:.6g} delta_degC"}), like=base)
+        return {"snapshots": snapshots(result, lesson.fields), "answers": answers(result, task.time_to)}
+    except (InputError, SolverError) as error:
+        return {"failure": str(error)}
+
+
+@dataclass(frozen=True, eq=False)
+class Amendment:
+    """Work of a correction by residuals: the model so far, a variant, and tau over the duration of every phase."""
+
+    model: Packed
+    changes: Mapping[str, Any]
+    share: float
+
+
+def amend(work: Amendment) -> dict[str, Any]:
+    """Done in a worker: ``{"snapshots", "correction"}`` or ``{"failure"}``, ``{"not_reducible"}``."""
+    model = work.model.unpacked()
+    try:
+        found, largest = corrected(model, RollingTyre(model.base.study.replace(work.changes), model.base), work.share)
+    except NotReducibleError as error:
+        return {"not_reducible": str(error)}
+    except InputError as error:
+        return {"failure": str(error)}
+    return {"snapshots": found, "correction": largest}
+
+
+class School:
+    """Teaches: full runs, and corrections by residuals."""
+
+    def __init__(self, plan: Plan, scheduler: Scheduler, choice: Fineness, tick: Tick, seed: int) -> None:
+        from scipy.stats import qmc
+
+        self.plan, self.scheduler, self.choice, self.tick = plan, scheduler, choice, tick
+        self.base = RollingTyre(plan.study)
+        remember(plan.packed, self.base)
+        self.learnt: list[Snapshots] = []
+        self.amended = 0
+        self.round = max(LEAST, int(np.ceil(PER_NUMBER * len(plan.varied))))
+        self.places = qmc.Halton(len(plan.varied), seed=seed)
+
+    def fresh(self, count: int) -> list[Array]:
+        """Places of the box that were not used yet."""
+        return list(self.places.random(count))
+
+    def variant(self, place: Array) -> dict[str, Any]:
+        """Changes at a place of the unit box."""
+        return {one.key: one.at(float(u)) for one, u in zip(self.plan.varied, place, strict=True)}
+
+    def run(self, places: Sequence[Array], time_tolerance: float, what: str, asked: bool) -> list[dict[str, Any]]:
+        """Outcomes of full runs; their snapshots are learnt."""
+        lessons = [
+            Lesson(
+                Task(n, self.plan.packed, self.variant(place), self.plan.time_to),
+                self.choice.fields,
+                time_tolerance,
+                asked,
+            )
+            for n, place in enumerate(places)
+        ]
+        found = self._done(learn, lessons, what)
+        if all("failure" in one for one in found):
+            raise NotReducibleError(f"no run for {what} succeeded: {found[0]['failure']}")
+        self.learnt += [one["snapshots"] for one in found if "snapshots" in one]
+        return found
+
+    def rounds(self, most: int, enough: float) -> ReducedModel:
+        """A model corrected at fresh places until corrections are small."""
+        for _ in range(most):
+            model = trained(self.base, self.learnt, self.choice)
+            packed = pack(model, self.plan.packed)
+            places = [np.clip(0.5 + STRETCH * (one - 0.5), 0.0, 1.0) for one in self.fresh(self.round)]
+            work = [Amendment(packed, self.variant(one), HORIZONS[n % len(HORIZONS)]) for n, one in enumerate(places)]
+            found = self._done(amend, work, "correcting")
+            refused = next((one["not_reducible"] for one in found if "not_reducible" in one), None)
+            if refused is not None:
+                raise NotReducibleError(refused)
+            self.learnt += [one["snapshots"] for one in found if "snapshots" in one]
+            self.amended += len(found)
+            if max((one["correction"] for one in found if "correction" in one), default=0.0) <= enough:
+                break
+        return trained(self.base, self.learnt, self.choice)
+
+    def _done(self, work: Callable[[Any], dict[str, Any]], tasks: Sequence[Any], what: str) -> list[dict[str, Any]]:
+        outcomes: dict[int, dict[str, Any]] = {}
+        for place, outcome in self.scheduler.outcomes(work, tasks):
+            outcomes[place] = outcome
+            self.tick(what, len(outcomes), len(tasks))
+        return [outcomes[n] for n in range(len(tasks))]

@@ -1,0 +1,148 @@
+"""One variant of a reduced model as a run that answers are asked of."""
+
+from __future__ import annotations
+
+import functools
+from dataclasses import dataclass
+from typing import Any
+
+import numpy as np
+from numpy.typing import NDArray
+
+from tyrefem.conduction.history import Peak
+from tyrefem.heat_budget import HeatBudget, whole_tyre
+from tyrefem.reduced.ledger import budget
+from tyrefem.reduced.readout import Readout
+from tyrefem.result import GAS, RIM, Result
+from tyrefem.rolling import RollingTyre, output_times
+from tyrefem.rolling_resistance import RollingResistance, rolling_resistance
+from tyrefem.sensors import recorded, true_places
+from tyrefem.studies import Study
+from tyrefem.wall import inside
+
+Array = NDArray[np.float64]
+
+
+@dataclass(frozen=True, eq=False)
+class Variant:
+    """A `tyrefem.sweep.outcome.Outcome` whose numbers come from modes; all else of a `Result` is made when asked for.
+
+    Parameters
+    ----------
+    readout : of its batch. number : its place there.
+    """
+
+    readout: Readout
+    number: int
+
+    @property
+    def tyre(self) -> RollingTyre:
+        """Its drive, load cases and materials."""
+        return self.readout.marched.batch.balances[self.number].tyre
+
+    @property
+    def study(self) -> Study:
+        """What it is."""
+        return self.tyre.study
+
+    @property
+    def times(self) -> Array:
+        """Times of the readings, (n,) s."""
+        return self.readout.times
+
+    @functools.cached_property
+    def result(self) -> Result:
+        """The whole result: every field, the budget over time."""
+        _, fields = output_times(self.tyre)
+        return Result(self.study, self.tyre, self.readout.marched.history(self.number, self.times), fields, 0.0)
+
+    def __getattr__(self, name: str) -> Any:
+        if name.startswith("__"):
+            raise AttributeError(name)
+        return getattr(self.result, name)
+
+    @property
+    def peaks(self) -> dict[str, Peak]:
+        """Highest temperature of the ``tyre`` and of every region."""
+        return self.readout.peaks[self.number]
+
+    def place_of(self, peak: Peak) -> tuple[float, float]:
+        """(s, depth) of a peak, m."""
+        known = self.readout.marched.batch.model.node_places
+        if peak.point not in known:
+            s, depth = self.study.section.locate(np.array([peak.point]))
+            known[peak.point] = float(s[0]), float(depth[0])
+        return known[peak.point]
+
+    @functools.cached_property
+    def recorded(self) -> dict[str, Array]:
+        """Sensor -> what the logger recorded, (n_times,) degC."""
+        places = true_places(self.study)
+        if not places:
+            return {}
+        model = self.readout.marched.batch.model
+        key = tuple(places.values())
+        if key not in model.places:
+            section = self.study.section
+            model.places[key] = inside(section, self.tyre.mesh.size, *section.locate(np.array(key)))
+        return recorded(self.study, self.times, self.readout.at(model.places[key])[:, self.number])
+
+    @property
+    def gas_temperature(self) -> Array:
+        """Contained air, (n_times,) degC."""
+        found = self.readout.reservoirs(self.number).get(GAS)
+        if found is not None:
+            return found
+        return np.full(len(self.times), self.study.card.boundaries.contained_air.temperature)  # type: ignore[attr-defined]
+
+    @property
+    def rim_temperature(self) -> Array | None:
+        """A lumped rim, (n_times,) degC; None where its temperature is given."""
+        return self.readout.reservoirs(self.number).get(RIM)
+
+    pressure_at = Result.pressure_at
+
+    @property
+    def wall_gradient(self) -> tuple[Array, Array]:
+        """s (k,) m along the meridian, and |T inner - T outer| / thickness there at the end, K/m."""
+        return self.readout.marched.batch.model.wall[0], self.readout.wall[self.number]
+
+    @property
+    def highest(self) -> Array:
+        """Hottest node over time, (n_times,) degC."""
+        return self.readout.highest[:, self.number]
+
+    @property
+    def _sides(self) -> float:
+        return 2.0 if self.study.section.half else 1.0
+
+    def generated(self, i: int) -> tuple[float, float]:
+        """Heat of hysteresis in the whole tyre until ``times[i]``, J, and then, W."""
+        energy, power = self.readout.generated(i)
+        return self._sides * float(energy[self.number]), self._sides * float(power[self.number])
+
+    def cold_power(self, t: float) -> float:
+        """The same at the drive's initial temperature, W, at a time just before a reading."""
+        i = int(np.searchsorted(self.times, t - 1e-12))
+        return self._sides * float(self.readout.cold_power(i)[self.number])
+
+    @functools.cached_property
+    def rolling_resistance(self) -> RollingResistance:
+        """Force, N, and coefficient; of hysteresis only."""
+        return rolling_resistance(self)
+
+    @functools.cached_property
+    def end_budget(self) -> HeatBudget:
+        """The heat budget of the whole tyre at the end alone."""
+        out, b = self.readout, self.number
+        balance = out.marched.batch.balances[b]
+        found = budget(
+            balance,
+            self.times[-1:],
+            out.states[-1:, b],
+            out.end_slopes[:, b],
+            out.powers(len(self.times) - 1)[None, b],
+            out.marched.energy[None, b],
+        )
+        titles = {zone.name: zone.title for zone in self.tyre.schedule.zones}
+        return whole_tyre(found, titles, self.study.section.half, self.tyre.condition_names)
