@@ -67,6 +67,7 @@ class Mechanics(Card):
     W = 2 pi U tan d with U = E' e0^2 / 2. ``poisson_term`` is c_a = 1 - nu_pt nu_tp (eq 7a), 0.75 an estimate.
     ``strain``: ``arcs``, the NASA report's bias tyre; ``barrel``, its deformation by finite elements; ``fem``, the
     footprint by finite elements; or ``given``, the energies of the table ``energy`` (which only this law reads).
+    ``motion``: of ``fem``, the footprint linear about the inflated tyre, or in ``large`` motion (`footprint.balance`).
     ``revolution``: of ``fem``, all harmonics each at its own frequency, or one cycle as in the report. ``feedback``:
     temperatures act back on the strain cycle; without this table they do not.
     """
@@ -78,6 +79,7 @@ class Mechanics(Card):
     loss_convention: Literal["nasa", "sinusoid"] = "nasa"
     poisson_term: Annotated[float, Unit("1", ge=0, le=1)] = 0.75
     membrane_shear: bool = True
+    motion: Literal["linear", "large"] = "linear"
     revolution: Literal["harmonics", "one-cycle"] = "harmonics"
     feedback: Feedback | None = None
 

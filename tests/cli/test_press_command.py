@@ -63,3 +63,26 @@ def test_a_deflection_beyond_the_rim_names_the_option(refused: Callable[..., str
     said = refused("press", STUDY, "--deflection", "200 mm", *COARSE)
     assert "--deflection: a deflection of 200 mm is impossible" in said
     assert "where the crown meets the rim" in said
+
+
+def test_in_large_motion_the_tyre_is_softer_and_the_curve_is_its_way(
+    here: Path, capfd: pytest.CaptureFixture[str]
+) -> None:
+    coarse = ["--set", "mesh.size=12 mm", "--deflection", "20 mm", "--no-pictures", "--no-vtk"]
+    assert main(["press", STUDY, "--balanced", "--json", "--out", "large", *coarse]) == 0
+    large = json.loads(capfd.readouterr().out)
+    assert main(["press", STUDY, "--json", "--out", "linear", *coarse]) == 0
+    linear = json.loads(capfd.readouterr().out)
+    assert large["balanced"]
+    assert not linear["balanced"]
+    # TR R-64 gives 7595 N.
+    assert large["load_N"] == pytest.approx(7595.0, rel=0.1)
+    assert large["load_N"] < 0.8 * linear["load_N"]
+    assert large["rolling_resistance_N"] < linear["rolling_resistance_N"]
+    curve = np.loadtxt(here / "large" / "load-deflection.csv", delimiter=",", skiprows=1)
+    assert (np.diff(curve, axis=0) > 0).all()
+    assert curve[-1] == pytest.approx([0.02, large["load_N"]], rel=1e-6)
+    cords = (here / "large" / "cord-tension.csv").read_text(encoding="utf-8").splitlines()[1:]
+    carried = [float(row.rsplit(",", 1)[1]) for row in cords if row.startswith("carcass")]
+    # Slack cords carry no more compression than half their rubber's shear modulus.
+    assert min(carried) > -1.2e6

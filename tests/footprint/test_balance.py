@@ -79,7 +79,7 @@ def test_balanced_forces_leave_no_residual(tyre: Pressing) -> None:
     balance = Balance(tyre, 16, tolerance=1e-6)
     found = balance.at_deflection(0.006)
     u = found.amplitudes
-    inner = np.stack([tyre.harmonics.stiffness(n) @ part for n, part in enumerate(u)]) + balance.nonlinear(u)
+    inner = np.stack([tyre.harmonics.stiffness(n) @ part for n, part in enumerate(u)]) + balance.motion.nonlinear(16)(u)
     outer = np.zeros_like(inner)
     outer[:, tyre.tread.dofs.ravel()] = found.load_harmonics.reshape(17, -1)
     free = tyre.harmonics.free
@@ -94,6 +94,6 @@ def test_balance_under_a_load(tyre: Pressing) -> None:
 
 
 def test_out_of_reach_says_how_far_it_got(tyre: Pressing, monkeypatch: pytest.MonkeyPatch) -> None:
-    monkeypatch.setattr("tyrefem.footprint.balance.HALVINGS", 1)
-    with pytest.raises(InputError, match=r"reaches .* mm, not 90 mm"):
+    monkeypatch.setattr("tyrefem.footprint.balance.MOST", 1)
+    with pytest.raises(InputError, match=r"reaches .* mm \(.* N\), not 90 mm"):
         Balance(tyre, 8).at_deflection(0.09)

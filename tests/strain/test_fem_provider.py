@@ -92,3 +92,17 @@ def test_an_aircraft_radial_is_stable_and_its_bodys_plies_stay_tight() -> None:
 def test_a_tyre_without_pressure_carries_nothing() -> None:
     with pytest.raises(InputError, match=r"drive.load: .* at 0 kPa"):
         bias(**{"drive.pressure": "0 kPa"}).run()
+
+
+def test_a_footprint_in_large_motion_deflects_more_and_loses_about_as_much() -> None:
+    drive = {"mesh.size": "12 mm", "drive.load": "1000 lbf"}
+    cycles = [cycle_schedule(bias(**drive, **{"mechanics.motion": one})).cycles[0][0] for one in ("linear", "large")]
+    linear, large = cycles
+    assert isinstance(linear, FiniteElements)
+    assert isinstance(large, FiniteElements)
+    assert 1.05 * linear.found_deflection < large.found_deflection < 1.4 * linear.found_deflection
+    weights = linear.tyre.body.rings.weights
+    before, after = ((one.density * weights).sum() for one in (linear, large))
+    # Under a given load: larger motions of smaller strain.
+    assert after != before
+    assert after == pytest.approx(before, rel=0.2)

@@ -70,16 +70,16 @@ def _card(path: Path) -> str:
         from tyrefem.materials import material
 
         return f"a material card, {material(str(path.resolve())).title}"
-    from tyrefem.rolling import RollingTyre
+    from tyrefem.mechanics import check_cases
     from tyrefem.studies import study
 
     found = study(str(path.resolve()))
     if found.is_campaign:
         campaign = found.campaign()
         for case in campaign.cases:
-            _ = RollingTyre(campaign.case_study(case)).schedule
+            check_cases(campaign.case_study(case))
         return f"a campaign of {len(campaign.cases)} cases"
-    _ = RollingTyre(found).schedule
+    check_cases(found)
     tables = _measured(found)
     return (
         f"a study of {len(found.card.drive.phases)} phase(s), {found.card.drive.end:g} s, "

@@ -36,7 +36,7 @@ def press(
         list[str] | None, typer.Option(metavar="PLACE", help="Strain cycle here: 'r, z' or a region. Repeatable.")
     ] = None,
     balanced: Annotated[
-        bool, typer.Option("--balanced", help="Green's strains in place of linearised ones: slower.")
+        bool, typer.Option("--balanced", help="In large motion, not linear about the inflated tyre: slower.")
     ] = False,
     pictures: Annotated[bool, typer.Option(help="Draw the PNG pictures.")] = True,
     vtk: Annotated[bool, typer.Option(help="Write the whole deformed tyre, tyre.vtu.")] = True,
@@ -130,19 +130,14 @@ def _words(result: Pressed) -> str:
         if loss is None
         else f"  rolling resistance  {loss.rolling_resistance:.1f} N, coefficient {loss.coefficient:.5f} at "
         f"{result.speed:.4g} m/s and {loss.temperature:.4g} degC",
-        f"  harmonics           {found.harmonics}, {_accuracy(result)}; {tyre.body.rings.n_nodes} nodes",
-        "  strains             {}; linear ones leave out {:.0%} of themselves on average, {:.0%} in the {}".format(
-            "Green's, in balance" if result.balanced else "linearised", *result.left_out
+        f"  harmonics           {found.harmonics}, error {found.error:.2%} (allowed {result.tolerance:.0%}); "
+        f"{tyre.body.rings.n_nodes} nodes",
+        "  motion              {}; linear strains leave out {:.0%} of themselves on average, {:.0%} in the {}".format(
+            "large, in balance" if result.balanced else "linear about the inflated tyre", *result.left_out
         ),
     ]
     lines += [f"  {one.words}" for one in result.published]
     return "\n".join(lines)
-
-
-def _accuracy(result: Pressed) -> str:
-    if result.balanced:
-        return "balanced to 0.1 %"
-    return f"error {result.footprint.error:.2%} (allowed {result.tolerance:.0%})"
 
 
 #: Place among the commands.

@@ -1,136 +1,134 @@
-"""Harmonic balance: the footprint with Green's strains in place of linearised ones."""
+"""Harmonic balance: the footprint in large motion, not linear about the inflated state."""
 
 from __future__ import annotations
 
 import functools
-from dataclasses import dataclass
-
-import numpy as np
-from numpy.typing import NDArray
+from dataclasses import dataclass, field, replace
 
 from tyrefem.errors import InputError
 from tyrefem.footprint.contact import Pressing
-from tyrefem.footprint.nonlinear import NonlinearForces
+from tyrefem.footprint.large_motion import LargeMotion, Moment
 from tyrefem.footprint.pressed import Footprint
+from tyrefem.solid.finite_law import FiniteLaw
 
-Array = NDArray[np.float64]
-#: Earlier steps that the acceleration remembers, steps allowed at one deflection, halvings of the way there.
-MEMORY, STEPS, HALVINGS = 10, 40, 5
+#: Numbers of harmonics: the way is gone with the first, the others refine what it leads to.
+LADDER = (16, 24, 36)
+#: Last change on the way, and how near it leads.
+ON_THE_WAY, NEAR = 1e-2, 1e-2
+#: Smallest step on the way over the whole of it, and steps in all.
+SMALLEST, MOST = 1e-3, 60
+#: A tyre in large motion stiffens from a small load on by about this factor: guess of the second step's slope.
+STIFFENS = 1.3
 
 
 @dataclass(frozen=True, eq=False)
 class Balance:
-    """Footprints where contact balances linear and nonlinear forces of every harmonic.
+    """Footprints in large motion: the stress at every angle (`NonlinearForces`) balances the road's pressure.
 
-    K_n u_n = f_n - g_n(u), g of `NonlinearForces`: the linear factors serve every step (Anderson's acceleration), and
-    contact is solved anew in each. Where steps do not settle, a smaller deflection is balanced first.
+    Deflections grow from the free tyre's on with few harmonics; each step ends in Newton's (`LargeMotion`), and more
+    harmonics refine the last.
 
     Parameters
     ----------
     pressing : the tyre and its road.
     harmonics : highest harmonic.
-    tolerance : last change relative to the displacement.
+    tolerance : last change of motion and load, relative.
+    law : stress; by default that of the state's own compounds and cords, or linear in Green's strain without these.
 
     >>> from tyrefem.footprint.plain import PlainTyre
-    >>> balance = Balance(Pressing(PlainTyre().state(along=6)), 16)
-    >>> found = balance.at_deflection(0.004)
-    >>> found.correction.shape == found.amplitudes.shape
-    True
+    >>> found = Balance(Pressing(PlainTyre().state(along=6)), 12).at_deflection(0.004)
+    >>> found.balanced.shape == found.amplitudes.shape, 0 < found.load < 400
+    (True, True)
     """
 
     pressing: Pressing
-    harmonics: int
+    harmonics: int = LADDER[-1]
     tolerance: float = 1e-3
+    law: FiniteLaw | None = None
+    #: (deflection, load), m and N, on the way, balanced to `ON_THE_WAY`; cleared by every solution.
+    path: list[tuple[float, float]] = field(default_factory=list, init=False, repr=False)
 
     @functools.cached_property
-    def nonlinear(self) -> NonlinearForces:
-        """The forces that the linear problem leaves out."""
-        return NonlinearForces(self.pressing.harmonics, self.harmonics)
+    def motion(self) -> LargeMotion:
+        """Balances near by one another."""
+        return LargeMotion(self.pressing, self.law)
 
-    def at_deflection(self, deflection: float, start: Footprint | None = None) -> Footprint:
-        """The balanced footprint at a deflection, m; ``start``: a balanced one near by.
-
-        Raises
-        ------
-        InputError : no balance; the message says how far it got.
-        """
-        path = [start] if start is not None else []
-        step = deflection - (start.deflection if start is not None else 0.0)
-        while not path or abs(path[-1].deflection - deflection) > 1e-12:
-            at = path[-1].deflection if path else 0.0
-            left = deflection - at
-            found = self._settled(at + (step if abs(step) < abs(left) else left), path)
-            if found is not None:
-                path, step = [*path, found], 1.5 * step
-            elif abs(step) > deflection / 2**HALVINGS:
-                step /= 2
-            else:
-                raise InputError(
-                    f"the harmonic balance reaches {at * 1e3:.4g} mm, not {deflection * 1e3:.4g} mm of deflection",
-                    field="deflection",
-                )
-        return path[-1]
+    def at_deflection(self, deflection: float) -> Footprint:
+        """The footprint at a deflection, m, with all harmonics; raises as `solve`."""
+        return self.solve(deflection=deflection, tolerance=0.0)
 
     def at_load(self, load: float) -> Footprint:
-        """The balanced footprint under a load, N, to 0.1 %: secant steps of the deflection.
+        """The footprint under a load, N, with all harmonics; raises as `solve`."""
+        return self.solve(load=load, tolerance=0.0)
+
+    def solve(
+        self, *, deflection: float | None = None, load: float | None = None, tolerance: float = 0.01
+    ) -> Footprint:
+        """The footprint with as many harmonics as the error measure of `Pressing.solve` asks for, at most
+        ``harmonics``; its ``error`` is the last change.
 
         Raises
         ------
-        InputError : what `at_deflection` and `Pressing.at_load` raise.
+        InputError : not exactly one of deflection and load; one that is impossible; no balance: how far it got.
         """
-        deflection = self.pressing.at_load(load, self.harmonics).deflection
-        found = self.at_deflection(deflection)
-        slope = found.stiffness
-        for _ in range(12):
-            if abs(found.load - load) <= 1e-3 * load:
-                return found
-            before, found = found, self.at_deflection(found.deflection + (load - found.load) / slope, found)
-            slope = max((found.load - before.load) / (found.deflection - before.deflection), 0.3 * slope)
-        raise InputError(f"the harmonic balance does not find the deflection of {load:.5g} N", field="load")
+        if (deflection is None) == (load is None):
+            raise InputError("give exactly one of 'deflection' and 'load'")
+        ladder = (*(n for n in LADDER if n < self.harmonics), self.harmonics)
+        moment, found = self._way(deflection, load, ladder[0]), None
+        for count in ladder:
+            start = self.motion.refined(moment, count)
+            settled = self.motion.settled(start, moment.deflection, self.tolerance, load)
+            if settled is None:
+                raise self._stuck(moment, deflection, load, f" with {count} harmonics")
+            moment, before, found = settled, found, self.motion.footprint(settled)
+            if before is not None:
+                found = found.compared(before)
+                if found.error <= tolerance:
+                    break
+        assert found is not None
+        return replace(found, stiffness=self.motion.stiffness(moment))
 
-    def _settled(self, deflection: float, path: list[Footprint]) -> Footprint | None:
-        """The balance at one deflection, begun where those before point to, or None."""
-        pressing, outside = self.pressing, self.nonlinear
-        x, start = np.zeros((self.harmonics + 1, pressing.harmonics.elements.n_dofs)), path[-1] if path else None
-        if len(path) > 1:
-            one, two = path[-2:]
-            share = (deflection - two.deflection) / (two.deflection - one.deflection)
-            x = _correction(two) + share * (_correction(two) - _correction(one))
-        elif path:
-            x = _correction(path[0]) * (deflection / path[0].deflection) ** 2
-        steps: list[Array] = []
-        changes: list[Array] = []
-        found = pressing.at_deflection(deflection, self.harmonics, start, x)
-        smallest = np.inf
-        for _ in range(STEPS):
-            u = found.amplitudes
-            if not u.any():  # Nothing touches: the hats are wider than so small a footprint.
-                return found
-            change = -pressing.tread.responses(outside(u)) - x
-            size = float(np.abs(change).max() / np.abs(u).max())
-            smallest = min(size, smallest)
-            if not size < 30 * smallest:
-                return None
-            if size <= self.tolerance:
-                return found
-            steps, changes = [*steps[-MEMORY:], x], [*changes[-MEMORY:], change]
-            x = _accelerated(steps, changes)
-            found = pressing.at_deflection(deflection, self.harmonics, found, x)
-        return None
+    def _way(self, deflection: float | None, load: float | None, harmonics: int) -> Moment:
+        """From the free tyre to near a deflection or a load: steps as long as the motion allows."""
+        pressing, motion = self.pressing, self.motion
+        if deflection is not None:
+            pressing.check(deflection)
+            whole, slope = deflection, 1.0
+        else:
+            assert load is not None
+            linear = pressing.at_load(load, harmonics)
+            whole, slope = linear.deflection, load / linear.deflection
+        now, step = motion.free(harmonics, whole), whole
+        self.path[:] = [(0.0, 0.0)]
+        for _ in range(MOST):
+            left = whole - now.deflection if load is None else (load - now.load) / slope
+            if abs(left) <= NEAR * whole * (load is not None):
+                return now
+            ahead = min(now.deflection + max(-step, min(left, step)), motion.deepest)
+            if ahead == now.deflection:
+                raise InputError(
+                    f"the tyre cannot carry {load:.5g} N: the crown meets the rim at {now.load:.5g} N "
+                    f"({now.deflection * 1e3:.4g} mm)",
+                    field="load",
+                )
+            found = motion.settled(now, ahead, ON_THE_WAY)
+            if found is None:
+                step = abs(ahead - now.deflection) / 2
+                if step < SMALLEST * whole:
+                    break
+                continue
+            made = found.deflection - now.deflection
+            if load is not None and found.load:
+                steeper = (found.load - now.load) / made if now.load else STIFFENS * found.load / found.deflection
+                slope = max(steeper, 0.1 * slope)
+            now, step = found, 2 * abs(made)
+            self.path.append((now.deflection, now.load))
+        raise self._stuck(now, deflection, load, "")
 
-
-def _correction(found: Footprint) -> Array:
-    assert found.correction is not None
-    return found.correction
-
-
-def _accelerated(steps: list[Array], changes: list[Array]) -> Array:
-    """Anderson's next step from earlier ones and their changes."""
-    last = steps[-1] + changes[-1]
-    if len(steps) == 1:
-        return np.asarray(steps[-1] + changes[-1] / 2)
-    differences = np.stack([(changes[-1] - c).ravel() for c in changes[:-1]], axis=1)
-    shares = np.linalg.lstsq(differences, changes[-1].ravel(), rcond=1e-8)[0]
-    for share, step, change in zip(shares, steps, changes, strict=False):
-        last = last - share * (steps[-1] + changes[-1] - step - change)
-    return np.asarray(last)
+    @staticmethod
+    def _stuck(now: Moment, deflection: float | None, load: float | None, how: str) -> InputError:
+        wanted = f"{load:.5g} N" if deflection is None else f"{deflection * 1e3:.4g} mm of deflection"
+        return InputError(
+            f"the balance in large motion reaches {now.deflection * 1e3:.4g} mm ({now.load:.5g} N), not {wanted}{how}",
+            field="load" if deflection is None else "deflection",
+        )

@@ -73,7 +73,7 @@ class Pressing:
         inner = elements.nodes[0, elements.boundary_nodes(state.pressurised)].max()
         return float(inner - max(held))
 
-    def _grid(self, harmonics: int, deflection: float) -> ContactGrid:
+    def grid(self, harmonics: int, deflection: float) -> ContactGrid:
         """Angles that may touch: the part of the free tyre below the road and a third beyond."""
         radius = self.reach
         round_drum = 1.0 / (1.0 + 2 * radius / self.road.drum_diameter)
@@ -83,42 +83,42 @@ class Pressing:
             self._grids[harmonics] = ContactGrid(self.tread, harmonics, min(needed + 2, harmonics))
         return self._grids[harmonics]
 
-    def at_deflection(
-        self, deflection: float, harmonics: int, start: Footprint | None = None, correction: Array | None = None
-    ) -> Footprint:
-        """The footprint at a deflection, m, with harmonics up to a number.
-
-        On a flat road the gap is linear in the displacement, (r + u_r) cos t - u_t sin t, and the first solution is
-        final; on a drum its direction is renewed until forces settle to 1e-6. ``start``: a footprint near by, whose
-        contacts are tried first; ``correction``: amplitudes (harmonics + 1, n_dofs), m, added to the linear response.
-
-        Raises
-        ------
-        InputError : the deflection is negative or would press the crown on the rim.
-        """
+    def check(self, deflection: float) -> None:
+        """Raises `InputError` for a deflection that is negative or would press the crown on the rim."""
         if not 0 <= deflection < self.bottoming:
             raise InputError(
                 f"a deflection of {deflection * 1e3:.4g} mm is impossible; it must be at least 0 and less than "
                 f"{self.bottoming * 1e3:.4g} mm, where the crown meets the rim",
                 field="deflection",
             )
-        grid = self._grid(harmonics, deflection)
+
+    def at_deflection(self, deflection: float, harmonics: int, start: Footprint | None = None) -> Footprint:
+        """The footprint at a deflection, m, with harmonics up to a number.
+
+        On a flat road the gap is linear in the displacement, (r + u_r) cos t - u_t sin t, and the first solution is
+        final; on a drum its direction is renewed until forces settle to 1e-6. ``start``: a footprint near by, whose
+        contacts are tried first.
+
+        Raises
+        ------
+        InputError : the deflection is negative or would press the crown on the rim.
+        """
+        self.check(deflection)
+        grid = self.grid(harmonics, deflection)
         distance = self.reach - deflection
         size = len(grid.areas)
         moved, closed = np.zeros((len(self.tread.components), size)), np.zeros(size, dtype=bool)
         if start is not None and start.grid is grid:
             closed = start.forces > 0
         forces, direction = np.zeros(size), np.zeros_like(moved)
-        offset = np.zeros_like(moved) if correction is None else grid.displacements(correction)
-        moved = offset.copy()
         for _ in range(30):
-            gaps, normals = self._gaps(grid, moved, distance)
+            gaps, normals = self.gaps(grid, moved, distance)
             turned = grid.along(normals)
             compliance = np.einsum("ak,akbl,bl->kl", turned, grid.blocks, turned, optimize=True)
-            before, free = forces, gaps + np.einsum("ck,ck->k", turned, moved - offset)
+            before, free = forces, gaps + np.einsum("ck,ck->k", turned, moved)
             forces, closed = contact_forces(compliance, free, closed if closed.any() else None)
             direction = turned
-            moved = offset - np.einsum("akbl,bl->ak", grid.blocks, turned * forces, optimize=True)
+            moved = -np.einsum("akbl,bl->ak", grid.blocks, turned * forces, optimize=True)
             if math.isinf(self.road.drum_diameter) or np.abs(forces - before).max() <= 1e-6 * forces.max(initial=0.0):
                 break
         leads = self.road.normal @ normals
@@ -128,20 +128,10 @@ class Pressing:
             stiffness = float(leads[index] @ np.linalg.solve(compliance[np.ix_(index, index)], leads[index]))
         both = 2.0 if self.tread.half else 1.0
         left = free + compliance @ forces
-        return Footprint(
-            self,
-            grid,
-            deflection,
-            float(both * leads @ forces),
-            both * stiffness,
-            forces,
-            direction,
-            moved,
-            left,
-            correction=correction,
-        )
+        load = float(both * leads @ forces)
+        return Footprint(self, grid, deflection, load, both * stiffness, forces, direction, moved, left)
 
-    def _gaps(self, grid: ContactGrid, moved: Array, distance: float) -> tuple[Array, Array]:
+    def gaps(self, grid: ContactGrid, moved: Array, distance: float) -> tuple[Array, Array]:
         """Gaps and normals in the middle of the hats; the free tyre's gap averaged with the hat by two points."""
         aside, free = grid.step / math.sqrt(6), np.zeros_like(moved)
         ahead, here, behind = (self.road.gaps(grid.places(free, shift), distance)[0] for shift in (aside, 0.0, -aside))

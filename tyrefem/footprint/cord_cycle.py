@@ -41,7 +41,8 @@ class CordCycle:
 def cord_cycles(tyre: Inflation, cycle: StrainCycle, count: int = 181) -> tuple[CordCycle, ...]:
     """The cords of every region: inflated tension + E A lambda a . e a, a the cords' present direction.
 
-    E A is less where the inflated cord is compressed, as in the tangent from which the footprint is computed.
+    E A is less where the inflated cord is compressed, as in the tangent from which the footprint is computed. In large
+    motion the cords' own law at the stretch lambda sqrt(1 + 2 a . E a), E Green's strain.
 
     Parameters
     ----------
@@ -61,9 +62,14 @@ def _greatest(tyre: Inflation, cycle: StrainCycle, region: str, layer: CordLayer
     stretch = layer.stretch(here)
     inflated = layer.tension(here) if known else layer.stress_in_layer(here)
     stiffness = np.asarray(layer.cord_stiffness if known else layer.stiffness)
-    stiffness = stiffness * np.where(stretch >= 1, 1.0, layer.compression) * stretch
     carried = (np.einsum("ij...,j...->i...", here, one) / stretch for one in layer.directions)
-    halves = [inflated[..., None] + stiffness[..., None] * cycle.along(one, angles, members) for one in carried]
+    strains = [cycle.along(one, angles, members) for one in carried]
+    if cycle.footprint.balanced is None:
+        slope = (stiffness * np.where(stretch >= 1, 1.0, layer.compression) * stretch)[..., None]
+        halves = [inflated[..., None] + slope * strain for strain in strains]
+    else:
+        per_stress = np.asarray(stiffness / layer.stiffness)[..., None]
+        halves = [per_stress * layer.slope(stretch[..., None] * np.sqrt(1 + 2 * strain)) for strain in strains]
     most = np.maximum(halves[0].max(axis=-1), halves[1].max(axis=-1))
     element, point = (int(i) for i in np.unravel_index(int(most.argmax()), most.shape))
     r, z = tyre.body.rings.points[:, members[element], point]

@@ -46,7 +46,7 @@ class StrainCycle:
         """(harmonics + 1, 6, n_elements, n_points) e_n; of Green's strain for a balanced footprint."""
         found = self.footprint
         linear = np.stack([self.elements.strain(n, u) for n, u in enumerate(found.amplitudes)])
-        if found.correction is None:
+        if found.balanced is None:
             return linear
         from tyrefem.footprint.nonlinear import NonlinearForces
 

@@ -52,7 +52,7 @@ class ContactGrid:
         return np.stack([odd if c == 2 else even for c in self.tread.components])
 
     @functools.cached_property
-    def _shares(self) -> Array:
+    def shares(self) -> Array:
         """(harmonics + 1,) 1/pi, half of it for n = 0: unit work round the wheel."""
         shares = np.full(self.harmonics + 1, 1 / np.pi)
         shares[0] /= 2
@@ -66,7 +66,7 @@ class ContactGrid:
         found = np.zeros((c, self.n_angles * m, c, self.n_angles * m))
         for to in range(c):
             for of in range(c):
-                loaded = (compliance[:, to, :, of] * self._shares[:, None, None]).reshape(self.harmonics + 1, -1)
+                loaded = (compliance[:, to, :, of] * self.shares[:, None, None]).reshape(self.harmonics + 1, -1)
                 for j, shape in enumerate(self.shapes[of].T):
                     sums = (self.shapes[to].T * shape) @ loaded
                     found[to, :, of, j * m : (j + 1) * m] = sums.reshape(self.n_angles * m, m)
@@ -75,7 +75,7 @@ class ContactGrid:
     def load_harmonics(self, forces: Array) -> Array:
         """(harmonics + 1, c, m) load amplitudes, N per radian, of forces (c, k) on the tread."""
         at = np.asarray(forces).reshape(len(forces), self.n_angles, -1)
-        return np.asarray(np.einsum("cnj,cjm->ncm", self.shapes, at) * self._shares[:, None, None])
+        return np.asarray(np.einsum("cnj,cjm->ncm", self.shapes, at) * self.shares[:, None, None])
 
     def displacements(self, amplitudes: Array) -> Array:
         """(c, k) displacements, m, averaged with the hats, of amplitudes (harmonics + 1, n_dofs)."""

@@ -1,158 +1,169 @@
-"""What the linearisation leaves out: forces of second and third order in the motion, harmonic by harmonic."""
+"""Forces of a large motion about the inflated state, harmonic by harmonic, and their derivative."""
 
 from __future__ import annotations
 
 import functools
 from dataclasses import dataclass
+from typing import Any
 
 import numpy as np
 from numpy.typing import NDArray
 
+from tyrefem.footprint.angles import WheelAngles
 from tyrefem.footprint.elements import COMPONENTS
 from tyrefem.footprint.follower import along_wall
 from tyrefem.footprint.harmonics import Harmonics
+from tyrefem.solid.finite_law import FiniteLaw, GreenLaw, Response
 
 Array = NDArray[np.float64]
-#: Gradient components (k, i) with exactly one index t vary as sin n t, the others as cos n t.
-ODD = np.array([[False, False, True], [False, False, True], [True, True, False]])
+
+
+@dataclass(frozen=True, eq=False)
+class Tangent:
+    """Forces at a motion and their derivative there. Made by `NonlinearForces.at`."""
+
+    outside: NonlinearForces
+    forces: Array
+    response: Response
+    wall: tuple[Array, Array]
+
+    def product(self, change: Array) -> Array:
+        """(highest + 1, n_dofs) change of the forces for a change (highest + 1, n_dofs) of the motion."""
+        round_wheel = self.outside.round
+        found = round_wheel.forces(self.response.product(round_wheel.gradient(change)))
+        return found + self.outside.of_support(change) + self.outside.of_wall(change, self.wall)
 
 
 @dataclass(frozen=True, eq=False)
 class NonlinearForces:
-    """Internal forces of Green's strain E = sym H + H'H/2 about the state, less the linear ones of `Harmonics`.
-
-    S = s_0 + c : E + kappa P(tr E) 1, forces int (F S) : dH r dA; P projects on (1, xi, eta). The wall's pressure is
-    exact: p (u_s x u_t) is what the following stiffness leaves out. Rubber and cords stay linear in E: large
-    rotations, moderate strains.
+    """Internal forces beyond those of the inflated state: int P : dH r dA, the pressure p (x_s x x_t) on the wall.
 
     Parameters
     ----------
-    harmonics : the linear problem.
+    harmonics : the linear problem about the state.
     highest : harmonics of the motion.
+    law : stress; by default the state's own, or linear in Green's strain where it has none.
     """
 
     harmonics: Harmonics
     highest: int
+    law: FiniteLaw | None = None
 
     @functools.cached_property
-    def angles(self) -> Array:
-        """(2 highest + 1,) from 0 to pi, so fine that products of harmonics do not fold back."""
-        return np.linspace(0, np.pi, 2 * self.highest + 1)
+    def round(self) -> WheelAngles:
+        """Angles at which stress and pressure are evaluated."""
+        return WheelAngles(self.harmonics.elements, self.highest)
 
     @functools.cached_property
-    def _waves(self) -> tuple[Array, Array]:
-        """cos n t and sin n t, (n_angles, highest + 1)."""
-        phase = np.multiply.outer(self.angles, np.arange(self.highest + 1))
-        return np.cos(phase), np.sin(phase)
+    def _law(self) -> FiniteLaw:
+        state = self.harmonics.state
+        return self.law or state.law or GreenLaw(self.harmonics.elements, state.stress, state.tangent, state.bulk)
 
     @functools.cached_property
-    def _shares(self) -> Array:
-        """(highest + 1, n_angles) weights with which a wave's amplitude is taken from values at the angles."""
-        weights = np.full(len(self.angles), 1 / (len(self.angles) - 1))
-        weights[[0, -1]] /= 2
-        shares = np.tile(2 * weights, (self.highest + 1, 1))
-        shares[0] /= 2
-        return shares
-
-    def gradients(self, amplitudes: Array) -> Array:
-        """(highest + 1, 3, 3, e, q) amplitudes of H from those of the displacement (highest + 1, n_dofs)."""
-        elements = self.harmonics.elements
-        nodes = np.asarray(elements.basis.element_dofs).T
-        u = np.asarray(amplitudes).reshape(len(amplitudes), -1, COMPONENTS)[:, nodes]
-        n = np.arange(len(u))[:, None, None]
-        found = np.zeros((len(u), 3, 3, *elements.radii.shape))
-        for i in (0, 1):
-            found[:, :, i] = np.moveaxis(elements.gradients[i] @ u, -1, 1)
-        r, z, t = np.moveaxis((elements.values / elements.radii[..., None]) @ u, -1, 0)
-        found[:, 0, 2], found[:, 1, 2], found[:, 2, 2] = -(n * r + t), -n * z, n * t + r
+    def _at_rest(self) -> Array:
+        """Forces of the state itself: what bears the rim's reaction."""
+        rest = NonlinearForces(self.harmonics, 0, self.law)
+        found = np.zeros((self.highest + 1, self.harmonics.elements.n_dofs))
+        found[0] = rest._total(found[:1], False)[0][0]
         return found
 
-    def at_angles(self, amplitudes: Array) -> Array:
-        """(n_angles, 3, 3, e, q) of gradient amplitudes."""
-        cos, sin = self._waves
-        found = np.empty((len(self.angles), *amplitudes.shape[1:]))
-        for k, i in np.ndindex(3, 3):
-            part = amplitudes[:, k, i].reshape(len(amplitudes), -1)
-            found[:, k, i] = ((sin if ODD[k, i] else cos) @ part).reshape(len(self.angles), *amplitudes.shape[3:])
-        return found
+    def at(self, amplitudes: Array) -> Tangent:
+        """Forces of displacement amplitudes (highest + 1, n_dofs), N per radian, and their derivative."""
+        forces, response, wall = self._total(amplitudes, True)
+        return Tangent(self, forces - self._at_rest, response, wall)
+
+    def forces(self, amplitudes: Array) -> Array:
+        """(highest + 1, n_dofs) forces alone, N per radian."""
+        return np.asarray(self._total(amplitudes, False)[0] - self._at_rest)
 
     def __call__(self, amplitudes: Array) -> Array:
-        """(highest + 1, n_dofs) forces, N per radian, of displacement amplitudes."""
-        elements, state = self.harmonics.elements, self.harmonics.state
-        functions, weights = elements.linear_functions, elements.weights
-        project = functions @ (functions * weights[..., None]).transpose(0, 2, 1)
-        h = self.at_angles(self.gradients(amplitudes))
-        second = np.einsum("mkieq,mkjeq->mijeq", h, h) / 2
-        linear = (h + h.transpose(0, 2, 1, 3, 4)) / 2
+        """(highest + 1, n_dofs) forces, N per radian, less the linear ones of `Harmonics`."""
+        linear = np.stack([self.harmonics.stiffness(n) @ part for n, part in enumerate(amplitudes)])
+        found = self.forces(amplitudes) - linear
+        found[:, self.harmonics.held] = 0.0
+        return np.asarray(found)
 
-        def stress(strain: Array) -> Array:
-            voigt = np.stack([strain[:, 0, 0], strain[:, 1, 1], strain[:, 2, 2],
-                              2 * strain[:, 0, 1], 2 * strain[:, 0, 2], 2 * strain[:, 1, 2]])  # fmt: skip
-            s = np.einsum("ijeq,jmeq->imeq", state.tangent, voigt, optimize=True)
-            s[:3] += state.bulk * np.einsum("eqp,mep->meq", project, voigt[:3].sum(axis=0), optimize=True)
-            rows = [[s[0], s[3], s[4]], [s[3], s[1], s[5]], [s[4], s[5], s[2]]]
-            return np.moveaxis(np.array(rows), 2, 0)
+    def _total(self, amplitudes: Array, tangent: bool) -> tuple[Array, Response, tuple[Array, Array]]:
+        response = self._law.response(self.round.gradient(amplitudes), tangent)
+        wall = self._vectors(amplitudes)
+        if self.harmonics.state.pressure:
+            _, _, _, (n_r, n_z), radii, _, _ = self._wall
+            wall[0][..., 0] += n_z[..., None]
+            wall[0][..., 1] -= n_r[..., None]
+            wall[1][..., 2] += radii[..., None]
+        forces = self.round.forces(response.stress) + self.of_support(amplitudes)
+        return forces + self._on_wall(_cross(*wall)), response, wall
 
-        of_second = stress(second)
-        force = of_second + np.einsum("mkjeq,mjieq->mkieq", h, of_second + stress(linear))
-        return self._of_stress(force * weights) + self._of_pressure(amplitudes)
+    def of_support(self, change: Array) -> Array:
+        """Forces of what the body lies on."""
+        support = self.harmonics.state.support
+        return np.zeros(()) if support is None else np.asarray((support @ np.asarray(change).T).T)
 
-    def _of_stress(self, stress: Array) -> Array:
-        """Forces of a stress (n_angles, 3, 3, e, q) times r dA, against the variation of H."""
-        elements, n = self.harmonics.elements, np.arange(self.highest + 1)[:, None, None]
-        cos, sin = self._waves
-        p = np.empty((self.highest + 1, *stress.shape[1:]))
-        for k, i in np.ndindex(3, 3):
-            wave = self._shares * (sin if ODD[k, i] else cos).T
-            p[:, k, i] = (wave @ stress[:, k, i].reshape(len(self.angles), -1)).reshape(-1, *stress.shape[3:])
-        local = np.zeros((self.highest + 1, len(elements.radii), 9, COMPONENTS))
-        over_r = elements.values / elements.radii[..., None]
-        turned = (-n * p[:, 0, 2] + p[:, 2, 2], -n * p[:, 1, 2], -p[:, 0, 2] + n * p[:, 2, 2])
-        for k in range(COMPONENTS):
-            against = [(elements.gradients[i], p[:, k, i]) for i in (0, 1)] + [(over_r, turned[k])]
-            for values, part in against:
-                local[..., k] += np.einsum("eqa,neq->nea", values, part, optimize=True)
-        return self._summed(elements.dofs, local)
+    def of_wall(self, change: Array, wall: tuple[Array, Array]) -> Array:
+        """Change of the pressure's forces: p (u_s x x_t + x_s x u_t)."""
+        along, around = self._vectors(change)
+        return self._on_wall(_cross(along, wall[1]) + _cross(wall[0], around))
 
-    def _summed(self, dofs: NDArray[np.int64], local: Array) -> Array:
-        """(highest + 1, n_dofs) sums of local forces (highest + 1, parts, nodes, 3)."""
-        found = np.zeros((self.harmonics.elements.n_dofs, len(local)))
-        np.add.at(found, dofs.ravel(), local.reshape(len(local), -1).T)
-        return found.T
+    @functools.cached_property
+    def _wall(self) -> tuple[NDArray[np.int64], Array, Array, Array, Array, Array, Any]:
+        """Nodes (f, 9), values and slopes (f, q, 9), normals (2, f, q), radii and weights (f, q), sparse sums
+        (n_nodes, 9 f)."""
+        import scipy.sparse as sp
+
+        elements = self.harmonics.elements
+        dofs, values, along, normals, radii, weights = along_wall(
+            elements.facet_basis(self.harmonics.state.pressurised)
+        )
+        nodes = dofs[:, ::COMPONENTS] // COMPONENTS
+        place = (nodes.ravel(), np.arange(nodes.size))
+        sums = sp.csr_matrix((np.ones(nodes.size), place), shape=(elements.n_nodes, nodes.size))
+        return nodes, values, along, normals, radii, weights, sums
+
+    def _vectors(self, amplitudes: Array) -> tuple[Array, Array]:
+        """(f, q, m, 3) u_s along the wall, and u_t round the wheel."""
+        if not self.harmonics.state.pressure:
+            return np.zeros((0, 0, 0, 3)), np.zeros((0, 0, 0, 3))
+        nodes, values, along, *_ = self._wall
+        used, inverse = np.unique(nodes, return_inverse=True)
+        cut = np.asarray(amplitudes).reshape(self.highest + 1, -1, COMPONENTS)[:, used]
+        value, slope = self.round.at_nodes(cut)
+        inverse = inverse.reshape(nodes.shape)
+        shape = (*values.shape[:2], -1, 3)
+        flat = value[inverse].reshape(len(nodes), 9, -1)
+        s, here = (along @ flat).reshape(shape), (values @ flat).reshape(shape)
+        v = (values @ slope[inverse].reshape(len(nodes), 9, -1)).reshape(shape)
+        v[..., 0] -= here[..., 2]
+        v[..., 2] += here[..., 0]
+        return s, v
+
+    def _on_wall(self, vectors: Array) -> Array:
+        """Forces of vectors (f, q, m, 3) per area of the parameters."""
+        if not self.harmonics.state.pressure:
+            return np.zeros(())
+        _, values, _, _, _, weights, sums = self._wall
+        f, q, m, _ = vectors.shape
+        weighted = (self.harmonics.state.pressure * weights)[..., None, None] * vectors
+        local = values.transpose(0, 2, 1) @ weighted.reshape(f, q, -1)
+        value = (sums @ local.reshape(9 * f, -1)).reshape(-1, m, 3)
+        return self.round.from_nodes(value, np.zeros_like(value))
 
     def second_strains(self, amplitudes: Array) -> Array:
         """(highest + 1, 6, e, q) amplitudes of H'H/2, what Green's strain adds to the linear one; shears doubled."""
-        h = self.at_angles(self.gradients(amplitudes))
-        second = np.einsum("mkieq,mkjeq->mijeq", h, h) / 2
-        cos, sin = self._waves
+        h = self.round.gradient(amplitudes)
+        h = h.reshape(*h.shape[:3], 3, 3)
+        (cos, _, sin), _ = self.round.waves
         rows = []
         for i, j in ((0, 0), (1, 1), (2, 2), (0, 1), (0, 2), (1, 2)):
-            wave = self._shares * (sin if ODD[i, j] else cos).T
-            part = (1 if i == j else 2) * second[:, i, j].reshape(len(second), -1)
-            rows.append((wave @ part).reshape(-1, *second.shape[3:]))
+            part = (1 if i == j else 2) * (h[..., i] * h[..., j]).sum(axis=-1) / 2
+            odd = (i == 2) != (j == 2)
+            rows.append(np.moveaxis(part @ (self.round.shares * (sin if odd else cos)), -1, 0))
         return np.stack(rows, axis=1)
 
-    def _of_pressure(self, amplitudes: Array) -> Array:
-        """p int v . (u_s x u_t) ds."""
-        elements, state = self.harmonics.elements, self.harmonics.state
-        if not state.pressure:
-            return np.zeros((self.highest + 1, elements.n_dofs))
-        dofs, values, along, _, _, weights = along_wall(elements.facet_basis(state.pressurised))
-        u = np.asarray(amplitudes)[:, dofs].reshape(len(amplitudes), len(dofs), -1, COMPONENTS)
-        (cos, sin), n = self._waves, np.arange(self.highest + 1)[:, None, None]
-        r, z, t = np.moveaxis(np.einsum("fqa,nfak->nfqk", values, u), -1, 0)
-        slopes = np.moveaxis(np.einsum("fqa,nfak->nfqk", along, u), -1, 0)
 
-        def wave(part: Array, odd: bool) -> Array:
-            return np.tensordot(sin if odd else cos, part, axes=1)
-
-        s = [wave(slopes[0], False), wave(slopes[1], False), wave(slopes[2], True)]
-        v = [wave(-(n * r + t), True), wave(-n * z, True), wave(n * t + r, False)]
-        # (r, z, t) is left-handed: e_r x e_z = -e_t.
-        cross = (s[2] * v[1] - s[1] * v[2], s[0] * v[2] - s[2] * v[0], s[1] * v[0] - s[0] * v[1])
-        local = np.zeros(u.shape)
-        for k in range(COMPONENTS):
-            shares = self._shares * (sin if k == 2 else cos).T
-            part = np.tensordot(shares, cross[k] * weights, axes=1)
-            local[..., k] = state.pressure * np.einsum("fqa,nfq->nfa", values, part)
-        return self._summed(dofs, local)
+def _cross(s: Array, v: Array) -> Array:
+    """s x v in (r, z, t), which is left-handed: e_r x e_z = -e_t."""
+    return np.stack([
+        s[..., 2] * v[..., 1] - s[..., 1] * v[..., 2],
+        s[..., 0] * v[..., 2] - s[..., 2] * v[..., 0],
+        s[..., 1] * v[..., 0] - s[..., 0] * v[..., 1],
+    ], axis=-1)  # fmt: skip

@@ -27,8 +27,6 @@ Array = NDArray[np.float64]
 #: The curve of load over deflection goes this much further than the footprint, or to just before the rim.
 BEYOND = 1.25
 BEFORE_RIM = 0.98
-#: Harmonics of a balance at most: its cost rises with their square.
-BALANCED = 36
 #: A narrower drum, over the tyre's diameter, is an obstacle, which these harmonics and linear contact do not resolve.
 SMALLEST_DRUM = 0.1
 
@@ -40,7 +38,8 @@ class Pressed:
     Parameters
     ----------
     study : the study. mesh : the mechanical mesh. tyre : the inflated tyre. footprint : the tyre on the road.
-    tolerance : change with the number of harmonics that was allowed. balanced : in balance with Green's strains.
+    tolerance : change with the number of harmonics that was allowed.
+    path : (deflection, load), m and N, on the way to a footprint in large motion; empty: linear about the inflation.
     """
 
     study: Study
@@ -48,7 +47,12 @@ class Pressed:
     tyre: Inflation
     footprint: Footprint
     tolerance: float = TOLERANCE
-    balanced: bool = False
+    path: tuple[tuple[float, float], ...] = ()
+
+    @property
+    def balanced(self) -> bool:
+        """Is the footprint in large motion?"""
+        return self.footprint.balanced is not None
 
     @property
     def pressing(self) -> Pressing:
@@ -117,7 +121,11 @@ class Pressed:
         return compared(self.study.card.published, values)
 
     def curve(self, count: int = 10) -> Array:
-        """(count + 1, 2) deflection, m, and load, N, from the free tyre on, with as many harmonics as the footprint."""
+        """(n, 2) deflection, m, and load, N, from the free tyre on, with as many harmonics as the footprint; in large
+        motion those balanced on the way, and the footprint."""
+        if self.balanced:
+            before = [one for one in self.path if one[0] < 0.99 * self.footprint.deflection]
+            return np.array([*before, (self.footprint.deflection, self.footprint.load)])
         last = min(BEYOND * self.footprint.deflection, BEFORE_RIM * self.pressing.bottoming)
         deflections = np.linspace(0.0, last, count + 1)
         # The largest first: its grid of angles serves the others.
@@ -193,7 +201,7 @@ def press(
     drum_diameter : m; infinite for a flat road.
     camber : rad; positive: the side z > 0 comes down. A half section is made whole by its mirror image.
     tolerance : change with the number of harmonics that the footprint may keep.
-    balanced : Green's strains instead of linearised ones (`footprint.balance`): slower, and not to every deflection.
+    balanced : in large motion (`footprint.balance`) instead of linear about the inflated state: slower.
 
     Raises
     ------
@@ -233,10 +241,11 @@ def press(
     mesh = mechanical_mesh(chosen)
     tyre = inflate(chosen, pressure, mesh)
     pressing = Pressing(tyre.state, road)
-    found = pressing.solve(load=load, deflection=deflection, tolerance=tolerance)
-    if balanced:
-        from tyrefem.footprint.balance import Balance
+    if not balanced:
+        found = pressing.solve(load=load, deflection=deflection, tolerance=tolerance)
+        return Pressed(chosen, mesh, tyre, found, tolerance)
+    from tyrefem.footprint.balance import Balance
 
-        balance = Balance(pressing, min(found.harmonics, BALANCED))
-        found = balance.at_load(load) if load is not None else balance.at_deflection(found.deflection)
-    return Pressed(chosen, mesh, tyre, found, tolerance, balanced)
+    balance = Balance(pressing)
+    found = balance.solve(load=load, deflection=deflection, tolerance=tolerance)
+    return Pressed(chosen, mesh, tyre, found, tolerance, tuple(balance.path))

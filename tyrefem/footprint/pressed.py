@@ -29,7 +29,7 @@ class Footprint:
     forces : (k,) contact force at each point (angle, node) of the grid, both sides of the wheel together, N.
     direction : (c, k) into the road.
     moved : (c, k) displacement of the tread, m.
-    correction : (harmonics + 1, n_dofs) amplitudes beyond the linear response, m, of a balanced footprint.
+    balanced : (harmonics + 1, n_dofs) displacement amplitudes of a balanced footprint, m; None: linear in the forces.
     gaps : (k,) left between tread and road, m.
     error : largest relative change of load, deflection, work and a fifth of the area against fewer harmonics; nan: not
         compared.
@@ -45,7 +45,7 @@ class Footprint:
     moved: Array
     gaps: Array
     error: float = float("nan")
-    correction: Array | None = None
+    balanced: Array | None = None
 
     @property
     def harmonics(self) -> int:
@@ -153,8 +153,7 @@ class Footprint:
     @functools.cached_property
     def amplitudes(self) -> Array:
         """(harmonics + 1, n_dofs) displacement amplitudes of the whole section, m."""
-        linear = self.grid.tread.fields(self.load_harmonics)
-        return linear if self.correction is None else linear + self.correction
+        return self.grid.tread.fields(self.load_harmonics) if self.balanced is None else self.balanced
 
     @property
     def loaded_radius(self) -> float:

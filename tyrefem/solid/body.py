@@ -14,6 +14,7 @@ from tyrefem.errors import InputError, nearest
 from tyrefem.solid.compounds import Compound, determinant
 from tyrefem.solid.cords import CordLayer
 from tyrefem.solid.elements import Indices, PressedWall, Rings
+from tyrefem.solid.finite_law import BodyLaw
 from tyrefem.solid.rim import Flange
 from tyrefem.solid.state import Prestressed
 from tyrefem.solid.voigt import SYMMETRIC_UNIT, UNIT, outer, over
@@ -260,6 +261,7 @@ class Body:
             fixed=fixed, pressurised=self.pressurised,
             support=self._support(displacement, 3) if self.flanges else None,
             rim_top=max((flange.centre[0] + flange.radius for flange in self.flanges), default=0.0),
+            law=BodyLaw(self, f),
         )  # fmt: skip
 
 

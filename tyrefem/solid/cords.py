@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 import numpy as np
 from numpy.typing import NDArray
@@ -69,6 +69,10 @@ class CordLayer:
     def stress_in_layer(self, deformation: Array) -> Array:
         """W', Pa along the cords per undeformed section of the layer: v_c E (lambda - 1) in tension."""
         return self._law(self.stretch(deformation))[1]
+
+    def slope(self, stretch: Array) -> Array:
+        """W' at stretches (..., n) of the cords at the layer's points (...), Pa."""
+        return np.asarray(replace(self, stiffness=self.stiffness[..., None])._law(np.asarray(stretch))[1])
 
     def energy(self, deformation: Array) -> Array:
         """W, J/m3."""

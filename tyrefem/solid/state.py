@@ -3,10 +3,13 @@
 from __future__ import annotations
 
 from dataclasses import dataclass
-from typing import Any
+from typing import TYPE_CHECKING, Any
 
 import numpy as np
 from numpy.typing import NDArray
+
+if TYPE_CHECKING:
+    from tyrefem.solid.finite_law import FiniteLaw
 
 Array = NDArray[np.float64]
 
@@ -32,6 +35,7 @@ class Prestressed:
         of node i at 3 i + c; alike for every harmonic. None: nothing but ``fixed``.
     rim_top : largest radius of the rim, m, where it is more than that of ``fixed``.
     symmetric : boundary on the mid plane of a half section, where u_z = 0; a mesh without it is a full section.
+    law : stress in further motions of any size (`solid.finite_law`); None: linear in Green's strain.
     """
 
     mesh: Any
@@ -46,3 +50,4 @@ class Prestressed:
     symmetric: str = "symmetry"
     support: Any = None
     rim_top: float = 0.0
+    law: FiniteLaw | None = None

@@ -120,7 +120,7 @@ class WarmBody(Body):
     def state(self, displacement: Array, pressure: float) -> Prestressed:
         """What a small further motion sees of the present place."""
         found = super().state(displacement, pressure)
-        return replace(found, bulk=found.bulk / self.thermal**6)
+        return replace(found, bulk=found.bulk / self.thermal**6, law=None)
 
 
 def expansions(study: Study) -> dict[str, Expansion]:

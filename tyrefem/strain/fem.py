@@ -132,6 +132,7 @@ def provider(study: Study) -> Callable[[LoadCase], StrainCycle]:
     """
     factor = LOSS_FACTOR[study.card.mechanics.loss_convention]
     one_cycle = study.card.mechanics.revolution == "one-cycle"
+    large = study.card.mechanics.motion == "large"
 
     @functools.lru_cache(REMEMBERED)
     def inflated(pressure: float) -> Inflation:
@@ -150,7 +151,13 @@ def provider(study: Study) -> Callable[[LoadCase], StrainCycle]:
 
     @functools.lru_cache(REMEMBERED)
     def pressed(load: float, pressure: float, drum: float) -> Any:
-        return pressing(pressure, drum).solve(load=load, tolerance=TOLERANCE) if load > 0 else None
+        if load <= 0:
+            return None
+        if large:
+            from tyrefem.footprint.balance import Balance
+
+            return Balance(pressing(pressure, drum)).solve(load=load, tolerance=TOLERANCE)
+        return pressing(pressure, drum).solve(load=load, tolerance=TOLERANCE)
 
     def cycle(case: LoadCase) -> StrainCycle:
         footprint = pressed(case.load, case.pressure, case.drum_diameter)

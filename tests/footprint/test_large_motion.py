@@ -1,0 +1,129 @@
+"""Large motion about the inflated state: the body's own forces, exact derivatives, balance far beyond the linear."""
+
+from __future__ import annotations
+
+from dataclasses import replace
+
+import numpy as np
+import pytest
+
+from tyrefem.errors import InputError
+from tyrefem.footprint.balance import Balance
+from tyrefem.footprint.contact import Pressing
+from tyrefem.footprint.nonlinear import NonlinearForces
+from tyrefem.footprint.plain import PlainTyre
+from tyrefem.footprint.pressed import Footprint
+from tyrefem.loading import TrR64
+from tyrefem.meshing import build
+from tyrefem.solid.inflation import Inflation, inflate
+from tyrefem.studies import study
+
+COARSE = 18e-3
+
+
+@pytest.fixture(scope="module")
+def bias() -> Inflation:
+    """The 22x5.5 8PR, compressed cords and all."""
+    tyre = study("nasa-22x5.5-8pr")
+    return inflate(tyre, None, build(tyre.section, size=COARSE, through=1))
+
+
+@pytest.fixture(scope="module")
+def pressing(bias: Inflation) -> Pressing:
+    return Pressing(bias.state)
+
+
+@pytest.fixture(scope="module")
+def pressed(pressing: Pressing) -> Footprint:
+    """At its rated load."""
+    return Balance(pressing, 16).at_load(12010.0)
+
+
+def motion(pressing: Pressing, harmonics: int, size: float, seed: int) -> np.ndarray:
+    """Random amplitudes that hold what is held."""
+    u = size * np.random.default_rng(seed).normal(size=(harmonics + 1, pressing.harmonics.elements.n_dofs))
+    u[:, pressing.harmonics.held] = 0.0
+    u.reshape(harmonics + 1, -1, 3)[0, :, 2] = 0.0
+    return u
+
+
+@pytest.mark.parametrize("own", [True, False])
+def test_the_product_is_the_derivative_of_the_forces(pressing: Pressing, own: bool) -> None:
+    """Own compounds and cords, or Green's strain; with the following pressure and the rim's flange."""
+    chosen = pressing if own else Pressing(replace(pressing.state, law=None))
+    outside = NonlinearForces(chosen.harmonics, 5)
+    u = 1.5 * chosen.at_deflection(0.02, 5).amplitudes
+    v = motion(chosen, 5, 1e-6, 1)
+    product = outside.at(u).product(v)
+    h = 1e-2  # so small that few cords pass from tension to compression
+    slope = (outside.forces(u + h * v) - outside.forces(u - h * v)) / (2 * h)
+    free = chosen.harmonics.free
+    assert np.abs(slope - product)[:, free].max() < 1e-5 * np.abs(product[:, free]).max()
+    # The stiffness is symmetric in the work round the wheel, which counts n = 0 twice.
+    w = motion(chosen, 5, 1e-6, 2)
+    share = np.array([2.0, 1, 1, 1, 1, 1])[:, None]
+    assert (share * w * product).sum() == pytest.approx((share * v * outside.at(u).product(w)).sum(), rel=1e-9)
+
+
+def test_without_motion_the_product_is_the_linear_stiffness(pressing: Pressing) -> None:
+    rest = NonlinearForces(pressing.harmonics, 3).at(np.zeros((4, pressing.harmonics.elements.n_dofs)))
+    assert np.abs(rest.forces).max() < 1e-9
+    v = motion(pressing, 3, 1e-6, 3)
+    linear = np.stack([pressing.harmonics.stiffness(n) @ part for n, part in enumerate(v)])
+    free = pressing.harmonics.free
+    # The dilatation is projected with the volumes before inflation, in the harmonics with those after it.
+    assert np.abs(rest.product(v) - linear)[:, free].max() < 2e-3 * np.abs(linear[:, free]).max()
+
+
+def test_a_motion_alike_all_round_has_the_forces_of_the_inflated_body(bias: Inflation, pressing: Pressing) -> None:
+    """n = 0 in the large is `Body.residual`, to round-off; the flange acts as linearised there, so it is left out."""
+    body = replace(bias.body, flanges=())
+    state = replace(bias.state, support=None)
+    u = motion(Pressing(state), 2, 2e-4, 4)
+    u[1:] = 0.0
+    found = NonlinearForces(Pressing(state).harmonics, 2).forces(u).reshape(3, -1, 3)
+    more = u[0].reshape(-1, 3)[:, :2].T
+    exact = body.residual(bias.displacement + more, bias.pressure) - body.residual(bias.displacement, bias.pressure)
+    free = np.zeros(2 * body.rings.n_nodes, dtype=bool)
+    free[body.free] = True
+    difference = (found[0, :, :2].ravel() - exact)[free]
+    assert np.abs(difference).max() < 1e-8 * np.abs(exact[free]).max()
+    assert np.abs(found[1:]).max() < 1e-9 * np.abs(found[0]).max()
+
+
+def test_the_8pr_deflects_under_its_rated_load_as_tr_r_64_says(pressing: Pressing, pressed: Footprint) -> None:
+    """The linearised tyre is a quarter too stiff; in large motion deflection and slope are TR R-64's."""
+    chosen = study("nasa-22x5.5-8pr")
+    law, rating = TrR64(), chosen.section.rating
+    assert rating is not None
+    expected = law.deflection(12010.0, pressing.state.pressure, rating)
+    assert pressed.load == pytest.approx(12010.0, rel=1e-3)
+    assert pressed.deflection == pytest.approx(expected, rel=0.05)
+    slope = 12010.0 * 0.01 / (law.deflection(12010.0 * 1.01, pressing.state.pressure, rating) - expected)
+    assert pressed.stiffness == pytest.approx(slope, rel=0.15)
+    assert pressing.at_load(12010.0, 16).deflection < 0.8 * expected
+
+
+def test_contact_in_large_motion_neither_pulls_nor_penetrates(pressed: Footprint) -> None:
+    largest = pressed.forces.max()
+    assert (pressed.forces >= 0).all()
+    assert pressed.gaps.min() > -1e-9
+    assert np.abs(pressed.gaps[pressed.forces > 1e-6 * largest]).max() < 1e-9
+    assert pressed.pressure_integral == pytest.approx(pressed.load, rel=1e-9)
+
+
+def test_stiffness_is_the_slope_between_two_deflections_and_far_less_than_linear() -> None:
+    """A plain tyre of few elements, pressed by an eighth of its radius; the way there only rises."""
+    tyre = Pressing(PlainTyre().state(along=8))
+    balance = Balance(tyre, 10, tolerance=1e-5)
+    loads = [balance.at_deflection(d).load for d in (0.0396, 0.0404)]
+    assert np.diff(balance.path, axis=0).min() > 0
+    middle = balance.at_deflection(0.04)
+    assert middle.stiffness == pytest.approx((loads[1] - loads[0]) / 0.0008, rel=0.03)
+    assert middle.load < 0.8 * tyre.at_deflection(0.04, 10).load
+
+
+def test_more_than_the_tyre_can_carry(pressing: Pressing, monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setattr("tyrefem.footprint.large_motion.BEFORE_RIM", 0.1)
+    with pytest.raises(InputError, match=r"cannot carry 12010 N: the crown meets the rim at .* mm\)"):
+        Balance(pressing, 8).at_load(12010.0)
