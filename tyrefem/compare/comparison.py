@@ -16,6 +16,8 @@ from tyrefem.compare.judgement import COLUMNS, row
 if TYPE_CHECKING:
     import pandas as pd
 
+    from tyrefem.compare.neighbours import Certificate
+
 
 @dataclass(frozen=True, eq=False)
 class Comparison:
@@ -33,7 +35,7 @@ class Comparison:
         the change of the mean when that input is one standard deviation higher.
     curves : run -> computed readings at the saved times (``time_s``, degC).
     notes : what was left out, in sentences; those beginning with "ERROR" also stand in the summary.
-    k : coverage factor.
+    k : coverage factor. reduced : certificate of the reduced model that answered for changed inputs, if one did.
     """
 
     study: str
@@ -43,6 +45,7 @@ class Comparison:
     curves: Mapping[str, pd.DataFrame]
     notes: tuple[str, ...] = ()
     k: float = 2.0
+    reduced: Certificate | None = None
 
     @property
     def bias_K(self) -> float:
@@ -121,6 +124,7 @@ class Comparison:
             "summary": self.summary,
             "notes": list(self.notes),
             "k": self.k,
+            "reduced": None if self.reduced is None else vars(self.reduced),
             **parts,
             "rms_by_sensor_K": {str(name): float(value) for name, value in self.by_sensor.items()},
             "rows": self.table.to_dict(orient="records"),
@@ -166,6 +170,7 @@ def comparison_of(
     relative_sd: Mapping[str, float],
     notes: tuple[str, ...] = (),
     k: float = 2.0,
+    reduced: Certificate | None = None,
 ) -> Comparison:
     """The comparison that follows from paired histories."""
     import pandas as pd
@@ -204,6 +209,7 @@ def comparison_of(
         curves=dict(curves),
         notes=notes,
         k=k,
+        reduced=reduced,
     )
 
 

@@ -4,17 +4,18 @@ from __future__ import annotations
 
 from collections.abc import Callable, Iterable, Mapping, Sequence
 from concurrent.futures import Executor
-from dataclasses import dataclass
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, Any
+
+import numpy as np
 
 from tyrefem.compare.comparison import Comparison, comparison_of
 from tyrefem.compare.experiment import Experiment, Table, experiments
 from tyrefem.compare.history import histories
-from tyrefem.compare.interface import PhaseLike, ResultLike, StudyLike
+from tyrefem.compare.interface import ResultLike, StudyLike
 from tyrefem.errors import InputError
 
 if TYPE_CHECKING:
-    import pandas as pd
+    from tyrefem.compare.neighbours import Certificate
 
 
 def compare(
@@ -28,6 +29,7 @@ def compare(
     k: float = 2.0,
     executor: Executor | None = None,
     progress: Callable[[int, int], None] | None = None,
+    reduced: str = "auto",
 ) -> Comparison:
     """Deviations between a study and measured temperature histories, E = computed - measured.
 
@@ -43,6 +45,8 @@ def compare(
     k : coverage factor of the verdict; 2 for about 95 %.
     executor : runs the simulations side by side (`concurrent.futures.ProcessPoolExecutor` or alike).
     progress : called with (simulations done, simulations in all) after each.
+    reduced : "auto" makes a reduced model of the drives' runs for the changed inputs, where there are at least 12 of
+        these, tries it on three or more of them that are run in full, and uses it if it held; "never" does not.
 
     Raises
     ------
@@ -52,9 +56,11 @@ def compare(
     """
     if not 0.0 < k < 100.0:
         raise InputError(f"the coverage factor k must be more than 0 and less than 100, not {k!r}")
+    if reduced not in ("auto", "never"):
+        raise InputError(f"reduced is 'auto' or 'never', not {reduced!r}")
     planned = experiments(study, table, ignore=ignore, rename=rename)
     keys = dict(study.uncertainty) if inputs else {}
-    solved = _solved(study, planned, result, keys, executor, progress)
+    solved, certificate, said = _solved(study, planned, result, keys, executor, progress, reduced)
     found, curves, notes = [], {}, []
     for experiment in planned:
         computed, perturbed = solved[_drive(experiment)]
@@ -64,8 +70,10 @@ def compare(
         notes += _outside(experiment, computed, outside)
     if not found:
         raise InputError("no measured time is within the simulated span: " + "; ".join(notes))
-    notes += _unstated(study, planned, inputs)
-    return comparison_of(study.name, found, curves=curves, relative_sd=keys, notes=tuple(notes), k=k)
+    notes += [*said, *_unstated(study, planned, inputs)]
+    return comparison_of(
+        study.name, found, curves=curves, relative_sd=keys, notes=tuple(notes), k=k, reduced=certificate
+    )
 
 
 def _drive(experiment: Experiment) -> str:
@@ -73,19 +81,14 @@ def _drive(experiment: Experiment) -> str:
     return repr(sorted(experiment.drive.items()))
 
 
-@dataclass(frozen=True, eq=False)
-class Computed:
-    """What a comparison needs of a result; unlike a result, small enough to come from another process."""
-
-    study: StudyLike
-    readings: pd.DataFrame
-    gradient_at_sensors: pd.DataFrame
-    phases: Sequence[PhaseLike]
-
-
 def _run(study: StudyLike) -> ResultLike:
-    result = study.run()
-    return Computed(study, result.readings, result.gradient_at_sensors, result.phases)
+    from tyrefem.compare.computed import computed_of
+
+    return computed_of(study.run())
+
+
+#: Drive and changed input; None: as the study has it.
+Key = tuple[str, str | None]
 
 
 def _solved(
@@ -95,10 +98,12 @@ def _solved(
     keys: Mapping[str, float],
     executor: Executor | None,
     progress: Callable[[int, int], None] | None,
-) -> dict[str, tuple[ResultLike, dict[str, ResultLike]]]:
-    """Drive -> its result, and its results with each uncertain input one sd higher."""
+    reduced: str,
+) -> tuple[dict[str, tuple[ResultLike, dict[str, ResultLike]]], Certificate | None, list[str]]:
+    """Drive -> its result, and its results with each uncertain input one sd higher; certificate; notes."""
     known: dict[str, ResultLike] = {}
-    studies: dict[tuple[str, str | None], StudyLike] = {}
+    studies: dict[Key, StudyLike] = {}
+    drives: dict[str, StudyLike] = {}
     for experiment in planned:
         drive = _drive(experiment)
         if drive in known or (drive, None) in studies:
@@ -110,15 +115,57 @@ def _solved(
             driven = result.study
         else:
             studies[drive, None] = driven
+        drives[drive] = driven
         studies |= {(drive, key): driven.scaled(key, 1.0 + sd) for key, sd in keys.items()}
-    each = executor.map if executor is not None else map
-    results: dict[tuple[str, str | None], ResultLike] = {}
-    for what, computed in zip(studies, each(_run, studies.values()), strict=True):
-        results[what] = computed
+
+    def done(count: int) -> None:
         if progress is not None:
-            progress(len(results), len(studies))
+            progress(count, len(studies))
+
+    each: Any = executor.map if executor is not None else map
+    results: dict[Key, ResultLike] = {}
+    certificate: Certificate | None = None
+    notes: list[str] = []
+    if reduced == "auto":
+        results, certificate, notes = _by_model(
+            studies, lambda drive, key: drives[drive].scaled(key, 1 / (1 + keys[key])), known, each, done
+        )
+    missing = [what for what in studies if what not in results]
+    for what, computed in zip(missing, each(_run, [studies[what] for what in missing]), strict=True):
+        results[what] = computed
+        done(len(results))
     known |= {drive: found for (drive, key), found in results.items() if key is None}
-    return {drive: (computed, {key: results[drive, key] for key in keys}) for drive, computed in known.items()}
+    together = {drive: (computed, {key: results[drive, key] for key in keys}) for drive, computed in known.items()}
+    return together, certificate, notes
+
+
+def _by_model(
+    studies: Mapping[Key, StudyLike],
+    lowered: Callable[[str, str], Any],
+    known: Mapping[str, ResultLike],
+    each: Any,
+    done: Callable[[int], None],
+) -> tuple[dict[Key, ResultLike], Certificate | None, list[str]]:
+    """The runs that were made with the help of a reduced model: all, or full ones only if it did not hold."""
+    from tyrefem.compare.neighbours import WORTH, Neighbours
+    from tyrefem.result import Result
+    from tyrefem.studies import Study
+
+    changed = [what for what in studies if what[1] is not None]
+    own = {what: one for what, one in studies.items() if isinstance(one, Study)}
+    at_hand = {drive: one for drive, one in known.items() if isinstance(one, Result)}
+    if len(changed) < WORTH or len(own) < len(studies) or len(at_hand) < len(known):
+        return {}, None, []
+    everything = {(drive, None): one.study for drive, one in at_hand.items()} | own
+    neighbours = None
+    try:
+        neighbours = Neighbours(everything, lowered, at_hand, each, done)
+        certificate = neighbours.solve()
+    except (InputError, np.linalg.LinAlgError) as error:
+        # What is wrong with the study itself is said by its full run.
+        made = {} if neighbours is None else neighbours.found
+        return dict(made), None, [f"Note: all runs with a changed input are full ones: {error}"]
+    return dict(neighbours.found), certificate, [certificate.sentence]
 
 
 def _outside(experiment: Experiment, computed: ResultLike, outside: int) -> list[str]:

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import functools
 from dataclasses import dataclass
-from typing import Any
+from typing import TYPE_CHECKING, Any
 
 import numpy as np
 from numpy.typing import NDArray
@@ -19,6 +19,9 @@ from tyrefem.rolling_resistance import RollingResistance, rolling_resistance
 from tyrefem.sensors import recorded, true_places
 from tyrefem.studies import Study
 from tyrefem.wall import inside
+
+if TYPE_CHECKING:
+    import pandas as pd
 
 Array = NDArray[np.float64]
 
@@ -101,6 +104,15 @@ class Variant:
         return self.readout.reservoirs(self.number).get(RIM)
 
     pressure_at = Result.pressure_at
+
+    @functools.cached_property
+    def readings(self) -> pd.DataFrame:
+        """As of a `Result`."""
+        import pandas as pd
+
+        rim = self.rim_temperature
+        lumped = {GAS: self.gas_temperature} | ({} if rim is None else {RIM: rim})
+        return pd.DataFrame({"time_s": self.times, **self.recorded, **lumped})
 
     @property
     def wall_gradient(self) -> tuple[Array, Array]:

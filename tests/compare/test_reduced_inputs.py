@@ -1,0 +1,105 @@
+"""Uncertain inputs by a reduced model: the same u_input as by full runs, and full runs where it does not hold."""
+
+from __future__ import annotations
+
+from concurrent.futures import Executor
+from pathlib import Path
+
+import numpy as np
+import pytest
+
+from tyrefem.compare import Comparison, neighbours
+from tyrefem.errors import InputError
+from tyrefem.processes import processes
+from tyrefem.studies import Study, study
+
+#: Coarse in space and time.
+QUICK = {"mesh.size": "9 mm", "mesh.element": "P1", "numerics.tolerance": "0.05 delta_degC", "output.every": "20 s"}
+
+
+@pytest.fixture(scope="module")
+def quick() -> Study:
+    return study("example-validation").replace(QUICK)
+
+
+class Counting(Executor):
+    """Runs here, and counts the full runs."""
+
+    def __init__(self) -> None:
+        self.full = 0
+
+    def map(self, function, *given, **_):
+        for each in zip(*given, strict=True):
+            self.full += function.__name__ in ("taught", "_run")
+            yield function(*each)
+
+
+@pytest.fixture(scope="module")
+def table(quick: Study) -> Path:
+    """One run of one drive: fourteen inputs."""
+    return Path(quick.measured[0].table)
+
+
+@pytest.fixture(scope="module")
+def counting() -> Counting:
+    return Counting()
+
+
+@pytest.fixture(scope="module")
+def reduced(quick: Study, table: Path, counting: Counting) -> Comparison:
+    return quick.compare(table, executor=counting)
+
+
+@pytest.fixture(scope="module")
+def full(quick: Study, table: Path) -> Comparison:
+    return quick.compare(table, reduced="never")
+
+
+def test_reduced_inputs_are_those_of_full_runs(reduced: Comparison, full: Comparison) -> None:
+    found = reduced.reduced
+    assert found is not None
+    assert found.worst <= 0.8 * found.tolerance
+    assert list(reduced.inputs["key"]) == list(full.inputs["key"])
+    # Means of readings: no more than any reading may be off by, in all runs that no certificate has seen.
+    np.testing.assert_allclose(reduced.inputs["change_K"], full.inputs["change_K"], rtol=0, atol=found.tolerance)
+    np.testing.assert_allclose(reduced.table["u_input_K"], full.table["u_input_K"], rtol=0, atol=found.tolerance)
+    # What is not about inputs is from the same full runs.
+    np.testing.assert_allclose(reduced.residuals["error_K"], full.residuals["error_K"], rtol=0, atol=1e-9)
+    assert list(reduced.table["verdict"]) == list(full.table["verdict"])
+
+
+def test_few_runs_are_full_and_the_comparison_says_so(
+    reduced: Comparison, full: Comparison, counting: Counting
+) -> None:
+    found = reduced.reduced
+    assert found is not None
+    assert counting.full == 1 + found.full <= 7
+    assert found.reduced + found.full == 14
+    assert reduced.to_dict()["reduced"]["worst"] == found.worst
+    assert any("reduced model" in note for note in reduced.notes)
+    assert full.to_dict()["reduced"] is None
+
+
+def test_what_does_not_hold_is_run_in_full(quick: Study, table: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    """No model can be so near: every run is made, and none twice."""
+    monkeypatch.setattr(neighbours, "SAFETY", 1e-9)
+    rough, counting = quick.replace({"numerics.tolerance": "1 delta_degC"}), Counting()
+    found = rough.compare(table, executor=counting)
+    assert found.reduced is None
+    assert counting.full == 15
+    assert found.inputs["key"].nunique() == 14
+    assert any("full ones" in note for note in found.notes)
+
+
+def test_one_model_for_all_drives_and_in_processes(quick: Study, full: Comparison) -> None:
+    with processes(2) as pool:
+        found = quick.compare(executor=pool)
+    assert found.reduced is not None
+    assert found.reduced.reduced >= 36
+    first = found.inputs[found.inputs["run"] == full.inputs["run"].iloc[0]]
+    np.testing.assert_allclose(first["change_K"], full.inputs["change_K"], rtol=0, atol=found.reduced.tolerance)
+
+
+def test_other_words_are_refused(quick: Study) -> None:
+    with pytest.raises(InputError, match="never"):
+        quick.compare(reduced="always")
