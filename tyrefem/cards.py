@@ -30,9 +30,11 @@ class Card(BaseModel):
     @model_validator(mode="before")
     @classmethod
     def _known_keys(cls, data: Any) -> Any:
+        if isinstance(data, cls):
+            return data
         if not isinstance(data, Mapping):
             raise InputError(f"must be a table of keys, not {data!r:.60}")
-        allowed = {field.alias or name for name, field in cls.model_fields.items()}
+        allowed = _allowed(cls)
         for key in data:
             if key not in allowed:
                 raise InputError(f"unknown key '{key}'{nearest(str(key), allowed)}")
@@ -45,6 +47,22 @@ class Card(BaseModel):
             return cls.model_validate(data)
         except ValidationError as error:
             raise _one_error(error, file) from None
+
+    def checked(self, own: Mapping[str, Any], data: Mapping[str, Any], file: str | Path | None = None) -> Self:
+        """`check` of data, where this card was made of ``own``: tables that the two share are not read again."""
+        kept: dict[str, Any] = dict(data)
+        for key in type(self).model_fields:
+            if key in own and key in data and own[key] is data[key]:
+                value = getattr(self, key)
+                cards = list(value.values()) if isinstance(value, dict) else [value]
+                if cards and all(isinstance(one, Card) for one in cards):
+                    kept[key] = value
+        return type(self).check(kept, file)
+
+
+@functools.cache
+def _allowed(card: type[Card]) -> frozenset[str]:
+    return frozenset(field.alias or name for name, field in card.model_fields.items())
 
 
 def _one_error(error: ValidationError, file: str | Path | None) -> InputError:

@@ -26,15 +26,29 @@ def changed(data: Mapping[str, Any], key: str, value: Any) -> dict[str, Any]:
 
 
 def all_changed(data: Mapping[str, Any], changes: Mapping[str, Any]) -> dict[str, Any]:
-    """Plain data with the values at dotted names replaced, one after the other, in a single copy.
+    """Plain data with the values at dotted names replaced, one after the other; other tables are shared, not copied.
 
     >>> all_changed({"mesh": {}}, {"mesh.size": "3 mm", "mesh.element": "P1"})
     {'mesh': {'size': '3 mm', 'element': 'P1'}}
     """
-    result: dict[str, Any] = copy.deepcopy(dict(data))
+    result: dict[str, Any] = dict(data)
+    own: set[str] = set()
     for key, value in changes.items():
-        _change(result, key, copy.deepcopy(value))
+        table = key.split(".")[0].strip().replace("-", "_")
+        if table in result and table not in own:
+            result[table] = _copied(result[table])
+            own.add(table)
+        _change(result, key, _copied(value))
     return result
+
+
+def _copied(value: Any) -> Any:
+    """Plain data again: tables and lists are new, what they hold at last is not."""
+    if isinstance(value, str | int | float):
+        return value
+    if isinstance(value, dict):
+        return {key: _copied(one) for key, one in value.items()}
+    return [_copied(one) for one in value] if isinstance(value, list) else copy.deepcopy(value)
 
 
 def _change(data: dict[str, Any], key: str, value: Any) -> None:

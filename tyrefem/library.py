@@ -89,6 +89,14 @@ def load(kind: str, reference: object, near: Path | None = None) -> tuple[dict[s
     ``reference`` is a name or path, or a table ``{base = NAME, ...}`` whose other keys are laid
     over that card.
     """
+    card, changes = _split(kind, reference)
+    path = find(kind, card, near)
+    name = path.parent.name if kind in FILES else path.stem
+    return merged(read_toml(path), changes), path, name
+
+
+def _split(kind: str, reference: object) -> tuple[str, Mapping[str, Any]]:
+    """The card that a reference names, and what is laid over it."""
     changes: Mapping[str, Any] = {}
     if isinstance(reference, Mapping):
         if not isinstance(reference.get("base"), str):
@@ -97,9 +105,18 @@ def load(kind: str, reference: object, near: Path | None = None) -> tuple[dict[s
         reference = reference["base"]
     if not isinstance(reference, str) or not reference:
         raise InputError(f"{reference!r} is not the name or path of a {kind} card")
-    path = find(kind, reference, near)
-    name = path.parent.name if kind in FILES else path.stem
-    return merged(read_toml(path), changes), path, name
+    return reference, changes
+
+
+def over(kind: str, reference: object, own: object, data: Mapping[str, Any]) -> dict[str, Any] | None:
+    """`load`'s data of a reference, where those of ``own``, which changes nothing of the same card, are at hand; None:
+    it is another card.
+
+    >>> over("material", {"base": "a", "k": 2}, "a", {"k": 1, "c": 3})
+    {'k': 2, 'c': 3}
+    """
+    (card, changes), (other, laid) = _split(kind, reference), _split(kind, own)
+    return merged(data, changes) if card == other and not laid else None
 
 
 def located(kind: str, reference: Any, near: Path | None = None) -> Any:

@@ -42,7 +42,10 @@ def stiffness(study: Study) -> Stiffness:
     angle = rating.cord_angle or cord.crown_angle
     if not angle:
         raise InputError("neither the section nor the carcass card gives the crown cord angle", field="section")
-    crown_radius = float(section.line.position(np.zeros(1))[0, 0])
+    # Once per section: variants of a study share it.
+    crown_radius = section.__dict__.get("_crown_radius")
+    if crown_radius is None:
+        crown_radius = section.__dict__["_crown_radius"] = float(section.line.position(np.zeros(1))[0, 0])
     return Stiffness(
         BiasPlies(_modulus(study, "carcass", "shear_modulus"), angle, crown_radius, mechanics.poisson_term),
         cord.ply_shear_modulus if mechanics.membrane_shear else np.inf,

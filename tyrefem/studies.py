@@ -51,11 +51,15 @@ class Study:
     card: StudyCard = field(init=False, repr=False)
 
     def __post_init__(self) -> None:
+        like = self.__dict__.pop("_like", None)
         try:
-            object.__setattr__(self, "card", StudyCard.check(self.data, self.file))
+            if like is None:
+                card = StudyCard.check(self.data, self.file)
+            else:
+                card = like.card.checked(like.data, self.data, self.file)
+            object.__setattr__(self, "card", card)
         except InputError as error:
             raise self.as_written(error) from None
-        like = self.__dict__.pop("_like", None)
         self._share(like)
         _ = self.section, self.materials
         self._check_energy()
@@ -118,20 +122,32 @@ class Study:
                 message = f"unknown region '{region}'{nearest(str(region), regions)}"
                 raise InputError(message, field="materials", file=self.file)
         found: dict[str, MaterialCard] = {}
-        known = self.__dict__.pop("_known_materials", {})
+        known, like = self.__dict__.pop("_known_materials", {}), self.__dict__.pop("_like_materials", None)
+        read = self.__dict__["_material_data"] = {}
         for region in regions:
             if region not in self.data["materials"]:
                 raise InputError(f"no material card for region '{region}'", field="materials", file=self.file)
             if region in known:
                 found[region] = known[region]
+                read[region] = like.__dict__["_material_data"][region]
                 continue
             try:
-                data, path, _ = library.load("material", self.data["materials"][region], self.folder)
-                found[region] = MaterialCard.check(data, path)
+                found[region], read[region] = self._material(region, like)
                 check_cords_fit(found[region], self.new_section, region)
             except InputError as error:
                 raise error if error.file else error.within(field=f"materials.{region}", file=self.file) from None
         return found
+
+    def _material(self, region: str, like: Study | None) -> tuple[MaterialCard, tuple[dict[str, Any], Path]]:
+        """A card, and the data and file that it was made of."""
+        reference = self.data["materials"][region]
+        if like is not None and region in like.__dict__["_material_data"] and like.folder == self.folder:
+            before, path = like.__dict__["_material_data"][region]
+            data = library.over("material", reference, like.data["materials"][region], before)
+            if data is not None:
+                return like.materials[region].checked(before, data, path), (data, path)
+        data, path, _ = library.load("material", reference, self.folder)
+        return MaterialCard.check(data, path), (data, path)
 
     def warmed(self, temperatures: Mapping[str, float]) -> Study:
         """This study with the moduli that its cards have at the mean temperatures of the regions, degC.
@@ -197,6 +213,7 @@ class Study:
         if self.card.mesh.section == like.card.mesh.section:
             self.__dict__["new_section"] = like.new_section
         mine, theirs = self.data["materials"], like.data["materials"]
+        self.__dict__["_like_materials"] = like
         self.__dict__["_known_materials"] = {
             region: like.materials[region] for region in like.materials if mine.get(region) == theirs[region]
         }

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import functools
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 from typing import TYPE_CHECKING, Any
@@ -84,14 +85,6 @@ class ReducedBalance:
         self.model, self.tyre, self.bodies, self.films, self.reservoirs = model, tyre, bodies, films, reservoirs
         m, names = model.size, list(reservoirs)
         n = m + len(names)
-        self.M = np.zeros((n, n))
-        self.K = np.zeros((n, n))
-        for region, (along, across, capacity) in bodies.items():
-            self.M[:m, :m] += capacity * model.mass[region]
-            first, second = model.conduction[region]
-            self.K[:m, :m] += along * first + across * second
-        for i, name in enumerate(names):
-            self.M[m + i, m + i] = float(reservoirs[name].heat_capacity)  # type: ignore[arg-type]
         among = [(name, pair) for name in names for pair in reservoirs[name].exchanges]
         self.layout: Layout = (
             tuple((side, _reservoir(film.sink)) for side, _, film in films),
@@ -109,6 +102,16 @@ class ReducedBalance:
         for i, name in enumerate(names):
             own = reservoirs[name].initial
             self.start[m + i] = initial if own is None else own
+
+    @functools.cached_property
+    def M(self) -> Array:
+        """(n, n) J/K."""
+        return matrices([self])[0][0]
+
+    @functools.cached_property
+    def K(self) -> Array:
+        """(n, n) W/K of conduction."""
+        return matrices([self])[1][0]
 
     @property
     def stack(self) -> Array:
@@ -138,6 +141,21 @@ class ReducedBalance:
     def powers(self, t: float) -> list[float]:
         """W put into every reservoir from outside."""
         return [_value(_timed(one.power), t) for one in self.reservoirs.values()]
+
+
+def matrices(balances: Sequence[ReducedBalance]) -> tuple[Array, Array]:
+    """M and K of variants on the same modes, (B, n, n) each."""
+    first = balances[0]
+    model, m, regions = first.model, first.model.size, list(first.model.mass)
+    n = m + len(first.reservoirs)
+    M, K = np.zeros((len(balances), n, n)), np.zeros((len(balances), n, n))
+    of_bodies = np.array([[one.bodies[region] for region in regions] for one in balances])
+    masses, pairs = model.stacked
+    M[:, :m, :m] = np.tensordot(of_bodies[:, :, 2], masses, axes=1)
+    K[:, :m, :m] = np.tensordot(of_bodies[:, :, :2], pairs, axes=2)
+    for i, name in enumerate(first.reservoirs):
+        M[:, m + i, m + i] = [float(one.reservoirs[name].heat_capacity) for one in balances]  # type: ignore[arg-type]
+    return M, K
 
 
 def _reservoir(sink: Any) -> str | None:

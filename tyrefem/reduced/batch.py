@@ -9,9 +9,11 @@ from itertools import pairwise
 
 import numpy as np
 from numpy.typing import NDArray
+from scipy.linalg.lapack import dsygvd
 
 from tyrefem.drive import Ramp
 from tyrefem.errors import InputError
+from tyrefem.reduced.balance import matrices
 from tyrefem.reduced.ledger import Ledger
 from tyrefem.reduced.marched import NODES, TO_POWERS, Marched, Window
 from tyrefem.reduced.model import ReducedBalance, ReducedModel
@@ -23,7 +25,7 @@ Array = NDArray[np.float64]
 #: First windows of a phase as a share of it; how much a window may grow or shrink from one to the next.
 FIRST, GROWTH, SHRINK = 0.03, 5.0, 0.3
 #: Sweeps of a window before it is cut; a sweep that changes less than this share of the tolerance is the last.
-SWEEPS, SETTLED = 14, 0.02
+SWEEPS, SETTLED = 14, 0.05
 #: A window's films may differ by this much from its frozen ones where they change.
 STALE = 0.2
 #: Shortest window over the phase.
@@ -70,10 +72,9 @@ class Batch:
         return SampledHeat(self.balances)
 
     @functools.cached_property
-    def _matrices(self) -> tuple[Array, Array, Array]:
-        """M, K, and L^-1 with M = L L^T; (B, n, n) each."""
-        M, K = np.stack([one.M for one in self.balances]), np.stack([one.K for one in self.balances])
-        return M, K, np.linalg.inv(np.linalg.cholesky(M))
+    def _matrices(self) -> tuple[Array, Array]:
+        """M, K; (B, n, n) each."""
+        return matrices(self.balances)
 
     def outside(self, t: float) -> Moment:
         """What acts from outside at a time."""
@@ -116,14 +117,18 @@ class _Phase:
 
     def _freeze(self, moment: Moment) -> None:
         """Take the exchanges of a moment as the linear part, and find its modes."""
-        M, K, root = self.batch._matrices
+        # How long the window before was, and how fast its heat into the modes changed at its end.
+        self.going: tuple[float, Array] | None = None
+        self.M, K = self.batch._matrices
         self.frozen = moment
         A = K + np.tensordot(moment.films, self.batch.balances[0].stack, axes=1)
-        decay, Q = np.linalg.eigh(root @ A @ root.transpose(0, 2, 1))
-        self.decay = np.maximum(decay, 0.0)
-        self.back = root.transpose(0, 2, 1) @ Q
-        self.into = np.ascontiguousarray(self.back.transpose(0, 2, 1))
-        self.inverse = self.into @ M
+        self.decay, self.into = np.empty(A.shape[:2]), np.empty_like(A)
+        for b in range(len(A)):
+            decay, back, failed = dsygvd(A[b], self.M[b])
+            if failed:
+                raise np.linalg.LinAlgError("heat capacity that is not positive definite")
+            self.decay[b], self.into[b] = np.maximum(decay, 0.0), back.T
+        self.back = np.ascontiguousarray(self.into.transpose(0, 2, 1))
 
     def run(self) -> list[Window]:
         """Windows with error control; the largest error over all variants counts."""
@@ -142,6 +147,7 @@ class _Phase:
                 continue
             found.append(window)
             self.y = window.end
+            self.going = h, window.heat @ (np.arange(len(NODES)) / h)
             t = self.end if h == left else t + h
             h *= min(GROWTH, 0.8 * (self.batch.tolerance / max(error, 1e-12)) ** (1 / len(NODES)))
         return found
@@ -167,13 +173,17 @@ class _Phase:
         E, each = responses(h * self.decay, NODES, count)
         # Answer of every mode at the nodes to heat at the nodes: (B, n, node, node of the heat).
         answer = h * np.tensordot(each, TO_POWERS, axes=(0, 0))
-        z0 = (self.inverse @ self.y[:, :, None])[:, :, 0]
+        z0 = (self.into @ (self.M @ self.y[:, :, None]))[:, :, 0]
         free = E * z0[:, :, None]
-        # To begin with, the heat of the window's start goes on.
+        # To begin with, the heat of the window's start goes on as it changed before, ever less.
         began = self._heat(
             seen[:1], self.y[:, :, None], constant[:, :, :1], None if apart is None else apart[:, :, :1]
         )[0]
-        y = self.back @ (free + answer.sum(axis=3) * (self.into @ began))
+        guess = self.into @ began
+        if self.going is not None:
+            past, slope = self.going
+            guess = guess + slope[:, :, None] * past * (1 - np.exp(-NODES * h / past))
+        y = self.back @ (free + np.einsum("bnkl,bnl->bnk", answer, np.broadcast_to(guess, free.shape)))
         change, swept = np.inf, 0
         while change > SETTLED * batch.tolerance and swept < SWEEPS:
             heat, q = self._heat(seen, y, constant, apart)

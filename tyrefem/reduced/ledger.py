@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Sequence
 from typing import TYPE_CHECKING
 
 import numpy as np
@@ -65,12 +66,33 @@ def budget(
     balance: ReducedBalance, times: Array, states: Array, slopes: Array, powers: Array, energies: Array
 ) -> Budget:
     """The budget at times (s) of states (n_times, n), the drive's start being that of the balance."""
-    model, m, names = balance.model, balance.model.size, list(balance.reservoirs)
+    model, m = balance.model, balance.model.size
     rows = np.array([balance.bodies[region][2] * model.stored_row[region] for region in balance.bodies])
     stored = (states[:, :m] - balance.start[:m]) @ rows.T
     storing = slopes[:, :m] @ rows.T
     heat = np.array([float(one.heat_capacity) for one in balance.reservoirs.values()])  # type: ignore[arg-type]
     held = (states[:, m:] - balance.start[m:]) * heat
+    return _tallied(balance, times, energies, powers, stored, storing, held)
+
+
+def end_budgets(
+    balances: Sequence[ReducedBalance], states: Array, slopes: Array, powers: Array, energies: Array
+) -> Budget:
+    """The budget of variants (B, ...) at the end of their drive: each stands where a `Budget` has a time."""
+    first, m = balances[0], balances[0].model.size
+    rows = np.array([first.model.stored_row[region] for region in first.bodies])
+    capacity = np.array([[body[2] for body in one.bodies.values()] for one in balances])
+    held = np.array([[float(each.heat_capacity) for each in one.reservoirs.values()] for one in balances])  # type: ignore[arg-type]
+    start = np.array([one.start for one in balances])
+    stored, storing = (capacity * (each[:, :m] @ rows.T) for each in (states - start, slopes))
+    kept = held * (states - start)[:, m:]
+    return _tallied(first, np.zeros(len(balances)), energies, powers, stored, storing, kept)
+
+
+def _tallied(
+    balance: ReducedBalance, times: Array, energies: Array, powers: Array, stored: Array, storing: Array, held: Array
+) -> Budget:
+    names = list(balance.reservoirs)
     into = {(side, number): film.sink for side, number, film in balance.films if isinstance(film.sink, str)}
     between: dict[tuple[str, int], tuple[str, str | None]] = {(name, -1): (name, None) for name in names}
     for name in names:

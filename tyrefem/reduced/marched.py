@@ -51,19 +51,20 @@ class Window:
 
     def states(self, part: Array) -> Array:
         """(B, n, k) y at parts (k,) of the window."""
-        return self.back @ self._modes(part)[0]
+        return self.back @ self._modes(part, integral=False)[0]
 
-    def _modes(self, part: Array) -> tuple[Array, Array]:
-        """(B, n, k) z, and its integral from the window's start over the window's length."""
+    def _modes(self, part: Array, *, integral: bool = True) -> tuple[Array, Array]:
+        """(B, n, k) z, and, if asked for, its integral from the window's start over the window's length."""
         B, n, count = self.heat.shape
         heat = self.length * self.heat.reshape(B * n, count)
-        z, whole = relaxed(self.length * self.decay.reshape(-1), self.start.reshape(-1), heat, part)
-        return z.reshape(B, n, -1), whole.reshape(B, n, -1)
+        decay, start = self.length * self.decay.reshape(-1), self.start.reshape(-1)
+        z, whole = relaxed(decay, start, heat, part, integral=integral)
+        return z.reshape(B, n, len(part)), whole.reshape(B, n, -1 if integral else 0)
 
     def slopes(self, part: Array) -> Array:
         """(B, n, k) dy/dt."""
         heat = self.heat @ np.vander(part, self.heat.shape[2], increasing=True).T
-        return self.back @ (heat - self.decay[:, :, None] * self._modes(part)[0])
+        return self.back @ (heat - self.decay[:, :, None] * self._modes(part, integral=False)[0])
 
     def energies(self, part: Array, batch: Batch) -> Array:
         """(B, n_entries, k) J since the window's start."""

@@ -67,7 +67,7 @@ class ReducedModel:
     def mass(self) -> dict[str, Array]:
         """Region -> (m, m), for a heat capacity of 1 J/m3/K."""
         ops = self.operators
-        return {region: self._projected(ops.mass(region)) for region in self.base.bodies}
+        return {region: self._projected(ops.mass(region), ops.dofs(region)) for region in self.base.bodies}
 
     @functools.cached_property
     def stored_row(self) -> dict[str, Array]:
@@ -81,9 +81,16 @@ class ReducedModel:
         """Region -> (m, m) along and across, for 1 W/m/K."""
         ops = self.operators
         return {
-            region: tuple(self._projected(one) for one in ops.conduction(region, body.direction))  # type: ignore[misc]
+            region: tuple(  # type: ignore[misc]
+                self._projected(one, ops.dofs(region)) for one in ops.conduction(region, body.direction)
+            )
             for region, body in self.base.bodies.items()
         }
+
+    @functools.cached_property
+    def stacked(self) -> tuple[Array, Array]:
+        """(n_regions, m, m) masses and (n_regions, 2, m, m) conduction, in the order of `mass`."""
+        return np.array(list(self.mass.values())), np.array([self.conduction[region] for region in self.mass])
 
     @functools.cached_property
     def surfaces(self) -> dict[str, tuple[Array, Array, float]]:
@@ -96,13 +103,23 @@ class ReducedModel:
             np.add.at(data, where, value)
             row = np.zeros(ops.size)
             row[surface.dofs] = surface.load(1.0)
-            found[side] = (self._projected(data), row @ self.V, float(row.sum()))
+            found[side] = (self._projected(data, surface.dofs), row @ self.V, float(row.sum()))
         return found
 
     @functools.cached_property
     def regions(self) -> dict[str, NDArray[np.intp]]:
         """Region -> its nodes."""
         return {region: self.operators.dofs(region) for region in self.base.bodies}
+
+    @functools.cached_property
+    def region_rows(self) -> dict[str, Array]:
+        """Region -> modes at its nodes."""
+        return {region: self.V[dofs] for region, dofs in self.regions.items()}
+
+    @functools.cached_property
+    def hot_rows(self) -> dict[str, Array]:
+        """Region -> modes at the nodes that were about the hottest in training."""
+        return {region: self.V[dofs] for region, dofs in self.hot.items()}
 
     @functools.cached_property
     def wall(self) -> tuple[Array, Array, Array, Array]:
@@ -188,8 +205,10 @@ class ReducedModel:
             rows.append(row @ self.nodes_from_samples[part])
         return np.array(rows)
 
-    def _projected(self, data: Array) -> Array:
-        return np.asarray(self.V.T @ (self.operators.matrix(data) @ self.V))
+    def _projected(self, data: Array, dofs: NDArray[np.intp]) -> Array:
+        """V^T A V of a matrix A whose other rows than ``dofs`` are empty."""
+        rows = self.operators.matrix(data)[dofs]
+        return np.asarray(self.V[dofs].T @ (rows @ self.V))
 
     def balance(self, tyre: RollingTyre) -> ReducedBalance:
         """The heat balance of a tyre on these modes.

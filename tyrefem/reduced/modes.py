@@ -44,7 +44,8 @@ def modes(snapshots: Array, weight: Array, tolerance: float, most: int) -> Array
 def orthonormal(X: Array) -> Array:
     """Columns that are nearly orthogonal made so, by Cholesky's factor of their products, twice."""
     for _ in range(2):
-        X = np.linalg.solve(np.linalg.cholesky(X.T @ X), X.T).T
+        # Twice makes up for the inverse's rounding.
+        X = X @ np.linalg.inv(np.linalg.cholesky(X.T @ X)).T
     return X
 
 

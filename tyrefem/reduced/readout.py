@@ -5,15 +5,22 @@ from __future__ import annotations
 import functools
 from collections.abc import Mapping
 from dataclasses import dataclass
+from itertools import pairwise
+from typing import Any
 
 import numpy as np
 from numpy.typing import NDArray
 
+from tyrefem.conduction.budget import Budget
 from tyrefem.conduction.history import Peak
+from tyrefem.heat_budget import HeatBudget, whole_tyre
+from tyrefem.reduced.ledger import end_budgets
 from tyrefem.reduced.marched import Marched
 from tyrefem.rolling_resistance import just_before
 
 Array = NDArray[np.float64]
+#: K: far more than single precision is off by.
+ROUGH = 5e-3
 
 
 @dataclass(frozen=True, eq=False)
@@ -67,28 +74,29 @@ class Readout:
 
     def _candidates(self, region: str, modes: Array) -> Array:
         model = self.marched.batch.model
-        return modes @ model.V[model.hot[region]].T
+        return np.asarray(modes @ model.hot_rows[region].T)
 
     @functools.cached_property
     def peaks(self) -> list[dict[str, Peak]]:
         """Of every variant: ``tyre`` and every region -> its highest temperature, with place and time."""
         model, count = self.marched.batch.model, self.states.shape[1]
-        modes, when, found = self._seen[:, :, : model.size], {}, {}
-        for region, hot in model.hot.items():
-            values = self._candidates(region, modes).transpose(1, 0, 2).reshape(count, -1)
-            best = values.argmax(axis=1)
-            when[region] = best // len(hot)
-            found[region] = values[np.arange(count), best], np.asarray(hot)[best % len(hot)]
-        # All nodes at these times: is any hotter than those that were looked at?
-        moments = {(int(i), b) for times in when.values() for b, i in enumerate(times)}
-        column = {moment: k for k, moment in enumerate(sorted(moments))}
-        everywhere = model.V @ np.array([modes[moment] for moment in column]).T
+        modes, when, found = np.ascontiguousarray(self._seen[:, :, : model.size].transpose(1, 0, 2)), {}, {}
+        each, single = np.arange(count), modes.reshape(-1, model.size).astype(np.float32)
         missed: set[int] = set()
-        for region, dofs in model.regions.items():
-            most = everywhere[dofs].max(axis=0)
-            for b, i in enumerate(when[region]):
-                if most[column[int(i), b]] > found[region][0][b] + 1e-9:
-                    missed.add(b)
+        for region, hot in model.hot.items():
+            rows = model.hot_rows[region]
+            # In single precision first: only times that may be the highest are looked at in double.
+            rough = (single @ rows.T.astype(np.float32)).max(axis=1).reshape(count, -1)
+            own, times = np.nonzero(rough >= rough.max(axis=1, keepdims=True) - ROUGH)
+            values = modes[own, times] @ rows.T
+            node, firsts = values.argmax(axis=1), np.searchsorted(own, each)
+            highest = values[np.arange(len(own)), node]
+            best = np.array([a + highest[a:b].argmax() for a, b in pairwise([*firsts, len(own)])])
+            when[region] = times[best]
+            found[region] = highest[best], np.asarray(hot)[node[best]]
+            # All nodes at these times: is any hotter than those that were looked at?
+            most = (model.region_rows[region] @ modes[each, when[region]].T).max(axis=0)
+            missed |= set(np.flatnonzero(most > found[region][0] + 1e-9).tolist())
         points, peaks = model.operators.points, []
         for b in range(count):
             if b in missed:
@@ -133,6 +141,20 @@ class Readout:
         start = np.stack([one.start for one in batch.balances])[:, : batch.model.size, None]
         q = batch.heat([just_before(self.times, i)], start)
         return (batch.model.power @ q)[:, :, 0].sum(axis=1)
+
+    @functools.cached_property
+    def end_budgets(self) -> Budget:
+        """The budget at the end, every variant in the place of a time."""
+        last = len(self.times) - 1
+        return end_budgets(
+            self.marched.batch.balances, self.states[-1], self.end_slopes[0], self.powers(last), self.marched.energy
+        )
+
+    @functools.cache  # noqa: B019 - lives as long as the batch
+    def end_budget(self, names: tuple[Any, bool, Any]) -> HeatBudget:
+        """The same of the whole tyre: (titles of the zones, half section?, names of added conditions)."""
+        titles, half, added = names
+        return whole_tyre(self.end_budgets, dict(titles), half, dict(added))
 
     @functools.cached_property
     def end_slopes(self) -> Array:

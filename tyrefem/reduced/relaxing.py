@@ -67,7 +67,7 @@ def _downwards(x: Array, theta: Array, count: int) -> tuple[Array, Array]:
     return 1 - x * found[0], found
 
 
-def relaxed(x: Array, start: Array, heat: Array, theta: Array) -> tuple[Array, Array]:
+def relaxed(x: Array, start: Array, heat: Array, theta: Array, *, integral: bool = True) -> tuple[Array, Array]:
     """z of z' = -x z + sum_j s_j theta^j at parts of a window, and the integral of z from its start.
 
     For x above 2 a polynomial P solves the equation and z = P + (z_0 - P(0)) exp(-x theta); below, a power series does.
@@ -78,41 +78,42 @@ def relaxed(x: Array, start: Array, heat: Array, theta: Array) -> tuple[Array, A
 
     Returns
     -------
-    z and its integral, (r, k) each.
+    z and, if asked for, its integral (else nothing in its place), (r, k) each.
 
     >>> z, whole = relaxed(np.array([0.0, 3.0]), np.array([1.0, 1.0]), np.array([[2.0], [3.0]]), np.array([1.0]))
     >>> z[:, 0].round(12), whole[:, 0].round(12)
     (array([3., 1.]), array([2., 1.]))
     """
-    z, whole = np.empty((len(x), len(theta))), np.empty((len(x), len(theta)))
+    z, whole = np.empty((len(x), len(theta))), np.empty((len(x), len(theta) if integral else 0))
     stiff = x > UPWARDS
     for rows, find in ((stiff, _with_decay), (~stiff, _as_series)):
         if rows.any():
-            z[rows], whole[rows] = find(x[rows], start[rows], heat[rows], theta)
+            z[rows], whole[rows] = find(x[rows], start[rows], heat[rows], theta, integral)
     return z, whole
 
 
-def _with_decay(x: Array, start: Array, heat: Array, theta: Array) -> tuple[Array, Array]:
+def _with_decay(x: Array, start: Array, heat: Array, theta: Array, integral: bool) -> tuple[Array, Array]:
     P = np.empty_like(heat)
     P[:, -1] = heat[:, -1] / x
     for j in range(heat.shape[1] - 2, -1, -1):
         P[:, j] = (heat[:, j] - (j + 1) * P[:, j + 1]) / x
     rest, E = (start - P[:, 0])[:, None], np.exp(-x[:, None] * theta)
-    z, whole = _powers(P, theta)
-    return z + rest * E, whole + rest * (1 - E) / x[:, None]
+    z, whole = _powers(P, theta, integral)
+    z += rest * E
+    return z, whole + rest * (1 - E) / x[:, None] if integral else whole
 
 
-def _as_series(x: Array, start: Array, heat: Array, theta: Array) -> tuple[Array, Array]:
+def _as_series(x: Array, start: Array, heat: Array, theta: Array, integral: bool) -> tuple[Array, Array]:
     c = np.zeros((len(x), SERIES))
     c[:, 0] = start
     for j in range(SERIES - 1):
         given = heat[:, j] if j < heat.shape[1] else 0.0
         c[:, j + 1] = (given - x * c[:, j]) / (j + 1)
-    return _powers(c, theta)
+    return _powers(c, theta, integral)
 
 
-def _powers(c: Array, theta: Array) -> tuple[Array, Array]:
-    """A polynomial (r, j), and its integral from 0."""
+def _powers(c: Array, theta: Array, integral: bool) -> tuple[Array, Array]:
+    """A polynomial (r, j), and its integral from 0, if asked for."""
     orders = np.arange(c.shape[1])
     table = theta ** orders[:, None]
-    return c @ table, (c / (orders + 1)) @ (table * theta)
+    return c @ table, (c / (orders + 1)) @ (table * theta) if integral else np.empty((len(c), 0))

@@ -7,10 +7,11 @@ from itertools import pairwise
 import numpy as np
 from numpy.typing import NDArray
 
+from tyrefem.conduction.balance import HeatBalance
 from tyrefem.conduction.loads import State
 from tyrefem.conduction.ros34pw2 import GAMMA
 from tyrefem.conduction.setup import balance_of
-from tyrefem.conduction.stage_matrix import StageMatrices
+from tyrefem.conduction.stage_matrix import StageMatrix
 from tyrefem.reduced.batch import Batch
 from tyrefem.reduced.model import ReducedModel
 from tyrefem.reduced.train import Snapshots, sources_at
@@ -19,6 +20,8 @@ from tyrefem.rolling import RollingTyre
 Array = NDArray[np.float64]
 #: Parts of a phase at which fields are corrected.
 PARTS = np.array([0.02, 0.1, 0.3, 0.6, 1.0])
+#: Factored matrices kept; error of a correction that is left over to the next, and solves for it at most.
+KEPT, LEFT, ITERATIONS = 8, 0.03, 8
 #: K, of the time integration of what is corrected.
 TIME_TOLERANCE = 0.2
 
@@ -40,24 +43,82 @@ def corrected(model: ReducedModel, tyre: RollingTyre, share: float) -> tuple[Sna
     balance = model.balance(tyre)
     marched = Batch(model, [balance], TIME_TOLERANCE).march()
     full = balance_of(model.operators, tyre.bodies, tyre.boundaries, tyre.sources, balance.reservoirs)
-    matrices, m = StageMatrices(), model.size
+    m = model.size
     fields, sources, largest = [], [], 0.0
-    for start, end in pairwise([*tyre.drive.starts, tyre.drive.end]):
+    for number, (start, end) in enumerate(pairwise([*tyre.drive.starts, tyre.drive.end])):
         span = end - start
         times = start + PARTS * span * (1 - 1e-9)
         states, slopes = marched.states(times)[:, 0], marched.slopes(times)[:, 0]
         values, rates = (each[:, :m] @ model.V.T for each in (states, slopes))
         full.freeze(float(times[2]), State(values[2], states[2, m:]))
         tau = share * span
-        matrix = matrices.get(full, tau / GAMMA)
+        right, lumped = np.empty((len(model.V), len(times))), np.empty((len(full.C), len(times)))
         for i, t in enumerate(times):
             U = State(values[i], states[i, m:])
             G, Gg, _ = full.remainder(float(t), U)
-            right = G - full.S @ U.u + full.B @ U.g - full.M @ rates[i]
-            lumped = Gg + full.B.T @ U.u - full.D @ U.g - full.C * slopes[i, m:]
-            rate, rate_g = np.zeros(len(U.u)), np.zeros(len(U.g))
-            matrix.solve(right, lumped, np.zeros(0), rate, rate_g)
-            largest = max(largest, float(np.abs(tau * rate).max()))
-            fields.append(U.u + tau * rate)
-            sources.append(sources_at(model.operators, tyre, float(t), fields[-1]))
+            right[:, i] = G - full.S @ U.u + full.B @ U.g - full.M @ rates[i]
+            lumped[:, i] = Gg + full.B.T @ U.u - full.D @ U.g - full.C * slopes[i, m:]
+        change = tau * solved(full, nearby(model, number, share), tau, right, lumped).T
+        largest = max(largest, float(np.abs(change).max()))
+        fields += list(values + change)
+        sources += [sources_at(model.operators, tyre, float(t), u) for t, u in zip(times, values + change, strict=True)]
     return Snapshots(np.array(fields), np.array(sources)), largest
+
+
+def nearby(model: ReducedModel, number: int, share: float) -> StageMatrix:
+    """The factored matrix of the study that the model was made for, in one of its phases; kept with its operators."""
+    kept = model.operators.remembered.setdefault("nearby", {})
+    if (number, share) not in kept:
+        base = model.base
+        ends = [*base.drive.starts, base.drive.end]
+        span = ends[number + 1] - ends[number]
+        balance = model.balance(base)
+        full = balance_of(model.operators, base.bodies, base.boundaries, base.sources, balance.reservoirs)
+        even = State(np.full(len(model.V), base.drive.initial), balance.start[model.size :])
+        full.freeze(ends[number] + PARTS[2] * span * (1 - 1e-9), even)
+        if len(kept) >= KEPT:
+            kept.pop(next(iter(kept)))
+        kept[number, share] = StageMatrix(full, share * span / GAMMA)
+    found: StageMatrix = kept[number, share]
+    return found
+
+
+def solved(full: HeatBalance, near: StageMatrix, tau: float, right: Array, lumped: Array) -> Array:
+    """Rates (n, k) of (M + tau S) rate = right, the reservoirs (lumped) with it, by conjugate gradients.
+
+    A variant's matrix is near the one that is factored: three or four solves take the place of a factorisation, and
+    what is left, `LEFT` of a correction, is for the next round. Where it is not near, its own is factored.
+    """
+    n = len(right)
+
+    def times(x: Array) -> Array:
+        u, g = x[:n], x[n:]
+        own = full.M @ u + tau * (full.S @ u - full.B @ g)
+        return np.concatenate([own, full.C[:, None] * g + tau * (full.D @ g - full.B.T @ u)])
+
+    r = np.concatenate([right, lumped])
+    # Every unknown by its own heat capacity and conductance: a measure of what is left that costs no solve.
+    scale = 1.0 / np.concatenate([full.M.diagonal() + tau * full.S.diagonal(), full.C + tau * np.diag(full.D)])
+    x, p, before = np.zeros_like(r), np.zeros_like(r), np.full(r.shape[1], np.inf)
+    enough = LEFT**2 * (scale @ r**2)
+    for _ in range(ITERATIONS):
+        z = _by(near, r, n)
+        rz = np.sum(r * z, axis=0)
+        p = z + rz / np.maximum(before, 1e-300) * p
+        q = times(p)
+        a = rz / np.maximum(np.sum(p * q, axis=0), 1e-300)
+        x += a * p
+        r -= a * q
+        before = rz
+        if (scale @ r**2 <= enough).all():
+            return x[:n]
+    return _by(StageMatrix(full, tau / GAMMA), np.concatenate([right, lumped]), n)[:n]
+
+
+def _by(matrix: StageMatrix, right: Array, n: int) -> Array:
+    """Solve a factored matrix, the reservoirs bordering it, for columns."""
+    found = matrix.factor.solve(np.asfortranarray(right[:n]))
+    if not matrix.m:
+        return np.asarray(found)
+    g = np.linalg.solve(matrix.schur, right[n:] + matrix.E.T @ right[:n])
+    return np.concatenate([found + matrix.E @ g, g])

@@ -67,9 +67,9 @@ class SampledHeat:
         left = place.astype(np.int32)
         place -= left
         left += self.first[:, :, None]
-        below = self.table[left]
+        below = self.table.take(left)
         left += 1
-        place *= self.table[left] - below
+        place *= self.table.take(left) - below
         place += below
         place *= losses
         return place
@@ -115,5 +115,7 @@ def _energies(balance: ReducedBalance, phase: int) -> Array:
         return found
     for row, cycle in zip(found, tyre.schedule.cycles[phase], strict=True):
         for zone, part in model.sample_slices.items():
+            if part.start == part.stop:
+                continue
             row[part] = tyre.hysteresis[zone].loss_factor * cycle.energy_density(zone, model.sample_points[zone])
     return found

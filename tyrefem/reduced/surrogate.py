@@ -186,9 +186,8 @@ def surrogate(
     check_varied(plan)
     tick = progress or (lambda what, done, total: None)
     lesson = School(plan, scheduler or Here(), choice or Fineness.of(tolerance), tick, seed)
-    # The middle and two opposite corners: the rest of the box is learnt from residuals.
-    count = len(plan.varied)
-    places = [np.full(count, 0.5), np.zeros(count), np.ones(count)]
+    # Two opposite corners: the rest of the box is learnt from residuals.
+    places = [np.zeros(len(plan.varied)), np.ones(len(plan.varied))]
     lesson.run(places, COARSER * max(tolerance, FINEST), "training", asked=False)
     certificate: Certificate | None = None
     for trial in range(TRIALS):

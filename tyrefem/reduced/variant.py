@@ -10,8 +10,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from tyrefem.conduction.history import Peak
-from tyrefem.heat_budget import HeatBudget, whole_tyre
-from tyrefem.reduced.ledger import budget
+from tyrefem.heat_budget import HeatBudget
 from tyrefem.reduced.readout import Readout
 from tyrefem.result import GAS, RIM, Result
 from tyrefem.rolling import RollingTyre, output_times
@@ -146,15 +145,14 @@ class Variant:
     @functools.cached_property
     def end_budget(self) -> HeatBudget:
         """The heat budget of the whole tyre at the end alone."""
-        out, b = self.readout, self.number
-        balance = out.marched.batch.balances[b]
-        found = budget(
-            balance,
-            self.times[-1:],
-            out.states[-1:, b],
-            out.end_slopes[:, b],
-            out.powers(len(self.times) - 1)[None, b],
-            out.marched.energy[None, b],
-        )
         titles = {zone.name: zone.title for zone in self.tyre.schedule.zones}
-        return whole_tyre(found, titles, self.study.section.half, self.tyre.condition_names)
+        key = tuple(titles.items()), self.study.section.half, tuple(self.tyre.condition_names.items())
+        together, own = self.readout.end_budget(key), slice(self.number, self.number + 1)
+        energies, powers = (
+            {name: series[own] for name, series in each.items()} for each in (together.energies, together.powers)
+        )
+        section = self.readout.end_budgets
+        worst = max(abs(float(one[self.number])) for one in (section.residual, *section.reservoir_residual.values()))
+        throughput = float(section.throughput[self.number])
+        imbalance = worst / throughput if throughput > 0 else worst
+        return HeatBudget(self.times[-1:], energies, powers, together.residual[own], imbalance)

@@ -79,6 +79,28 @@ class Places:
     offset: Array
 
 
+@dataclass(frozen=True)
+class PliesAt:
+    """Plies at radii: E_theta and E_phi, Pa, and nu_theta_phi; the same for all load cases."""
+
+    radius: Array
+    theta: Array
+    phi: Array
+    poisson: Array
+
+
+def plies_at(section: Any, plies: BiasPlies, radius: Array) -> PliesAt:
+    """The plies at radii; remembered for arrays that come back."""
+    known = section.__dict__.setdefault("_arc_plies_at", {})
+    found: PliesAt | None = known.get((plies, id(radius)))
+    if found is None or found.radius is not radius:
+        if len(known) >= REMEMBERED:
+            known.clear()
+        found = PliesAt(radius, plies.circumferential(radius), plies.meridional(radius), plies.poisson(radius))
+        known[plies, id(radius)] = found
+    return found
+
+
 #: Sets of points of which a section keeps the places.
 REMEMBERED = 32
 
@@ -213,25 +235,25 @@ class Arcs:
         return (self._crown if at_crown else self._sidewall)(places(self.section, at_crown, np.asarray(points)))
 
     def _crown(self, at: Places) -> Strains:
-        plies, line, case = self.stiffness.carcass, self.section.line, self.case
+        line, case = self.section.line, self.case
         hoop = -self._deflection / at.radius - at.y * (1 / at.radius + 2 / case.drum_diameter)
         membrane = np.full_like(at.s, self._shoulder_change)
-        stress = membrane / at.thickness - plies.meridional(at.radius) * at.y / line.crown_radius
+        stress = membrane / at.thickness - self._plies(at.radius).phi * at.y / line.crown_radius
         return self._strains(at, hoop, stress, membrane)
 
     def _sidewall(self, at: Places) -> Strains:
-        plies, line = self.stiffness.carcass, self.section.line
+        line = self.section.line
         before, _ = self.inflated.place(at.fraction, at.offset)
         after, _ = self.deflected.place(at.fraction, at.offset)
         hoop = (after - before) / before
         midline_after, _ = self.deflected.place(at.fraction, np.zeros_like(at.s))
         membrane = self._membrane_change(at.radius, midline_after)
-        bending = plies.meridional(at.radius) * at.y * (1 / self.deflected.radius - 1 / line.sidewall_radius)
+        bending = self._plies(at.radius).phi * at.y * (1 / self.deflected.radius - 1 / line.sidewall_radius)
         return self._strains(at, hoop, membrane / at.thickness + bending, membrane)
 
     def _strains(self, at: Places, hoop: Array, stress: Array, membrane: Array) -> Strains:
-        plies, k = self.stiffness.carcass, self._scale
-        meridional = plies.poisson_term * stress / plies.meridional(at.radius) - plies.poisson(at.radius) * hoop
+        plies, k = self._plies(at.radius), self._scale
+        meridional = self.stiffness.carcass.poisson_term * stress / plies.phi - plies.poisson * hoop
         shear = self._shear_force(at.s, membrane)
         return Strains(at.radius, k * hoop, k * meridional, k * stress, k * shear, at.thickness)
 
@@ -254,10 +276,13 @@ class Arcs:
             return self._carcass_energy(strains)
         return self._rubber_energy(zone, strains)
 
+    def _plies(self, radius: Array) -> PliesAt:
+        return plies_at(self.section, self.stiffness.carcass, radius)
+
     def _carcass_energy(self, strains: Strains) -> Array:
-        plies = self.stiffness.carcass
-        stretch = plies.circumferential(strains.radius) * strains.hoop**2
-        stress = plies.poisson_term * strains.stress**2 / plies.meridional(strains.radius)
+        plies = self._plies(strains.radius)
+        stretch = plies.theta * strains.hoop**2
+        stress = self.stiffness.carcass.poisson_term * strains.stress**2 / plies.phi
         shear = strains.shear_force**2 / (strains.carcass_thickness**2 * self.stiffness.ply_shear_modulus)
         return np.asarray((stretch + stress + shear) / 2)
 
@@ -292,5 +317,7 @@ class Arcs:
 
     @functools.cached_property
     def _bead_area(self) -> float:
-        sides = 1 if self.section.half else 2
-        return float(self.section.area("bead")) / sides
+        known: dict[str, float] = self.section.__dict__.setdefault("_arc_bead", {})
+        if "area" not in known:
+            known["area"] = float(self.section.area("bead")) / (1 if self.section.half else 2)
+        return known["area"]
