@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import builtins
 import signal
+import subprocess
 import sys
 import threading
 from typing import Any
@@ -46,6 +47,20 @@ def test_quiet_and_without_traces(capfd: pytest.CaptureFixture[str]) -> None:
     assert not gmsh.isInitialized()
     said = capfd.readouterr()
     assert (said.out, said.err) == ("", "")
+
+
+@pytest.mark.usefixtures("needs_gmsh")
+def test_a_broken_pipe_is_still_an_error_and_not_the_end() -> None:
+    # In a process of its own: gmsh's own start leaves it so that it would be killed without a word.
+    code = (
+        "import os; from tyrefem.meshing import build; from tyrefem.section import load\n"
+        "build(load('nasa-22x5.5-8pr'), mesher='gmsh', size=2e-2)\n"
+        "there, here = os.pipe(); os.close(there)\n"
+        "try: os.write(here, b'x')\n"
+        "except BrokenPipeError: print('an error')"
+    )
+    found = subprocess.run([sys.executable, "-c", code], capture_output=True, text=True, check=False)
+    assert (found.returncode, found.stdout) == (0, "an error\n"), found.stderr
 
 
 @pytest.mark.usefixtures("needs_gmsh")

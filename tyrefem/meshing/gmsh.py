@@ -3,6 +3,8 @@
 from __future__ import annotations
 
 import contextlib
+import ctypes
+import signal
 import threading
 from collections.abc import Iterator
 from itertools import pairwise
@@ -139,6 +141,7 @@ def _gmsh(options: dict[str, float]) -> Iterator[Any]:
     running = bool(gmsh.isInitialized())
     if not running:
         gmsh.initialize(readConfigFiles=False, interruptible=False)
+        _ignore_broken_pipes()
     kept = {name: gmsh.option.getNumber(name) for name in options}
     model = gmsh.model.getCurrent() if running else ""
     try:
@@ -154,6 +157,15 @@ def _gmsh(options: dict[str, float]) -> Iterator[Any]:
                 gmsh.option.setNumber(name, value)
         else:
             gmsh.finalize()
+
+
+def _ignore_broken_pipes() -> None:
+    """As Python does. gmsh undoes it when it starts: writing to a dead worker then ends this process without a word."""
+    if hasattr(signal, "SIGPIPE") and signal.getsignal(signal.SIGPIPE) == signal.SIG_IGN:
+        # Python's own call may only be made by the main thread.
+        set_handler = ctypes.pythonapi.PyOS_setsig
+        set_handler.argtypes, set_handler.restype = (ctypes.c_int, ctypes.c_void_p), ctypes.c_void_p
+        set_handler(signal.SIGPIPE, int(signal.SIG_IGN))
 
 
 def gmsh_works() -> bool:
