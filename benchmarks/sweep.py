@@ -92,8 +92,8 @@ def main() -> None:
     reduced: list[dict[str, object]] = []
     clock = Clock()
     for first in range(0, options.variants, PIECE):
-        task = ReducedTask(packed, plan.variants[first : first + PIECE], plan.time_to)
-        reduced += [outcome["answers"] for outcome in perform_reduced(task)["outcomes"]]
+        task = ReducedTask(plan.variants[first : first + PIECE], plan.time_to)
+        reduced += [outcome["answers"] for outcome in perform_reduced(task, packed)["outcomes"]]
     answered, total = clock.read(), whole.read()
 
     errors = [temperature_error(reduced[number], answers) for number, answers in zip(chosen, full, strict=True)]

@@ -55,7 +55,7 @@ def test_fresh_full_runs_are_met_within_the_tolerance(found: Surrogate, plan: Pl
     assert found.certificate.good
     packed = pack(found.model, plan.packed)
     for number in (3, 29):
-        reduced = perform_reduced(ReducedTask(packed, [plan.variants[number]], plan.time_to))["outcomes"][0]["answers"]
+        reduced = perform_reduced(ReducedTask([plan.variants[number]], plan.time_to), packed)["outcomes"][0]["answers"]
         full = perform(plan.task(number))["answers"]
         assert set(reduced) == set(full)
         assert temperature_error(reduced, full) < 0.01
@@ -214,7 +214,7 @@ def test_a_model_travels_as_arrays(found: Surrogate, plan: Plan) -> None:
     import pickle
 
     packed = pickle.loads(pickle.dumps(pack(found.model, plan.packed)))
-    there = perform_reduced(ReducedTask(packed, [plan.variants[1]], None))["outcomes"][0]["answers"]
+    there = perform_reduced(ReducedTask([plan.variants[1]], None), packed)["outcomes"][0]["answers"]
     here = found.answers([plan.study.replace(plan.variants[1])])[0]["answers"]
     assert temperature_error(there, here) < 1e-9
     assert json.dumps(there)

@@ -62,16 +62,15 @@ def learn(lesson: Lesson) -> dict[str, Any]:
 
 @dataclass(frozen=True, eq=False)
 class Amendment:
-    """Work of a correction by residuals: the model so far, a variant, and tau over the duration of every phase."""
+    """Work of a correction by residuals: a variant, and tau over the duration of every phase."""
 
-    model: Packed
     changes: Mapping[str, Any]
     share: float
 
 
-def amend(work: Amendment) -> dict[str, Any]:
+def amend(work: Amendment, packed: Packed) -> dict[str, Any]:
     """Done in a worker: ``{"snapshots", "correction"}`` or ``{"failure"}``, ``{"not_reducible"}``."""
-    model = work.model.unpacked()
+    model = packed.unpacked()
     try:
         found, largest = corrected(model, RollingTyre(model.base.study.replace(work.changes), model.base), work.share)
     except NotReducibleError as error:
@@ -126,8 +125,8 @@ class School:
             model = trained(self.base, self.learnt, self.choice)
             packed = pack(model, self.plan.packed)
             places = [np.clip(0.5 + STRETCH * (one - 0.5), 0.0, 1.0) for one in self.fresh(self.round)]
-            work = [Amendment(packed, self.variant(one), HORIZONS[n % len(HORIZONS)]) for n, one in enumerate(places)]
-            found = self._done(amend, work, "correcting")
+            work = [Amendment(self.variant(one), HORIZONS[n % len(HORIZONS)]) for n, one in enumerate(places)]
+            found = self._done(amend, work, "correcting", packed)
             refused = next((one["not_reducible"] for one in found if "not_reducible" in one), None)
             if refused is not None:
                 raise NotReducibleError(refused)
@@ -137,9 +136,11 @@ class School:
                 break
         return trained(self.base, self.learnt, self.choice)
 
-    def _done(self, work: Callable[[Any], dict[str, Any]], tasks: Sequence[Any], what: str) -> list[dict[str, Any]]:
+    def _done(
+        self, work: Callable[..., dict[str, Any]], tasks: Sequence[Any], what: str, common: Any = None
+    ) -> list[dict[str, Any]]:
         outcomes: dict[int, dict[str, Any]] = {}
-        for place, outcome in self.scheduler.outcomes(work, tasks):
+        for place, outcome in self.scheduler.outcomes(work, tasks, common):
             outcomes[place] = outcome
             self.tick(what, len(outcomes), len(tasks))
         return [outcomes[n] for n in range(len(tasks))]

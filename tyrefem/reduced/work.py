@@ -77,16 +77,15 @@ _BASES: dict[str, RollingTyre] = {}
 class ReducedTask:
     """Variants to be marched side by side: their changes, in order."""
 
-    model: Packed
     changes: Sequence[Mapping[str, Any]]
     time_to: float | None = None
 
 
-def perform_reduced(task: ReducedTask) -> dict[str, Any]:
+def perform_reduced(task: ReducedTask, packed: Packed) -> dict[str, Any]:
     """``{"outcomes": [...]}``, one per variant: ``answers``, ``failure`` or ``not_reducible``."""
     from tyrefem.reduced.surrogate import reduced_answers
 
-    model = task.model.unpacked()
+    model = packed.unpacked()
     found: list[dict[str, Any]] = [{} for _ in task.changes]
     studies, places = [], []
     for place, changes in enumerate(task.changes):

@@ -237,7 +237,7 @@ def by_model(
 
     packed = trained.packed(plan.packed)
     firsts = range(0, len(variants), PIECE)
-    tasks = [ReducedTask(packed, list(variants[first : first + PIECE]), plan.time_to) for first in firsts]
-    for number, outcome in scheduler.outcomes(perform_reduced, tasks):
+    tasks = [ReducedTask(list(variants[first : first + PIECE]), plan.time_to) for first in firsts]
+    for number, outcome in scheduler.outcomes(perform_reduced, tasks, packed):
         found = enumerate(outcome.get("outcomes", ()), firsts[number])
         yield {place: _by(one, "reduced") for place, one in found if "not_reducible" not in one}

@@ -44,11 +44,6 @@ class Varied:
     nominal: Any = None
 
     @property
-    def continuous(self) -> bool:
-        """Does it take every value between its ends?"""
-        return not self.values
-
-    @property
     def heading(self) -> str:
         """Column of a table: ``drive.speed [mph]``; of a factor ``NAME [x]``."""
         unit = self.unit or ("x" if self.nominal is not None else "")
