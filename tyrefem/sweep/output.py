@@ -86,7 +86,8 @@ def of_sample(found: Sweep) -> dict[str, Any]:
             "largest_error_K": certificate.worst,
             "tolerance_K": certificate.tolerance,
             "fresh_cases": certificate.cases,
-            "training_runs": certificate.trained_on,
+            "training_runs": certificate.trained_on - certificate.amended,
+            "corrections": certificate.amended,
             "largest_errors": dict(certificate.errors),
         },
         "why_full_runs": found.why_full,
@@ -115,7 +116,8 @@ def how_answered(found: Sweep) -> str:
     if certificate is not None:
         reduced = sum(one.get("by") == "reduced" for one in found.outcomes.values())
         told += (
-            f"; {reduced} by a reduced model from {certificate.trained_on} runs, within {certificate.worst:.2g} K of"
+            f"; {reduced} by a reduced model from {certificate.trained_on - certificate.amended} runs"
+            f" and {certificate.amended} corrections, within {certificate.worst:.2g} K of"
             f" {certificate.cases} fresh full runs"
         )
     elif found.outcomes:
