@@ -15,7 +15,8 @@ import time
 
 import tyrefem as tf
 from tyrefem.compare.experiment import experiments
-from tyrefem.diagnose.laboratory import Bench, laboratory
+from tyrefem.diagnose.bench import Bench
+from tyrefem.diagnose.laboratory import laboratory
 from tyrefem.diagnose.responses import responses, unknowns_of
 from tyrefem.diagnose.trials import trial
 from tyrefem.diagnose.workflow import diagnose

@@ -6,6 +6,7 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
+from scipy.linalg import solve_banded
 
 if TYPE_CHECKING:
     from tyrefem.studies import Study
@@ -30,12 +31,12 @@ def lagged(times: Array, temperatures: Array, lag: float) -> Array:
         return np.array(temperatures, dtype=float)
     steps = np.diff(times)
     behind = lag * np.diff(temperatures) / steps
-    # Particular solution T - lag * slope, plus what is left of the old offset; plain floats, as the loop is hot.
-    before, after = (temperatures[:-1] - behind).tolist(), (temperatures[1:] - behind).tolist()
-    reading = [float(temperatures[0])]
-    for old, new, decay in zip(before, after, np.exp(-steps / lag).tolist(), strict=True):
-        reading.append(new + (reading[-1] - old) * decay)
-    return np.array(reading)
+    before, after, decay = temperatures[:-1] - behind, temperatures[1:] - behind, np.exp(-steps / lag)
+    # Particular solution T - lag * slope, plus what is left of the old offset: a recursion, solved as a band of two.
+    bands = np.ones((2, len(times)))
+    bands[1, :-1] = -decay
+    given = np.concatenate([temperatures[:1], after - before * decay])
+    return np.asarray(solve_banded((1, 0), bands, given, check_finite=False))
 
 
 def true_places(study: Study) -> dict[str, tuple[float, float]]:

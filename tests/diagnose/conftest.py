@@ -11,7 +11,7 @@ import pytest
 from hidden import FINISHED, WARMER, Case, measure, study
 
 from tyrefem.diagnose import search
-from tyrefem.diagnose.laboratory import Bench
+from tyrefem.diagnose.bench import Bench
 from tyrefem.diagnose.progress_store import ProgressStore
 
 

@@ -6,9 +6,10 @@ import numpy as np
 import pytest
 from hidden import RIVALS, Case
 
+from tyrefem.diagnose.bench import Bench
 from tyrefem.diagnose.gap import Gap
 from tyrefem.diagnose.isolability import MARGIN, Isolability, isolability, margins, planned, rivals_of
-from tyrefem.diagnose.laboratory import Bench, Laboratory
+from tyrefem.diagnose.laboratory import Laboratory
 from tyrefem.diagnose.responses import gap_of
 from tyrefem.diagnose.sets import Prior
 

@@ -37,6 +37,9 @@ def diagnose(
     looks: Annotated[
         int, typer.Option(min=1, max=9, help="Diagnoses at most, each of what the one before it left unexplained.")
     ] = 3,
+    reduced: Annotated[
+        str, typer.Option(help="Certified reduced models of the drives for the fits: auto, never.")
+    ] = "auto",
     as_json: JsonOption = False,
 ) -> None:
     """Find where measurements and study disagree, name the missing effect, and write the study that has it.
@@ -46,6 +49,8 @@ def diagnose(
     from tyrefem.diagnose.progress_store import ProgressStore
     from tyrefem.studies import study as load
 
+    if reduced not in ("auto", "never"):
+        raise InputError(f"'{reduced}' is not allowed; allowed: auto, never", field="--reduced")
     found = load(study, settings(changes))
     folder = writable_folder(out or Path("results") / f"{found.name}-diagnosis")
     store = ProgressStore(folder / PROGRESS)
@@ -60,6 +65,7 @@ def diagnose(
                 workers=workers or min(os.cpu_count() or 1, MOST_WORKERS),
                 progress=tick,
                 store=store,
+                reduced=reduced,
             )
             tick("drawing", 0, 0)
             page = diagnosis.save(folder)

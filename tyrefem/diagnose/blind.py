@@ -11,11 +11,12 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
+from tyrefem.diagnose.bench import Bench, Response
 from tyrefem.diagnose.diagnosis import Diagnosis
 from tyrefem.diagnose.evidence import Members
 from tyrefem.diagnose.gap import Gap
 from tyrefem.diagnose.isolability import MARGIN, margins, planned, rivals_of
-from tyrefem.diagnose.laboratory import Bench, Response, laboratory
+from tyrefem.diagnose.laboratory import laboratory
 from tyrefem.diagnose.responses import gap_of
 from tyrefem.diagnose.sets import Prior
 from tyrefem.diagnose.strangers import HotRing, Lamp

@@ -14,9 +14,10 @@ from pathlib import Path
 from typing import Any
 
 import tyrefem
+from tyrefem.diagnose.bench import Bench, Response
 from tyrefem.diagnose.blind import Outcome, cases, run_case
 from tyrefem.diagnose.isolability import planned
-from tyrefem.diagnose.laboratory import Bench, Response, laboratory
+from tyrefem.diagnose.laboratory import laboratory
 from tyrefem.diagnose.responses import responses, unknowns_of
 from tyrefem.diagnose.truth import own_mesh
 from tyrefem.errors import InputError

@@ -8,14 +8,15 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
+from tyrefem.diagnose.bench import Bench
 from tyrefem.diagnose.evidence import Members
 from tyrefem.diagnose.explained import Explained
 from tyrefem.diagnose.gap import Gap
-from tyrefem.diagnose.laboratory import Bench
+from tyrefem.diagnose.lean import Lean
 from tyrefem.diagnose.trials import Series, Trial
 from tyrefem.diagnose.verdict import Judgement, Standing
 from tyrefem.errors import InputError
-from tyrefem.result import GAS, Result
+from tyrefem.result import GAS
 from tyrefem.studies import Study
 
 Array = NDArray[np.float64]
@@ -77,16 +78,16 @@ def _rivals(judgement: Judgement) -> list[Standing]:
     return sets[:2]
 
 
-def _places(study: Study, pair: list[Result]) -> list[tuple[str, dict[str, float], Array, Array, Array]]:
+def _places(study: Study, pair: list[Lean]) -> list[tuple[str, dict[str, float], Array, Array, Array]]:
     """(name, place, difference (n,), sd of a new sensor's place (n,) K, times) at every feasible place."""
     section = study.section
     s = np.repeat(np.linspace(0.0, section.line.length * 0.98, STATIONS), 3)
     total = np.asarray(section.total_thickness(s))
     depth = np.where(np.arange(len(s)) % 3 == 0, SKIN, np.where(np.arange(len(s)) % 3 == 1, total / 2, total - SKIN))
-    values = [result.at(section.place(s, depth)) for result in pair]
+    values = [one.at(s, depth) for one in pair]
     gradient = np.zeros_like(values[0])
     for along, deeper in ((SKIN / 2, 0.0), (0.0, SKIN / 2)):
-        moved = pair[0].at(section.place(*section.clamp(s + along, depth + deeper, SKIN / 4)))
+        moved = pair[0].at(*section.clamp(s + along, depth + deeper, SKIN / 4))
         gradient = gradient + ((moved - values[0]) / (SKIN / 2)) ** 2
     spread = np.sqrt(gradient) * 1e-3
     level = ("inside", "middle", "outside")
@@ -96,13 +97,13 @@ def _places(study: Study, pair: list[Result]) -> list[tuple[str, dict[str, float
             {"s_m": float(s[i]), "depth_m": float(depth[i])},
             values[0][:, i] - values[1][:, i],
             spread[:, i],
-            pair[0].times,
+            pair[0].grid,
         )
         for i in range(len(s))
     ]
-    gas = pair[0].gas_temperature - pair[1].gas_temperature
+    gas = pair[0].readings[GAS] - pair[1].readings[GAS]
     if GAS not in study.sensors:
-        found.append(("contained air", {}, gas, np.zeros_like(gas), pair[0].times))
+        found.append(("contained air", {}, gas, np.zeros_like(gas), pair[0].grid))
     return found
 
 
@@ -136,9 +137,9 @@ def _drive(bench: Bench, name: str, factors: Mapping[str, float], *values: Any) 
     gain, largest, where = 0.0, 0.0, ""
     for sensor, card in study.sensors.items():
         a, b = (one.readings for one in pair)
-        delta = (a[sensor] - b[sensor]).to_numpy(dtype=float)
+        delta = a[sensor] - b[sensor]
         # The sensors are the old ones: what their place and offset can do was used up by the fit.
-        gain += _gain(a["time_s"].to_numpy(dtype=float), delta, np.zeros_like(delta), study, card.noise, 0.1)
+        gain += _gain(pair[0].grid, delta, np.zeros_like(delta), study, card.noise, 0.1)
         if np.abs(delta).max() > largest:
             largest, where = float(np.abs(delta).max()), sensor
     return {"drive": name, "changes": changed, "gain": gain, "largest_K": largest, "sensor": where}

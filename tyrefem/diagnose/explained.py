@@ -101,7 +101,7 @@ def explained(gap: Gap, one: Refinement) -> Explained:
     computed = {i: gap.corrected(i, one.computed[i]) for i in gap.fitted}
     log_held, p_held = 0.0, 1.0
     if gap.held_out:
-        answers = gap.lab.ask("predict", [(i, values) for i in gap.held_out])
+        answers = gap.predicted.predict([(one.members, values)], gap.held_out)[0]
         columns = [gap.unknowns.index(unknown) for unknown in one.unknowns if unknown in gap.unknowns]
         kept = [k for k, unknown in enumerate(one.unknowns) if unknown in gap.unknowns]
         r, J = [], []

@@ -9,8 +9,10 @@ from functools import cached_property
 import numpy as np
 from numpy.typing import NDArray
 
+from tyrefem.diagnose.bench import Response
 from tyrefem.diagnose.evidence import Linear
-from tyrefem.diagnose.laboratory import Laboratory, Response
+from tyrefem.diagnose.laboratory import Laboratory
+from tyrefem.diagnose.predictions import Predictions
 from tyrefem.diagnose.unknowns import Unknown
 
 Array = NDArray[np.float64]
@@ -25,6 +27,7 @@ class Gap:
     lab : simulates. unknowns : nuisance first. nuisance : how many belong to every model.
     correction : per trial, what the study's own mesh adds to the coarse one. jacobians : per trial (n_blocks, k).
     responses : what these were sampled from; of use for other data at the same drives.
+    predictions : who says what other points read; None: lean simulations.
     """
 
     lab: Laboratory
@@ -34,6 +37,12 @@ class Gap:
     computed: tuple[Array, ...]
     jacobians: tuple[Array, ...]
     responses: tuple[Response, ...] = ()
+    predictions: Predictions | None = None
+
+    @cached_property
+    def predicted(self) -> Predictions:
+        """Predictions and tangents of the trials."""
+        return self.predictions or Predictions(self.lab)
 
     @property
     def fitted(self) -> list[int]:

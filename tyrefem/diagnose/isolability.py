@@ -13,9 +13,10 @@ import numpy as np
 from numpy.typing import NDArray
 
 from tyrefem.compare.experiment import OUTSIDE_THE_RUBBER
+from tyrefem.diagnose.bench import Bench
 from tyrefem.diagnose.evidence import Linear, Members
 from tyrefem.diagnose.gap import Gap
-from tyrefem.diagnose.laboratory import Bench, laboratory
+from tyrefem.diagnose.laboratory import laboratory
 from tyrefem.diagnose.responses import gap_of
 from tyrefem.diagnose.sets import Prior
 from tyrefem.diagnose.trials import Series, Trial

@@ -18,6 +18,7 @@ from tyrefem.result import GAS, RIM
 from tyrefem.rolling import RollingTyre
 from tyrefem.sensors import recorded, true_places
 from tyrefem.studies import Study
+from tyrefem.wall import inside
 
 Array = NDArray[np.float64]
 #: Readings are computed this often, s.
@@ -53,31 +54,49 @@ class Lean:
         """A history at ``times`` (n_times, ...) on `grid`: cubic between the ends of steps, phase by phase."""
         return on_grid(self.times, history, self.study.card.drive.starts, self.grid)
 
+    def at(self, s: Array, depth: Array) -> Array:
+        """(n_grid, n_places) degC at stations and depths (n_places,), m."""
+        points = inside(self.tyre.study.section, self.tyre.mesh.size, s, depth)
+        return self.dense((located(self.tyre.problem.operators, points).value() @ self.values.T).T)
+
     @cached_property
     def sensor_points(self) -> Array:
         """(n_sensors, 2) m: places of the sensors, kept within the straight-sided elements."""
-        places = true_places(self.study)
-        section = self.tyre.study.section
-        s, depth = section.locate(np.array(list(places.values())).reshape(-1, 2))
-        return np.asarray(section.place(*section.clamp(s, depth, self.tyre.mesh.size**2 / 0.1)))
+        return sensor_points(self.study, self.tyre)
 
     @cached_property
     def readings(self) -> dict[str, Array]:
         """Sensor -> degC on `grid`; contained air and rim too."""
-        found: dict[str, Array] = {}
+        at_sensors = None
         if self.study.sensors:
             operator = located(self.tyre.problem.operators, self.sensor_points).value()
-            at_sensors = (operator @ self.values[::2].T).T
-            dense = on_grid(self.times[::2], at_sensors, self.study.card.drive.starts, self.grid, ends_only=True)
-            found |= recorded(self.study, self.grid, dense)
+            history = (operator @ self.values[::2].T).T
+            at_sensors = on_grid(self.times[::2], history, self.study.card.drive.starts, self.grid, ends_only=True)
         names = list(self.tyre.problem.reservoirs)
-        for name in (GAS, RIM):
-            if name in names:
-                found[name] = self.dense(self.reservoirs[:, names.index(name)])
-        if GAS not in found:
-            held = self.study.card.boundaries.contained_air.temperature  # type: ignore[attr-defined]
-            found[GAS] = np.full(len(self.grid), held)
-        return found
+        lumped = {name: self.dense(self.reservoirs[:, names.index(name)]) for name in (GAS, RIM) if name in names}
+        return read(self.study, self.grid, at_sensors, lumped)
+
+
+def sensor_points(study: Study, tyre: RollingTyre) -> Array:
+    """(n_sensors, 2) m: places of a study's sensors in a tyre's mesh, kept within the straight-sided elements."""
+    places = true_places(study)
+    section = tyre.study.section
+    s, depth = section.locate(np.array(list(places.values())).reshape(-1, 2))
+    return inside(section, tyre.mesh.size, s, depth)
+
+
+def read(study: Study, grid: Array, at_sensors: Array | None, lumped: dict[str, Array]) -> dict[str, Array]:
+    """Sensor -> degC on ``grid`` as the study's logger records it; contained air and rim too.
+
+    Parameters
+    ----------
+    at_sensors : (n_grid, n_sensors) degC; None without sensors. lumped : contained air and rim where they are bodies.
+    """
+    found = dict(lumped) if at_sensors is None else recorded(study, grid, at_sensors) | lumped
+    if GAS not in found:
+        held = study.card.boundaries.contained_air.temperature  # type: ignore[attr-defined]
+        found[GAS] = np.full(len(grid), held)
+    return found
 
 
 def lean(study: Study, like: RollingTyre | None = None) -> Lean:

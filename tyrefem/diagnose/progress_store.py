@@ -22,7 +22,7 @@ from tyrefem.studies import Study
 from tyrefem.summary import versions
 
 if TYPE_CHECKING:
-    from tyrefem.diagnose.laboratory import Bench
+    from tyrefem.diagnose.bench import Bench
     from tyrefem.diagnose.trials import Series
 
 
@@ -82,7 +82,7 @@ class ProgressStore:
 def key_of(bench: Bench) -> str:
     """Digest of everything that decides a bench's answers: study, cards, effects' source, data, versions.
 
-    >>> from tyrefem.diagnose.laboratory import Bench
+    >>> from tyrefem.diagnose.bench import Bench
     >>> from tyrefem.studies import study
     >>> one, faster = study("nasa-22x5.5-8pr"), study("nasa-22x5.5-8pr", {"drive.speed": "25 mph"})
     >>> key_of(Bench(one, ())) == key_of(Bench(faster, ()))

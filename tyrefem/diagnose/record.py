@@ -61,6 +61,7 @@ def record(d: Diagnosis) -> dict[str, Any]:
             "mesh": d.original.mesh().summary() | {"element": d.original.card.mesh.element},
             "assumed": d.original.card.diagnosis.model_dump(),
         },
+        "reduced": d.gap.predicted.to_dict(),
         "wall_time_s": d.seconds,
         "versions": versions(),
         "random_seed": None,

@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 from collections.abc import Callable, Mapping, Sequence
-from typing import Any
 
 import numpy as np
 from numpy.typing import NDArray
@@ -167,15 +166,8 @@ class Refinement:
         self.tangents, self.limit, self.radius = MORE_TANGENTS - 1, self.steps + MORE_STEPS, max(self.radius, 1.0)
         self._new_tangents(self.shapes)
 
-    def questions(self) -> tuple[str, list[tuple[Any, ...]]]:
-        """The method of the bench to ask, and with what."""
-        fitted = self.gap.fitted
-        if self.wants_tangents:
-            return "jacobian", [(i, tuple(self.unknowns), self.named(self.x)) for i in fitted]
-        return "predict", [(i, self.point) for i in fitted]
-
     def take(self, answers: Sequence[Array]) -> None:
-        """Take the answers to `questions`."""
+        """Take tangents where they are wanted, else the simulations at the trial point."""
         if not self.wants_tangents:
             self.accept(answers)
             return
@@ -207,11 +199,17 @@ def polished(gap: Gap, fits: Sequence[Explained], tick: Callable[[], None] | Non
 
 
 def _run(gap: Gap, running: Sequence[Refinement], tick: Callable[[], None] | None) -> list[Explained]:
+    predicted, fitted = gap.predicted, gap.fitted
     while active := [one for one in running if not one.done]:
-        for method in ("predict", "jacobian"):
-            asking = [one for one in active if one.questions()[0] == method]
-            answers = gap.lab.ask(method, [each for one in asking for each in one.questions()[1]], tick)
-            width = len(gap.fitted)
-            for number, one in enumerate(asking):
-                one.take(answers[number * width : (number + 1) * width])
+        for tangents in (False, True):
+            asking = [one for one in active if one.wants_tangents == tangents]
+            answers = (
+                predicted.jacobians(
+                    [(one.members, tuple(one.unknowns), one.named(one.x)) for one in asking], fitted, tick
+                )
+                if tangents
+                else predicted.predict([(one.members, one.point) for one in asking], fitted, tick)
+            )
+            for one, own in zip(asking, answers, strict=True):
+                one.take(own)
     return [explained(gap, one) for one in running]

@@ -4,9 +4,12 @@ from __future__ import annotations
 
 from collections.abc import Callable, Iterable, Sequence
 
+from tyrefem.diagnose.bench import Response
 from tyrefem.diagnose.gap import Gap
-from tyrefem.diagnose.laboratory import Laboratory, Response
+from tyrefem.diagnose.laboratory import Laboratory
 from tyrefem.diagnose.missing import patches
+from tyrefem.diagnose.predictions import Predictions
+from tyrefem.diagnose.reduced_drive import Modes
 from tyrefem.diagnose.unknowns import Unknown, base_unknowns, candidates, sensor_unknowns
 from tyrefem.errors import InputError
 from tyrefem.studies import Study
@@ -33,14 +36,20 @@ def responses(lab: Laboratory, unknowns: tuple[Unknown, ...], tick: Tick | None 
             tick("sensitivities", done, count)
 
     sensors = lab.bench.sensors
-    return tuple(
-        Response(unknowns, times, *(dict(zip(sensors, each, strict=True)) for each in stacks))
-        for times, *stacks in lab.ask("response", [(i, unknowns) for i in range(count)], step)
-    )
+    found = []
+    for times, readings, correction, slopes, V in lab.ask("response", [(i, unknowns) for i in range(count)], step):
+        by_sensor = [dict(zip(sensors, each, strict=True)) for each in (readings, correction, slopes)]
+        found.append(Response(unknowns, times, by_sensor[0], by_sensor[1], by_sensor[2], Modes(V)))
+    return tuple(found)
 
 
-def gap_of(lab: Laboratory, tick: Tick | None = None, known: Sequence[Response] | None = None) -> Gap:
-    """Data against study for the trials of a laboratory; ``known``: their responses, if at hand."""
+def gap_of(
+    lab: Laboratory, tick: Tick | None = None, known: Sequence[Response] | None = None, *, reduced: bool = True
+) -> Gap:
+    """Data against study for the trials of a laboratory; ``known``: their responses, if at hand.
+
+    ``reduced``: whether the drives' reduced models may predict.
+    """
     trials = lab.bench.trials
     unknowns, nuisance = unknowns_of(lab.bench.study, {one.sensor for each in trials for one in each.series})
     if known is not None and any(one.unknowns != unknowns for one in known):
@@ -49,4 +58,5 @@ def gap_of(lab: Laboratory, tick: Tick | None = None, known: Sequence[Response] 
     computed, correction, jacobians = zip(
         *(one.blocks(each) for one, each in zip(found, trials, strict=True)), strict=True
     )
-    return Gap(lab, unknowns, nuisance, correction, computed, jacobians, tuple(found))
+    predictions = Predictions(lab, [one.modes for one in found] if reduced else ())
+    return Gap(lab, unknowns, nuisance, correction, computed, jacobians, tuple(found), predictions)

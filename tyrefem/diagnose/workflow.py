@@ -2,44 +2,35 @@
 
 from __future__ import annotations
 
-import functools
-import math
 import time
-from collections.abc import Callable, Iterable, Mapping, Sequence
+from collections.abc import Iterable, Mapping, Sequence
 from dataclasses import replace
 from typing import Any
 
 from tyrefem.compare.experiment import Table, experiments
 from tyrefem.diagnose.amend import Change, amended, changes
+from tyrefem.diagnose.bench import Bench, Response
 from tyrefem.diagnose.diagnosis import Diagnosis
 from tyrefem.diagnose.explained import Explained
 from tyrefem.diagnose.gap import Gap
-from tyrefem.diagnose.laboratory import Bench, Response, laboratory
-from tyrefem.diagnose.missing import MissingHeat, missing_heat, missing_heat_fitted, patches
+from tyrefem.diagnose.laboratory import laboratory
+from tyrefem.diagnose.missing import MissingHeat, patches
+from tyrefem.diagnose.naming import Naming
 from tyrefem.diagnose.progress_store import ProgressStore
-from tyrefem.diagnose.refine import refined
 from tyrefem.diagnose.responses import Tick, gap_of
-from tyrefem.diagnose.search import Scored, search
-from tyrefem.diagnose.sets import Prior
 from tyrefem.diagnose.trials import trial
-from tyrefem.diagnose.unknowns import Candidate, Unknown, candidates
+from tyrefem.diagnose.unknowns import Unknown, candidates
 from tyrefem.diagnose.verdict import (
     CONFOUNDED,
     IDENTIFIED,
-    IMPROBABLE,
-    OUTSIDE,
     UNEXPLAINED,
     Judgement,
-    judge,
-    standings,
 )
 from tyrefem.errors import InputError
 from tyrefem.studies import Study
 
 #: Diagnoses at most, each of what the one before it has left.
 LOOKS = 3
-#: Heat of unknown origin that the linear model puts this far, or less, below the best set is fitted in the full model.
-NEAR = 10.0
 
 
 def diagnose(
@@ -55,6 +46,7 @@ def diagnose(
     rerun: bool = True,
     store: ProgressStore | None = None,
     looks: int = LOOKS,
+    reduced: str = "auto",
 ) -> Diagnosis:
     """Find where study and data disagree, name the missing effect, add it and show what is left.
 
@@ -70,11 +62,15 @@ def diagnose(
     rerun : run the amended study on its own mesh at the end; else ``after`` is the fit's own prediction.
     store : where finished simulations are kept, so that an interrupted diagnosis takes them up again.
     looks : diagnoses at most.
+    reduced : "auto" lets reduced models of the drives predict for the fits, effect by effect where fresh simulations
+        bear them out (see `tyrefem.diagnose.predictions`); "never" simulates every point.
 
     Raises
     ------
     InputError : as `compare`; or every run is held out.
     """
+    if reduced not in ("auto", "never"):
+        raise InputError(f"reduced is 'auto' or 'never', not {reduced!r}")
     found: list[Diagnosis] = []
     while not found or (found[-1].verdict == IDENTIFIED and len(found) < looks):
         number = len(found)
@@ -90,6 +86,7 @@ def diagnose(
                 known=None if number else known,
                 rerun=rerun,
                 store=store and store.look(number),
+                reduced=reduced == "auto",
             )
         )
     result = found.pop()
@@ -118,6 +115,7 @@ def _look(
     known: Sequence[Response] | None,
     rerun: bool,
     store: ProgressStore | None,
+    reduced: bool,
 ) -> Diagnosis:
     """One diagnosis."""
     began = time.perf_counter()
@@ -129,22 +127,15 @@ def _look(
     if store is not None and store.open(bench):
         tick(f"taking up {store.taken_up} simulations", 0, 0)
     with laboratory(bench, workers, store) as lab:
-        gap = gap_of(lab, tick, known)
-        counted = _Counted(tick)
+        gap = gap_of(lab, tick, known, reduced=reduced)
         found = candidates(study)
-        prior = Prior(found, study.card.diagnosis.effects_expected)
-        scored, missing = _named(gap, study, found, prior, largest, counted)
-        explained = {one.members: one for _, _, one in scored if one is not None}
-
-        def fitted(members: tuple[Candidate, ...]) -> Explained | None:
-            if members not in explained:
-                explained[members] = refined(gap, [members])[0]
-            return explained[members]
-
-        null = explained[()]
-        judgement = judge(standings(scored, _outside(study) + missing.log_evidence), fitted)
-        best = judgement.best.explained or (null if judgement.best.unexplained else fitted(judgement.best.members))
-        assert best is not None
+        named = Naming(gap, study, found, largest, _Counted(tick))
+        if not gap.predicted.confirmed(named.best.members, named.best.values):
+            tick("the reduced models do not hold there: simulating", 0, 0)
+            said = gap.predicted
+            gap = replace(gap, predictions=replace(said, modes=(), given_up=True))
+            named = Naming(gap, study, found, largest, _Counted(tick))
+        judgement, best, missing = named.judgement, named.best, named.missing
         values, sd, lacking = _lacking(study, judgement, best, missing)
         change = changes(gap, values, sd, lacking, [one.name for one in trials])
         tick("running the amended study", 0, 0)
@@ -154,10 +145,10 @@ def _look(
             from tyrefem.diagnose.experiment import next_experiment
 
             tick("looking for the experiment that decides", 0, 0)
-            further = next_experiment(gap, judgement, fitted)
+            further = next_experiment(gap, judgement, named.fitted)
     before = {i: gap.corrected(i, gap.computed[i]) for i in range(len(trials))}
     return Diagnosis(
-        study, amended(study, change), judgement, gap, found, null, best, missing, change, before, after, further,
+        study, amended(study, change), judgement, gap, found, named.null, best, missing, change, before, after, further,
         time.perf_counter() - began,
     )  # fmt: skip
 
@@ -171,34 +162,6 @@ class _Counted:
     def __call__(self, what: str) -> None:
         self.done += 1
         self.tick(what, self.done, 0)
-
-
-def _outside(study: Study) -> float:
-    """ln of the prior probability that what is missing is not in the catalogue."""
-    return math.log(study.card.diagnosis.effects_expected * OUTSIDE)
-
-
-def _named(
-    gap: Gap, study: Study, found: tuple[Candidate, ...], prior: Prior, largest: int, count: Callable[[str], None]
-) -> tuple[list[Scored], MissingHeat]:
-    """All sets with their scores, and heat of unknown origin: in the full model where it may matter."""
-    unknown, outside = patches(study), _outside(study)
-
-    @functools.cache
-    def linear(null: Explained) -> MissingHeat:
-        return missing_heat(gap, unknown, null)
-
-    def elsewhere(null: Explained) -> float:
-        return outside + linear(null).log_evidence
-
-    scored = search(gap, found, prior, largest=largest, tick=count, outside=elsewhere)
-    null = next(one for _, members, one in scored if one is not None and not members)
-    missing = linear(null)
-    score, _, ahead = scored[0]
-    doubtful = ahead is None or min(ahead.p_value, ahead.held_out_p) < IMPROBABLE
-    if doubtful or outside + missing.log_evidence > score - NEAR:
-        missing = missing_heat_fitted(gap, unknown, null, lambda: count("fitting heat of unknown origin"))
-    return scored, missing
 
 
 def _lacking(

@@ -18,6 +18,8 @@ if TYPE_CHECKING:
 
 Array = NDArray[np.float64]
 Source = Callable[[Array, float, Array], Array]
+#: Ports that act on what surrounds the tyre.
+SURROUNDING = ("film_factor", "film_addend", "film_resistance", "sink_addend", "rim_power")
 
 
 @dataclass(frozen=True, eq=False)
@@ -42,6 +44,11 @@ class Acting:
     def changes_films(self) -> bool:
         """Does any effect touch a film?"""
         return bool(self.at("film_factor", "film_addend", "film_resistance"))
+
+    @property
+    def follows_drive(self) -> bool:
+        """Do films, sinks and the rim's power depend on time through the drive alone?"""
+        return all(one.of_drive for one in self.at(*SURROUNDING))
 
     def film(self, film: str, t: float, base: float) -> float:
         """A film at a time, W/m2/K: sums, then factors, then resistances in series."""

@@ -15,6 +15,7 @@ class BeadContactResistance(Effect):
 
     name: ClassVar[str] = "bead-contact-resistance"
     family: ClassVar[str] = "boundary"
+    of_drive: ClassVar[bool] = True
     sentence: ClassVar[str] = "Bead and rim do not touch perfectly: heat has to cross a thin gap."
     source: ClassVar[str] = (
         "Clark & Dodge 1980, appendix I: the contact resistance is unknown and neglected; estimate: 1e-4 to "

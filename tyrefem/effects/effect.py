@@ -111,6 +111,8 @@ class Effect(Card):
     family: ClassVar[str] = ""
     #: A correction of a base number: fitted along in a diagnosis, never named as missing.
     calibration: ClassVar[bool] = False
+    #: What it does to films, sinks and the rim depends on time through the drive alone: constant where the drive is.
+    of_drive: ClassVar[bool] = False
     #: Boundaries that the ports `flux` and `radiation` may use.
     surfaces: ClassVar[tuple[str, ...]] = SURFACES
 

@@ -17,6 +17,7 @@ class FilmScale(Effect):
 
     name: ClassVar[str] = "film-scale"
     family: ClassVar[str] = "calibration"
+    of_drive: ClassVar[bool] = True
     calibration: ClassVar[bool] = True
     sentence: ClassVar[str] = "A film coefficient is larger or smaller than its law says, at every speed alike."
     source: ClassVar[str] = "estimate: correlations of forced convection scatter by 20 to 30 % (handbook values)"

@@ -16,6 +16,7 @@ class GasMixing(Effect):
 
     name: ClassVar[str] = "gas-mixing"
     family: ClassVar[str] = "boundary"
+    of_drive: ClassVar[bool] = True
     sentence: ClassVar[str] = "Rolling stirs the contained air, which then takes up heat more quickly."
     source: ClassVar[str] = (
         "Clark & Dodge 1980, appendix I: 4.18 W/m2/K at any speed; estimate: forced convection in a turning "

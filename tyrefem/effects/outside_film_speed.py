@@ -16,6 +16,7 @@ class OutsideFilmSpeed(Effect):
 
     name: ClassVar[str] = "outside-film-speed"
     family: ClassVar[str] = "boundary"
+    of_drive: ClassVar[bool] = True
     sentence: ClassVar[str] = "The outside film follows another power of speed than the study says."
     source: ClassVar[str] = (
         "Clark & Dodge 1980, appendix I: 5.44 + 1.674 v; estimate: turbulent flow over a disc or plate gives "

@@ -17,6 +17,7 @@ class RoadFilmSpeed(Effect):
 
     name: ClassVar[str] = "road-film-speed"
     family: ClassVar[str] = "boundary"
+    of_drive: ClassVar[bool] = True
     sentence: ClassVar[str] = "The film between tread and road rises with speed, as each contact is shorter."
     source: ClassVar[str] = (
         "Cattani et al. 2023, eq 12: H_c = sqrt(lambda C v / FL), an exponent of 0.5, where Clark & Dodge "

@@ -15,6 +15,7 @@ class WetRoad(Effect):
 
     name: ClassVar[str] = "wet-road"
     family: ClassVar[str] = "boundary"
+    of_drive: ClassVar[bool] = True
     sentence: ClassVar[str] = (
         "Water on the road improves the contact and wets the tread, which evaporation then cools between two contacts."
     )

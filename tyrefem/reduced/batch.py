@@ -246,6 +246,6 @@ def steady(balance: ReducedBalance, number: int) -> bool:
     """Is everything that acts from outside constant within a phase?"""
     tyre = balance.tyre
     phase = tyre.drive.phases[number]
-    if tyre.study.effects or phase.slides or len(tyre.schedule.knots[number]) > 1:
+    if not tyre.acting.follows_drive or phase.slides or len(tyre.schedule.knots[number]) > 1:
         return False
     return all(value.constant for _, value in phase if isinstance(value, Ramp))

@@ -43,7 +43,7 @@ class ReducedModel:
 
     base: RollingTyre
     V: Array
-    samples: Mapping[str, Array]
+    samples: Mapping[str, NDArray[Any]]
     nodes_from_samples: Array
     #: Region -> its nodes that were about the hottest in training; others are looked at once.
     hot: Mapping[str, NDArray[np.intp]] = field(default_factory=dict)
@@ -78,11 +78,14 @@ class ReducedModel:
 
     @functools.cached_property
     def conduction(self) -> dict[str, tuple[Array, Array]]:
-        """Region -> (m, m) along and across, for 1 W/m/K."""
-        ops = self.operators
+        """Region -> (m, m) along and across, for 1 W/m/K.
+
+        Along is the meridian: a body that conducts evenly is the same in any direction, and a variant's may not.
+        """
+        ops, along = self.operators, self.base.mesh.along_meridian
         return {
             region: tuple(  # type: ignore[misc]
-                self._projected(one, ops.dofs(region)) for one in ops.conduction(region, body.direction)
+                self._projected(one, ops.dofs(region)) for one in ops.conduction(region, body.direction or along)
             )
             for region, body in self.base.bodies.items()
         }

@@ -12,6 +12,7 @@ from numpy.typing import NDArray
 from tyrefem.dotted import all_changed, value_at
 from tyrefem.errors import InputError
 from tyrefem.reduced.batch import Batch
+from tyrefem.reduced.marched import Marched
 from tyrefem.reduced.model import NotReducibleError, ReducedBalance, ReducedModel
 from tyrefem.reduced.readout import Readout
 from tyrefem.reduced.school import School, Tick
@@ -137,26 +138,40 @@ def reduced_outcomes(
     ----------
     tolerance : K, of time integration.
     """
+    tyres = [RollingTyre(study, model.base) for study in studies]
+    for numbers, part in side_by_side(model, tyres, tolerance):
+        if isinstance(part, dict):
+            yield numbers[0], part
+            continue
+        readout = Readout(part, output_times(part.batch.balances[0].tyre)[0])
+        for place, number in enumerate(numbers):
+            yield number, Variant(readout, place)
+
+
+def side_by_side(
+    model: ReducedModel, tyres: Sequence[RollingTyre], tolerance: float = TIME_TOLERANCE, most: int = SIDE_BY_SIDE
+) -> Iterator[tuple[list[int], Marched | dict[str, str]]]:
+    """Tyres marched together where their drives allow it, ``most`` at a time: (their numbers, the march).
+
+    Or (a number, ``{"failure"}``) of a tyre that cannot be, (a number, ``{"not_reducible"}``) of one that the model
+    cannot follow.
+    """
     groups: dict[Any, list[tuple[int, ReducedBalance]]] = {}
-    for number, study in enumerate(studies):
-        tyre = RollingTyre(study, model.base)
+    for number, tyre in enumerate(tyres):
         try:
             balance = model.balance(tyre)
         except NotReducibleError as error:
-            yield number, {"not_reducible": str(error)}
+            yield [number], {"not_reducible": str(error)}
         except InputError as error:
-            yield number, {"failure": str(error)}
+            yield [number], {"failure": str(error)}
         else:
-            output = study.card.output
+            output = tyre.study.card.output
             key = tyre.drive.starts, tyre.drive.end, tyre.schedule.knots, balance.layout, output.every, output.fields
             groups.setdefault(key, []).append((number, balance))
     for members in groups.values():
-        for first in range(0, len(members), SIDE_BY_SIDE):
-            part = members[first : first + SIDE_BY_SIDE]
-            marched = Batch(model, [balance for _, balance in part], tolerance).march()
-            readout = Readout(marched, output_times(part[0][1].tyre)[0])
-            for place, (number, _) in enumerate(part):
-                yield number, Variant(readout, place)
+        for first in range(0, len(members), most):
+            part = members[first : first + most]
+            yield [number for number, _ in part], Batch(model, [balance for _, balance in part], tolerance).march()
 
 
 def temperature_error(one: Mapping[str, Any], other: Mapping[str, Any]) -> float:
