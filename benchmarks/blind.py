@@ -27,9 +27,10 @@ def main() -> None:
     parser.add_argument("--seed", type=int, default=1)
     parser.add_argument("--out", type=Path, default=Path("results/blind"))
     parser.add_argument("--workers", type=int, default=os.cpu_count() or 1)
+    parser.add_argument("--reduced", choices=("auto", "never"), default="auto")
     given = parser.parse_args()
     began = time.perf_counter()
-    found = run_blind(tf.study(given.study), given.cases, given.seed, given.out, given.workers)
+    found = run_blind(tf.study(given.study), given.cases, given.seed, given.out, given.workers, reduced=given.reduced)
     for line in found.words():
         print(line)
     print()

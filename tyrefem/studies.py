@@ -255,7 +255,7 @@ class Study:
                 raise InputError(
                     f"at (r, z) = ({r * 1e3:.1f}, {z * 1e3:.1f}) mm the sensor is outside the rubber; the nearest "
                     f"meridian point is s = {float(s[0]) * 1e3:.1f} mm, where the rubber is "
-                    f"{float(section.total_thickness(s)[0]) * 1e3:.1f} mm thick (depth there "
+                    f"{float(section.rubber_thickness(s)[0]) * 1e3:.1f} mm thick (depth there "
                     f"{float(depth[0]) * 1e3:.1f} mm)"
                 )
             return float(r), float(z)
@@ -267,7 +267,7 @@ class Study:
             raise InputError(
                 f"s = {sensor.s * 1e3:.1f} mm is off the section; allowed: {lowest * 1e3:.1f} to {length * 1e3:.1f} mm"
             )
-        thickness = float(section.total_thickness([sensor.s])[0])
+        thickness = float(section.rubber_thickness([sensor.s])[0])
         if sensor.depth > thickness * (1 + 1e-9):
             raise InputError(
                 f"depth = {sensor.depth * 1e3:.2f} mm is outside the rubber, which is {thickness * 1e3:.2f} mm thick "

@@ -16,7 +16,10 @@ STATIONS = 41
 
 @dataclass(frozen=True, eq=False)
 class Wall:
-    """Stations s (k,) m along the meridian, thickness (k,) m, and both surfaces there (k, 2) in (r, z), m."""
+    """Stations s (k,) m along the meridian, thickness (k,) m, and both surfaces there (k, 2) in (r, z), m.
+
+    Across a groove the wall ends at its bottom.
+    """
 
     s: Array
     thickness: Array
@@ -35,7 +38,7 @@ def wall_of(section: Section, size: float) -> Wall:
     if size not in known:
         lowest = 0.0 if section.half else -section.line.length
         s = np.linspace(lowest, section.line.length, STATIONS)[1:-1]
-        thickness = section.total_thickness(s)
+        thickness = section.rubber_thickness(s)
         points = [section.place(s, depth) for depth in (np.zeros_like(s), thickness)]
         inner, outer = (inside(section, size, *section.locate(one)) for one in points)
         known[size] = Wall(s, thickness, inner, outer)

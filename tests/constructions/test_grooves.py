@@ -14,6 +14,8 @@ from tyrefem.footprint.press import Pressed, press
 from tyrefem.meshing import build
 from tyrefem.plotting.footprint import pressure_map
 from tyrefem.section import Section, load
+from tyrefem.sweep.answers import answers
+from tyrefem.wall import wall_of
 
 ROAD_TYRES = ("passenger", "truck")
 SMOOTH = {"section.grooves.width": "0 mm"}
@@ -118,3 +120,36 @@ def test_ribs_that_bulge_into_grooves_lose_more_than_a_slick():
     """Less rubber carries the load and is free at its sides; slicks and worn tyres are known to roll easier."""
     grooved, slick = (pressed(width).loss.coefficient for width in ("9 mm", "0 mm"))
     assert 1.03 < grooved / slick < 1.5
+
+
+def test_the_wall_ends_at_the_bottoms_of_grooves():
+    """Its gradient is asked of every variant of a sweep: both surfaces are in the mesh, and as far apart as is said."""
+    quick = {
+        "mechanics.strain": "given", "mesh.size": "8 mm", "mesh.element": "P1", "drive.duration": "60 s",
+        "output.every": "20 s",
+    }  # fmt: skip
+    tyre = tf.study(RADIALS["passenger"].study, quick)
+    result = tyre.run()
+    section = tyre.section
+    wall = wall_of(section, result.tyre.mesh.size)
+    across = section.in_groove(wall.s)
+    assert across.any()
+    thinner = section.total_thickness(wall.s) - wall.thickness
+    assert (thinner[across] > 5e-3).all()
+    assert (thinner[~across] == 0).all()
+    apart = np.hypot(*(wall.outer - wall.inner).T)
+    np.testing.assert_allclose(apart, wall.thickness, atol=3e-3)
+    assert section.contains(wall.outer).all()
+    s, steep = result.wall_gradient
+    assert len(s) == len(wall.s)
+    assert np.isfinite(steep).all()
+    assert answers(result)["gradient_K_m"] == steep.max()
+
+
+def test_a_sensor_stated_in_a_groove_is_refused():
+    (start, end), *_ = RADIALS["passenger"].section.grooves
+    middle = f"{(start + end) / 2 * 1e3:.2f} mm"
+    inside = float(RADIALS["passenger"].section.total_thickness((start + end) / 2)) - 1e-3
+    sensor = {"s": middle, "depth": f"{inside * 1e3:.2f} mm"}
+    with pytest.raises(tf.InputError, match=r"sensors\.hollow: depth = .* mm is outside the rubber"):
+        tf.study(RADIALS["passenger"].study, {"sensors.hollow": sensor})

@@ -299,3 +299,37 @@ def test_a_constant_conductivity_stays_constant() -> None:
     along, across = rolling.problem.regions["carcass"].conductivity
     assert along == pytest.approx(2 * across)
     assert set(catalogue()["cord-conduction"].ports()) == {"conductivity_factor"}
+
+
+# -- time --------------------------------------------------------------------------------------------------------------
+
+OF_DRIVE = sorted(name for name, one in catalogue().items() if one.of_drive)
+
+
+def surroundings(rolling: RollingTyre, t: float) -> list[float]:
+    """Everything that surrounds the tyre at a time."""
+    films = [rolling.road_film(t), rolling.air_film(t), rolling.tread_air_film(t), rolling.gas_film(t)]
+    sinks = [rolling.ambient(t), rolling.road_temperature(t), rolling.rim_temperature(t)]
+    return [*films, rolling.rim_film(t), *sinks, rolling.acting.rim_power(t)]
+
+
+@pytest.mark.parametrize("name", OF_DRIVE)
+def test_what_follows_the_drive_is_constant_where_the_drive_is(name: str) -> None:
+    choice = {"film": "road"} if name == "film-scale" else {}
+    amplitude = catalogue()[name].parameters()[0]
+    value = amplitude.prior.text(amplitude.prior.null + amplitude.prior.scale)
+    lumped = {"boundaries__rim": {"law": "lumped", "mass": "9 kg", "cooling": "2 W/K"}} if name == "brake-power" else {}
+    rolling, plain = tyre([{"name": name, **choice, amplitude.name: value}], **lumped), tyre(**lumped)
+    assert rolling.acting.follows_drive
+    times = np.random.default_rng(3).uniform(0.0, 200.0, 40)
+    assert all(surroundings(rolling, float(t)) == surroundings(rolling, 0.0) for t in times)
+    assert surroundings(rolling, 0.0) != surroundings(plain, 0.0)
+
+
+def test_what_changes_by_itself_does_not_claim_to_follow_the_drive() -> None:
+    assert len(OF_DRIVE) == 8
+    drifting = tyre([{"name": "ambient-drift", "rate": "10 delta_degC/hour"}])
+    assert not drifting.acting.follows_drive
+    assert surroundings(drifting, 100.0) != surroundings(drifting, 0.0)
+    # What acts on the heat alone leaves the surroundings as they are.
+    assert tyre([{"name": "pressure-rise", "rise": 0.1}]).acting.follows_drive

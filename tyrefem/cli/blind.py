@@ -8,7 +8,16 @@ from typing import Annotated
 
 import typer
 
-from tyrefem.cli.common import JsonOption, SetOption, StudyArgument, print_json, progress, settings, writable_folder
+from tyrefem.cli.common import (
+    JsonOption,
+    ReducedOption,
+    SetOption,
+    StudyArgument,
+    print_json,
+    progress,
+    settings,
+    writable_folder,
+)
 
 
 def blind(
@@ -18,6 +27,7 @@ def blind(
     changes: SetOption = None,
     out: Annotated[Path | None, typer.Option("--out", help="Folder; default: results/STUDY-blind.")] = None,
     workers: Annotated[int | None, typer.Option(min=1, help="Processes; default: one per core.")] = None,
+    reduced: ReducedOption = "auto",
     as_json: JsonOption = False,
 ) -> None:
     """Hide effects in made-up data for this study's sensors and runs, and report how often the diagnosis is right.
@@ -30,7 +40,8 @@ def blind(
     found = load(study, settings(changes))
     folder = writable_folder(out or Path("results") / f"{found.name}-blind")
     with progress(f"{found.name}: {cases} cases", 1.0, quiet=as_json) as step:
-        result = run_blind(found, cases, seed, folder, workers or os.cpu_count() or 1, lambda done: step(done / cases))
+        cores, tick = workers or os.cpu_count() or 1, lambda done: step(done / cases)
+        result = run_blind(found, cases, seed, folder, cores, tick, reduced=reduced)
     if as_json:
         print_json(result.to_dict())
         return

@@ -57,6 +57,17 @@ SetOption = Annotated[
 JsonOption = Annotated[bool, typer.Option("--json", help="Print the result as JSON on stdout, nothing else.")]
 
 
+def _reduced(choice: str) -> str:
+    if choice not in ("auto", "never"):
+        raise InputError(f"'{choice}' is not allowed; allowed: auto, never", field="--reduced")
+    return choice
+
+
+ReducedOption = Annotated[
+    str, typer.Option(callback=_reduced, help="Reduced models where full runs bear them out: auto, never.")
+]
+
+
 def settings(pairs: list[str] | None) -> dict[str, Any]:
     """``KEY=VALUE`` arguments as changes; a value that is TOML (number, list, table) is taken as such.
 

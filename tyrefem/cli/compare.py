@@ -11,8 +11,16 @@ from typing import Annotated
 
 import typer
 
-from tyrefem.cli.common import JsonOption, SetOption, StudyArgument, print_json, progress, settings, writable_folder
-from tyrefem.errors import InputError
+from tyrefem.cli.common import (
+    JsonOption,
+    ReducedOption,
+    SetOption,
+    StudyArgument,
+    print_json,
+    progress,
+    settings,
+    writable_folder,
+)
 from tyrefem.processes import processes
 
 
@@ -28,16 +36,12 @@ def compare(
         bool, typer.Option(help="Propagate the cards' uncertainties into the validation uncertainty.")
     ] = True,
     k: Annotated[float, typer.Option("-k", min=0.1, help="Coverage factor of the validation uncertainty.")] = 2.0,
-    reduced: Annotated[
-        str, typer.Option(help="A certified reduced model for the runs with changed inputs: auto, never.")
-    ] = "auto",
+    reduced: ReducedOption = "auto",
     as_json: JsonOption = False,
 ) -> None:
     """Compare a study with measured tables: deviation per sensor, run and phase, against the validation uncertainty."""
     from tyrefem.studies import study as load
 
-    if reduced not in ("auto", "never"):
-        raise InputError(f"'{reduced}' is not allowed; allowed: auto, never", field="--reduced")
     found = load(study, settings(changes))
     folder = writable_folder(out or Path("results") / f"{found.name}-compare")
     with progress(f"{found.name}: simulations", 1.0, quiet=as_json) as step, _side_by_side(inputs) as executor:

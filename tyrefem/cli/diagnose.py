@@ -11,7 +11,16 @@ from typing import Annotated
 
 import typer
 
-from tyrefem.cli.common import JsonOption, SetOption, StudyArgument, fail, print_json, settings, writable_folder
+from tyrefem.cli.common import (
+    JsonOption,
+    ReducedOption,
+    SetOption,
+    StudyArgument,
+    fail,
+    print_json,
+    settings,
+    writable_folder,
+)
 from tyrefem.errors import InputError
 
 #: Folder within ``--out`` that holds finished simulations until the diagnosis is done.
@@ -37,9 +46,7 @@ def diagnose(
     looks: Annotated[
         int, typer.Option(min=1, max=9, help="Diagnoses at most, each of what the one before it left unexplained.")
     ] = 3,
-    reduced: Annotated[
-        str, typer.Option(help="Certified reduced models of the drives for the fits: auto, never.")
-    ] = "auto",
+    reduced: ReducedOption = "auto",
     as_json: JsonOption = False,
 ) -> None:
     """Find where measurements and study disagree, name the missing effect, and write the study that has it.
@@ -49,8 +56,6 @@ def diagnose(
     from tyrefem.diagnose.progress_store import ProgressStore
     from tyrefem.studies import study as load
 
-    if reduced not in ("auto", "never"):
-        raise InputError(f"'{reduced}' is not allowed; allowed: auto, never", field="--reduced")
     found = load(study, settings(changes))
     folder = writable_folder(out or Path("results") / f"{found.name}-diagnosis")
     store = ProgressStore(folder / PROGRESS)

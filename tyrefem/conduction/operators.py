@@ -5,6 +5,7 @@ from __future__ import annotations
 from collections import OrderedDict
 from collections.abc import Callable
 from typing import Any
+from weakref import WeakValueDictionary
 
 import numpy as np
 import skfem
@@ -23,7 +24,9 @@ _ELEMENTS = {
     ("quad", "P1"): skfem.ElementQuad1,
     ("quad", "P2"): skfem.ElementQuad2,
 }
+#: The latest; and all that are still held by anyone, however many meshes came since.
 _RECENT: OrderedDict[tuple[int, str, bool], Operators] = OrderedDict()
+_ALIVE: WeakValueDictionary[tuple[int, str, bool], Operators] = WeakValueDictionary()
 
 
 class Operators:
@@ -204,9 +207,10 @@ def operators_of(mesh: Any, element: str = "P1", axisymmetric: bool = True) -> O
     True
     """
     key = (id(mesh), element, axisymmetric)
-    found = _RECENT.get(key)
+    found = _ALIVE.get(key)
     if found is None or found.mesh is not mesh:
-        found = _RECENT[key] = Operators(mesh, element, axisymmetric)
+        found = _ALIVE[key] = Operators(mesh, element, axisymmetric)
+    _RECENT[key] = found
     _RECENT.move_to_end(key)
     while len(_RECENT) > 6:
         _RECENT.popitem(last=False)

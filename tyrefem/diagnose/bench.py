@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import contextlib
 import functools
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
@@ -33,8 +34,9 @@ COARSE = {
 }
 
 
-#: What a drive's reduced model says of a point: it follows it, it does not, no tyre can be like that.
-FOLLOWED, NOT_FOLLOWED, IMPOSSIBLE = 0, 1, 2
+#: A drive's reduced model follows a point; it never can, for such effects; it says nothing of this one, as of a tyre
+#: that cannot be.
+FOLLOWED, NOT_FOLLOWED, UNSAID = 0, 1, 2
 
 
 @dataclass(frozen=True, eq=False)
@@ -168,20 +170,19 @@ class Bench:
         They are the lean simulation's at x = 0 and what the model says that unknowns at each of ``points`` change.
         """
         base, drive = self.base(number), self._reduced_drive(number, modes)
-        status, found = (
-            np.full(len(points), NOT_FOLLOWED),
-            np.full((len(points), len(self.trials[number].measured)), np.nan),
-        )
+        status = np.full(len(points), UNSAID)
+        found = np.full((len(points), len(self.trials[number].measured)), np.nan)
         studies: dict[int, Study] = {}
         for place, values in enumerate(points):
-            try:
+            with contextlib.suppress(InputError):
                 studies[place] = with_values(base.study, values, base.study)
-            except InputError:
-                status[place] = IMPOSSIBLE
         own = self.blocks(number, base.grid, base.readings) - self.blocks(number, base.grid, drive.own)
-        for place, readings in zip(studies, drive.readings(list(studies.values())), strict=True):
-            if readings is not None:
-                status[place], found[place] = FOLLOWED, self.blocks(number, base.grid, readings) + own
+        readings, refused = drive.readings(list(studies.values()))
+        for order, (place, one) in enumerate(zip(studies, readings, strict=True)):
+            if one is not None:
+                status[place], found[place] = FOLLOWED, self.blocks(number, base.grid, one) + own
+            elif order in refused:
+                status[place] = NOT_FOLLOWED
         return status, found
 
     def reduced_jacobian(

@@ -208,13 +208,16 @@ def identifiable(gap: Gap, study: Study, case: Case) -> bool:
     return min(ahead) >= MARGIN
 
 
-def run_case(study: Study, case: Case, known: Sequence[Response]) -> Outcome:
-    """Make the data of a case, diagnose them, and put both side by side. ``known``: responses of the planned runs."""
+def run_case(study: Study, case: Case, known: Sequence[Response], reduced: str = "auto") -> Outcome:
+    """Make the data of a case, diagnose them, and put both side by side.
+
+    ``known``: responses of the planned runs; ``reduced`` as of `diagnose`.
+    """
     with laboratory(Bench(study, planned(study))) as lab:
         able = identifiable(gap_of(lab, known=known), study, case)
-    return Outcome(
-        case, able, said(diagnose(study, measured(study, case), largest=2, known=known, rerun=False, looks=1))
-    )
+    data = measured(study, case)
+    found = diagnose(study, data, largest=2, known=known, rerun=False, looks=1, reduced=reduced)
+    return Outcome(case, able, said(found))
 
 
 def said(found: Diagnosis) -> dict[str, Any]:
@@ -243,5 +246,6 @@ def said(found: Diagnosis) -> dict[str, Any]:
             "after": found.rms(after=True, held_out=True),
         },
         "noise_K": found.noise,
+        "points": {"reduced": found.gap.predicted.reduced, "lean": found.gap.predicted.lean},
         "seconds": found.seconds,
     }

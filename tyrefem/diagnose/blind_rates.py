@@ -188,18 +188,18 @@ FAILED: Row = {
     "verdict": "failed", "named": [], "set": [], "best": "", "probability": 0.0, "missing_station_m": math.nan,
     "rms_K": {}, "held_out_rms_K": {"before": 0.0, "after": math.inf}, "noise_K": 0.0,
 }  # fmt: skip
-_KNOWN: list[tuple[Study, tuple[Response, ...]]] = []
+_KNOWN: list[tuple[Study, tuple[Response, ...], str]] = []
 
 
-def _install(study: Study, known: tuple[Response, ...]) -> None:
-    _KNOWN[:] = [(study, known)]
+def _install(study: Study, known: tuple[Response, ...], reduced: str) -> None:
+    _KNOWN[:] = [(study, known, reduced)]
 
 
 def _case(number: int, count: int, seed: int) -> Row:
-    study, known = _KNOWN[0]
+    study, known, reduced = _KNOWN[0]
     case = cases(study, count, seed)[number]
     try:
-        row = run_case(study, case, known).to_dict()
+        row = run_case(study, case, known, reduced).to_dict()
     except InputError as error:
         # A diagnosis that breaks down is a wrong one.
         row = {**Outcome(case, identifiable=True).to_dict(), **FAILED, "reason": str(error)}
@@ -208,13 +208,22 @@ def _case(number: int, count: int, seed: int) -> Row:
 
 
 def run_blind(
-    study: Study, count: int, seed: int, folder: Path, workers: int = 1, tick: Callable[[int], None] | None = None
+    study: Study,
+    count: int,
+    seed: int,
+    folder: Path,
+    workers: int = 1,
+    tick: Callable[[int], None] | None = None,
+    *,
+    reduced: str = "auto",
 ) -> Blind:
     """Run cases side by side; every finished one is kept in ``folder``/cases; at the end blind.json and blind.png.
 
-    Cases already there (same study, count, seed and version) are not run again.
+    Cases already there (same study, count, seed, ``reduced`` and version) are not run again. ``reduced`` as of
+    `tyrefem.diagnose.diagnose`; all cases share what the reduced models are made of.
     """
-    text = json.dumps([jsonable(dict(study.data)), count, seed, tyrefem.__version__], sort_keys=True, default=str)
+    said = [jsonable(dict(study.data)), count, seed, reduced, tyrefem.__version__]
+    text = json.dumps(said, sort_keys=True, default=str)
     tag = hashlib.sha256(text.encode()).hexdigest()[:12]
     store = folder / "cases"
     store.mkdir(parents=True, exist_ok=True)
@@ -225,7 +234,7 @@ def run_blind(
     if left:
         with laboratory(Bench(study, planned(study)), workers) as lab:
             known = responses(lab, unknowns_of(study, [*study.sensors, GAS])[0])
-        for number, row in _answers(study, known, left, count, seed, workers):
+        for number, row in _answers((study, known, reduced), left, count, seed, workers):
             rows[number] = row
             with atomic_path(store / f"{tag}-{number:05d}.json") as temporary:
                 temporary.write_text(json.dumps(row), encoding="utf-8")
@@ -242,14 +251,14 @@ def run_blind(
 
 
 def _answers(
-    study: Study, known: tuple[Response, ...], numbers: Sequence[int], count: int, seed: int, workers: int
+    known: tuple[Study, tuple[Response, ...], str], numbers: Sequence[int], count: int, seed: int, workers: int
 ) -> Iterable[tuple[int, Row]]:
     if workers <= 1:
-        _install(study, known)
+        _install(*known)
         for number in numbers:
             yield number, _case(number, count, seed)
         return
-    with processes(workers, _install, study, known) as pool:
+    with processes(workers, _install, *known) as pool:
         futures = {pool.submit(_case, number, count, seed): number for number in numbers}
         for future in as_completed(futures):
             yield futures[future], future.result()

@@ -82,7 +82,7 @@ def _places(study: Study, pair: list[Lean]) -> list[tuple[str, dict[str, float],
     """(name, place, difference (n,), sd of a new sensor's place (n,) K, times) at every feasible place."""
     section = study.section
     s = np.repeat(np.linspace(0.0, section.line.length * 0.98, STATIONS), 3)
-    total = np.asarray(section.total_thickness(s))
+    total = np.asarray(section.rubber_thickness(s))
     depth = np.where(np.arange(len(s)) % 3 == 0, SKIN, np.where(np.arange(len(s)) % 3 == 1, total / 2, total - SKIN))
     values = [one.at(s, depth) for one in pair]
     gradient = np.zeros_like(values[0])

@@ -182,7 +182,7 @@ def _estimated(gap: Gap, unknown: Sequence[Unknown], about: _Point, chosen: Unkn
     watts = _watts(study, stations, mean[:, :half].mean(axis=0), mean[:, half:].mean(axis=0))
     first = int(np.argmax(_score(mean, spread, half))) if chosen is None else unknown.index(chosen)
     worst = first % half
-    s, depth = np.array([stations[worst]]), study.section.total_thickness([stations[worst]]) / 2
+    s, depth = np.array([stations[worst]]), study.section.rubber_thickness([stations[worst]]) / 2
     drives = [gap.lab.bench.driven(study, i).card.drive for i in gap.fitted]
     return MissingHeat(
         stations,
@@ -219,6 +219,6 @@ def _watts(study: Study, stations: Array, heat: Array, flux: Array) -> Array:
     section = study.section
     spacing = section.line.length / STATIONS
     radius = section.line.position(stations)[:, 0]
-    thickness = np.asarray(section.total_thickness(stations))
+    thickness = np.asarray(section.rubber_thickness(stations))
     ring = 2 * np.pi * radius * spacing * 2
     return np.asarray(ring * (heat * thickness + flux))

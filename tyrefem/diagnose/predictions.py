@@ -149,7 +149,7 @@ class Predictions:
                 if one == NOT_FOLLOWED:
                     members = asking[k][0]
                     self.certificates[members, i] = Certificate(members, i, apart=np.inf, error=np.inf)
-                else:
+                elif one == FOLLOWED:
                     found[k, i] = row
         self.reduced += len(found)
         return found

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import contextlib
 import functools
 import hashlib
 from collections.abc import Sequence
@@ -93,20 +94,20 @@ class ReducedDrive:
     @functools.cached_property
     def own(self) -> Readings:
         """Readings of the drive as the study has it."""
-        found = self.readings([self.base.study])[0]
+        (found,), _ = self.readings([self.base.study])
         if found is None:
             raise NotReducibleError("the drive as it is")
         return found
 
-    def readings(self, studies: Sequence[Study]) -> list[Readings | None]:
-        """Readings on the drive's grid by study; None where the model cannot follow."""
+    def readings(self, studies: Sequence[Study]) -> tuple[list[Readings | None], list[int]]:
+        """Readings on the drive's grid by study, None where there are none; numbers of those it can never follow."""
         found: list[Readings | None] = [None] * len(studies)
-        tyres = [RollingTyre(study, self.base.tyre) for study in studies]
-        for numbers, marched in self._marched(tyres):
-            states = marched.states(self.base.grid)
+        marched, refused = self._marched([RollingTyre(study, self.base.tyre) for study in studies])
+        for numbers, part in marched:
+            states = part.states(self.base.grid)
             for place, number in enumerate(numbers):
-                found[number] = self.read(studies[number], marched.batch.balances[place], states[:, place])
-        return found
+                found[number] = self.read(studies[number], part.batch.balances[place], states[:, place])
+        return found, refused
 
     def slopes(self, here: Study, there: Sequence[tuple[Study, bool]], steps: Sequence[float]) -> list[Readings] | None:
         """d(reading)/dx of the studies ``there``, each a step from ``here``; None where the model cannot follow.
@@ -120,7 +121,7 @@ class ReducedDrive:
         moved = [number for number, (_, measures) in enumerate(there) if not measures]
         tyre = RollingTyre(here, self.base.tyre)
         tyres = [tyre, *(RollingTyre(there[number][0], tyre) for number in moved)]
-        groups = self._marched(tyres)
+        groups, _ = self._marched(tyres)
         if len(groups) != 1 or len(groups[0][0]) != len(tyres):
             return None
         numbers, marched = groups[0]
@@ -137,17 +138,18 @@ class ReducedDrive:
             {name: (one[name] - first[name]) / step for name in first} for one, step in zip(others, steps, strict=True)
         ]
 
-    def _marched(self, tyres: Sequence[RollingTyre]) -> list[tuple[list[int], Marched]]:
-        """What the model can follow, marched together."""
+    def _marched(self, tyres: Sequence[RollingTyre]) -> tuple[list[tuple[list[int], Marched]], list[int]]:
+        """Those that can be marched, together; numbers of those that the model cannot follow."""
         found: list[tuple[list[int], Marched]] = []
-        try:
+        refused: list[int] = []
+        # Where one of them takes no step any more, the lean simulation says what is wrong with it.
+        with contextlib.suppress(InputError):
             for numbers, part in side_by_side(self.model, tyres, TIME_TOLERANCE, TOGETHER):
                 if isinstance(part, Marched):
                     found.append((numbers, part))
-        except InputError:
-            # One of them takes no step any more: the lean simulation says of each what is wrong with it.
-            return found
-        return found
+                elif "not_reducible" in part:
+                    refused += numbers
+        return found, refused
 
     def read(self, study: Study, balance: ReducedBalance, states: Array) -> Readings:
         """What the study's logger records of states (n_grid, n): modes, then reservoirs."""

@@ -27,10 +27,29 @@ class SampledHeat:
     """
 
     def __init__(self, balances: Sequence[ReducedBalance]) -> None:
+        self.balances = balances
+        self.rows = [row for row, one in enumerate(balances) if is_plain(one)]
+        self.others = [row for row in range(len(balances)) if row not in self.rows]
+        self.tabled = TabledHeat([balances[row] for row in self.rows]) if self.rows else None
+
+    def __call__(self, times: Sequence[float], a: Array) -> Array:
+        """(B, n_samples, k) sources of modes a (B, m, k) at times of one phase, seen from inside it."""
+        if self.tabled is not None and not self.others:
+            return self.tabled(times, a)
+        found = np.empty((len(a), len(self.balances[0].model.at_samples), a.shape[2]))
+        if self.tabled is not None:
+            found[self.rows] = self.tabled(times, a[self.rows])
+        for row in self.others:
+            for column, t in enumerate(times):
+                found[row, :, column] = self.balances[row].source(t, a[row, :, column])
+        return found
+
+
+class TabledHeat:
+    """The same where every source is the strain cycle's alone: strain energies once, tan delta from a table."""
+
+    def __init__(self, balances: Sequence[ReducedBalance]) -> None:
         self.balances, self.model = balances, balances[0].model
-        self.plain = all(is_plain(one) for one in balances)
-        if not self.plain:
-            return
         grid = np.arange(COLD, HOT + FINE / 2, FINE)
         self.width = len(grid)
         zones = self.model.zones
@@ -51,12 +70,6 @@ class SampledHeat:
 
     def __call__(self, times: Sequence[float], a: Array) -> Array:
         """(B, n_samples, k) sources of modes a (B, m, k) at times of one phase, seen from inside it."""
-        if not self.plain:
-            rows = [
-                [one.source(t, row[:, i]) for i, t in enumerate(times)]
-                for one, row in zip(self.balances, a, strict=True)
-            ]
-            return np.array(rows).transpose(0, 2, 1)
         losses = self._losses(times)
         if losses is None:
             return np.zeros((len(a), len(self.model.at_samples), a.shape[2]))

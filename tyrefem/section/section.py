@@ -182,6 +182,11 @@ class Section:
         faces = self.interfaces(self._x(s))
         return np.asarray(faces[-1] - faces[0])
 
+    def rubber_thickness(self, s: ArrayLike) -> Array:
+        """Thickness at stations ``s``, to the bottom where there is a groove [m]."""
+        faces = self.interfaces(self._x(s))
+        return np.asarray(np.where(self.in_groove(s), faces[-2], faces[-1]) - faces[0])
+
     def place(self, s: ArrayLike, depth: ArrayLike) -> Array:
         """(r, z) of places ``s``, ``depth`` from the inner surface, shape (..., 2) [m]."""
         s, depth = np.broadcast_arrays(self._x(s), np.asarray(depth, dtype=float))
@@ -212,7 +217,7 @@ class Section:
         """The nearest (s, depth) inside the rubber, at least ``margin`` [m] from its surface."""
         end = self.line.length - margin
         inside = np.clip(np.asarray(s, dtype=float), -end, end)
-        total = self.total_thickness(inside)
+        total = self.rubber_thickness(inside)
         low = np.minimum(margin, total / 2)
         return inside, np.clip(np.asarray(depth, dtype=float), low, total - low)
 
@@ -250,9 +255,7 @@ class Section:
         points = np.asarray(points, dtype=float)
         s, depth = self.locate(points)
         inside = (np.abs(s) <= self.line.length + tolerance) & (depth >= -tolerance)
-        faces = self.interfaces(self._x(s))
-        highest = np.where(self.in_groove(s), faces[-2], faces[-1])
-        inside &= depth <= highest - faces[0] + tolerance
+        inside &= depth <= self.rubber_thickness(self._x(s)) + tolerance
         return inside & (points[..., 1] >= -tolerance) if self.half else inside
 
     # Shape

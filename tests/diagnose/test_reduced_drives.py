@@ -1,0 +1,215 @@
+"""Reduced models of measured drives: what they say is what simulations say, and where it is not, simulations speak."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass, replace
+from typing import Any
+
+import numpy as np
+import pytest
+from hidden import WARMER, measure, study
+from numpy.typing import NDArray
+
+import tyrefem as tf
+from tyrefem.compare.experiment import experiments
+from tyrefem.diagnose import Diagnosis
+from tyrefem.diagnose.bench import FOLLOWED, NOT_FOLLOWED, UNSAID, Bench, Response
+from tyrefem.diagnose.laboratory import Laboratory
+from tyrefem.diagnose.predictions import ALLOWED, Predictions
+from tyrefem.diagnose.reduced_drive import Modes
+from tyrefem.diagnose.responses import responses, unknowns_of
+from tyrefem.diagnose.trials import trial
+from tyrefem.diagnose.unknowns import Candidate, Unknown, candidates, with_values
+from tyrefem.effects import catalogue
+
+Array = NDArray[np.float64]
+DRIVE = 1
+
+
+@dataclass(frozen=True)
+class Drives:
+    """The study, its bench, everything that may be unknown, and how every drive responds."""
+
+    study: tf.Study
+    bench: Bench
+    unknowns: tuple[Unknown, ...]
+    nuisance: int
+    known: tuple[Response, ...]
+
+    @property
+    def modes(self) -> list[Modes]:
+        return [one.modes for one in self.known]
+
+    def candidate(self, name: str) -> Candidate:
+        return next(one for one in candidates(self.study) if one.name == name)
+
+    def drawn(self, seed: int) -> dict[Unknown, float]:
+        """Base numbers and sensors drawn from their priors."""
+        rng = np.random.default_rng(seed)
+        base = self.unknowns[: self.nuisance]
+        return {one: float(np.clip(rng.normal(0.0, one.sd), 0.9 * one.low, 0.9 * one.high)) for one in base}
+
+
+@pytest.fixture(scope="module")
+def drives(tmp_path_factory: pytest.TempPathFactory) -> Drives:
+    owner = study(tmp_path_factory.mktemp("reduced"))
+    measure(owner, [{"name": "hot-road", "warmer_by": f"{WARMER} delta_degC"}])
+    planned = experiments(owner, None, ignore=(), rename=None)
+    bench = Bench(owner, tuple(trial(one, owner) for one in planned))
+    unknowns, nuisance = unknowns_of(owner, set(owner.sensors))
+    return Drives(owner, bench, unknowns, nuisance, responses(Laboratory(bench), unknowns))
+
+
+def exact(drives: Drives, values: dict[Unknown, float]) -> Array:
+    """Block means by a run on the mesh of the fit with a small time error."""
+    bench = drives.bench
+    close = with_values(bench.driven(bench.coarse, DRIVE), values).replace({"numerics.tolerance": "0.002 delta_degC"})
+    return bench.full(DRIVE, close)
+
+
+@pytest.mark.parametrize("seed", [1, 2])
+def test_base_numbers_and_sensors_change_what_full_runs_say(drives: Drives, seed: int) -> None:
+    origin, values = exact(drives, {}), drives.drawn(seed)
+    change = exact(drives, values) - origin
+    status, found = drives.bench.reduced(DRIVE, drives.modes[DRIVE], [{}, values])
+    assert status.tolist() == [FOLLOWED, FOLLOWED]
+    assert np.abs(change).max() > 1.0
+    assert np.abs(found[1] - found[0] - change).max() < 0.02
+    # As it is, the drive reads what the lean simulation says.
+    np.testing.assert_allclose(found[0], drives.bench.predict(DRIVE, {}), atol=1e-12)
+
+
+FOLLOWED_EFFECTS = ("hot-road", "cord-conduction", "gas-mixing", "loss-temperature-law", "pressure-rise", "wet-road")
+
+
+@pytest.mark.parametrize("name", FOLLOWED_EFFECTS)
+def test_effects_that_were_never_simulated_are_met(drives: Drives, name: str) -> None:
+    open_study = drives.study.replace({"diagnosis.exclude": []})
+    amplitude = next(one for one in candidates(open_study) if one.name == name).amplitudes[0]
+    values = {amplitude: 2.0 * amplitude.sd * (1.0 if amplitude.high > 0 else -1.0)}
+    base = drives.bench.base(DRIVE)
+    unknowns = (*drives.unknowns, amplitude)
+    own = Modes(drives.bench.response(DRIVE, unknowns)[-1])
+    change = exact(drives, values) - exact(drives, {})
+    status, found = drives.bench.reduced(DRIVE, own, [values])
+    assert status.tolist() == [FOLLOWED]
+    lean = drives.bench.predict(DRIVE, values) - drives.bench.blocks(DRIVE, base.grid, base.readings)
+    reduced = found[0] - drives.bench.blocks(DRIVE, base.grid, base.readings)
+    assert np.abs(change).max() > 0.05
+    # No further from the truth than what it stands for, or by a fiftieth of a kelvin.
+    assert np.abs(reduced - change).max() < max(np.abs(lean - change).max(), 0.02)
+
+
+def test_tangents_are_those_of_simulations(drives: Drives) -> None:
+    bench, at = drives.bench, drives.drawn(3)
+    wanted = drives.unknowns[: drives.nuisance]
+    status, found = bench.reduced_jacobian(DRIVE, drives.modes[DRIVE], wanted, at)
+    assert status.tolist() == [FOLLOWED]
+    full = bench.jacobian(DRIVE, wanted, at)
+    sd = np.array([one.sd for one in wanted])
+    assert (np.abs(full * sd).max(axis=0) > 0.5).sum() > 5
+    assert np.abs((found - full) * sd).max() < 0.05
+
+
+def test_what_no_model_can_follow_or_no_tyre_can_be_is_told_apart(drives: Drives) -> None:
+    sun = drives.candidate("sun").amplitudes[0]
+    load = next(one for one in drives.unknowns if one.key == "drive.load")
+    status, found = drives.bench.reduced(DRIVE, drives.modes[DRIVE], [{sun: 200.0}, {load: 3.0}, {load: 0.05}])
+    assert status.tolist() == [NOT_FOLLOWED, UNSAID, FOLLOWED]
+    assert np.isfinite(found).all(axis=1).tolist() == [False, False, True]
+    # A step too far says nothing against the model.
+    said = Predictions(Laboratory(drives.bench), drives.modes)
+    assert np.isnan(said.predict([((), {load: 3.0})], [DRIVE])[0][0]).all()
+    said.predict([((), {load: 0.05})], [DRIVE])
+    assert said.certificates[(), DRIVE].good
+
+
+def test_a_set_is_simulated_once_and_then_left_to_the_model(drives: Drives) -> None:
+    road = (drives.candidate("hot-road"),)
+    said = Predictions(Laboratory(drives.bench), drives.modes)
+    points = [{road[0].amplitudes[0]: x} for x in (10.0, 20.0, 30.0)]
+    for one in points:
+        said.predict([(road, one)], [DRIVE])
+    assert (said.reduced, said.lean) == (3, 1)
+    certificate = said.certificates[road, DRIVE]
+    assert certificate.good
+    assert 0 < certificate.error < 0.1
+    assert certificate.cases == 1
+    assert said.confirmed(road, points[-1])
+    assert said.certificates[road, DRIVE].cases == 2
+
+
+def test_an_effect_that_no_model_follows_stays_with_the_simulation(drives: Drives) -> None:
+    sun = (drives.candidate("sun"),)
+    said = Predictions(Laboratory(drives.bench), drives.modes)
+    point = {sun[0].amplitudes[0]: 300.0}
+    both = [said.predict([(sun, point)], [DRIVE])[0][0] for _ in range(2)]
+    for one in both:
+        np.testing.assert_array_equal(one, drives.bench.predict(DRIVE, point))
+    assert (said.reduced, said.lean) == (0, 2)
+
+
+def spoiled(modes: Modes) -> Modes:
+    """Too few modes."""
+    return Modes(modes.V[:, :4])
+
+
+def test_a_model_that_is_off_is_found_out_and_not_used(drives: Drives) -> None:
+    said = Predictions(Laboratory(drives.bench), [spoiled(one) for one in drives.modes])
+    point = drives.drawn(4)
+    found = said.predict([((), point)], [DRIVE])[0][0]
+    assert said.certificates[(), DRIVE].apart > ALLOWED
+    np.testing.assert_array_equal(found, drives.bench.predict(DRIVE, point))
+    wanted = drives.unknowns[:3]
+    J = said.jacobians([((), wanted, point)], [DRIVE])[0][0]
+    np.testing.assert_array_equal(J, drives.bench.jacobian(DRIVE, wanted, point))
+
+
+def diagnosed(drives: Drives, **options: Any) -> Diagnosis:
+    return drives.study.diagnose(largest=1, looks=1, known=drives.known, rerun=False, **options)
+
+
+@pytest.fixture(scope="module")
+def never(drives: Drives) -> Diagnosis:
+    return diagnosed(drives, reduced="never")
+
+
+def test_the_verdict_is_that_of_simulations_alone(drives: Drives, never: Diagnosis) -> None:
+    auto = diagnosed(drives)
+    assert auto.verdict == never.verdict == "identified"
+    assert [one.key for one in auto.best.members] == [one.key for one in never.best.members] == ["hot-road"]
+    for one, x in never.best.values.items():
+        assert abs(auto.best.values[one] - x) < 0.15 * max(never.best.sd[one], 1e-9)
+    assert auto.judgement.probability == pytest.approx(never.judgement.probability, abs=0.02)
+    said = auto.to_dict()["reduced"]
+    assert said["used"]
+    assert said["points_by_reduced_models"] > said["points_by_lean_simulations"] / 2
+    assert said["worst_whitened"] <= ALLOWED
+    assert {one["run"] for one in said["certificates"]} == {"slow", "loaded", "fast"}
+    assert never.to_dict()["reduced"]["points_by_reduced_models"] == 0
+
+
+def test_where_the_best_fit_is_not_confirmed_everything_is_simulated(
+    drives: Drives, never: Diagnosis, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    monkeypatch.setattr(Predictions, "confirmed", lambda *_: False)
+    found = diagnosed(drives)
+    assert found.to_dict()["reduced"]["used"] is False
+    assert found.best.log_evidence == pytest.approx(never.best.log_evidence, abs=1e-6)
+
+
+def test_a_word_that_is_no_choice_is_refused(drives: Drives) -> None:
+    with pytest.raises(tf.InputError, match="reduced is 'auto' or 'never', not 'always'"):
+        diagnosed(drives, reduced="always")
+
+
+def test_no_modes_where_the_drive_itself_is_not_followed(drives: Drives) -> None:
+    radiating = drives.study.replace({"effects": [{"name": "radiation", "emissivity": 0.9}]})
+    assert "radiation" in catalogue()
+    bench = Bench(radiating, drives.bench.trials[:1])
+    *_, V = bench.response(0, drives.unknowns[:1])
+    assert V.shape[1] == 0
+    one = replace(drives.known[0], modes=Modes(V))
+    said = Predictions(Laboratory(bench), [one.modes])
+    assert np.isfinite(said.predict([((), {})], [0])[0][0]).all()
+    assert (said.reduced, said.lean) == (0, 1)

@@ -1,0 +1,90 @@
+"""Reduced models of studies with effects, and of tan delta that depends on frequency."""
+
+from __future__ import annotations
+
+import numpy as np
+import pytest
+
+from tyrefem import study
+from tyrefem.reduced.batch import Batch, steady
+from tyrefem.reduced.surrogate import reduced_answers, surrogate, temperature_error
+from tyrefem.rolling import RollingTyre, run
+from tyrefem.studies import Study
+from tyrefem.sweep.answers import answers
+from tyrefem.sweep.plan import plan_of
+
+SHORT = {"mesh.size": "12 mm", "drive.duration": "200 s", "output.every": "20 s"}
+SPEEDS = {"drive.speed": ("12 mph", "25 mph")}
+
+
+@pytest.mark.parametrize(
+    "effects",
+    [
+        # On the heat, and on what surrounds the tyre by its drive alone.
+        [{"name": "pressure-rise", "rise": 0.15}, {"name": "gas-mixing", "gain": 2.0}],
+        # On a surrounding temperature by time itself, and on the heat with temperature; along the plies.
+        [
+            {"name": "ambient-drift", "rate": "40 delta_degC/hour"},
+            {"name": "loss-temperature-law", "rate": "0.005 1/delta_degC"},
+            {"name": "cord-conduction", "gain": 3.0},
+        ],
+    ],
+)
+def test_studies_with_effects_are_met(effects: list[dict[str, object]]) -> None:
+    tyre = study("nasa-22x5.5-8pr", {**SHORT, "effects": effects})
+    found = surrogate(plan_of(tyre, SPEEDS, sample="sobol", count=12), tolerance=0.02)
+    fresh = tyre.replace({"drive.speed": "21.3 mph"})
+    reduced, full = found.answers([fresh])[0]["answers"], answers(run(fresh))
+    plain = answers(run(fresh.replace({"effects": []})))
+    assert temperature_error(plain, full) > 0.5
+    assert temperature_error(reduced, full) < 0.02
+    assert reduced["rolling_resistance_N"] == pytest.approx(full["rolling_resistance_N"], rel=1e-3)
+
+
+@pytest.fixture(scope="module")
+def plain() -> Study:
+    return study("nasa-22x5.5-8pr", SHORT)
+
+
+def test_an_effect_changes_nothing_for_those_beside_it(plain: Study) -> None:
+    found = surrogate(plan_of(plain, SPEEDS, sample="sobol", count=12), tolerance=0.02)
+    acted = plain.replace({"effects": [{"name": "loss-speed-exponent", "exponent": 0.3}]})
+    # Marched side by side, each has its own windows' sources: tables where the cycle alone heats, calls where not.
+    together = reduced_answers(found.model, [plain, acted, plain], None)
+    alone = [reduced_answers(found.model, [one], None)[0] for one in (plain, acted)]
+    first, second, third = (one["answers"] for one in together)
+    assert temperature_error(first, third) < 1e-9
+    for one, other in ((first, alone[0]["answers"]), (second, alone[1]["answers"])):
+        assert temperature_error(one, other) < 5e-3
+    assert temperature_error(first, second) > 0.5
+
+
+def test_films_that_follow_a_constant_drive_are_asked_for_once(plain: Study) -> None:
+    found = surrogate(plan_of(plain, SPEEDS, sample="sobol", count=12), tolerance=0.02)
+    base = found.model.base
+    for effect, constant in (
+        ({"name": "gas-mixing", "gain": 2.0}, True),
+        ({"name": "ambient-drift", "rate": "40 delta_degC/hour"}, False),
+    ):
+        balance = found.model.balance(RollingTyre(plain.replace({"effects": [effect]}), base))
+        assert steady(balance, 0) is constant
+        marched = Batch(found.model, [balance]).march()
+        assert all(window.steady is constant for window in marched.windows)
+        moments = [Batch(found.model, [balance]).outside(t) for t in (1.0, 77.0, 150.0)]
+        assert all(np.array_equal(one.sinks, moments[0].sinks) for one in moments) is constant
+
+
+def test_tan_delta_over_frequency_is_met() -> None:
+    passenger = study(
+        "passenger-205-55r16",
+        {
+            "materials.tread": "rubber-tread-passenger-frequency", "mechanics.strain": "given",
+            "mesh.size": "8 mm", "mesh.element": "P1", "drive.duration": "200 s", "output.every": "20 s",
+        },
+    )  # fmt: skip
+    found = surrogate(
+        plan_of(passenger, {"drive.speed": ("60 km/h", "110 km/h")}, sample="sobol", count=12), tolerance=0.02
+    )
+    fresh = passenger.replace({"drive.speed": "93 km/h"})
+    reduced, full = found.answers([fresh])[0]["answers"], answers(run(fresh))
+    assert temperature_error(reduced, full) < 0.02
