@@ -66,3 +66,19 @@ def test_missing_file_empty_folder_and_a_link_to_nowhere(here: Path, refused: Ca
     assert "folder: a folder without a study.toml" in refused("check", "folder")
     (here / "link.toml").symlink_to("nothing")
     assert "link.toml: cannot be read" in refused("check", "link.toml")
+
+
+@pytest.mark.parametrize(
+    ("name", "said"),
+    [
+        ("nasa-22x5.5-8pr", "a study of 1 phase(s), 600 s"),
+        ("crown-angle", "a sweep: 100 variants"),
+        ("nasa-tread", "a material card, Tread rubber"),
+    ],
+)
+def test_what_the_library_knows_is_checked_by_name(
+    here: Path, refused: Callable[..., str], capsys: pytest.CaptureFixture[str], name: str, said: str
+) -> None:
+    assert main(["check", name]) == 0
+    assert said in capsys.readouterr().out
+    assert "did you mean" in refused("check", name[:-1])

@@ -8,7 +8,11 @@ from typing import TYPE_CHECKING, Annotated, Any
 
 import typer
 
-from tyrefem.errors import InputError
+from tyrefem import library
+from tyrefem.errors import InputError, nearest
+
+#: What may be checked by name too, in this order.
+KINDS = ("study", "sweep", "section", "material")
 
 if TYPE_CHECKING:
     from tyrefem.studies import Study
@@ -16,7 +20,10 @@ if TYPE_CHECKING:
 
 def check(
     file: Annotated[
-        str, typer.Argument(metavar="FILE", help="A study, sweep, section or material (TOML), or a table (CSV).")
+        str,
+        typer.Argument(
+            metavar="FILE", help="A study, sweep, section or material (TOML, or its name), or a table (CSV)."
+        ),
     ],
 ) -> None:
     """Check a file without running it; says the first thing that is wrong."""
@@ -27,7 +34,11 @@ def check(
         if not path.is_file():
             raise InputError("a folder without a study.toml, sweep.toml or rig.toml", file=file)
     if not os.path.lexists(path):
-        raise InputError("no such file", file=file)
+        known = {name: own for kind in reversed(KINDS) for name, own in library.names(kind).items()}
+        if file not in known:
+            hint = nearest(file, known)
+            raise InputError(f"no such file, and no study, sweep, section or material of that name{hint}", file=file)
+        path = known[file]
     typer.echo(f"{path}: {_card(path) if path.suffix.lower() == '.toml' else _table(path)}")
 
 
