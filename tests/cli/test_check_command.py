@@ -77,8 +77,8 @@ def test_missing_file_empty_folder_and_a_link_to_nowhere(here: Path, refused: Ca
     ],
 )
 def test_what_the_library_knows_is_checked_by_name(
-    here: Path, refused: Callable[..., str], capsys: pytest.CaptureFixture[str], name: str, said: str
+    here: Path, refused: Callable[..., str], capfd: pytest.CaptureFixture[str], name: str, said: str
 ) -> None:
     assert main(["check", name]) == 0
-    assert said in capsys.readouterr().out
+    assert said in capfd.readouterr().out
     assert "did you mean" in refused("check", name[:-1])
