@@ -15,12 +15,14 @@ from tyrefem.conduction.budget import Budget
 from tyrefem.conduction.history import Peak
 from tyrefem.heat_budget import HeatBudget, whole_tyre
 from tyrefem.reduced.ledger import end_budgets
-from tyrefem.reduced.marched import Marched
+from tyrefem.reduced.marched import NODES, Marched
 from tyrefem.rolling_resistance import just_before
 
 Array = NDArray[np.float64]
 #: K: far more than single precision is off by.
 ROUGH = 5e-3
+#: K: between two posts, no node gets hotter than at both by as much.
+BETWEEN = 1.0
 
 
 @dataclass(frozen=True, eq=False)
@@ -81,13 +83,21 @@ class Readout:
         """Of every variant: ``tyre`` and every region -> its highest temperature, with place and time."""
         model, count = self.marched.batch.model, self.states.shape[1]
         modes, when, found = np.ascontiguousarray(self._seen[:, :, : model.size].transpose(1, 0, 2)), {}, {}
-        each, single = np.arange(count), modes.reshape(-1, model.size).astype(np.float32)
+        each, single = np.arange(count), modes.astype(np.float32)
+        posts = self._posts
         missed: set[int] = set()
         for region, hot in model.hot.items():
             rows = model.hot_rows[region]
-            # In single precision first: only times that may be the highest are looked at in double.
-            rough = (single @ rows.T.astype(np.float32)).max(axis=1).reshape(count, -1)
-            own, times = np.nonzero(rough >= rough.max(axis=1, keepdims=True) - ROUGH)
+            # In single precision first, and only near the highest posts; then in double what may be the highest.
+            light = rows.T.astype(np.float32)
+            first = (single[:, posts].reshape(-1, model.size) @ light).max(axis=1).reshape(count, -1)
+            near = first >= first.max(axis=1, keepdims=True) - BETWEEN
+            own, times = np.nonzero(near[:, :-1] | near[:, 1:])
+            own, times = _between(own, posts[times], posts[times + 1])
+            rough = (single[own, times] @ light).max(axis=1)
+            highest_of = np.maximum.reduceat(rough, np.searchsorted(own, each))
+            kept = rough >= highest_of[own] - ROUGH
+            own, times = own[kept], times[kept]
             values = modes[own, times] @ rows.T
             node, firsts = values.argmax(axis=1), np.searchsorted(own, each)
             highest = values[np.arange(len(own)), node]
@@ -111,6 +121,18 @@ class Readout:
                 )
             )
         return peaks
+
+    @functools.cached_property
+    def _posts(self) -> NDArray[np.intp]:
+        """Numbers of the times looked at that are nearest to the windows' nodes, and of the first and the last.
+
+        Between two of them temperatures change smoothly.
+        """
+        windows = self.marched.windows
+        nodes = np.concatenate([one.time + NODES * one.length for one in windows])
+        right = np.clip(np.searchsorted(self.looked, nodes), 1, len(self.looked) - 1)
+        left_is_nearer = nodes - self.looked[right - 1] < self.looked[right] - nodes
+        return np.unique(np.concatenate([[0, len(self.looked) - 1], right - left_is_nearer]))
 
     def _searched(self, variant: int) -> dict[str, Peak]:
         """Over all nodes and times."""
@@ -166,6 +188,21 @@ class Readout:
         m = self.marched.batch.model.size
         names = self.marched.batch.balances[variant].reservoirs
         return {name: self.states[:, variant, m + i] for i, name in enumerate(names)}
+
+
+def _between(
+    own: NDArray[np.intp], first: NDArray[np.intp], last: NDArray[np.intp]
+) -> tuple[NDArray[np.intp], NDArray[np.intp]]:
+    """Every (variant, time) from ``first`` to ``last``, each once, in order.
+
+    >>> _between(np.array([0, 0, 1]), np.array([0, 2, 1]), np.array([2, 3, 2]))
+    (array([0, 0, 0, 0, 1, 1]), array([0, 1, 2, 3, 1, 2]))
+    """
+    counts = last - first + 1
+    variants = np.repeat(own, counts)
+    times = np.arange(counts.sum()) - np.repeat(np.cumsum(counts) - counts, counts) + np.repeat(first, counts)
+    pairs = np.unique(variants * (int(last.max()) + 1) + times)
+    return pairs // (int(last.max()) + 1), pairs % (int(last.max()) + 1)
 
 
 def _with_tyre(peaks: dict[str, Peak]) -> dict[str, Peak]:
