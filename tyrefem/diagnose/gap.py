@@ -16,6 +16,8 @@ from tyrefem.diagnose.predictions import Predictions
 from tyrefem.diagnose.unknowns import Unknown
 
 Array = NDArray[np.float64]
+#: What a mesh leaves may be so many times smaller or larger than in the study as it is.
+SCALES = 0.2, 5.0
 
 
 @dataclass(frozen=True, eq=False)
@@ -62,12 +64,13 @@ class Gap:
     def corrected(self, number: int, computed: Array) -> Array:
         """Lean block means of a trial with what the study's own mesh adds.
 
-        That was found at x = 0; the error of a mesh grows with the rise above the start, so it is scaled by the rises.
+        That was found at x = 0; the error of a mesh grows with the heat, so it is scaled by the rise above the start,
+        all sensors together: one near the surface may hardly rise, and be far off for the gradient it sits in.
         """
         start, own = self._start[number], self.computed[number]
-        rise = own - start
-        ratio = np.where(np.abs(rise) > 1.0, (computed - start) / np.where(rise == 0, 1.0, rise), 1.0)
-        return np.asarray(computed + self.correction[number] * np.clip(ratio, 0.2, 5.0))
+        before, after = (float(np.mean((values - start) ** 2)) for values in (own, computed))
+        scale = np.clip(np.sqrt(after / before), *SCALES) if before > 1.0 else 1.0
+        return np.asarray(computed + self.correction[number] * scale)
 
     def residual(self, number: int, computed: Array) -> Array:
         """Whitened measured - computed of one trial, from lean block means."""

@@ -1,0 +1,45 @@
+"""What a study's own mesh adds to the mesh of the fit, at points where it was not simulated."""
+
+from __future__ import annotations
+
+from types import SimpleNamespace
+from typing import Any, cast
+
+import numpy as np
+import pytest
+
+from tyrefem.diagnose.gap import Gap
+
+START = 25.0
+#: A sensor near the surface that hardly warms, in a steep gradient; two inside. Rise, and what the mesh adds, K.
+OWN, ADDED = np.array([3.0, 20.0, 30.0]), np.array([1.4, -0.2, 0.3])
+
+
+@pytest.fixture
+def gap() -> Gap:
+    driven = SimpleNamespace(card=SimpleNamespace(drive=SimpleNamespace(initial=START)))
+    bench = SimpleNamespace(trials=[None], study=None, driven=lambda study, number: driven)
+    lab = cast(Any, SimpleNamespace(bench=bench))
+    return Gap(lab, (), 0, (ADDED,), (START + OWN,), (np.zeros((3, 0)),))
+
+
+def added(gap: Gap, rise: np.ndarray) -> np.ndarray:
+    return gap.corrected(0, START + rise) - (START + rise)
+
+
+def test_it_is_what_it_was_where_nothing_changed(gap: Gap) -> None:
+    np.testing.assert_allclose(added(gap, OWN), ADDED, rtol=1e-12)
+
+
+def test_it_grows_with_the_heat(gap: Gap) -> None:
+    np.testing.assert_allclose(added(gap, 1.5 * OWN), 1.5 * ADDED, rtol=1e-12)
+
+
+def test_a_warmer_surface_alone_does_not_make_it_larger(gap: Gap) -> None:
+    # A hot road warms the surface fivefold: the gradient there, and with it what the mesh adds, stays about the same.
+    found = added(gap, OWN + np.array([12.0, 5.0, 3.0]))
+    assert (np.abs(found - ADDED) < 0.3 * np.abs(ADDED)).all()
+
+
+def test_a_tyre_that_cannot_be_stays_one(gap: Gap) -> None:
+    assert np.isnan(gap.corrected(0, np.full(3, np.nan))).all()
