@@ -15,6 +15,8 @@ import tyrefem
 from tyrefem import realtime
 from tyrefem.realtime import GAMMA, PHI, PHI_2, Inputs, RealTimeTyre, inverse
 from tyrefem.reduced.driving import Box, Course, random_course
+from tyrefem.reduced.exam import Exam, sit
+from tyrefem.sweep.bundle import bundle
 
 WARM = Inputs(10.0, 12e3, 560e3, 20.0, 30.0)
 
@@ -224,3 +226,13 @@ def test_random_courses_stay_in_their_box():
     for name in ("speed", "load", "ambient"):
         assert drive.value(name, t) == pytest.approx(getattr(course.inputs(t - 0.25, t)[1], name))
         assert drive.value(name, t) == pytest.approx(getattr(course.inputs(t, t + 0.25)[0], name))
+
+
+def test_rolling_to_rest_has_no_drag_of_rounding(exported):
+    low = [0.1 + 0.2, 1.0e4, 5.5e5, 20.0, 20.0]
+    # Three steps of a tenth: the ramp ends at some 1e-17 m/s and not at rest.
+    course = Course(np.array([0.0, 30.0]), np.array([low]), np.array([[0.1 + 0.2 - 0.3, *low[1:]]]), 20.0)
+    found = sit(Exam(bundle(exported.study), course, 1.0, 4))["answers"]["rolling_resistance"]
+    assert course.last[0, 0] > 0
+    assert found[-1] == 0.0
+    assert 5.0 < found[1:-1].max() < 1000.0

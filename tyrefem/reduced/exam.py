@@ -10,7 +10,7 @@ from typing import Any
 import numpy as np
 
 from tyrefem.errors import InputError
-from tyrefem.realtime import RealTimeTyre
+from tyrefem.realtime import STANDSTILL, RealTimeTyre
 from tyrefem.reduced.driving import Course
 from tyrefem.reduced.train import snapshots
 from tyrefem.rolling import run
@@ -69,7 +69,8 @@ def sit(exam: Exam) -> dict[str, Any]:
     columns = {name: readings[name].to_numpy() for name in readings.columns if name != "time_s"}
     speed = np.array([study.card.drive.value("speed", t) for t in result.times])
     power = result.heat_budget.power("generated")
-    resistance = np.divide(power, speed, out=np.zeros_like(power), where=speed > 0)
+    # A ramp to rest may end at a speed of rounding.
+    resistance = np.divide(power, speed, out=np.zeros_like(power), where=speed >= STANDSTILL)
     return {
         "snapshots": snapshots(result, exam.fields),
         "hot": np.unique(values.argmax(axis=1)),
