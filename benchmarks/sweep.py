@@ -26,8 +26,8 @@ import time
 import tyrefem
 from tyrefem.reduced.surrogate import surrogate, temperature_error
 from tyrefem.reduced.work import ReducedTask, pack, perform_reduced
+from tyrefem.sweep.answering import PIECE
 from tyrefem.sweep.plan import plan_of
-from tyrefem.sweep.sweep import PIECE
 from tyrefem.sweep.task import perform
 
 BOX = {

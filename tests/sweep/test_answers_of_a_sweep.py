@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import math
 from collections.abc import Callable
+from dataclasses import replace
 from pathlib import Path
 from typing import Any
 
@@ -18,8 +19,9 @@ from tyrefem.errors import InputError
 from tyrefem.reduced.surrogate import Certificate
 from tyrefem.studies import Study
 from tyrefem.sweep.answers import TIME_TO, answer_names
-from tyrefem.sweep.card import EnvelopeCard, OptimiseCard
+from tyrefem.sweep.card import EnvelopeCard, LimitCard, OptimiseCard
 from tyrefem.sweep.envelope import envelope
+from tyrefem.sweep.execution import Execution
 from tyrefem.sweep.indices import Indices, indices
 from tyrefem.sweep.operating_points import checked_pairs
 from tyrefem.sweep.optimum import optimum
@@ -70,6 +72,30 @@ def test_hotter_variants_reach_a_temperature_sooner(swept: Sweep) -> None:
     assert len(reached) >= 2
     assert (np.diff(reached["time_to_limit_s"]) < 0).all()
     assert (swept.table["time_to_limit_s"].isna() == (swept.table["hottest_degC"] < 35.0)).all()
+
+
+def test_a_time_that_is_never_reached_is_the_longest(swept: Sweep, tyre: Study) -> None:
+    # What stays below 35 degC never gets there.
+    cool = Sweep(replace(swept.plan, limits={"hottest_degC": LimitCard(below=35.0)}), swept.outcomes)
+    assert 0 < cool.table["feasible"].sum() < len(cool.table)
+    told = Responses(cool).words
+    assert "Time to the temperature asked for of those: never." in told
+    latest = front(swept.table.assign(feasible=True), {TIME_TO: "max", "hottest_degC": "max"})
+    assert latest[TIME_TO].isna().sum() == 1
+    assert latest["hottest_degC"].max() == swept.table["hottest_degC"].max()
+    coolest = swept.table[swept.table[TIME_TO].isna()]["hottest_degC"]
+    assert latest[latest[TIME_TO].isna()]["hottest_degC"].tolist() == [coolest.max()]
+
+
+def test_limits_that_nothing_keeps_are_said_to_be_so(swept: Sweep) -> None:
+    none = Sweep(replace(swept.plan, limits={"hottest_degC": LimitCard(below=20.0)}), swept.outcomes)
+    told = Responses(none).words
+    assert told[0] == "None of 6 variants keeps the limits."
+    assert told[1].startswith("Highest temperature of all: from")
+    # The limit, 10 K below all of them, does not press the curves together.
+    for _, _, picture in Responses(none).figures():
+        low, high = picture.axes[0].dataLim.intervaly
+        assert picture.axes[0].get_ylim()[0] > low - (high - low)
 
 
 def test_one_failing_variant_is_recorded_and_the_sweep_goes_on(tyre: Study) -> None:
@@ -223,25 +249,67 @@ class Optimist:
     certificate = Certificate({"hottest_degC": 0.5}, cases=4, worst=0.5, tolerance=1.0, trained_on=11)
 
 
-def test_what_a_reduced_model_finds_keeps_its_limits_in_a_full_run(
-    tyre: Study, monkeypatch: pytest.MonkeyPatch
-) -> None:
+@pytest.fixture
+def made(monkeypatch: pytest.MonkeyPatch) -> list[Optimist]:
+    """Every model that was made."""
+    models: list[Optimist] = []
+
+    def surrogate(*_: Any, **__: Any) -> Optimist:
+        models.append(Optimist())
+        return models[-1]
+
     def by_model(_model: Any, _plan: Any, variants: list[dict[str, str]], _scheduler: Any) -> Any:
         for place, changes in enumerate(variants):
             low = sum(float(value.split()[0]) for value in changes.values()) - 0.5
             yield {place: {"answers": {"hottest_degC": low, "gas_pressure_Pa": 0.0}, "by": "reduced"}}
 
-    monkeypatch.setattr("tyrefem.reduced.surrogate.surrogate", lambda *_, **__: Optimist())
-    monkeypatch.setattr("tyrefem.sweep.sweep.by_model", by_model)
+    monkeypatch.setattr("tyrefem.reduced.surrogate.surrogate", surrogate)
+    monkeypatch.setattr("tyrefem.sweep.answering.by_model", by_model)
+    return models
+
+
+def test_what_a_reduced_model_finds_keeps_its_limits_in_a_full_run(tyre: Study, made: list[Optimist]) -> None:
     limits = {"hottest_degC": {"below": 40.0}}
     plan, scheduler = plan_of(tyre, BOX, limits=limits, optimise={"maximise": "hottest_degC"}), Formula(sum)
     found = optimum(plan, OptimiseCard(maximise="hottest_degC", runs=400), scheduler=scheduler)
     assert 39.7 < found.full["hottest_degC"] < 40.0
     assert scheduler.asked == 2  # the study as it is, and the best variant
     assert "good to 0.5 K" in found.words[-1]
+    assert found.swept.certificate == Optimist.certificate
+    assert len(made) == 1
     by = found.table["by"]
     assert found.table["error_K"][by == "reduced"].eq(0.5).all()
     assert found.table["error_K"][by == "full"].eq(0.0).all()
+
+
+def test_a_search_that_is_finished_makes_no_model_again(tyre: Study, made: list[Optimist], tmp_path: Path) -> None:
+    plan = plan_of(tyre, BOX, limits={"hottest_degC": {"below": 40.0}}, optimise={"maximise": "hottest_degC"})
+    card = OptimiseCard(maximise="hottest_degC", runs=60)
+    how = Execution(Formula(sum), tmp_path)
+    first, again = (optimum(plan, card, how) for _ in "ab")
+    assert len(made) == 1
+    assert vars(again.swept.certificate) == vars(Optimist.certificate)
+    assert again.words == first.words
+    # A longer search asks for variants that the folder does not have.
+    longer = optimum(plan, OptimiseCard(maximise="hottest_degC", runs=90), how)
+    assert len(made) == 2
+    assert longer.full["hottest_degC"] >= first.full["hottest_degC"]
+
+
+def test_how_it_is_carried_out_is_said_by_name_or_in_one(tyre: Study, tmp_path: Path) -> None:
+    plan, ticks = plan_of(tyre, {"drive.speed": ["10 m/s", "11 m/s"]}), []
+    how = Execution(Formula(sum), tmp_path, progress=lambda *what: ticks.append(what))
+    one, other = sweep(plan, how), sweep(plan, scheduler=Formula(sum), reduced="never")
+    assert ticks == [("variants", 0, 2), ("variants", 1, 2), ("variants", 2, 2)]
+    assert one.table["hottest_degC"].tolist() == other.table["hottest_degC"].tolist() == [10.0, 11.0]
+    assert sweep(plan, how, progress=None).taken_up == 2
+    assert sweep(plan, how, progress=None, restart=True).taken_up == 0
+    assert len(ticks) == 3
+    assert how.within("envelope").folder == tmp_path / "envelope"
+    wrong = {"reduced": "never", "tolerance": "positive", "foldr": "did you mean 'folder'"}
+    for (name, told), value in zip(wrong.items(), ("perhaps", 0.0, tmp_path), strict=True):
+        with pytest.raises(InputError, match=told):
+            tyre.sweep({"drive.speed": ["10 m/s"]}, **{name: value})
 
 
 def heated(numbers: list[float]) -> float:
@@ -267,7 +335,7 @@ def test_the_envelope_says_where_no_speed_or_every_speed_is_safe(tyre: Study) ->
     assert found.table["speed_m_s"].iloc[0] == pytest.approx(2.0)
     assert np.isnan(found.table["speed_m_s"].iloc[1])
     assert not found.table["at_limit"].any()
-    assert "and more with 2 kN, no speed with 8 kN" in found.words[1]
+    assert found.words[1] == "at 500 kPa: 7 km/h and more with 2 kN, no speed with 8 kN."
     assert np.isnan(found.rating["tkph"].iloc[0])
 
 
@@ -322,3 +390,14 @@ def test_an_empty_sweep_has_an_empty_table(tyre: Study) -> None:
     plan = plan_of(tyre, {"drive.speed": ("10 mph", "30 mph", 3)})
     assert isinstance(Sweep(plan, {}).table, pd.DataFrame)
     assert Sweep(plan, {}).table.empty
+
+
+def test_nothing_is_drawn_between_two_cards(tyre: Study) -> None:
+    plan = plan_of(tyre, {"materials.tread": ["nasa-tread", "rubber-tread-aircraft"]})
+    found = Responses(Sweep(plan, {n: {"answers": {"hottest_degC": 50.0 + n}, "by": "full"} for n in range(2)}))
+    ((name, _, picture),) = found.figures()
+    assert name.startswith("bars-")
+    (line,) = picture.axes[0].get_lines()
+    assert len(line.get_xdata()) == 2
+    assert line.get_linestyle() == "None"
+    assert line.get_marker() == "o"

@@ -101,7 +101,7 @@ class Tearing:
 
 
 def test_variants_of_a_lost_piece_are_tried_one_by_one(monkeypatch: pytest.MonkeyPatch) -> None:
-    monkeypatch.setattr("tyrefem.sweep.sweep.SINGLE", 2)
+    monkeypatch.setattr("tyrefem.sweep.answering.SINGLE", 2)
     tyre = study("nasa-22x5.5-8pr", {"mesh.size": "12 mm", "numerics.tolerance": "0.5 K", "drive.duration": "20 s"})
     scheduler = Tearing()
     found = sweep(plan_of(tyre, {"drive.speed": ("10 mph", "20 mph", 4)}), scheduler=scheduler)

@@ -123,6 +123,9 @@ SPEEDS = ["--vary", "drive.speed=10 mph:20 mph"]
         (["--vary", "drive.sped=10 mph:20 mph"], "did you mean 'speed'"),
         (["--vary", "drive.speed=10 kg:20 kg"], "not a unit of this quantity"),
         (["--vary", "drive.speed=10 mph,10 mph"], "vary.drive.speed: '10 mph' is given twice"),
+        (["--vary", "drive.speed=10 mph,4.4704 m/s"], "vary.drive.speed: '4.4704 m/s' is given twice: it is '10 mph'"),
+        ([*SPEEDS, "--vary", "drive.speed=1 mph:2 mph"], "--vary: 'drive.speed' is given twice"),
+        ([*SPEEDS, "--pareto", "mass_kg=min", "--pareto", "mass_kg=max"], "--pareto: 'mass_kg' is given twice"),
         (["--vary", "materials.tread=nasa-tread,nasa-tred"], "did you mean 'nasa-tread'"),
         ([*SPEEDS, "--limit", "hotest_degC<100"], "did you mean 'hottest_degC'"),
         ([*SPEEDS, "--limit", "hottest_degC<100 degC"], "without a unit"),
@@ -137,6 +140,9 @@ SPEEDS = ["--vary", "drive.speed=10 mph:20 mph"]
         (["--envelope", "hottest_degC<90", "--loads", "2 kg"], "envelope.loads"),
         (["--cases", "none.csv"], "none.csv"),
         ([*SPEEDS, "--reduced", "perhaps"], "allowed: auto, never, always"),
+        ([*SPEEDS, "--tolerance", "0 K"], "tolerance: must be positive, not 0 K"),
+        ([*SPEEDS, "--tolerance", "1 mm"], "--tolerance: 'mm' is not a unit of this quantity"),
+        ([*SPEEDS, "--scheduler", "foo"], "--scheduler: no Dask scheduler at 'foo': missing port number"),
     ],
 )
 def test_bad_input_is_one_line_before_anything_runs(
@@ -148,6 +154,25 @@ def test_bad_input_is_one_line_before_anything_runs(
     assert told in said
     assert len(said.splitlines()) == 1
     assert not list(tmp_path.iterdir())
+
+
+@pytest.mark.parametrize(
+    ("rows", "flags", "told"),
+    [
+        (["slow,10,2000", "also,10.0,2000"], [], "variants 'slow' and 'also' are the same"),
+        (["slow,10,2000", "fast,20"], [], "line 3 has 2 cells, the heading 3"),
+        (["slow,10,2000", "fast,quick,2000"], [], "variant 'fast' with drive.speed = 'quick mph'"),
+        (["slow,10,2000", "fast,20,2000"], ["--minimise", "mass_kg"], "optimise: searches within [vary]"),
+    ],
+)
+def test_a_list_that_makes_no_sense_is_refused(
+    rows: list[str], flags: list[str], told: str, tmp_path: Path, capsys: pytest.CaptureFixture[str]
+) -> None:
+    file = tmp_path / "list.csv"
+    file.write_text("\n".join(["name,drive.speed [mph],drive.load [lbf]", *rows]))
+    assert main(["sweep", TYRE, "--cases", str(file), *flags, "--out", str(tmp_path / "out")]) == 2
+    assert told in capsys.readouterr().err
+    assert not (tmp_path / "out").exists()
 
 
 @pytest.mark.parametrize(

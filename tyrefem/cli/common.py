@@ -101,6 +101,27 @@ def progress(description: str, total: float, *, quiet: bool = False) -> Iterator
         yield lambda done: bar.update(task, completed=done)
 
 
+@contextmanager
+def several(*, quiet: bool = False) -> Iterator[Callable[[str, int, int], None]]:
+    """A function that takes what is done, how many, and of how many; a bar with the time left on a terminal."""
+    if quiet or not sys.stderr.isatty():
+        yield lambda what, done, total: None
+        return
+    from rich.console import Console
+    from rich.progress import BarColumn, MofNCompleteColumn, Progress, TextColumn, TimeRemainingColumn
+
+    columns = (TextColumn("{task.description}"), BarColumn(), MofNCompleteColumn(), TimeRemainingColumn())
+    with Progress(*columns, console=Console(stderr=True), transient=True) as bar:
+        tasks: dict[str, Any] = {}
+
+        def tick(what: str, done: int, total: int) -> None:
+            if what not in tasks:
+                tasks[what] = bar.add_task(what, total=total)
+            bar.update(tasks[what], completed=done, total=total)
+
+        yield tick
+
+
 def print_json(data: dict[str, Any]) -> None:
     """JSON on stdout."""
     import json

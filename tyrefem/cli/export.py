@@ -8,7 +8,16 @@ from typing import TYPE_CHECKING, Annotated
 
 import typer
 
-from tyrefem.cli.common import JsonOption, SetOption, StudyArgument, fail, print_json, settings, writable_folder
+from tyrefem.cli.common import (
+    JsonOption,
+    SetOption,
+    StudyArgument,
+    fail,
+    print_json,
+    settings,
+    several,
+    writable_folder,
+)
 from tyrefem.errors import InputError
 
 if TYPE_CHECKING:
@@ -61,7 +70,6 @@ def export(
     It is trained on full runs of the study in the ranges, certified on fresh ones, and stepped by tyrefem/realtime.py
     with numpy alone.
     """
-    from tyrefem.cli.sweep import several
     from tyrefem.quantity import parse
     from tyrefem.reduced.certify import export as write
     from tyrefem.studies import study as loaded

@@ -2,22 +2,22 @@
 
 from __future__ import annotations
 
-import os
-import sys
-from collections.abc import Callable, Iterator
-from contextlib import AbstractContextManager, contextmanager
 from pathlib import Path
-from typing import TYPE_CHECKING, Annotated, Any
+from typing import Annotated
 
 import typer
 
-from tyrefem.cli.common import JsonOption, SetOption, complete_studies, fail, print_json, settings, writable_folder
-from tyrefem.errors import InputError, nearest
-
-if TYPE_CHECKING:
-    from tyrefem.sweep.design import Design
-    from tyrefem.sweep.questions import Questions
-    from tyrefem.sweep.schedulers import Scheduler
+from tyrefem.cli.common import (
+    JsonOption,
+    SetOption,
+    complete_studies,
+    fail,
+    print_json,
+    settings,
+    several,
+    writable_folder,
+)
+from tyrefem.errors import InputError
 
 #: Groups of options in the help.
 VARIANTS, ANSWERS = "Variants", "Answers"
@@ -144,29 +144,25 @@ def sweep(
     the same command goes on where an interrupted or killed one was.
     """
     from tyrefem.cli.sweep_flags import asked
+    from tyrefem.cli.sweep_questions import questions
+    from tyrefem.cli.sweep_workers import answered
     from tyrefem.quantity import parse
+    from tyrefem.sweep.execution import Execution
     from tyrefem.sweep.output import write
 
-    if reduced not in ("auto", "never", "always"):
-        raise InputError(f"'{reduced}' is not allowed; allowed: auto, never, always", field="--reduced")
-    allowed = parse(tolerance, "delta_degC")
     said = asked(
         vary=vary, sample=sample, count=count, seed=seed, cases=cases, limit=limit, time_to=time_to, answer=answer,
         pareto=pareto, indices=indices, tornado=tornado, tolerance_of=tolerance_of, minimise=minimise,
         maximise=maximise, runs=runs, envelope=envelope, loads=loads, pressures=pressures, speeds=speeds,
     )  # fmt: skip
-    name, wanted = _questions(study, said, settings(changes))
+    try:
+        how = Execution(restart=restart, reduced=reduced, tolerance=parse(tolerance, "delta_degC"))
+    except InputError as error:
+        raise error if error.field else error.within(field="--tolerance") from None
+    name, wanted = questions(study, said, settings(changes))
     folder = writable_folder(out or Path("results") / f"{name}-sweep")
     with several(quiet=as_json) as tick:
-        found = _answered(
-            wanted,
-            _scheduler(scheduler, workers),
-            folder=folder,
-            restart=restart,
-            reduced=reduced,
-            tolerance=allowed,
-            progress=tick,
-        )
+        found = answered(wanted, how.given({"folder": folder, "progress": tick}), scheduler, workers)
         tick("drawing", 0, 1)
         summary = write(found, folder, pictures=pictures)
     if as_json:
@@ -184,85 +180,6 @@ def sweep(
         raise typer.Exit(fail(kept, 130 if found.interrupted == "interrupted" else 1))
     if found.failed:
         raise typer.Exit(1)
-
-
-def _questions(name: str, said: dict[str, Any], changes: dict[str, Any]) -> tuple[str, Questions]:
-    """What is asked, of a sweep file or of a study, and a name for its folder."""
-    from tyrefem import library
-    from tyrefem.cards import read_toml
-    from tyrefem.studies import study as load
-    from tyrefem.sweep.card import SweepCard
-    from tyrefem.sweep.questions import loaded, questions
-
-    path = Path(name)
-    is_file = path.suffix == ".toml" and path.is_file() and "study" in read_toml(path)
-    if is_file or (path / "sweep.toml").is_file() or name in library.names("sweep"):
-        found = library.find("sweep", name)
-        stem = found.parent.resolve().name if found.name == "sweep.toml" else found.stem
-        return stem, loaded(name, changes, **said)
-    if path.suffix != ".toml" and os.sep not in name and name not in library.names("study") and not path.is_dir():
-        raise InputError(
-            f"no study or sweep named '{name}'{nearest(name, [*library.names('study'), *library.names('sweep')])}"
-        )
-    study = load(name, changes)
-    return study.name, questions(study, SweepCard.check({"study": name, **said}), Path())
-
-
-class _InterruptedError(Exception):
-    """Processes that are at work are ended, not waited for."""
-
-
-def _answered(wanted: Questions, scheduler: AbstractContextManager[Scheduler], **options: Any) -> Design:
-    try:
-        with scheduler as where:
-            found = wanted.answered(scheduler=where, **options)
-            if found.interrupted:
-                raise _InterruptedError
-    except _InterruptedError:
-        pass
-    return found
-
-
-@contextmanager
-def _scheduler(address: str | None, workers: int | None) -> Iterator[Scheduler]:
-    """Where variants run, kept for all questions of the command."""
-    from tyrefem.sweep.cluster import Dask
-    from tyrefem.sweep.schedulers import Here, Local
-
-    if address is not None:
-        cluster = Dask(address)
-        try:
-            yield cluster
-        finally:
-            cluster.close()
-        return
-    count = workers or os.cpu_count() or 1
-    if count == 1:
-        yield Here()
-        return
-    with Local(count) as processes:
-        yield processes
-
-
-@contextmanager
-def several(*, quiet: bool = False) -> Iterator[Callable[[str, int, int], None]]:
-    """A function that takes what is done, how many, and of how many; a bar with the time left on a terminal."""
-    if quiet or not sys.stderr.isatty():
-        yield lambda what, done, total: None
-        return
-    from rich.console import Console
-    from rich.progress import BarColumn, MofNCompleteColumn, Progress, TextColumn, TimeRemainingColumn
-
-    columns = (TextColumn("{task.description}"), BarColumn(), MofNCompleteColumn(), TimeRemainingColumn())
-    with Progress(*columns, console=Console(stderr=True), transient=True) as bar:
-        tasks: dict[str, Any] = {}
-
-        def tick(what: str, done: int, total: int) -> None:
-            if what not in tasks:
-                tasks[what] = bar.add_task(what, total=total)
-            bar.update(tasks[what], completed=done, total=total)
-
-        yield tick
 
 
 #: Place among the commands.

@@ -36,8 +36,9 @@ def asked(
         raise InputError("has a sample of its own: leave --sample and --count out", field="--indices")
     if cases is not None and sample is None:
         sample = "list"
+    tolerances = _once([_tolerance(one) for one in tolerance_of or []], "--tolerance-of")
     said: dict[str, Any] = {
-        "vary": dict(varied(one) for one in vary or []) or None,
+        "vary": _once([varied(one) for one in vary or []], "--vary"),
         "sample": "saltelli" if indices is not None else sample,
         "count": count if indices is None else indices,
         "seed": seed,
@@ -46,8 +47,8 @@ def asked(
         "limits": _limits(limit or []) or None,
         "time_to": time_to,
         "answers": answer or None,
-        "pareto": dict(_aim(one) for one in pareto or []) or None,
-        "tornado": {"tolerances": dict(_tolerance(one) for one in tolerance_of or [])} if tornado else None,
+        "pareto": _once([_aim(one) for one in pareto or []], "--pareto"),
+        "tornado": {"tolerances": tolerances or {}} if tornado else None,
         "optimise": _optimise(minimise, maximise, runs, seed),
         "envelope": _envelope(envelope, loads, pressures, speeds),
     }
@@ -83,6 +84,16 @@ def varied(text: str) -> tuple[str, dict[str, Any]]:
         except ValueError:
             raise InputError(f"'{values}' are not two factors, e.g. x0.8:x1.2", field="--vary") from None
     return key, {"from": _plain(parts[0]), "to": _plain(parts[1]), **levels}
+
+
+def _once(pairs: list[tuple[str, Any]], flag: str) -> dict[str, Any] | None:
+    """What a flag says of every name; None: nothing."""
+    found: dict[str, Any] = {}
+    for key, value in pairs:
+        if key in found:
+            raise InputError(f"'{key}' is given twice", field=flag)
+        found[key] = value
+    return found or None
 
 
 def _pair(text: str, flag: str, example: str) -> tuple[str, str]:

@@ -195,6 +195,7 @@ class Neighbours:
         for n, name in enumerate(inputs, number):
             # There may be no tyre with a number lowered: then it is not taught.
             with contextlib.suppress(InputError):
+                # The model goes with each: an executor's map names no workers, nor need they read this machine's files.
                 study = self.lowered(drives[n % len(drives)], name)
                 work.append((packed, study, HORIZONS[n % len(HORIZONS)]))
         lessons = [lesson for lesson in self.each(amended, work) if lesson is not None]

@@ -19,11 +19,13 @@ _UNITS = {
 
 
 def shown(name: str, value: float, digits: int = 4) -> str:
-    """An answer as a person reads it.
+    """An answer as a person reads it; NaN is a time that was never reached.
 
     >>> shown("hottest_degC", 81.234), shown("rolling_resistance_coefficient", 0.01)
     ('81.23 °C', '0.01')
     """
+    if value != value:
+        return "never"
     number = f"{value:.{digits}g}"
     return f"{number} {unit_of(name)}".strip()
 

@@ -23,6 +23,8 @@ if TYPE_CHECKING:
 Answers = dict[str, Any]
 #: Present only where a temperature to be reached was given.
 TIME_TO = "time_to_limit_s"
+#: Stands for a time that was never reached, s: later than any.
+NEVER = 1e9
 Function = Callable[["Outcome", float | None], Answers]
 #: Names of a function's answers for a study; ``*`` stands for any name.
 Names = Callable[["Study"], list[str]]

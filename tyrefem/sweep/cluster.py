@@ -41,6 +41,7 @@ class Dask:
     def __init__(self, client: Any, timeout: float = 20.0, patience: float = 120.0) -> None:
         try:
             from distributed import Client
+            from distributed.comm import get_address_host_port
         except ImportError:
             raise MissingLibraryError(
                 "a cluster needs the package 'distributed': pip install 'tyrefem[cluster]'", field="--scheduler"
@@ -49,6 +50,8 @@ class Dask:
         if isinstance(client, str):
             address = client
             try:
+                # What is no address would leave a half-made client behind, which takes its time to go.
+                get_address_host_port(address)
                 client = Client(address, timeout=timeout, set_as_default=False)
             except (OSError, ValueError) as error:
                 raise InputError(f"no Dask scheduler at '{address}': {error}", field="--scheduler") from None

@@ -3,19 +3,18 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Callable, Iterator, Mapping
+from collections.abc import Iterator, Mapping
 from dataclasses import dataclass
-from pathlib import Path
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING, Any, Unpack
 
 from tyrefem.quantity import parse
 from tyrefem.studies import Study
 from tyrefem.sweep.answer_words import name_of, shown
 from tyrefem.sweep.asked import Asked
 from tyrefem.sweep.card import EnvelopeCard
+from tyrefem.sweep.execution import Execution, Said
 from tyrefem.sweep.operating_points import checked_pairs, operating, speed_range
 from tyrefem.sweep.plan import Plan
-from tyrefem.sweep.schedulers import Here, Scheduler
 from tyrefem.sweep.speed_search import SpeedSearch
 from tyrefem.sweep.varied import Varied
 
@@ -67,9 +66,10 @@ class Envelope:
     def words(self) -> list[str]:
         """The answer in sentences."""
         answer, end = self.card.answer, self.study.card.drive.end
-        told = [f"The {name_of(answer)} stays below {shown(answer, self.card.below)} in a drive of {end:g} s:"]
+        kept = f"stays below {shown(answer, self.card.below)} in a drive of {end:g} s"
+        told = [f"The {name_of(answer)} {kept} up to these speeds:"]
         for pressure, rows in self.table.groupby("pressure", sort=False):
-            told.append(f"at {pressure} up to {', '.join(map(_speed_words, rows.to_dict('records')))}.")
+            told.append(f"at {pressure}: {', '.join(map(_speed_words, rows.to_dict('records')))}.")
         safe = self.rating.dropna(subset=["tkph"]).to_dict("records")
         rated = [f"{row['tkph']:.0f} t km/h at {row['pressure']}" for row in safe]
         if rated:
@@ -108,21 +108,11 @@ def _speed_words(row: Mapping[Any, Any]) -> str:
     return f"{row['speed_m_s'] * 3.6:.0f} km/h{beyond} with {row['load']}"
 
 
-def envelope(
-    study: Study,
-    card: EnvelopeCard,
-    *,
-    scheduler: Scheduler | None = None,
-    folder: Path | None = None,
-    restart: bool = False,
-    reduced: str = "auto",
-    tolerance: float = 0.01,
-    progress: Callable[[str, int, int], None] | None = None,
-) -> Envelope:
+def envelope(study: Study, card: EnvelopeCard, how: Execution | None = None, **said: Unpack[Said]) -> Envelope:
     """The largest speed at which an answer stays below a limit, for every load and pressure.
 
     The answer must rise with speed. All pairs are searched at once: each round runs one speed of every pair that is not
-    settled, by false position kept within bisection (the Illinois rule).
+    settled, by false position kept within bisection (the Illinois rule). how, said : as of `tyrefem.sweep.sweep.sweep`.
 
     Raises
     ------
@@ -134,19 +124,14 @@ def envelope(
     pairs = checked_pairs(study, card)
     sizes = [(parse(load, "N"), parse(pressure, "Pa")) for load, pressure in pairs]
     searches = [SpeedSearch(low, high, card.below) for _ in pairs]
-    scheduler = scheduler or Here()
     plan = Plan(study, _box(sizes, low, high), (), (), {}, None, {"sample": "envelope"})
-    asked = Asked(
-        plan, scheduler, folder=folder, restart=restart, reduced=reduced, tolerance=tolerance,
-        expected=EXPECTED * len(pairs), progress=progress,
-    )  # fmt: skip
+    how = (how or Execution()).given(said)
     by: list[str] = [""] * len(pairs)
-    with asked:
-        asked.train()
+    with Asked(plan, how) as asked:
+        asked.train(EXPECTED * len(pairs))
         for _ in range(ROUNDS):
             waiting = [n for n, one in enumerate(searches) if not one.settled]
-            if progress is not None:
-                progress("envelope", len(searches) - len(waiting), len(searches))
+            how.tick("envelope", len(searches) - len(waiting), len(searches))
             if not waiting:
                 break
             found = asked([operating(pairs[n], f"{searches[n].next:.6g} m/s") for n in waiting])

@@ -4,10 +4,9 @@ from __future__ import annotations
 
 import functools
 import math
-from collections.abc import Callable, Iterator, Mapping
+from collections.abc import Iterator, Mapping
 from dataclasses import dataclass
-from pathlib import Path
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING, Any, Unpack
 
 import numpy as np
 from numpy.typing import NDArray
@@ -16,9 +15,9 @@ from tyrefem.sweep.answer_words import difference_unit, name_of, shown
 from tyrefem.sweep.answers import check_answer
 from tyrefem.sweep.asked import Asked
 from tyrefem.sweep.card import LimitCard, OptimiseCard
+from tyrefem.sweep.execution import Execution, Said
 from tyrefem.sweep.plan import Plan
 from tyrefem.sweep.samples import grid
-from tyrefem.sweep.schedulers import Here, Scheduler
 from tyrefem.sweep.search import best_known, evolve, objective, violation
 from tyrefem.sweep.sweep import Sweep
 
@@ -86,7 +85,7 @@ class Optimum:
             f"{'Smallest' if self.card.minimise else 'Largest'} {name_of(self.answer)}{limits and f' with {limits}'}"
         )
         failed = sum("failure" in one for one in self.swept.outcomes.values())
-        tried = f"{len(self.swept.outcomes)} variants evaluated" + (f", {failed} failed" if failed else "")
+        tried = f"{len(self.swept.outcomes)} different variants evaluated" + (f", {failed} failed" if failed else "")
         if self.best is None:
             return [f"{asked}: no variant keeps the limits ({tried})."]
         told = [f"{asked}: {shown(self.answer, self.full[self.answer])} at {self.where}, by a full run."]
@@ -132,16 +131,7 @@ class Optimum:
 
 
 def optimum(
-    plan: Plan,
-    card: OptimiseCard,
-    *,
-    scheduler: Scheduler | None = None,
-    folder: Path | None = None,
-    restart: bool = False,
-    reduced: str = "auto",
-    tolerance: float = 0.01,
-    progress: Callable[[str, int, int], None] | None = None,
-    known: Sweep | None = None,
+    plan: Plan, card: OptimiseCard, how: Execution | None = None, *, known: Sweep | None = None, **said: Unpack[Said]
 ) -> Optimum:
     """Search by differential evolution (Storn & Price 1997; scipy), listed values as whole numbers.
 
@@ -151,9 +141,8 @@ def optimum(
 
     Parameters
     ----------
-    plan : its study, `varied`, `limits` and time to a temperature. scheduler, folder, restart, reduced, tolerance,
-        progress : as of `tyrefem.sweep.sweep.sweep`. known : variants of the same box that have answers: the best of
-        them are in the first generation.
+    plan : its study, `varied`, `limits` and time to a temperature. how, said : as of `tyrefem.sweep.sweep.sweep`.
+    known : variants of the same box that have answers: the best of them are in the first generation.
 
     Raises
     ------
@@ -161,14 +150,10 @@ def optimum(
     """
     for name in (card.answer, *plan.limits):
         check_answer(name, plan.study, plan.time_to)
-    scheduler, tick = scheduler or Here(), progress or (lambda what, done, total: None)
-    asked = Asked(
-        plan, scheduler, folder=folder, restart=restart, reduced=reduced, tolerance=tolerance, expected=card.runs,
-        progress=progress,
-    )  # fmt: skip
-    with asked:
-        nominal = Asked(plan, scheduler)([{}])[0]
-        asked.train()
+    how = (how or Execution()).given(said)
+    with Asked(plan, how) as asked:
+        nominal = Asked(plan, Execution(how.scheduler))([{}])[0]
+        asked.train(card.runs)
         exhaustive = (
             all(one.values for one in plan.varied) and math.prod(len(one.values) for one in plan.varied) <= card.runs
         )
@@ -176,7 +161,7 @@ def optimum(
             asked(grid(plan.varied))
             ended = ""
         else:
-            ended = evolve(asked, card, tick, best_known(known, card))
+            ended = evolve(asked, card, how.tick, best_known(known, card))
         best, full = _verified(asked, card)
     swept = Sweep(asked.table_plan, asked.outcomes, asked.certificate, asked.why_full, taken_up=asked.taken_up)
     return Optimum(swept, card, best, full, nominal, exhaustive, ended)

@@ -8,6 +8,7 @@ from typing import TYPE_CHECKING, Any
 
 from tyrefem.output import atomic_path, write_json
 from tyrefem.summary import versions
+from tyrefem.sweep.leftovers import FILES, clear, earlier
 from tyrefem.sweep.sweep import Sweep
 
 if TYPE_CHECKING:
@@ -20,36 +21,41 @@ def write(found: Design, folder: Path, *, pictures: bool = True) -> dict[str, An
     """Write ``NAME.csv`` and ``.parquet`` of every part, ``summary.json`` and the page; returns the summary.
 
     ``errors.csv`` is there where a reduced model answered: the largest error of every answer in fresh full runs.
+    What was written here before for another question is removed, by the list in its summary.
     """
+    before, written = earlier(folder), []
     for part in found.parts:
-        write_table(part.table, folder / part.name)
+        written += write_table(part.table, folder, part.name)
     if found.swept is not None and found.swept.certificate is not None:
-        write_errors(found.swept, folder / "errors.csv")
+        written += write_errors(found.swept, folder)
     summary = summarised(found)
-    write_json(summary, folder / "summary.json")
     if pictures:
         from tyrefem.sweep.page import write_page
 
-        write_page(found, summary, folder)
+        written += write_page(found, summary, folder)
+    summary[FILES] = clear(folder, before, summary, written)
+    write_json(summary, folder / "summary.json")
     return summary
 
 
-def write_table(table: pd.DataFrame, stem: Path) -> None:
-    """A table as CSV and as Parquet."""
-    with atomic_path(stem.with_suffix(".csv")) as temporary:
+def write_table(table: pd.DataFrame, folder: Path, name: str) -> list[str]:
+    """A table as CSV and as Parquet; names of the files."""
+    with atomic_path(folder / f"{name}.csv") as temporary:
         table.to_csv(temporary, index=False, float_format="%.9g")
-    with atomic_path(stem.with_suffix(".parquet")) as temporary:
+    with atomic_path(folder / f"{name}.parquet") as temporary:
         table.to_parquet(temporary, index=False)
+    return [f"{name}.csv", f"{name}.parquet"]
 
 
-def write_errors(found: Sweep, path: Path) -> None:
-    """What the reduced model's answers may be wrong by, as found on fresh full runs."""
+def write_errors(found: Sweep, folder: Path) -> list[str]:
+    """What the reduced model's answers may be wrong by, as found on fresh full runs; name of the file."""
     import pandas as pd
 
     assert found.certificate is not None
     errors = pd.DataFrame({"answer": list(found.certificate.errors), "error": list(found.certificate.errors.values())})
-    with atomic_path(path) as temporary:
+    with atomic_path(folder / "errors.csv") as temporary:
         errors.to_csv(temporary, index=False, float_format="%.3g")
+    return ["errors.csv"]
 
 
 def summarised(found: Design) -> dict[str, Any]:

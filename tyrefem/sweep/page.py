@@ -16,6 +16,8 @@ if TYPE_CHECKING:
 
     from tyrefem.sweep.design import Design, Part
 
+#: File of the page.
+PAGE = "sweep.html"
 #: Rows of the page's tables; all are in the files.
 ROWS, ROWS_OF_VARIANTS = 60, 500
 #: Answers in the page's table of variants.
@@ -25,8 +27,8 @@ COLUMNS = (
 )  # fmt: skip
 
 
-def write_page(found: Design, summary: Mapping[str, Any], folder: Path) -> Path:
-    """Write ``sweep.html``, and the pictures as PNG files in ``pictures``."""
+def write_page(found: Design, summary: Mapping[str, Any], folder: Path) -> list[str]:
+    """Write ``sweep.html``, and the pictures as PNG files in ``pictures``; names of these files."""
     from jinja2 import Environment, PackageLoader, StrictUndefined
 
     environment = Environment(
@@ -34,22 +36,22 @@ def write_page(found: Design, summary: Mapping[str, Any], folder: Path) -> Path:
         lstrip_blocks=True,
     )  # fmt: skip
     swept = found.swept or (found.optimum.swept if found.optimum is not None else None)
+    parts = [_part(part, folder) for part in found.parts]
     page = environment.get_template("page.html").render(
         title=summary["title"],
         study=found.study,
         how="" if found.swept is None else summary["words"][1].strip(),
         interrupted=found.interrupted,
         numbers=_numbers(found),
-        parts=[_part(part, folder) for part in found.parts],
+        parts=parts,
         variants=None if swept is None else _variants(found, swept),
         failed=found.failed,
         assumed=_assumed(found),
         versions=summary["versions"],
     )
-    path = folder / "sweep.html"
-    with atomic_path(path) as temporary:
+    with atomic_path(folder / PAGE) as temporary:
         temporary.write_text(page, encoding="utf-8")
-    return path
+    return [PAGE, *(picture["file"] for part in parts for picture in part["pictures"])]
 
 
 def _part(part: Part, folder: Path) -> dict[str, Any]:
@@ -59,9 +61,10 @@ def _part(part: Part, folder: Path) -> dict[str, Any]:
     drawn = []
     for name, caption, picture in part.figures():
         content = png(picture)
-        with atomic_path(folder / "pictures" / f"{name}.png") as temporary:
+        file = f"pictures/{name}.png"
+        with atomic_path(folder / file) as temporary:
             temporary.write_bytes(content)
-        drawn.append((caption, base64.b64encode(content).decode("ascii")))
+        drawn.append({"file": file, "caption": caption, "data": base64.b64encode(content).decode("ascii")})
     # The variants have a table of their own at the end.
     table = None if part.name in ("sweep", "optimum", "pareto") else _cells(part.table)
     return {"name": part.name, "heading": part.heading, "words": part.words, "pictures": drawn, "table": table}
@@ -118,15 +121,16 @@ def _numbers(found: Design) -> list[dict[str, str]]:
         value = shown(answer, found.optimum.full[answer])
         cards.append({"label": label, "value": value, "note": found.optimum.where})
     if found.swept is not None and found.swept.outcomes:
-        from tyrefem.sweep.responses import finished, judged
+        from tyrefem.sweep.responses import extreme, finished, judged
 
         table = finished(found.swept)
         for answer in judged(found.swept, found.card.answers)[:3]:
-            low, high = float(table[answer].min()), float(table[answer].max())
+            low, high = (float(extreme(table, answer, least=least)[answer]) for least in (True, False))
             certificate = found.swept.certificate
             error = None if certificate is None else certificate.errors.get(answer)
             note = f"over {len(table)} variants" + ("" if error is None else f"; each ± {shown(answer, error, 1)}")
-            cards.append({"label": name_of(answer), "value": f"{low:.4g} – {shown(answer, high)}", "note": note})
+            first = f"{low:.4g}" if high == high else shown(answer, low)
+            cards.append({"label": name_of(answer), "value": f"{first} – {shown(answer, high)}", "note": note})
     if found.tornado is not None:
         for answer in found.tornado.answers[:2]:
             rows = found.tornado.of(answer).dropna(subset=["range"])

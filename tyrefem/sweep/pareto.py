@@ -10,6 +10,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from tyrefem.errors import InputError, nearest
+from tyrefem.sweep.answers import NEVER
 
 if TYPE_CHECKING:
     import pandas as pd
@@ -23,16 +24,15 @@ USUAL = ("hottest_degC", "rolling_resistance_coefficient", "mass_kg")
 
 
 def undominated(values: Array) -> NDArray[np.bool_]:
-    """Which rows (n, k) no other row beats: at most as large in every column, smaller in one. NaN is beaten by all.
+    """Which rows (n, k) no other row beats: at most as large in every column, smaller in one.
 
     >>> undominated(np.array([[1.0, 2.0], [2.0, 1.0], [2.0, 2.0]])).tolist()
     [True, True, False]
     """
     found = np.zeros(len(values), dtype=np.bool_)
-    finite = np.flatnonzero(np.isfinite(values).all(axis=1))
     best = np.empty((0, values.shape[1]))
     # Sorted, a row can only be beaten by one before it: the front so far is all it has to be held against.
-    for i in finite[np.lexsort(values[finite].T[::-1])]:
+    for i in np.lexsort(values.T[::-1]):
         worse = (best <= values[i]).all(axis=1)
         if not (worse & (best < values[i]).any(axis=1)).any():
             found[i] = True
@@ -66,7 +66,7 @@ def front(table: pd.DataFrame, aims: Mapping[str, str] | None = None) -> pd.Data
             raise InputError(f"'{aim}' is not an aim; allowed: min, max", field=f"pareto.{name}")
     if not aims or feasible.empty:
         return feasible.iloc[:0]
-    signed = np.column_stack([feasible[name] * (1 if aim == "min" else -1) for name, aim in aims.items()])
+    signed = np.column_stack([feasible[name].fillna(NEVER) * (1 if aim == "min" else -1) for name, aim in aims.items()])
     return feasible[undominated(signed)].sort_values(next(iter(aims)))
 
 

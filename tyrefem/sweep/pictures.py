@@ -60,7 +60,9 @@ def curves(found: Sweep, x: str, answer: str) -> Figure:
         for number, (values, group) in enumerate(groups):
             ordered = group.sort_values(x)
             words = ", ".join(map(_value, values))
-            axes.plot(ordered[x], ordered[answer], marker="o", ms=3.5, label=plain(words) or None, **line_style(number))
+            # There is nothing between two cards: a line would say so.
+            style = line_style(number) | ({} if table[x].dtype.kind in "if" else {"ls": "none"})
+            axes.plot(ordered[x], ordered[answer], marker="o", ms=3.5, label=plain(words) or None, **style)
         if others:
             axes.legend(
                 fontsize=FONT - 1.5, frameon=False, loc="upper left", bbox_to_anchor=(1.02, 1.02), alignment="left",
@@ -87,7 +89,8 @@ def _points(axes: Any, table: pd.DataFrame, x: str, answer: str) -> None:
         axes.plot(middle[x], middle[answer], "-", lw=1.8, color=PALETTE[1], label="mean of classes")
     else:
         means = table.groupby(x)[answer].mean()
-        axes.plot(means.index, means, "D-", ms=5, lw=1.8, color=PALETTE[1], label="mean over the others")
+        line = "D-" if numbers.dtype.kind in "if" else "D"
+        axes.plot(means.index, means, line, ms=5, lw=1.8, color=PALETTE[1], label="mean over the others")
     axes.legend(fontsize=FONT - 1, frameon=False)
 
 
@@ -147,7 +150,8 @@ def pareto(found: Sweep, best: pd.DataFrame, x: str, y: str) -> Figure:
     axes.plot(feasible[x], feasible[y], "o", ms=3.5, mfc="none", mec=QUIET, label="variants")
     if len(rest):
         axes.plot(rest[x], rest[y], "x", ms=3.5, color="#b0b0b0", label="break a limit")
-    ordered = best.sort_values(x)
+    # A time that was never reached has no place.
+    ordered = best.dropna(subset=[x, y]).sort_values(x)
     axes.plot(ordered[x], ordered[y], "o", ms=5.5, color=PALETTE[1], label="Pareto front")
     if len(ordered) <= 12:
         for number, (name, a, b) in enumerate(zip(ordered["variant"], ordered[x], ordered[y], strict=True)):
@@ -169,14 +173,21 @@ def pareto(found: Sweep, best: pd.DataFrame, x: str, y: str) -> Figure:
 
 
 def _limits(axes: Any, found: Sweep, answer: str) -> None:
+    """Lines; a limit that is far from all variants would press them together, and is only named at that end."""
     limit = found.plan.limits.get(answer)
+    low, high = axes.dataLim.intervaly
+    words: dict[str, Any] = {"fontsize": FONT - 1.5, "color": BROKEN}
     for value in () if limit is None else (limit.below, limit.above):
-        if value is not None:
+        if value is None:
+            continue
+        if value > 2 * high - low:
+            axes.annotate(f"limit {value:g} ↑", (1.0, 1.01), xycoords="axes fraction", ha="right", **words)
+        elif value < 2 * low - high:
+            axes.annotate(f"limit {value:g} ↓", (0.99, 0.02), xycoords="axes fraction", ha="right", **words)
+        else:
             axes.axhline(value, color=BROKEN, lw=0.9, ls="--")
-            axes.annotate(
-                f"limit\n{value:g}", (1.005, value), xycoords=("axes fraction", "data"), ha="left", va="center",
-                fontsize=FONT - 1.5, color=BROKEN,
-            )  # fmt: skip
+            place = {"xycoords": ("axes fraction", "data"), "ha": "left", "va": "center"}
+            axes.annotate(f"limit\n{value:g}", (1.005, value), **place, **words)
 
 
 def _value(value: Any) -> str:

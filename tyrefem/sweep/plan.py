@@ -90,7 +90,6 @@ def planned(study: Study, card: SweepCard, near: Path | None = None) -> Plan:
         variants, names = listed(path)
         chosen: tuple[Varied, ...] = ()
         try:
-            without_repeats(variants, names)
             sensible(study, [(f"variant '{name}'", one) for name, one in zip(names, variants, strict=True)])
         except InputError as error:
             raise error if error.file else error.within(file=path) from None

@@ -2,23 +2,23 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Mapping
-from dataclasses import dataclass
+from collections.abc import Mapping
+from dataclasses import dataclass, fields
 from pathlib import Path
-from typing import Any
+from typing import Any, Unpack
 
-from tyrefem.errors import InputError
+from tyrefem.errors import InputError, nearest
 from tyrefem.studies import Study
 from tyrefem.sweep.answers import check_answer
 from tyrefem.sweep.card import SweepCard
 from tyrefem.sweep.cluster import ClusterLostError
 from tyrefem.sweep.design import Design
 from tyrefem.sweep.envelope import Envelope, envelope
+from tyrefem.sweep.execution import Execution, Said
 from tyrefem.sweep.operating_points import checked_pairs
 from tyrefem.sweep.optimum import Optimum, optimum
 from tyrefem.sweep.plan import Plan, card_of, planned
 from tyrefem.sweep.responses import judged
-from tyrefem.sweep.schedulers import Scheduler
 from tyrefem.sweep.sweep import sweep
 from tyrefem.sweep.tornado import Tornado, tornado_plan
 
@@ -49,43 +49,26 @@ class Questions:
             parts.append(f"an envelope of {len(checked_pairs(self.study, self.card.envelope))} loads and pressures")
         return f"{', '.join(parts)}; study {self.study.name}"
 
-    def answered(
-        self,
-        *,
-        scheduler: Scheduler | None = None,
-        folder: Path | None = None,
-        restart: bool = False,
-        reduced: str = "auto",
-        tolerance: float = 0.01,
-        progress: Callable[[str, int, int], None] | None = None,
-    ) -> Design:
+    def answered(self, how: Execution | None = None, **said: Unpack[Said]) -> Design:
         """Run what is needed; parameters as of `tyrefem.sweep.sweep.sweep`. Ctrl-C keeps what is finished.
 
         A `Local` scheduler used as a context manager keeps its processes from one question to the next.
         """
-        card = self.card
-
-        def options(name: str | None) -> dict[str, Any]:
-            place = folder if folder is None or name is None else folder / name
-            return {
-                "scheduler": scheduler, "folder": place, "restart": restart, "reduced": reduced,
-                "tolerance": tolerance, "progress": progress,
-            }  # fmt: skip
-
+        card, how = self.card, (how or Execution()).given(said)
         swept = tornado = best = safe = None
         interrupted = ""
         try:
             if card.sampled:
-                swept = sweep(self.plan, **options(None))
+                swept = sweep(self.plan, how)
                 interrupted = swept.interrupted
             if self.tornado is not None and not interrupted:
-                moved = sweep(self.tornado, **options(Tornado.name) | {"reduced": "never"})
+                moved = sweep(self.tornado, how.within(Tornado.name), reduced="never")
                 answers = card.answers or tuple(judged(moved)) or ("hottest_degC",)
                 tornado, interrupted = Tornado(moved, answers), moved.interrupted
             if card.optimise is not None and not interrupted:
-                best = optimum(self.plan, card.optimise, known=swept, **options(Optimum.name))
+                best = optimum(self.plan, card.optimise, how.within(Optimum.name), known=swept)
             if card.envelope is not None and not interrupted:
-                safe = envelope(self.study, card.envelope, **options(Envelope.name))
+                safe = envelope(self.study, card.envelope, how.within(Envelope.name))
         except KeyboardInterrupt:
             interrupted = "interrupted"
         except ClusterLostError as error:
@@ -106,6 +89,8 @@ def questions(study: Study, card: SweepCard, near: Path | None = None) -> Questi
     except InputError as error:
         raise error if error.file else error.within(field="tornado") from None
     if card.optimise is not None:
+        if not plan.varied:
+            raise InputError("searches within [vary], and a list has none: its best are on the front", field="optimise")
         try:
             check_answer(card.optimise.answer, study, card.time_to)
         except InputError as error:
@@ -115,16 +100,23 @@ def questions(study: Study, card: SweepCard, near: Path | None = None) -> Questi
     return Questions(study, card, plan, tornado)
 
 
-#: What `Questions.answered` takes; everything else that `asked_of` is given is a key of a sweep file.
-RUN_OPTIONS = ("scheduler", "folder", "restart", "reduced", "tolerance", "progress")
-
-
 def asked_of(study: Study, vary: Mapping[str, Any] | None = None, **options: Any) -> Design:
-    """The answers to what `card_of` and `Questions.answered` take: `Study.sweep`."""
-    run = {name: options.pop(name) for name in RUN_OPTIONS if name in options}
+    """The answers to what `card_of` takes, carried out as `Execution` says: `Study.sweep`.
+
+    Raises
+    ------
+    InputError : a name that is neither a key of a sweep file nor a field of `Execution`; as of `questions`.
+    """
+    known = [field.name for field in fields(Execution)]
+    allowed = [*known, *SweepCard.model_fields]
+    for name in options:
+        if name not in allowed:
+            raise InputError(f"nothing is called '{name}' here{nearest(name, allowed)}", field="sweep")
+    run = {name: options.pop(name) for name in known if name in options}
     if isinstance(run.get("folder"), str):
         run["folder"] = Path(run["folder"])
-    return questions(study, card_of(study, vary, **options)).answered(**run)
+    how = Execution(**run)
+    return questions(study, card_of(study, vary, **options)).answered(how)
 
 
 def loaded(name: str, changes: Mapping[str, Any] | None = None, **said: Any) -> Questions:

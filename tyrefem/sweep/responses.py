@@ -10,7 +10,7 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 
 from tyrefem.sweep.answer_words import difference_unit, name_of, shown
-from tyrefem.sweep.answers import TIME_TO
+from tyrefem.sweep.answers import NEVER, TIME_TO
 from tyrefem.sweep.sweep import Sweep
 
 if TYPE_CHECKING:
@@ -91,21 +91,22 @@ def words(found: Sweep, wanted: tuple[str, ...] = ()) -> list[str]:
     """The answer in sentences: range of every judged answer, where, and what moves it."""
     told = []
     table = finished(found)
-    limited = bool(found.plan.limits) and len(table) > 0
-    if limited:
-        told.append(f"{int(table['feasible'].sum())} of {len(table)} variants keep the limits.")
+    keeping = int(table["feasible"].sum())
+    if found.plan.limits and len(table):
+        told.append(f"{keeping or 'None'} of {len(table)} variants keep{'' if keeping else 's'} the limits.")
+    which = "" if not found.plan.limits else " of those" if keeping else " of all"
     for answer in judged(found, wanted):
-        kept = table[table["feasible"]] if limited and table["feasible"].any() else table
+        kept = table[table["feasible"]] if keeping else table
         low, high = extreme(kept, answer, least=True), extreme(kept, answer, least=False)
-        told.append(
-            f"{capital(name_of(answer))}{' of those' if limited else ''}: from {shown(answer, low[answer])} "
-            f"({named(found, low)}) to {shown(answer, high[answer])} ({named(found, high)})."
-        )
+        ends = [f"{shown(answer, one[answer])} ({named(found, one)})" for one in (low, high)]
+        span = shown(answer, low[answer]) if low["variant"] == high["variant"] else f"from {ends[0]} to {ends[1]}"
+        told.append(f"{capital(name_of(answer))}{which}: {span}.")
         effects = main_effects(found, answer)
         if len(effects):
             unit = difference_unit(answer)
             moved = "; ".join(_moved(row, unit) for row in effects.to_dict("records"))
-            told.append(f"What moves the {name_of(answer)}, on average over the others: {moved}.")
+            some = ", where it is reached" if table[answer].isna().any() else ""
+            told.append(f"What moves the {name_of(answer)}, on average over the others{some}: {moved}.")
     return told
 
 
@@ -115,9 +116,9 @@ def _moved(row: Mapping[Any, Any], unit: str) -> str:
 
 
 def extreme(table: pd.DataFrame, answer: str, *, least: bool) -> Mapping[str, Any]:
-    """The row with the smallest or largest answer."""
-    values = table[answer].to_numpy(dtype=float)
-    place = int(np.nanargmin(values) if least else np.nanargmax(values))
+    """The row with the smallest or largest answer; a time that was never reached is the largest."""
+    values = table[answer].fillna(NEVER).to_numpy(dtype=float)
+    place = int(values.argmin() if least else values.argmax())
     return {str(name): value for name, value in table.iloc[place].items()}
 
 
@@ -174,12 +175,14 @@ class Responses:
         if len(finished(self.swept)) < 2:
             return
         axes = numeric(self.swept)
+        averaged = self.swept.plan.how.get("sample") == "grid" and len(self.swept.plan.varied) > 2
+        mean = "; mean over the other numbers" if averaged else ""
         for answer in judged(self.swept, self.wanted):
             order = [name for name in main_effects(self.swept, answer)["number"] if name in axes]
             for x, y in list(itertools.combinations(order[:MOST_MAPS], 2)):
                 yield (
                     _file("map", answer, x, y),
-                    f"{name_of(answer)} over {x} and {y}; mean over the other numbers",
+                    f"{name_of(answer)} over {x} and {y}{mean}",
                     response_map(self.swept, x, y, answer),
                 )
             for x in order[:MOST_CURVES]:

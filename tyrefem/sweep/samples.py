@@ -12,7 +12,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from tyrefem.errors import InputError
-from tyrefem.sweep.varied import Varied
+from tyrefem.sweep.varied import Varied, alike
 
 Array = NDArray[np.float64]
 #: More variants than this from one grid are a slip of the pen.
@@ -68,11 +68,23 @@ def drawn(varied: Sequence[Varied], sample: str, count: int, seed: int) -> list[
 
 
 def listed(path: Path) -> tuple[list[dict[str, Any]], list[str]]:
-    """The variants of a CSV file (see `tyrefem.cases`), and their names."""
+    """The variants of a CSV file (see `tyrefem.cases`), and their names.
+
+    Raises
+    ------
+    InputError : no table of cases; two variants that are the same, in whatever units.
+    """
     from tyrefem.cases import read_cases
 
     found = read_cases(path)
-    return [dict(case.changes) for case in found], [case.name for case in found]
+    variants, names = [dict(case.changes) for case in found], [case.name for case in found]
+    columns = {key: alike([one.get(key) for one in variants]) for one in variants for key in one}
+    plain = [{key: columns[key][place] for key in one} for place, one in enumerate(variants)]
+    try:
+        without_repeats(plain, names)
+    except InputError as error:
+        raise error.within(file=path) from None
+    return variants, names
 
 
 def without_repeats(variants: Sequence[dict[str, Any]], names: Sequence[str]) -> None:

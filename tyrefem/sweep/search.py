@@ -9,6 +9,7 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
+from tyrefem.sweep.answers import NEVER
 from tyrefem.sweep.asked import Asked
 from tyrefem.sweep.card import LimitCard, OptimiseCard
 from tyrefem.sweep.sweep import Sweep
@@ -24,8 +25,6 @@ FAILED = 1e3
 MOST_KNOWN = 10
 #: Width of the rim around a range, as a share of it, that counts as its end.
 RIM = 0.15
-#: Stands for a time that was never reached, s.
-LONGEST = 1e9
 
 
 def best_known(known: Sweep | None, card: OptimiseCard) -> list[Array]:
@@ -84,7 +83,7 @@ def evolve(asked: Asked, card: OptimiseCard, tick: Callable[[str, int, int], Non
         updating="deferred",
         vectorized=True,
     )
-    return "the search had converged" if found.success else f"the search ended at its {card.runs} variants"
+    return "the search had converged" if found.success else f"the search ended at its {card.runs} trials"
 
 
 def _variant(varied: Sequence[Varied], x: Array) -> dict[str, Any]:
@@ -99,7 +98,7 @@ def objective(outcome: Outcome, card: OptimiseCard) -> float:
     if "answers" not in outcome:
         return math.inf
     value = float(outcome["answers"][card.answer])
-    value = LONGEST if math.isnan(value) else value
+    value = NEVER if math.isnan(value) else value
     return value if card.minimise else -value
 
 
@@ -116,7 +115,7 @@ def violation(outcome: Outcome, limits: Mapping[str, LimitCard], margins: Mappin
     total = 0.0
     for name, limit in limits.items():
         value = float(outcome["answers"][name])
-        value = LONGEST if math.isnan(value) else value
+        value = NEVER if math.isnan(value) else value
         margin = (margins or {}).get(name, 0.0) if outcome.get("by") == "reduced" else 0.0
         total += 0.0 if limit.below is None else _beyond(value + margin, limit.below)
         total += 0.0 if limit.above is None else _beyond(margin - value, -limit.above)

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import json
+import math
 import os
 import sys
 from collections.abc import Iterator, Mapping
@@ -15,13 +16,15 @@ from tyrefem.output import jsonable
 
 #: File of the lines, in the sweep's folder.
 NAME = "variants.jsonl"
+#: What a variant is kept under: its number in a plan, or what it changes.
+Name = int | str
 
 
 @dataclass(eq=False)
 class Store:
     """The finished variants of one plan.
 
-    The first line says which plan; every other one is ``{"variant": n, "answers": {...}}`` or ``{"variant": n,
+    The first line says which plan; every other one is ``{"variant": name, "answers": {...}}`` or ``{"variant": name,
     "failure": "..."}``, or a ``{"note": name, "value": ...}``. A line is written in one piece and forced to disk; what
     a kill tore off is cut away.
 
@@ -32,7 +35,7 @@ class Store:
 
     folder: Path
     digest: str
-    done: dict[int, dict[str, Any]] = field(default_factory=dict)
+    done: dict[Name, dict[str, Any]] = field(default_factory=dict)
     #: What else was noted, by name: the certificate of a reduced model.
     notes: dict[str, Any] = field(default_factory=dict)
     _file: Any = None
@@ -72,7 +75,7 @@ class Store:
             return 0
         try:
             first, *others = [json.loads(line, object_pairs_hook=_shared) for line in lines]
-            found = {int(one["variant"]): one for one in others if "note" not in one}
+            found = {one["variant"]: one for one in others if "note" not in one}
             notes = {str(one["note"]): one["value"] for one in others if "note" in one}
         except (ValueError, KeyError, TypeError):
             raise InputError("is not a file of finished variants", file=self.path) from None
@@ -85,7 +88,7 @@ class Store:
         self.done, self.notes = found, notes
         return whole
 
-    def add(self, found: Mapping[int, Mapping[str, Any]]) -> None:
+    def add(self, found: Mapping[Name, Mapping[str, Any]]) -> None:
         """Keep the outcomes of some variants; a second one of the same variant is left out."""
         entries = {n: {"variant": n, **outcome} for n, outcome in found.items() if n not in self.done}
         self._write(*entries.values())
@@ -118,5 +121,5 @@ class Store:
 
 
 def _shared(pairs: list[tuple[str, Any]]) -> dict[str, Any]:
-    """A mapping whose names are kept in memory once, for all variants."""
-    return {sys.intern(name): value for name, value in pairs}
+    """A mapping whose names are kept in memory once, for all variants; a null was written for NaN."""
+    return {sys.intern(name): math.nan if value is None else value for name, value in pairs}

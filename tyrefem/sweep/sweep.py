@@ -4,32 +4,21 @@ from __future__ import annotations
 
 import functools
 import time
-from collections.abc import Callable, Iterator, Mapping, Sequence
-from dataclasses import asdict, dataclass
-from pathlib import Path
-from typing import TYPE_CHECKING, Any
+from dataclasses import dataclass
+from typing import TYPE_CHECKING, Any, Unpack
 
 import numpy as np
 
 from tyrefem.errors import InputError, nearest
+from tyrefem.sweep.answering import Answering
 from tyrefem.sweep.cluster import ClusterLostError
+from tyrefem.sweep.execution import Execution, Said
 from tyrefem.sweep.plan import Plan
-from tyrefem.sweep.schedulers import Here, Scheduler
-from tyrefem.sweep.store import Store
-from tyrefem.sweep.task import perform, perform_all
 
 if TYPE_CHECKING:
     import pandas as pd
 
-    from tyrefem.reduced.surrogate import Certificate, Surrogate
-
-Tick = Callable[[str, int, int], None]
-#: Fewer variants than this per number that varies are run in full: training would cost as much.
-WORTH_TRAINING = 12
-#: Variants of one piece of work at most; so many variants are run one by one.
-PIECE, SINGLE = 64, 2000
-#: Under this name a sweep's folder keeps the certificate of the reduced model.
-CERTIFICATE = "certificate"
+    from tyrefem.reduced.surrogate import Certificate
 
 
 @dataclass(frozen=True, eq=False)
@@ -107,24 +96,13 @@ class Sweep:
         return len(self.outcomes) == len(self.plan.variants)
 
 
-def sweep(
-    plan: Plan,
-    *,
-    scheduler: Scheduler | None = None,
-    folder: Path | None = None,
-    restart: bool = False,
-    reduced: str = "auto",
-    tolerance: float = 0.01,
-    progress: Tick | None = None,
-) -> Sweep:
+def sweep(plan: Plan, how: Execution | None = None, **said: Unpack[Said]) -> Sweep:
     """Answer every variant that is not finished yet.
 
     Parameters
     ----------
-    scheduler : where to; by default this process. folder : where finished variants are kept; None: nowhere.
-    restart : forget what the folder has. progress : called with (what is done, finished, of how many).
-    reduced : ``never``: full runs only; ``auto``: a reduced model where many variants are left and it is certified,
-        full runs otherwise; ``always``: refuse where it is not certified. tolerance : K, of the certificate.
+    how : see `Execution`. said : its fields by name (``scheduler``, ``folder``, ``restart``, ``reduced``,
+        ``tolerance``, ``progress``), in place of it or to say some of it otherwise.
 
     Ctrl-C, or a cluster that is lost, ends the sweep with what is finished; `Sweep.interrupted` says why.
 
@@ -132,112 +110,22 @@ def sweep(
     ------
     InputError : the folder holds another sweep; ``always``, and no reduced model could be certified.
     """
-    began = time.perf_counter()
-    scheduler, tick = scheduler or Here(), progress or (lambda what, done, total: None)
-    store = None if folder is None else Store(folder, f"{plan.digest}-{reduced}-{tolerance:g}")
-    outcomes: dict[int, dict[str, Any]] = {}
-    certificate: Certificate | None = None
-    why, taken, interrupted = "", 0, ""
+    began, interrupted, numbers = time.perf_counter(), "", range(len(plan.variants))
+    how = (how or Execution()).given(said)
+    work = Answering(plan, how, plan.variants, plan.digest)
     try:
-        if store is not None:
-            taken = store.open(restart=restart)
-            outcomes |= {n: {k: v for k, v in one.items() if k != "variant"} for n, one in store.done.items()}
-            certificate = _certificate(store.notes.get(CERTIFICATE))
-        keep = _Keep(outcomes, store, lambda: tick("variants", len(outcomes), len(plan.variants)))
-        left = [number for number in range(len(plan.variants)) if number not in outcomes]
-        if reduced != "never" and left:
-            found, why = _reduced(plan, left, scheduler, reduced, tolerance, keep, tick)
-            certificate = found or certificate
-            left = [number for number in left if number not in outcomes]
-        _full(plan, left, scheduler, keep)
+        with work:
+            for number in numbers:
+                work.take_up(number)
+            how.tick("variants", len(work.outcomes), len(numbers))
+            left = [number for number in numbers if number not in work.outcomes]
+            if left:
+                work.train(len(left))
+            for finished in work.answer(left):
+                how.tick("variants", finished, len(numbers))
     except KeyboardInterrupt:
         interrupted = "interrupted"
     except ClusterLostError as error:
         interrupted = str(error)
-    finally:
-        if store is not None:
-            store.close()
-    return Sweep(plan, outcomes, certificate, why, time.perf_counter() - began, taken, interrupted)
-
-
-class _Keep:
-    """Takes outcomes into memory and onto disk."""
-
-    def __init__(self, outcomes: dict[int, dict[str, Any]], store: Store | None, tick: Callable[[], None]) -> None:
-        self.outcomes, self.store, self.tick = outcomes, store, tick
-        tick()
-
-    def note(self, name: str, value: Any) -> None:
-        if self.store is not None:
-            self.store.note(name, value)
-
-    def __call__(self, found: Mapping[int, dict[str, Any]]) -> None:
-        self.outcomes.update(found)
-        if self.store is not None:
-            self.store.add(found)
-        self.tick()
-
-
-def _full(plan: Plan, left: Sequence[int], scheduler: Scheduler, keep: _Keep, most: int = PIECE) -> None:
-    """Run variants in full, so many together that a scheduler is not kept busy by counting them."""
-    size = min(max(len(left) // SINGLE, 1), most)
-    if size == 1:
-        for place, outcome in scheduler.outcomes(perform, [plan.task(number) for number in left]):
-            keep({left[place]: _by(outcome, "full")})
-        return
-    pieces = [left[first : first + size] for first in range(0, len(left), size)]
-    lost: list[int] = []
-    for place, outcome in scheduler.outcomes(perform_all, [[plan.task(n) for n in piece] for piece in pieces]):
-        piece = pieces[place]
-        if "outcomes" in outcome:
-            keep({n: _by(one, "full") for n, one in zip(piece, outcome["outcomes"], strict=True)})
-        else:
-            lost += piece
-    if lost:
-        # One of them took its worker down: the others are not to suffer for it.
-        _full(plan, lost, scheduler, keep, 1)
-
-
-def _by(outcome: dict[str, Any], how: str) -> dict[str, Any]:
-    return outcome if "failure" in outcome else {**outcome, "by": how}
-
-
-def _certificate(noted: Mapping[str, Any] | None) -> Certificate | None:
-    from tyrefem.reduced.surrogate import Certificate
-
-    return None if noted is None else Certificate(**noted)
-
-
-def _reduced(
-    plan: Plan, left: list[int], scheduler: Scheduler, how: str, tolerance: float, keep: _Keep, tick: Tick
-) -> tuple[Certificate | None, str]:
-    """Answer what a certified reduced model can; its certificate, or why there is none."""
-    from tyrefem.reduced.model import NotReducibleError
-    from tyrefem.reduced.surrogate import surrogate
-
-    if how == "auto" and len(left) < WORTH_TRAINING * max(len(plan.varied), 1):
-        return None, f"{len(left)} variants are too few to train for"
-    try:
-        trained = surrogate(plan, tolerance=tolerance, scheduler=scheduler, progress=tick)
-    except NotReducibleError as error:
-        if how == "always":
-            raise
-        return None, str(error)
-    keep.note(CERTIFICATE, asdict(trained.certificate))
-    for found in by_model(trained, plan, [plan.variants[n] for n in left], scheduler):
-        keep({left[place]: outcome for place, outcome in found.items()})
-    return trained.certificate, ""
-
-
-def by_model(
-    trained: Surrogate, plan: Plan, variants: Sequence[Mapping[str, Any]], scheduler: Scheduler
-) -> Iterator[dict[int, dict[str, Any]]]:
-    """Outcomes of variants, by place, as pieces are finished; what could not be reduced is left out, for full runs."""
-    from tyrefem.reduced.work import ReducedTask, perform_reduced
-
-    packed = trained.packed(plan.packed)
-    firsts = range(0, len(variants), PIECE)
-    tasks = [ReducedTask(list(variants[first : first + PIECE]), plan.time_to) for first in firsts]
-    for number, outcome in scheduler.outcomes(perform_reduced, tasks, packed):
-        found = enumerate(outcome.get("outcomes", ()), firsts[number])
-        yield {place: _by(one, "reduced") for place, one in found if "not_reducible" not in one}
+    seconds = time.perf_counter() - began
+    return Sweep(plan, work.outcomes, work.certificate, work.why_full, seconds, work.taken_up, interrupted)

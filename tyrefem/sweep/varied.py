@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import math
 import re
+from collections.abc import Sequence
 from dataclasses import dataclass
 from typing import TYPE_CHECKING, Any
 
@@ -144,13 +145,30 @@ def varied(study: Study, key: str, card: VaryCard) -> Varied:
 def _listed(key: str, values: list[Any]) -> Varied:
     amounts = [_AMOUNT.match(value) if isinstance(value, str) else None for value in values]
     units = {match[2] for match in amounts if match}
-    seen: list[Any] = []
-    for value in values:
-        if value in seen:
-            raise InputError(f"{value!r} is given twice")
-        seen.append(value)
+    same = alike(values)
+    for number, one in enumerate(same):
+        if one in same[:number]:
+            first, again = values[same.index(one)], values[number]
+            raise InputError(f"{again!r} is given twice" + ("" if first == again else f": it is {first!r}"))
     unit = units.pop() if len(units) == 1 and all(amounts) else ""
     return Varied(key, unit, tuple(values), levels=len(values))
+
+
+def alike(values: Sequence[Any]) -> list[Any]:
+    """The values as numbers in the unit of the first quantity among them, so that equal ones are the same.
+
+    >>> alike(["10 mph", "4.4704 m/s", "10.0 mph"]), alike(["soft", "8 mm"])
+    ([10.0, 10.0, 10.0], ['soft', 8.0])
+    """
+    amounts = [_AMOUNT.match(value) if isinstance(value, str) else None for value in values]
+    unit = next((match[2] for match in amounts if match), "") or "1"
+    found = []
+    for value, match in zip(values, amounts, strict=True):
+        try:
+            found.append(float(f"{parse(value, unit):.12g}") if match else value)
+        except InputError:
+            found.append(value)
+    return found
 
 
 def _amount(value: Any) -> tuple[float, str]:

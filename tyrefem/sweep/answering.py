@@ -1,0 +1,173 @@
+"""Variants answered and kept: by a certified reduced model where there is one, by full runs otherwise."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator, Mapping, Sequence
+from dataclasses import asdict
+from typing import TYPE_CHECKING, Any, Self
+
+from tyrefem.sweep.execution import Execution
+from tyrefem.sweep.plan import Plan
+from tyrefem.sweep.schedulers import Scheduler
+from tyrefem.sweep.store import Name, Store
+from tyrefem.sweep.task import Task, perform, perform_all
+
+if TYPE_CHECKING:
+    from tyrefem.reduced.surrogate import Certificate, Surrogate
+
+Outcome = dict[str, Any]
+#: Fewer variants than this per number that varies are run in full: training would cost as much.
+WORTH_TRAINING = 12
+#: Variants of one piece of work at most; so many variants are run one by one.
+PIECE, SINGLE = 64, 2000
+#: Under this name a sweep's folder keeps the certificate of the reduced model.
+CERTIFICATE = "certificate"
+
+
+class Answering:
+    """Answers variants of one study by number.
+
+    Parameters
+    ----------
+    plan : the study, what varies (the box of a reduced model) and the time to a temperature.
+    how : see `Execution`. variants : number -> changes. digest : of what the folder may hold the outcomes of.
+
+    ``outcomes``: number -> ``{"answers": ..., "by": "full" | "reduced"}`` or ``{"failure": ...}``.
+    ``certificate``: of the reduced model. ``reduced``: does it answer? ``why_full``: why there is none.
+    ``taken_up``: how many the folder had.
+    """
+
+    def __init__(self, plan: Plan, how: Execution, variants: Sequence[Mapping[str, Any]], digest: str) -> None:
+        self.plan, self.how, self.variants = plan, how, variants
+        self.outcomes: dict[int, Outcome] = {}
+        self.certificate: Certificate | None = None
+        self.why_full = ""
+        self.taken_up = 0
+        self.reduced = False
+        self._digest = digest
+        self._model: Surrogate | None = None
+        self._store: Store | None = None
+
+    def __enter__(self) -> Self:
+        """Open the folder.
+
+        Raises
+        ------
+        InputError : it holds the outcomes of something else, or cannot be written.
+        """
+        if self.how.folder is not None:
+            self._store = Store(self.how.folder, f"{self._digest}-{self.how.reduced}-{self.how.tolerance:g}")
+            self.taken_up = self._store.open(restart=self.how.restart)
+            self.certificate = _certificate(self._store.notes.get(CERTIFICATE))
+        return self
+
+    def __exit__(self, *_: object) -> None:
+        if self._store is not None:
+            self._store.close()
+
+    def name(self, number: int) -> Name:
+        """Under what the folder keeps a variant."""
+        return number
+
+    def take_up(self, number: int) -> None:
+        """Let a variant have the outcome that the folder has."""
+        known = None if self._store is None else self._store.done.get(self.name(number))
+        if known is not None:
+            self.outcomes[number] = {key: value for key, value in known.items() if key != "variant"}
+
+    def train(self, expected: int) -> None:
+        """Let a reduced model answer, if asked for and worth it, and certified within the tolerance.
+
+        One whose certificate the folder has is made again when a variant is missing.
+
+        Raises
+        ------
+        NotReducibleError : there is none, and nothing else is allowed.
+        """
+        if self.how.reduced == "never":
+            return
+        if self.how.reduced == "auto" and expected < WORTH_TRAINING * max(len(self.plan.varied), 1):
+            self.why_full = f"{expected} variants are too few to train for"
+            return
+        self.reduced = True
+        if self.certificate is None:
+            self._make()
+
+    def _make(self) -> None:
+        from tyrefem.reduced.model import NotReducibleError
+        from tyrefem.reduced.surrogate import surrogate
+
+        how = self.how
+        try:
+            self._model = surrogate(self.plan, tolerance=how.tolerance, scheduler=how.where, progress=how.tick)
+        except NotReducibleError as error:
+            if how.reduced == "always":
+                raise
+            self.reduced, self.why_full = False, str(error)
+            return
+        self.certificate = self._model.certificate
+        if self._store is not None:
+            self._store.note(CERTIFICATE, asdict(self.certificate))
+
+    def answer(self, numbers: Sequence[int], *, full: bool = False) -> Iterator[int]:
+        """Answer variants; yields how many are finished after every piece. ``full``: none by the reduced model."""
+        if self.reduced and self._model is None and not full and numbers:
+            self._make()
+        if self._model is not None and not full and numbers:
+            variants = [self.variants[n] for n in numbers]
+            for found in by_model(self._model, self.plan, variants, self.how.where):
+                yield self._keep({numbers[place]: outcome for place, outcome in found.items()})
+        yield from self._run([n for n in numbers if n not in self.outcomes], PIECE)
+
+    def _run(self, left: Sequence[int], most: int) -> Iterator[int]:
+        """Run variants in full, so many together that a scheduler is not kept busy by counting them."""
+        where, size = self.how.where, min(max(len(left) // SINGLE, 1), most)
+        if size == 1:
+            for place, outcome in where.outcomes(perform, [self._task(n) for n in left]):
+                yield self._keep({left[place]: _by(outcome, "full")})
+            return
+        pieces = [left[first : first + size] for first in range(0, len(left), size)]
+        lost: list[int] = []
+        for place, outcome in where.outcomes(perform_all, [[self._task(n) for n in piece] for piece in pieces]):
+            if "outcomes" in outcome:
+                both = zip(pieces[place], outcome["outcomes"], strict=True)
+                yield self._keep({n: _by(one, "full") for n, one in both})
+            else:
+                lost += pieces[place]
+        if lost:
+            # One of them took its worker down: the others are not to suffer for it.
+            yield from self._run(lost, 1)
+
+    def _task(self, number: int) -> Task:
+        return Task(number, self.plan.packed, self.variants[number], self.plan.time_to)
+
+    def _keep(self, found: Mapping[int, Outcome]) -> int:
+        """Take outcomes into memory and onto disk."""
+        self.outcomes.update(found)
+        if self._store is not None:
+            self._store.add({self.name(n): outcome for n, outcome in found.items()})
+        return len(self.outcomes)
+
+
+def by_model(
+    trained: Surrogate, plan: Plan, variants: Sequence[Mapping[str, Any]], scheduler: Scheduler
+) -> Iterator[dict[int, Outcome]]:
+    """Outcomes of variants, by place, as pieces are finished; what could not be reduced is left out, for full runs."""
+    from tyrefem.reduced.work import ReducedTask, perform_reduced
+
+    packed = trained.packed(plan.packed)
+    firsts = range(0, len(variants), PIECE)
+    tasks = [ReducedTask(list(variants[first : first + PIECE]), plan.time_to) for first in firsts]
+    for number, outcome in scheduler.outcomes(perform_reduced, tasks, packed):
+        found = enumerate(outcome.get("outcomes", ()), firsts[number])
+        yield {place: _by(one, "reduced") for place, one in found if "not_reducible" not in one}
+
+
+def _by(outcome: Outcome, how: str) -> Outcome:
+    return outcome if "failure" in outcome else {**outcome, "by": how}
+
+
+def _certificate(noted: Mapping[str, Any] | None) -> Certificate | None:
+    from tyrefem.reduced.surrogate import Certificate
+
+    return None if noted is None else Certificate(**noted)
