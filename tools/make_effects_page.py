@@ -98,6 +98,9 @@ class Lamp(Effect):
 `radiation`, `gas_capacity_factor`, `rim_power`, `worn`, `displacement`, `lag_addend`, `offset`, `clock`, `channel`.
 """
 
+`of_drive: ClassVar[bool] = True` says that what the effect does to films, surrounding temperatures and the rim depends on time through the drive alone (speed, load, pressure): constant
+where the drive is. Reduced models then ask for it once per phase. Leave it away where the method uses `t` itself.
+
 
 def _shown(effect: type[Effect]) -> bool:
     """Effects that a diagnosis may name; corrections of base numbers are described in docs/diagnosis.md."""

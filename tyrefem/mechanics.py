@@ -17,6 +17,9 @@ from tyrefem.strain.cord_rubber import BiasPlies
 from tyrefem.strain.given import Given
 from tyrefem.studies import Study
 
+#: Regions of the sections that the report's arcs are made for.
+ARC_REGIONS = ("carcass", "tread", "sidewall", "bead")
+
 
 def stiffness(study: Study) -> Stiffness:
     """What the strain energy of the arcs needs of the cards, SI.
@@ -26,7 +29,7 @@ def stiffness(study: Study) -> Stiffness:
     InputError : a card lacks a modulus or an angle that the law needs.
     """
     section = study.section
-    for region in ("carcass", "tread", "sidewall", "bead"):
+    for region in ARC_REGIONS:
         if region not in section.regions:
             message = (
                 f"the strain law 'arcs' needs the region '{region}', which section '{section.name}' does not have;"

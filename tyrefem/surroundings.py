@@ -49,7 +49,11 @@ class Surroundings:
 
     def region(self, zone: str) -> str:
         """The region that a strain zone is part of."""
-        return next(str(one.region) for one in self.schedule.zones if one.name == zone)
+        return self._regions[zone]
+
+    @functools.cached_property
+    def _regions(self) -> dict[str, str]:
+        return {one.name: str(one.region) for one in self.schedule.zones}
 
     def places(self, x: Array) -> tuple[Array, Array]:
         """|s| along the meridian and depth of points x (2, n), m; remembered for arrays that come back."""

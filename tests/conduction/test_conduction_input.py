@@ -9,6 +9,7 @@ import pytest
 import skfem
 
 from tyrefem.conduction import Conduction, Film, Fixed, Flux, Material, Radiation, Reservoir, SolverError
+from tyrefem.conduction.datum import checked
 from tyrefem.conduction.factor import Ordering
 from tyrefem.errors import InputError
 
@@ -101,6 +102,23 @@ def test_functions_returning_nonsense_are_named() -> None:
     negative = Conduction(MESH, {**REGIONS, "tread": Material(lambda T: -T, 2e6)}, {"outside": Fixed(50.0)})
     with pytest.raises(InputError, match=r"regions.tread.conductivity: is not positive"):
         negative.steady()
+
+
+def test_a_film_that_turns_negative_is_named_at_every_look() -> None:
+    cooling = Conduction(MESH, REGIONS, {"outside": Film(lambda x, t: 1.0 - t, 25.0)})
+    film = cooling._balance().loads[0].h  # type: ignore[attr-defined]
+    assert film(0.5) == 0.5
+    for _ in range(2):
+        with pytest.raises(InputError, match=r"boundaries.outside.h: is below 0 at t = 2 s"):
+            film(2.0)
+
+
+def test_any_finite_number_may_be_returned() -> None:
+    large = np.array([1e200, -1e200, 0.0])
+    assert checked(large, 3, "q", 0.0) is large
+    for value in (np.nan, np.inf, np.array([1.0, np.inf, -np.inf]), np.array([np.nan, 1.0, 1e200])):
+        with pytest.raises(InputError, match="q: the function returned a value that is not finite at t = 3 s"):
+            checked(value, 3, "q", 3.0)
 
 
 def test_steady_problem_without_a_sink_is_refused() -> None:

@@ -11,7 +11,7 @@ from tyrefem.conduction.capacity import GAUSS, Capacity
 from tyrefem.conduction.conditions import Material, Reservoir
 from tyrefem.conduction.datum import Datum
 from tyrefem.conduction.fixed_nodes import FixedNodes
-from tyrefem.conduction.loads import Linear, Load, State, VariableConduction
+from tyrefem.conduction.loads import Linear, Load, SourceLoad, Sources, State, VariableConduction
 from tyrefem.conduction.operators import Operators, Surface
 from tyrefem.conduction.reservoir_loads import ExchangeLoad, PowerLoad
 from tyrefem.conduction.surface_loads import FilmLoad
@@ -38,6 +38,8 @@ class HeatBalance:
         self.ops, self.reservoirs = ops, reservoirs
         self.capacities = {name: Capacity(ops, name, material) for name, material in regions.items()}
         self.variable_capacity = any(not c.constant for c in self.capacities.values())
+        if not self.variable_capacity:
+            self._capacity_rows = np.array([c.row for c in self.capacities.values()])
         self.entries = [entry for entry, _ in loads] + [entry for entry, _, _ in fixed]
         for slot, (_, load) in enumerate(loads):
             load.slot = slot
@@ -55,7 +57,10 @@ class HeatBalance:
             for data, value in zip(ops.conduction(name, material.direction), pair, strict=True):
                 self.K0 += float(value) * data
         self.acting: list[Load] = [*self.loads, *self.conduction]
-        self._moving = [load for load in self.acting if not load.static]
+        moving = [load for load in self.acting if not load.static]
+        sources = [load for load in moving if isinstance(load, SourceLoad)]
+        self._sources = Sources(ops, sources) if sources else None
+        self._moving = [load for load in moving if not isinstance(load, SourceLoad)]
         self._timed = [load for load in self.loads if load.timed]
         self._linear = [load for load in self.loads if type(load).linear_power is not Load.linear_power]
         self._watched = [load for load in self.acting if type(load).stale is not Load.stale]
@@ -89,16 +94,17 @@ class HeatBalance:
             load.freeze(t, y, linear)
         self.S_data, self.B, self.D = linear.S, linear.B, linear.D
         self.S = self.ops.matrix(linear.S)
-        self.M_data = self.mass(y.u)
-        self.M = self.ops.matrix(self.M_data)
+        if self.variable_capacity or not self.version:
+            self.M_data = self.mass(y.u)
+            self.M = self.ops.matrix(self.M_data)
         self.C = self.reservoir_capacity(y.g)
         self._G, self._Gg, self._P = self._blank()
         for load in self.acting:
             if load.static:
                 self._P[load.slot] += load.remainder(t, y, self._G, self._Gg)
-        self._diagonal = self.M.diagonal()
         B = self.fixed.dofs
-        self.S_fixed, self.M_fixed = self.S[B], self.M[B]
+        if B.size:
+            self.S_fixed, self.M_fixed = self.S[B], self.M[B]
         self.version += 1
 
     def _blank(self) -> tuple[Array, Array, Array]:
@@ -113,11 +119,13 @@ class HeatBalance:
         if not self.variable_capacity:
             return False
         now = self.ops.matrix(self.mass(y.u)).diagonal()
-        return bool(np.any(np.abs(now / self._diagonal - 1) > 0.2))
+        return bool(np.any(np.abs(now / self.M.diagonal() - 1) > 0.2))
 
     def remainder(self, t: float, y: State) -> tuple[Array, Array, Array]:
         """(G, Gg, powers by ledger entry) that the frozen linear part leaves out."""
         G, Gg, P = self._G.copy(), self._Gg.copy(), self._P.copy()
+        if self._sources is not None:
+            P[self._sources.slots] += self._sources.remainder(t, y, G)
         for load in self._moving:
             power = load.remainder(t, y, G, Gg)
             if load.slot >= 0:
@@ -188,8 +196,12 @@ class HeatBalance:
 
     def stored(self, before: Array, after: Array) -> Array:
         """Heat taken up by every region, J."""
+        if not self.variable_capacity:
+            return np.asarray(self._capacity_rows @ (after - before))
         return np.array([c.stored(before, after) for c in self.capacities.values()])
 
     def storing(self, u: Array, slope: Array) -> Array:
         """Heat stored per second in every region, W."""
+        if not self.variable_capacity:
+            return np.asarray(self._capacity_rows @ slope)
         return np.array([c.rate(u, slope) for c in self.capacities.values()])

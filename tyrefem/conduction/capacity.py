@@ -25,7 +25,7 @@ class Capacity:
         self.c = cast(Any, material.heat_capacity)
         if self.constant:
             self.data = ops.mass(name) * float(self.c)
-            self.row = ops.matrix(self.data) @ np.ones(ops.size)
+            self.row = ops.mass_row(name) * float(self.c)
         else:
             self.q = ops.quadrature(name, material.direction)
 
@@ -40,6 +40,12 @@ class Capacity:
     def mass(self, u: Array) -> Array:
         """Operator values of the integral of c v u."""
         return self.data if self.constant else self.q.mass @ self.values(self.q.value @ u)
+
+    def slope(self, u: Array, rate: Array, bump: float) -> Array:
+        """Operator values of d(M du/dt)/d(temperature) at a rate (n,), K/s, by differences of so many K either way."""
+        T = self.q.value @ u
+        rise = (self.values(T + bump) - self.values(T - bump)) / (2 * bump)
+        return np.asarray(self.q.mass @ (rise * (self.q.value @ rate)))
 
     def stored(self, before: Array, after: Array) -> float:
         """Heat taken up from one temperature field to another, J."""

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 from typing import Any
 
 import numpy as np
@@ -27,14 +28,17 @@ class Datum:
         if self.constant:
             return self._value
         if t != self._time:
-            self._latest, self._time = checked(self._value(self._x, t), self._x.shape[1], self._field, t), t
-            if np.min(self._latest) < self._low:
+            latest = checked(self._value(self._x, t), self._x.shape[1], self._field, t)
+            if (latest if isinstance(latest, float) else latest.min()) < self._low:
                 raise InputError(f"is below {self._low:g} at t = {t:g} s", field=self._field)
+            self._latest, self._time = latest, t
         return self._latest
 
 
 def checked(value: Any, n: int, field: str, t: float) -> Any:
     """A float, or a finite array (n,): what a user's function returned."""
+    if isinstance(value, float) and math.isfinite(value):
+        return float(value)
     array = np.asarray(value, dtype=float)
     if array.size == 1:
         array = array.reshape(())

@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+import functools
+from contextlib import AbstractContextManager
 from typing import Any
 
 import numpy as np
@@ -10,14 +12,31 @@ from scipy.linalg import get_lapack_funcs
 from scipy.sparse import csc_matrix, csr_matrix
 from scipy.sparse.csgraph import reverse_cuthill_mckee
 from scipy.sparse.linalg import splu
+from threadpoolctl import ThreadpoolController
 
+from tyrefem.conduction.blocks import Blocks
 from tyrefem.conduction.errors import SolverError
 
 Array = NDArray[Any]
 
 _SOLVES_PER_FACTOR = 30.0
+#: Right-hand sides from which a few solves by blocks pay for making them.
+_MANY = 16
 # Seconds per unit of work on one core: banded flop, banded byte moved, and SuperLU per unknown.
 _FLOP, _BYTE, _SPARSE_FACTOR, _SPARSE_SOLVE = 1.2e-10, 1.2e-10, 8e-6, 2.1e-7
+
+
+@functools.cache
+def _libraries() -> ThreadpoolController:
+    return ThreadpoolController()
+
+
+def one_thread() -> AbstractContextManager[Any]:
+    """Within it BLAS works in one thread: band solves are too small to share, and looking up libraries is slow.
+
+    On a busy machine waiting threads cost ten times the work.
+    """
+    return _libraries().limit(limits=1, user_api="blas")
 
 
 class Ordering:
@@ -101,11 +120,19 @@ class Factor:
                 options={"SymmetricMode": True},
             )
 
+    @functools.cached_property
+    def _blocks(self) -> Blocks:
+        return Blocks(self._band)
+
     def solve(self, right: Array) -> Array:
         """x with A x = right, for one vector (n,) or several (n, m)."""
         if not self.ordering.banded:
             return self._lu.solve(right)
         order = self.ordering.order
+        if right.ndim == 2 and right.shape[1] >= _MANY:
+            solution = np.empty_like(right)
+            solution[order] = self._blocks.solve(right[order])
+            return solution
         permuted, _ = self._pbtrs(self._band, right[order], lower=1, overwrite_b=1)
         solution = np.empty_like(permuted)
         solution[order] = permuted

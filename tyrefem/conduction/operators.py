@@ -10,7 +10,7 @@ from weakref import WeakValueDictionary
 import numpy as np
 import skfem
 from numpy.typing import NDArray
-from scipy.sparse import csr_matrix
+from scipy.sparse import csr_matrix, hstack
 
 from tyrefem.conduction.factor import Ordering
 from tyrefem.conduction.quadrature import Quadrature, Surface
@@ -135,6 +135,10 @@ class Operators:
 
         return self._once(("mass", name), make)
 
+    def mass_row(self, name: str) -> Array:
+        """Integral of every shape function over a subdomain, (n,): what a unit of heat per volume does."""
+        return self._once(("mass row", name), lambda: self.matrix(self.mass(name)) @ np.ones(self.size))
+
     def directed_gradients(self, name: str, direction: Callable[..., Any] | None) -> tuple[Array, Array]:
         """Shape-function slopes along and across `direction` at the quadrature points, (n_local, n_el, n_q)."""
         e = self.elements(name)
@@ -162,9 +166,16 @@ class Operators:
 
         return self._once(("conduction", name, direction), make)
 
-    def source(self, name: str) -> csr_matrix:
-        """Nodal source (W/m3 at `nodes(name)`) to nodal load (W): consistent mass, (n, n_nodes)."""
-        return self._once(("source", name), lambda: self.matrix(self.mass(name)).tocsc()[:, self.dofs(name)].tocsr())
+    def source(self, *names: str) -> csr_matrix:
+        """Nodal source (W/m3 at `nodes(name)`) to nodal load (W): consistent mass, (n, n_nodes).
+
+        Several subdomains: their nodes one after the other.
+        """
+
+        def make() -> csr_matrix:
+            return hstack([self.matrix(self.mass(name)).tocsc()[:, self.dofs(name)] for name in names], format="csr")
+
+        return self._once(("source", *names), make)
 
     def quadrature(self, name: str, direction: Callable[..., Any] | None = None) -> Quadrature:
         """Quadrature of a region for coefficients that depend on temperature."""

@@ -7,11 +7,11 @@ from typing import Any
 
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
-from threadpoolctl import threadpool_limits
 
 from tyrefem.conduction.balance import HeatBalance
 from tyrefem.conduction.budget import Tally
 from tyrefem.conduction.conditions import Condition, Film, Material, Reservoir, is_number
+from tyrefem.conduction.factor import one_thread
 from tyrefem.conduction.field import Field
 from tyrefem.conduction.history import History, Steps
 from tyrefem.conduction.loads import State
@@ -205,8 +205,7 @@ class Conduction:
         run = Integration(balance, when, y, float(tolerance), jumps, max_step or np.inf, tally)
         interrupted = False
         try:
-            # Band solves are too small to share: on a busy machine waiting threads cost ten times the work.
-            with threadpool_limits(1, user_api="blas"):
+            with one_thread():
                 run.run(progress)
         except KeyboardInterrupt:
             interrupted = True

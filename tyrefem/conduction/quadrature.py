@@ -18,6 +18,9 @@ if TYPE_CHECKING:
 
 Array = NDArray[Any]
 
+#: Unknowns of a surface up to which a full matrix multiplies faster than a sparse one.
+_FEW = 128
+
 
 class Quadrature:
     """Values and slopes of a field at a region's quadrature points, and the way back to operator values."""
@@ -83,17 +86,19 @@ class Surface:
 
     def load(self, q: Any) -> Array:
         """Load (n_dofs,) W of a flux: a number or its values at the points, W/m2."""
-        return self.row * q if np.ndim(q) == 0 else np.asarray(self.trace_t @ (self.weight * q))
+        return self.row * q if isinstance(q, float) else np.asarray(self.trace_t @ (self.weight * q))
 
     def loss(self, h: Any, T: Array) -> Array:
         """Load (n_dofs,) W of the flux h T, with h a number or values at the points, T of the surface's unknowns."""
-        if np.ndim(h) == 0:
-            return np.asarray(h * (self._even @ T))
+        if isinstance(h, float):
+            return np.asarray(h * (self.even @ T))
         return np.asarray(self.trace_t @ (self.weight * h * (self.trace @ T)))
 
     @functools.cached_property
-    def _even(self) -> csr_matrix:
-        return (self.trace_t.multiply(self.weight) @ self.trace).tocsr()
+    def even(self) -> Any:
+        """Load W of the flux h T for h = 1 everywhere, from T of the surface's unknowns: (n_dofs, n_dofs)."""
+        matrix = (self.trace_t.multiply(self.weight) @ self.trace).tocsr()
+        return matrix.toarray() if self.dofs.size <= _FEW else matrix
 
     @functools.cached_property
     def even_exchange(self) -> tuple[Array, Array]:

@@ -6,9 +6,9 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 from numpy.typing import NDArray
-from threadpoolctl import threadpool_limits
 
 from tyrefem.conduction.balance import HeatBalance
+from tyrefem.conduction.factor import one_thread
 from tyrefem.conduction.loads import State
 from tyrefem.errors import InputError
 
@@ -27,9 +27,9 @@ class StageSolver:
         self.h, self.n, self.m = h, balance.ops.size, heat.size
         self.heat, self.version = heat, balance.version
         self.factor = ordering.factor(balance.M_data + h * balance.S_data)
-        self.B = balance.B
+        self.back = h * balance.B.T
         self.through = self.factor.solve(h * balance.B) if self.m else np.zeros((self.n, 0))
-        small = np.diag(heat) + h * balance.D - h * balance.B.T @ self.through
+        small = np.diag(heat) + h * balance.D - self.back @ self.through
         self.inverse = np.linalg.inv(small)
 
     def serves(self, balance: HeatBalance, h: float, heat: Array) -> bool:
@@ -41,7 +41,7 @@ class StageSolver:
         body = self.factor.solve(np.ascontiguousarray(right[: self.n]))
         if not self.m:
             return body
-        gas = self.inverse @ (right[self.n :] + self.h * self.B.T @ body)
+        gas = self.inverse @ (right[self.n :] + self.back @ body)
         return np.concatenate([body + self.through @ gas, gas])
 
 
@@ -57,7 +57,7 @@ def quick(problem: Conduction, times: Array, initial: float) -> tuple[Array, Arr
     -------
     values (n_times, n) and reservoirs (n_times, m), degC. Step ends are of second order, stages of first.
     """
-    with threadpool_limits(1, user_api="blas"):
+    with one_thread():
         return _march(problem, times, initial)
 
 

@@ -80,12 +80,7 @@ def _correction(balance: HeatBalance, t: float, y: State, residual: np.ndarray) 
             J = J + back @ diags(region.q.weight * (b - a) / _BUMP * (slope @ y.u)) @ region.q.value
     for load in balance.loads:
         if isinstance(load, SourceLoad) and not load.static:
-            dq = (load.at_nodes(t, y.u + _BUMP) - load.at_nodes(t, y.u - _BUMP)) / (2 * _BUMP)
-            block = (load.matrix @ diags(dq)).tocsc()
-            columns = csr_matrix(
-                (np.ones(load.dofs.size), (np.arange(load.dofs.size), load.dofs)), (load.dofs.size, y.u.size)
-            )
-            J = J - block @ columns
+            J = J - balance.ops.matrix(load.slope(t, y.u, _BUMP))
         elif isinstance(load, FluxLoad) and load.of_temperature:
             dq = (load.value(t, y.u + _BUMP) - load.value(t, y.u - _BUMP)) / (2 * _BUMP)
             data = np.zeros(balance.ops.nnz)

@@ -30,7 +30,7 @@ class FilmLoad(Load):
 
     def freeze(self, t: float, y: State, linear: Linear) -> None:
         self.h0 = self.h(t)
-        if np.ndim(self.h0) == 0:
+        if isinstance(self.h0, float):
             where, value = self.s.even_exchange
             value = self.h0 * value
         else:
@@ -46,24 +46,30 @@ class FilmLoad(Load):
         if self.h.constant:
             return False
         h = self.h(t)
+        if isinstance(h, float) and isinstance(self.h0, float):
+            return abs(h - self.h0) > STALE * max(h, self.h0)
         return bool(np.max(np.abs(h - self.h0)) > STALE * max(np.max(h), np.max(self.h0)))
 
     def remainder(self, t: float, y: State, G: Array, Gg: Array) -> float:
-        h, h0, s, r = self.h(t), self.h0, self.s, self.reservoir
-        same = h is h0 or (h == h0 if np.ndim(h) == np.ndim(h0) == 0 else np.array_equal(h, h0))
-        if r is not None:
-            if same:
-                return 0.0
-            load = s.load((h - h0) * y.g[r]) - s.loss(h - h0, y.u[s.dofs])
-        else:
-            load = s.load(h * self.sink(t))
-            if not same:
-                load = load - s.loss(h - h0, y.u[s.dofs])
+        s, r = self.s, self.reservoir
+        flux, more = self.beyond(t, y)
+        changed = more != 0.0 if isinstance(more, float) else more.any()
+        if r is not None and not changed:
+            return 0.0
+        load = s.load(flux)
+        if changed:
+            load = load - s.loss(more, y.u[s.dofs])
         G[s.dofs] += load
         power = float(load.sum())
         if r is not None:
             Gg[r] -= power
         return power
+
+    def beyond(self, t: float, y: State) -> tuple[Any, Any]:
+        """What is not in the frozen part, q = flux - more T: W/m2 and W/m2/K, numbers or values at the points."""
+        h = self.h(t)
+        more = h - self.h0
+        return (h * self.sink(t) if self.reservoir is None else more * float(y.g[self.reservoir])), more
 
     def linear_power(self, y: State) -> float:
         back = 0.0 if self.reservoir is None else self.total * y.g[self.reservoir]

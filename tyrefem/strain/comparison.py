@@ -249,4 +249,7 @@ def _outcome(study: Study, law: str) -> LawOutcome:
 
 
 def _has_arcs(study: Study) -> bool:
-    return hasattr(study.section.line, "sidewall_radius")
+    from tyrefem.mechanics import ARC_REGIONS
+
+    section = study.section
+    return hasattr(section.line, "sidewall_radius") and set(ARC_REGIONS) <= set(section.regions)
