@@ -96,10 +96,11 @@ class Lamp(Effect):
 `tyrefem.effects.Effect`, whose docstrings give arguments and units: `heat_factor`, `heat_addend`,
 `conductivity_factor`, `capacity_factor`, `film_factor`, `film_addend`, `film_resistance`, `sink_addend`, `flux`,
 `radiation`, `gas_capacity_factor`, `rim_power`, `worn`, `displacement`, `lag_addend`, `offset`, `clock`, `channel`.
-"""
 
-`of_drive: ClassVar[bool] = True` says that what the effect does to films, surrounding temperatures and the rim depends on time through the drive alone (speed, load, pressure): constant
-where the drive is. Reduced models then ask for it once per phase. Leave it away where the method uses `t` itself.
+`of_drive: ClassVar[bool] = True` says that what the effect does to films, surrounding temperatures and the rim depends
+on time through the drive alone (speed, load, pressure): constant where the drive is. Reduced models then ask for it
+once per phase. Leave it away where the method uses `t` itself.
+"""
 
 
 def _shown(effect: type[Effect]) -> bool:
