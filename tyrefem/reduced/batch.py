@@ -23,7 +23,7 @@ from tyrefem.reduced.sampled import COLD, FINE, HOT, SampledHeat
 __all__ = ["COLD", "FINE", "HOT", "Batch", "Moment"]
 Array = NDArray[np.float64]
 #: First windows of a phase as a share of it; how much a window may grow or shrink from one to the next.
-FIRST, GROWTH, SHRINK = 0.03, 5.0, 0.3
+FIRST, GROWTH, SHRINK = 0.05, 5.0, 0.3
 #: Sweeps of a window before it is cut; a sweep that changes less than this share of the tolerance is the last.
 SWEEPS, SETTLED = 14, 0.05
 #: A window's films may differ by this much from its frozen ones where they change.
@@ -172,7 +172,7 @@ class _Phase:
         apart = None if self.steady else films - self.frozen.films[:, :, None]
         E, each = responses(h * self.decay, NODES, count)
         # Answer of every mode at the nodes to heat at the nodes: (B, n, node, node of the heat).
-        answer = h * np.tensordot(each, TO_POWERS, axes=(0, 0))
+        answer = np.tensordot(each, h * TO_POWERS, axes=(0, 0))
         z0 = (self.into @ (self.M @ self.y[:, :, None]))[:, :, 0]
         free = E * z0[:, :, None]
         # To begin with, the heat of the window's start goes on as it changed before, ever less.

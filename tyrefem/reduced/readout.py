@@ -82,30 +82,30 @@ class Readout:
     def peaks(self) -> list[dict[str, Peak]]:
         """Of every variant: ``tyre`` and every region -> its highest temperature, with place and time."""
         model, count = self.marched.batch.model, self.states.shape[1]
-        modes, when, found = np.ascontiguousarray(self._seen[:, :, : model.size].transpose(1, 0, 2)), {}, {}
-        each, single = np.arange(count), modes.astype(np.float32)
-        posts = self._posts
+        modes, when, found = self._seen[:, :, : model.size], {}, {}
+        each, posts = np.arange(count), self._posts
+        at_posts = modes[posts].astype(np.float32).transpose(1, 0, 2).reshape(-1, model.size)
         missed: set[int] = set()
         for region, hot in model.hot.items():
             rows = model.hot_rows[region]
             # In single precision first, and only near the highest posts; then in double what may be the highest.
             light = rows.T.astype(np.float32)
-            first = (single[:, posts].reshape(-1, model.size) @ light).max(axis=1).reshape(count, -1)
+            first = (at_posts @ light).max(axis=1).reshape(count, -1)
             near = first >= first.max(axis=1, keepdims=True) - BETWEEN
             own, times = np.nonzero(near[:, :-1] | near[:, 1:])
             own, times = _between(own, posts[times], posts[times + 1])
-            rough = (single[own, times] @ light).max(axis=1)
+            rough = (modes[times, own].astype(np.float32) @ light).max(axis=1)
             highest_of = np.maximum.reduceat(rough, np.searchsorted(own, each))
             kept = rough >= highest_of[own] - ROUGH
             own, times = own[kept], times[kept]
-            values = modes[own, times] @ rows.T
+            values = modes[times, own] @ rows.T
             node, firsts = values.argmax(axis=1), np.searchsorted(own, each)
             highest = values[np.arange(len(own)), node]
             best = np.array([a + highest[a:b].argmax() for a, b in pairwise([*firsts, len(own)])])
             when[region] = times[best]
             found[region] = highest[best], np.asarray(hot)[node[best]]
             # All nodes at these times: is any hotter than those that were looked at?
-            most = (model.region_rows[region] @ modes[each, when[region]].T).max(axis=0)
+            most = (model.region_rows[region] @ modes[when[region], each].T).max(axis=0)
             missed |= set(np.flatnonzero(most > found[region][0] + 1e-9).tolist())
         points, peaks = model.operators.points, []
         for b in range(count):

@@ -13,6 +13,7 @@ from tyrefem.conduction.ros34pw2 import GAMMA
 from tyrefem.conduction.setup import balance_of
 from tyrefem.conduction.stage_matrix import StageMatrix
 from tyrefem.reduced.batch import Batch
+from tyrefem.reduced.marched import Marched
 from tyrefem.reduced.model import ReducedModel
 from tyrefem.reduced.train import Snapshots, sources_at
 from tyrefem.rolling import RollingTyre
@@ -21,12 +22,17 @@ Array = NDArray[np.float64]
 #: Parts of a phase at which fields are corrected.
 PARTS = np.array([0.02, 0.1, 0.3, 0.6, 1.0])
 #: Factored matrices kept; error of a correction that is left over to the next, and solves for it at most.
-KEPT, LEFT, ITERATIONS = 8, 0.03, 8
+KEPT, LEFT, ITERATIONS = 8, 0.1, 8
 #: K, of the time integration of what is corrected.
 TIME_TOLERANCE = 0.2
 
 
 def corrected(model: ReducedModel, tyre: RollingTyre, share: float) -> tuple[Snapshots, float]:
+    """`correction` of a variant that is marched alone."""
+    return correction(Batch(model, [model.balance(tyre)], TIME_TOLERANCE).march(), 0, share)
+
+
+def correction(marched: Marched, place: int, share: float) -> tuple[Snapshots, float]:
     """Fields and heat sources of a variant as the full model corrects its reduced ones, and the largest correction, K.
 
     With the residual of the full heat balance at the reduced field u = V a and its rate V a',
@@ -38,17 +44,17 @@ def corrected(model: ReducedModel, tyre: RollingTyre, share: float) -> tuple[Sna
 
     Parameters
     ----------
-    share : tau over the duration of every phase.
+    marched, place : the variant's batch and its place there. share : tau over the duration of every phase.
     """
-    balance = model.balance(tyre)
-    marched = Batch(model, [balance], TIME_TOLERANCE).march()
+    balance, model = marched.batch.balances[place], marched.batch.model
+    tyre = balance.tyre
     full = balance_of(model.operators, tyre.bodies, tyre.boundaries, tyre.sources, balance.reservoirs)
     m = model.size
     fields, sources, largest = [], [], 0.0
     for number, (start, end) in enumerate(pairwise([*tyre.drive.starts, tyre.drive.end])):
         span = end - start
         times = start + PARTS * span * (1 - 1e-9)
-        states, slopes = marched.states(times)[:, 0], marched.slopes(times)[:, 0]
+        states, slopes = marched.states(times)[:, place], marched.slopes(times)[:, place]
         values, rates = (each[:, :m] @ model.V.T for each in (states, slopes))
         full.freeze(float(times[2]), State(values[2], states[2, m:]))
         tau = share * span

@@ -11,7 +11,8 @@ from numpy.typing import NDArray
 
 from tyrefem.errors import InputError
 from tyrefem.reduced.model import NotReducibleError, ReducedModel
-from tyrefem.reduced.residual import corrected
+from tyrefem.reduced.residual import TIME_TOLERANCE as CORRECTED_TO
+from tyrefem.reduced.residual import correction
 from tyrefem.reduced.train import Fineness, Snapshots, snapshots, trained, training_run
 from tyrefem.reduced.work import Packed, base_of, pack, remember
 from tyrefem.rolling import RollingTyre, run
@@ -24,6 +25,8 @@ Array = NDArray[np.float64]
 Tick = Callable[[str, int, int], None]
 #: Variants corrected by residuals in a round, per number that varies and at least.
 PER_NUMBER, LEAST = 2.0, 10
+#: Variants corrected together: marched side by side, few enough for several processes.
+TOGETHER = 5
 #: Horizons of the corrections over the duration of a phase, in turns.
 HORIZONS = (0.1, 0.5)
 #: Places of the box are stretched about its middle: corners are interpolated between, not extrapolated to.
@@ -62,22 +65,36 @@ def learn(lesson: Lesson) -> dict[str, Any]:
 
 @dataclass(frozen=True, eq=False)
 class Amendment:
-    """Work of a correction by residuals: a variant, and tau over the duration of every phase."""
+    """Work of corrections by residuals: variants, and for each tau over the duration of every phase."""
 
-    changes: Mapping[str, Any]
-    share: float
+    changes: Sequence[Mapping[str, Any]]
+    shares: Sequence[float]
 
 
 def amend(work: Amendment, packed: Packed) -> dict[str, Any]:
-    """Done in a worker: ``{"snapshots", "correction"}`` or ``{"failure"}``, ``{"not_reducible"}``."""
-    model = packed.unpacked()
+    """Done in a worker: ``{"each"}``: ``{"snapshots", "correction"}``, ``{"failure"}`` or ``{"not_reducible"}``."""
+    from tyrefem.reduced.surrogate import side_by_side
+
+    model, base = packed.unpacked(), packed.unpacked().base
+    found: list[dict[str, Any]] = [{} for _ in work.changes]
+    tyres: dict[int, RollingTyre] = {}
+    for number, changes in enumerate(work.changes):
+        try:
+            tyres[number] = RollingTyre(base.study.replace(changes), base)
+        except InputError as error:
+            found[number] = {"failure": str(error)}
+    numbers = list(tyres)
     try:
-        found, largest = corrected(model, RollingTyre(model.base.study.replace(work.changes), model.base), work.share)
-    except NotReducibleError as error:
-        return {"not_reducible": str(error)}
+        for places, part in side_by_side(model, list(tyres.values()), CORRECTED_TO):
+            for place, number in enumerate(numbers[one] for one in places):
+                if isinstance(part, dict):
+                    found[number] = part
+                else:
+                    snapshots, largest = correction(part, place, work.shares[number])
+                    found[number] = {"snapshots": snapshots, "correction": largest}
     except InputError as error:
-        return {"failure": str(error)}
-    return {"snapshots": found, "correction": largest}
+        found = [one or {"failure": str(error)} for one in found]
+    return {"each": found}
 
 
 class School:
@@ -125,8 +142,13 @@ class School:
             model = trained(self.base, self.learnt, self.choice)
             packed = pack(model, self.plan.packed)
             places = [np.clip(0.5 + STRETCH * (one - 0.5), 0.0, 1.0) for one in self.fresh(self.round)]
-            work = [Amendment(self.variant(one), HORIZONS[n % len(HORIZONS)]) for n, one in enumerate(places)]
-            found = self._done(amend, work, "correcting", packed)
+            changes = [self.variant(one) for one in places]
+            shares = [HORIZONS[n % len(HORIZONS)] for n in range(len(places))]
+            firsts = range(0, len(places), TOGETHER)
+            work = [Amendment(changes[n : n + TOGETHER], shares[n : n + TOGETHER]) for n in firsts]
+            parts = self._done(amend, work, "correcting", packed)
+            # A part that failed as a whole, as where its process died, teaches nothing.
+            found = [one for part in parts for one in part.get("each", [part])]
             refused = next((one["not_reducible"] for one in found if "not_reducible" in one), None)
             if refused is not None:
                 raise NotReducibleError(refused)

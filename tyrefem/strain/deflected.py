@@ -83,7 +83,7 @@ def deflected_sidewall(line: Any, deflection: float, membrane_compliance: float,
     values = 2 * radii * np.sin(lengths / (2 * radii)) - chord
     closes = np.flatnonzero((values[:-1] >= 0) & (values[1:] <= 0))
     if len(closes) and shoulder[1] > bead[1]:
-        radius = _bisected(gap, float(radii[closes[0] + 1]), float(radii[closes[0]]))
+        radius = _root(gap, float(radii[closes[0] + 1]), float(radii[closes[0]]))
         return sidewall_arc(shoulder, bead, radius, stretched(radius))
     raise InputError(
         f"a deflection of {deflection * 1e3:.1f} mm is impossible for this section: with the crown flattened the "
@@ -109,13 +109,30 @@ def _major(shoulder: tuple[float, float], bead: tuple[float, float], radius: flo
     return DeflectedArcs(radius, cx, cy, start, 2 * math.pi - minor.turn)
 
 
-def _bisected(gap: Callable[[float], float], lower: float, upper: float) -> float:
-    """Root of a function that is negative at ``lower`` and positive at ``upper``, to the last digit.
+def _root(gap: Callable[[float], float], lower: float, upper: float) -> float:
+    """Root of a function that is negative at ``lower`` and positive at ``upper``, to rounding (the Illinois method).
 
     Written out because scipy.optimize takes a tenth of a short run to import.
+
+    >>> _root(lambda x: x**2 - 2.0, 0.0, 2.0) == 2.0**0.5
+    True
     """
+    below, above, before, side = gap(lower), gap(upper), math.inf, 0
     while True:
-        middle = (lower + upper) / 2
-        if middle in (lower, upper):
-            return middle
-        lower, upper = (middle, upper) if gap(middle) < 0 else (lower, middle)
+        x = (lower * above - upper * below) / (above - below)
+        if not lower < x < upper:
+            x = (lower + upper) / 2
+            if x in (lower, upper):
+                return x
+        if abs(x - before) <= math.ulp(x):
+            return x
+        value, before = gap(x), x
+        if value == 0:
+            return x
+        # An end that stays twice counts half, so that it moves too.
+        if value < 0:
+            lower, below = x, value
+            above, side = (above / 2 if side < 0 else above), -1
+        else:
+            upper, above = x, value
+            below, side = (below / 2 if side > 0 else below), 1
