@@ -11,6 +11,7 @@ import pytest
 from numpy.typing import NDArray
 from scipy.optimize import minimize
 
+from tyrefem.diagnose import refine
 from tyrefem.diagnose.explained import Explained
 from tyrefem.diagnose.gap import Gap
 from tyrefem.diagnose.refine import polished, refined
@@ -159,3 +160,23 @@ def test_a_larger_set_starts_where_its_part_has_converged() -> None:
     assert first[0] == pytest.approx(none.values[STATED], abs=0.1)
     cold = refined(found, [(BENDING,)])[0]
     assert warm.log_evidence == pytest.approx(cold.log_evidence, abs=0.3)
+
+
+@pytest.mark.parametrize(("odd", "again"), [(2.0, True), (0.3, False)])
+def test_a_misfit_that_noise_seldom_makes_is_believed_with_tangents_at_its_own_point(
+    odd: float, again: bool, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    # What no unknown explains: the misfit stays poor, so that tangents corrected step by step are not enough.
+    left = odd * np.where(np.arange(10) % 2, 1.0, -1.0)
+    tangents = []
+    for seldom in (0.0, 0.1):
+        monkeypatch.setattr(refine, "SELDOM", seldom)
+        lab = Lab(saturating, saturating(0.2, 3.0) + left)
+        one = fitted(lab)
+        assert one.converged
+        assert one.misfit == pytest.approx(least(lab), abs=1.0)
+        tangents.append([x for method, x in lab.asked if method == "jacobian"])
+    assert (len(tangents[1]) > len(tangents[0])) is again
+    if again:
+        final = one.values[STATED], one.values[BENDING.unknowns[0]]
+        assert tangents[1][-1] == pytest.approx(final, abs=0.05)

@@ -6,6 +6,7 @@ from collections.abc import Callable, Mapping, Sequence
 
 import numpy as np
 from numpy.typing import NDArray
+from scipy.stats import chi2
 
 from tyrefem.diagnose.evidence import Members
 from tyrefem.diagnose.explained import Explained, explained
@@ -19,6 +20,8 @@ Array = NDArray[np.float64]
 CLOSE, ASTRAY = 1.0, 6.0
 #: A fit has converged when the linear model about it promises no more than this drop of the misfit.
 SETTLED = 0.5
+#: A misfit that noise makes this seldom is not believed to be the smallest before tangents are taken where it is.
+SELDOM = 0.1
 #: With more than the first the fit is given up when a step leaves more than the second of the misfit.
 FAR_OFF, SLOW = 3.0, 0.9
 FIRST_STEPS, MORE_STEPS, MORE_TANGENTS = 4, 14, 4
@@ -144,6 +147,15 @@ class Refinement:
         if not limited and np.linalg.norm(missed) < CLOSE:
             self.done = self.converged = True
         self.done = self.done or slow
+        if self.converged and self.matters and self.moved and self._may_learn and self._poor:
+            # Corrected step by step, tangents may say that nothing is left to gain where much is.
+            self.done = self.converged = False
+            self._learn()
+
+    @property
+    def _poor(self) -> bool:
+        """Would noise seldom make a misfit like this?"""
+        return float(chi2.sf(self.misfit(self.r, self.x), len(self.r))) < SELDOM
 
     @property
     def _may_learn(self) -> bool:
