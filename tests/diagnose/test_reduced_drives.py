@@ -16,7 +16,7 @@ from tyrefem.diagnose import Diagnosis
 from tyrefem.diagnose.bench import FOLLOWED, NOT_FOLLOWED, UNSAID, Bench, Response
 from tyrefem.diagnose.laboratory import Laboratory
 from tyrefem.diagnose.predictions import ALLOWED, Predictions
-from tyrefem.diagnose.reduced_drive import Modes
+from tyrefem.diagnose.reduced_drive import Modes, ReducedDrive
 from tyrefem.diagnose.responses import responses, unknowns_of
 from tyrefem.diagnose.trials import trial
 from tyrefem.diagnose.unknowns import Candidate, Unknown, candidates, with_values
@@ -213,3 +213,15 @@ def test_no_modes_where_the_drive_itself_is_not_followed(drives: Drives) -> None
     said = Predictions(Laboratory(bench), [one.modes])
     assert np.isfinite(said.predict([((), {})], [0])[0][0]).all()
     assert (said.reduced, said.lean) == (0, 1)
+
+
+def test_a_drive_that_its_model_cannot_march_is_left_to_simulations(
+    drives: Drives, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    monkeypatch.setattr(ReducedDrive, "_marched", lambda self, tyres: ([], []))
+    bench = Bench(drives.study, drives.bench.trials)
+    said = Predictions(Laboratory(bench), drives.modes)
+    point = drives.drawn(5)
+    found = said.predict([((), point)], [DRIVE])[0][0]
+    np.testing.assert_array_equal(found, bench.predict(DRIVE, point))
+    assert not said.certificates[(), DRIVE].good

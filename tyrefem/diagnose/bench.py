@@ -19,6 +19,7 @@ from tyrefem.diagnose.trials import Trial
 from tyrefem.diagnose.unknowns import Unknown, with_values
 from tyrefem.diagnose.varied import Varied
 from tyrefem.errors import InputError
+from tyrefem.reduced.model import NotReducibleError
 from tyrefem.result import GAS, RIM
 from tyrefem.rolling import RollingTyre, run
 from tyrefem.studies import Study
@@ -176,7 +177,10 @@ class Bench:
         for place, values in enumerate(points):
             with contextlib.suppress(InputError):
                 studies[place] = with_values(base.study, values, base.study)
-        own = self.blocks(number, base.grid, base.readings) - self.blocks(number, base.grid, drive.own)
+        try:
+            own = self.blocks(number, base.grid, base.readings) - self.blocks(number, base.grid, drive.own)
+        except NotReducibleError:
+            return np.full(len(points), NOT_FOLLOWED), found
         readings, refused = drive.readings(list(studies.values()))
         for order, (place, one) in enumerate(zip(studies, readings, strict=True)):
             if one is not None:
