@@ -8,7 +8,6 @@ from typing import TYPE_CHECKING, Annotated, Any
 
 import typer
 
-from tyrefem import library
 from tyrefem.errors import InputError, nearest
 
 #: What may be checked by name too, in this order.
@@ -34,6 +33,8 @@ def check(
         if not path.is_file():
             raise InputError("a folder without a study.toml, sweep.toml or rig.toml", file=file)
     if not os.path.lexists(path):
+        from tyrefem import library
+
         known = {name: own for kind in reversed(KINDS) for name, own in library.names(kind).items()}
         if file not in known:
             hint = nearest(file, known)
