@@ -20,12 +20,7 @@ from tyrefem.diagnose.progress_store import ProgressStore
 from tyrefem.diagnose.responses import Tick, gap_of
 from tyrefem.diagnose.trials import trial
 from tyrefem.diagnose.unknowns import Unknown, candidates
-from tyrefem.diagnose.verdict import (
-    CONFOUNDED,
-    IDENTIFIED,
-    UNEXPLAINED,
-    Judgement,
-)
+from tyrefem.diagnose.verdict import CONFOUNDED, IDENTIFIED, UNEXPLAINED, Judgement
 from tyrefem.errors import InputError
 from tyrefem.studies import Study
 
