@@ -104,7 +104,7 @@ def read_toml(path: str | Path) -> dict[str, Any]:
 @functools.lru_cache(maxsize=64)
 def _parsed(path: Path, *_state: int) -> dict[str, Any]:
     """A file as it was in this state: time of change, size, number."""
-    return tomllib.loads(path.read_text(encoding="utf-8"))
+    return tomllib.loads(path.read_text(encoding="utf-8-sig"))
 
 
 #: Ways of giving one property: a table that is laid over another in one of them drops the other ways.

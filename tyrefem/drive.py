@@ -126,8 +126,9 @@ class Drive(Card):
     """The whole drive: ``phases`` in their order, starting at ``initial`` temperature."""
 
     kind: ClassVar[str] = "drive"
-    initial: Temperature
+    # Before `initial`, which may be taken from an ambient temperature: what is wrong there is said of the phase.
     phases: tuple[Phase, ...]
+    initial: Temperature
 
     @model_validator(mode="before")
     @classmethod
@@ -135,6 +136,9 @@ class Drive(Card):
         if not isinstance(data, Mapping):
             return data
         defaults = {key: value for key, value in data.items() if key not in ("phases", "initial")}
+        for key in defaults:
+            if key not in Phase.model_fields:
+                raise InputError(f"unknown key '{key}'{nearest(str(key), {*Phase.model_fields, *cls.model_fields})}")
         phases = data.get("phases", [{}])
         if not isinstance(phases, list) or not phases:
             raise InputError("must be a list of at least one phase", field="phases")
@@ -202,6 +206,28 @@ class Drive(Card):
         while number > 0 and self._locked[number - 1]:
             number -= 1
         return self.starts[number]
+
+
+def as_written(drive: Mapping[str, Any], field: str) -> str:
+    """The field of a study file that a phase's field comes from: ``[drive]`` itself gives what no phase says.
+
+    >>> as_written({"ambient": "25 lbf"}, "drive.phases.0.ambient")
+    'drive.ambient'
+    >>> drive = {"ambient": "25 degC", "phases": [{"name": "taxi", "speed": "20 mph"}, {"ambient": "5 lbf"}]}
+    >>> as_written(drive, "drive.phases.taxi.ambient.from"), as_written(drive, "drive.phases.1.ambient")
+    ('drive.ambient.from', 'drive.phases.1.ambient')
+    """
+    listed = drive.get("phases")
+    phases = listed if isinstance(listed, list) and listed else [{"name": drive.get("name", "rolling")}]
+    for number, phase in enumerate(phases):
+        given = phase if isinstance(phase, Mapping) else {}
+        for which in (str(number), str(given.get("name", f"phase {number + 1}"))):
+            if f"{field}.".startswith(f"drive.phases.{which}."):
+                rest = field.removeprefix(f"drive.phases.{which}").removeprefix(".")
+                key = rest.partition(".")[0]
+                from_drive = listed is None or (key in drive and key not in given)
+                return f"drive.{rest}".removesuffix(".") if from_drive else field
+    return field
 
 
 def _start_of(value: Any) -> Any:

@@ -34,6 +34,17 @@ class MissingLibraryError(InputError):
     """A feature needs a library that this machine does not have or cannot load."""
 
 
+def quoted(words: Iterable[str], allowed: Iterable[str]) -> str:
+    """Unknown words in quotes, each with the closest allowed word.
+
+    >>> quoted(["crwn", "x9"], ["crown", "bead"])
+    "'crwn' (did you mean 'crown'?), 'x9'"
+    """
+    names = sorted(map(str, allowed))
+    close = {word: difflib.get_close_matches(word, names, n=1, cutoff=0.5) for word in words}
+    return ", ".join(f"'{word}'" + (f" (did you mean '{match[0]}'?)" if match else "") for word, match in close.items())
+
+
 def nearest(word: str, allowed: Iterable[str]) -> str:
     """`"; did you mean 'x'?"` for the closest allowed word, or the list of what is allowed.
 

@@ -4,7 +4,6 @@ from __future__ import annotations
 
 import copy
 import functools
-import re
 from collections.abc import Mapping
 from dataclasses import dataclass, field
 from pathlib import Path
@@ -13,7 +12,9 @@ from typing import TYPE_CHECKING, Any
 from tyrefem import library
 from tyrefem.construction import check_cords_fit
 from tyrefem.dotted import all_changed, scaled, value_at
-from tyrefem.errors import InputError, nearest
+from tyrefem.drive import as_written
+from tyrefem.effects import catalogue
+from tyrefem.errors import InputError, nearest, quoted
 from tyrefem.materials import MaterialCard
 from tyrefem.study_card import MeasuredEntry, Sensor, StudyCard
 
@@ -73,12 +74,12 @@ class Study:
         return Study, (self.name, self.data, self.file, self.folder)
 
     def as_written(self, error: InputError) -> InputError:
-        """The error in the file's own words: a drive without phases has no ``drive.phases.0``."""
+        """The error in the file's own words: what a phase takes over from ``[drive]`` is wrong there."""
         drive = self.data.get("drive")
-        if isinstance(drive, Mapping) and "phases" not in drive and error.field:
-            field = re.sub(r"^drive\.phases\.(0|rolling)", "drive", error.field)
-            return InputError(error.message, field=field, file=error.file)
-        return error
+        if not isinstance(drive, Mapping) or not (error.field or "").startswith("drive.phases."):
+            return error
+        field = as_written(drive, str(error.field))
+        return InputError(error.message, field=field, file=error.file)
 
     # -- what it is made of ------------------------------------------------------------------------------------------
 
@@ -202,7 +203,15 @@ class Study:
                 for key in ("value", "along", "across"):
                     if entry.relative_sd and getattr(entry, key, None) is not None:
                         found[f"materials.{region}.{name}.{key}"] = entry.relative_sd
+        self._check_uncertain_names()
         return found | self.card.uncertainty
+
+    def _check_uncertain_names(self) -> None:
+        for key in self.card.uncertainty:
+            try:
+                scaled(value_at(self.data, key, self.folder), 1.0)
+            except InputError as error:
+                raise InputError(error.message, field=f"uncertainty.{key}", file=self.file) from None
 
     def _share(self, like: Study | None) -> None:
         """Take over what another study has built, where the two do not differ."""
@@ -233,6 +242,11 @@ class Study:
                 problem = "is given twice; give it once"
             if problem is not None:
                 raise InputError(problem, field=f"effects.{effect.name}", file=self.file)
+        excluded = self.card.diagnosis.exclude
+        unknown = [name for name in excluded if name not in catalogue()] if excluded else []
+        if unknown:
+            wrong = f"unknown effects {quoted(unknown, catalogue())}; 'tyrefem list effects' names them all"
+            raise InputError(wrong, field="diagnosis.exclude", file=self.file)
 
     @functools.cached_property
     def stated_places(self) -> Mapping[str, tuple[float, float]]:

@@ -162,7 +162,10 @@ class DiagnosisChoice(Card):
 
 
 class MeasuredEntry(Card):
-    """A measured table: the file, which run of it, the drive of that run, and whether it is held out of any fit."""
+    """A measured table: the file, which run of it, the drive of that run, and whether it is held out of any fit.
+
+    ``rename``: column -> sensor, for columns that the study calls otherwise. ``ignore``: columns to leave out.
+    """
 
     table: Text
     run: Text | None = None
@@ -170,6 +173,8 @@ class MeasuredEntry(Card):
     hold_out: bool = False
     noise: Annotated[float, Unit("delta_degC", gt=0)] | None = None
     time_offset: Annotated[float, Unit("s")] = 0.0
+    rename: dict[Text, Text] = Field(default_factory=dict)
+    ignore: tuple[Text, ...] = ()
 
 
 class StudyCard(Card):

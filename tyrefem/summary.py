@@ -85,6 +85,8 @@ def write_tables(result: Result, folder: Path) -> Path:
     folder.mkdir(parents=True, exist_ok=True)
     readings = result.readings.rename(columns=lambda name: "time [s]" if name == "time_s" else f"{name} [degC]")
     readings["contained-air pressure [kPa]"] = result.gas_pressure / 1e3
+    # Six digits do for a temperature, not for the time of a long drive: no two rows may have the same.
+    readings["time [s]"] = [f"{time:.12g}" for time in readings["time [s]"]]
     tables = {
         "readings.csv": readings,
         "extremes.csv": result.extremes,

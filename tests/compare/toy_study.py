@@ -38,6 +38,8 @@ class Entry:
     hold_out: bool = False
     noise: float | None = None
     time_offset: float = 0.0
+    rename: dict = field(default_factory=dict)
+    ignore: tuple = ()
 
 
 @dataclass(frozen=True)

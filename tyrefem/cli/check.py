@@ -10,11 +10,11 @@ import typer
 
 from tyrefem.errors import InputError, nearest
 
+if TYPE_CHECKING:
+    from tyrefem.rig import RigCard
+
 #: What may be checked by name too, in this order.
 KINDS = ("study", "sweep", "section", "material")
-
-if TYPE_CHECKING:
-    from tyrefem.studies import Study
 
 
 def check(
@@ -53,7 +53,9 @@ def _table(path: Path) -> str:
     runs = read_table(path)
     sensors = sorted({sensor for run in runs for sensor in run.sensors})
     readings = sum(int(run.temperatures.notna().sum().sum()) for run in runs)
-    return f"a measured table, {len(runs)} run(s), {readings} readings of {', '.join(sensors)}"
+    channels = dict.fromkeys(heading for run in runs for heading in run.channels)
+    left_out = f"; no temperatures, left out: {', '.join(channels)}" if channels else ""
+    return f"a measured table, {len(runs)} run(s), {readings} readings of {', '.join(sensors)}{left_out}"
 
 
 def _card(path: Path) -> str:
@@ -66,7 +68,8 @@ def _card(path: Path) -> str:
         from tyrefem.rig import RigCard
 
         rig = RigCard.check(data, path)
-        return f"a laser rig, {len(rig.layers)} layer(s), {len(rig.sensors)} sensors, {len(rig.runs)} run(s)"
+        words = f"a laser rig, {len(rig.layers)} layer(s), {len(rig.sensors)} sensors, {len(rig.runs)} run(s)"
+        return f"{words}, {_rig_tables(rig, path)}"
     if isinstance(data.get("study"), str):
         from tyrefem.sweep.questions import loaded
 
@@ -82,28 +85,30 @@ def _card(path: Path) -> str:
         from tyrefem.materials import material
 
         return f"a material card, {material(str(path.resolve())).title}"
-    from tyrefem.mechanics import check_cases
     from tyrefem.studies import study
+    from tyrefem.study_check import check_study
 
     found = study(str(path.resolve()))
     if found.is_campaign:
         campaign = found.campaign()
         for case in campaign.cases:
-            check_cases(campaign.case_study(case))
+            check_study(campaign.case_study(case))
         return f"a campaign of {len(campaign.cases)} cases"
-    check_cases(found)
-    tables = _measured(found)
+    tables = check_study(found)
     return (
         f"a study of {len(found.card.drive.phases)} phase(s), {found.card.drive.end:g} s, "
         f"{len(found.sensors)} sensors, {tables} measured run(s)"
     )
 
 
-def _measured(study: Study) -> int:
-    """How many runs the study's measured tables hold; each table is read."""
-    from tyrefem.measured import read_table
+def _rig_tables(rig: RigCard, path: Path) -> str:
+    """The tables beside a rig's card: none at all is a rig to simulate, one that is missing an error."""
+    from tyrefem.rig import read
+    from tyrefem.rig.find import tables
 
-    return sum(len(read_table(table)) for table in {entry.table for entry in study.measured})
+    if not any((path.parent / f"{run}.csv").is_file() for run in rig.runs):
+        return "no table beside it"
+    return f"{len(read(rig, tables(rig, path)))} table(s)"
 
 
 #: Place among the commands.

@@ -68,6 +68,28 @@ ReducedOption = Annotated[
 ]
 
 
+IgnoreOption = Annotated[list[str] | None, typer.Option(help="A column of the tables to leave out. Repeatable.")]
+RenameOption = Annotated[
+    list[str] | None,
+    typer.Option(metavar="COLUMN=SENSOR", help="A column that the study calls otherwise. Repeatable."),
+]
+
+
+def renamed(pairs: list[str] | None) -> dict[str, str]:
+    """``COLUMN=SENSOR`` arguments as column -> sensor.
+
+    >>> renamed(["T1=crown-inner"])
+    {'T1': 'crown-inner'}
+    """
+    sensors = {}
+    for pair in pairs or []:
+        column, equals, sensor = pair.rpartition("=")
+        if not equals or not column.strip() or not sensor.strip():
+            raise InputError(f"'{pair}' is not COLUMN=SENSOR, e.g. T1=crown-inner", field="--rename")
+        sensors[column.strip()] = sensor.strip()
+    return sensors
+
+
 def settings(pairs: list[str] | None) -> dict[str, Any]:
     """``KEY=VALUE`` arguments as changes; a value that is TOML (number, list, table) is taken as such.
 

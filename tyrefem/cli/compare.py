@@ -12,12 +12,15 @@ from typing import Annotated
 import typer
 
 from tyrefem.cli.common import (
+    IgnoreOption,
     JsonOption,
     ReducedOption,
+    RenameOption,
     SetOption,
     StudyArgument,
     print_json,
     progress,
+    renamed,
     settings,
     writable_folder,
 )
@@ -31,7 +34,8 @@ def compare(
     ] = None,
     changes: SetOption = None,
     out: Annotated[Path | None, typer.Option("--out", help="Folder; default: results/STUDY-compare.")] = None,
-    ignore: Annotated[list[str] | None, typer.Option(help="A column of the table to leave out. Repeatable.")] = None,
+    ignore: IgnoreOption = None,
+    rename: RenameOption = None,
     inputs: Annotated[
         bool, typer.Option(help="Propagate the cards' uncertainties into the validation uncertainty.")
     ] = True,
@@ -48,6 +52,7 @@ def compare(
         comparison = found.compare(
             table,
             ignore=tuple(ignore or ()),
+            rename=renamed(rename),
             inputs=inputs,
             k=k,
             executor=executor,

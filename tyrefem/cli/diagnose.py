@@ -12,16 +12,18 @@ from typing import Annotated
 import typer
 
 from tyrefem.cli.common import (
+    IgnoreOption,
     JsonOption,
     ReducedOption,
+    RenameOption,
     SetOption,
     StudyArgument,
     fail,
     print_json,
+    renamed,
     settings,
     writable_folder,
 )
-from tyrefem.errors import InputError
 
 #: Folder within ``--out`` that holds finished simulations until the diagnosis is done.
 PROGRESS = ".progress"
@@ -36,11 +38,8 @@ def diagnose(
     ] = None,
     changes: SetOption = None,
     out: Annotated[Path | None, typer.Option("--out", help="Folder; default: results/STUDY-diagnosis.")] = None,
-    ignore: Annotated[list[str] | None, typer.Option(help="A column of the table to leave out. Repeatable.")] = None,
-    rename: Annotated[
-        list[str] | None,
-        typer.Option(metavar="COLUMN=SENSOR", help="A column that the study calls otherwise. Repeatable."),
-    ] = None,
+    ignore: IgnoreOption = None,
+    rename: RenameOption = None,
     workers: Annotated[int | None, typer.Option(min=1, help="Processes; default: one per core, at most 4.")] = None,
     largest: Annotated[int, typer.Option(min=1, max=3, help="Most effects that may be missing at once.")] = 3,
     looks: Annotated[
@@ -64,7 +63,7 @@ def diagnose(
             diagnosis = found.diagnose(
                 table,
                 ignore=tuple(ignore or ()),
-                rename=_pairs(rename),
+                rename=renamed(rename),
                 largest=largest,
                 looks=looks,
                 workers=workers or min(os.cpu_count() or 1, MOST_WORKERS),
@@ -89,16 +88,6 @@ def diagnose(
     for sentence in verdict_words(diagnosis)[1:]:
         typer.echo(sentence)
     typer.echo(f"results in {folder}; read {page}, run {folder / 'amended.toml'}")
-
-
-def _pairs(texts: list[str] | None) -> dict[str, str]:
-    found = {}
-    for text in texts or []:
-        column, equals, sensor = text.rpartition("=")
-        if not equals or not column.strip() or not sensor.strip():
-            raise InputError(f"'{text}' is not COLUMN=SENSOR, e.g. T1=crown-inner", field="--rename")
-        found[column.strip()] = sensor.strip()
-    return found
 
 
 @contextmanager

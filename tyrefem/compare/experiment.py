@@ -8,8 +8,10 @@ from pathlib import Path
 from typing import Any
 
 from tyrefem.compare.interface import MeasuredEntry, StudyLike
-from tyrefem.errors import InputError, nearest
-from tyrefem.measured import MeasuredRun, read_table
+from tyrefem.errors import InputError, nearest, quoted
+from tyrefem.measured import MeasuredRun
+from tyrefem.measured.heading import parts
+from tyrefem.measured.table import MeasuredTable, no_column, read
 
 #: Temperatures that are computed with the sensors and measured like them, but at no place in the rubber.
 OUTSIDE_THE_RUBBER = ("contained-air", "rim")
@@ -48,49 +50,94 @@ def experiments(
 ) -> tuple[Experiment, ...]:
     """The runs to compare with: those of ``table``, else of the study's own ``[[measured]]`` entries.
 
-    A run of a given table takes drive, noise and offset from the entry of the same file, or of the same run
-    name; a run without an entry is compared with the study's own drive.
+    A run of a given table takes drive, noise, offset and names of columns from the entry of the same file, or of the
+    same run name; a run without an entry is compared with the study's own drive.
+
+    Parameters
+    ----------
+    ignore : columns to leave out. rename : column -> sensor. Both act on every table, beside what its entry says.
 
     Raises
     ------
-    InputError : no table; an entry names a run that the table lacks; a column is no sensor of the study.
+    InputError : no table; an entry names a run that the table lacks; columns that are no sensors of the study; a
+        column to rename or to ignore that no table has.
     """
-    ignored = tuple(ignore)
+    given = _Given(dict(rename or {}), tuple(ignore))
     if table is None and not study.measured:
         raise InputError(f"study '{study.name}' has no [[measured]] table; name a table to compare with")
-    own = list(study.measured) if table is None else []
+    entries = list(study.measured) if table is None else []
     runs: Sequence[MeasuredRun] = ()
+    columns: list[str] = []
     if isinstance(table, str | Path):
-        own = [entry for entry in study.measured if Path(entry.table).absolute() == Path(table).absolute()]
-        runs = () if own else read_table(table, rename=rename, ignore=ignored)
+        entries = [entry for entry in study.measured if Path(entry.table).absolute() == Path(table).absolute()]
+        if not entries:
+            whole = read(table, rename=given.rename, ignore=given.ignore)
+            runs = whole.runs
+            columns += [*whole.columns, *whole.headings]
     elif table is not None:
         runs = [table] if isinstance(table, MeasuredRun) else table
-    found = [one for entry in own for one in _of_entry(entry, ignored, rename)]
-    found += [_matched(run, study) for run in runs]
-    if not found:
+        columns += [sensor for run in runs for sensor in run.sensors]
+        runs = [run.renamed(given.rename) for run in runs]
+    at_hand: dict[str, MeasuredTable] = {}
+    tables = [(entry, _table(entry, given, at_hand)) for entry in entries]
+    for entry, whole in tables:
+        columns += [*whole.columns, *whole.headings, *entry.rename.values()]
+    given.require(columns)
+    planned = [experiment for entry, whole in tables for experiment in _of_entry(entry, whole)]
+    planned += [_matched(run, study) for run in runs]
+    if not planned:
         raise InputError("there is no measured run to compare with")
-    found = [_without(one, ignored) for one in found]
-    for one in found:
-        _known_sensors(one.run, study)
-    return _distinct(found)
+    planned = [_without(experiment, given.ignore) for experiment in planned]
+    _known_sensors([experiment.run for experiment in planned], study)
+    return _distinct(planned)
 
 
-def _of_entry(entry: MeasuredEntry, ignore: tuple[str, ...], rename: Mapping[str, str] | None) -> list[Experiment]:
-    runs = read_table(entry.table, time_offset=entry.time_offset, rename=rename, ignore=ignore)
-    names = [run.name for run in runs]
+@dataclass(frozen=True)
+class _Given:
+    """What the caller says of all tables: columns to rename and to ignore."""
+
+    rename: Mapping[str, str]
+    ignore: tuple[str, ...]
+
+    def require(self, columns: Sequence[str]) -> None:
+        """Refuse names that no table has."""
+        for names, purpose in ((self.rename, "to rename"), (self.ignore, "to ignore")):
+            missing = [name for name in names if name not in {*columns, *self.rename.values()}]
+            if missing:
+                raise no_column(missing, purpose, dict.fromkeys(parts(name)[0] for name in columns))
+
+
+def _table(entry: MeasuredEntry, given: _Given, at_hand: dict[str, MeasuredTable]) -> MeasuredTable:
+    """An entry's table, read once; its own names of columns must be there, those given for all tables may be."""
+    rename, ignore = {**entry.rename, **given.rename}, (*entry.ignore, *given.ignore)
+    key = repr((entry.table, entry.time_offset, rename, ignore))
+    if key not in at_hand:
+        at_hand[key] = read(entry.table, time_offset=entry.time_offset, rename=rename, ignore=ignore)
+    whole = at_hand[key]
+    for names, purpose in ((entry.rename, "to rename"), (entry.ignore, "to ignore")):
+        missing = whole.missing(names)
+        if missing:
+            raise no_column(missing, purpose, whole.columns, whole.file)
+    return whole
+
+
+def _of_entry(entry: MeasuredEntry, whole: MeasuredTable) -> list[Experiment]:
+    names = [run.name for run in whole.runs]
     if entry.run is not None and entry.run not in names:
         wrong = f"no run '{entry.run}'{nearest(entry.run, names)}"
         raise InputError(wrong, field="measured.run", file=entry.table)
     return [
-        Experiment(run, dict(entry.drive), entry.noise, entry.hold_out) for run in runs if entry.run in (None, run.name)
+        Experiment(run, dict(entry.drive), entry.noise, entry.hold_out)
+        for run in whole.runs
+        if entry.run in (None, run.name)
     ]
 
 
 def _matched(run: MeasuredRun, study: StudyLike) -> Experiment:
     for entry in study.measured:
         if run.name == (entry.run or Path(entry.table).stem):
-            shifted = run.shifted(entry.time_offset)
-            return Experiment(shifted, dict(entry.drive), entry.noise, entry.hold_out)
+            shifted = run.shifted(entry.time_offset).renamed(entry.rename)
+            return _without(Experiment(shifted, dict(entry.drive), entry.noise, entry.hold_out), tuple(entry.ignore))
     return Experiment(run)
 
 
@@ -101,15 +148,32 @@ def _without(one: Experiment, ignore: tuple[str, ...]) -> Experiment:
     return replace(one, run=replace(one.run, temperatures=one.run.temperatures[kept]))
 
 
-def _known_sensors(run: MeasuredRun, study: StudyLike) -> None:
+def _known_sensors(runs: Sequence[MeasuredRun], study: StudyLike) -> None:
+    """Refuse columns that are no sensors, all of them at once, and a sensor's column in a unit of no temperature."""
     allowed = {*study.sensors, *OUTSIDE_THE_RUBBER}
-    for sensor in run.sensors:
-        if sensor not in allowed:
-            raise InputError(
-                f"column '{sensor}' is no sensor of study '{study.name}'{nearest(sensor, allowed)}; "
-                "rename it, or ignore it",
-                file=run.file,
-            )
+    unknown: dict[str, list[MeasuredRun]] = {}
+    for run in runs:
+        for sensor in run.sensors:
+            if sensor not in allowed:
+                unknown.setdefault(sensor, []).append(run)
+        for heading in run.channels:
+            if parts(heading)[0] in allowed:
+                raise InputError(f"column '{heading}': a sensor's unit is degC, degF or K", file=run.file)
+    if not unknown:
+        return
+    files = {run.file for runs_with in unknown.values() for run in runs_with}
+    file = next(iter(files)) if len(files) == 1 else None
+    names = sorted(path.name for path in files if path is not None)
+    where = f" (in {', '.join(names)})" if len(names) > 1 else ""
+    if len(unknown) == 1:
+        (column,) = unknown
+        wrong = f"column '{column}'{where} is no sensor of study '{study.name}'{nearest(column, allowed)}"
+        raise InputError(f"{wrong}; rename it, or ignore it", file=file)
+    raise InputError(
+        f"columns {quoted(unknown, allowed)}{where} are no sensors of study '{study.name}'; allowed: "
+        f"{', '.join(sorted(allowed))}; rename them, or ignore them",
+        file=file,
+    )
 
 
 def _distinct(found: Sequence[Experiment]) -> tuple[Experiment, ...]:

@@ -41,7 +41,8 @@ def compare(
     result : the study's result if it is known; used for every run that was driven at the study's own drive,
         and for a single run in any case if it comes from another (amended, other drive) study.
     inputs : run the study again with each quantity of ``study.uncertainty`` one standard deviation higher.
-    ignore : columns of the table to leave out. ``rename`` : column name -> sensor name.
+    ignore : columns of the tables to leave out. ``rename`` : column name -> sensor name; both beside what the
+        ``[[measured]]`` entries say.
     k : coverage factor of the verdict; 2 for about 95 %.
     executor : runs the simulations side by side (`concurrent.futures.ProcessPoolExecutor` or alike).
     progress : called with (simulations done, simulations in all) after each.
@@ -70,7 +71,7 @@ def compare(
         notes += _outside(experiment, computed, outside)
     if not found:
         raise InputError("no measured time is within the simulated span: " + "; ".join(notes))
-    notes += [*said, *_unstated(study, planned, inputs)]
+    notes += [*said, *_left_out(planned), *_unstated(study, planned, inputs)]
     return comparison_of(
         study.name, found, curves=curves, relative_sd=keys, notes=tuple(notes), k=k, reduced=certificate
     )
@@ -178,6 +179,11 @@ def _outside(experiment: Experiment, computed: ResultLike, outside: int) -> list
         f"{level}: run '{experiment.name}': {outside} of {total} measured times lie outside the simulated span "
         f"{first:g} to {last:g} s and are not compared"
     ]
+
+
+def _left_out(planned: Sequence[Experiment]) -> list[str]:
+    channels = dict.fromkeys(heading for experiment in planned for heading in experiment.run.channels)
+    return [f"Note: no temperatures, left out: {', '.join(channels)}"] if channels else []
 
 
 def _unstated(study: StudyLike, planned: Sequence[Experiment], inputs: bool) -> list[str]:

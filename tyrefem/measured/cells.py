@@ -60,7 +60,10 @@ def _wrong(cell: str, gaps: bool) -> str:
         return "the cell is empty; every row needs its time"
     if gaps:
         return f"{cell[:30]!r} is not a number; allowed: a number, or empty, NaN, - for no reading"
-    return f"{cell[:30]!r} is not a number; allowed: the time elapsed since the start, as a number"
+    return (
+        f"{cell[:30]!r} is not a number; allowed: the time elapsed since the start, as a number, "
+        "or timestamps like 2024-05-01T12:30:01 in every row"
+    )
 
 
 def _place(line: int, column: str) -> str:

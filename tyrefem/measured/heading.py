@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import functools
 import re
 from dataclasses import dataclass
 
@@ -9,6 +10,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from tyrefem.errors import InputError, nearest
+from tyrefem.quantity import parse
 
 TIME_UNITS = {"s": 1.0, "ms": 1e-3, "min": 60.0, "h": 3600.0}
 TEMPERATURE_UNITS = ("degC", "degF", "K")
@@ -20,7 +22,9 @@ _SPELLINGS = {
 }
 _LETTERS = {"c": "degC", "celsius": "degC", "f": "degF", "fahrenheit": "degF", "k": "K", "kelvin": "K"}
 _HEADING = re.compile(r"^(?P<name>.*?)\s*(?:\[(?P<square>[^][]*)\]|\((?P<round>[^()]*)\))$", re.DOTALL)
-_TIME = re.compile(r"^(?:elapsed[ _]?)?(?:time|t)$", re.IGNORECASE)
+_TIME = re.compile(r"^(?:(?:elapsed[ _]?)?(?:time|t)|time[ _]?stamp|date[ _/]?time)$", re.IGNORECASE)
+#: Quantities that loggers write beside temperatures, by their SI unit. No angle: "deg" may stand for degC.
+_CHANNELS = ("Pa", "m/s", "N", "m", "kg", "s", "Hz", "W", "J", "m/s**2")
 # The degree sign in its look-alikes, and as it arrives after a wrong decoding.
 _TEMPERATURE = re.compile(r"^(?:deg(?:rees?|\.)?[\s_]*|[°º˚Â�'*]*\s*)(\w+)$", re.IGNORECASE)
 
@@ -57,11 +61,37 @@ def parts(text: str) -> tuple[str, str | None]:
     return match["name"].strip(), unit.strip()
 
 
+@functools.lru_cache(maxsize=256)
+def is_channel(text: str) -> bool:
+    """Whether a heading's unit is that of a pressure, speed, force, length, power...: no sensor of temperature.
+
+    >>> [is_channel(text) for text in ("air [kPa]", "speed [km/h]", "load (lbf)", "crown [degC]", "crown [mV]")]
+    [True, True, True, False, False]
+    """
+    unit = parts(text)[1]
+    if not unit or _temperature(unit) is not None:
+        return False
+    if unit == "%":
+        return True
+    for quantity in _CHANNELS:
+        try:
+            parse(f"1 {unit}", quantity)
+        except InputError:
+            continue
+        return True
+    return False
+
+
 def is_time(text: str) -> bool:
     """Whether a heading is the time column: ``time [s]``, ``Time (min)``, ``t [h]``, but not ``T [degC]``."""
     name, unit = parts(text)
-    degree = _TEMPERATURE.match(unit or "")
-    return bool(_TIME.match(name)) and not (degree and degree[1].lower() in _LETTERS)
+    return bool(_TIME.match(name)) and _temperature(unit or "") is None
+
+
+def _temperature(unit: str) -> str | None:
+    """degC, degF or K, if that is what a unit says."""
+    match = _TEMPERATURE.match(unit)
+    return _LETTERS.get(match[1].lower()) if match else None
 
 
 def time_unit(text: str) -> str:
@@ -73,7 +103,9 @@ def time_unit(text: str) -> str:
     """
     unit = parts(text)[1]
     if not unit:
-        raise InputError(f"'{text}' has no unit; write 'time [s]' (or [min], [h], [ms])")
+        raise InputError(
+            f"'{text}' has no unit; write 'time [s]' (or [min], [h], [ms]), or timestamps like 2024-05-01T12:30:01"
+        )
     known = _SPELLINGS.get(unit.lower())
     if known is None:
         raise InputError(f"unknown time unit '{unit[:30]}'{nearest(unit, TIME_UNITS)}")
@@ -93,8 +125,8 @@ def temperature_unit(text: str) -> str:
     name, unit = parts(text)
     if not unit:
         raise InputError(f"'{text[:60]}' has no unit; write '{name[:40]} [degC]' (or [degF], [K])")
-    match = _TEMPERATURE.match(unit)
-    known = _LETTERS.get(match[1].lower()) if match else None
+    known = _temperature(unit)
     if known is None:
-        raise InputError(f"unknown temperature unit '{unit[:30]}'{nearest(unit, TEMPERATURE_UNITS)}")
+        hint = nearest(unit, TEMPERATURE_UNITS)
+        raise InputError(f"unknown temperature unit '{unit[:30]}'{hint} (column '{text[:60]}')")
     return known

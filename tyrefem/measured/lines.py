@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import codecs
 import csv
 import re
 from dataclasses import dataclass
@@ -51,7 +52,7 @@ def decode(path: Path) -> str:
         marked = data.startswith((b"\xff\xfe", b"\xfe\xff"))
         text = data.decode("utf-16" if marked else "utf-8-sig")
     except UnicodeDecodeError:
-        text = data.decode("latin-1")
+        text = data.removeprefix(codecs.BOM_UTF8).decode("latin-1")
     binary = _CONTROL.search(text)
     if binary:
         line = text.count("\n", 0, binary.start()) + 1

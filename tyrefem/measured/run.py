@@ -2,12 +2,15 @@
 
 from __future__ import annotations
 
+from collections.abc import Mapping
 from dataclasses import dataclass, replace
 from pathlib import Path
 from typing import TYPE_CHECKING
 
 import numpy as np
 from numpy.typing import NDArray
+
+from tyrefem.errors import InputError
 
 if TYPE_CHECKING:
     import pandas as pd
@@ -24,6 +27,7 @@ class MeasuredRun:
     temperatures : (n, sensors) degC, one column per sensor; NaN = no reading.
     file : where it was read from, None for data made in memory.
     comments : comment and preamble lines of the file, without their mark.
+    channels : headings of the columns that hold another quantity than a temperature (speed, pressure); left out.
     """
 
     name: str
@@ -31,6 +35,7 @@ class MeasuredRun:
     temperatures: pd.DataFrame
     file: Path | None = None
     comments: tuple[str, ...] = ()
+    channels: tuple[str, ...] = ()
 
     @property
     def sensors(self) -> tuple[str, ...]:
@@ -40,6 +45,19 @@ class MeasuredRun:
     def shifted(self, seconds: float) -> MeasuredRun:
         """The same run with ``seconds`` added to its clock."""
         return replace(self, times=self.times + seconds) if seconds else self
+
+    def renamed(self, names: Mapping[str, str]) -> MeasuredRun:
+        """The same run with its columns named otherwise: column -> sensor. Names that no column has do nothing.
+
+        Raises
+        ------
+        InputError : two columns of one name.
+        """
+        new = [names.get(sensor, sensor) for sensor in self.sensors]
+        twice = next((name for name in new if new.count(name) > 1), None)
+        if twice is not None:
+            raise InputError(f"run '{self.name}': two columns for sensor '{twice}'", field="rename", file=self.file)
+        return replace(self, temperatures=self.temperatures.set_axis(new, axis="columns"))
 
     def write(self, path: str | Path) -> Path:
         """Write as a table that `read_table` reads back, to the last bit.

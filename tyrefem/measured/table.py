@@ -3,19 +3,23 @@
 from __future__ import annotations
 
 from collections.abc import Iterable, Mapping, Sequence
+from dataclasses import dataclass
 from pathlib import Path
 
 import numpy as np
 from numpy.typing import NDArray
 
-from tyrefem.errors import InputError, nearest
+from tyrefem.errors import InputError, nearest, quoted
 from tyrefem.measured.cells import numbers, one_decimal_mark, plausible
-from tyrefem.measured.heading import TIME_UNITS, Heading, is_time, parts, temperature_unit, time_unit
+from tyrefem.measured.heading import TIME_UNITS, Heading, is_channel, is_time, parts, temperature_unit, time_unit
 from tyrefem.measured.lines import Lines, split
 from tyrefem.measured.run import MeasuredRun
+from tyrefem.measured.timestamps import are_timestamps, microseconds
 
 #: s; 30 years. A larger time is a calendar time, which needs ``time_offset``.
 LONGEST_TIME = 1e9
+#: "Unit" of a time column that holds timestamps.
+STAMPED = "ISO 8601"
 
 
 def read_table(
@@ -28,15 +32,17 @@ def read_table(
     """The runs of a thermocouple table as loggers write it.
 
     The heading has ``time [s]`` (or min, h, ms), perhaps ``run``, and one column per sensor with its unit:
-    ``crown [degC]``, ``[degF]`` or ``[K]``. Comma, semicolon or tab between columns; decimal comma or point;
-    UTF-8, UTF-16 or Latin-1. Empty, ``NaN``, ``-``, ``--`` = no reading. ``#`` and ``//`` begin a comment.
+    ``crown [degC]``, ``[degF]`` or ``[K]``. Timestamps (ISO 8601) count from the first row of their run. Columns in
+    a unit of pressure, speed, force, length or power are no sensors and are left out (`MeasuredRun.channels`).
+    Comma, semicolon or tab between columns; decimal comma or point; UTF-8, UTF-16 or Latin-1. Empty, ``NaN``, ``-``,
+    ``--`` = no reading. ``#`` and ``//`` begin a comment.
 
     Parameters
     ----------
     path : the CSV file.
     time_offset : s, added to every time of the table (model time = table time + offset).
     rename : column name -> sensor name.
-    ignore : column names to leave out, for channels that are no temperature.
+    ignore : column names to leave out, for temperatures that are no sensor's.
 
     Returns
     -------
@@ -44,7 +50,7 @@ def read_table(
 
     Raises
     ------
-    InputError : anything unclear, with file, line and column.
+    InputError : anything unclear, with file, line and column; a column to rename that is not there.
 
     >>> import tempfile
     >>> file = Path(tempfile.mkdtemp()) / "run-1.csv"
@@ -53,48 +59,90 @@ def read_table(
     >>> run.name, run.times.tolist(), run.temperatures["crown"].tolist()
     ('run-1', [0.0, 60.0, 120.0], [25.0, nan, 35.0])
     """
+    given = dict(rename or {})
+    table = read(path, time_offset=time_offset, rename=given, ignore=ignore)
+    missing = table.missing(given)
+    if missing:
+        raise no_column(missing, "to rename", table.columns, table.file)
+    return table.runs
+
+
+@dataclass(frozen=True, eq=False)
+class MeasuredTable:
+    """The runs of a file, and the headings of all its columns, those left out too."""
+
+    file: Path
+    runs: tuple[MeasuredRun, ...]
+    headings: tuple[str, ...]
+
+    @property
+    def columns(self) -> tuple[str, ...]:
+        """Names of the columns, without their units."""
+        return tuple(parts(text)[0] for text in self.headings if text)
+
+    def missing(self, names: Iterable[str]) -> list[str]:
+        """Those of some names that no column has, with or without its unit."""
+        return [name for name in names if name not in self.columns and name not in self.headings]
+
+
+def read(
+    path: str | Path,
+    *,
+    time_offset: float = 0.0,
+    rename: Mapping[str, str] | None = None,
+    ignore: Iterable[str] = (),
+) -> MeasuredTable:
+    """`read_table` for a caller that checks itself whether the columns to rename and to ignore are there."""
     import pandas as pd
 
     file = Path(path)
     if not np.isfinite(time_offset):
         raise InputError(f"{time_offset!r} is not a finite number of seconds", field="time_offset", file=file)
     lines = split(file)
-    time, run_column, sensors = _columns(lines, dict(rename or {}), frozenset(ignore), file)
+    columns = _columns(lines, dict(rename or {}), frozenset(ignore), file)
     if not lines.rows:
         raise InputError("has a heading but no readings", file=file)
-    one_decimal_mark(lines.rows, lines.numbers, [time.column, *(one.column for one in sensors)], file)
+    time, sensors = columns.time, columns.sensors
+    one_decimal_mark(lines.rows, lines.numbers, [time.column, *(sensor.column for sensor in sensors)], file)
     cells = list(zip(*lines.rows, strict=True))
-    shown = lines.heading[time.column]
-    times = numbers(cells[time.column], lines.numbers, shown, file, gaps=False)
-    times = times * TIME_UNITS[time.unit] + time_offset
-    if np.abs(times).max() > LONGEST_TIME:
-        raise InputError(
-            f"column '{shown}': {times[np.abs(times).argmax()]:g} s is no time since a start; "
-            "give time_offset if the table holds calendar times",
-            file=file,
-        )
-    readings = {one.name: _readings(one, cells[one.column], lines, file) for one in sensors}
+    readings = {sensor.name: _readings(sensor, cells[sensor.column], lines, file) for sensor in sensors}
     runs = []
-    for name, rows in _rows_of_runs(None if run_column is None else cells[run_column], lines, file).items():
-        _increasing(times[rows], [lines.numbers[row] for row in rows], name, file)
+    rows_of_runs = _rows_of_runs(None if columns.run is None else cells[columns.run], lines, file)
+    for name, times in _times(cells[time.column], lines, time, rows_of_runs, time_offset, file).items():
+        rows = rows_of_runs[name]
+        _increasing(times, [lines.numbers[row] for row in rows], name, file)
         held = {sensor: values[rows] for sensor, values in readings.items() if np.isfinite(values[rows]).any()}
         if not held:
             raise InputError(f"run '{name}' has no reading at all", file=file)
-        own = times[rows]
-        own.flags.writeable = False
-        runs.append(MeasuredRun(name, own, pd.DataFrame(held), file, lines.comments))
-    return tuple(runs)
+        times.flags.writeable = False
+        runs.append(MeasuredRun(name, times, pd.DataFrame(held), file, lines.comments, columns.channels))
+    return MeasuredTable(file, tuple(runs), lines.heading)
 
 
-def _columns(
-    lines: Lines, rename: dict[str, str], ignore: frozenset[str], file: Path
-) -> tuple[Heading, int | None, list[Heading]]:
-    """The time column, the place of the run column, and the sensors."""
+def no_column(names: Iterable[str], purpose: str, columns: Iterable[str], file: Path | None = None) -> InputError:
+    """The error that columns are not there: all of them, each with the nearest one."""
+    missing, known = list(names), list(columns)
+    if len(missing) == 1:
+        return InputError(f"no column '{missing[0]}' {purpose}{nearest(missing[0], known)}", file=file)
+    return InputError(f"no columns {quoted(missing, known)} {purpose}; allowed: {', '.join(known)}", file=file)
+
+
+@dataclass(frozen=True)
+class _Columns:
+    """The time column, the place of the run column, the sensors, the headings of other quantities."""
+
+    time: Heading
+    run: int | None
+    sensors: tuple[Heading, ...]
+    channels: tuple[str, ...]
+
+
+def _columns(lines: Lines, rename: dict[str, str], ignore: frozenset[str], file: Path) -> _Columns:
     where = f"line {lines.heading_line}: "
     time: Heading | None = None
     run: int | None = None
-    found: dict[str, str] = {}
-    sensors = []
+    sensors: dict[str, Heading] = {}
+    channels, without_unit, wrong = [], [], []
     for column, text in enumerate(lines.heading):
         name = parts(text)[0]
         if {text, name} & ignore or (not text and not any(row[column] for row in lines.rows)):
@@ -103,31 +151,60 @@ def _columns(
             if is_time(text):
                 if time is not None:
                     raise InputError(f"two time columns, {time.column + 1} and {column + 1}")
-                time = Heading(name, time_unit(text), column)
+                stamped = are_timestamps([row[column] for row in lines.rows[:100]])
+                time = Heading(name, STAMPED if stamped else time_unit(text), column)
                 continue
             if name.lower() == "run":
                 if run is not None:
                     raise InputError(f"two run columns, {run + 1} and {column + 1}")
                 run = column
                 continue
+            if is_channel(text):
+                channels.append(text)
+                continue
             if not name:
                 raise InputError(f"column {column + 1} has readings but no name")
             sensor = rename.get(text, rename.get(name, name))
-            if sensor in found:
-                raise InputError(f"two columns for sensor '{sensor}': '{found[sensor]}' and '{text}'")
-            found[sensor] = text
-            sensors.append(Heading(sensor, temperature_unit(text), column))
+            if sensor in sensors:
+                first = lines.heading[sensors[sensor].column]
+                raise InputError(f"two columns for sensor '{sensor}': '{first}' and '{text}'")
         except InputError as error:
             raise InputError(where + error.message, file=file) from None
+        try:
+            if not parts(text)[1]:
+                without_unit.append(text)
+            sensors[sensor] = Heading(sensor, temperature_unit(text), column)
+        except InputError as error:
+            wrong.append(error.message)
+    if len(without_unit) > 1:
+        names = ", ".join(f"'{text[:40]}'" for text in without_unit)
+        wrong = [line for line in wrong if "has no unit" not in line]
+        wrong.append(f"{names} have no unit; write '{without_unit[0][:40]} [degC]' (or [degF], [K])")
+    if wrong:
+        raise InputError(where + "; ".join(wrong), file=file)
     if time is None:
         raise InputError(f"{where}the time column is ignored; it is needed", file=file)
     if not sensors:
         raise InputError(f"{where}no sensor column beside '{lines.heading[time.column]}'", file=file)
-    names = [parts(text)[0] for text in lines.heading if text]
-    for name in rename:
-        if name not in names and name not in lines.heading:
-            raise InputError(f"{where}no column '{name}' to rename{nearest(name, names)}", file=file)
-    return time, run, sensors
+    return _Columns(time, run, tuple(sensors.values()), tuple(channels))
+
+
+def _times(
+    cells: Sequence[str], lines: Lines, time: Heading, runs: Mapping[str, NDArray[np.intp]], offset: float, file: Path
+) -> dict[str, NDArray[np.float64]]:
+    """Run -> its times, s. Timestamps count from the first row of their run."""
+    shown = lines.heading[time.column]
+    if time.unit == STAMPED:
+        stamps = microseconds(cells, lines.numbers, shown, file)
+        return {name: (stamps[rows] - stamps[rows[0]]) / 1e6 + offset for name, rows in runs.items()}
+    times = numbers(cells, lines.numbers, shown, file, gaps=False) * TIME_UNITS[time.unit] + offset
+    if np.abs(times).max() > LONGEST_TIME:
+        raise InputError(
+            f"column '{shown}': {times[np.abs(times).argmax()]:g} s is no time since a start; "
+            "give time_offset if the table holds calendar times",
+            file=file,
+        )
+    return {name: times[rows] for name, rows in runs.items()}
 
 
 def _readings(one: Heading, cells: Sequence[str], lines: Lines, file: Path) -> NDArray[np.float64]:

@@ -217,7 +217,7 @@ def _sources(data: Any, where: str) -> Iterator[tuple[str, str]]:
 def study_text(study: Study) -> tuple[str, bool]:
     """The study's file, and whether it is the file as written; if values were changed, the study as it was run."""
     if study.file is not None and study.file.is_file():
-        text = study.file.read_text(encoding="utf-8")
+        text = study.file.read_text(encoding="utf-8-sig")
         try:
             if tomllib.loads(text) == dict(study.data):
                 return text, True

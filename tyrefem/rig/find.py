@@ -46,7 +46,7 @@ def load(name: str | Path) -> tuple[RigCard, Path]:
 def tables(card: RigCard, file: Path, given: Iterable[str | Path] = ()) -> list[Path]:
     """Files of measured tables: as given (here, else beside the card); without any, each run's ``RUN.csv`` there.
 
-    Raises InputError where nothing is given and nothing lies beside the card.
+    Raises InputError where nothing is given and a run's table does not lie beside the card.
 
     >>> card, file = load("trtlab")
     >>> [table.name for table in tables(card, file)]
@@ -56,8 +56,12 @@ def tables(card: RigCard, file: Path, given: Iterable[str | Path] = ()) -> list[
     named = [Path(table) for table in given]
     if named:
         return [folder / one if not one.exists() and (folder / one).is_file() else one for one in named]
-    found = [folder / f"{run}.csv" for run in card.runs if (folder / f"{run}.csv").is_file()]
-    if not found:
-        runs = ", ".join(f"{run}.csv" for run in card.runs)
-        raise InputError(f"no table is given and none of {runs} lies beside the card", file=file)
-    return found
+    files = [folder / f"{run}.csv" for run in card.runs]
+    missing = [table.name for table in files if not table.is_file()]
+    if len(missing) == len(files):
+        raise InputError(f"no table is given and none of {', '.join(missing)} lies beside the card", file=file)
+    if missing:
+        there = " ".join(table.name for table in files if table.is_file())
+        words = f"the card has runs without a table beside it: {', '.join(missing)}; to do without them, name {there}"
+        raise InputError(words, field="runs", file=file)
+    return files

@@ -10,7 +10,7 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
-from tyrefem.errors import InputError, nearest
+from tyrefem.errors import InputError, nearest, quoted
 from tyrefem.measured import MeasuredRun, read_table
 from tyrefem.rig.card import RigCard, RunCard
 from tyrefem.rig.clock import Clock
@@ -83,15 +83,23 @@ def read(card: RigCard, tables: Iterable[str | Path], without: Sequence[str] = (
 
 def matched(card: RigCard, run: MeasuredRun, wanted: Sequence[str], without: Iterable[str] = ()) -> HeatingTest:
     """One measured run as a test of the card."""
-    for name in wanted:
-        if name not in run.sensors:
-            columns = nearest(name, run.sensors)
-            words = f"run '{run.name}' has no column '{name} [degC]'{columns} (--without {name} fits without it)"
-            raise InputError(words, file=run.file)
-    for name in run.sensors:
-        if name not in wanted and name not in without:
-            words = f"column '{name}' is no sensor of the rig{nearest(name, card.sensors)}"
-            raise InputError(words, file=run.file)
+    missing = [name for name in wanted if name not in run.sensors]
+    unknown = [name for name in run.sensors if name not in wanted and name not in without]
+    if len(missing) == 1:
+        name = missing[0]
+        columns = nearest(name, run.sensors)
+        words = f"run '{run.name}' has no column '{name} [degC]'{columns} (--without {name} fits without it)"
+        raise InputError(words, file=run.file)
+    if missing:
+        words = f"run '{run.name}' has no columns {quoted(missing, run.sensors)} (--without SENSOR fits without one)"
+        raise InputError(words, file=run.file)
+    if len(unknown) == 1:
+        words = f"column '{unknown[0]}' is no sensor of the rig{nearest(unknown[0], card.sensors)}"
+        raise InputError(words, file=run.file)
+    if unknown:
+        allowed = ", ".join(card.sensors)
+        words = f"columns {quoted(unknown, card.sensors)} are no sensors of the rig; allowed: {allowed}"
+        raise InputError(words, file=run.file)
     idle, end = card.phases.idle, card.phases.end
     if run.times[0] < -_SLACK:
         raise InputError(f"run '{run.name}' begins at {run.times[0]:g} s; time 0 is the start of idling", file=run.file)

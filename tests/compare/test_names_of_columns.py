@@ -1,0 +1,90 @@
+"""Columns that a study calls otherwise: renamed or ignored by hand and in `[[measured]]`, named where unknown."""
+
+from __future__ import annotations
+
+import re
+from dataclasses import replace
+from pathlib import Path
+
+import numpy as np
+import pytest
+from toy_study import Entry, Study, measured_from
+
+from tyrefem.compare import compare
+from tyrefem.errors import InputError
+from tyrefem.measured import MeasuredRun
+
+TIMES = np.arange(0.0, 1201.0, 20.0)
+LOGGER = {"crown": "T1", "shoulder": "T2"}
+
+
+def logged(study: Study, name: str = "run-1", **names: str) -> MeasuredRun:
+    run = measured_from(study, TIMES, name=name)
+    return run.renamed(names or LOGGER)
+
+
+@pytest.mark.parametrize("form", ["table", "run", "runs", "entry", "entries", "entry by run name"])
+def test_renamed_alike_wherever_it_is_said(study: Study, tmp_path: Path, form: str) -> None:
+    file = logged(study).write(tmp_path / "run-1.csv")
+    said = {"T1": "crown", "T2": "shoulder"}
+    asked = {
+        "table": lambda: compare(study, file, rename=said),
+        "run": lambda: compare(study, logged(study), rename=said),
+        "runs": lambda: compare(study, [logged(study)], rename=said),
+        "entry": lambda: compare(replace(study, measured=(Entry(file, rename=said),))),
+        "entries": lambda: compare(replace(study, measured=(Entry(file),)), rename=said),
+        "entry by run name": lambda: compare(replace(study, measured=(Entry(file, rename=said),)), logged(study)),
+    }
+    comparison = asked[form]()
+    assert set(comparison.table.sensor) == {"crown", "shoulder"}
+    assert comparison.rms_K == pytest.approx(0.0, abs=1e-12)
+
+
+def test_a_name_given_by_hand_goes_before_that_of_the_entry(study: Study, tmp_path: Path) -> None:
+    file = logged(study, crown="T1", shoulder="T2").write(tmp_path / "run-1.csv")
+    crossed = replace(study, measured=(Entry(file, rename={"T1": "shoulder", "T2": "crown"}),))
+    assert compare(crossed).rms_K > 1.0
+    assert compare(crossed, rename={"T1": "crown", "T2": "shoulder"}).rms_K == pytest.approx(0.0, abs=1e-12)
+
+
+def test_a_column_of_one_table_may_be_missing_in_another(study: Study, tmp_path: Path) -> None:
+    files = [logged(study, "a").write(tmp_path / "a.csv"), measured_from(study, TIMES).write(tmp_path / "b.csv")]
+    both = replace(study, measured=tuple(Entry(file) for file in files))
+    assert len(compare(both, rename={"T1": "crown", "T2": "shoulder"}).table.run.unique()) == 2
+    with pytest.raises(InputError, match="no column 'T3' to rename; did you mean"):
+        compare(both, rename={"T1": "crown", "T2": "shoulder", "T3": "bead"})
+    with pytest.raises(InputError, match=r"b.csv: no column 'T1' to rename"):
+        compare(replace(study, measured=(Entry(files[1], rename={"T1": "crown"}),)))
+
+
+def test_what_an_entry_ignores(study: Study, tmp_path: Path) -> None:
+    file = logged(study, shoulder="room").write(tmp_path / "run-1.csv")
+    assert set(compare(replace(study, measured=(Entry(file, ignore=("room",)),))).table.sensor) == {"crown"}
+    with pytest.raises(InputError, match="no column 'rom' to ignore; did you mean 'room'"):
+        compare(replace(study, measured=(Entry(file, ignore=("rom",)),)))
+    with pytest.raises(InputError, match="no column 'crwn' to ignore; did you mean 'crown'"):
+        compare(study, measured_from(study, TIMES), ignore=["crwn"])
+
+
+def test_all_unknown_columns_are_named_at_once(study: Study) -> None:
+    runs = [logged(study, "a", crown="crwn"), logged(study, "b", crown="T9", shoulder="sholder")]
+    words = (
+        "columns 'crwn' (did you mean 'crown'?), 'T9', 'sholder' (did you mean 'shoulder'?) are no sensors of study "
+        "'toy'; allowed: contained-air, crown, rim, shoulder; rename them, or ignore them"
+    )
+    with pytest.raises(InputError, match=re.escape(words)):
+        compare(study, runs)
+    assert study.runs == []
+
+
+def test_other_quantities_are_left_out_and_said_so(study: Study, tmp_path: Path) -> None:
+    file = measured_from(study, TIMES).write(tmp_path / "run-1.csv")
+    lines = file.read_text(encoding="utf-8").splitlines()
+    wide = [f"{line},{'speed [km/h]' if number == 0 else '30'}" for number, line in enumerate(lines)]
+    file.write_text("\n".join(wide), encoding="utf-8")
+    comparison = compare(study, file)
+    assert set(comparison.table.sensor) == {"crown", "shoulder"}
+    assert any("left out: speed [km/h]" in note for note in comparison.notes)
+    file.write_text(file.read_text(encoding="utf-8").replace("speed [km/h]", "contained-air [kPa]"), encoding="utf-8")
+    with pytest.raises(InputError, match=re.escape("column 'contained-air [kPa]': a sensor's unit is degC")):
+        compare(study, file)

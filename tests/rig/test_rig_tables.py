@@ -1,0 +1,51 @@
+"""Every run of a rig has its table, or is left out by name; all wrong columns are named at once."""
+
+from __future__ import annotations
+
+import shutil
+from pathlib import Path
+
+import pytest
+
+from tyrefem.cli import main
+from tyrefem.errors import InputError
+from tyrefem.rig import load, read
+from tyrefem.rig.find import find, tables
+
+
+@pytest.fixture
+def rig(tmp_path: Path) -> Path:
+    return Path(shutil.copytree(find("trtlab").parent, tmp_path / "rig"))
+
+
+def test_a_table_that_is_missing_is_an_error_and_not_a_fit_of_the_others(
+    rig: Path, tmp_path: Path, capfd: pytest.CaptureFixture[str]
+) -> None:
+    (rig / "high.csv").unlink()
+    for command in (["rig", "identify", str(rig), "--out", str(tmp_path / "out")], ["check", str(rig)]):
+        assert main(command) == 2
+        err = capfd.readouterr().err
+        assert "without a table beside it: high.csv; to do without them, name low.csv" in err
+    assert not (tmp_path / "out").exists()
+    card, file = load(rig)
+    assert [table.name for table in tables(card, file, ["low.csv"])] == ["low.csv"]
+
+
+def test_tables_beside_a_card_are_checked(rig: Path, capfd: pytest.CaptureFixture[str]) -> None:
+    assert main(["check", str(rig)]) == 0
+    assert "2 table(s)" in capfd.readouterr().out
+    text = (rig / "low.csv").read_text(encoding="utf-8")
+    (rig / "low.csv").write_text(text.replace("outer [degC]", "outr [degC]"), encoding="utf-8")
+    assert main(["check", str(rig)]) == 2
+    assert "no column 'outer [degC]'; did you mean 'outr'" in capfd.readouterr().err
+
+
+def test_all_wrong_columns_are_named_at_once(rig: Path) -> None:
+    card, _ = load(rig)
+    text = (rig / "low.csv").read_text(encoding="utf-8")
+    path = rig / "low.csv"
+    path.write_text(text.replace("outer [degC]", "outr [degC]").replace("inner [degC]", "x [degC]"), encoding="utf-8")
+    with pytest.raises(InputError, match=r"no columns 'outer' \(did you mean 'outr'\?\), 'inner'"):
+        read(card, [path])
+    with pytest.raises(InputError, match=r"columns 'outr' \(did you mean 'outer'\?\), 'x' are no sensors of the rig"):
+        read(card, [path], ["outer", "inner"])
