@@ -12,7 +12,8 @@ from tyrefem.conduction import SolverError
 from tyrefem.errors import InputError
 from tyrefem.output import write_json
 from tyrefem.studies import Study
-from tyrefem.summary import versions, write_tables
+from tyrefem.summary import run_files, versions, write_tables
+from tyrefem.vtk import file_names
 
 if TYPE_CHECKING:
     import pandas as pd
@@ -107,6 +108,16 @@ def row(case: Case, outcome: Result | str) -> dict[str, Any]:
         "heat_budget_imbalance": outcome.heat_budget.imbalance,
         "failure": f"interrupted at {outcome.times[-1]:g} s" if outcome.history.interrupted else "",
     }
+
+
+def campaign_files(campaign: Campaign) -> list[str]:
+    """The files that `run_campaign` and its report may write, relative to their folder."""
+    from glob import escape
+
+    cases = [f"cases/{escape(case.name)}/{name}" for case in campaign.cases for name in run_files(campaign.study)]
+    vtk = [f"cases/{escape(case.name)}/vtk/{name}" for case in campaign.cases for name in file_names(case.name)]
+    return ["campaign.csv", "report.html", *(name for name in cases if "/vtk/" not in name), *vtk,
+            *(f"cases/{escape(case.name)}/summary.json" for case in campaign.cases)]  # fmt: skip
 
 
 def run_campaign(

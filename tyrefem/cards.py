@@ -12,6 +12,7 @@ from typing import Annotated, Any, ClassVar, Self
 from pydantic import BaseModel, ConfigDict, Field, ValidationError, model_validator
 
 from tyrefem.errors import InputError, nearest
+from tyrefem.output import note_input
 from tyrefem.quantity import Unit
 
 Text = Annotated[str, Field(min_length=1)]
@@ -90,6 +91,7 @@ def _one_error(error: ValidationError, file: str | Path | None) -> InputError:
 def read_toml(path: str | Path) -> dict[str, Any]:
     """A TOML file as plain data; a file that is not TOML is an `InputError` with the line."""
     path = Path(path)
+    note_input(path)
     try:
         stat = path.stat()
         return copy.deepcopy(_parsed(path.absolute(), stat.st_mtime_ns, stat.st_size, stat.st_ino))

@@ -14,10 +14,108 @@ from typing import Any
 
 from tyrefem.errors import InputError
 
+#: Start of the names under which files are written until they are complete.
+TEMPORARY = ".tyrefem-"
+
+
+class WriteGuard:
+    """Who may refuse a file before it is written, and learns of it afterwards. This one lets everything pass."""
+
+    def before_writing(self, path: Path) -> None:
+        """Called before ``path`` is replaced; raises `InputError` to refuse."""
+
+    def after_writing(self, path: Path) -> None:
+        """Called when ``path`` is complete."""
+
+    def takes_summary(self, path: Path, data: dict[str, Any]) -> bool:
+        """Does the guard write this JSON file itself, with more in it?"""
+        return False
+
+
+_NOBODY = WriteGuard()
+#: The command in work and the files that it has read: one command at a time in a process.
+_guard = _NOBODY
+_read: dict[Path, None] = {}
+
+
+@contextmanager
+def guarded(guard: WriteGuard | None) -> Iterator[None]:
+    """Every file that is written in this block is first shown to ``guard``; None: to nobody."""
+    global _guard
+    before, _guard = _guard, guard or _NOBODY
+    try:
+        yield
+    finally:
+        _guard = before
+
+
+@contextmanager
+def reading() -> Iterator[None]:
+    """The files read in this block are the inputs of one command."""
+    before = dict(_read)
+    _read.clear()
+    try:
+        yield
+    finally:
+        _read.clear()
+        _read.update(before)
+
+
+def note_input(path: str | Path) -> None:
+    """A file of the user's is read: no command writes it."""
+    _read[Path(path).absolute()] = None
+
+
+def inputs_read() -> tuple[Path, ...]:
+    """The files read so far by this command."""
+    return tuple(_read)
+
+
+def begin_writing(path: Path) -> None:
+    """A file is going to be written in place, or taken up from an earlier try.
+
+    Raises
+    ------
+    InputError : it is not this command's to write.
+    """
+    _guard.before_writing(path)
+
+
+def end_writing(path: Path) -> None:
+    """A file written in place is complete."""
+    _guard.after_writing(path)
+
+
+def place_of_output(path: str | Path) -> Path:
+    """The whole path of a folder for results.
+
+    Raises
+    ------
+    InputError : a file or a link to nothing is in its place, or in the place of a folder above it.
+    """
+    whole = Path(os.path.abspath(path))
+    place = whole
+    while not os.path.lexists(place):
+        place = place.parent
+    if not place.exists():
+        raise InputError("is a link to nothing: mend or remove it", file=place, field="--out")
+    if not place.is_dir():
+        raise InputError("a file is in the place of this folder", file=place, field="--out")
+    return whole
+
 
 def _temporary(path: Path) -> Path:
     """A free name in the same folder (so that moving is atomic), with the same suffix."""
-    return path.with_name(f".{path.stem}.{secrets.token_hex(4)}{path.suffix}")
+    return path.with_name(f"{TEMPORARY}{secrets.token_hex(4)}{path.suffix}")
+
+
+def remove_temporary(folder: Path) -> None:
+    """Remove what a killed command left half-written in ``folder``; nobody may be writing there."""
+    for path in folder.glob(f"{TEMPORARY}{'[0-9a-f]' * 8}*"):
+        if path.is_dir() and not path.is_symlink():
+            shutil.rmtree(path, ignore_errors=True)
+        else:
+            path.unlink(missing_ok=True)
 
 
 @contextmanager
@@ -38,7 +136,7 @@ def atomic_path(path: str | Path) -> Iterator[Path]:
 
     Raises
     ------
-    InputError : the folder or the file cannot be written.
+    InputError : the folder or the file cannot be written, or is not this command's to write.
 
     >>> import tempfile
     >>> target = Path(tempfile.mkdtemp()) / "out" / "summary.json"
@@ -47,9 +145,10 @@ def atomic_path(path: str | Path) -> Iterator[Path]:
     >>> target.read_text(), [file.name for file in target.parent.iterdir()]
     ('{}', ['summary.json'])
     """
-    path = Path(path)
+    path = Path(os.path.abspath(path))
     temporary = _temporary(path)
     with _cannot_be_written(path, temporary):
+        _guard.before_writing(path)
         path.parent.mkdir(parents=True, exist_ok=True)
         try:
             yield temporary
@@ -57,6 +156,7 @@ def atomic_path(path: str | Path) -> Iterator[Path]:
         finally:
             with suppress(OSError):
                 temporary.unlink(missing_ok=True)
+        _guard.after_writing(path)
 
 
 @contextmanager
@@ -69,21 +169,28 @@ def atomic_folder(folder: str | Path) -> Iterator[Path]:
     ------
     InputError : the folder cannot be written, or a file is in the place of a folder.
     """
-    folder = Path(folder)
-    temporary = _temporary(folder)
+    folder = Path(os.path.abspath(folder))
+    temporary = folder / f"{TEMPORARY}{secrets.token_hex(4)}"
     with _cannot_be_written(folder, temporary):
         folder.mkdir(parents=True, exist_ok=True)
         temporary.mkdir()
         try:
             yield temporary
-            for file in sorted(temporary.rglob("*")):
-                target = folder / file.relative_to(temporary)
-                if file.is_dir():
-                    target.mkdir(exist_ok=True)
-                else:
-                    os.replace(file, target)
+            files = sorted(path for path in temporary.rglob("*") if path.is_file())
+            for file in files:
+                _guard.before_writing(folder / file.relative_to(temporary))
+            for file in files:
+                _move(file, folder / file.relative_to(temporary))
         finally:
             shutil.rmtree(temporary, ignore_errors=True)
+
+
+def _move(file: Path, target: Path) -> None:
+    target.parent.mkdir(parents=True, exist_ok=True)
+    if target.suffix == ".json" and _guard.takes_summary(target, json.loads(file.read_text(encoding="utf-8"))):
+        return
+    os.replace(file, target)
+    _guard.after_writing(target)
 
 
 def jsonable(value: Any) -> Any:
@@ -101,6 +208,8 @@ def jsonable(value: Any) -> Any:
 
 def write_json(data: dict[str, Any], path: Path) -> Path:
     """Write JSON whole or not at all."""
-    with atomic_path(path) as temporary:
-        temporary.write_text(json.dumps(jsonable(data), indent=1) + "\n", encoding="utf-8")
+    plain = jsonable(data)
+    if not _guard.takes_summary(Path(os.path.abspath(path)), plain):
+        with atomic_path(path) as temporary:
+            temporary.write_text(json.dumps(plain, indent=1) + "\n", encoding="utf-8")
     return path

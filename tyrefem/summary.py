@@ -14,6 +14,10 @@ from tyrefem.published import of_run
 
 if TYPE_CHECKING:
     from tyrefem.result import Result
+    from tyrefem.studies import Study
+
+#: Tables of a run, as CSV files.
+TABLES = ("readings.csv", "extremes.csv", "heat_budget.csv", "heat_power.csv", "sliding.csv")
 
 
 def versions() -> dict[str, str]:
@@ -75,6 +79,15 @@ def summary(result: Result) -> dict[str, Any]:
 def _hottest_region(result: Result) -> str:
     peaks = result.history.region_maximum
     return max(peaks, key=lambda region: peaks[region].temperature)
+
+
+def run_files(study: Study) -> list[str]:
+    """The files that a run of ``study`` may write, relative to its folder."""
+    from tyrefem.plotting import PICTURES
+    from tyrefem.vtk import file_names
+
+    return [*TABLES, "study.toml", "report.html", *(f"pictures/{name}" for name in PICTURES),
+            *(f"vtk/{name}" for name in file_names(study.name))]  # fmt: skip
 
 
 def write_tables(result: Result, folder: Path) -> Path:

@@ -48,11 +48,22 @@ def write_series(result: Result, folder: Path, *, revolved: bool = False, segmen
     ------
     InputError : the folder cannot be written.
     """
-    name = re.sub(r"[^\w.-]+", "-", result.study.name).strip("-.") or "tyre"
+    name = file_name(result.study.name)
     folder = Path(folder)
     if revolved:
         _write(result, folder, f"{name}-revolved", _Ring(result, segments))
     return _write(result, folder, name, _Plane(result))
+
+
+def file_name(study: str) -> str:
+    """The stem of a study's VTK files: its name, without what a file's name may not hold."""
+    return re.sub(r"[^\w.-]+", "-", study).strip("-.") or "tyre"
+
+
+def file_names(study: str) -> list[str]:
+    """Names of the files that `write_series` may write."""
+    name = file_name(study)
+    return [f"{stem}{rest}" for stem in (name, f"{name}-revolved") for rest in (".pvd", f"_{4 * '[0-9]'}*.vtu")]
 
 
 def saved_times(result: Result) -> list[int]:

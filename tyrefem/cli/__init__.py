@@ -13,6 +13,7 @@ import typer
 import tyrefem
 from tyrefem.cli.common import fail
 from tyrefem.errors import InputError
+from tyrefem.output import reading
 
 app = typer.Typer(
     name="tyrefem",
@@ -65,7 +66,8 @@ def _guarded(arguments: list[str] | None) -> int:
     # Importing makes many objects and no garbage: looking for it every 700 objects takes a tenth of a short run.
     gc.set_threshold(100_000)
     try:
-        code = app(args=arguments, prog_name=app.info.name, standalone_mode=False)
+        with reading():
+            code = app(args=arguments, prog_name=app.info.name, standalone_mode=False)
     except InputError as error:
         return fail(error)
     except KeyboardInterrupt:

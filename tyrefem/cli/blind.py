@@ -9,15 +9,17 @@ from typing import Annotated
 import typer
 
 from tyrefem.cli.common import (
+    ForceOption,
     JsonOption,
+    QuietOption,
     ReducedOption,
     SetOption,
     StudyArgument,
     print_json,
-    progress,
     settings,
-    writable_folder,
 )
+from tyrefem.cli.progress import progress
+from tyrefem.results_folder import results_folder
 
 
 def blind(
@@ -28,6 +30,8 @@ def blind(
     out: Annotated[Path | None, typer.Option("--out", help="Folder; default: results/STUDY-blind.")] = None,
     workers: Annotated[int | None, typer.Option(min=1, help="Processes; default: one per core.")] = None,
     reduced: ReducedOption = "auto",
+    force: ForceOption = False,
+    quiet: QuietOption = False,
     as_json: JsonOption = False,
 ) -> None:
     """Hide effects in made-up data for this study's sensors and runs, and report how often the diagnosis is right.
@@ -38,8 +42,11 @@ def blind(
     from tyrefem.studies import study as load
 
     found = load(study, settings(changes))
-    folder = writable_folder(out or Path("results") / f"{found.name}-blind")
-    with progress(f"{found.name}: {cases} cases", 1.0, quiet=as_json) as step:
+    place, names = out or Path("results") / f"{found.name}-blind", ("blind.json", "blind.png")
+    with (
+        results_folder(place, "blind", names, force=force, keeps=["cases/*.json"]) as folder,
+        progress(f"{found.name}: {cases} cases", 1.0, quiet=quiet or as_json) as step,
+    ):
         cores, tick = workers or os.cpu_count() or 1, lambda done: step(done / cases)
         result = run_blind(found, cases, seed, folder, cores, tick, reduced=reduced)
     if as_json:

@@ -1,13 +1,9 @@
-"""What the commands share: ``--set``, names to complete, progress on a terminal, JSON on stdout."""
+"""What the commands share: ``--set``, ``--force``, ``--quiet``, names to complete, JSON on stdout."""
 
 from __future__ import annotations
 
-import os
 import sys
-import tempfile
 import tomllib
-from collections.abc import Callable, Iterator
-from contextlib import contextmanager
 from pathlib import Path
 from typing import Annotated, Any
 
@@ -21,23 +17,6 @@ def fail(message: object, code: int = 2) -> int:
     printable = "".join(letter if letter.isprintable() else " " for letter in str(message))
     print(f"tyrefem: {' '.join(printable.split())}", file=sys.stderr)
     return code
-
-
-def writable_folder(folder: Path) -> Path:
-    """The folder, or an error before any work is done: a file in its place, or no right to write.
-
-    Nothing is made yet: a run that fails leaves no empty folder behind.
-    """
-    place = folder.absolute()
-    while not os.path.lexists(place):
-        place = place.parent
-    if not place.is_dir():
-        raise InputError("a file is in the place of this folder", file=place, field="--out")
-    try:
-        with tempfile.TemporaryFile(dir=place):
-            return folder
-    except OSError as error:
-        raise InputError(f"cannot be written: {error.strerror or error}", file=place, field="--out") from None
 
 
 def complete_studies(incomplete: str) -> list[str]:
@@ -54,6 +33,10 @@ SetOption = Annotated[
     list[str] | None,
     typer.Option("--set", metavar="KEY=VALUE", help="Change one value, e.g. drive.speed='25 mph'. Repeatable."),
 ]
+ForceOption = Annotated[
+    bool, typer.Option("--force", help="Replace files that are not this command's; an input is never replaced.")
+]
+QuietOption = Annotated[bool, typer.Option("--quiet", "-q", help="No progress on stderr.")]
 JsonOption = Annotated[bool, typer.Option("--json", help="Print the result as JSON on stdout, nothing else.")]
 
 
@@ -109,41 +92,6 @@ def settings(pairs: list[str] | None) -> dict[str, Any]:
     return changes
 
 
-@contextmanager
-def progress(description: str, total: float, *, quiet: bool = False) -> Iterator[Callable[[float], None]]:
-    """A function that takes how far the work is; draws a bar on a terminal, nothing in a pipe."""
-    if quiet or not sys.stderr.isatty():
-        yield lambda _done: None
-        return
-    from rich.console import Console
-    from rich.progress import Progress
-
-    with Progress(console=Console(stderr=True), transient=True) as bar:
-        task = bar.add_task(description, total=total)
-        yield lambda done: bar.update(task, completed=done)
-
-
-@contextmanager
-def several(*, quiet: bool = False) -> Iterator[Callable[[str, int, int], None]]:
-    """A function that takes what is done, how many, and of how many; a bar with the time left on a terminal."""
-    if quiet or not sys.stderr.isatty():
-        yield lambda what, done, total: None
-        return
-    from rich.console import Console
-    from rich.progress import BarColumn, MofNCompleteColumn, Progress, TextColumn, TimeRemainingColumn
-
-    columns = (TextColumn("{task.description}"), BarColumn(), MofNCompleteColumn(), TimeRemainingColumn())
-    with Progress(*columns, console=Console(stderr=True), transient=True) as bar:
-        tasks: dict[str, Any] = {}
-
-        def tick(what: str, done: int, total: int) -> None:
-            if what not in tasks:
-                tasks[what] = bar.add_task(what, total=total)
-            bar.update(tasks[what], completed=done, total=total)
-
-        yield tick
-
-
 def print_json(data: dict[str, Any]) -> None:
     """JSON on stdout."""
     import json
@@ -151,3 +99,8 @@ def print_json(data: dict[str, Any]) -> None:
     from tyrefem.output import jsonable
 
     typer.echo(json.dumps(jsonable(data), indent=1))
+
+
+def print_file(path: Path) -> None:
+    """A JSON file as it is on stdout."""
+    typer.echo(path.read_text(encoding="utf-8"), nl=False)

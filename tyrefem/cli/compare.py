@@ -12,19 +12,21 @@ from typing import Annotated
 import typer
 
 from tyrefem.cli.common import (
+    ForceOption,
     IgnoreOption,
     JsonOption,
+    QuietOption,
     ReducedOption,
     RenameOption,
     SetOption,
     StudyArgument,
     print_json,
-    progress,
     renamed,
     settings,
-    writable_folder,
 )
+from tyrefem.cli.progress import progress
 from tyrefem.processes import processes
+from tyrefem.results_folder import results_folder
 
 
 def compare(
@@ -41,25 +43,33 @@ def compare(
     ] = True,
     k: Annotated[float, typer.Option("-k", min=0.1, help="Coverage factor of the validation uncertainty.")] = 2.0,
     reduced: ReducedOption = "auto",
+    force: ForceOption = False,
+    quiet: QuietOption = False,
     as_json: JsonOption = False,
 ) -> None:
     """Compare a study with measured tables: deviation per sensor, run and phase, against the validation uncertainty."""
+    from tyrefem.compare.comparison import FILES
     from tyrefem.studies import study as load
 
     found = load(study, settings(changes))
-    folder = writable_folder(out or Path("results") / f"{found.name}-compare")
-    with progress(f"{found.name}: simulations", 1.0, quiet=as_json) as step, _side_by_side(inputs) as executor:
-        comparison = found.compare(
-            table,
-            ignore=tuple(ignore or ()),
-            rename=renamed(rename),
-            inputs=inputs,
-            k=k,
-            executor=executor,
-            progress=lambda done, total: step(done / total),
-            reduced=reduced,
-        )
-    comparison.save(folder)
+    place = out or Path("results") / f"{found.name}-compare"
+    read = [table] if table else [entry.table for entry in found.measured]
+    with results_folder(place, "compare", FILES, inputs=read, force=force) as folder:
+        with (
+            progress(f"{found.name}: simulations", 1.0, quiet=quiet or as_json) as step,
+            _side_by_side(inputs) as executor,
+        ):
+            comparison = found.compare(
+                table,
+                ignore=tuple(ignore or ()),
+                rename=renamed(rename),
+                inputs=inputs,
+                k=k,
+                executor=executor,
+                progress=lambda done, total: step(done / total),
+                reduced=reduced,
+            )
+        comparison.save(folder)
     if as_json:
         print_json(comparison.to_dict())
         return

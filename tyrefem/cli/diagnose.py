@@ -3,17 +3,16 @@
 from __future__ import annotations
 
 import os
-import sys
-from collections.abc import Callable, Iterator
-from contextlib import contextmanager
 from pathlib import Path
 from typing import Annotated
 
 import typer
 
 from tyrefem.cli.common import (
+    ForceOption,
     IgnoreOption,
     JsonOption,
+    QuietOption,
     ReducedOption,
     RenameOption,
     SetOption,
@@ -22,8 +21,9 @@ from tyrefem.cli.common import (
     print_json,
     renamed,
     settings,
-    writable_folder,
 )
+from tyrefem.cli.progress import stages
+from tyrefem.results_folder import results_folder
 
 #: Folder within ``--out`` that holds finished simulations until the diagnosis is done.
 PROGRESS = ".progress"
@@ -46,6 +46,8 @@ def diagnose(
         int, typer.Option(min=1, max=9, help="Diagnoses at most, each of what the one before it left unexplained.")
     ] = 3,
     reduced: ReducedOption = "auto",
+    force: ForceOption = False,
+    quiet: QuietOption = False,
     as_json: JsonOption = False,
 ) -> None:
     """Find where measurements and study disagree, name the missing effect, and write the study that has it.
@@ -53,30 +55,34 @@ def diagnose(
     Interrupted, the same command goes on where it was.
     """
     from tyrefem.diagnose.progress_store import ProgressStore
+    from tyrefem.diagnose.record import FILES
     from tyrefem.studies import study as load
 
     found = load(study, settings(changes))
-    folder = writable_folder(out or Path("results") / f"{found.name}-diagnosis")
-    store = ProgressStore(folder / PROGRESS)
-    try:
-        with _progress(quiet=as_json) as tick:
-            diagnosis = found.diagnose(
-                table,
-                ignore=tuple(ignore or ()),
-                rename=renamed(rename),
-                largest=largest,
-                looks=looks,
-                workers=workers or min(os.cpu_count() or 1, MOST_WORKERS),
-                progress=tick,
-                store=store,
-                reduced=reduced,
-            )
-            tick("drawing", 0, 0)
-            page = diagnosis.save(folder)
-    except KeyboardInterrupt:
-        kept = "; the same command goes on from there" if store.folder.is_dir() else ""
-        raise typer.Exit(fail(f"interrupted; {store.count} finished simulations are kept{kept}", 130)) from None
-    store.clear()
+    place = out or Path("results") / f"{found.name}-diagnosis"
+    read = [table] if table else [entry.table for entry in found.measured]
+    with results_folder(place, "diagnose", FILES, inputs=read, force=force, keeps=[f"{PROGRESS}*/*/*.npz"]) as folder:
+        store = ProgressStore(folder / PROGRESS)
+        try:
+            with stages(quiet=quiet or as_json) as tick:
+                tick("reading", 0, 0)
+                diagnosis = found.diagnose(
+                    table,
+                    ignore=tuple(ignore or ()),
+                    rename=renamed(rename),
+                    largest=largest,
+                    looks=looks,
+                    workers=workers or min(os.cpu_count() or 1, MOST_WORKERS),
+                    progress=tick,
+                    store=store,
+                    reduced=reduced,
+                )
+                tick("drawing", 0, 0)
+                page = diagnosis.save(folder)
+        except KeyboardInterrupt:
+            kept = "; the same command goes on from there" if store.folder.is_dir() else ""
+            raise typer.Exit(fail(f"interrupted; {store.count} finished simulations are kept{kept}", 130)) from None
+        store.clear()
     if as_json:
         print_json(diagnosis.to_dict())
         return
@@ -88,29 +94,6 @@ def diagnose(
     for sentence in verdict_words(diagnosis)[1:]:
         typer.echo(sentence)
     typer.echo(f"results in {folder}; read {page}, run {folder / 'amended.toml'}")
-
-
-@contextmanager
-def _progress(*, quiet: bool) -> Iterator[Callable[[str, int, int], None]]:
-    """A function of what is done, how far, of how much (0: unknown); a bar on a terminal, nothing in a pipe."""
-    if quiet or not sys.stderr.isatty():
-        yield lambda _what, _done, _total: None
-        return
-    from rich.console import Console
-    from rich.progress import BarColumn, Progress, SpinnerColumn, TextColumn, TimeElapsedColumn
-
-    columns = (
-        SpinnerColumn(), TextColumn("{task.description}"), BarColumn(bar_width=24), TextColumn("{task.fields[count]}"),
-        TimeElapsedColumn(),
-    )  # fmt: skip
-    with Progress(*columns, console=Console(stderr=True), transient=True) as bar:
-        task = bar.add_task("reading", total=None, count="")
-
-        def tick(what: str, done: int, total: int) -> None:
-            count = f"{done} of {total}" if total else str(done or "")
-            bar.update(task, description=what, completed=done if total else 0, total=total or None, count=count)
-
-        yield tick
 
 
 #: Place among the commands.

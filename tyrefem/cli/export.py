@@ -9,16 +9,18 @@ from typing import TYPE_CHECKING, Annotated
 import typer
 
 from tyrefem.cli.common import (
+    ForceOption,
     JsonOption,
+    QuietOption,
     SetOption,
     StudyArgument,
     fail,
     print_json,
     settings,
-    several,
-    writable_folder,
 )
+from tyrefem.cli.progress import stages
 from tyrefem.errors import InputError
+from tyrefem.results_file import results_file
 
 if TYPE_CHECKING:
     from tyrefem.reduced.certify import Certificate
@@ -63,6 +65,8 @@ def export(
     changes: SetOption = None,
     fmu: Annotated[bool, typer.Option("--fmu", help="Write an FMU (FMI 2.0, co-simulation) beside the file.")] = False,
     workers: Annotated[int | None, typer.Option(min=1, help="Processes; default: one per core.")] = None,
+    force: ForceOption = False,
+    quiet: QuietOption = False,
     as_json: JsonOption = False,
 ) -> None:
     """Export a real-time model: inputs speed, load, pressure, ambient, road; outputs sensors, contained air.
@@ -81,9 +85,6 @@ def export(
         given |= _range(text, name)
     chosen = loaded(study, settings(changes))
     path = out or Path("results") / f"{chosen.name}.npz"
-    if path.suffix != ".npz":
-        raise InputError(f"'{path}' must end with .npz", field="--out")
-    writable_folder(path.parent)
     allowed = parse(tolerance, "delta_degC")
     if not allowed > 0:
         raise InputError(f"must be positive, not {tolerance}", field="--tolerance")
@@ -91,21 +92,22 @@ def export(
     if lasting is not None and not lasting >= 1:
         raise InputError(f"must be a second or more, not {duration}", field="--duration")
     count = workers or os.cpu_count() or 1
-    with several(quiet=as_json) as tick:
-        certificate = write(
-            chosen,
-            path,
-            ranges=given,
-            tolerance=allowed,
-            duration=lasting,
-            scheduler=Local(count) if count > 1 else Here(),
-            progress=tick,
-        )
-    files = {"file": path}
-    if fmu:
-        from tyrefem.fmu import write_fmu
+    files = {"file": path} | ({"fmu": path.with_suffix(".fmu")} if fmu else {})
+    with results_file(path, (".npz",), also=files.values(), force=force):
+        with stages(quiet=quiet or as_json) as tick:
+            certificate = write(
+                chosen,
+                path,
+                ranges=given,
+                tolerance=allowed,
+                duration=lasting,
+                scheduler=Local(count) if count > 1 else Here(),
+                progress=tick,
+            )
+        if fmu:
+            from tyrefem.fmu import write_fmu
 
-        files["fmu"] = write_fmu(path, path.with_suffix(".fmu"))
+            write_fmu(path, files["fmu"])
     if as_json:
         print_json({**vars(certificate), **{name: str(one) for name, one in files.items()}})
         return

@@ -9,7 +9,20 @@ from typing import Annotated
 
 import typer
 
-from tyrefem.cli.common import JsonOption, SetOption, StudyArgument, print_json, progress, settings, writable_folder
+from tyrefem.cli.common import (
+    ForceOption,
+    JsonOption,
+    QuietOption,
+    SetOption,
+    StudyArgument,
+    print_json,
+    settings,
+)
+from tyrefem.cli.progress import progress
+from tyrefem.results_folder import results_folder
+
+#: Files that the command writes.
+FILES = ("isolability.csv", "isolability.json", "isolability.png")
 
 
 def isolability(
@@ -17,6 +30,8 @@ def isolability(
     changes: SetOption = None,
     out: Annotated[Path | None, typer.Option("--out", help="Folder; default: results/STUDY-isolability.")] = None,
     workers: Annotated[int | None, typer.Option(min=1, help="Processes; default: one per core, at most 4.")] = None,
+    force: ForceOption = False,
+    quiet: QuietOption = False,
     as_json: JsonOption = False,
 ) -> None:
     """Before any data: which effects the study's sensors and runs can tell apart, and how strong they must be."""
@@ -26,15 +41,16 @@ def isolability(
     from tyrefem.studies import study as load
 
     found = load(study, settings(changes))
-    folder = writable_folder(out or Path("results") / f"{found.name}-isolability")
     count = workers or min(os.cpu_count() or 1, 4)
-    with progress(f"{found.name}: sensitivities", 1.0, quiet=as_json) as step:
-        result = found_by(found, workers=count, progress=lambda _what, done, total: step(done / max(total, 1)))
-    with atomic_folder(folder) as temporary:
-        result.table.to_csv(temporary / "isolability.csv", index=False, lineterminator="\n")
-        text = json.dumps(jsonable(result.to_dict()), indent=1, ensure_ascii=False, allow_nan=False)
-        (temporary / "isolability.json").write_text(text + "\n", encoding="utf-8")
-        (temporary / "isolability.png").write_bytes(picture(result))
+    place = out or Path("results") / f"{found.name}-isolability"
+    with results_folder(place, "isolability", FILES, force=force) as folder:
+        with progress(f"{found.name}: sensitivities", 1.0, quiet=quiet or as_json) as step:
+            result = found_by(found, workers=count, progress=lambda _what, done, total: step(done / max(total, 1)))
+        with atomic_folder(folder) as temporary:
+            result.table.to_csv(temporary / "isolability.csv", index=False, lineterminator="\n")
+            text = json.dumps(jsonable(result.to_dict()), indent=1, ensure_ascii=False, allow_nan=False)
+            (temporary / "isolability.json").write_text(text + "\n", encoding="utf-8")
+            (temporary / "isolability.png").write_bytes(picture(result))
     if as_json:
         print_json(jsonable(result.to_dict()))
         return

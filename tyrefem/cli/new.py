@@ -10,7 +10,6 @@ from typing import Annotated, Any
 
 import typer
 
-from tyrefem.cli.common import writable_folder
 from tyrefem.cli.show import complete_names
 from tyrefem.errors import InputError, nearest
 
@@ -26,7 +25,7 @@ def new(
 ) -> None:
     """Write a new study, section or material card into this folder, ready to be edited and found by name."""
     from tyrefem import library
-    from tyrefem.output import atomic_path
+    from tyrefem.output import atomic_path, place_of_output
 
     if kind not in DEFAULTS:
         raise InputError(f"no kind '{kind}'{nearest(kind, DEFAULTS)}")
@@ -37,7 +36,7 @@ def new(
     target = folder / name / "study.toml" if kind == "study" else folder / f"{name}.toml"
     if os.path.lexists(target) or (kind == "study" and os.path.lexists(target.parent)):
         raise InputError("exists already; nothing was written", file=target)
-    writable_folder(target.parent)
+    place_of_output(target.parent)
     files = {target: source} | {target.parent / name: source.parent / name for name in _companions(kind, source)}
     for place, file in files.items():
         with atomic_path(place) as temporary:

@@ -8,8 +8,19 @@ from typing import TYPE_CHECKING, Annotated
 
 import typer
 
-from tyrefem.cli.common import JsonOption, SetOption, StudyArgument, fail, print_json, settings, writable_folder
+from tyrefem.cli.common import (
+    ForceOption,
+    JsonOption,
+    QuietOption,
+    SetOption,
+    StudyArgument,
+    fail,
+    print_json,
+    settings,
+)
+from tyrefem.cli.progress import progress
 from tyrefem.errors import InputError
+from tyrefem.results_folder import results_folder
 
 if TYPE_CHECKING:
     from tyrefem.footprint.press import Pressed
@@ -41,12 +52,14 @@ def press(
     pictures: Annotated[bool, typer.Option(help="Draw the PNG pictures.")] = True,
     vtk: Annotated[bool, typer.Option(help="Write the whole deformed tyre, tyre.vtu.")] = True,
     out: Annotated[Path | None, typer.Option("--out", help="Folder; default: results/STUDY-press.")] = None,
+    force: ForceOption = False,
+    quiet: QuietOption = False,
     as_json: JsonOption = False,
     changes: SetOption = None,
 ) -> None:
     """Inflate the tyre by finite elements and press it on the road; by default as in the drive's first phase."""
     from tyrefem.footprint.press import press as pressed_by
-    from tyrefem.footprint.press_files import write_files
+    from tyrefem.footprint.press_files import FILES, write_files
     from tyrefem.footprint.press_places import cycle_places, read_place
     from tyrefem.output import atomic_folder
     from tyrefem.studies import study as load_study
@@ -54,17 +67,20 @@ def press(
     texts = {"pressure": pressure, "load": load, "deflection": deflection, "drum_diameter": drum, "camber": camber}
     given = {name: _read(name, text) for name, text in texts.items() if text is not None}
     found = load_study(study, settings(changes))
-    folder = writable_folder(out or Path("results") / f"{found.name}-press")
-    try:
-        for place in at or ():
-            read_place(found.section, place)
-        result = pressed_by(found, **given, balanced=balanced)
-        places = cycle_places(result, at or ())
-        curve = result.curve()
-    except InputError as error:
-        raise _placed(error, given, found) from None
-    with atomic_folder(folder) as temporary:
-        write_files(result, temporary, places, curve, pictures=pictures, vtk=vtk)
+    with (
+        results_folder(out or Path("results") / f"{found.name}-press", "press", FILES, force=force) as folder,
+        progress(f"{found.name}: inflated and pressed", quiet=quiet or as_json),
+    ):
+        try:
+            for place in at or ():
+                read_place(found.section, place)
+            result = pressed_by(found, **given, balanced=balanced)
+            places = cycle_places(result, at or ())
+            curve = result.curve()
+        except InputError as error:
+            raise _placed(error, given, found) from None
+        with atomic_folder(folder) as temporary:
+            write_files(result, temporary, places, curve, pictures=pictures, vtk=vtk)
     if result.footprint.unstable:
         many = ", ".join(map(str, result.footprint.unstable))
         where = result.footprint.unstable_place

@@ -7,8 +7,10 @@ from typing import Annotated
 
 import typer
 
-from tyrefem.cli.common import JsonOption, print_json, progress, writable_folder
+from tyrefem.cli.common import ForceOption, JsonOption, QuietOption, print_json
+from tyrefem.cli.progress import progress
 from tyrefem.errors import InputError
+from tyrefem.results_folder import results_folder
 
 group = typer.Typer(
     name="rig",
@@ -28,23 +30,29 @@ def simulate(
     out: OutOption = None,
     every: Annotated[str, typer.Option(help="Time between readings.")] = "5 s",
     seed: Annotated[int | None, typer.Option(help="Of the instruments' noise; without it, none.")] = None,
+    force: ForceOption = False,
+    quiet: QuietOption = False,
     as_json: JsonOption = False,
 ) -> None:
     """What the sensors would read in the card's tests: one table per run, pictures."""
     from tyrefem import rig as rigs
     from tyrefem.quantity import parse
-    from tyrefem.rig.files import write_simulation
+    from tyrefem.rig.files import simulation_files, write_simulation
 
     card, file = rigs.load(rig)
-    folder = writable_folder(out or Path("results") / f"rig-{_name(file)}")
+    place = out or Path("results") / f"rig-{_name(file)}"
     try:
         step = parse(every, "s")
     except InputError as error:
         raise error.within(field="--every") from None
     if seed is not None and seed < 0:
         raise InputError("must not be negative", field="--seed")
-    done = rigs.simulate(card, every=step, seed=seed)
-    write_simulation(done, folder)
+    with (
+        results_folder(place, "rig simulate", simulation_files(card), force=force) as folder,
+        progress(f"{_name(file)}: simulated tests", quiet=quiet or as_json),
+    ):
+        done = rigs.simulate(card, every=step, seed=seed)
+        write_simulation(done, folder)
     rows = {name: run.temperatures.max().round(2).to_dict() for name, run in done.runs.items()}
     if as_json:
         print_json({"highest_degC": rows, "words": done.words, "folder": folder})
@@ -71,30 +79,34 @@ def identify(
     ] = None,
     without: Annotated[list[str] | None, typer.Option(help="A sensor of the card to do without. Repeatable.")] = None,
     constant: Annotated[bool, typer.Option("--constant", help="No property may depend on temperature.")] = False,
+    force: ForceOption = False,
+    quiet: QuietOption = False,
     as_json: JsonOption = False,
 ) -> None:
     """Conductivity and specific heat of every layer with 95 % intervals; what the tables cannot determine."""
     from tyrefem import rig as rigs
-    from tyrefem.rig.files import write
+    from tyrefem.rig.files import FILES, write
     from tyrefem.rig.find import tables as beside
     from tyrefem.rig.layer_cards import bases
     from tyrefem.rig.verdict import shown, spoken
 
     card, file = rigs.load(rig)
-    folder = writable_folder(out or Path("results") / f"rig-{_name(file)}-identified")
     tests = rigs.read(card, beside(card, file, tables or ()), without or ())
     chosen = bases(card, base or [])
     count = 0
     total = _USUAL * len(tests)
-    with progress(f"{_name(file)}: computed tests", total, quiet=as_json) as step:
+    with results_folder(
+        out or Path("results") / f"rig-{_name(file)}-identified", "rig identify", FILES, force=force
+    ) as folder:
+        with progress(f"{_name(file)}: computed tests", total, quiet=quiet or as_json) as step:
 
-        def one_more() -> None:
-            nonlocal count
-            count += 1
-            step(min(count, total))
+            def one_more() -> None:
+                nonlocal count
+                count += 1
+                step(min(count, total))
 
-        found = rigs.identify(card, tests=tests, linear=not constant, progress=one_more)
-    write(found, folder, base or [])
+            found = rigs.identify(card, tests=tests, linear=not constant, progress=one_more)
+        write(found, folder, base or [])
     if as_json:
         print_json(found.to_dict())
         return
@@ -118,25 +130,27 @@ def layers(
     out: OutOption = None,
     most: Annotated[int, typer.Option(min=1, help="Largest number of layers to fit.")] = 4,
     seed: Annotated[int, typer.Option(min=0, help="Of the noise of simulated readings.")] = 1,
+    force: ForceOption = False,
+    quiet: QuietOption = False,
     as_json: JsonOption = False,
 ) -> None:
     """Fit one set of readings with 1, 2, 3 ... layers: what more layers improve."""
     from tyrefem import rig as rigs
     from tyrefem.rig.find import tables as beside
-    from tyrefem.rig.layer_study import study, write
+    from tyrefem.rig.layer_study import FILES, study, write
     from tyrefem.rig.readings import matched
 
     card, file = rigs.load(rig)
-    folder = writable_folder(out or Path("results") / f"rig-{_name(file)}-layers")
-    if tables:
-        tests = rigs.read(card, beside(card, file, tables))
-    else:
-        done = rigs.simulate(card, seed=seed)
-        tests = tuple(matched(card, run, list(card.sensors)) for run in done.runs.values())
+    tests = rigs.read(card, beside(card, file, tables)) if tables else ()
     counts = range(1, min(most, len(card.layers)) + 1)
-    with progress(f"{_name(file)}: layers", counts[-1], quiet=as_json) as step:
-        found = study(card, tests, counts, progress=step)
-    write(found, folder)
+    place = out or Path("results") / f"rig-{_name(file)}-layers"
+    with results_folder(place, "rig layers", FILES, force=force) as folder:
+        with progress(f"{_name(file)}: layers", counts[-1], quiet=quiet or as_json) as step:
+            if not tests:
+                done = rigs.simulate(card, seed=seed)
+                tests = tuple(matched(card, run, list(card.sensors)) for run in done.runs.values())
+            found = study(card, tests, counts, progress=step)
+        write(found, folder)
     if as_json:
         print_json({"rows": found.table().to_dict("records")})
         return

@@ -2,13 +2,17 @@
 
 from __future__ import annotations
 
+from collections.abc import Sequence
+from contextlib import nullcontext
 from pathlib import Path
 from typing import TYPE_CHECKING, Annotated, Any
 
 import typer
 
-from tyrefem.cli.common import writable_folder
+from tyrefem.cli.common import ForceOption
 from tyrefem.errors import InputError
+from tyrefem.results_file import results_file
+from tyrefem.results_folder import results_folder
 
 if TYPE_CHECKING:
     import pandas as pd
@@ -20,6 +24,8 @@ road = typer.Typer(
 )
 Conductivity = Annotated[str, typer.Option("--conductivity", help="Tread's conductivity.")]
 HeatCapacity = Annotated[str, typer.Option("--heat-capacity", help="Tread's heat capacity by volume.")]
+#: Suffixes of a picture.
+PICTURES = (".png",)
 #: Speeds (km/h) and footprint lengths (m) of the averaging sweep.
 SPEEDS = (0.2, 0.5, 1, 2, 5, 10, 15, 20, 50, 100, 200, 300)
 LENGTHS = (0.10, 0.14, 0.20, 0.30)
@@ -110,15 +116,14 @@ def averaging(
     ] = "80 degC",
     conductivity: Conductivity = "0.25 W/m/K",
     heat_capacity: HeatCapacity = "2e6 J/m**3/K",
+    force: ForceOption = False,
 ) -> None:
     """Averaging the film over the revolution against every contact resolved, over speed and footprint length."""
-    from tyrefem.plotting.road import SMALL, averaging_figure, holds_above
+    from tyrefem.plotting.road import averaging_figure
     from tyrefem.quantity import parse
     from tyrefem.revolution import averaging_sweep
     from tyrefem.tread_point import TreadPoint
 
-    if out is not None:
-        writable_folder(out.parent)
     try:
         inside = parse(inner_temperature, "degC")
     except InputError as error:
@@ -131,7 +136,16 @@ def averaging(
         heat_capacity=_positive(heat_capacity, "J/m**3/K", "--heat-capacity"),
         inner_temperature=inside,
     )
-    errors = averaging_sweep(point, [v / 3.6 for v in SPEEDS], LENGTHS)
+    with nullcontext() if out is None else results_file(out, PICTURES, force=force):
+        errors = averaging_sweep(point, [v / 3.6 for v in SPEEDS], LENGTHS)
+        _print_averaging(errors)
+        if out is not None:
+            _save(averaging_figure(errors), out)
+
+
+def _print_averaging(errors: Sequence[Any]) -> None:
+    from tyrefem.plotting.road import SMALL, holds_above
+
     typer.echo("FL m, v km/h: mean surface resolved, averaged degC; averaged - resolved K; swing in one contact K")
     for found in errors:
         v, length = found.point.speed * 3.6, found.point.footprint_length
@@ -143,28 +157,28 @@ def averaging(
         above = holds_above([found for found in errors if found.point.footprint_length == length])
         where = f"from {above * 3.6:.4g} km/h" if above is not None else "at no speed of the sweep"
         typer.echo(f"footprint {length * 1e3:.0f} mm: averaging holds to {SMALL:g} K {where}")
-    if out is not None:
-        _save(averaging_figure(errors), out)
 
 
 @road.command()
-def figures(out: Annotated[Path, typer.Option("--out", help="Folder for the pictures.")]) -> None:
+def figures(
+    out: Annotated[Path, typer.Option("--out", help="Folder for the pictures.")], force: ForceOption = False
+) -> None:
     """Redraw figures 4 and 5 of the paper."""
     from tyrefem.plotting.road import film_figure
 
-    folder = writable_folder(out)
     literature = _printed(1)
     points = list(zip(literature["speed_m_s"], literature["literature_Hc_W_m2K"], strict=True))
-    folder.mkdir(parents=True, exist_ok=True)
-    _save(film_figure([0.14], points), folder / "figure-4.png")
-    _save(film_figure([0.10, 0.12, 0.14, 0.16, 0.18]), folder / "figure-5.png")
+    with results_folder(out, "road figures", ("figure-4.png", "figure-5.png"), force=force) as folder:
+        _save(film_figure([0.14], points), folder / "figure-4.png")
+        _save(film_figure([0.10, 0.12, 0.14, 0.16, 0.18]), folder / "figure-5.png")
 
 
 def _save(drawn: Any, path: Path) -> None:
     from tyrefem.output import atomic_path
+    from tyrefem.plotting.style import png
 
     with atomic_path(path) as temporary:
-        drawn.savefig(temporary, format="png")
+        temporary.write_bytes(png(drawn))
     typer.echo(f"drawn in {path}")
 
 

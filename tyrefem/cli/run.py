@@ -8,16 +8,19 @@ from typing import TYPE_CHECKING, Annotated, Any
 import typer
 
 from tyrefem.cli.common import (
+    ForceOption,
     JsonOption,
+    QuietOption,
     SetOption,
     StudyArgument,
     fail,
+    print_file,
     print_json,
-    progress,
     settings,
-    writable_folder,
 )
+from tyrefem.cli.progress import progress
 from tyrefem.errors import InputError
+from tyrefem.results_folder import results_folder
 
 if TYPE_CHECKING:
     from tyrefem.campaign import Campaign
@@ -32,25 +35,36 @@ def run(
     pictures: Annotated[bool, typer.Option(help="Draw the PNG pictures and the HTML report.")] = True,
     vtk: Annotated[bool, typer.Option(help="Write the .pvd and .vtu files.")] = True,
     revolved: Annotated[bool, typer.Option("--revolved", help="Write the VTK files of the whole ring too.")] = False,
+    force: ForceOption = False,
+    quiet: QuietOption = False,
     as_json: JsonOption = False,
 ) -> None:
     """Simulate a study: temperatures, heat budget, rolling resistance, VTK, pictures and a report.
 
     A study with a table of cases runs them all and writes one table.
     """
+    from tyrefem.campaign import campaign_files
     from tyrefem.studies import study as load
+    from tyrefem.summary import run_files
 
     values = settings(changes)
     found = load(study, values)
-    folder = writable_folder(out or Path("results") / found.name)
+    place = out or Path("results") / found.name
+    quiet = quiet or as_json
     if found.is_campaign:
-        _campaign(found, folder, values, pictures, vtk, revolved, as_json)
+        campaign = found.campaign()
+        _refuse_overlaid(campaign, values)
+        with results_folder(place, "run", campaign_files(campaign), force=force) as folder:
+            _campaign(campaign, folder, pictures, vtk, revolved, as_json, quiet)
     else:
-        _single(found, folder, pictures, vtk, revolved, as_json)
+        with results_folder(place, "run", run_files(found), force=force) as folder:
+            _single(found, folder, pictures, vtk, revolved, as_json, quiet)
+        if as_json:
+            print_file(folder / "summary.json")
 
 
-def _single(study: Study, folder: Path, pictures: bool, vtk: bool, revolved: bool, as_json: bool) -> None:
-    with progress(study.name, study.card.drive.end, quiet=as_json) as step:
+def _single(study: Study, folder: Path, pictures: bool, vtk: bool, revolved: bool, as_json: bool, quiet: bool) -> None:
+    with progress(study.name, study.card.drive.end, quiet=quiet) as step:
         result = study.run(step)
     result.save(folder)
     if vtk:
@@ -60,12 +74,12 @@ def _single(study: Study, folder: Path, pictures: bool, vtk: bool, revolved: boo
         result.report(folder / "report.html")
     for warning in result.warnings:
         fail(f"warning: {warning}")
-    if as_json:
-        print_json(result.summary())
-    else:
+    if not as_json:
         typer.echo(_words(result))
         typer.echo(f"results in {folder}" + (f"; read {folder / 'report.html'}" if pictures else ""))
     if result.history.interrupted:
+        if as_json:
+            print_file(folder / "summary.json")
         raise typer.Exit(fail(f"interrupted at {result.times[-1]:g} s; what is finished is in {folder}", 130))
 
 
@@ -97,12 +111,11 @@ def _words(result: Result) -> str:
 
 
 def _campaign(
-    study: Study, folder: Path, values: dict[str, Any], pictures: bool, vtk: bool, revolved: bool, as_json: bool
+    campaign: Campaign, folder: Path, pictures: bool, vtk: bool, revolved: bool, as_json: bool, quiet: bool
 ) -> None:
     from tyrefem.campaign import run_campaign, write_campaign_report
 
-    campaign = study.campaign()
-    _refuse_overlaid(campaign, values)
+    study = campaign.study
 
     def each(result: Result, place: Path) -> None:
         for warning in result.warnings:
@@ -113,7 +126,7 @@ def _campaign(
             result.report(place / "report.html")
 
     try:
-        with progress(study.name, len(campaign.cases), quiet=as_json) as step:
+        with progress(study.name, len(campaign.cases), quiet=quiet) as step:
             table = run_campaign(campaign, folder, lambda done, _all: step(done), each)
     except KeyboardInterrupt:
         raise typer.Exit(fail(f"interrupted; finished cases are in {folder / 'campaign.csv'}", 130)) from None

@@ -7,9 +7,12 @@ from typing import Annotated, Any
 
 import typer
 
-from tyrefem.cli.common import SetOption, settings
+from tyrefem.cli.common import ForceOption, SetOption, settings
 from tyrefem.errors import InputError, nearest
+from tyrefem.results_file import results_file
 
+#: Suffixes of a picture and of a mesh.
+PICTURES, MESHES = (".png",), (".msh", ".vtu", ".vtk")
 KINDS = ("section", "material", "study", "sweep", "mesh", "strain", "effect")
 
 
@@ -38,6 +41,7 @@ def show(
     out: Annotated[
         Path | None, typer.Option("--out", help="PNG to write (a mesh: also .msh, .vtu); default: KIND-NAME.png.")
     ] = None,
+    force: ForceOption = False,
 ) -> None:
     """Show a card: `section`, `mesh` and `strain` drawn to a PNG; `material`, `study`, `sweep` and `effect` printed."""
     if kind not in KINDS:
@@ -49,15 +53,18 @@ def show(
     if kind in ("material", "study", "sweep"):
         _print(kind, name, values)
         return
-    if kind == "mesh" and out is not None and out.suffix in (".msh", ".vtu", ".vtk"):
-        _write_mesh(name, values, out)
+    if kind == "mesh" and out is not None and out.suffix in MESHES:
+        with results_file(out, MESHES, force=force):
+            _write_mesh(name, values, out)
         return
-    figure, facts = _SHOWN[kind](name, values)
-    path = out or Path(f"{kind}-{Path(name).stem if name.endswith('.toml') else Path(name).name}.png")
+    path = out or Path(f"{kind}-{Path(name).stem if name.endswith('.toml') else Path(name).resolve().name}.png")
     from tyrefem.output import atomic_path
+    from tyrefem.plotting.style import png
 
-    with atomic_path(path) as temporary:
-        figure.savefig(temporary, format="png")
+    with results_file(path, PICTURES + (MESHES if kind == "mesh" else ()), force=force):
+        figure, facts = _SHOWN[kind](name, values)
+        with atomic_path(path) as temporary:
+            temporary.write_bytes(png(figure))
     for key, value in facts.items():
         typer.echo(f"{key:28} {value:.6g}" if isinstance(value, float) else f"{key:28} {value}")
     typer.echo(f"drawn in {path}")

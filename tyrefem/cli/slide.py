@@ -9,8 +9,9 @@ from typing import Annotated, Any
 
 import typer
 
-from tyrefem.cli.common import JsonOption, print_json
+from tyrefem.cli.common import ForceOption, JsonOption, print_json
 from tyrefem.errors import InputError
+from tyrefem.results_file import results_file
 
 group = typer.Typer(
     name="slide",
@@ -75,6 +76,7 @@ def rise(
 @group.command()
 def tables(
     out: Annotated[Path | None, typer.Option("--out", help="PNG of table 2 to write.")] = None,
+    force: ForceOption = False,
     as_json: JsonOption = False,
 ) -> None:
     """Roberts' tables 2 (rubber on wood) and 3 (rubber on ice), measured beside predicted."""
@@ -86,7 +88,7 @@ def tables(
     if out is not None:
         from tyrefem.sliding.pictures import wood_figure
 
-        _draw(wood_figure, wood, out)
+        _draw(wood_figure, wood, out, force)
     if as_json:
         print_json(
             {
@@ -113,6 +115,7 @@ def locked_wheel(
         str | None, typer.Option(help="Rise at which rubber decomposes; default '330 K' (estimate).")
     ] = None,
     out: Annotated[Path | None, typer.Option("--out", help="PNG to write.")] = None,
+    force: ForceOption = False,
     as_json: JsonOption = False,
 ) -> None:
     """Rise of a locked wheel's contact on asphalt and its friction, against speed (equations 12 and 13)."""
@@ -142,7 +145,7 @@ def locked_wheel(
     if out is not None:
         from tyrefem.sliding.pictures import locked_wheel_figure
 
-        _draw(locked_wheel_figure, car, out)
+        _draw(locked_wheel_figure, car, out, force)
     if as_json:
         print_json({"rows": rows, "decomposition_from_km_h": limit, "picture": out})
         return
@@ -157,13 +160,11 @@ def locked_wheel(
         typer.echo(f"drawn in {out}")
 
 
-def _draw(picture: Callable[[Any], Any], shown: Any, out: Path) -> None:
+def _draw(picture: Callable[[Any], Any], shown: Any, out: Path, force: bool) -> None:
     from tyrefem.output import atomic_path
     from tyrefem.plotting.style import png
 
-    if out.suffix.lower() != ".png":
-        raise InputError(f"'{out}' is not a .png file", field="--out")
-    with atomic_path(out) as temporary:
+    with results_file(out, (".png",), force=force), atomic_path(out) as temporary:
         temporary.write_bytes(png(picture(shown)))
 
 

@@ -7,12 +7,25 @@ from typing import TYPE_CHECKING, Annotated
 
 import typer
 
-from tyrefem.cli.common import JsonOption, SetOption, StudyArgument, fail, print_json, settings, writable_folder
+from tyrefem.cli.common import (
+    ForceOption,
+    JsonOption,
+    QuietOption,
+    SetOption,
+    StudyArgument,
+    fail,
+    print_json,
+    settings,
+)
+from tyrefem.cli.progress import progress
 from tyrefem.errors import InputError, nearest
+from tyrefem.results_folder import results_folder
 
 if TYPE_CHECKING:
     from tyrefem.strain.comparison import LawComparison
 
+#: Files that the command writes.
+FILES = ("strain.json", "strain.csv", "strain.png")
 #: Kind of row -> heading and factor of the printed table.
 KINDS = {
     "deflection": ("", 1e3),
@@ -30,6 +43,8 @@ def strain(
         list[str] | None, typer.Option("--law", help="arcs, barrel or fem; repeatable. Default: all.")
     ] = None,
     out: Annotated[Path | None, typer.Option("--out", help="Folder; default: results/STUDY-strain.")] = None,
+    force: ForceOption = False,
+    quiet: QuietOption = False,
     as_json: JsonOption = False,
     changes: SetOption = None,
 ) -> None:
@@ -43,13 +58,16 @@ def strain(
         if one not in LAWS:
             raise InputError(f"no strain law '{one}' to compare{nearest(one, LAWS)}", field="--law")
     chosen = load_study(study, settings(changes))
-    folder = writable_folder(out or Path("results") / f"{chosen.name}-strain")
-    found = compare_laws(chosen, wanted)
-    summary = found.summary()
-    with atomic_folder(folder) as temporary:
-        write_json(summary, temporary / "strain.json")
-        found.table().to_csv(temporary / "strain.csv", index=False)
-        (temporary / "strain.png").write_bytes(_picture(found))
+    with (
+        results_folder(out or Path("results") / f"{chosen.name}-strain", "strain", FILES, force=force) as folder,
+        progress(f"{chosen.name}: {', '.join(wanted)}", quiet=quiet or as_json),
+    ):
+        found = compare_laws(chosen, wanted)
+        summary = found.summary()
+        with atomic_folder(folder) as temporary:
+            write_json(summary, temporary / "strain.json")
+            found.table().to_csv(temporary / "strain.csv", index=False)
+            (temporary / "strain.png").write_bytes(_picture(found))
     for refused, why in found.refused.items():
         fail(f"warning: the strain law '{refused}' has no answer: {why}")
     if as_json:

@@ -8,16 +8,18 @@ from typing import Annotated
 import typer
 
 from tyrefem.cli.common import (
+    ForceOption,
     JsonOption,
+    QuietOption,
     SetOption,
     complete_studies,
     fail,
-    print_json,
+    print_file,
     settings,
-    several,
-    writable_folder,
 )
+from tyrefem.cli.progress import stages
 from tyrefem.errors import InputError
+from tyrefem.results_folder import results_folder
 
 #: Groups of options in the help.
 VARIANTS, ANSWERS = "Variants", "Answers"
@@ -136,6 +138,8 @@ def sweep(
     ] = None,
     restart: Annotated[bool, typer.Option("--restart", help="Forget finished variants in the folder.")] = False,
     pictures: Annotated[bool, typer.Option(help="Draw the pictures and the page.")] = True,
+    force: ForceOption = False,
+    quiet: QuietOption = False,
     as_json: JsonOption = False,
 ) -> None:
     """Answer many variants of a study: tables (CSV, Parquet), pictures and one page.
@@ -148,7 +152,7 @@ def sweep(
     from tyrefem.cli.sweep_workers import answered
     from tyrefem.quantity import parse
     from tyrefem.sweep.execution import Execution
-    from tyrefem.sweep.output import write
+    from tyrefem.sweep.output import FILES, KEPT, write
 
     said = asked(
         vary=vary, sample=sample, count=count, seed=seed, cases=cases, limit=limit, time_to=time_to, answer=answer,
@@ -160,13 +164,15 @@ def sweep(
     except InputError as error:
         raise error if error.field else error.within(field="--tolerance") from None
     name, wanted = questions(study, said, settings(changes))
-    folder = writable_folder(out or Path("results") / f"{name}-sweep")
-    with several(quiet=as_json) as tick:
+    with (
+        results_folder(out or Path("results") / f"{name}-sweep", "sweep", FILES, force=force, keeps=KEPT) as folder,
+        stages(quiet=quiet or as_json) as tick,
+    ):
         found = answered(wanted, how.given({"folder": folder, "progress": tick}), scheduler, workers)
         tick("drawing", 0, 1)
         summary = write(found, folder, pictures=pictures)
     if as_json:
-        print_json(summary)
+        print_file(folder / "summary.json")
     else:
         for line in summary["words"]:
             typer.echo(line)

@@ -19,6 +19,10 @@ if TYPE_CHECKING:
     from tyrefem.compare.neighbours import Certificate
 
 
+#: Files that `Comparison.save` may write.
+FILES = ("comparison.csv", "residuals.csv", "comparison.json", "comparison.html", "histories-*.png", "deviations.png")
+
+
 @dataclass(frozen=True, eq=False)
 class Comparison:
     """Deviations of a study from measurements.

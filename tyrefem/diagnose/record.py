@@ -18,6 +18,12 @@ if TYPE_CHECKING:
     from tyrefem.diagnose.diagnosis import Diagnosis
 
 AMENDED, PAGE = "amended.toml", "diagnosis.html"
+_FILES = ("verdict.json", AMENDED, "difference.txt", "where.csv", "histories.csv", PAGE, "rms.png", "residual-map*.png",
+          "probabilities.png", "histories-*.png", "missing-heat*.png")  # fmt: skip
+#: Looks at the same data at most.
+MOST_LOOKS = 9
+#: Files that `write` may write.
+FILES = tuple(f"{AGAIN}/" * look + name for look in range(MOST_LOOKS) for name in _FILES)
 
 
 def record(d: Diagnosis) -> dict[str, Any]:

@@ -21,6 +21,7 @@ from pydantic_core import CoreSchema, core_schema
 
 from tyrefem.effects.effect import Effect, Parameter, Prior
 from tyrefem.errors import InputError, nearest
+from tyrefem.output import note_input
 
 __all__ = ["Effect", "EffectOf", "Parameter", "Prior", "catalogue"]
 
@@ -45,6 +46,7 @@ def _loaded(file: Path) -> str:
     assert spec is not None
     assert spec.loader is not None
     module = sys.modules[name] = importlib.util.module_from_spec(spec)
+    note_input(file)
     try:
         spec.loader.exec_module(module)
     except Exception as error:

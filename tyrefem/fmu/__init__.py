@@ -20,6 +20,7 @@ from tyrefem.fmu.description import IDENTIFIER, description
 from tyrefem.fmu.source import data_header
 from tyrefem.output import atomic_path
 from tyrefem.realtime import RealTimeTyre
+from tyrefem.results_file import MARK
 
 #: Compilers looked for, in this order.
 COMPILERS = ("cc", "gcc", "clang")
@@ -60,6 +61,7 @@ def write_fmu(model: str | Path, path: str | Path, *, compiler: str | None = Non
             for file in sorted(folder.rglob("*")):
                 if file.is_file():
                     packed.write(file, file.relative_to(folder).as_posix())
+            packed.comment = MARK
     return path
 
 

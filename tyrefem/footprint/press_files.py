@@ -19,6 +19,12 @@ if TYPE_CHECKING:
 
 #: Angles of the tables of strain: 0.5 degrees apart.
 ANGLES = np.linspace(-np.pi, np.pi, 721)
+#: Files that `write_files` may write.
+FILES = (
+    "press.json", "load-deflection.csv", "strain-cycle.csv", "cord-tension.csv", "harmonics.csv", "tyre.vtu",
+    *(f"{name}.png" for name in ("section", "section-loaded", "pressure", "load-deflection", "strain-cycle",
+                                 "cord-tension", "harmonics")),
+)  # fmt: skip
 
 
 def write_files(

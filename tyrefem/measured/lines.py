@@ -10,6 +10,7 @@ from pathlib import Path
 
 from tyrefem.errors import InputError
 from tyrefem.measured.heading import is_time, parts
+from tyrefem.output import note_input
 
 #: Above this size a table is a mistake (a video, a raw waveform): 5 million rows of 10 sensors fit in.
 LARGEST_BYTES = 400_000_000
@@ -38,6 +39,7 @@ def decode(path: Path) -> str:
     ------
     InputError : no such file, a folder, empty, far too large, not text.
     """
+    note_input(path)
     try:
         if path.stat().st_size > LARGEST_BYTES:
             raise InputError(f"larger than {LARGEST_BYTES // 10**6} MB; thin the table out", file=path)

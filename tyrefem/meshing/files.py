@@ -13,7 +13,9 @@ import numpy as np
 from tyrefem.errors import InputError, nearest
 from tyrefem.meshing.groups import named_from
 from tyrefem.meshing.tyre_mesh import TyreMesh
+from tyrefem.output import note_input
 from tyrefem.quantity import parse
+from tyrefem.results_file import MARK
 from tyrefem.section.section import Section
 
 #: Which coordinates of the file are the radius and the axial position (or x and y of a planar mesh).
@@ -153,7 +155,18 @@ def write(mesh: Any, path: str | Path) -> Path:
             )
     except (Exception, SystemExit) as error:  # each format has its own kinds
         raise InputError(f"cannot be written: {error}", file=path) from error
+    _mark(path)
     return path
+
+
+def _mark(path: Path) -> None:
+    """Say in a comment of the format who wrote the file."""
+    if path.suffix == ".vtk":
+        path.write_bytes(path.read_bytes().replace(b"written by meshio", MARK + b", by meshio", 1))
+        return
+    comment = b"$Comments\n%s\n$EndComments\n" if path.suffix == ".msh" else b"\n<!-- %s -->\n"
+    with path.open("ab") as stream:
+        stream.write(comment % MARK)
 
 
 def _meshio_mesh(path: Path) -> Any:
@@ -161,6 +174,7 @@ def _meshio_mesh(path: Path) -> Any:
 
     if not path.is_file():
         raise InputError("no such mesh file", file=path)
+    note_input(path)
     said = io.StringIO()
     try:
         # meshio prints what is wrong and ends the process where other libraries raise.

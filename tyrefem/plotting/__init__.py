@@ -12,6 +12,11 @@ from tyrefem.output import atomic_path
 if TYPE_CHECKING:
     from tyrefem.result import Result
 
+#: Files of the standard pictures.
+PICTURES = (
+    "temperature.png", "temperature-hottest.png", "histories.png", "sliding.png", "heat-budget.png", "heat-source.png",
+    "strain-cycle.png", "mesh.png",
+)  # fmt: skip
 _DRAWN: WeakKeyDictionary[Any, dict[str, bytes]] = WeakKeyDictionary()
 
 

@@ -50,7 +50,14 @@ def add_axes(drawn: Figure, left: float, bottom: float, width: float, height: fl
 def png(drawn: Figure) -> bytes:
     """The figure as a PNG file's bytes."""
     stream = io.BytesIO()
-    drawn.savefig(stream, format="png", dpi=DPI, facecolor="white", pil_kwargs={"compress_level": 4})
+    drawn.savefig(
+        stream,
+        format="png",
+        dpi=DPI,
+        facecolor="white",
+        metadata={"Software": "tyrefem"},
+        pil_kwargs={"compress_level": 4},
+    )
     return stream.getvalue()
 
 

@@ -17,6 +17,7 @@ from tyrefem.realtime import ATMOSPHERE, FORMAT, KELVIN
 from tyrefem.reduced.model import ReducedBalance, ReducedModel
 from tyrefem.reduced.tables import COLD, FINE, Probe, Tables, loss_tables
 from tyrefem.result import GAS, RIM
+from tyrefem.results_file import mark_archive
 from tyrefem.rolling import RollingTyre
 from tyrefem.sensors import true_places
 from tyrefem.studies import Study
@@ -142,6 +143,8 @@ def write(path: str | Path, arrays: Mapping[str, Any], about: Mapping[str, Any])
     """
     path = Path(path)
     text = json.dumps(jsonable({"format": FORMAT, **about}))
-    with atomic_path(path) as temporary, open(temporary, "wb") as file:
-        np.savez_compressed(file, about=np.array(text), **arrays)
+    with atomic_path(path) as temporary:
+        with open(temporary, "wb") as file:
+            np.savez_compressed(file, about=np.array(text), **arrays)
+        mark_archive(temporary)
     return path

@@ -4,14 +4,20 @@ from __future__ import annotations
 
 import json
 from collections.abc import Sequence
+from glob import escape
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
 from tyrefem.output import atomic_folder, jsonable
 
 if TYPE_CHECKING:
+    from tyrefem.rig.card import RigCard
     from tyrefem.rig.identification import Identification
     from tyrefem.rig.simulation import Simulation
+
+#: Files that `write` may write.
+FILES = ("report.html", "rig.json", "estimates.csv", "residuals.csv", "residuals-*.png", "intervals.png",
+         "correlation.png", "histories*.png", "materials/*.toml")  # fmt: skip
 
 
 def write(found: Identification, folder: Path, base: str | Sequence[str] | None = None) -> Path:
@@ -74,6 +80,11 @@ def _residuals(found: Identification) -> Any:
         for block in found.fit.blocks
     ]
     return pd.concat(parts, ignore_index=True)
+
+
+def simulation_files(card: RigCard) -> list[str]:
+    """The files that `write_simulation` writes: a table per run, pictures."""
+    return [*(f"{escape(name)}.csv" for name in card.runs), "readings.png", "patch.png"]
 
 
 def write_simulation(done: Simulation, folder: Path) -> Path:

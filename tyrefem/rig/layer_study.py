@@ -136,6 +136,10 @@ def study(
     return LayerStudy(tuple(counts), tuple(fits))
 
 
+#: Files that `write` writes.
+FILES = ("layers.csv", "layers.png")
+
+
 def write(done: LayerStudy, folder: Path) -> Path:
     """Write ``layers.csv``, ``layers.png`` and ``summary.json``."""
     from tyrefem.output import atomic_folder

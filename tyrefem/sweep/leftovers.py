@@ -10,10 +10,13 @@ from pathlib import Path
 from typing import Any
 
 from tyrefem.output import jsonable
+from tyrefem.results_folder import BOOKKEEPING
 
 #: `summary.json` lists the other files under this name; nothing that is not like one of ours is ever removed.
 FILES = "files"
 LIKE_OURS = re.compile(r"(pictures/)?[^/\\]+\.(csv|parquet|png|html)")
+#: What is the folder's, or words, and no result.
+NOT_RESULTS = (*BOOKKEEPING, "words")
 #: What makes a question another one.
 QUESTION = ("study", "asked", "input", "versions")
 
@@ -54,6 +57,6 @@ def clear(folder: Path, before: Mapping[str, Any], summary: Mapping[str, Any], w
 
 def _results(summary: Mapping[str, Any]) -> dict[str, Any]:
     """A summary without what differs each time that the same is written."""
-    found = {key: value for key, value in summary.items() if key not in (FILES, "words")}
+    found = {key: value for key, value in summary.items() if key not in NOT_RESULTS}
     sample = {key: value for key, value in found.pop("sample", {}).items() if key not in ("seconds", "taken_up")}
     return found | {"sample": sample}

@@ -8,13 +8,29 @@ from typing import TYPE_CHECKING, Any
 
 from tyrefem.output import atomic_path, write_json
 from tyrefem.summary import versions
-from tyrefem.sweep.leftovers import FILES, clear, earlier
+from tyrefem.sweep.leftovers import FILES as LIST
+from tyrefem.sweep.leftovers import clear, earlier
+from tyrefem.sweep.store import NAME as VARIANTS
 from tyrefem.sweep.sweep import Sweep
 
 if TYPE_CHECKING:
     import pandas as pd
 
     from tyrefem.sweep.design import Design
+
+PAGE = "sweep.html"
+#: Answers that have tables, and the files that `write` may write.
+PARTS = ("sweep", "pareto", "indices", "tornado", "optimum", "envelope")
+PICTURES = ("map-*.png", "curves-*.png", "bars-*.png", "pareto*.png", "indices-*.png", "tornado-*.png", "optimum.png",
+            "envelope.png")  # fmt: skip
+FILES = (
+    *(f"{name}.{kind}" for name in PARTS for kind in ("csv", "parquet")),
+    "errors.csv",
+    PAGE,
+    *(f"pictures/{name}" for name in PICTURES),
+)
+#: Files of finished variants.
+KEPT = (VARIANTS, *(f"{name}/{VARIANTS}" for name in PARTS))
 
 
 def write(found: Design, folder: Path, *, pictures: bool = True) -> dict[str, Any]:
@@ -33,7 +49,7 @@ def write(found: Design, folder: Path, *, pictures: bool = True) -> dict[str, An
         from tyrefem.sweep.page import write_page
 
         written += write_page(found, summary, folder)
-    summary[FILES] = clear(folder, before, summary, written)
+    summary[LIST] = clear(folder, before, summary, written)
     write_json(summary, folder / "summary.json")
     return summary
 

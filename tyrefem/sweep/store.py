@@ -12,7 +12,7 @@ from pathlib import Path
 from typing import Any
 
 from tyrefem.errors import InputError
-from tyrefem.output import jsonable
+from tyrefem.output import begin_writing, end_writing, jsonable
 
 #: File of the lines, in the sweep's folder.
 NAME = "variants.jsonl"
@@ -52,6 +52,7 @@ class Store:
         ------
         InputError : the folder holds another sweep, or cannot be written.
         """
+        begin_writing(self.path.absolute())
         try:
             self.folder.mkdir(parents=True, exist_ok=True)
             if restart:
@@ -109,6 +110,7 @@ class Store:
         if self._file is not None:
             self._file.close()
             self._file = None
+            end_writing(self.path.absolute())
 
     def __enter__(self) -> Store:
         return self

@@ -1,0 +1,200 @@
+"""A folder of results tells one run and never costs the user a file."""
+
+from __future__ import annotations
+
+import json
+import os
+from pathlib import Path
+
+import pytest
+
+from tyrefem.errors import InputError
+from tyrefem.output import atomic_folder, atomic_path, note_input, reading, write_json
+from tyrefem.results_folder import results_folder
+
+NAMES = ("readings.csv", "report.html", "pictures/*.png")
+
+
+def write(folder: Path, *names: str, complete: bool = True) -> None:
+    for name in names:
+        with atomic_path(folder / name) as temporary:
+            temporary.write_text(name)
+    write_json({"answer": 1.0, "complete": complete}, folder / "summary.json")
+
+
+def summary(folder: Path) -> dict[str, object]:
+    found: dict[str, object] = json.loads((folder / "summary.json").read_text(encoding="utf-8"))
+    return found
+
+
+def files(folder: Path) -> set[str]:
+    return {path.relative_to(folder).as_posix() for path in folder.rglob("*") if path.is_file()}
+
+
+def run(folder: Path, *names: str, force: bool = False) -> None:
+    with results_folder(folder, "run", NAMES, force=force) as place:
+        write(place, *names)
+
+
+def marked_and_failing(folder: Path, *names: str) -> None:
+    if names:
+        write(folder, *names)
+    assert summary(folder)["complete"] is False
+    raise ZeroDivisionError
+
+
+def test_the_summary_lists_the_files_of_the_run(tmp_path: Path) -> None:
+    run(tmp_path / "out", "readings.csv", "pictures/a.png")
+    found = summary(tmp_path / "out")
+    assert (found["command"], found["complete"], found["answer"]) == ("run", True, 1.0)
+    assert found["files"] == ["pictures/a.png", "readings.csv"]
+    assert files(tmp_path / "out") == {"summary.json", "pictures/a.png", "readings.csv"}
+
+
+def test_a_second_run_clears_what_it_does_not_write_again(tmp_path: Path) -> None:
+    run(tmp_path, "readings.csv", "report.html", "pictures/a.png")
+    run(tmp_path, "readings.csv")
+    assert files(tmp_path) == {"summary.json", "readings.csv"}
+    assert not (tmp_path / "pictures").exists()
+
+
+@pytest.mark.parametrize("name", ["readings.csv", "summary.json", "pictures/mine.png"])
+def test_a_foreign_file_is_an_error_before_any_computing(tmp_path: Path, name: str) -> None:
+    (tmp_path / name).parent.mkdir(exist_ok=True)
+    (tmp_path / name).write_text("mine")
+    with pytest.raises(InputError, match=name), results_folder(tmp_path, "run", NAMES):
+        pytest.fail("computed")
+    assert files(tmp_path) == {name}
+    run(tmp_path, "readings.csv", force=True)
+    assert summary(tmp_path)["complete"] is True
+
+
+def test_other_files_of_the_users_stay(tmp_path: Path) -> None:
+    (tmp_path / "notes.txt").write_text("mine")
+    run(tmp_path, "readings.csv")
+    run(tmp_path, "report.html")
+    assert files(tmp_path) == {"notes.txt", "report.html", "summary.json"}
+
+
+def test_a_file_changed_since_is_the_users(tmp_path: Path) -> None:
+    run(tmp_path, "readings.csv", "report.html")
+    (tmp_path / "report.html").write_text("with my remarks")
+    with pytest.raises(InputError, match=r"report\.html"):
+        run(tmp_path, "readings.csv")
+    assert (tmp_path / "report.html").read_text() == "with my remarks"
+
+
+def test_an_input_is_never_written(tmp_path: Path) -> None:
+    run(tmp_path, "readings.csv")
+    for given in (tmp_path / "readings.csv", tmp_path / "link.csv"):
+        if not given.exists():
+            given.symlink_to(tmp_path / "readings.csv")
+        with reading():
+            note_input(given)
+            for force in (False, True):
+                with pytest.raises(InputError, match="is an input of this command"):
+                    run(tmp_path, "readings.csv", force=force)
+    assert (tmp_path / "readings.csv").read_text() == "readings.csv"
+
+
+def test_an_input_outside_the_folder_is_never_written_either(tmp_path: Path) -> None:
+    table = tmp_path / "table.csv"
+    table.write_text("mine")
+    with reading(), results_folder(tmp_path / "out", "run", NAMES, inputs=[table]) as out:
+        with pytest.raises(InputError, match="is an input"), atomic_path(out.parent / "table.csv") as temporary:
+            temporary.write_text("lost")
+        with pytest.raises(InputError, match="is an input"), atomic_folder(out.parent) as place:
+            (place / "table.csv").write_text("lost")
+    assert files(tmp_path) == {"table.csv"}
+
+
+def test_another_commands_results_are_not_mixed(tmp_path: Path) -> None:
+    run(tmp_path, "readings.csv")
+    with (
+        pytest.raises(InputError, match="holds the results of 'tyrefem run'"),
+        results_folder(tmp_path, "compare", ("comparison.csv",)),
+    ):
+        pytest.fail("computed")
+    with results_folder(tmp_path, "compare", ("comparison.csv",), force=True) as place:
+        write(place, "comparison.csv")
+    assert files(tmp_path) == {"summary.json", "comparison.csv"}
+
+
+def test_a_failure_before_writing_leaves_no_trace(tmp_path: Path) -> None:
+    out = tmp_path / "a" / "b"
+    with pytest.raises(ZeroDivisionError), results_folder(out, "run", NAMES, keeps=["store/*.json"]):
+        raise ZeroDivisionError
+    assert not (tmp_path / "a").exists()
+    run(out, "readings.csv")
+    before = summary(out)
+    with pytest.raises(ZeroDivisionError), results_folder(out, "run", NAMES, keeps=["store/*.json"]):
+        marked_and_failing(out)
+    assert summary(out) == before
+
+
+def test_while_it_writes_a_folder_is_not_complete(tmp_path: Path) -> None:
+    with pytest.raises(ZeroDivisionError), results_folder(tmp_path, "run", NAMES) as place:
+        marked_and_failing(place, "readings.csv")
+    assert summary(tmp_path)["complete"] is False
+    assert summary(tmp_path)["files"] == ["readings.csv"]
+    run(tmp_path, "report.html")
+    assert summary(tmp_path)["complete"] is True
+    assert files(tmp_path) == {"summary.json", "report.html"}
+
+
+def test_a_killed_command_leaves_a_folder_that_is_used_again(tmp_path: Path) -> None:
+    if not (child := os.fork()):
+        with results_folder(tmp_path, "run", NAMES) as place:
+            write(place, "readings.csv", "pictures/a.png")
+            (place / "pictures" / ".tyrefem-01234567.png").write_text("half")
+            os._exit(9)
+    os.waitpid(child, 0)
+    assert summary(tmp_path)["complete"] is False
+    run(tmp_path, "readings.csv")
+    assert files(tmp_path) == {"summary.json", "readings.csv"}
+
+
+def test_finished_work_stays_for_another_try(tmp_path: Path) -> None:
+    def attempt(name: str) -> None:
+        with results_folder(tmp_path, "blind", ("blind.json",), keeps=["cases/*.json"]) as place:
+            write(place, f"cases/{name}.json")
+
+    attempt("a")
+    attempt("b")
+    assert summary(tmp_path)["files"] == ["cases/a.json", "cases/b.json"]
+    assert (tmp_path / "cases" / "a.json").is_file()
+
+
+def test_two_commands_at_once_are_one_too_many(tmp_path: Path) -> None:
+    with results_folder(tmp_path, "run", NAMES), pytest.raises(InputError, match="another command is writing"):
+        run(tmp_path, "readings.csv")
+    run(tmp_path, "readings.csv")
+    assert files(tmp_path) == {"summary.json", "readings.csv"}
+
+
+def test_an_interrupted_answer_says_so_itself(tmp_path: Path) -> None:
+    with results_folder(tmp_path, "run", NAMES) as place:
+        write(place, "readings.csv", complete=False)
+    assert summary(tmp_path)["complete"] is False
+
+
+@pytest.mark.parametrize(("make", "message"), [
+    (lambda place: place.write_text("mine"), "a file is in the place"),
+    (lambda place: place.symlink_to("nowhere"), "is a link to nothing"),
+])  # fmt: skip
+def test_what_is_no_folder_is_refused(tmp_path: Path, make: object, message: str) -> None:
+    place = tmp_path / "out"
+    make(place)  # type: ignore[operator]
+    for folder in (place, place / "deeper"):
+        with pytest.raises(InputError, match=message):
+            run(folder, "readings.csv")
+    assert os.path.lexists(place)
+
+
+def test_this_folder_is_a_folder_too(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.chdir(tmp_path)
+    with results_folder(".", "run", NAMES) as place, atomic_folder(place) as temporary:
+        (temporary / "readings.csv").write_text("1")
+        (temporary / "summary.json").write_text('{"answer": 2}')
+    assert files(tmp_path) == {"summary.json", "readings.csv"}
+    assert summary(tmp_path)["answer"] == 2

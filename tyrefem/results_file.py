@@ -1,0 +1,84 @@
+"""A single file of results: a picture, a mesh, a model. It replaces only what this tool has made."""
+
+from __future__ import annotations
+
+import os
+import zipfile
+from collections.abc import Iterable, Iterator, Sequence
+from contextlib import contextmanager, suppress
+from pathlib import Path
+
+from tyrefem.errors import InputError
+from tyrefem.output import WriteGuard, guarded, inputs_read, place_of_output
+
+#: What stands in every single file that is written: in a picture's metadata, a comment of an archive or a mesh.
+MARK = b"tyrefem"
+#: Bytes at a file's beginning and end that are searched for it.
+SEARCHED = 1 << 16
+
+
+@contextmanager
+def results_file(
+    path: str | Path, suffixes: Sequence[str], *, also: Iterable[str | Path] = (), force: bool = False
+) -> Iterator[Path]:
+    """The file that a command writes, checked before any computing.
+
+    Parameters
+    ----------
+    suffixes : that it may have, e.g. ``(".png", ".pdf")``. also : further files that the command writes.
+    force : replace a file that this tool has not made.
+
+    Raises
+    ------
+    InputError : another suffix, a folder or a link to nothing in its place, a folder that cannot be written, a foreign
+        file, an input of this command.
+    """
+    path = Path(path)
+    if path.is_dir():
+        raise InputError("is a folder; a file is wanted", file=path, field="--out")
+    if path.suffix.lower() not in suffixes:
+        raise InputError(f"'{path}' must end with {' or '.join(suffixes)}", field="--out")
+    guard = _FileGuard()
+    for file in (path, *map(Path, also)):
+        guard.check(Path(os.path.abspath(file)), force=force)
+    with guarded(guard):
+        yield path
+
+
+class _FileGuard(WriteGuard):
+    """Refuses what this command has read."""
+
+    def check(self, path: Path, *, force: bool) -> None:
+        place_of_output(path.parent)
+        above = path.parent
+        while not above.exists():
+            above = above.parent
+        if not os.access(above, os.W_OK):
+            raise InputError("cannot be written: no permission", file=above, field="--out")
+        if path.is_symlink() and not path.exists():
+            raise InputError("is a link to nothing: mend or remove it", file=path, field="--out")
+        self.before_writing(path)
+        if path.exists() and not force and not made_by_this_tool(path):
+            raise InputError("exists and was not made by tyrefem; replace it with --force", file=path, field="--out")
+
+    def before_writing(self, path: Path) -> None:
+        """Refuse an input."""
+        for file in inputs_read():
+            with suppress(OSError):
+                if os.path.samefile(path, file):
+                    raise InputError("is an input of this command and would be overwritten", file=path, field="--out")
+
+
+def made_by_this_tool(path: Path) -> bool:
+    """Does the file bear our mark?"""
+    with suppress(OSError), path.open("rb") as stream:
+        first = stream.read(SEARCHED)
+        stream.seek(max(path.stat().st_size - SEARCHED, 0))
+        return MARK in first or MARK in stream.read()
+    return False
+
+
+def mark_archive(path: Path) -> None:
+    """Put the mark into a zip archive, as its comment."""
+    with zipfile.ZipFile(path, "a") as archive:
+        archive.comment = MARK

@@ -1,0 +1,309 @@
+"""A folder of results that tells one run of one command, and never costs the user a file.
+
+``summary.json`` in the folder lists the files that the command wrote, with a checksum each. A file that is not listed,
+or that was changed since, is the user's: no command replaces or removes it unless it is told to (``--force``). A file
+that the command read is never written, whatever is asked. Files of an earlier run that this one did not write again
+are removed at the end. While a command writes, ``complete`` is false.
+"""
+
+from __future__ import annotations
+
+import hashlib
+import json
+import os
+from collections.abc import Iterable, Iterator, Sequence
+from contextlib import contextmanager, suppress
+from fnmatch import fnmatchcase
+from pathlib import Path
+from typing import Any
+
+from tyrefem.errors import InputError
+from tyrefem.output import TEMPORARY, WriteGuard, guarded, inputs_read, place_of_output, remove_temporary, write_json
+
+SUMMARY = "summary.json"
+#: Keys of ``summary.json`` that belong to the folder, not to the answer.
+COMMAND, COMPLETE, FILES, CHECKSUMS, WRITING = "command", "complete", "files", "checksums", "writing"
+BOOKKEEPING = (COMMAND, COMPLETE, FILES, CHECKSUMS, WRITING)
+#: Foreign files that an error names one by one.
+NAMED = 5
+
+
+def checksum(path: Path) -> str:
+    """Checksum of a file's content: 64 bits of BLAKE2."""
+    with path.open("rb") as stream:
+        return hashlib.file_digest(stream, lambda: hashlib.blake2b(digest_size=8)).hexdigest()
+
+
+@contextmanager
+def results_folder(
+    folder: str | Path,
+    command: str,
+    names: Sequence[str],
+    *,
+    inputs: Iterable[str | Path] = (),
+    force: bool = False,
+    keeps: Sequence[str] = (),
+) -> Iterator[Path]:
+    """Open a folder for the results of one command; everything is checked before any computing.
+
+    Parameters
+    ----------
+    folder : made if missing, and removed again if nothing was written into it.
+    command : that writes, e.g. ``"run"``.
+    names : files that it may write, relative to the folder, with ``*`` where a part is not known yet.
+    inputs : files that the command reads, besides those that were read already.
+    force : replace foreign files of these names, and another command's results.
+    keeps : names of files with finished work for a later try: the folder is marked at once, and they stay.
+
+    Raises
+    ------
+    InputError : the folder cannot be written, is in use, holds another command's results, a foreign file of one of
+        these names, or an input of this command.
+    """
+    place = place_of_output(folder)
+    made = [path for path in (place, *place.parents) if not path.exists()]
+    try:
+        with _locked(place):
+            guard = ResultsFolder(place, command, (*names, *keeps), tuple(map(Path, inputs)), force=force, keeps=keeps)
+            guard.check()
+            try:
+                with guarded(guard):
+                    guard.mark(keeps)
+                    yield Path(folder)
+                guard.finish()
+            except BaseException:
+                with suppress(OSError, InputError):
+                    guard.leave()
+                raise
+    finally:
+        for path in made:
+            with suppress(OSError):
+                path.rmdir()
+
+
+@contextmanager
+def _locked(folder: Path) -> Iterator[None]:
+    """Hold the folder for this process alone, until it ends, however it ends."""
+    from filelock import FileLock, Timeout  # brings asyncio with it
+
+    lock = FileLock(folder / f"{TEMPORARY}lock")
+    try:
+        folder.mkdir(parents=True, exist_ok=True)
+        lock.acquire(timeout=0)
+    except Timeout:
+        raise InputError(
+            "another command is writing into this folder; wait for it, or choose another folder",
+            file=folder,
+            field="--out",
+        ) from None
+    except OSError as error:
+        raise InputError(f"cannot be written: {error.strerror or error}", file=folder, field="--out") from None
+    try:
+        yield
+    finally:
+        with suppress(OSError):
+            os.unlink(lock.lock_file)
+        lock.release()
+
+
+class ResultsFolder(WriteGuard):
+    """One command's hold on its folder: what is whose, and what was written. Made by `results_folder`."""
+
+    def __init__(
+        self,
+        folder: Path,
+        command: str,
+        names: Sequence[str],
+        inputs: Sequence[Path],
+        *,
+        force: bool,
+        keeps: Sequence[str],
+    ) -> None:
+        self.folder = folder
+        self.command = command
+        self.names = (SUMMARY, *names)
+        self.force = force
+        self._keeps = tuple(keeps)
+        self._inputs = tuple(inputs)
+        self._earlier_text = self._text()
+        self._earlier = _bookkept(self._earlier_text)
+        self._written: dict[str, str] = {}
+        self._begun: list[str] = []
+        self._summary: dict[str, Any] = {}
+        for parent in {Path(name).parent.as_posix() for name in self.names}:
+            for place in self.folder.glob(parent) if parent != "." else [self.folder]:
+                remove_temporary(place)
+        #: Files that an earlier run of this tool left here, unchanged since, and their checksums.
+        self._listed = self._listed_before()
+
+    # -- before any computing ----------------------------------------------------------------------------------------
+
+    def check(self) -> None:
+        """Refuse a folder in which something of the user's would be lost."""
+        present = self._matching(self.names)
+        for name in present:
+            self._refuse_input(self.folder / name)
+            if (self.folder / name).is_dir():
+                raise InputError("a folder is in the place of this file", file=self.folder / name, field="--out")
+        if self.force:
+            return
+        other = self._earlier.get(COMMAND, self.command)
+        if other != self.command:
+            raise InputError(
+                f"holds the results of 'tyrefem {other}'; choose another folder, or replace them with --force",
+                file=self.folder,
+                field="--out",
+            )
+        foreign = [name for name in present if name not in self._listed]
+        if foreign:
+            listed = ", ".join(foreign[:NAMED]) + (", ..." if len(foreign) > NAMED else "")
+            raise InputError(
+                f"'tyrefem {self.command}' would overwrite what it did not write, or what has changed since: {listed};"
+                " choose another folder, or replace with --force",
+                file=self.folder,
+                field="--out",
+            )
+
+    def mark(self, names: Sequence[str]) -> None:
+        """Say in ``summary.json`` that the folder is not complete, and which files are being written."""
+        new = [name for name in names if name not in self._begun]
+        if new:
+            self._begun += new
+            self._write_summary(complete=False)
+
+    # -- while it writes ---------------------------------------------------------------------------------------------
+
+    def before_writing(self, path: Path) -> None:
+        """Refuse an input and a foreign file; mark the folder as incomplete."""
+        self._refuse_input(path)
+        name = self._name(path)
+        if name is None:
+            return
+        known = name == SUMMARY or name in self._listed or name in self._written or _matches(name, self._begun)
+        if os.path.lexists(path) and not known and not self.force:
+            raise InputError(
+                f"was not written by 'tyrefem {self.command}', or has changed since; see --force", file=path
+            )
+        self.mark([next((each for each in self.names if fnmatchcase(name, each)), name)])
+
+    def after_writing(self, path: Path) -> None:
+        """Note a file that is complete."""
+        name = self._name(path)
+        if name is not None and name != SUMMARY:
+            self._written[name] = checksum(path)
+
+    def takes_summary(self, path: Path, data: dict[str, Any]) -> bool:
+        """``summary.json`` is written here: with the answer's part, the list of files and whether they are complete."""
+        if self._name(path) != SUMMARY:
+            return False
+        self._summary = data
+        self._write_summary(complete=False)
+        return True
+
+    # -- at the end --------------------------------------------------------------------------------------------------
+
+    def finish(self) -> None:
+        """Remove what is left of the earlier run, and say that the folder is complete."""
+        if not self._begun and not self._summary:
+            return
+        kept = {str(name) for name in self._summary.get(FILES, [])}
+        for name in sorted(set(self._listed) - set(self._written) - kept - {SUMMARY}):
+            if not _matches(name, self._keeps):
+                self._remove(self.folder / name)
+                del self._listed[name]
+        self._write_summary(complete=bool(self._summary.get(COMPLETE, True)))
+
+    def leave(self) -> None:
+        """After a failure or an interruption: the folder as it was, or marked as incomplete."""
+        if self._written or self._summary:
+            self._write_summary(complete=False)
+        elif self._begun and self._earlier_text is None:
+            (self.folder / SUMMARY).unlink(missing_ok=True)
+        elif self._begun:
+            (self.folder / SUMMARY).write_text(str(self._earlier_text), encoding="utf-8")
+
+    def _write_summary(self, *, complete: bool) -> None:
+        self._refuse_input(self.folder / SUMMARY)
+        sums = {**self._listed, **self._written}
+        sums = {name: sums[name] for name in sorted(sums) if name != SUMMARY and (self.folder / name).is_file()}
+        answer = self._summary or {key: entry for key, entry in self._earlier.items() if key not in BOOKKEEPING}
+        data = {
+            **answer,
+            COMMAND: self.command,
+            COMPLETE: complete,
+            FILES: list(sums),
+            CHECKSUMS: sums,
+            **({} if complete else {WRITING: self._begun}),
+        }
+        with guarded(None):
+            write_json(data, self.folder / SUMMARY)
+
+    # -- what is whose -----------------------------------------------------------------------------------------------
+
+    def _text(self) -> str | None:
+        with suppress(OSError, UnicodeDecodeError):
+            return (self.folder / SUMMARY).read_text(encoding="utf-8")
+        return None
+
+    def _listed_before(self) -> dict[str, str]:
+        sums, writing = self._earlier.get(CHECKSUMS), self._earlier.get(WRITING)
+        sums = sums if isinstance(sums, dict) else {}
+        begun = self._matching(map(str, writing)) if isinstance(writing, list) else []
+        now = {name: self._sum(name) for name in {*sums, *begun, *([SUMMARY] if self._earlier else [])}}
+        return {
+            name: value for name, value in now.items()
+            if value is not None and (name == SUMMARY or name in begun or value == sums[name])
+        }  # fmt: skip
+
+    def _sum(self, name: str) -> str | None:
+        if Path(name).is_absolute() or ".." in Path(name).parts:
+            return None
+        with suppress(OSError):
+            return checksum(self.folder / name)
+        return None
+
+    def _matching(self, names: Iterable[str]) -> list[str]:
+        """Files of these names in the folder, and links of these names that lead nowhere."""
+        patterns = [name for name in names if name and not Path(name).is_absolute() and ".." not in Path(name).parts]
+        found = {path.relative_to(self.folder).as_posix() for each in patterns for path in self.folder.glob(each)}
+        return sorted(found | {each for each in patterns if os.path.lexists(self.folder / each)})
+
+    def _name(self, path: Path) -> str | None:
+        """A file's name relative to the folder; None: it is elsewhere."""
+        with suppress(ValueError):
+            return Path(os.path.abspath(path)).relative_to(self.folder).as_posix()
+        return None
+
+    def _is_input(self, path: Path) -> bool:
+        with suppress(OSError):
+            place = path.stat()
+            for file in (*self._inputs, *inputs_read()):
+                with suppress(OSError):
+                    if os.path.samestat(file.stat(), place):
+                        return True
+        return False
+
+    def _refuse_input(self, path: Path) -> None:
+        if self._is_input(path):
+            raise InputError("is an input of this command and would be overwritten; choose another --out", file=path)
+
+    def _remove(self, path: Path) -> None:
+        if self._is_input(path):
+            return
+        with suppress(OSError):
+            path.unlink()
+            for parent in path.relative_to(self.folder).parents[:-1]:
+                (self.folder / parent).rmdir()
+
+
+def _matches(name: str, patterns: Iterable[str]) -> bool:
+    return any(fnmatchcase(name, each) for each in patterns)
+
+
+def _bookkept(text: str | None) -> dict[str, Any]:
+    """The content of a ``summary.json`` that `ResultsFolder` wrote; empty: it is somebody else's, or none."""
+    try:
+        data = json.loads(text or "")
+    except ValueError:
+        return {}
+    return data if isinstance(data, dict) and isinstance(data.get(COMMAND), str) else {}
