@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import copy
 import re
 from collections.abc import Mapping
 from typing import Any
@@ -10,6 +9,7 @@ from typing import Any
 from tyrefem import library
 from tyrefem.drive import RIVALS
 from tyrefem.errors import InputError, nearest
+from tyrefem.quantity import as_written
 
 #: Tables whose text value is a reference to a card: changing something below it lays the change over the card.
 _REFERENCES = {"section": "section", "materials.*": "material"}
@@ -36,19 +36,10 @@ def all_changed(data: Mapping[str, Any], changes: Mapping[str, Any]) -> dict[str
     for key, value in changes.items():
         table = key.split(".")[0].strip().replace("-", "_")
         if table in result and table not in own:
-            result[table] = _copied(result[table])
+            result[table] = as_written(result[table])
             own.add(table)
-        _change(result, key, _copied(value))
+        _change(result, key, as_written(value))
     return result
-
-
-def _copied(value: Any) -> Any:
-    """Plain data again: tables and lists are new, what they hold at last is not."""
-    if isinstance(value, str | int | float):
-        return value
-    if isinstance(value, dict):
-        return {key: _copied(one) for key, one in value.items()}
-    return [_copied(one) for one in value] if isinstance(value, list) else copy.deepcopy(value)
 
 
 def _change(data: dict[str, Any], key: str, value: Any) -> None:

@@ -5,10 +5,13 @@ Inside the package every number is an SI float; temperatures are degC and temper
 
 from __future__ import annotations
 
+import copy
 import functools
 import math
 import re
+from collections.abc import Mapping
 from dataclasses import dataclass
+from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
 from tyrefem.errors import InputError
@@ -106,6 +109,44 @@ def _split(value: object, unit: str, wanted: str) -> tuple[float, str]:
     if match is None:
         raise InputError(f"{value!r} is not {wanted}")
     return float(match[1]), match[2]
+
+
+def as_written(value: Any) -> Any:
+    """A value as a file has it: pint quantities and paths as text, numpy's numbers as Python's; tables and lists anew.
+
+    >>> as_written({"speed": registry().Quantity(25, "mph"), "at": [registry().Quantity(2.5, "mm")]})
+    {'speed': '25 mph', 'at': ['2.5 mm']}
+    """
+    if type(value) in (str, float, int, bool):
+        return value
+    if isinstance(value, Mapping):
+        return {key: as_written(entry) for key, entry in value.items()}
+    if isinstance(value, list | tuple):
+        return [as_written(entry) for entry in value]
+    if hasattr(value, "magnitude") and hasattr(value, "units"):
+        return _with_unit(as_written(value.magnitude), _unit_text(value.units))
+    if hasattr(value, "tolist"):
+        return as_written(value.tolist())
+    return str(value) if isinstance(value, Path) else copy.deepcopy(value)
+
+
+def _with_unit(number: Any, unit: str) -> Any:
+    if isinstance(number, list):
+        return [_with_unit(entry, unit) for entry in number]
+    return f"{float(number)!r}".removesuffix(".0") + f" {unit}" if unit else number
+
+
+def _unit_text(units: Any) -> str:
+    """What a file says of a pint unit: its symbol where that is ASCII and read as the same unit, else its name."""
+    name, symbol = f"{units:D}", f"{units:~D}"
+    if name == "dimensionless":
+        return ""
+    try:
+        if symbol.isascii() and _named(symbol) == _named(name):
+            return symbol
+    except Exception:  # pint raises many kinds; whoever reads the value says what is wrong with its unit
+        return name
+    return name.replace("degree_Celsius", "degC").replace("degree_Fahrenheit", "degF")
 
 
 def _convert(magnitude: float, text: str, unit: str, value: object, wanted: str) -> float:

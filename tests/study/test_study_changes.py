@@ -4,9 +4,12 @@ from __future__ import annotations
 
 import copy
 
+import numpy as np
+import pint
 import pytest
 
 import tyrefem as tf
+from tyrefem.sweep.plan import plan_of
 
 QUICK = {"mesh.size": "4 mm", "mesh.element": "P1", "drive.duration": "60 s"}
 
@@ -85,3 +88,35 @@ def test_a_thickness_scale_may_be_named_without_its_table() -> None:
     short = study.replace({"section.thickness_scale.tread": 1.2})
     assert short.data == study.replace({"section.parameters.thickness_scale.tread": 1.2}).data
     assert short.section.thickness("tread", 0.0) == pytest.approx(1.2 * study.section.thickness("tread", 0.0))
+
+
+def test_quantities_of_pint_and_numbers_of_numpy_are_saved_as_text(study, tmp_path):
+    units = pint.UnitRegistry()
+    changed = study.replace(
+        {
+            "drive.speed": 25 * units.mph,
+            "drive.ambient": units.Quantity(77.0, "degF"),
+            "sensors.crown-inner.noise": units.Quantity(0.5, "delta_degC"),
+            "sensors.crown-inner.at": np.array([10.4, 0.0]) * units.inch,
+            "materials.tread.loss_tangent.value": np.float32(0.125),
+            "output.fields": np.int64(3),
+        }
+    )
+    assert changed.data["drive"]["speed"] == "25 mph"
+    loaded = tf.study(changed.save(tmp_path / "study.toml"))
+    assert loaded.card == changed.card
+    assert loaded.card.drive.phases[0].ambient.start == 25.0
+    assert loaded.materials == changed.materials
+
+
+def test_a_study_of_quantities_is_saved_too(study, tmp_path):
+    data = study.data | {"drive": study.data["drive"] | {"speed": pint.UnitRegistry().Quantity(20, "mph")}}
+    assert tf.study(tf.Study("mine", data, None, study.folder).save(tmp_path / "study.toml")).card == study.card
+
+
+def test_a_sweep_takes_quantities(study):
+    units = pint.UnitRegistry()
+    speeds = [10 * units.mph, 20 * units.mph]
+    for vary in (speeds, (*speeds, 2)):
+        plan = plan_of(study, {"drive.speed": vary})
+        assert [one["drive.speed"] for one in plan.variants] == ["10 mph", "20 mph"]
