@@ -10,12 +10,14 @@ from typing import Any
 from tyrefem.compare.interface import MeasuredEntry, StudyLike
 from tyrefem.errors import InputError, nearest, quoted
 from tyrefem.measured import MeasuredRun
+from tyrefem.measured.frame import frame_table, is_frame
 from tyrefem.measured.heading import parts
 from tyrefem.measured.table import MeasuredTable, no_column, read
 
 #: Temperatures that are computed with the sensors and measured like them, but at no place in the rubber.
 OUTSIDE_THE_RUBBER = ("contained-air", "rim")
-Table = str | Path | MeasuredRun | Sequence[MeasuredRun]
+#: A CSV file, a pandas DataFrame with the same columns, a run already read, or several of these.
+Table = Any
 
 
 @dataclass(frozen=True, eq=False)
@@ -66,18 +68,19 @@ def experiments(
     if table is None and not study.measured:
         raise InputError(f"study '{study.name}' has no [[measured]] table; name a table to compare with")
     entries = list(study.measured) if table is None else []
-    runs: Sequence[MeasuredRun] = ()
+    runs: list[MeasuredRun] = []
     columns: list[str] = []
-    if isinstance(table, str | Path):
-        entries = [entry for entry in study.measured if Path(entry.table).absolute() == Path(table).absolute()]
-        if not entries:
-            whole = read(table, rename=given.rename, ignore=given.ignore)
-            runs = whole.runs
+    for each in _listed(table):
+        if isinstance(each, MeasuredRun):
+            runs.append(each.renamed(given.rename))
+            columns += each.sensors
+            continue
+        known = [entry for entry in study.measured if _is_file(each, entry.table)]
+        entries += known
+        if not known:
+            whole = _whole(each, given)
+            runs += whole.runs
             columns += [*whole.columns, *whole.headings]
-    elif table is not None:
-        runs = [table] if isinstance(table, MeasuredRun) else table
-        columns += [sensor for run in runs for sensor in run.sensors]
-        runs = [run.renamed(given.rename) for run in runs]
     at_hand: dict[str, MeasuredTable] = {}
     tables = [(entry, _table(entry, given, at_hand)) for entry in entries]
     for entry, whole in tables:
@@ -90,6 +93,37 @@ def experiments(
     planned = [_without(experiment, given.ignore) for experiment in planned]
     _known_sensors([experiment.run for experiment in planned], study)
     return _distinct(planned)
+
+
+def _listed(table: Table | None) -> Sequence[Any]:
+    """The tables and runs of what was given: one, several or none."""
+    if table is None:
+        return ()
+    if isinstance(table, str | Path | MeasuredRun) or is_frame(table):
+        return (table,)
+    if isinstance(table, Sequence):
+        return table
+    raise _no_table(table)
+
+
+def _is_file(table: Any, file: str | Path) -> bool:
+    return isinstance(table, str | Path) and Path(table).absolute() == Path(file).absolute()
+
+
+def _whole(table: Any, given: _Given) -> MeasuredTable:
+    """A file's or a frame's runs."""
+    if is_frame(table):
+        return frame_table(table, rename=given.rename, ignore=given.ignore)
+    if isinstance(table, str | Path):
+        return read(table, rename=given.rename, ignore=given.ignore)
+    raise _no_table(table)
+
+
+def _no_table(table: object) -> InputError:
+    return InputError(
+        f"a value of type {type(table).__name__} is no measured table; allowed: a CSV file's path, a pandas DataFrame "
+        "with 'time [s]' and sensors like 'crown [degC]', a MeasuredRun, or a list of these"
+    )
 
 
 @dataclass(frozen=True)

@@ -36,8 +36,8 @@ def compare(
     Parameters
     ----------
     study : the study; its sensors give names, noise, accuracy and uncertainty of position.
-    table : CSV file (see `tyrefem.measured.read_table`) or runs already read; None = the study's own
-        ``[[measured]]`` entries, with their drives, noise and offsets.
+    table : CSV file (see `tyrefem.measured.read_table`), pandas DataFrame with the same columns, runs already read, or
+        a list of these; None = the study's own ``[[measured]]`` entries, with their drives, noise and offsets.
     result : the study's result if it is known; used for every run that was driven at the study's own drive,
         and for a single run in any case if it comes from another (amended, other drive) study.
     inputs : run the study again with each quantity of ``study.uncertainty`` one standard deviation higher.

@@ -51,7 +51,7 @@ def diagnose(
     Parameters
     ----------
     study : the study; its cards and sensors state what is uncertain, its ``[diagnosis]`` table the rest.
-    table : CSV file or runs; None = the study's own ``[[measured]]`` entries. ignore, rename : see `compare`.
+    table : as of `compare`; None = the study's own ``[[measured]]`` entries. ignore, rename : see `compare`.
     largest : effects at most in a set. workers : processes. progress : called with (what is done, number, of how many).
     known : responses of the runs' drives already at hand (see `responses`), for many diagnoses of one layout.
     rerun : run the amended study on its own mesh at the end; else ``after`` is the fit's own prediction.

@@ -1,0 +1,75 @@
+"""A measured table that is a DataFrame gives what the same table in a file gives."""
+
+from __future__ import annotations
+
+from pathlib import Path
+
+import numpy as np
+import pandas as pd
+import pytest
+from toy_study import measured_from
+
+from tyrefem.compare import compare
+from tyrefem.errors import InputError
+from tyrefem.measured import read_table
+
+EVERY_20 = np.arange(0.0, 1201.0, 20.0)
+
+
+@pytest.fixture
+def frame(study, tmp_path: Path) -> pd.DataFrame:
+    """Columns as in a file."""
+    return pd.read_csv(measured_from(study, EVERY_20, bias=5.0).write(tmp_path / "run-1.csv"))
+
+
+def test_a_frame_is_a_table(study, frame, tmp_path):
+    file = compare(study, tmp_path / "run-1.csv")
+    comparison = compare(study, frame)
+    columns = ["time_s", "sensor", "measured_degC", "computed_degC", "error_K"]
+    pd.testing.assert_frame_equal(comparison.residuals[columns], file.residuals[columns])
+
+
+def test_the_time_may_be_the_index_and_units_are_read(study, frame):
+    other = frame.set_index("time [s]")
+    other.index = pd.Index(other.index / 60.0, name="time [min]")
+    other = (other * 1.8 + 32.0).rename(columns=lambda name: name.replace("degC", "degF"))
+    assert compare(study, other).bias_K == pytest.approx(5.0)
+
+
+def test_runs_of_a_frame_and_lists_of_tables(study, frame, tmp_path):
+    two = pd.concat([frame.assign(run="morning"), frame.assign(run="evening")])
+    assert set(compare(study, two).table["run"]) == {"morning", "evening"}
+    mixed = [frame, tmp_path / "run-1.csv", *read_table(tmp_path / "run-1.csv")]
+    assert set(compare(study, mixed).table["run"]) == {"measured", "run-1", "run-1 (2)"}
+
+
+def test_gaps_in_a_frame_are_no_readings(study, frame):
+    frame.iloc[3:10, 1] = np.nan
+    comparison = compare(study, frame)
+    assert comparison.table.set_index(["sensor", "phase"]).loc[("crown", "all"), "n"] == 54
+
+
+@pytest.mark.parametrize(
+    ("wrong", "words"),
+    [
+        (lambda frame: frame.rename(columns=lambda name: name.split(" [")[0]), "has no unit"),
+        (lambda frame: frame.drop(columns="time [s]"), "no time column"),
+        (lambda frame: frame.rename(columns={"crown [degC]": "crwn [degC]"}), "did you mean 'crown'"),
+        (lambda frame: frame.assign(**{"crown [degC]": "hot"}), "line 2, column 'crown .*'hot' is not a number"),
+        (lambda frame: frame.iloc[:0], "no readings"),
+        (lambda frame: pd.concat({"a": frame}, axis="columns"), "several levels"),
+        (lambda frame: {"crown": [1.0]}, "a value of type dict is no measured table"),
+        (lambda frame: 3, "a value of type int is no measured table"),
+    ],
+)
+def test_what_is_no_table_is_one_error(study, frame, wrong, words):
+    with pytest.raises(InputError, match=words):
+        compare(study, wrong(frame))
+
+
+def test_columns_of_a_frame_are_renamed_and_ignored(study, frame):
+    other = frame.rename(columns={"crown [degC]": "c1 [degC]"}).assign(**{"air [degC]": 20.0})
+    comparison = compare(study, other, rename={"c1": "crown"}, ignore=["air"])
+    assert comparison.bias_K == pytest.approx(5.0)
+    with pytest.raises(InputError, match="no column 'c2' to rename"):
+        compare(study, other, rename={"c2": "crown"}, ignore=["air"])

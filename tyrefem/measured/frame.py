@@ -1,0 +1,55 @@
+"""A measured table that is a pandas DataFrame already: the same columns, checks and errors as in a file."""
+
+from __future__ import annotations
+
+import tempfile
+from collections.abc import Iterable, Mapping
+from dataclasses import replace
+from pathlib import Path
+from typing import TYPE_CHECKING
+
+from tyrefem.errors import InputError
+from tyrefem.measured.heading import is_time
+from tyrefem.measured.table import MeasuredTable, read
+
+if TYPE_CHECKING:
+    import pandas as pd
+
+#: What an error calls the frame. Its line numbers are those of the frame written as CSV.
+PLACE = Path("DataFrame (line 1: its column names)")
+
+
+def is_frame(table: object) -> bool:
+    """Is it a pandas DataFrame?"""
+    return hasattr(table, "to_csv") and hasattr(table, "columns")
+
+
+def frame_table(
+    frame: pd.DataFrame, *, rename: Mapping[str, str] | None = None, ignore: Iterable[str] = ()
+) -> MeasuredTable:
+    """The runs of a frame with the columns of a file: ``time [s]`` (or the index so named), perhaps ``run``, sensors.
+
+    A frame without a column ``run`` is one run, "measured". Options and errors: see `tyrefem.measured.read_table`.
+
+    >>> import pandas as pd
+    >>> run, = frame_table(pd.DataFrame({"time [min]": [0, 1, 2], "crown [degF]": [77.0, None, 95.0]})).runs
+    >>> run.name, run.times.tolist(), run.temperatures["crown"].tolist()
+    ('measured', [0.0, 60.0, 120.0], [25.0, nan, 35.0])
+    """
+    with tempfile.TemporaryDirectory(prefix="tyrefem-") as folder:
+        # Read as a file is, so that a frame and a file can never differ in what they allow.
+        file = Path(folder) / "measured.csv"
+        _flat(frame).to_csv(file, index=False, lineterminator="\n", date_format="%Y-%m-%dT%H:%M:%S.%f")
+        try:
+            table = read(file, rename=rename, ignore=ignore)
+        except InputError as error:
+            raise InputError(error.message, field=error.field, file=PLACE) from None
+    return replace(table, file=PLACE, runs=tuple(replace(run, file=None) for run in table.runs))
+
+
+def _flat(frame: pd.DataFrame) -> pd.DataFrame:
+    """The frame with an index that is the time or the run as a column."""
+    if frame.columns.nlevels > 1:
+        raise InputError("its columns have several levels; wanted: one name each, like 'crown [degC]'", file=PLACE)
+    levels = [name for name in frame.index.names if isinstance(name, str) and (is_time(name) or name.lower() == "run")]
+    return frame.reset_index(levels) if levels else frame
