@@ -26,10 +26,18 @@ def as_points(points: ArrayLike) -> Array:
     return array
 
 
+class OutsideMeshError(InputError):
+    """Points outside a mesh: the message names the first of them; ``numbers`` has all."""
+
+    def __init__(self, message: str, numbers: Array) -> None:
+        super().__init__(message, field="points")
+        self.numbers = numbers
+
+
 class Located:
     """Element and reference coordinates of points in a mesh.
 
-    Raises InputError for a point further outside than 1e-9 of the mesh's size, naming it and its distance.
+    Raises OutsideMeshError for points further outside than 1e-9 of the mesh's size.
     """
 
     def __init__(self, ops: Operators, points: Array) -> None:
@@ -44,11 +52,21 @@ class Located:
         self.elements = np.empty(len(points), dtype=np.int64)
         self.local = np.empty((2, len(points)))
         chunk = max(1, 4_000_000 // low.shape[1])
-        for start in range(0, len(points), chunk):
-            self._locate(points, slice(start, min(start + chunk, len(points))), low - margin, high + margin, size)
+        lost = [
+            start
+            + self._locate(points, slice(start, min(start + chunk, len(points))), low - margin, high + margin, size)
+            for start in range(0, len(points), chunk)
+        ]
+        outside = np.concatenate(lost) if lost else np.zeros(0, dtype=np.int64)
+        if outside.size:
+            point = points[outside[0]]
+            raise OutsideMeshError(
+                f"point ({point[0]:.6g}, {point[1]:.6g}) m lies {distance(self.ops, point):.3g} m outside the mesh",
+                outside,
+            )
 
-    def _locate(self, points: Array, part: slice, low: Array, high: Array, size: float) -> None:
-        """Try every element whose box holds a point; keep the one that misses it least."""
+    def _locate(self, points: Array, part: slice, low: Array, high: Array, size: float) -> Array:
+        """Try every element whose box holds a point; keep the one that misses it least. Numbers of those outside."""
         x, y = points[part, :1], points[part, 1:]
         boxed = (low[0] <= x) & (x <= high[0]) & (low[1] <= y) & (y <= high[1])
         owner, elements = np.nonzero(boxed)
@@ -56,14 +74,8 @@ class Located:
         order = np.lexsort((miss, owner))
         first = order[np.unique(owner[order], return_index=True)[1]]
         hit = first[miss[first] <= _SNAP * size]
-        lost = np.setdiff1d(np.arange(len(x)), owner[hit])
-        if lost.size:
-            point = points[part][lost[0]]
-            raise InputError(
-                f"point ({point[0]:.6g}, {point[1]:.6g}) m lies {distance(self.ops, point):.3g} m outside the mesh",
-                field="points",
-            )
-        self.elements[part], self.local[:, part] = elements[hit], local[:, hit]
+        self.elements[part][owner[hit]], self.local[:, part][:, owner[hit]] = elements[hit], local[:, hit]
+        return np.setdiff1d(np.arange(len(x)), owner[hit])
 
     def _nearest(self, points: Array, elements: Array) -> tuple[Array, Array]:
         """Reference coordinates of the nearest point of each element, and how far it misses, m."""
