@@ -5,6 +5,8 @@ from __future__ import annotations
 import os
 import subprocess
 import sys
+from collections.abc import Callable, Iterator, Mapping
+from typing import Any
 
 import pytest
 from hypothesis import settings
@@ -13,6 +15,9 @@ from hypothesis import settings
 settings.register_profile("reproducible", derandomize=True, deadline=None)
 settings.register_profile("explore", deadline=None, max_examples=1000)
 settings.load_profile(os.environ.get("HYPOTHESIS_PROFILE", "reproducible"))
+
+#: Of a `repr`: lines and letters at most.
+LINES, LETTERS = 20, 2500
 
 _RENDER = (
     "import pyvista; plotter = pyvista.Plotter(off_screen=True, window_size=(64, 64)); "
@@ -48,3 +53,44 @@ def needs_rendering() -> None:
 def needs_compiler() -> None:
     """There is a C compiler; else skip, or fail where TYREFEM_REQUIRE_LIBRARIES is set."""
     _needs("a C compiler", "import shutil; assert shutil.which('cc'), 'cc is not installed'")
+
+
+@pytest.fixture(scope="session")
+def speaks_briefly() -> Callable[[object], set[type]]:
+    """A check that the `repr` of an object and of all that its public attributes lead to is short; gives the types."""
+
+    def check(thing: object) -> set[type]:
+        types = set()
+        for path, reached in _reached(thing, type(thing).__name__, 2, set()):
+            text = repr(reached)
+            assert text.count("\n") < LINES, f"{path}: {text.count(chr(10)) + 1} lines"
+            assert len(text) <= LETTERS, f"{path}: {len(text)} letters"
+            types.add(type(reached))
+        return types
+
+    return check
+
+
+def _reached(thing: Any, path: str, depth: int, seen: set[type]) -> Iterator[tuple[str, Any]]:
+    """An object and what its public attributes hold that is the package's own; every type once below the first."""
+    yield path, thing
+    seen.add(type(thing))
+    names = [*dir(type(thing)), *getattr(thing, "__dict__", {})]
+    for name in dict.fromkeys(name for name in names if depth and not name.startswith(("_", "model_"))):
+        try:
+            value = getattr(thing, name)
+        except ValueError:  # what this object cannot say, as a table of no variants
+            continue
+        for place, part in _parts(value):
+            if type(part) not in seen:
+                yield from _reached(part, f"{path}.{name}{place}", depth - 1, seen)
+
+
+def _parts(value: Any) -> Iterator[tuple[str, Any]]:
+    """The package's own objects in a value: itself, or the first of a mapping or a list."""
+    if type(value).__module__.startswith("tyrefem"):
+        yield "", value
+    elif isinstance(value, Mapping | list | tuple):
+        entries = value.items() if isinstance(value, Mapping) else enumerate(value)
+        for key, entry in list(entries)[:3]:
+            yield from ((f"[{key!r}]{place}", part) for place, part in _parts(entry))

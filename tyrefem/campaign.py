@@ -2,11 +2,12 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Iterator
+from collections.abc import Callable, Iterator, Mapping
 from dataclasses import dataclass, replace
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
+from tyrefem.brief import Brief
 from tyrefem.cases import Case, read_cases
 from tyrefem.conduction import SolverError
 from tyrefem.errors import InputError
@@ -22,11 +23,22 @@ if TYPE_CHECKING:
 
 
 @dataclass(frozen=True, eq=False)
-class Campaign:
+class Campaign(Brief):
     """The cases of a study, each a study of its own. Made by `Study.campaign`."""
 
     study: Study
     cases: tuple[Case, ...]
+
+    def _title(self) -> str:
+        return self.study.name
+
+    def _facts(self) -> Mapping[str, Any]:
+        return {
+            "title": self.study.title,
+            "cases": [case.name for case in self.cases],
+            "changed": list(dict.fromkeys(key for case in self.cases for key in case.changes)),
+            "section": self.study.section.name,
+        }
 
     @classmethod
     def of(cls, study: Study) -> Campaign:

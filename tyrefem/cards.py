@@ -7,10 +7,11 @@ import functools
 import tomllib
 from collections.abc import Mapping
 from pathlib import Path
-from typing import Annotated, Any, ClassVar, Self
+from typing import Annotated, Any, ClassVar, Self, get_args
 
 from pydantic import BaseModel, ConfigDict, Field, ValidationError, model_validator
 
+from tyrefem.brief import Brief, short
 from tyrefem.errors import InputError, nearest
 from tyrefem.output import note_input
 from tyrefem.quantity import Unit
@@ -22,11 +23,25 @@ Temperature = Annotated[float, Unit("degC", le=2000)]
 FilmCoefficient = Annotated[float, Unit("W/m**2/K", ge=0)]
 
 
-class Card(BaseModel):
+class Card(Brief, BaseModel):
     """A table of a TOML file. Unknown keys are refused with the nearest spelling."""
 
     model_config = ConfigDict(frozen=True, extra="forbid", arbitrary_types_allowed=True)
     kind: ClassVar[str] = "card"
+
+    def _title(self) -> str:
+        return str(getattr(self, "name", None) or getattr(self, "title", None) or "")
+
+    def _facts(self) -> Mapping[str, Any]:
+        """What is set, with its SI unit, in the order of the fields; where it is from at last."""
+        names = sorted(type(self).model_fields, key=lambda name: name in ("source", "notes"))
+        values = {name: getattr(self, name) for name in names if name not in ("name", "title")}
+        units = _units(type(self))
+        return {
+            name: f"{short(value)} {units[name]}" if name in units and isinstance(value, float) else value
+            for name, value in values.items()
+            if value not in (None, "", (), [], {})
+        }
 
     @model_validator(mode="before")
     @classmethod
@@ -64,6 +79,18 @@ class Card(BaseModel):
 @functools.cache
 def _allowed(card: type[Card]) -> frozenset[str]:
     return frozenset(field.alias or name for name, field in card.model_fields.items())
+
+
+@functools.cache
+def _units(card: type[Card]) -> dict[str, str]:
+    """Field -> unit that its number is in; none for pure numbers."""
+    units = {}
+    for name, field in card.model_fields.items():
+        marks = [*field.metadata, *(mark for kind in get_args(field.annotation) for mark in get_args(kind)[1:])]
+        unit = next((mark.unit for mark in marks if isinstance(mark, Unit)), "1")
+        if unit != "1":
+            units[name] = "K" if unit == "delta_degC" else unit
+    return units
 
 
 def _one_error(error: ValidationError, file: str | Path | None) -> InputError:

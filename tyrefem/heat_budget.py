@@ -9,6 +9,8 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 from numpy.typing import NDArray
 
+from tyrefem.brief import Brief
+
 if TYPE_CHECKING:
     import pandas as pd
 
@@ -18,7 +20,7 @@ Array = NDArray[np.float64]
 
 
 @dataclass(frozen=True, eq=False)
-class HeatBudget:
+class HeatBudget(Brief):
     """Heat of the whole tyre (a half section's is doubled).
 
     Body: sum generated + sum sliding = sum stored + sum lost. Lumped bodies: received from the tyre = stored + passed
@@ -38,6 +40,16 @@ class HeatBudget:
     powers: Mapping[tuple[str, str], Array]
     residual: Array
     imbalance: float
+
+    def _facts(self) -> Mapping[str, Any]:
+        kinds = dict.fromkeys(kind for kind, _ in self.energies if kind != "lumped")
+        entries = [row for row in self.table.to_dict("records") if row["kind"] in ("lost", "lumped")]
+        return {
+            "until": f"{float(self.times[-1]):g} s",
+            **{kind: f"{self.total(kind):.6g} J, {float(self.power(kind)[-1]):.6g} W at the end" for kind in kinds},
+            "imbalance": self.imbalance,
+            **{f"{row['kind']}: {row['name']}": f"{row['energy_J'] + 0.0:.6g} J" for row in entries},
+        }
 
     def total(self, kind: str) -> float:
         """Energy of a kind at the end, J."""

@@ -10,6 +10,7 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
+from tyrefem.brief import Brief, Stated
 from tyrefem.drive import Drive
 from tyrefem.footprint.loss_tangent import Loss
 from tyrefem.loading import LoadCase
@@ -24,7 +25,7 @@ REMEMBERED = 512
 
 
 @dataclass(frozen=True, eq=False)
-class CycleSchedule:
+class CycleSchedule(Brief, Stated):
     """The strain cycles of a drive: for each phase the load cases at ``knots`` fractions of it.
 
     Between knots the strain energy is interpolated linearly in time.

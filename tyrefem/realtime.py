@@ -108,6 +108,11 @@ class RealTimeTyre:
         self._slow = np.flatnonzero(self._lag > 0)
         self.reset()
 
+    def __repr__(self) -> str:
+        box = ", ".join(f"{name} {low:.4g} to {high:.4g} {INPUTS[name]}" for name, (low, high) in self.box.items())
+        known = len(self.names)
+        return f"RealTimeTyre at {self.time:g} s, {self._size} modes, {known} outputs\n  certified for {box}"
+
     def reset(self, temperature: float | None = None) -> None:
         """Everything at one temperature, degC (without: that of the study); the first step fills the tyre."""
         start = float(self.about["initial"] if temperature is None else temperature)

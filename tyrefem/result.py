@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import functools
-from collections.abc import Callable
+from collections.abc import Callable, Mapping
 from dataclasses import dataclass
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
@@ -12,8 +12,12 @@ import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
 from tyrefem.boundaries.contained_air import ATMOSPHERE, KELVIN
+from tyrefem.brief import SHOWN, Brief
+from tyrefem.conduction.history import History
+from tyrefem.conduction.points import OutsideMeshError, as_points
 from tyrefem.heat_budget import HeatBudget, whole_tyre
 from tyrefem.limits import warnings_of
+from tyrefem.meshing.sagitta import snapped
 from tyrefem.phase_state import PhaseState, phase_states
 from tyrefem.rolling_resistance import RollingResistance, just_before, rolling_reading, rolling_resistance
 from tyrefem.sensors import recorded, true_places
@@ -23,18 +27,25 @@ from tyrefem.wall import inside, wall_of
 if TYPE_CHECKING:
     import pandas as pd
 
-    from tyrefem.conduction.history import History, Peak
+    from tyrefem.conduction.history import Peak
     from tyrefem.feedback import FeedbackOutcome
     from tyrefem.rolling import RollingTyre
     from tyrefem.studies import Study
 
 Array = NDArray[np.float64]
 GAS, RIM = "contained-air", "rim"
+#: Of a history, what is stored; operators and materials are the problem's.
+KEPT = (
+    "times", "values", "reservoirs", "budget", "maximum", "region_maximum", "steps", "interrupted",
+)  # fmt: skip
 
 
 @dataclass(frozen=True, eq=False)
-class Result:
-    """A finished (or interrupted) run of a study."""
+class Result(Brief):
+    """A finished (or interrupted) run of a study.
+
+    It can be pickled: study, mesh, strain cycles and temperatures are kept, everything else is worked out again.
+    """
 
     study: Study
     tyre: RollingTyre
@@ -46,6 +57,36 @@ class Result:
     #: How the feedback of temperature on the strain cycle went; None for a study without it.
     feedback: FeedbackOutcome | None = None
 
+    def __reduce__(self) -> tuple[Any, ...]:
+        """Functions of time and temperature do not travel: they are made again from the study."""
+        history = {name: getattr(self.history, name) for name in KEPT}
+        return _again, (self.study, self.tyre, history, self.field_times, self.wall_time, self.feedback)
+
+    def _title(self) -> str:
+        return f"of {self.study.name}"
+
+    def _facts(self) -> Mapping[str, Any]:
+        hottest, end = self.peaks["tyre"], float(self.times[-1])
+        s, depth = self.place_of(hottest)
+        hot = max((region for region in self.peaks if region != "tyre"), key=lambda name: self.peaks[name].temperature)
+        resistance = self.rolling_resistance
+        return {
+            "title": self.study.title,
+            "time": f"0 to {end:g} s, {len(self.times)} readings{', interrupted' if self.history.interrupted else ''}",
+            "hottest": f"{hottest.temperature:.1f} degC in the {hot} at {hottest.time:g} s, "
+            f"s = {s * 1e3:.1f} mm, depth = {depth * 1e3:.1f} mm",
+            "sensors": ", ".join(f"{name} {T[-1]:.1f}" for name, T in list(self.recorded.items())[:SHOWN])
+            + (" degC at the end" if self.recorded else "none")
+            + (f", and {len(self.recorded) - SHOWN} more" if len(self.recorded) > SHOWN else ""),
+            "contained air": f"{self.gas_temperature[-1]:.1f} degC at the end",
+            "rolling resistance": f"{resistance.force:.1f} N, coefficient {resistance.coefficient:.5f}"
+            if resistance.phase
+            else "it never rolls",
+            "heat generated": f"{self.generated(-1)[0] / 1e3:.4g} kJ",
+            "mesh": f"{self.tyre.mesh.n_nodes} nodes, {self.study.card.mesh.element}",
+            "warnings": f"{len(self.warnings)}",
+        }
+
     # -- temperatures ------------------------------------------------------------------------------------------------
 
     @property
@@ -54,8 +95,21 @@ class Result:
         return np.asarray(self.history.times)
 
     def at(self, points: ArrayLike) -> Array:
-        """Temperatures at points (n_points, 2) in (r, z), m: (n_times, n_points), degC."""
-        return np.asarray(self.history.at(points))
+        """Temperatures at points (n_points, 2) in (r, z), m: (n_times, n_points), degC.
+
+        Points between the section's curved outline and the mesh's straight edges are read at the nearest point of the
+        mesh (`tyrefem.meshing.sagitta`).
+
+        Raises
+        ------
+        InputError : a point is further outside; names it and its distance.
+        """
+        try:
+            return np.asarray(self.history.at(points))
+        except OutsideMeshError as error:
+            places = as_points(points).copy()
+            places[error.numbers] = snapped(self.tyre.mesh, places[error.numbers])
+            return np.asarray(self.history.at(places))
 
     def temperature_field(self, i: int = -1) -> Callable[[Array], Array]:
         """T(x), degC, at ``times[i]`` of places (2, n) in (r, z), m: what `tyrefem.solid.inflation.inflate` takes."""
@@ -296,3 +350,11 @@ class Result:
         from tyrefem.summary import write_tables
 
         return write_tables(self, Path(folder))
+
+
+def _again(
+    study: Study, tyre: RollingTyre, history: dict[str, Any], times: Array, wall_time: float, feedback: Any
+) -> Result:
+    """A result out of what is stored of it."""
+    problem = tyre.problem
+    return Result(study, tyre, History(problem.operators, problem.regions, **history), times, wall_time, feedback)

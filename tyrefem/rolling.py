@@ -37,6 +37,14 @@ class RollingTyre(Surroundings):
     like: RollingTyre | None = None
     cycles: CycleSchedule | None = None
 
+    def __getstate__(self) -> dict[str, Any]:
+        """What cannot be found again in no time: the mesh and the strain cycles. The rest is made again on demand."""
+        known: dict[str, Any] = {name: self.__dict__[name] for name in ("mesh", "schedule") if name in self.__dict__}
+        return {"study": self.study, "like": None, "cycles": self.cycles, **known}
+
+    def __repr__(self) -> str:
+        return f"RollingTyre {self.study.name}"
+
     def _as_in_like(self, tables: tuple[str, ...], ports: tuple[str, ...]) -> bool:
         """Are these tables of the study, the section, and the effects at these ports those of ``like``?"""
         if self.like is None:

@@ -10,12 +10,14 @@ from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
 from tyrefem import library
+from tyrefem.brief import Brief
 from tyrefem.construction import check_cords_fit
 from tyrefem.dotted import all_changed, scaled, value_at
 from tyrefem.drive import as_written
 from tyrefem.effects import catalogue
 from tyrefem.errors import InputError, nearest, quoted
 from tyrefem.materials import MaterialCard
+from tyrefem.quantity import as_written
 from tyrefem.study_card import MeasuredEntry, Sensor, StudyCard
 
 if TYPE_CHECKING:
@@ -34,7 +36,7 @@ if TYPE_CHECKING:
 
 
 @dataclass(frozen=True, eq=False)
-class Study:
+class Study(Brief):
     """A tyre, its materials, drive, boundaries and sensors. Made by `study`; changed by `replace`.
 
     ``data`` is the file as written (units in the text); ``card`` the same, validated, in SI.
@@ -69,9 +71,35 @@ class Study:
         _ = self.stated_places
         self._check_effects()
 
-    def __reduce__(self) -> tuple[Any, ...]:
-        """Another process builds it again from what was written: a user's own effect is in no importable module."""
-        return Study, (self.name, self.data, self.file, self.folder)
+    def __getstate__(self) -> dict[str, Any]:
+        """What was written, the section and the materials: the cards may have changed where it is opened again.
+
+        The study's card is validated again: a user's own effect is in no importable module.
+        """
+        state = {name: self.__dict__[name] for name in ("name", "data", "file", "folder")}
+        built = ("new_section", "section", "materials", "_material_data", "temperatures")
+        return state | {name: self.__dict__[name] for name in built if name in self.__dict__}
+
+    def __setstate__(self, state: Mapping[str, Any]) -> None:
+        self.__dict__.update(state)
+        object.__setattr__(self, "card", StudyCard.check(self.data, self.file))
+
+    def _facts(self) -> Mapping[str, Any]:
+        drive, section = self.card.drive, self.section
+        mesh = self.card.mesh
+        return {
+            "title": self.title,
+            "file": self.file or "not in a file",
+            "section": f"{section.name}, {'half' if section.half else 'whole'}, regions {', '.join(section.regions)}",
+            "drive": f"{', '.join(phase.name for phase in drive.phases)}: {drive.end:g} s from {drive.initial:g} degC",
+            "strain law": self.card.mechanics.strain,
+            "mesh": mesh.file or f"{mesh.mesher}, {mesh.size * 1e3:g} mm, {mesh.element}",
+            "sensors": self.sensors,
+            "effects": [effect.name for effect in self.effects],
+            "measured": [Path(entry.table).name for entry in self.measured],
+            "uncertain": f"{len(self.uncertainty)} numbers",
+            **({"cases": self.card.cases} if self.is_campaign else {}),
+        }
 
     def as_written(self, error: InputError) -> InputError:
         """The error in the file's own words: what a phase takes over from ``[drive]`` is wrong there."""
@@ -329,7 +357,7 @@ class Study:
         path = Path(path)
         data = dict(self.data) if path.parent.resolve() == self.folder else self._portable()
         with atomic_path(path) as temporary:
-            temporary.write_text(tomli_w.dumps(data), encoding="utf-8")
+            temporary.write_text(tomli_w.dumps(as_written(data)), encoding="utf-8")
         return path
 
     def _portable(self) -> dict[str, Any]:

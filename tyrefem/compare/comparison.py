@@ -10,6 +10,7 @@ from functools import cached_property
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
+from tyrefem.brief import Brief
 from tyrefem.compare.history import ALL, History
 from tyrefem.compare.judgement import COLUMNS, row
 
@@ -24,7 +25,7 @@ FILES = ("comparison.csv", "residuals.csv", "comparison.json", "comparison.html"
 
 
 @dataclass(frozen=True, eq=False)
-class Comparison:
+class Comparison(Brief):
     """Deviations of a study from measurements.
 
     Parameters
@@ -50,6 +51,23 @@ class Comparison:
     notes: tuple[str, ...] = ()
     k: float = 2.0
     reduced: Certificate | None = None
+
+    def _title(self) -> str:
+        return f"of {self.study}"
+
+    def _facts(self) -> Mapping[str, Any]:
+        runs = list(dict.fromkeys(self.residuals["run"]))
+        worst = [f"{name} {value:.2f} K" for name, value in self.by_sensor.items()]
+        whole = self.table[self.table["phase"] == ALL]
+        return {
+            "runs": runs,
+            "readings": f"{len(self.residuals):,} of {_plural(len(self.by_sensor), 'sensor')}",
+            "computed - measured": f"{self.bias_K:+.2f} K on average, {self.rms_K:.2f} K rms",
+            "rms by sensor": worst,
+            "beyond uncertainty": f"{int(whole['beyond'].sum())} of {len(whole)} sensor histories (k = {self.k:g})",
+            "uncertain inputs": f"{self.inputs['key'].nunique()}",
+            "notes": f"{len(self.notes)}",
+        }
 
     @property
     def bias_K(self) -> float:

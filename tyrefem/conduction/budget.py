@@ -9,11 +9,13 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
+from tyrefem.brief import Brief
+
 Array = NDArray[Any]
 
 
 @dataclass(frozen=True)
-class Budget:
+class Budget(Brief):
     """Energies (J) since the first time and powers (W) at `times`; every array is (n_times,).
 
     At a breakpoint the powers are those just before it, at the first time those just after.
@@ -45,6 +47,18 @@ class Budget:
     residual: Array
     reservoir_residual: Mapping[str, Array]
     throughput: Array
+
+    def _facts(self) -> Mapping[str, Any]:
+        def last(series: Mapping[Any, Array]) -> str:
+            return f"{sum(float(each[-1]) for each in series.values()):.6g} J"
+
+        return {
+            "times": f"{len(self.times)} from {self.times[0]:g} to {self.times[-1]:g} s",
+            "generated": last(self.generated),
+            "stored": last(self.stored),
+            "lost": last(self.lost),
+            "imbalance": self.imbalance,
+        }
 
     @property
     def imbalance(self) -> float:

@@ -9,6 +9,7 @@ from typing import Any
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
+from tyrefem.brief import Brief
 from tyrefem.conduction.conditions import Material
 from tyrefem.conduction.operators import Operators
 from tyrefem.conduction.points import located
@@ -18,7 +19,7 @@ Array = NDArray[Any]
 
 
 @dataclass(frozen=True)
-class Field:
+class Field(Brief):
     """Temperatures of the body and its reservoirs at one time.
 
     Attributes
@@ -36,6 +37,15 @@ class Field:
     generated: Mapping[str, float]
     lost: Mapping[str, float]
     time: float | None = None
+
+    def _facts(self) -> Mapping[str, Any]:
+        return {
+            "time": "steady" if self.time is None else f"{self.time:g} s",
+            "temperatures": f"{self.values.min():.4g} to {self.values.max():.4g} degC at {len(self.values)} unknowns",
+            **{name: f"{T:.4g} degC" for name, T in self.reservoirs.items()},
+            **{f"generated in {name}": f"{W:.4g} W" for name, W in self.generated.items()},
+            **{f"lost at {name}": f"{W:.4g} W" for name, W in self.lost.items()},
+        }
 
     @property
     def mesh(self) -> Any:

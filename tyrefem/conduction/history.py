@@ -8,6 +8,7 @@ from typing import Any
 
 from numpy.typing import ArrayLike, NDArray
 
+from tyrefem.brief import Brief
 from tyrefem.conduction.budget import Budget
 from tyrefem.conduction.conditions import Material
 from tyrefem.conduction.field import Field
@@ -37,7 +38,7 @@ class Peak:
 
 
 @dataclass(frozen=True)
-class History:
+class History(Brief):
     """A transient solution.
 
     Attributes
@@ -59,6 +60,19 @@ class History:
     region_maximum: Mapping[str, Peak]
     steps: Steps
     interrupted: bool = False
+
+    def _facts(self) -> Mapping[str, Any]:
+        peak, end = self.maximum, self.values[-1]
+        return {
+            "times": f"{len(self.times)} from {self.times[0]:g} to {self.times[-1]:g} s"
+            + (", interrupted" if self.interrupted else ""),
+            "at the end": f"{end.min():.4g} to {end.max():.4g} degC at {len(end)} unknowns",
+            "hottest": f"{peak.temperature:.4g} degC at ({peak.point[0]:.4g}, {peak.point[1]:.4g}) m, {peak.time:g} s",
+            "regions": self.region_maximum,
+            "reservoirs": self.reservoirs,
+            "imbalance": self.budget.imbalance,
+            "steps": f"{self.steps.accepted} accepted, {self.steps.rejected} rejected",
+        }
 
     @property
     def mesh(self) -> Any:

@@ -71,6 +71,14 @@ class Operators:
         self._pattern()
         self.remembered: dict[Any, Any] = {}
 
+    def __reduce__(self) -> tuple[Any, ...]:
+        """Another process assembles them again: that takes less time than sending them."""
+        return operators_of, (self.mesh, self.element, self.axisymmetric)
+
+    def __repr__(self) -> str:
+        shape = "axisymmetric" if self.axisymmetric else "planar"
+        return f"Operators ({self.element}, {shape}, {self.size} unknowns)"
+
     def _pattern(self) -> None:
         n, dofs = self.size, self.element_dofs.astype(np.int64)
         keys = dofs[:, None, :] * n + dofs[None, :, :]

@@ -8,6 +8,7 @@ from typing import Any
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
+from tyrefem.brief import lines
 from tyrefem.conduction.balance import HeatBalance
 from tyrefem.conduction.budget import Tally
 from tyrefem.conduction.conditions import Condition, Film, Material, Reservoir, is_number
@@ -80,6 +81,22 @@ class Conduction:
     def mesh(self) -> Any:
         """The scikit-fem mesh."""
         return self.operators.mesh
+
+    def __repr__(self) -> str:
+        conditions = {
+            name: " + ".join(type(condition).__name__ for condition in each) for name, each in self.boundaries.items()
+        }
+        return lines(
+            "Conduction",
+            {
+                "unknowns": f"{self.operators.size} of {self.operators.element} on {self.mesh.nelements} elements, "
+                + ("axisymmetric" if self.operators.axisymmetric else "planar"),
+                "regions": self.regions,
+                "sources": self.sources,
+                "reservoirs": self.reservoirs,
+                **{f"at {name}": words for name, words in conditions.items()},
+            },
+        )
 
     def points(self, subdomain: str) -> Array:
         """Points (2, n) where the source of a subdomain is evaluated (its nodes), always the same array."""

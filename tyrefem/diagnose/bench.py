@@ -12,6 +12,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from tyrefem.boundaries.rim import Lumped
+from tyrefem.brief import Brief
 from tyrefem.conduction.tangent import Perturbed, tangents
 from tyrefem.diagnose.lean import Lean, lean
 from tyrefem.diagnose.reduced_drive import Modes, ReducedDrive, modes_of
@@ -41,7 +42,7 @@ FOLLOWED, NOT_FOLLOWED, UNSAID = 0, 1, 2
 
 
 @dataclass(frozen=True, eq=False)
-class Response:
+class Response(Brief):
     """How a study's readings at one drive respond to unknowns, on an even grid of times; independent of any data.
 
     Parameters
@@ -69,7 +70,7 @@ class Response:
 
 
 @dataclass(frozen=True, eq=False)
-class Bench:
+class Bench(Brief):
     """A study and the trials it is held against; simulates one trial at a time."""
 
     study: Study

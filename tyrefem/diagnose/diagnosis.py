@@ -10,6 +10,7 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
+from tyrefem.brief import Brief
 from tyrefem.diagnose.amend import Change
 from tyrefem.diagnose.explained import Explained
 from tyrefem.diagnose.gap import Gap
@@ -18,6 +19,7 @@ from tyrefem.diagnose.sets import Prior
 from tyrefem.diagnose.unknowns import Candidate
 from tyrefem.diagnose.verdict import Judgement
 from tyrefem.diagnose.where import gap_table, rms
+from tyrefem.diagnose.words import percent
 from tyrefem.studies import Study
 
 if TYPE_CHECKING:
@@ -25,7 +27,7 @@ if TYPE_CHECKING:
 
 
 @dataclass(frozen=True, eq=False)
-class Diagnosis:
+class Diagnosis(Brief):
     """What a diagnosis found.
 
     Parameters
@@ -52,6 +54,27 @@ class Diagnosis:
     next_experiment: Mapping[str, Any]
     seconds: float
     again: Diagnosis | None = None
+
+    def _title(self) -> str:
+        return f"of {self.original.name}: {self.verdict}"
+
+    def _facts(self) -> Mapping[str, Any]:
+        sets = [f"{one.key} ({percent(one.probability)})" for one in self.judgement.standings[:3]]
+        facts: dict[str, Any] = {
+            "most probable": ", ".join(sets),
+            "reasons": " ".join(self.judgement.reasons),
+            "changes": [one.unknown.key for one in self.changes],
+            "measured - computed": f"{self.rms(after=False, held_out=False):.2f} K rms before, "
+            f"{self.rms(after=True, held_out=False):.2f} K after; noise {self.noise:.2f} K",
+        }
+        if self.gap.held_out:
+            before, after = (self.rms(after=then, held_out=True) for then in (False, True))
+            facts["held-out runs"] = f"{before:.2f} K rms before, {after:.2f} K after"
+        return facts | {
+            "candidates": f"{len(self.candidates)}",
+            "looks": [one.verdict for one in self.looks],
+            "wall time": f"{self.seconds:.0f} s",
+        }
 
     @property
     def looks(self) -> tuple[Diagnosis, ...]:

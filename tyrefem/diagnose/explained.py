@@ -10,6 +10,7 @@ import numpy as np
 from numpy.typing import NDArray
 from scipy.stats import chi2
 
+from tyrefem.brief import Brief
 from tyrefem.diagnose.evidence import Members
 from tyrefem.diagnose.gap import Gap
 from tyrefem.diagnose.gauss import Fit
@@ -28,7 +29,7 @@ PRESSED = 2.0
 
 
 @dataclass(frozen=True, eq=False)
-class Explained:
+class Explained(Brief):
     """A set of effects fitted to the data.
 
     Parameters

@@ -9,6 +9,7 @@ from functools import cached_property
 import numpy as np
 from numpy.typing import NDArray
 
+from tyrefem.brief import Brief
 from tyrefem.diagnose.bench import Response
 from tyrefem.diagnose.evidence import Linear
 from tyrefem.diagnose.laboratory import Laboratory
@@ -21,7 +22,7 @@ SCALES = 0.2, 5.0
 
 
 @dataclass(frozen=True, eq=False)
-class Gap:
+class Gap(Brief):
     """What is measured minus what the study says, and how it changes with every unknown.
 
     Parameters

@@ -9,11 +9,13 @@ from numpy.typing import NDArray
 from scipy.linalg import cho_factor, cho_solve
 from scipy.special import log_ndtr
 
+from tyrefem.brief import Brief
+
 Array = NDArray[np.float64]
 
 
 @dataclass(frozen=True, eq=False)
-class Fit:
+class Fit(Brief):
     """A fit: ``mean`` (k,) within the bounds, ``covariance`` (k, k), log evidence, and which are at a bound.
 
     ``log_evidence`` leaves out -(1/2) |d|^2 and the constants that every model on the same data shares. ``beyond``

@@ -8,6 +8,7 @@ from contextlib import contextmanager
 from dataclasses import dataclass
 from typing import Any
 
+from tyrefem.brief import Brief
 from tyrefem.diagnose.bench import Bench
 from tyrefem.diagnose.progress_store import ProgressStore
 from tyrefem.processes import processes
@@ -24,7 +25,7 @@ def _task(name: str, arguments: tuple[Any, ...]) -> Any:
 
 
 @dataclass(frozen=True, eq=False)
-class Laboratory:
+class Laboratory(Brief):
     """Simulations for a bench, side by side if it has workers. Results come in the order of the questions.
 
     What ``store`` knows from an interrupted diagnosis is not simulated again.
@@ -33,6 +34,10 @@ class Laboratory:
     bench: Bench
     pool: Executor | None = None
     store: ProgressStore | None = None
+
+    def __reduce__(self) -> tuple[Any, ...]:
+        """Processes and folders stay where they are; what asks again asks here."""
+        return Laboratory, (self.bench,)
 
     def ask(self, name: str, questions: Sequence[tuple[Any, ...]], tick: Callable[[], None] | None = None) -> list[Any]:
         """The answers of a method of `Bench` to several questions (arguments)."""

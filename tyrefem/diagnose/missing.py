@@ -10,6 +10,7 @@ from itertools import pairwise
 import numpy as np
 from numpy.typing import NDArray
 
+from tyrefem.brief import Brief
 from tyrefem.diagnose.explained import Explained
 from tyrefem.diagnose.gap import Gap
 from tyrefem.diagnose.gauss import fit
@@ -42,7 +43,7 @@ def patches(study: Study) -> tuple[Unknown, ...]:
 
 
 @dataclass(frozen=True, eq=False)
-class MissingHeat:
+class MissingHeat(Brief):
     """What is missing, patch by patch.
 
     Parameters

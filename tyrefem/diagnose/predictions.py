@@ -10,6 +10,7 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
+from tyrefem.brief import Brief
 from tyrefem.diagnose.bench import FOLLOWED, NOT_FOLLOWED
 from tyrefem.diagnose.evidence import Members
 from tyrefem.diagnose.laboratory import Laboratory
@@ -52,7 +53,7 @@ class Certificate:
 
 
 @dataclass(eq=False)
-class Predictions:
+class Predictions(Brief):
     """Predictions and tangents for a laboratory's trials, each by whoever may say.
 
     The first point of every set of effects at every drive is simulated lean as well: that is the certificate. Where a

@@ -8,6 +8,7 @@ import numpy as np
 from numpy.typing import NDArray
 from scipy.stats import chi2
 
+from tyrefem.brief import Brief
 from tyrefem.diagnose.evidence import Members
 from tyrefem.diagnose.explained import Explained, explained
 from tyrefem.diagnose.gap import Gap
@@ -30,7 +31,7 @@ FIRST_STEPS, MORE_STEPS, MORE_TANGENTS = 4, 14, 4
 RADIUS, SHORTER, WIDER, TINY = 3.0, 0.4, 2.0, 0.01
 
 
-class Refinement:
+class Refinement(Brief):
     """One set on its way: asks for simulations at its `point` and takes what they say.
 
     Gauss-Newton within a region of trust, a box of so many prior standard deviations about the last good point: a step

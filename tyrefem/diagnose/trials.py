@@ -9,6 +9,7 @@ import numpy as np
 from numpy.typing import NDArray
 from scipy.linalg import cholesky, solve_triangular
 
+from tyrefem.brief import Brief
 from tyrefem.compare.experiment import Experiment
 from tyrefem.studies import Study
 
@@ -18,7 +19,7 @@ BLOCKS = 40
 
 
 @dataclass(frozen=True, eq=False)
-class Series:
+class Series(Brief):
     """The readings of one sensor in one run: ``times`` (n,) s, ``measured`` (n,) degC, ``noise`` K of one reading.
 
     Means over blocks of neighbouring readings stand for them; the noise of a block of m readings is noise/sqrt(m), and

@@ -7,6 +7,7 @@ from collections.abc import Mapping
 from dataclasses import dataclass
 from typing import Any
 
+from tyrefem.brief import Brief
 from tyrefem.dotted import scaled, value_at
 from tyrefem.effects import catalogue
 from tyrefem.effects.effect import MEASUREMENT_PORTS, Effect, Parameter
@@ -70,7 +71,7 @@ class Unknown:
 
 
 @dataclass(frozen=True)
-class Candidate:
+class Candidate(Brief):
     """An effect that may be missing: one variant of one entry of the catalogue.
 
     ``unknowns``: its amplitudes first, then the parameters that only shape it.
@@ -79,6 +80,9 @@ class Candidate:
     name: str
     choice: Choice
     unknowns: tuple[Unknown, ...]
+
+    def _title(self) -> str:
+        return self.key
 
     @property
     def key(self) -> str:

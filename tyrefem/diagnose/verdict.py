@@ -6,6 +6,7 @@ import math
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass
 
+from tyrefem.brief import Brief
 from tyrefem.diagnose.evidence import Members
 from tyrefem.diagnose.explained import Explained
 
@@ -23,7 +24,7 @@ OUTSIDE = 0.05
 
 
 @dataclass(frozen=True)
-class Standing:
+class Standing(Brief):
     """A set of effects and how it stands: ``score`` = ln(prior x evidence), ``probability``, the fit if any."""
 
     members: Members
@@ -31,6 +32,9 @@ class Standing:
     probability: float
     explained: Explained | None
     unexplained: bool = False
+
+    def _title(self) -> str:
+        return f"{self.key}: {self.probability:.3g}"
 
     @property
     def key(self) -> str:
@@ -41,7 +45,7 @@ class Standing:
 
 
 @dataclass(frozen=True)
-class Judgement:
+class Judgement(Brief):
     """The verdict, the sets in order of probability, and the reasons in sentences.
 
     ``named``: candidate key -> probability that it is part of the truth. ``credible``: the sets that make up 99 %.

@@ -8,6 +8,7 @@ from dataclasses import dataclass, field
 import numpy as np
 from numpy.typing import NDArray
 
+from tyrefem.brief import Brief
 from tyrefem.errors import InputError, nearest
 from tyrefem.footprint.elements import COMPONENTS
 from tyrefem.footprint.harmonics import Harmonics
@@ -50,7 +51,7 @@ def interpolation(highest: int) -> Array:
 
 
 @dataclass(frozen=True, eq=False)
-class TreadCompliance:
+class TreadCompliance(Brief):
     """Displacements of the tread's nodes per unit load, G_n = T K_n^-1 T', m per N per radian.
 
     Loads act at the tread's nodes along r, t and, on a full section, z. One factorisation per solved harmonic;

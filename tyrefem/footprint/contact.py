@@ -10,6 +10,7 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
+from tyrefem.brief import Brief
 from tyrefem.errors import InputError
 from tyrefem.footprint.complementarity import contact_forces
 from tyrefem.footprint.compliance import TreadCompliance
@@ -26,7 +27,7 @@ FLAT = Road()
 
 
 @dataclass(frozen=True, eq=False)
-class Pressing:
+class Pressing(Brief):
     """A tyre that can be pressed on a road; compliances are remembered between loads and numbers of harmonics.
 
     Parameters

@@ -8,13 +8,14 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import NDArray
 
+from tyrefem.brief import Brief
 from tyrefem.footprint.compliance import TreadCompliance
 
 Array = NDArray[np.float64]
 
 
 @dataclass(frozen=True, eq=False)
-class ContactGrid:
+class ContactGrid(Brief):
     """Tread nodes at angles j D, j = 0 .. n_angles - 1, D = pi / harmonics; the wheel's other side is its mirror image.
 
     Pressure is linear between angles: a force at j is a hat of half width D, whose amplitude in harmonic n is

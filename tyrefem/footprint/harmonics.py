@@ -10,6 +10,7 @@ import numpy as np
 import scipy.sparse as sp
 from numpy.typing import NDArray
 
+from tyrefem.brief import Brief
 from tyrefem.errors import InputError, nearest
 from tyrefem.footprint.elements import COMPONENTS, NODES, SectionElements
 from tyrefem.footprint.follower import follower_stiffness, pressure_load
@@ -24,7 +25,7 @@ SYMMETRIC: dict[str, Any] = {"diag_pivot_thresh": 0.0, "options": {"SymmetricMod
 
 
 @dataclass(frozen=True, eq=False)
-class Harmonics:
+class Harmonics(Brief):
     """K_n = A + n B + n^2 C of small motions (u_r cos n t, u_z cos n t, u_t sin n t) about a state.
 
     v K_n u = int [e_n(v) : c : e_n(u) + kappa d_n(v) d_n(u) + s_ij H_ki(v) H_kj(u)] r dA + p v P_n u

@@ -9,6 +9,7 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import NDArray
 
+from tyrefem.brief import Brief
 from tyrefem.errors import InputError, nearest
 from tyrefem.footprint.cycle import StrainCycle
 from tyrefem.footprint.loss_tangent import Loss
@@ -19,7 +20,7 @@ ONE_CYCLE = {"nasa": np.pi, "sinusoid": 2 * np.pi}
 
 
 @dataclass(frozen=True, eq=False)
-class RevolutionLoss:
+class RevolutionLoss(Brief):
     """What a revolution dissipates: w = sum_n n pi tan d(n f, T) e_n : C' : e_n, J/m3, f = v / (2 pi R_r).
 
     A point runs through n cycles of amplitude e_n per revolution, each of which loses pi E'' e_n^2; harmonics are

@@ -3,12 +3,14 @@
 from __future__ import annotations
 
 import functools
+from collections.abc import Mapping
 from dataclasses import dataclass
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
 from numpy.typing import NDArray
 
+from tyrefem.brief import Brief
 from tyrefem.errors import InputError
 from tyrefem.footprint.road import Road
 from tyrefem.strain.fem import TOLERANCE, mechanical_mesh
@@ -32,7 +34,7 @@ SMALLEST_DRUM = 0.1
 
 
 @dataclass(frozen=True, eq=False)
-class Pressed:
+class Pressed(Brief):
     """A study's tyre under one pressure and one load. Made by `press`.
 
     Parameters
@@ -48,6 +50,12 @@ class Pressed:
     footprint: Footprint
     tolerance: float = TOLERANCE
     path: tuple[tuple[float, float], ...] = ()
+
+    def _title(self) -> str:
+        return f"tyre of {self.study.name}"
+
+    def _facts(self) -> Mapping[str, Any]:
+        return self.footprint._facts()
 
     @property
     def balanced(self) -> bool:

@@ -3,12 +3,14 @@
 from __future__ import annotations
 
 import functools
+from collections.abc import Mapping
 from dataclasses import dataclass, replace
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, Any
 
 import numpy as np
 from numpy.typing import NDArray
 
+from tyrefem.brief import Brief
 from tyrefem.footprint.grid import ContactGrid
 
 if TYPE_CHECKING:
@@ -18,7 +20,7 @@ Array = NDArray[np.float64]
 
 
 @dataclass(frozen=True, eq=False)
-class Footprint:
+class Footprint(Brief):
     """A tyre in contact with a road. Made by `contact.Pressing`.
 
     Parameters
@@ -46,6 +48,19 @@ class Footprint:
     gaps: Array
     error: float = float("nan")
     balanced: Array | None = None
+
+    def _facts(self) -> Mapping[str, Any]:
+        error = "" if np.isnan(self.error) else f", {100 * self.error:.2g} % from fewer"
+        return {
+            "load": f"{self.load:.6g} N",
+            "deflection": f"{self.deflection * 1e3:.2f} mm",
+            "stiffness": f"{self.stiffness / 1e3:.4g} N/mm",
+            "length, width": f"{self.length * 1e3:.1f} mm, {self.width * 1e3:.1f} mm",
+            "pressure": f"{self.mean_pressure / 1e3:.4g} kPa on average, {self.pressure.max() / 1e3:.4g} kPa at most",
+            "harmonics": f"{self.harmonics}{error}",
+            "motion": "linear about the inflated tyre" if self.balanced is None else "large",
+            "unstable": self.unstable,
+        }
 
     @property
     def harmonics(self) -> int:

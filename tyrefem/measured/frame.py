@@ -9,7 +9,7 @@ from pathlib import Path
 from typing import TYPE_CHECKING
 
 from tyrefem.errors import InputError
-from tyrefem.measured.heading import is_time
+from tyrefem.measured.heading import is_time, parts
 from tyrefem.measured.table import MeasuredTable, read
 
 if TYPE_CHECKING:
@@ -29,6 +29,7 @@ def frame_table(
 ) -> MeasuredTable:
     """The runs of a frame with the columns of a file: ``time [s]`` (or the index so named), perhaps ``run``, sensors.
 
+    A result's own `readings` are such a table.
     A frame without a column ``run`` is one run, "measured". Options and errors: see `tyrefem.measured.read_table`.
 
     >>> import pandas as pd
@@ -48,8 +49,16 @@ def frame_table(
 
 
 def _flat(frame: pd.DataFrame) -> pd.DataFrame:
-    """The frame with an index that is the time or the run as a column."""
+    """The frame with an index that is the time or the run as a column; a result's `readings` with their units."""
     if frame.columns.nlevels > 1:
         raise InputError("its columns have several levels; wanted: one name each, like 'crown [degC]'", file=PLACE)
     levels = [name for name in frame.index.names if isinstance(name, str) and (is_time(name) or name.lower() == "run")]
-    return frame.reset_index(levels) if levels else frame
+    flat = frame.reset_index(levels) if levels else frame
+    if "time_s" not in flat.columns:
+        return flat
+    return flat.rename(columns=lambda name: "time [s]" if name == "time_s" else _in_degC(str(name)))
+
+
+def _in_degC(name: str) -> str:
+    """The heading of a column of `Result.readings`, which says no unit."""
+    return name if parts(name)[1] or name.lower() == "run" else f"{name} [degC]"

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Mapping
+from collections.abc import Mapping
 from dataclasses import dataclass, replace
 from functools import cached_property
 from typing import Any
@@ -10,14 +10,26 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
+from tyrefem.brief import Brief, Stated
 from tyrefem.errors import InputError
 from tyrefem.section.section import Section
 
 Array = NDArray[np.float64]
 
 
+@dataclass(frozen=True, eq=False)
+class PlyDirection:
+    """Unit vector along the meridian at points (2, n): the direction of the plies, which turn in the section's region
+    `wrap`."""
+
+    section: Section
+
+    def __call__(self, x: Array) -> Array:
+        return np.ascontiguousarray(np.moveaxis(self.section.ply_direction(np.asarray(x).T), -1, 0))
+
+
 @dataclass(frozen=True)
-class TyreMesh:
+class TyreMesh(Brief, Stated):
     """A mesh of a section in (r, z) [m].
 
     Parameters
@@ -35,6 +47,20 @@ class TyreMesh:
     mesher: str
     size: float
     cell: str
+
+    def _title(self) -> str:
+        return f"of {self.section.name}"
+
+    def _facts(self) -> Mapping[str, Any]:
+        kind = {"quad": "quadrilaterals", "tri": "triangles"}.get(self.cell, self.cell)
+        return {
+            "made by": f"{self.mesher}, edges of {self.size * 1e3:.3g} mm at most along the meridian",
+            "size": f"{self.n_nodes} nodes, {self.n_elements} {kind}",
+            "part": f"{'half' if self.section.half else 'whole'} section",
+            "regions": self.mesh.subdomains or {},
+            "boundaries": self.mesh.boundaries or {},
+            **self.quality,
+        }
 
     @property
     def n_nodes(self) -> int:
@@ -105,15 +131,9 @@ class TyreMesh:
         return replace(self, mesh=self.mesh.with_subdomains(found))
 
     @cached_property
-    def along_meridian(self) -> Callable[[Array], Array]:
-        """Unit vector along the meridian at points (2, n): the direction of the plies, which turn in the section's
-        region `wrap`. The same function every time."""
-        section = self.section
-
-        def direction(x: Array) -> Array:
-            return np.ascontiguousarray(np.moveaxis(section.ply_direction(np.asarray(x).T), -1, 0))
-
-        return direction
+    def along_meridian(self) -> PlyDirection:
+        """The direction of the plies; the same function every time."""
+        return PlyDirection(self.section)
 
     @cached_property
     def quality(self) -> dict[str, float]:

@@ -10,6 +10,7 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 from numpy.typing import NDArray
 
+from tyrefem.brief import Brief
 from tyrefem.conduction import Film, Reservoir
 
 if TYPE_CHECKING:
@@ -20,7 +21,7 @@ Array = NDArray[np.float64]
 
 
 @dataclass(frozen=True, eq=False)
-class Exchanges:
+class Exchanges(Brief):
     """Everything that exchanges heat: sides in the order of their films, then the reservoirs among themselves.
 
     Parameters

@@ -10,6 +10,7 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
+from tyrefem.brief import Brief
 from tyrefem.conduction import Film, Material
 from tyrefem.conduction.conditions import is_number
 from tyrefem.conduction.operators import Operators
@@ -29,7 +30,7 @@ class NotReducibleError(InputError):
 
 
 @dataclass(frozen=True, eq=False)
-class ReducedModel:
+class ReducedModel(Brief):
     """A tyre's heat balance on modes u = V a; gas and rim keep their own states.
 
     M a' = -sum_i k_i K_i a - sum_j h_j (R_j a - r_j T_j) + sum_z V^T S_z q_z(T),  q_z from `samples` of the nodes.
@@ -47,6 +48,16 @@ class ReducedModel:
     nodes_from_samples: Array
     #: Region -> its nodes that were about the hottest in training; others are looked at once.
     hot: Mapping[str, NDArray[np.intp]] = field(default_factory=dict)
+
+    def _title(self) -> str:
+        return f"of {self.base.study.name}"
+
+    def _facts(self) -> Mapping[str, Any]:
+        samples = sum(len(numbers) for numbers in self.samples.values())
+        return {
+            "modes": f"{self.size} for {len(self.V)} unknowns",
+            "heat sources": f"evaluated at {samples} nodes",
+        }
 
     @property
     def operators(self) -> Operators:

@@ -9,6 +9,7 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
+from tyrefem.brief import Brief
 from tyrefem.dotted import all_changed, value_at
 from tyrefem.errors import InputError
 from tyrefem.reduced.batch import Batch
@@ -51,7 +52,7 @@ UNSEEN = ("title", "measured", "cases", "diagnosis", "uncertainty")
 
 
 @dataclass(frozen=True, eq=False)
-class Certificate:
+class Certificate(Brief):
     """What fresh full runs say of a reduced model.
 
     Parameters
@@ -75,13 +76,24 @@ class Certificate:
 
 
 @dataclass(frozen=True, eq=False)
-class Surrogate:
+class Surrogate(Brief):
     """A certified reduced model and the box it may be used in."""
 
     model: ReducedModel
     varied: tuple[Varied, ...]
     certificate: Certificate
     time_to: float | None = None
+
+    def _title(self) -> str:
+        return self.model._title()
+
+    def _facts(self) -> Mapping[str, Any]:
+        one = self.certificate
+        return {
+            **self.model._facts(),
+            "varied": [each.key for each in self.varied],
+            "certificate": f"{one.worst:.2g} K on {one.cases} fresh full runs, {one.tolerance:g} K wanted",
+        }
 
     def packed(self, base: Bundle) -> Packed:
         """To be sent to other processes; ``base`` is the study it was made for."""

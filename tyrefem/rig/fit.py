@@ -9,6 +9,7 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
+from tyrefem.brief import Brief
 from tyrefem.rig.noise import Block, Noise, Normal, estimated, log_evidence, normal
 from tyrefem.rig.parameters import Parameters
 from tyrefem.rig.readings import HeatingTest
@@ -23,7 +24,7 @@ _LONGEST = 1.5
 
 
 @dataclass(frozen=True, eq=False)
-class Fit:
+class Fit(Brief):
     """A finished fit.
 
     Attributes

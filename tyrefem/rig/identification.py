@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Iterable, Sequence
+from collections.abc import Callable, Iterable, Mapping, Sequence
 from dataclasses import dataclass
 from functools import cached_property
 from pathlib import Path
@@ -12,6 +12,7 @@ import numpy as np
 from numpy.typing import NDArray
 from threadpoolctl import threadpool_limits
 
+from tyrefem.brief import Brief
 from tyrefem.rig.card import RigCard
 from tyrefem.rig.estimate import Estimate, estimate_of
 from tyrefem.rig.find import load
@@ -31,7 +32,7 @@ Array = NDArray[Any]
 
 
 @dataclass(frozen=True, eq=False)
-class Identification:
+class Identification(Brief):
     """What a rig's tables say about its layers.
 
     Attributes
@@ -49,6 +50,16 @@ class Identification:
     selection: Selection
     estimates: tuple[Estimate, ...]
     correlation: Array
+
+    def _title(self) -> str:
+        return self.card.title
+
+    def _facts(self) -> Mapping[str, Any]:
+        rows = {
+            one.name: f"{one.value:.4g} {one.unit} ({one.low:.4g} to {one.high:.4g}), {one.verdict}"
+            for one in self.properties
+        }
+        return {"tests": [test.name for test in self.tests], **rows}
 
     @cached_property
     def by_name(self) -> dict[str, Estimate]:

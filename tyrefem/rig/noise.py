@@ -15,6 +15,7 @@ import numpy as np
 from numpy.typing import NDArray
 from scipy.linalg import cho_solve, cholesky, solve_triangular
 
+from tyrefem.brief import Brief
 from tyrefem.rig.readings import Series
 
 Array = NDArray[Any]
@@ -43,7 +44,7 @@ class Noise:
 
 
 @dataclass(frozen=True, eq=False)
-class Block:
+class Block(Brief):
     """One series with its computed readings, its residual (measured - computed), slopes (n, parameters), rise (n,)."""
 
     series: Series

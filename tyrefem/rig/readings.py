@@ -10,7 +10,12 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
+<<<<<<< HEAD
 from tyrefem.errors import InputError, nearest, quoted
+=======
+from tyrefem.brief import Brief
+from tyrefem.errors import InputError, nearest
+>>>>>>> 2c0d0da (Public objects show themselves in 20 lines, and results can be pickled)
 from tyrefem.measured import MeasuredRun, read_table
 from tyrefem.rig.card import RigCard, RunCard
 from tyrefem.rig.clock import Clock
@@ -23,7 +28,7 @@ _SLACK = 5.0
 
 
 @dataclass(frozen=True, eq=False)
-class Series:
+class Series(Brief):
     """One sensor in one test: mean readings of groups, how many each holds, and the way from computed times to them.
 
     Attributes
@@ -41,7 +46,7 @@ class Series:
 
 
 @dataclass(frozen=True, eq=False)
-class HeatingTest:
+class HeatingTest(Brief):
     """One test: its card, its clock, its series by sensor."""
 
     name: str

@@ -10,6 +10,7 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
+from tyrefem.brief import Brief
 from tyrefem.rig.noise import Normal, log_evidence
 from tyrefem.rig.parameters import SLOPE, Parameters
 
@@ -21,7 +22,7 @@ _ALL = 8
 
 
 @dataclass(frozen=True, eq=False)
-class Selection:
+class Selection(Brief):
     """Every combination of linear properties, weighed.
 
     Attributes

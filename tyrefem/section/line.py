@@ -9,6 +9,7 @@ from typing import Protocol
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
+from tyrefem.brief import Stated
 from tyrefem.errors import InputError
 
 Array = NDArray[np.float64]
@@ -30,7 +31,7 @@ class Line(Protocol):
 
 
 @dataclass(frozen=True)
-class TwoArcs:
+class TwoArcs(Stated):
     """Crown arc and sidewall arc, tangent to each other at the shoulder (NASA report, appendix A).
 
     R_c = crown_radius, theta_c = asin(x_c/R_c), S_c = R_c theta_c, y_m - y_c = R_c (1 - cos theta_c);   (A1-A3)

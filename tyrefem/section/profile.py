@@ -9,6 +9,7 @@ from typing import Any
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
+from tyrefem.brief import Stated
 from tyrefem.errors import InputError
 
 Array = NDArray[np.float64]
@@ -17,7 +18,7 @@ THINNEST, THICKEST = 1e-5, 1.0
 
 
 @dataclass(frozen=True)
-class Profile:
+class Profile(Stated):
     """Values at stations ``s`` along the meridian [m], even in ``s``.
 
     Parameters

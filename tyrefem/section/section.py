@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Mapping
 from dataclasses import dataclass, replace
 from functools import cached_property
 from typing import Any
@@ -9,6 +10,7 @@ from typing import Any
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
+from tyrefem.brief import Brief, Stated
 from tyrefem.errors import InputError, nearest
 from tyrefem.section import measures, outlines
 from tyrefem.section.division import Division
@@ -23,7 +25,7 @@ GROOVE = "groove"
 
 
 @dataclass(frozen=True)
-class Section:
+class Section(Brief, Stated):
     """An axisymmetric cross-section in (r, z) [m], r from the wheel's axis, z from the mid plane.
 
     A place is (s, depth): ``s`` along the meridian from the crown, negative on the other side, and ``depth`` from
@@ -81,6 +83,19 @@ class Section:
         from tyrefem.section.possible import check_possible
 
         check_possible(self)
+
+    def _facts(self) -> Mapping[str, Any]:
+        wear = "" if self.as_built is None else ", worn"
+        return {
+            "part": f"{'half' if self.half else 'whole'}, {len(self.layers)} layers{wear}",
+            "regions": self.regions,
+            "boundaries": self.boundaries,
+            "diameter": f"{self.outer_diameter * 1e3:.1f} mm, width {self.overall_width * 1e3:.1f} mm",
+            "meridian": f"{self.line.length * 1e3:.1f} mm from crown to bead",
+            "rating": "unknown"
+            if self.rating is None
+            else f"{self.rating.load:.6g} N at {self.rating.pressure / 1e3:.4g} kPa",
+        }
 
     # Names
 

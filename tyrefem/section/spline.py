@@ -9,6 +9,7 @@ from typing import Any
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
+from tyrefem.brief import Stated
 from tyrefem.errors import InputError
 
 Array = NDArray[np.float64]
@@ -16,7 +17,7 @@ _GAUSS = np.polynomial.legendre.leggauss(8)
 
 
 @dataclass(frozen=True)
-class SplineLine:
+class SplineLine(Stated):
     """A smooth meridian through points (r, z) from the crown to the bead.
 
     A cubic spline over the chord length, symmetric at the crown, re-expressed by its arc length.

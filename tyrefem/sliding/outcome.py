@@ -4,13 +4,14 @@ from __future__ import annotations
 
 import functools
 import math
-from collections.abc import Iterator
+from collections.abc import Iterator, Mapping
 from dataclasses import asdict, dataclass
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
 from numpy.typing import NDArray
 
+from tyrefem.brief import Brief
 from tyrefem.sliding.skid import half_space_surface
 
 if TYPE_CHECKING:
@@ -60,12 +61,19 @@ class SlidingPhase:
 
 
 @dataclass(frozen=True, eq=False)
-class SlidingOutcome:
+class SlidingOutcome(Brief):
     """Sliding in a run. ``phases`` : one entry per phase with slip that was reached. ``warnings`` : for people."""
 
     result: Result
     phases: tuple[SlidingPhase, ...]
     series: pd.DataFrame
+
+    def _facts(self) -> Mapping[str, Any]:
+        return {
+            phase.name: f"{phase.sliding_speed:.3g} m/s, mean tread {phase.mean_highest:.0f} degC at most, exit edge "
+            f"{phase.exit_edge_highest:.0f} degC at {phase.exit_edge_time:g} s"
+            for phase in self.phases
+        }
 
     @functools.cached_property
     def table(self) -> pd.DataFrame:

@@ -10,6 +10,7 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
+from tyrefem.brief import Brief
 from tyrefem.errors import InputError, nearest
 from tyrefem.solid.compounds import Compound, determinant
 from tyrefem.solid.cords import CordLayer
@@ -35,7 +36,7 @@ class Part:
 
 
 @dataclass(frozen=True, eq=False)
-class Body:
+class Body(Brief):
     """Virtual work per radian, on nine-node rings with the dilatation projected on (1, xi, eta) of each element:
 
     int [tau_iso + tau_cords + p J 1] : grad v r0 dA0 - P int ...,  p = kappa (Proj J - 1)

@@ -9,6 +9,7 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 from numpy.typing import NDArray
 
+from tyrefem.brief import Brief
 from tyrefem.errors import InputError
 from tyrefem.solid.body import Body
 from tyrefem.solid.newton import Equilibrium, NewtonChoice, equilibrium
@@ -33,7 +34,7 @@ class LayerTension:
 
 
 @dataclass(frozen=True, eq=False)
-class Inflation:
+class Inflation(Brief):
     """A body in equilibrium under inflation pressure. Made by `inflate`.
 
     ``half``: the body is the half z >= 0 of a symmetric tyre; lengths and volumes below are the whole tyre's.

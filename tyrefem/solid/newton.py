@@ -7,6 +7,7 @@ from dataclasses import dataclass, field
 import numpy as np
 from numpy.typing import NDArray
 
+from tyrefem.brief import Brief
 from tyrefem.errors import InputError
 from tyrefem.solid.body import Body
 from tyrefem.solid.compounds import determinant
@@ -34,7 +35,7 @@ class NewtonChoice:
 
 
 @dataclass(frozen=True, eq=False)
-class Equilibrium:
+class Equilibrium(Brief):
     """Displacement (2, n_nodes), m, that balances a pressure, Pa, and how it was found.
 
     ``residuals`` holds the force out of balance, over that of the pressure, at every iteration of every load step.

@@ -8,6 +8,8 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 from numpy.typing import NDArray
 
+from tyrefem.brief import Brief
+
 if TYPE_CHECKING:
     from tyrefem.solid.finite_law import FiniteLaw
 
@@ -15,7 +17,7 @@ Array = NDArray[np.float64]
 
 
 @dataclass(frozen=True, eq=False)
-class Prestressed:
+class Prestressed(Brief):
     """An axisymmetric body in its present (deformed) configuration.
 
     Components run rr, zz, tt, rz, rt, zt, with engineering shears; points are the 3 x 3 Gauss points of

@@ -2,11 +2,12 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator
+from collections.abc import Iterator, Mapping
 from dataclasses import dataclass
 from pathlib import Path
 from typing import TYPE_CHECKING, Any, Protocol
 
+from tyrefem.brief import Brief
 from tyrefem.errors import InputError
 from tyrefem.studies import Study
 from tyrefem.sweep.card import SweepCard
@@ -49,7 +50,7 @@ class Part(Protocol):
 
 
 @dataclass(frozen=True, eq=False)
-class Design:
+class Design(Brief):
     """The answers to a design study.
 
     Parameters
@@ -65,6 +66,14 @@ class Design:
     optimum: Optimum | None = None
     envelope: Envelope | None = None
     interrupted: str = ""
+
+    def _title(self) -> str:
+        return f"of {self.study.name}"
+
+    def _facts(self) -> Mapping[str, Any]:
+        swept = {} if self.swept is None else self.swept._facts()
+        told = {part.name: next(iter(part.words), "nothing to tell") for part in self.parts}
+        return {**swept, **told, **({"interrupted": self.interrupted} if self.interrupted else {})}
 
     @property
     def parts(self) -> tuple[Part, ...]:

@@ -4,11 +4,13 @@ from __future__ import annotations
 
 import functools
 import time
+from collections.abc import Mapping
 from dataclasses import dataclass
 from typing import TYPE_CHECKING, Any, Unpack
 
 import numpy as np
 
+from tyrefem.brief import Brief
 from tyrefem.errors import InputError, nearest
 from tyrefem.sweep.answering import Answering
 from tyrefem.sweep.cluster import ClusterLostError
@@ -22,7 +24,7 @@ if TYPE_CHECKING:
 
 
 @dataclass(frozen=True, eq=False)
-class Sweep:
+class Sweep(Brief):
     """The answers of a plan's variants, as far as they are finished.
 
     Parameters
@@ -39,6 +41,20 @@ class Sweep:
     seconds: float = 0.0
     taken_up: int = 0
     interrupted: str = ""
+
+    def _title(self) -> str:
+        return f"of {self.plan.study.name}"
+
+    def _facts(self) -> Mapping[str, Any]:
+        reduced = sum(one.get("by") == "reduced" for one in self.outcomes.values())
+        return {
+            "varied": self.plan.keys,
+            "variants": f"{len(self.outcomes)} of {len(self.plan.variants)} finished, {len(self.failed)} failed",
+            "answers": self.answers,
+            "answered by": f"{len(self.outcomes) - reduced} full runs"
+            + (f", {reduced} by the reduced model, good to {self.certificate.worst:.2g} K" if self.certificate else ""),
+            "wall time": f"{self.seconds:.3g} s",
+        }
 
     @functools.cached_property
     def table(self) -> pd.DataFrame:

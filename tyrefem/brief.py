@@ -1,0 +1,130 @@
+"""What a large object says of itself in a few lines; and what of it is stored."""
+
+from __future__ import annotations
+
+import itertools
+from collections.abc import Iterable, Mapping, Sequence
+from dataclasses import fields, is_dataclass
+from pathlib import Path
+from typing import Any
+
+#: Lines of a `repr` at most, and letters of a line.
+LINES, WIDTH = 20, 110
+#: Names or values of a list that are shown.
+SHOWN = 6
+_INDENT = "  "
+
+
+class Brief:
+    """A class whose `repr` has at most 20 lines; a subclass says in `_facts` what a person wants to know of it.
+
+    >>> from dataclasses import dataclass
+    >>> import numpy as np
+    >>> @dataclass
+    ... class Readings(Brief):
+    ...     sensor: str
+    ...     values: object
+    >>> Readings("crown", np.linspace(25.0, 60.0, 1000))
+    Readings
+      sensor  crown
+      values  array (1000,), 25 to 60
+    """
+
+    def __init_subclass__(cls, **options: Any) -> None:
+        super().__init_subclass__(**options)
+        # A dataclass would write its own, with every number of every array.
+        if "__repr__" not in cls.__dict__:
+            cls.__repr__ = Brief.__repr__  # type: ignore[method-assign]
+
+    def _title(self) -> str:
+        """What stands behind the name of the class: what it is called, mostly."""
+        name = getattr(self, "name", "")
+        return name if isinstance(name, str) else ""
+
+    def _facts(self) -> Mapping[str, Any]:
+        """Heading -> what stands behind it; text as it is, everything else by `short`."""
+        if not is_dataclass(self):
+            return {}
+        return {field.name: getattr(self, field.name) for field in fields(self) if field.repr and field.name != "name"}
+
+    def __repr__(self) -> str:
+        return lines(heading_of(self), self._facts())
+
+
+def heading_of(thing: Brief) -> str:
+    """Class and name: ``Study nasa-22x5.5-8pr``."""
+    return f"{type(thing).__name__} {thing._title()}".rstrip()
+
+
+def lines(heading: str, facts: Mapping[str, Any]) -> str:
+    """A heading, and a line for each fact."""
+    shown = list(facts.items())
+    if len(shown) > LINES - 1:
+        shown = [*shown[: LINES - 2], ("...", f"and {len(shown) - LINES + 2} more")]
+    width = max((len(name) for name, _ in shown), default=0)
+    rows = [f"{_INDENT}{name:{width}}  {value if isinstance(value, str) else short(value)}" for name, value in shown]
+    return "\n".join(cut(row) for row in [heading, *rows])
+
+
+def cut(text: str, width: int = WIDTH) -> str:
+    """One line of at most so many letters."""
+    line = " ".join(text.splitlines()) if "\n" in text else text
+    return line if len(line) <= width else f"{line[: width - 3]}..."
+
+
+def short(value: Any) -> str:
+    """A value in a few words, whatever it is.
+
+    >>> import numpy as np
+    >>> short(0.123456789), short(np.zeros((3, 2))), short({"tread": 1, "bead": 2}), short(list(range(50)))
+    ('0.123457', 'array (3, 2), 0 to 0', 'tread, bead', '50: 0, 1, 2, 3, 4, 5, ...')
+    """
+    if isinstance(value, Brief):
+        return _in_line(value)
+    if isinstance(value, bool) or value is None:
+        return str(value)
+    if isinstance(value, float):
+        return f"{value:.6g}"
+    if isinstance(value, str | int | Path):
+        return cut(str(value), 80)
+    if isinstance(value, Mapping):
+        return listed(value)
+    if hasattr(value, "columns") and hasattr(value, "index"):
+        return f"table of {len(value)} rows: {listed(value.columns)}"
+    if hasattr(value, "shape") and hasattr(value, "dtype"):
+        return _array(value)
+    if isinstance(value, Sequence | frozenset | set):
+        return listed(value)
+    return cut(repr(value).splitlines()[0], 80)
+
+
+def _in_line(thing: Brief) -> str:
+    """Its name; of what has none the first facts."""
+    heading = heading_of(thing)
+    if thing._title():
+        return cut(heading, 80)
+    facts = (f"{name} {value if isinstance(value, str) else short(value)}" for name, value in thing._facts().items())
+    return cut(", ".join(itertools.islice(facts, SHOWN)) or heading, 80)
+
+
+def listed(names: Iterable[Any]) -> str:
+    """The first few of a list, with their number if there are more."""
+    every = list(names)
+    words = ", ".join(short(entry) for entry in every[:SHOWN])
+    if len(every) <= SHOWN:
+        return words or "none"
+    return f"{len(every)}: {words}, ..."
+
+
+def _array(array: Any) -> str:
+    if array.dtype.kind not in "fiu" or not array.size:
+        return f"array {array.shape}"
+    low, high = float(array.min()), float(array.max())
+    return f"array {array.shape}, {low:.6g} to {high:.6g}"
+
+
+class Stated:
+    """A dataclass that is stored, and sent to other processes, without what it has worked out."""
+
+    def __getstate__(self) -> dict[str, Any]:
+        return {field.name: self.__dict__[field.name] for field in fields(self)}  # type: ignore[arg-type]
