@@ -9,7 +9,7 @@ from typing import Any
 from tyrefem import library
 from tyrefem.drive import RIVALS
 from tyrefem.errors import InputError, nearest
-from tyrefem.quantity import as_written
+from tyrefem.quantity import written
 
 #: Tables whose text value is a reference to a card: changing something below it lays the change over the card.
 _REFERENCES = {"section": "section", "materials.*": "material"}
@@ -36,9 +36,9 @@ def all_changed(data: Mapping[str, Any], changes: Mapping[str, Any]) -> dict[str
     for key, value in changes.items():
         table = key.split(".")[0].strip().replace("-", "_")
         if table in result and table not in own:
-            result[table] = as_written(result[table])
+            result[table] = written(result[table])
             own.add(table)
-        _change(result, key, as_written(value))
+        _change(result, key, written(value))
     return result
 
 

@@ -111,22 +111,22 @@ def _split(value: object, unit: str, wanted: str) -> tuple[float, str]:
     return float(match[1]), match[2]
 
 
-def as_written(value: Any) -> Any:
+def written(value: Any) -> Any:
     """A value as a file has it: pint quantities and paths as text, numpy's numbers as Python's; tables and lists anew.
 
-    >>> as_written({"speed": registry().Quantity(25, "mph"), "at": [registry().Quantity(2.5, "mm")]})
+    >>> written({"speed": registry().Quantity(25, "mph"), "at": [registry().Quantity(2.5, "mm")]})
     {'speed': '25 mph', 'at': ['2.5 mm']}
     """
     if type(value) in (str, float, int, bool):
         return value
     if isinstance(value, Mapping):
-        return {key: as_written(entry) for key, entry in value.items()}
+        return {key: written(entry) for key, entry in value.items()}
     if isinstance(value, list | tuple):
-        return [as_written(entry) for entry in value]
+        return [written(entry) for entry in value]
     if hasattr(value, "magnitude") and hasattr(value, "units"):
-        return _with_unit(as_written(value.magnitude), _unit_text(value.units))
+        return _with_unit(written(value.magnitude), _unit_text(value.units))
     if hasattr(value, "tolist"):
-        return as_written(value.tolist())
+        return written(value.tolist())
     return str(value) if isinstance(value, Path) else copy.deepcopy(value)
 
 

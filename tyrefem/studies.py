@@ -17,7 +17,7 @@ from tyrefem.drive import as_written
 from tyrefem.effects import catalogue
 from tyrefem.errors import InputError, nearest, quoted
 from tyrefem.materials import MaterialCard
-from tyrefem.quantity import as_written
+from tyrefem.quantity import written
 from tyrefem.study_card import MeasuredEntry, Sensor, StudyCard
 
 if TYPE_CHECKING:
@@ -357,7 +357,7 @@ class Study(Brief):
         path = Path(path)
         data = dict(self.data) if path.parent.resolve() == self.folder else self._portable()
         with atomic_path(path) as temporary:
-            temporary.write_text(tomli_w.dumps(as_written(data)), encoding="utf-8")
+            temporary.write_text(tomli_w.dumps(written(data)), encoding="utf-8")
         return path
 
     def _portable(self) -> dict[str, Any]:

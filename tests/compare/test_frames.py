@@ -9,6 +9,7 @@ import pandas as pd
 import pytest
 from toy_study import measured_from
 
+import tyrefem as tf
 from tyrefem.compare import compare
 from tyrefem.errors import InputError
 from tyrefem.measured import read_table
@@ -73,3 +74,9 @@ def test_columns_of_a_frame_are_renamed_and_ignored(study, frame):
     assert comparison.bias_K == pytest.approx(5.0)
     with pytest.raises(InputError, match="no column 'c2' to rename"):
         compare(study, other, rename={"c2": "crown"}, ignore=["air"])
+
+
+def test_readings_of_a_result_are_a_table():
+    quick = tf.study("example-validation", {"mesh.size": "12 mm"})
+    result = quick.run()
+    assert quick.compare(result.readings, result, inputs=False).rms_K == 0.0

@@ -29,8 +29,8 @@ def frame_table(
 ) -> MeasuredTable:
     """The runs of a frame with the columns of a file: ``time [s]`` (or the index so named), perhaps ``run``, sensors.
 
-    A result's own `readings` are such a table.
-    A frame without a column ``run`` is one run, "measured". Options and errors: see `tyrefem.measured.read_table`.
+    So are a result's own `readings`. A frame without a column ``run`` is one run, "measured". Options and errors: see
+    `tyrefem.measured.read_table`.
 
     >>> import pandas as pd
     >>> run, = frame_table(pd.DataFrame({"time [min]": [0, 1, 2], "crown [degF]": [77.0, None, 95.0]})).runs

@@ -10,12 +10,8 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
-<<<<<<< HEAD
-from tyrefem.errors import InputError, nearest, quoted
-=======
 from tyrefem.brief import Brief
-from tyrefem.errors import InputError, nearest
->>>>>>> 2c0d0da (Public objects show themselves in 20 lines, and results can be pickled)
+from tyrefem.errors import InputError, nearest, quoted
 from tyrefem.measured import MeasuredRun, read_table
 from tyrefem.rig.card import RigCard, RunCard
 from tyrefem.rig.clock import Clock

@@ -12,7 +12,7 @@ from typing import Any
 
 from tyrefem.errors import InputError
 from tyrefem.mechanics import check_cases
-from tyrefem.quantity import as_written
+from tyrefem.quantity import written
 from tyrefem.studies import Study
 from tyrefem.sweep.answers import check_answer
 from tyrefem.sweep.bundle import Bundle, bundle
@@ -147,15 +147,15 @@ def plan_of(study: Study, vary: Mapping[str, Any], **said: Any) -> Plan:
 def _vary(value: Any) -> Any:
     if isinstance(value, VaryCard):
         return value
-    written = as_written(value)
-    if isinstance(written, Mapping):
-        return written
+    plain = written(value)
+    if isinstance(plain, Mapping):
+        return plain
     if isinstance(value, tuple):
         if len(value) not in (2, 3):
             raise InputError(f"a range is (from, to) or (from, to, levels), not {value!r}", field="vary")
-        return dict(zip(("from", "to", "levels"), written, strict=False))
-    if isinstance(written, list):
-        return {"values": written}
+        return dict(zip(("from", "to", "levels"), plain, strict=False))
+    if isinstance(plain, list):
+        return {"values": plain}
     raise InputError(f"a list of values or a tuple (from, to), not {value!r:.60}", field="vary")
 
 
