@@ -5,15 +5,16 @@ from __future__ import annotations
 import copy
 import functools
 import tomllib
-from collections.abc import Mapping
+from collections.abc import Iterator, Mapping
 from pathlib import Path
 from typing import Annotated, Any, ClassVar, Self, get_args
 
 from pydantic import BaseModel, ConfigDict, Field, ValidationError, model_validator
 
 from tyrefem.brief import Brief, short
-from tyrefem.errors import InputError, nearest
+from tyrefem.errors import InputError, InputWarning, nearest
 from tyrefem.output import note_input
+from tyrefem.plausible import Plausible
 from tyrefem.quantity import Unit
 
 Text = Annotated[str, Field(min_length=1)]
@@ -64,6 +65,25 @@ class Card(Brief, BaseModel):
         except ValidationError as error:
             raise _one_error(error, file) from None
 
+    def warnings(self) -> tuple[InputWarning, ...]:
+        """What is possible but unlikely in this table and in the tables within it; field names as in the file.
+
+        Every field annotated with `Plausible` is held against its range. A subclass whose numbers are more than
+        fields adds to these.
+        """
+        found = [
+            range_.warning(getattr(self, name), key)
+            for name, key, range_ in _plausible(type(self))
+            if getattr(self, name) is not None
+        ]
+        below = [
+            warning.within(field=key)
+            for name, field in type(self).model_fields.items()
+            for key, card in _cards(field.alias or name, getattr(self, name))
+            for warning in card.warnings()
+        ]
+        return (*filter(None, found), *below)
+
     def checked(self, own: Mapping[str, Any], data: Mapping[str, Any], file: str | Path | None = None) -> Self:
         """`check` of data, where this card was made of ``own``: tables that the two share are not read again."""
         kept: dict[str, Any] = dict(data)
@@ -74,6 +94,29 @@ class Card(Brief, BaseModel):
                 if cards and all(isinstance(one, Card) for one in cards):
                     kept[key] = value
         return type(self).check(kept, file)
+
+
+@functools.cache
+def _plausible(card: type[Card]) -> tuple[tuple[str, str, Plausible], ...]:
+    """Name, key in the file and range of the fields that have one."""
+    found = []
+    for name, field in card.model_fields.items():
+        # "Annotated[...] | None" keeps its annotations within the union.
+        metadata = [*field.metadata, *(item for part in get_args(field.annotation) for item in get_args(part)[1:])]
+        found += [(name, field.alias or name, item) for item in metadata if isinstance(item, Plausible)]
+    return tuple(found)
+
+
+def _cards(key: str, value: Any) -> Iterator[tuple[str, Card]]:
+    """The tables in a field's value, with their dotted names."""
+    if isinstance(value, Card):
+        yield key, value
+    elif isinstance(value, Mapping):
+        for name, entry in value.items():
+            yield from _cards(f"{key}.{name}", entry)
+    elif isinstance(value, tuple | list):
+        for number, entry in enumerate(value):
+            yield from _cards(f"{key}.{number}", entry)
 
 
 @functools.cache

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import difflib
 from collections.abc import Iterable
+from dataclasses import dataclass, replace
 from pathlib import Path
 
 
@@ -28,6 +29,27 @@ class InputError(ValueError):
         """The same error, placed in an enclosing field and file."""
         joined = ".".join(part for part in (field, self.field) if part)
         return InputError(self.message, field=joined or None, file=self.file or file)
+
+
+@dataclass(frozen=True)
+class InputWarning:
+    """Input that can be worked with, but is perhaps not what was meant. ``field`` and ``file`` as of `InputError`.
+
+    >>> print(InputWarning("is unlikely", "density.value").within(field="materials.tread", file="study.toml"))
+    study.toml: materials.tread.density.value: is unlikely
+    """
+
+    message: str
+    field: str | None = None
+    file: str | Path | None = None
+
+    def within(self, *, field: str | None = None, file: str | Path | None = None) -> InputWarning:
+        """The same warning, placed in an enclosing field and file."""
+        joined = ".".join(part for part in (field, self.field) if part)
+        return replace(self, field=joined or None, file=self.file or file)
+
+    def __str__(self) -> str:
+        return ": ".join(str(part) for part in (self.file, self.field, self.message) if part)
 
 
 class MissingLibraryError(InputError):

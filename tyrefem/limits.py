@@ -12,7 +12,7 @@ SHALLOW = 0.2
 
 
 def warnings_of(result: Result) -> tuple[str, ...]:
-    """One line each, for people."""
+    """One line each, for people: those of the study first."""
     tread = float(result.study.section.thickness("tread", 0.0))
     deep = tuple(
         f"phase '{state.name}': one contact cools the tread {state.propagation_depth * 1e3:.2g} mm deep, "
@@ -22,4 +22,9 @@ def warnings_of(result: Result) -> tuple[str, ...]:
         if state.propagation_depth > SHALLOW * tread
     )
     apart = () if result.feedback is None else result.feedback.warnings
-    return apart + deep + (() if result.sliding is None else result.sliding.warnings)
+    return (
+        tuple(map(str, result.study.warnings))
+        + apart
+        + deep
+        + (() if result.sliding is None else result.sliding.warnings)
+    )

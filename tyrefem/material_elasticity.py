@@ -8,7 +8,8 @@ from typing import Annotated, Literal, Self
 from pydantic import Field, model_validator
 
 from tyrefem.cards import Card, PositiveLength, Text
-from tyrefem.errors import InputError
+from tyrefem.errors import InputError, InputWarning
+from tyrefem.plausible import CORD_DIAMETER, CORD_MODULUS, LOSS_TANGENT, SHEAR_MODULUS
 from tyrefem.quantity import Unit
 from tyrefem.softening import Softening
 
@@ -36,6 +37,11 @@ class RubberLaw(Card):
     def bulk(self) -> float:
         """kappa [Pa]: the card's, or 100 times the shear modulus."""
         return self.bulk_modulus or BULK_RATIO * self.initial_shear_modulus
+
+    def warnings(self) -> tuple[InputWarning, ...]:
+        """An unlikely shear modulus, whatever constants it follows from."""
+        field = "shear_modulus" if hasattr(self, "shear_modulus") else "c10"
+        return super().warnings() + tuple(filter(None, [SHEAR_MODULUS.warning(self.initial_shear_modulus, field)]))
 
     def times(self, factor: float) -> Self:
         """The law with every shear constant times a factor; a bulk modulus that is given stays."""
@@ -144,9 +150,9 @@ class Cords(Card):
     0.195
     """
 
-    modulus: Modulus
+    modulus: Annotated[Modulus, CORD_MODULUS]
     compression_modulus: Annotated[float, Unit("Pa", ge=0, le=1e12)] | None = None
-    diameter: Annotated[float, Unit("m", gt=0, le=0.02)]
+    diameter: Annotated[float, Unit("m", gt=0, le=0.02), CORD_DIAMETER]
     ends: Annotated[float, Unit("1/m", gt=0)]
     plies: Annotated[int, Field(ge=1, le=100)] = 1
     angle: Annotated[float, Unit("rad")]
@@ -154,7 +160,7 @@ class Cords(Card):
     lift: bool = True
     pairs: bool = True
     thickness_share: Annotated[float, Unit("1", gt=0, le=1)] = 1.0
-    loss_tangent: Annotated[float, Unit("1", ge=0, le=2)] | None = None
+    loss_tangent: Annotated[float, Unit("1", ge=0, le=2), LOSS_TANGENT] | None = None
     softening: Softening | None = None
     source: Text
     relative_sd: Annotated[float, Unit("1", ge=0, lt=1)] | None = None

@@ -11,10 +11,21 @@ from numpy.typing import NDArray
 from pydantic import model_validator
 
 from tyrefem.cards import Card, Temperature, Text
-from tyrefem.errors import InputError
+from tyrefem.errors import InputError, InputWarning
 from tyrefem.footprint.loss_tangent import Loss
 from tyrefem.loss_frequency import LossFrequency, loss_over_frequency
 from tyrefem.material_elasticity import Cords, Elasticity
+from tyrefem.plausible import (
+    CONDUCTIVITY,
+    DENSITY,
+    EXPANSION,
+    LOSS_TANGENT,
+    PLY_SHEAR_MODULUS,
+    SHEAR_MODULUS,
+    SPECIFIC_HEAT,
+    YOUNGS_MODULUS,
+    Plausible,
+)
 from tyrefem.property_table import PropertyTable, Sourced, columns
 from tyrefem.quantity import Unit
 from tyrefem.softening import Softening
@@ -31,9 +42,9 @@ class Conductivity(Sourced):
     """
 
     UNIT: ClassVar[str] = "W/m/K"
-    value: Annotated[float, Unit("W/m/K", gt=0)] | None = None
-    along: Annotated[float, Unit("W/m/K", gt=0)] | None = None
-    across: Annotated[float, Unit("W/m/K", gt=0)] | None = None
+    value: Annotated[float, Unit("W/m/K", gt=0), CONDUCTIVITY] | None = None
+    along: Annotated[float, Unit("W/m/K", gt=0), CONDUCTIVITY] | None = None
+    across: Annotated[float, Unit("W/m/K", gt=0), CONDUCTIVITY] | None = None
     table: list[list[Any]] | None = None
 
     @model_validator(mode="after")
@@ -52,6 +63,11 @@ class Conductivity(Sourced):
         width = len(rows[0]) if rows and isinstance(rows[0], list) else 2
         found = columns(rows, ("degC", *[self.UNIT] * (2 if width == 3 else 1)))
         return [PropertyTable(found[0], values) for values in found[1:]]
+
+    def warnings(self) -> tuple[InputWarning, ...]:
+        """Unlikely numbers, those of the table too."""
+        tables = self._tables() if self.table is not None else []
+        return super().warnings() + tuple(warning for table in tables for warning in table.unlikely(CONDUCTIVITY))
 
     @property
     def orthotropic(self) -> bool:
@@ -75,6 +91,7 @@ class Scalar(Sourced):
     """A positive number, or a table of rows ``[T, value]``; subclasses name the unit."""
 
     UNIT: ClassVar[str] = "1"
+    LIKELY: ClassVar[Plausible]
     value: Any = None
     table: list[list[Any]] | None = None
 
@@ -94,6 +111,13 @@ class Scalar(Sourced):
         except InputError as error:
             raise error.within(field=field) from None
 
+    def warnings(self) -> tuple[InputWarning, ...]:
+        """The unlikely number, or those of the table."""
+        law = self.law()
+        if isinstance(law, PropertyTable):
+            return super().warnings() + law.unlikely(self.LIKELY)
+        return super().warnings() + tuple(filter(None, [self.LIKELY.warning(law, "value")]))
+
     def law(self) -> float | PropertyTable:
         """A number, or a function of temperature (degC)."""
         if self.table is None:
@@ -111,18 +135,26 @@ class Density(Scalar):
     """kg/m3."""
 
     UNIT: ClassVar[str] = "kg/m**3"
+    LIKELY: ClassVar[Plausible] = DENSITY
 
 
 class SpecificHeat(Scalar):
     """J/kg/K."""
 
     UNIT: ClassVar[str] = "J/kg/K"
+    LIKELY: ClassVar[Plausible] = SPECIFIC_HEAT
 
 
-class Modulus(Sourced):
-    """A stiffness, Pa."""
+class ShearModulus(Sourced):
+    """G of a compound, Pa."""
 
-    value: Annotated[float, Unit("Pa", gt=0)]
+    value: Annotated[float, Unit("Pa", gt=0), SHEAR_MODULUS]
+
+
+class YoungsModulus(Sourced):
+    """E of bead wires or of a compound, Pa."""
+
+    value: Annotated[float, Unit("Pa", gt=0), YOUNGS_MODULUS]
 
 
 class LossTangent(Sourced):
@@ -135,7 +167,7 @@ class LossTangent(Sourced):
     """
 
     law: Literal["exponential", "constant", "table", "frequency"] = "exponential"
-    value: Annotated[float, Unit("1", ge=0, le=10)] | None = None
+    value: Annotated[float, Unit("1", ge=0, le=10), LOSS_TANGENT] | None = None
     at: Temperature = 25.0
     rate: Annotated[float, Unit("1/delta_degC", ge=-0.1, le=0.2)] | None = None
     table: list[list[Any]] | None = None
@@ -155,6 +187,16 @@ class LossTangent(Sourced):
         elif self.law == "exponential" and self.rate is None:
             raise InputError("the law 'exponential' needs 'rate', e.g. '0.0148 1/delta_degC'")
         return self
+
+    def warnings(self) -> tuple[InputWarning, ...]:
+        """Unlikely numbers, those of the table or master curve too."""
+        found = super().warnings()
+        if self.law == "table":
+            return found + self._tabulated.unlikely(LOSS_TANGENT)
+        if self.law == "frequency":
+            at_reference = LOSS_TANGENT.warning(float(self(self.at)), "frequency")
+            return found + tuple(filter(None, [at_reference]))
+        return found
 
     @functools.cached_property
     def _tabulated(self) -> PropertyTable:
@@ -184,14 +226,14 @@ class Cord(Sourced):
     """Bias plies: crown angle to the circumference, and the in-plane shear modulus of the ply pair."""
 
     crown_angle: Annotated[float, Unit("rad", gt=0, le=1.5708)] | None = None
-    ply_shear_modulus: Annotated[float, Unit("Pa", gt=0)] | None = None
+    ply_shear_modulus: Annotated[float, Unit("Pa", gt=0), PLY_SHEAR_MODULUS] | None = None
     softening: Softening | None = None
 
 
 class ThermalExpansion(Sourced):
     """Linear expansion of the compound, and of its cords along themselves, from the stress-free temperature."""
 
-    coefficient: Annotated[float, Unit("1/delta_degC", ge=0, le=1e-3)]
+    coefficient: Annotated[float, Unit("1/delta_degC", ge=0, le=1e-3), EXPANSION]
     cords: Annotated[float, Unit("1/delta_degC", ge=-1e-4, le=1e-3)] = 0.0
     stress_free: Temperature = 25.0
 
@@ -209,8 +251,8 @@ class MaterialCard(Card):
     density: Density
     specific_heat: SpecificHeat
     loss_tangent: LossTangent
-    shear_modulus: Modulus | None = None
-    youngs_modulus: Modulus | None = None
+    shear_modulus: ShearModulus | None = None
+    youngs_modulus: YoungsModulus | None = None
     cord: Cord | None = None
     elasticity: Elasticity | None = None
     cords: Cords | None = None

@@ -9,7 +9,8 @@ import numpy as np
 from numpy.typing import NDArray
 
 from tyrefem.cards import Card, Text
-from tyrefem.errors import InputError
+from tyrefem.errors import InputError, InputWarning
+from tyrefem.plausible import Plausible
 from tyrefem.quantity import Unit
 
 Array = NDArray[np.float64]
@@ -37,6 +38,11 @@ class PropertyTable:
 
     def __call__(self, temperature: Array | float) -> Array:
         return np.asarray(np.interp(temperature, self.temperatures, self.values))
+
+    def unlikely(self, likely: Plausible) -> tuple[InputWarning, ...]:
+        """The first row whose value is unlikely."""
+        rows = (likely.warning(value, f"table.{number}") for number, value in enumerate(self.values))
+        return tuple(filter(None, rows))[:1]
 
 
 #: What the first column of a table holds, by its unit.

@@ -316,7 +316,7 @@ class Result(Brief):
 
     @functools.cached_property
     def warnings(self) -> tuple[str, ...]:
-        """Where the run left the range of its own assumptions, one line each."""
+        """What of the input is perhaps not meant, and where the run left its own assumptions; one line each."""
         return warnings_of(self)
 
     # -- output ------------------------------------------------------------------------------------------------------

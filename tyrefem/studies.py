@@ -15,10 +15,11 @@ from tyrefem.construction import check_cords_fit
 from tyrefem.dotted import all_changed, scaled, value_at
 from tyrefem.drive import as_written
 from tyrefem.effects import catalogue
-from tyrefem.errors import InputError, nearest, quoted
+from tyrefem.errors import InputError, InputWarning, nearest, quoted
 from tyrefem.materials import MaterialCard
 from tyrefem.quantity import written
 from tyrefem.study_card import MeasuredEntry, Sensor, StudyCard
+from tyrefem.study_warnings import study_warnings
 
 if TYPE_CHECKING:
     from collections.abc import Callable
@@ -188,6 +189,11 @@ class Study(Brief):
         cards = {region: card.warmed(temperatures[region]) for region, card in self.materials.items()}
         study.__dict__.update(materials=cards, temperatures=dict(temperatures))
         return study
+
+    @functools.cached_property
+    def warnings(self) -> tuple[InputWarning, ...]:
+        """What can be run but is perhaps not meant, in the study, its section and its material cards."""
+        return study_warnings(self)
 
     @functools.cached_property
     def temperatures(self) -> Mapping[str, float] | None:

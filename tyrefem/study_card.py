@@ -178,11 +178,16 @@ class MeasuredEntry(Card):
 
 
 class StudyCard(Card):
-    """A study.toml, its references to other cards not yet followed."""
+    """A study.toml, its references to other cards not yet followed.
+
+    ``made_for``: the section that load law, footprint, given energies and published ranges are of; with another one
+    the study warns.
+    """
 
     kind: ClassVar[str] = "study"
     title: Text
     section: Any
+    made_for: Text | None = None
     materials: dict[str, Any]
     drive: Drive
     mesh: MeshChoice = MeshChoice()
@@ -197,6 +202,18 @@ class StudyCard(Card):
     effects: tuple[Annotated[Effect, EffectOf()], ...] = ()
     diagnosis: DiagnosisChoice = DiagnosisChoice()
     published: Published = Published()
+
+    @property
+    def of_one_tyre(self) -> tuple[str, ...]:
+        """Dotted names of what is one tyre's and no other's: measured or estimated, it does not follow the section."""
+        mechanics = self.mechanics
+        names = {
+            "mechanics.load_law": isinstance(mechanics.load_law, VerticalStiffness),
+            "mechanics.footprint": mechanics.footprint.law != TR_R_64.law,
+            "mechanics.energy": mechanics.energy is not None,
+        }
+        names["published"] = any(found is not None for _, found in self.published)
+        return tuple(name for name, there in names.items() if there)
 
     @model_validator(mode="after")
     def _sensor_names(self) -> StudyCard:

@@ -7,6 +7,7 @@ from typing import Annotated, ClassVar, Literal
 
 from tyrefem.boundaries import CAL, Law
 from tyrefem.cards import FilmCoefficient, Temperature
+from tyrefem.plausible import AIR_FILM, GAS_HEAT
 from tyrefem.quantity import Unit
 
 #: Specific gas constant of dry air, J/kg/K (R / M = 8.314462618 / 0.0289652; M: CIPM-2007).
@@ -23,7 +24,7 @@ class ContainedAirLaw(Law):
 
     side: ClassVar[str] = "contained_air"
     #: 1e-4 cal/(cm2 s K), appendix I: gentle mixing by the carcass's motion.
-    film: FilmCoefficient = 1e-4 * CAL
+    film: Annotated[FilmCoefficient, AIR_FILM] = 1e-4 * CAL
     #: Start temperature; the drive's initial temperature where not given.
     initial: Temperature | None = None
 
@@ -40,7 +41,7 @@ class Gas(ContainedAirLaw):
     """The real mass of gas, m = p V / (R T), at constant volume: c = c_v = 718 J/kg/K for air."""
 
     law: Literal["gas"]
-    specific_heat: Annotated[float, Unit("J/kg/K", gt=0)] = 718.0
+    specific_heat: Annotated[float, Unit("J/kg/K", gt=0), GAS_HEAT] = 718.0
     gas_constant: Annotated[float, Unit("J/kg/K", gt=0)] = GAS_CONSTANT
 
     def heat_capacity(self, volume: float, pressure: float, temperature: float) -> float:
@@ -54,7 +55,7 @@ class Report(ContainedAirLaw):
 
     law: Literal["report"]
     density: Annotated[float, Unit("kg/m**3", gt=0)] = 1.3
-    specific_heat: Annotated[float, Unit("J/kg/K", gt=0)] = 0.24 * 4184.0
+    specific_heat: Annotated[float, Unit("J/kg/K", gt=0), GAS_HEAT] = 0.24 * 4184.0
 
     def heat_capacity(self, volume: float, pressure: float, temperature: float) -> float:
         """rho V c_p, J/K."""

@@ -11,7 +11,8 @@ from pydantic import model_validator
 
 from tyrefem.boundaries import CAL, Law
 from tyrefem.cards import FilmCoefficient
-from tyrefem.errors import InputError
+from tyrefem.errors import InputError, InputWarning
+from tyrefem.plausible import AIR_FILM
 from tyrefem.quantity import Unit
 
 
@@ -29,7 +30,7 @@ class Nasa(OutsideAirLaw):
     """h = 1.3e-4 + 4e-7 V[cm/s] cal/(cm2 s K) = 5.44 + 1.674 V[m/s] W/m2/K (Clark & Dodge 1980, appendix I)."""
 
     law: Literal["nasa"]
-    at_rest: FilmCoefficient = 1.3e-4 * CAL
+    at_rest: Annotated[FilmCoefficient, AIR_FILM] = 1.3e-4 * CAL
     per_speed: Annotated[float, Unit("W*s/m**3/K", ge=0)] = 4e-7 * CAL * 100
 
     def film(self, speed: float) -> float:
@@ -41,7 +42,7 @@ class Constant(OutsideAirLaw):
     """The same film at every speed."""
 
     law: Literal["constant"]
-    coefficient: FilmCoefficient
+    coefficient: Annotated[FilmCoefficient, AIR_FILM]
 
     def film(self, speed: float) -> float:
         """h, W/m2/K, at a speed in m/s."""
@@ -58,6 +59,12 @@ class Table(OutsideAirLaw):
     def _rising(self) -> Table:
         self._columns()
         return self
+
+    def warnings(self) -> tuple[InputWarning, ...]:
+        """Films of the table that are unlikely."""
+        films = enumerate(self._columns()[1])
+        found = [AIR_FILM.warning(film, f"table.{number}") for number, film in films]
+        return super().warnings() + tuple(filter(None, found))
 
     def _columns(self) -> tuple[list[float], list[float]]:
         speeds, films = [], []

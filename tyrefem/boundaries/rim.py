@@ -6,6 +6,7 @@ from typing import Annotated, ClassVar, Literal
 
 from tyrefem.boundaries import CAL, Law
 from tyrefem.cards import FilmCoefficient, Temperature
+from tyrefem.plausible import CONTACT_FILM, SPECIFIC_HEAT, WHEEL_MASS
 from tyrefem.quantity import Unit
 
 
@@ -16,7 +17,7 @@ class RimLaw(Law):
     """
 
     side: ClassVar[str] = "rim"
-    film: FilmCoefficient = 0.5 * CAL
+    film: Annotated[FilmCoefficient, CONTACT_FILM] = 0.5 * CAL
     contact_resistance: Annotated[float, Unit("m**2*K/W", ge=0)] = 0.0
     #: Rim temperature (at the start, for a lumped rim); the drive's where not given.
     temperature: Temperature | None = None
@@ -40,8 +41,8 @@ class Lumped(RimLaw):
     """
 
     law: Literal["lumped"]
-    mass: Annotated[float, Unit("kg", gt=0)]
-    specific_heat: Annotated[float, Unit("J/kg/K", gt=0)] = 0.23 * 4184.0
+    mass: Annotated[float, Unit("kg", gt=0), WHEEL_MASS]
+    specific_heat: Annotated[float, Unit("J/kg/K", gt=0), SPECIFIC_HEAT] = 0.23 * 4184.0
     #: Conductance to the ambient.
     cooling: Annotated[float, Unit("W/K", ge=0)]
     #: Conductance to the contained air through the rim's well.

@@ -7,6 +7,7 @@ from typing import Annotated, ClassVar, Literal
 
 from tyrefem.boundaries import CAL, Contact, Law
 from tyrefem.cards import FilmCoefficient, Temperature
+from tyrefem.plausible import CONDUCTIVITY, CONTACT_FILM, ROAD_CONDUCTIVITY, SOLID_CAPACITY
 from tyrefem.quantity import Unit
 from tyrefem.road_contact import effusivity, half_space_film, triangular_film
 
@@ -34,7 +35,7 @@ class Constant(RoadLaw):
     """One film at every speed: the report's 0.25 cal/(cm2 s K) = 10460 W/m2/K."""
 
     law: Literal["constant"]
-    coefficient: FilmCoefficient = 0.25 * CAL
+    coefficient: Annotated[FilmCoefficient, CONTACT_FILM] = 0.25 * CAL
 
     def film(self, contact: Contact) -> float:
         """H_c during contact, W/m2/K."""
@@ -44,8 +45,8 @@ class Constant(RoadLaw):
 class OfTread(RoadLaw):
     """A film that follows from the tread's lambda and C: the tread card's at 25 degC unless given here."""
 
-    conductivity: Annotated[float, Unit("W/m/K", gt=0)] | None = None
-    heat_capacity: Annotated[float, Unit("J/m**3/K", gt=0)] | None = None
+    conductivity: Annotated[float, Unit("W/m/K", gt=0), CONDUCTIVITY] | None = None
+    heat_capacity: Annotated[float, Unit("J/m**3/K", gt=0), SOLID_CAPACITY] | None = None
 
     def _tread(self, contact: Contact) -> tuple[float, float]:
         return self.conductivity or contact.conductivity, self.heat_capacity or contact.heat_capacity
@@ -71,8 +72,8 @@ class HalfSpace(OfTread):
     """
 
     law: Literal["half-space"]
-    road_conductivity: Annotated[float, Unit("W/m/K", gt=0)] = 1.5
-    road_heat_capacity: Annotated[float, Unit("J/m**3/K", gt=0)] = 2.0e6
+    road_conductivity: Annotated[float, Unit("W/m/K", gt=0), ROAD_CONDUCTIVITY] = 1.5
+    road_heat_capacity: Annotated[float, Unit("J/m**3/K", gt=0), SOLID_CAPACITY] = 2.0e6
 
     def film(self, contact: Contact) -> float:
         """H_c during contact, W/m2/K."""

@@ -8,6 +8,7 @@ from typing import Annotated, ClassVar, Literal
 from tyrefem.boundaries import Law
 from tyrefem.boundaries.road import HalfSpace, RoadLaw
 from tyrefem.cards import Temperature
+from tyrefem.plausible import ROAD_CONDUCTIVITY, SOLID_CAPACITY
 from tyrefem.quantity import Unit
 from tyrefem.road_contact import effusivity
 from tyrefem.slip import Slip
@@ -26,8 +27,8 @@ class SlidingLaw(Law):
 
     side: ClassVar[str] = "sliding"
     pressure: Annotated[float, Unit("Pa", gt=0)] | None = None
-    road_conductivity: Annotated[float, Unit("W/m/K", gt=0)] | None = None
-    road_heat_capacity: Annotated[float, Unit("J/m**3/K", gt=0)] | None = None
+    road_conductivity: Annotated[float, Unit("W/m/K", gt=0), ROAD_CONDUCTIVITY] | None = None
+    road_heat_capacity: Annotated[float, Unit("J/m**3/K", gt=0), SOLID_CAPACITY] | None = None
     decomposition_temperature: Temperature = 350.0
 
     @abstractmethod

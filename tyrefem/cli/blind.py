@@ -17,6 +17,7 @@ from tyrefem.cli.common import (
     StudyArgument,
     print_json,
     settings,
+    warn,
 )
 from tyrefem.cli.progress import progress
 from tyrefem.results_folder import results_folder
@@ -42,6 +43,7 @@ def blind(
     from tyrefem.studies import study as load
 
     found = load(study, settings(changes))
+    warn(found.warnings)
     place, names = out or Path("results") / f"{found.name}-blind", ("blind.json", "blind.png")
     with (
         results_folder(place, "blind", names, force=force, keeps=["cases/*.json"]) as folder,

@@ -8,6 +8,7 @@ from typing import TYPE_CHECKING, Annotated, Any
 
 import typer
 
+from tyrefem.cli.common import warn
 from tyrefem.errors import InputError, nearest
 
 if TYPE_CHECKING:
@@ -68,33 +69,43 @@ def _card(path: Path) -> str:
         from tyrefem.rig import RigCard
 
         rig = RigCard.check(data, path)
+        warn(warning.within(file=path) for warning in rig.warnings())
         words = f"a laser rig, {len(rig.layers)} layer(s), {len(rig.sensors)} sensors, {len(rig.runs)} run(s)"
         return f"{words}, {_rig_tables(rig, path)}"
     if isinstance(data.get("study"), str):
         from tyrefem.sweep.questions import loaded
 
-        return f"a sweep: {loaded(str(path.resolve())).words}"
+        sweep = loaded(str(path.resolve()))
+        warn(sweep.study.warnings)
+        return f"a sweep: {sweep.words}"
     if "layers" in data or "line" in data:
         from tyrefem.section import load
 
         section = load(str(path.resolve()))
+        warn(warning.within(file=path) for warning in section.warnings)
         return (
             f"a section, {section.overall_width * 1e3:.1f} mm wide, {section.outer_diameter * 1e3:.1f} mm in diameter"
         )
     if "loss_tangent" in data or "conductivity" in data:
         from tyrefem.materials import material
 
-        return f"a material card, {material(str(path.resolve())).title}"
+        card = material(str(path.resolve()))
+        warn(warning.within(file=path) for warning in card.warnings())
+        return f"a material card, {card.title}"
     from tyrefem.studies import study
     from tyrefem.study_check import check_study
 
     found = study(str(path.resolve()))
     if found.is_campaign:
         campaign = found.campaign()
+        said: list[str] = []
         for case in campaign.cases:
-            check_study(campaign.case_study(case))
+            study_of_case = campaign.case_study(case)
+            check_study(study_of_case)
+            said += warn(study_of_case.warnings, said)
         return f"a campaign of {len(campaign.cases)} cases"
     tables = check_study(found)
+    warn(found.warnings)
     return (
         f"a study of {len(found.card.drive.phases)} phase(s), {found.card.drive.end:g} s, "
         f"{len(found.sensors)} sensors, {tables} measured run(s)"

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import sys
 import tomllib
+from collections.abc import Collection, Iterable
 from pathlib import Path
 from typing import Annotated, Any
 
@@ -17,6 +18,15 @@ def fail(message: object, code: int = 2) -> int:
     printable = "".join(letter if letter.isprintable() else " " for letter in str(message))
     print(f"tyrefem: {' '.join(printable.split())}", file=sys.stderr)
     return code
+
+
+def warn(warnings: Iterable[object], said: Collection[str] = ()) -> tuple[str, ...]:
+    """A line on stderr for every warning that was not said before; all of them as text."""
+    lines = tuple(map(str, warnings))
+    for line in dict.fromkeys(lines):
+        if line not in said:
+            fail(f"warning: {line}")
+    return lines
 
 
 def complete_studies(incomplete: str) -> list[str]:

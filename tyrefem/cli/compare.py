@@ -23,6 +23,7 @@ from tyrefem.cli.common import (
     print_json,
     renamed,
     settings,
+    warn,
 )
 from tyrefem.cli.progress import progress
 from tyrefem.processes import processes
@@ -52,6 +53,7 @@ def compare(
     from tyrefem.studies import study as load
 
     found = load(study, settings(changes))
+    warn(found.warnings)
     place = out or Path("results") / f"{found.name}-compare"
     read = [table] if table else [entry.table for entry in found.measured]
     with results_folder(place, "compare", FILES, inputs=read, force=force) as folder:

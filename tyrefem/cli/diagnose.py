@@ -21,6 +21,7 @@ from tyrefem.cli.common import (
     print_json,
     renamed,
     settings,
+    warn,
 )
 from tyrefem.cli.progress import stages
 from tyrefem.results_folder import results_folder
@@ -59,6 +60,7 @@ def diagnose(
     from tyrefem.studies import study as load
 
     found = load(study, settings(changes))
+    warn(found.warnings)
     place = out or Path("results") / f"{found.name}-diagnosis"
     read = [table] if table else [entry.table for entry in found.measured]
     with results_folder(place, "diagnose", FILES, inputs=read, force=force, keeps=[f"{PROGRESS}*/*/*.npz"]) as folder:

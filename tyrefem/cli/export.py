@@ -17,6 +17,7 @@ from tyrefem.cli.common import (
     fail,
     print_json,
     settings,
+    warn,
 )
 from tyrefem.cli.progress import stages
 from tyrefem.errors import InputError
@@ -84,6 +85,7 @@ def export(
     for name, text in {**inputs, "road_temperature": road_temperature}.items():
         given |= _range(text, name)
     chosen = loaded(study, settings(changes))
+    warn(chosen.warnings)
     path = out or Path("results") / f"{chosen.name}.npz"
     allowed = parse(tolerance, "delta_degC")
     if not allowed > 0:

@@ -17,6 +17,7 @@ from tyrefem.cli.common import (
     StudyArgument,
     print_json,
     settings,
+    warn,
 )
 from tyrefem.cli.progress import progress
 from tyrefem.results_folder import results_folder
@@ -41,6 +42,7 @@ def isolability(
     from tyrefem.studies import study as load
 
     found = load(study, settings(changes))
+    warn(found.warnings)
     count = workers or min(os.cpu_count() or 1, 4)
     place = out or Path("results") / f"{found.name}-isolability"
     with results_folder(place, "isolability", FILES, force=force) as folder:

@@ -38,11 +38,51 @@ def new(
         raise InputError("exists already; nothing was written", file=target)
     place_of_output(target.parent)
     files = {target: source} | {target.parent / name: source.parent / name for name in _companions(kind, source)}
+    first_line, note = _of_the_other_tyre(kind, source)
     for place, file in files.items():
         with atomic_path(place) as temporary:
             shutil.copyfile(file, temporary)
+            if place == target and first_line:
+                temporary.write_text(first_line + file.read_text(encoding="utf-8-sig"), encoding="utf-8")
     typer.echo(f"{target} written, a copy of {source.parent.name if kind == 'study' else source.stem}")
+    if note:
+        typer.echo(f"note: {note}")
     typer.echo(f"edit it, then: tyrefem check {target.parent if kind == 'study' else target}")
+
+
+def _of_the_other_tyre(kind: str, source: Path) -> tuple[str, str]:
+    """What a copy must say of numbers that are one tyre's and no other's: a line for the file, one for the screen."""
+    if kind == "study":
+        from tyrefem.studies import study
+
+        try:
+            copied = study(source)
+        except InputError:
+            return "", ""  # what is wrong with it is the copy's to be mended
+        section, names = copied.card.made_for or copied.new_section.name, ", ".join(copied.card.of_one_tyre)
+        if not names:
+            return "", ""
+        line = (
+            f'made_for = "{section}"     # the section that these are of: {names}\n' if not copied.card.made_for else ""
+        )
+        return line, f"of section '{section}' and of no other (made_for): {names}; with another section the study warns"
+    if kind == "section":
+        from tyrefem.cards import read_toml
+
+        data: dict[str, Any] = read_toml(source)
+        kept = [name for name in ("rating", "parameters.inner_volume") if _has(data, name)]
+        if kept:
+            words = f"of {source.stem} and of no other tyre: {' and '.join(kept)}"
+            return f"# A copy of {source.stem}; {words}.\n", words
+    return "", ""
+
+
+def _has(data: dict[str, Any], name: str) -> bool:
+    for part in name.split("."):
+        if not isinstance(data, dict) or part not in data:
+            return False
+        data = data[part]
+    return True
 
 
 def _companions(kind: str, source: Path) -> list[Path]:

@@ -17,6 +17,7 @@ from tyrefem.cli.common import (
     fail,
     print_json,
     settings,
+    warn,
 )
 from tyrefem.cli.progress import progress
 from tyrefem.errors import InputError
@@ -67,6 +68,7 @@ def press(
     texts = {"pressure": pressure, "load": load, "deflection": deflection, "drum_diameter": drum, "camber": camber}
     given = {name: _read(name, text) for name, text in texts.items() if text is not None}
     found = load_study(study, settings(changes))
+    warn(found.warnings)
     with (
         results_folder(out or Path("results") / f"{found.name}-press", "press", FILES, force=force) as folder,
         progress(f"{found.name}: inflated and pressed", quiet=quiet or as_json),

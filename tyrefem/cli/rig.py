@@ -7,7 +7,7 @@ from typing import Annotated
 
 import typer
 
-from tyrefem.cli.common import ForceOption, JsonOption, QuietOption, print_json
+from tyrefem.cli.common import ForceOption, JsonOption, QuietOption, print_json, warn
 from tyrefem.cli.progress import progress
 from tyrefem.errors import InputError
 from tyrefem.results_folder import results_folder
@@ -40,6 +40,7 @@ def simulate(
     from tyrefem.rig.files import simulation_files, write_simulation
 
     card, file = rigs.load(rig)
+    warn(warning.within(file=file) for warning in card.warnings())
     place = out or Path("results") / f"rig-{_name(file)}"
     try:
         step = parse(every, "s")
@@ -91,6 +92,7 @@ def identify(
     from tyrefem.rig.verdict import shown, spoken
 
     card, file = rigs.load(rig)
+    warn(warning.within(file=file) for warning in card.warnings())
     tests = rigs.read(card, beside(card, file, tables or ()), without or ())
     chosen = bases(card, base or [])
     count = 0
@@ -141,6 +143,7 @@ def layers(
     from tyrefem.rig.readings import matched
 
     card, file = rigs.load(rig)
+    warn(warning.within(file=file) for warning in card.warnings())
     tests = rigs.read(card, beside(card, file, tables)) if tables else ()
     counts = range(1, min(most, len(card.layers)) + 1)
     place = out or Path("results") / f"rig-{_name(file)}-layers"

@@ -17,6 +17,7 @@ from tyrefem.cli.common import (
     print_file,
     print_json,
     settings,
+    warn,
 )
 from tyrefem.cli.progress import progress
 from tyrefem.errors import InputError
@@ -64,6 +65,7 @@ def run(
 
 
 def _single(study: Study, folder: Path, pictures: bool, vtk: bool, revolved: bool, as_json: bool, quiet: bool) -> None:
+    said = warn(study.warnings)
     with progress(study.name, study.card.drive.end, quiet=quiet) as step:
         result = study.run(step)
     result.save(folder)
@@ -72,8 +74,7 @@ def _single(study: Study, folder: Path, pictures: bool, vtk: bool, revolved: boo
     if pictures:
         result.plot(folder / "pictures")
         result.report(folder / "report.html")
-    for warning in result.warnings:
-        fail(f"warning: {warning}")
+    warn(result.warnings, said)
     if not as_json:
         typer.echo(_words(result))
         typer.echo(f"results in {folder}" + (f"; read {folder / 'report.html'}" if pictures else ""))

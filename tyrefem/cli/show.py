@@ -7,7 +7,7 @@ from typing import Annotated, Any
 
 import typer
 
-from tyrefem.cli.common import ForceOption, SetOption, settings
+from tyrefem.cli.common import ForceOption, SetOption, settings, warn
 from tyrefem.errors import InputError, nearest
 from tyrefem.results_file import results_file
 
@@ -79,6 +79,7 @@ def _section(name: str, values: dict[str, Any]) -> tuple[Any, dict[str, Any]]:
     for key, value in values.items():
         data = changed(data, key if key.startswith("section.") else f"section.{key}", value)
     section = load(data["section"])
+    warn(section.warnings)
     return section_figure(section), section.summary()
 
 
@@ -86,7 +87,9 @@ def _mesh(name: str, values: dict[str, Any]) -> tuple[Any, dict[str, Any]]:
     from tyrefem.plotting.mesh import mesh_figure
     from tyrefem.studies import study
 
-    tyre = study(name, values).mesh()
+    found = study(name, values)
+    warn(found.warnings)
+    tyre = found.mesh()
     return mesh_figure(tyre), tyre.summary()
 
 
@@ -109,6 +112,7 @@ def _strain(name: str, values: dict[str, Any]) -> tuple[Any, dict[str, Any]]:
     found = study(name, values)
     if found.card.mechanics.strain != "arcs":
         raise InputError('the picture of the strain cycle needs strain = "arcs"', field="mechanics.strain", file=name)
+    warn(found.warnings)
     case = RollingTyre(found).schedule.cases[0][-1]
     facts = {
         "load_N": case.load,
@@ -154,12 +158,15 @@ def _print(kind: str, name: str, values: dict[str, Any]) -> None:
     data: dict[str, Any]
     if kind == "study":
         found = study(name, values)
+        warn(found.warnings)
         data, path = dict(found.data), found.file
     elif kind == "sweep":
         from tyrefem.sweep.questions import loaded
 
         path = library.find("sweep", name)
-        typer.echo(f"# {loaded(str(path), values).words}")
+        sweep = loaded(str(path), values)
+        warn(sweep.study.warnings)
+        typer.echo(f"# {sweep.words}")
         data = read_toml(path)
         if values:
             data["change"] = {**data.get("change", {}), **values}
@@ -167,7 +174,8 @@ def _print(kind: str, name: str, values: dict[str, Any]) -> None:
         data, file, _ = library.load("material", name)
         for key, value in values.items():
             data = changed(data, key, value)
-        MaterialCard.check(data, file)
+        card = MaterialCard.check(data, file)
+        warn(warning.within(file=file) for warning in card.warnings())
         path = file
     typer.echo(f"# {path}")
     typer.echo(tomli_w.dumps(data), nl=False)

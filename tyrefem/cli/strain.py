@@ -16,6 +16,7 @@ from tyrefem.cli.common import (
     fail,
     print_json,
     settings,
+    warn,
 )
 from tyrefem.cli.progress import progress
 from tyrefem.errors import InputError, nearest
@@ -58,6 +59,7 @@ def strain(
         if one not in LAWS:
             raise InputError(f"no strain law '{one}' to compare{nearest(one, LAWS)}", field="--law")
     chosen = load_study(study, settings(changes))
+    warn(chosen.warnings)
     with (
         results_folder(out or Path("results") / f"{chosen.name}-strain", "strain", FILES, force=force) as folder,
         progress(f"{chosen.name}: {', '.join(wanted)}", quiet=quiet or as_json),

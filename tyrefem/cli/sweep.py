@@ -16,6 +16,7 @@ from tyrefem.cli.common import (
     fail,
     print_file,
     settings,
+    warn,
 )
 from tyrefem.cli.progress import stages
 from tyrefem.errors import InputError
@@ -164,6 +165,7 @@ def sweep(
     except InputError as error:
         raise error if error.field else error.within(field="--tolerance") from None
     name, wanted = questions(study, said, settings(changes))
+    warn(wanted.study.warnings)
     with (
         results_folder(out or Path("results") / f"{name}-sweep", "sweep", FILES, force=force, keeps=KEPT) as folder,
         stages(quiet=quiet or as_json) as tick,

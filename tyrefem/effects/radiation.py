@@ -6,6 +6,7 @@ from typing import TYPE_CHECKING, Annotated, ClassVar
 
 from tyrefem.conduction import Radiation
 from tyrefem.effects.effect import Effect, Prior
+from tyrefem.plausible import EMISSIVITY
 
 if TYPE_CHECKING:
     from tyrefem.surroundings import Surroundings
@@ -24,7 +25,7 @@ class RadiationToAmbient(Effect):
 
     surfaces: ClassVar[tuple[str, ...]] = ("road", "outside_air")
 
-    emissivity: Annotated[float, Prior("1", "emissivity of the outer surface", 0.6, 0.0, 1.0)] = 0.0
+    emissivity: Annotated[float, Prior("1", "emissivity of the outer surface", 0.6, 0.0, 1.0), EMISSIVITY] = 0.0
 
     def radiation(self, tyre: Surroundings, surface: str) -> Radiation | None:
         """To the ambient."""

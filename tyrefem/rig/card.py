@@ -7,7 +7,8 @@ from typing import Annotated, Any, ClassVar, Literal
 from pydantic import Field, model_validator
 
 from tyrefem.cards import Card, PositiveLength, Temperature, Text
-from tyrefem.errors import InputError
+from tyrefem.errors import InputError, InputWarning
+from tyrefem.plausible import CONDUCTIVITY, DENSITY, EMISSIVITY, SPECIFIC_HEAT, Plausible
 from tyrefem.quantity import Unit
 
 Share = Annotated[float, Unit("1", gt=0, le=1)]
@@ -21,6 +22,7 @@ class Guess(Card):
     """
 
     UNIT: ClassVar[str] = "1"
+    LIKELY: ClassVar[Plausible]
     value: Any
     relative_sd: Annotated[float, Unit("1", gt=0, le=2)] = 0.5
     slope: Annotated[float, Unit("1/delta_degC", ge=-0.02, le=0.02)] = 0.0
@@ -36,23 +38,29 @@ class Guess(Card):
                 raise error.within(field="value") from None
         return data
 
+    def warnings(self) -> tuple[InputWarning, ...]:
+        """An unlikely guess."""
+        return super().warnings() + tuple(filter(None, [self.LIKELY.warning(self.value, "value")]))
+
 
 class ConductivityGuess(Guess):
     """W/m/K."""
 
     UNIT: ClassVar[str] = "W/m/K"
+    LIKELY: ClassVar[Plausible] = CONDUCTIVITY
 
 
 class SpecificHeatGuess(Guess):
     """J/kg/K."""
 
     UNIT: ClassVar[str] = "J/kg/K"
+    LIKELY: ClassVar[Plausible] = SPECIFIC_HEAT
 
 
 class KnownDensity(Card):
     """kg/m3, weighed: a heating test sees only density times specific heat."""
 
-    value: Annotated[float, Unit("kg/m**3", gt=0)]
+    value: Annotated[float, Unit("kg/m**3", gt=0), DENSITY]
     source: Text
 
 
@@ -120,7 +128,7 @@ class SurroundingsCard(Card):
     characteristic_length: PositiveLength
     convection_sd: Annotated[float, Unit("1", ge=0, le=1)] = 0.15
     radiation: bool = True
-    emissivity: Share = 0.95
+    emissivity: Annotated[Share, EMISSIVITY] = 0.95
     emissivity_sd: Annotated[float, Unit("1", ge=0, lt=0.5)] = 0.01
 
 

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 from collections.abc import Callable, Mapping
 from dataclasses import replace
 from itertools import pairwise
@@ -35,9 +36,29 @@ def load(reference: object, *, near: Path | None = None, half: bool = True) -> S
     data, path, name = load_card("section", reference, near)
     card = SectionCard.check(data, file=path)
     try:
+        _refuse_idle_width(reference, card, near)
         return build(card, name=name, half=half)
     except InputError as error:
         raise error.within(file=path) from None
+
+
+def _refuse_idle_width(reference: object, card: SectionCard, near: Path | None) -> None:
+    """Raise `InputError` where a nominal width is laid over a card whose section does not follow it."""
+    parameters = card.parameters
+    changes = reference if isinstance(reference, Mapping) else {}
+    if "nominal_width" not in changes.get("parameters", {}) or "line" in changes:
+        return
+    if card.line.form == "two-arcs" and parameters.overall_width is None:
+        return
+    if "overall_width" in changes["parameters"]:
+        return
+    before = SectionCard.check(load_card("section", changes["base"], near)[0])
+    if not math.isclose(parameters.nominal_width, before.parameters.nominal_width, rel_tol=1e-9):
+        decides = "line.points" if card.line.form == "points" else "parameters.overall_width"
+        raise InputError(
+            f"names the tyre's size only: the section's width follows from {decides}; change that, or both",
+            field="parameters.nominal_width",
+        )
 
 
 def build(card: SectionCard, *, name: str | None = None, half: bool = True) -> Section:

@@ -11,7 +11,7 @@ import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
 from tyrefem.brief import Brief, Stated
-from tyrefem.errors import InputError, nearest
+from tyrefem.errors import InputError, InputWarning, nearest
 from tyrefem.section import measures, outlines
 from tyrefem.section.division import Division
 from tyrefem.section.layer import Layer, Piece, Rating
@@ -156,6 +156,13 @@ class Section(Brief, Stated):
         for layer in self.layers:
             ends.update(layer.regions.ends[:-1])
         return tuple(s for s in self.breaks if any(abs(s - end) < 1e-9 for end in ends))
+
+    @cached_property
+    def warnings(self) -> tuple[InputWarning, ...]:
+        """What can be built but is perhaps not meant: tables beyond the meridian, kinks, ratings of another tyre."""
+        from tyrefem.section.plausible import warnings_of
+
+        return warnings_of(self)
 
     @cached_property
     def wrapping(self) -> Wrap | None:

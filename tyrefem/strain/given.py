@@ -11,7 +11,7 @@ from numpy.typing import NDArray
 from pydantic import BeforeValidator, Field
 
 from tyrefem.cards import Card, Temperature, Text
-from tyrefem.errors import InputError, nearest
+from tyrefem.errors import InputError, InputWarning, nearest
 from tyrefem.quantity import Unit
 from tyrefem.strain import Zone
 
@@ -60,6 +60,22 @@ class GivenEnergy(Card):
         for region in section.regions:
             if region not in self.regions:
                 raise InputError(f"no strain energy for region '{region}' (it may be '0 J/m**3')", field="regions")
+
+    def without_effect(self, section: Section) -> tuple[InputWarning, ...]:
+        """Rows that lie so far outside of their region that no point of it is told by them."""
+        warnings = []
+        for region, rows in self.regions.items():
+            pieces = [piece for piece in section.pieces if piece.region == region]
+            if len(rows) < 2 or not pieces:
+                continue
+            start, end = min(piece.start for piece in pieces), max(piece.end for piece in pieces)
+            idle = [s for s, following in pairwise([s for s, _ in rows]) if following <= start + 1e-9]
+            idle += [s for before, s in pairwise([s for s, _ in rows]) if before >= end - 1e-9]
+            if idle:
+                places = ", ".join(f"{s * 1e3:.4g}" for s in idle)
+                words = f"rows at {places} mm have no effect: it runs from {start * 1e3:.4g} to {end * 1e3:.4g} mm"
+                warnings.append(InputWarning(words, field=f"regions.{region}"))
+        return tuple(warnings)
 
 
 @dataclass(frozen=True, eq=False)

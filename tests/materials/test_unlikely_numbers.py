@@ -1,0 +1,159 @@
+"""Numbers of a slipped unit or decimal point are warned of with their range and its source; shipped cards are not."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+from pathlib import Path
+from typing import Any, get_args
+
+import pytest
+
+from tyrefem import library
+from tyrefem.boundaries import laws
+from tyrefem.cards import Card, read_toml
+from tyrefem.effects import Prior, catalogue
+from tyrefem.materials import material
+from tyrefem.plausible import (
+    AIR_FILM,
+    CONDUCTIVITY,
+    CONTACT_FILM,
+    CORD_MODULUS,
+    DENSITY,
+    EMISSIVITY,
+    LOSS_TANGENT,
+    SHEAR_MODULUS,
+    SPECIFIC_HEAT,
+    Plausible,
+)
+from tyrefem.quantity import Unit, parse
+from tyrefem.rig import RigCard
+from tyrefem.rig import load as rig
+from tyrefem.studies import study
+
+SLIPS: list[tuple[str, dict[str, Any]]] = [
+    ("density.value", {"density": {"value": "1.18 kg/m**3"}}),
+    ("density.value", {"density": {"value": "1180 g/cm**3"}}),
+    ("density.table.1", {"density": {"table": [["0 degC", "1100 kg/m**3"], ["50 degC", "1.1 kg/m**3"]]}}),
+    ("conductivity.value", {"conductivity": {"value": "250 W/m/K"}}),
+    ("conductivity.across", {"conductivity": {"along": "1 W/m/K", "across": "0.002 W/m/K"}}),
+    ("conductivity.table.0", {"conductivity": {"table": [["0 degC", "210 W/m/K"], ["50 degC", "0.2 W/m/K"]]}}),
+    ("specific_heat.value", {"specific_heat": {"value": "1.8 J/kg/K"}}),
+    ("loss_tangent.value", {"loss_tangent": {"value": 8}}),
+    ("loss_tangent.value", {"loss_tangent": {"value": "0.01 %"}}),
+    ("loss_tangent.table.1", {"loss_tangent": {"law": "table", "table": [["0 degC", 0.2], ["50 degC", 7]]}}),
+    ("shear_modulus.value", {"shear_modulus": {"value": "1.3 GPa"}}),
+    ("shear_modulus.value", {"shear_modulus": {"value": "1.3 kPa"}}),
+    ("elasticity.shear_modulus", {"elasticity": {"law": "neo-hookean", "shear_modulus": "1.3 kPa", "source": "x"}}),
+    ("elasticity.c10", {"elasticity": {"law": "yeoh", "c10": "0.6 GPa", "source": "x"}}),
+    ("youngs_modulus.value", {"youngs_modulus": {"value": "15e6 MPa", "source": "x"}}),
+    ("cord.ply_shear_modulus", {"cord": {"ply_shear_modulus": "2e4 Pa", "source": "x"}}),
+    ("cords.modulus", {"cords": {"modulus": "110 MPa", "diameter": "1 mm", "ends": "500 1/m", "angle": "0 deg",
+                                 "lift": False, "source": "x"}}),
+    ("expansion.coefficient", {"expansion": {"coefficient": "9e-4 1/delta_degC", "source": "x"}}),
+]  # fmt: skip
+
+
+@pytest.mark.parametrize(("field", "changes"), SLIPS, ids=[field for field, _ in SLIPS])
+def test_a_slip_is_warned_of(field: str, changes: dict[str, Any]) -> None:
+    (warning,) = material({"base": "nasa-tread", **changes}).warnings()
+    assert warning.field == field
+    assert "is unlikely; likely are" in warning.message
+    assert any(word in warning.message for word in ("from memory", "an estimate")), "the range has a source"
+
+
+@pytest.mark.parametrize("name", library.names("material"))
+def test_no_shipped_material_is_unlikely(name: str) -> None:
+    assert material(name).warnings() == ()
+
+
+@pytest.mark.parametrize("name", library.names("study"))
+def test_no_shipped_study_is_unlikely(name: str) -> None:
+    assert study(name).warnings == ()
+
+
+def test_no_shipped_rig_is_unlikely_and_slips_are() -> None:
+    card, file = rig("trtlab")
+    assert card.warnings() == ()
+    data = read_toml(file)
+    data["surroundings"]["emissivity"] = "9.5 %"
+    data["layers"][0]["conductivity"]["value"] = "250 W/m/K"
+    data["layers"][1]["density"]["value"] = "1.18 kg/m**3"
+    fields = {"surroundings.emissivity", "layers.0.conductivity.value", "layers.1.density.value"}
+    assert {warning.field for warning in RigCard.check(data).warnings()} == fields
+
+
+def test_nothing_is_no_unlikely_number() -> None:
+    """A film of zero is an insulated side, a loss tangent of zero a part that is not to heat."""
+    assert material({"base": "nasa-tread", "loss_tangent": {"value": 0}}).warnings() == ()
+    assert laws("outside_air")["constant"].check({"law": "constant", "coefficient": "0 W/m**2/K"}).warnings() == ()
+
+
+@pytest.mark.parametrize("side", ["road", "outside_air", "contained_air", "rim", "sliding"])
+def test_the_defaults_of_every_law_are_likely(side: str) -> None:
+    given = {"lumped": {"mass": "9 kg", "cooling": "1 W/K"}, "held": {"temperature": "25 degC"},
+             "table": {"table": [["0 mph", "5 W/m**2/K"], ["90 mph", "70 W/m**2/K"]]}}  # fmt: skip
+    for name, law in laws(side).items():
+        table = given.get(name, {"coefficient": "20 W/m**2/K"} if side == "outside_air" and name == "constant" else {})
+        assert law.check({"law": name, **table}).warnings() == (), name
+
+
+FILMS = [
+    ("boundaries.outside_air.coefficient", {"law": "constant", "coefficient": "2e4 W/m**2/K"}),
+    (
+        "boundaries.outside_air.table.1",
+        {"law": "table", "table": [["0 mph", "5 W/m**2/K"], ["9 mph", "5 cal/cm**2/s/K"]]},
+    ),
+    ("boundaries.contained_air.film", {"law": "gas", "film": "1 cal/cm**2/s/K"}),
+    ("boundaries.road.coefficient", {"law": "constant", "coefficient": "1 W/m**2/K"}),
+    ("boundaries.rim.mass", {"law": "lumped", "mass": "8 g", "cooling": "10 W/K"}),
+]
+
+
+@pytest.mark.parametrize(("field", "law"), FILMS, ids=[field for field, _ in FILMS])
+def test_films_of_a_study(field: str, law: dict[str, Any]) -> None:
+    side = field.split(".")[1]
+    (warning,) = study("nasa-22x5.5-8pr", {f"boundaries.{side}": law}).warnings
+    assert warning.field == field
+    assert str(warning).startswith(str(study("nasa-22x5.5-8pr").file))
+
+
+def test_emissivity_of_an_effect() -> None:
+    radiating = {"effects": [{"name": "radiation", "emissivity": "9 %"}]}
+    (warning,) = study("nasa-22x5.5-8pr", radiating).warnings
+    assert warning.field == "effects.0.emissivity"
+    assert catalogue()["radiation"].check({"emissivity": 0.9}).warnings() == ()
+
+
+def test_a_card_in_several_regions_is_warned_of_once() -> None:
+    slip = {"base": "nasa-tread", "density": {"value": "1.18 kg/m**3"}}
+    (warning,) = study("nasa-22x5.5-8pr", {"materials.tread": slip, "materials.sidewall": slip}).warnings
+    assert warning.field == "materials.tread.density.value"
+    assert "(so in sidewall)" in warning.message
+
+
+def _all_cards(card: type[Card]) -> Iterator[type[Card]]:
+    for below in card.__subclasses__():
+        yield below
+        yield from _all_cards(below)
+
+
+def test_every_range_is_in_the_unit_of_its_field() -> None:
+    """Values are held against it in SI: a range in another unit would be wrong by its factor."""
+    checked = 0
+    for card in set(_all_cards(Card)):
+        for name, field in card.model_fields.items():
+            metadata = [*field.metadata, *(item for part in get_args(field.annotation) for item in get_args(part)[1:])]
+            for likely in (item for item in metadata if isinstance(item, Plausible)):
+                (unit,) = [item.unit for item in metadata if isinstance(item, Unit | Prior)]
+                assert parse("1" if likely.unit == "1" else f"1 {likely.unit}", unit) == 1.0, f"{card.__name__}.{name}"
+                assert likely.low < likely.high
+                checked += 1
+    assert checked > 20
+
+
+def test_the_documentation_has_the_same_ranges() -> None:
+    text = (Path(__file__).parents[2] / "docs/studies.md").read_text(encoding="utf-8")
+    for likely in (DENSITY, CONDUCTIVITY, SPECIFIC_HEAT, LOSS_TANGENT, AIR_FILM, CONTACT_FILM, EMISSIVITY):
+        assert f"outside {likely.low:g} to {likely.high:g}" in text
+    for likely, unit in ((SHEAR_MODULUS, 1e6), (CORD_MODULUS, 1e9)):
+        assert f"{likely.low / unit:g} to {likely.high / unit:g}" in text

@@ -1,0 +1,83 @@
+"""Numbers that are possible but unlikely: the ranges that a card's numbers are held against, with their sources.
+
+A number outside is a warning, not an error: a unit slipped by 1000, a decimal point, a modulus for a density. Zero,
+where a card allows it, says that something is not there and is never warned of.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+from tyrefem.errors import InputWarning
+
+
+@dataclass(frozen=True)
+class Plausible:
+    """Annotation of a card's field beside its `Unit`: the range in which it is likely, in that unit, and who says so.
+
+    >>> print(Plausible(100.0, 8000.0, "kg/m**3", "a book").warning(1.18, "density"))
+    density: 1.18 kg/m3 is unlikely; likely are 100 to 8000 kg/m3 (a book); check the unit
+    """
+
+    low: float
+    high: float
+    unit: str
+    source: str
+
+    def warning(self, value: float, field: str) -> InputWarning | None:
+        """The warning of a value in SI, if it is outside."""
+        if value == 0 or self.low <= value <= self.high:
+            return None
+        unit = "" if self.unit == "1" else f" {self.unit.replace('**', '').replace('*', ' ')}"
+        words = f"{value:.4g}{unit} is unlikely; likely are {self.low:g} to {self.high:g}{unit} ({self.source})"
+        return InputWarning(f"{words}; check the unit", field=field)
+
+
+_BOOKS = "handbook values from memory"
+DENSITY = Plausible(100.0, 8000.0, "kg/m**3", f"sponge rubber 100, compounds 900 to 1400, steel 7850; {_BOOKS}")
+CONDUCTIVITY = Plausible(0.03, 60.0, "W/m/K", f"still air 0.026, compounds 0.13 to 0.5, carbon steel 50; {_BOOKS}")
+SPECIFIC_HEAT = Plausible(400.0, 4200.0, "J/kg/K", f"steel 460, compounds 1400 to 2200, water 4180; {_BOOKS}")
+LOSS_TANGENT = Plausible(
+    1e-3,
+    3.0,
+    "1",
+    "resilient gum 0.02, steel cord 0.001, rubber at its glass transition 1 to 3; textbooks, from memory",
+)
+SHEAR_MODULUS = Plausible(
+    5e4,
+    2e8,
+    "Pa",
+    "gum 0.2 MPa to hard apex 30 MPa, Gent, Engineering with Rubber, from memory; four times more either way",
+)
+YOUNGS_MODULUS = Plausible(
+    1.5e5, 2.5e11, "Pa", "three times a gum's shear modulus, steel wire 210 GPa; textbooks, from memory"
+)
+PLY_SHEAR_MODULUS = Plausible(
+    1e6, 5e10, "Pa", "NASA report 138 MPa for nylon at 35 deg; from rubber alone to steel cords at 45 deg: an estimate"
+)
+CORD_MODULUS = Plausible(
+    5e8,
+    3e11,
+    "Pa",
+    "nylon 2 to 5, polyester 4 to 10, rayon 6 to 12, aramid 60 to 130, steel 110 to 210 GPa; from memory",
+)
+CORD_DIAMETER = Plausible(5e-5, 5e-3, "m", "one filament to the wires of a large bead: an estimate")
+EXPANSION = Plausible(
+    5e-6, 4e-4, "1/K", "steel 1.2e-5, compounds 1.6e-4 to 2.4e-4, linear; handbook values from memory"
+)
+EMISSIVITY = Plausible(
+    0.5, 1.0, "1", "hard rubber 0.94, soft grey rubber 0.89: Testo's table of emissivities; paint 0.9 to 0.96"
+)
+AIR_FILM = Plausible(
+    0.5,
+    1000.0,
+    "W/m**2/K",
+    "gases: free convection 2 to 25, forced 25 to 250 (Cengel, Heat Transfer); four times more either way",
+)
+CONTACT_FILM = Plausible(
+    10.0, 1e6, "W/m**2/K", "NASA report 10460 on the road, 20920 at the rim; pressed rubber to bare metal: an estimate"
+)
+GAS_HEAT = Plausible(300.0, 15000.0, "J/kg/K", "argon 312 to hydrogen 14300; handbook values from memory")
+SOLID_CAPACITY = Plausible(5e5, 5e6, "J/m**3/K", "light concrete to water, 4.2e6; handbook values from memory")
+ROAD_CONDUCTIVITY = Plausible(0.05, 60.0, "W/m/K", "snow and cork to a steel drum; handbook values from memory")
+WHEEL_MASS = Plausible(0.2, 500.0, "kg", "a kart's to an earth mover's wheel: an estimate")
