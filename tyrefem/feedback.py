@@ -6,12 +6,12 @@ from collections.abc import Callable
 from dataclasses import dataclass, replace
 from typing import TYPE_CHECKING, Any
 
-from tyrefem.strain import deflection
 from tyrefem.warm_cycles import WarmCycles
 from tyrefem.warmth import Warmth
 
 if TYPE_CHECKING:
     from tyrefem.heating import CycleSchedule
+    from tyrefem.loading import LoadCase
     from tyrefem.result import Result
     from tyrefem.rolling import RollingTyre
     from tyrefem.studies import Study
@@ -141,9 +141,13 @@ def run(
 
 
 def _contact(schedule: CycleSchedule, time: float) -> Contact:
-    """Of the strain law where it finds a deflection of its own, else of the load law."""
-    found = sum(
-        weight * deflection(schedule.cycles[phase][knot], schedule.cases[phase][knot])
-        for phase, knot, weight in schedule.weights(time)
-    )
-    return Contact(time, schedule.mean(lambda case: case.pressure, time), found)
+    pressure, deflection = (schedule.mean(quantity, time) for quantity in (_pressure, _deflection))
+    return Contact(time, pressure, deflection)
+
+
+def _pressure(case: LoadCase) -> float:
+    return case.pressure
+
+
+def _deflection(case: LoadCase) -> float:
+    return case.deflection

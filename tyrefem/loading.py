@@ -77,10 +77,24 @@ class Rating(Protocol):
 
 
 @dataclass(frozen=True)
+class PressedContact:
+    """What a strain law that presses the tyre on its road knows of the contact: lengths in m, area in m2."""
+
+    length: float
+    area: float
+    rolling_radius: float
+
+
+@dataclass(frozen=True)
 class LoadCase:
     """One load on the tyre: everything the strain cycle depends on. SI units.
 
-    ``drum_diameter`` is ``inf`` on a flat road.
+    Parameters
+    ----------
+    drum_diameter : ``inf`` on a flat road.
+    by_deflection : the drive gives the deflection, and the load follows; else the other way round.
+    contact : of a strain law that presses the tyre itself; load and deflection are its own then. None: those and the
+        contact are by the study's laws.
     """
 
     load: float
@@ -89,18 +103,28 @@ class LoadCase:
     outer_radius: float
     drum_diameter: float = math.inf
     footprint: FootprintLaw = TR_R_64
+    by_deflection: bool = False
+    contact: PressedContact | None = None
 
     @property
     def rolling_radius(self) -> float:
-        """r_r = r_0 - D/3 (Clark & Dodge 1980, eq 26)."""
-        return self.outer_radius - self.deflection / 3
+        """r_r = r_0 - D/3 (Clark & Dodge 1980, eq 26), or the contact's own."""
+        return self.outer_radius - self.deflection / 3 if self.contact is None else self.contact.rolling_radius
+
+    @property
+    def footprint_area(self) -> float | None:
+        """Area of rubber in contact, m2; None where no contact was solved."""
+        return None if self.contact is None else self.contact.area
 
     @property
     def footprint_length(self) -> float:
-        """The footprint law's length, m, shortened by sqrt(1/(1 + d/d_drum)) on a drum unless it was measured.
+        """The contact's own length, m; or the footprint law's, shortened by sqrt(1/(1 + d/d_drum)) on a drum unless it
+        was measured.
 
         The drum's factor is the Hertz contact of two cylinders at equal deflection: an estimate.
         """
+        if self.contact is not None:
+            return self.contact.length
         length = self.footprint.on_flat_road(self.deflection, self.outer_radius)
         if not self.footprint.shorter_on_drum:
             return length
@@ -117,7 +141,7 @@ class LoadCase:
 
 
 def load_case(
-    law: TrR64 | VerticalStiffness,
+    law: TrR64 | VerticalStiffness | None,
     rating: Rating,
     *,
     outer_radius: float,
@@ -129,21 +153,22 @@ def load_case(
 ) -> LoadCase:
     """A load case from a load or from a deflection, the other found by the law.
 
+    Without a law the other is 0: a strain law that presses the tyre itself will find it.
+
     Raises
     ------
     InputError : the deflection exceeds half the outer radius, which no tyre survives.
     """
+    by_deflection = deflection is not None
     if deflection is None:
         load = load or 0.0
-        deflection = law.deflection(load, pressure, rating) if load > 0 else 0.0
-        field = "load"
+        deflection = law.deflection(load, pressure, rating) if law is not None and load > 0 else 0.0
     else:
-        load = law.load(deflection, pressure, rating)
-        field = "deflection"
+        load = 0.0 if law is None else law.load(deflection, pressure, rating)
     if not 0 <= deflection < outer_radius / 2:
         raise InputError(
             f"{load:.4g} N at {pressure / 1e3:.4g} kPa deflects the tyre by {deflection * 1e3:.4g} mm; "
             f"allowed: 0 to {outer_radius * 500:.4g} mm (half its outer radius)",
-            field=field,
+            field="deflection" if by_deflection else "load",
         )
-    return LoadCase(load, deflection, pressure, outer_radius, drum_diameter, footprint)
+    return LoadCase(load, deflection, pressure, outer_radius, drum_diameter, footprint, by_deflection)

@@ -11,14 +11,19 @@ from tyrefem.errors import InputError
 from tyrefem.footprint import GivenFootprint
 from tyrefem.heating import CycleSchedule, ramp_knots
 from tyrefem.loading import LoadCase, load_case
-from tyrefem.strain import StrainCycle
+from tyrefem.strain import StrainCycle, settled
 from tyrefem.strain.arcs import Arcs, Stiffness
 from tyrefem.strain.cord_rubber import BiasPlies
 from tyrefem.strain.given import Given
+from tyrefem.strain.reads import ARCS, values_read
 from tyrefem.studies import Study
 
 #: Regions of the sections that the report's arcs are made for.
-ARC_REGIONS = ("carcass", "tread", "sidewall", "bead")
+ARC_REGIONS = tuple(ARCS)
+#: Strain laws that take seconds for every load case.
+BY_ELEMENTS = ("barrel", "fem")
+#: Those of them that press the tyre on its road: load, deflection and footprint are their own, not the study's laws'.
+PRESSES = ("fem",)
 
 
 def stiffness(study: Study) -> Stiffness:
@@ -91,12 +96,45 @@ def check_cases(study: Study) -> None:
     ------
     InputError : names the phase.
     """
-    solver, cheap = KnotSolver(study), study.card.mechanics.strain in ("arcs", "given")
+    solver, cheap = KnotSolver(study), study.card.mechanics.strain not in BY_ELEMENTS
     for number, phase in enumerate(study.card.drive.phases):
         for fraction in ramp_knots(phase.changes_load):
             case = solver.case(number, fraction)
             if cheap:
                 solver.cycle(number, case)
+
+
+def same_cycles(study: Study, other: Study) -> bool:
+    """Do two studies have the same strain cycles? Section, drive, mechanics, what the law reads of the cards, mesh."""
+    if study.section is not other.section:
+        return False
+    if any(study.data.get(table) != other.data.get(table) for table in ("drive", "mechanics")):
+        return False
+    law = study.card.mechanics.strain
+    if law in BY_ELEMENTS and study.card.mesh != other.card.mesh:
+        return False
+    return values_read(law, study.materials) == values_read(law, other.materials)
+
+
+def rated_case(study: Study) -> LoadCase:
+    """The load case of the section's rated load and pressure on a flat road, as the strain law has it.
+
+    Raises
+    ------
+    InputError : no rating; a rated load that the tyre cannot carry.
+    """
+    rating, mechanics = study.section.rating, study.card.mechanics
+    if rating is None:
+        raise InputError("the rated deflection needs the section's [rating]", field="section.rating", file=study.file)
+    radius, footprint = study.section.outer_diameter / 2, mechanics.footprint
+    law = None if mechanics.strain in PRESSES else mechanics.load_law
+    case = load_case(law, rating, outer_radius=radius, pressure=rating.pressure, load=rating.load, footprint=footprint)
+    if law is not None:
+        return case
+    try:
+        return settled(_provider(study)(case), case)
+    except InputError as error:
+        raise error.within(field="section.rating", file=study.file) from None
 
 
 class KnotSolver:
@@ -107,7 +145,7 @@ class KnotSolver:
         self.study, self._cycle = study, _provider(study)
 
     def case(self, number: int, fraction: float, pressure_ratio: float = 1.0) -> LoadCase:
-        """The load case at a fraction of a phase; ``pressure_ratio``: absolute pressure over the drive's.
+        """The load case at a fraction of a phase as driven; ``pressure_ratio``: absolute pressure over the drive's.
 
         Raises
         ------
@@ -126,9 +164,10 @@ class KnotSolver:
             raise self._placed(error, number) from None
 
     def solve(self, number: int, fraction: float) -> tuple[LoadCase, StrainCycle]:
-        """Both, at the drive's own pressure."""
+        """Both, at the drive's own pressure, the load case with the contact that the strain law has found."""
         case = self.case(number, fraction)
-        return case, self.cycle(number, case)
+        cycle = self.cycle(number, case)
+        return settled(cycle, case), cycle
 
     def _placed(self, error: InputError, number: int) -> InputError:
         name = self.study.card.drive.phases[number].name
@@ -195,13 +234,14 @@ def _load_case(study: Study, number: int, fraction: float, pressure_ratio: float
     pressure = phase.pressure.at(fraction)
     # Written so that a ratio of 1 leaves the pressure as it is, to the bit.
     pressure = pressure + (pressure + ATMOSPHERE) * (pressure_ratio - 1)
+    mechanics = study.card.mechanics
     return load_case(
-        study.card.mechanics.load_law,
+        None if mechanics.strain in PRESSES else mechanics.load_law,
         section.rating,
         outer_radius=section.outer_diameter / 2,
         pressure=pressure,
         load=None if phase.load is None else phase.load.at(fraction),
         deflection=None if phase.deflection is None else phase.deflection.at(fraction),
         drum_diameter=phase.drum_diameter,
-        footprint=study.card.mechanics.footprint,
+        footprint=mechanics.footprint,
     )

@@ -21,7 +21,10 @@ class PhaseState:
     load: float
     pressure: float
     deflection: float
+    rolling_radius: float
     footprint_length: float
+    #: Area of rubber in contact, m2; None where the strain law does not press the tyre on its road.
+    footprint_area: float | None
     road_fraction: float
     road_film: float
     air_film: float
@@ -49,7 +52,9 @@ def phase_states(tyre: RollingTyre) -> tuple[PhaseState, ...]:
                 mean(lambda case: case.load),
                 mean(lambda case: case.pressure),
                 mean(lambda case: case.deflection),
+                mean(lambda case: case.rolling_radius),
                 mean(lambda case: case.footprint_length),
+                tyre.footprint_area(t),
                 tyre.road_fraction(t),
                 tyre.road_film(t) + tyre.sliding.skid_film(t),
                 tyre.air_film(t),

@@ -17,6 +17,7 @@ from tyrefem.effects.acting import Source
 from tyrefem.errors import InputError
 from tyrefem.heat_budget import FRICTION
 from tyrefem.heating import LOSS_FACTOR, REMEMBERED, CycleSchedule, HeatSource
+from tyrefem.mechanics import same_cycles
 from tyrefem.meshing import TyreMesh
 from tyrefem.result import GAS, RIM, Result
 from tyrefem.sliding.tread import SlidingTread
@@ -63,12 +64,8 @@ class RollingTyre(Surroundings):
         """Load cases and strain cycles of every phase."""
         if self.cycles is not None:
             return self.cycles
-        if self._as_in_like(("drive", "mechanics"), ()):
-            assert self.like is not None
-            own, other = self.study.materials, self.like.study.materials
-            stiff = ("shear_modulus", "youngs_modulus", "cord", "elasticity", "cords")
-            if all(getattr(own[region], name) == getattr(other[region], name) for region in own for name in stiff):
-                return self.like.schedule
+        if self.like is not None and self.like.cycles is None and same_cycles(self.study, self.like.study):
+            return self.like.schedule
         return super().schedule
 
     @functools.cached_property

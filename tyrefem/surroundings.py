@@ -12,7 +12,7 @@ from tyrefem.boundaries import Contact
 from tyrefem.drive import Drive
 from tyrefem.effects.acting import Acting
 from tyrefem.heating import CycleSchedule
-from tyrefem.mechanics import cycle_schedule
+from tyrefem.mechanics import cycle_schedule, rated_case
 from tyrefem.road_contact import propagation_depth
 from tyrefem.studies import Study
 
@@ -42,10 +42,8 @@ class Surroundings:
 
     @functools.cached_property
     def rated_deflection(self) -> float:
-        """Deflection at the rated load and pressure, m."""
-        rating = self.study.section.rating
-        assert rating is not None
-        return self.study.card.mechanics.load_law.deflection(rating.load, rating.pressure, rating)
+        """Deflection at the rated load and pressure, m, as the strain law has it: finite elements find their own."""
+        return rated_case(self.study).deflection
 
     def region(self, zone: str) -> str:
         """The region that a strain zone is part of."""
@@ -109,6 +107,12 @@ class Surroundings:
         if law.fraction is not None:
             return law.fraction
         return self.schedule.mean(lambda case: case.road_fraction, t)
+
+    def footprint_area(self, t: float) -> float | None:
+        """Area of rubber in contact, m2; None where the strain law does not press the tyre on its road."""
+        if any(case.contact is None for cases in self.schedule.cases for case in cases):
+            return None
+        return self.schedule.mean(lambda case: case.footprint_area or 0.0, t)
 
     @functools.cached_property
     def tread(self) -> tuple[float, float]:

@@ -8,6 +8,7 @@ from typing import TYPE_CHECKING
 from tyrefem.boundaries.contained_air import KELVIN
 from tyrefem.heating import CycleSchedule, ramp_knots, warming_knots
 from tyrefem.mechanics import KnotSolver
+from tyrefem.strain import settled
 from tyrefem.warmth import Moment, Warmth
 
 if TYPE_CHECKING:
@@ -24,7 +25,7 @@ Softened = tuple[float, ...]
 
 @dataclass(frozen=True, eq=False)
 class _Knot:
-    """A strain cycle and the temperatures that it belongs to."""
+    """A strain cycle, its load case as driven, and the temperatures that it belongs to."""
 
     moment: Moment
     case: LoadCase
@@ -79,7 +80,7 @@ class WarmCycles:
             if same and not phase.changes_load:
                 found, knots = found[:1], (0.0,)
             fractions.append(knots)
-            cases.append(tuple(one.case for one in found))
+            cases.append(tuple(settled(one.cycle, one.case) for one in found))
             cycles.append(tuple(one.cycle for one in found))
         return CycleSchedule(self.study.card.drive, tuple(fractions), tuple(cases), tuple(cycles))
 

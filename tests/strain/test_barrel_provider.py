@@ -144,7 +144,7 @@ def test_a_run_makes_the_heat_of_its_energy() -> None:
     [
         (
             {"drive.pressure": "0 kPa", "drive.load": "1 kN"},
-            "drive.pressure: 1000 N at 0 kPa: the strain law 'barrel' needs",
+            "drive.pressure: 1000 N at 0 kPa: the strain laws 'fem' and 'barrel' need",
         ),
         ({"drive.load": "12000 lbf"}, r"drive.deflection: .* mm is impossible; .* where the crown meets the rim"),
     ],

@@ -66,11 +66,9 @@ def test_the_heat_is_that_of_every_harmonic_at_its_own_frequency(frequency: dict
     law = tyre.study.materials[region].loss_tangent
     temperature = np.full(cycle.tyre.body.rings.weights.shape, 25.0)
     temperature[members] = T.reshape(len(members), -1)
-    # Frequencies are those of the load law's rolling radius, which differs a little from the footprint's.
-    slower, laws = cycle.footprint.rolling_radius / cycle.case.rolling_radius, {region: law.over_frequency}
-    own = RevolutionLoss(StrainCycle(cycle.footprint), laws, slower * tyre.speed(0.0), temperature)
+    own = RevolutionLoss(StrainCycle(cycle.footprint), {region: law.over_frequency}, tyre.speed(0.0), temperature)
     heat = tyre.hysteresis[region](x, 0.0, T)
-    assert heat == pytest.approx(own.frequency / slower * own.density[members].ravel(), rel=4e-3)
+    assert heat == pytest.approx(own.frequency * own.density[members].ravel(), rel=4e-3)
     alike = RollingTyre(study(None), None, schedule()).hysteresis[region](x, 0.0, T)
     assert np.abs(heat / alike - 1).mean() > 0.05
 
@@ -93,7 +91,7 @@ def test_one_cycle_loses_what_the_footprints_own_account_of_the_reports_conventi
 def schedule(cycle: FiniteElements | None = None) -> CycleSchedule:
     """The drive with the strain cycle that was solved already."""
     found = pressed() if cycle is None else cycle
-    return CycleSchedule(study(None).card.drive, ((0.0,),), ((found.case,),), ((found,),))
+    return CycleSchedule(study(None).card.drive, ((0.0,),), ((found.settled,),), ((found,),))
 
 
 def test_a_report_style_law_of_one_cycle_takes_the_revolutions_frequency() -> None:

@@ -9,7 +9,7 @@ import tyrefem as tf
 from tyrefem.errors import InputError
 from tyrefem.meshing import build, write
 from tyrefem.solid.inflation import inflate
-from tyrefem.strain.fem import mechanical_mesh
+from tyrefem.strain.pressed_tyre import mechanical_mesh
 
 STUDY = "nasa-22x5.5-8pr"
 pytestmark = pytest.mark.usefixtures("needs_gmsh")

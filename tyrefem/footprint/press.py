@@ -13,7 +13,7 @@ from numpy.typing import NDArray
 from tyrefem.brief import Brief
 from tyrefem.errors import InputError
 from tyrefem.footprint.road import Road
-from tyrefem.strain.fem import TOLERANCE, mechanical_mesh
+from tyrefem.strain.pressed_tyre import TOLERANCE, mechanical_mesh
 
 if TYPE_CHECKING:
     from tyrefem.footprint.contact import Pressing

@@ -4,6 +4,8 @@ from __future__ import annotations
 
 from typing import TYPE_CHECKING
 
+from tyrefem.mechanics import PRESSES
+
 if TYPE_CHECKING:
     from tyrefem.studies import Study
     from tyrefem.study_card import Feedback
@@ -85,10 +87,11 @@ def assumptions(study: Study, estimates: list[str]) -> list[tuple[str, str]]:
     if study.effects:
         added = "; ".join(dict.fromkeys(f"{one.name}: {one.sentence.rstrip('.')}" for one in study.effects))
         found.append(("Effects beside the base model", f"{added}. Each says in the study where its values come from."))
-    if mechanics.load_law.law == "tr-r-64":
+    presses = mechanics.strain in PRESSES
+    if mechanics.load_law.law == "tr-r-64" and not presses:
         memory = "The load-deflection formula is quoted from memory of NASA TR R-64; a measured stiffness is better."
         found.append(("Load and deflection from memory", memory))
-    if mechanics.footprint.law == "tr-r-64":
+    if mechanics.footprint.law == "tr-r-64" and not presses:
         found.append(("Footprint from memory", "The footprint's length is that of NASA TR R-64, quoted from memory."))
     if estimates:
         found.append(("Estimated material numbers", f"Marked in the table of materials: {'; '.join(estimates)}."))

@@ -107,12 +107,16 @@ def headline(result: Result) -> list[dict[str, str]]:
             {
                 "label": "Deflection",
                 "value": f"{loaded.deflection * 1e3:.1f} mm",
-                "note": f"{_warming(result)}footprint {loaded.footprint_length * 1e3:.0f} mm, "
+                "note": f"{_warming(result)}footprint {loaded.footprint_length * 1e3:.0f} mm, {_area(loaded)}"
                 f"{100 * loaded.road_fraction:.1f} % of a "
                 f"revolution on the road{several}",
             }
         )
     return cards
+
+
+def _area(phase: PhaseState) -> str:
+    return "" if phase.footprint_area is None else f"{phase.footprint_area * 1e4:.0f} cm² in contact, "
 
 
 def _warming(result: Result) -> str:

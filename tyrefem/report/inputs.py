@@ -8,6 +8,7 @@ import typing
 from collections.abc import Iterator, Mapping
 from typing import TYPE_CHECKING, Any
 
+from tyrefem.mechanics import PRESSES
 from tyrefem.quantity import Unit
 from tyrefem.report.words import number
 
@@ -127,7 +128,9 @@ def mechanics_rows(study: Study) -> list[list[str]]:
     law, energy = mechanics.load_law, mechanics.energy if mechanics.strain == "given" else None
     rows = [
         ["strain cycle", mechanics.strain],
-        ["load and deflection", "; ".join([str(law.law), *_numbers(law)])],
+        _load(study)
+        if mechanics.strain in PRESSES
+        else ["load and deflection", "; ".join([str(law.law), *_numbers(law)])],
         ["loss convention", mechanics.loss_convention],
         *_feedback(mechanics),
     ]
@@ -138,11 +141,21 @@ def mechanics_rows(study: Study) -> list[list[str]]:
             places = (f"{number(u / 1e3)} at s = {number(s * 1e3)} mm" for s, u in table)
             rows.append([f"U of {region} [kJ/m³]", number(table[0][1] / 1e3) if len(table) == 1 else ", ".join(places)])
         return rows
+    if mechanics.strain != "arcs":
+        return rows
     return [
         *rows,
         ["Poisson term c_a", number(mechanics.poisson_term)],
         ["membrane shear", "counted" if mechanics.membrane_shear else "left out"],
     ]
+
+
+def _load(study: Study) -> list[str]:
+    """What a strain law that presses the tyre itself makes of the study's laws of load and footprint."""
+    words = "by finite elements, footprint and rolling radius too; the study's load law and footprint law are not read"
+    if any(effect.name in ("pressure-rise", "pressure-loss") for effect in study.effects):
+        words += ", but for how much effects on the pressure change the deflection"
+    return ["load and deflection", words]
 
 
 def _feedback(mechanics: Mechanics) -> list[list[str]]:

@@ -108,7 +108,7 @@ class SlidingOutcome(Brief):
         tyre, middle = self.result.tyre, (phase.start + phase.end) / 2
         yield (
             f"phase '{phase.name}': the wheel is locked, the section is the one on the road; the heat budget counts a "
-            f"ring of such sections, {1 / tyre.rolling_fraction(middle):.3g} times the footprint"
+            f"ring of such sections, {1 / tyre.sliding.footprint_share(middle):.3g} times the footprint"
         )
         late = self.series[(self.series.phase == phase.name) & (self.series.time_s > phase.start)]
         late = late[late.time_s >= phase.start + SETTLED * (phase.end - phase.start)]
@@ -227,7 +227,7 @@ def _phase(result: Result, number: int, numbers: Numbers, series: pd.DataFrame) 
         capped=bool(series.capped.any()),
         friction_work=float(np.trapezoid(series.friction_power_W, seconds)),
         # A ring of sections slides under a locked wheel in the budget: the footprint's part of it.
-        tread_heat=heat * (tyre.rolling_fraction(middle) if state.locked else 1.0),
+        tread_heat=heat * (sliding.footprint_share(middle) if state.locked else 1.0),
         tread_start=float(series.tread_mean_degC.iloc[0]),
         tread_highest=float(series.tread_mean_degC.max()),
         half_space_highest=float(series.half_space_degC.max()) if state.locked else None,

@@ -72,9 +72,21 @@ class SlidingTread:
         """b of tread (its card at 25 degC) and road, J/m2/K/s^0.5."""
         return effusivity(*self.tyre.tread), self.law.road_effusivity(self.tyre.study.card.boundaries.road)
 
+    def footprint_share(self, t: float) -> float:
+        """Part of the tread's surface in contact while the wheel turns: the area of a strain law that presses the tyre
+        on its road; else, and where the road's law gives the fraction, the fraction of a revolution on the road."""
+        area = self.tyre.footprint_area(t)
+        if area is None or self.tyre.study.card.boundaries.road.fraction is not None:
+            return self.tyre.rolling_fraction(t)
+        return area / (self.surface.area * self._sides)
+
     def contact_area(self, t: float) -> float:
-        """Modelled footprint, m2: the tread's surface times its fraction of a revolution on the road."""
-        return self.tyre.rolling_fraction(t) * self.surface.area * (2.0 if self.tyre.study.section.half else 1.0)
+        """Footprint, m2: the tread's surface times `footprint_share`."""
+        return self.footprint_share(t) * self.surface.area * self._sides
+
+    @property
+    def _sides(self) -> float:
+        return 2.0 if self.tyre.study.section.half else 1.0
 
     def pressure(self, t: float) -> float:
         """Contact pressure, Pa: the law's, else load over `contact_area`; none off the road."""
@@ -114,8 +126,9 @@ class SlidingTread:
         flux, passage = self.friction_flux(t, T), self.passage(t)
         if passage is None:
             return flux
-        share = 1.0 if self.drive.locked_since(t) is not None else passage.tread_share
-        return self.tyre.road_fraction(t) * share * flux
+        if self.drive.locked_since(t) is not None:
+            return self.tyre.road_fraction(t) * flux
+        return self.footprint_share(t) * passage.tread_share * flux
 
     def skid_film(self, t: float) -> float:
         """Film between a locked wheel and the passing road, W/m2/K; 0 for one that turns or stands."""

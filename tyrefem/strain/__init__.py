@@ -3,6 +3,7 @@
 A provider offers ``zones`` (name, region and extent of each) and ``energy_density(zone, points)`` in J/m3.
 `arcs` is the NASA report's, `given` takes the study's own numbers; `tyrefem.study_card.Mechanics` names the provider.
 One that knows the harmonics of its cycle may also offer ``spectrum(zone, points)``: U by its `ORDERS`, (orders, n).
+One that presses the tyre on its road also offers ``settled``: the load case with the contact that it has found.
 """
 
 from __future__ import annotations
@@ -46,9 +47,10 @@ class StrainCycle(Protocol):
         """Strain energy per cycle U, J/m3, at points (2, n) in (r, z)."""
 
 
-def deflection(cycle: StrainCycle, case: LoadCase) -> float:
-    """Deflection of a strain cycle, m: the load law's, where the provider does not find one of its own."""
-    return float(getattr(cycle, "found_deflection", case.deflection))
+def settled(cycle: StrainCycle, case: LoadCase) -> LoadCase:
+    """The load case as its strain cycle has it: with the contact of a provider that presses the tyre itself."""
+    found: LoadCase = getattr(cycle, "settled", case)
+    return found
 
 
 def by_order(harmonics: Array) -> Array:

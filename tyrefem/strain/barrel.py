@@ -13,6 +13,7 @@ from numpy.typing import NDArray
 from tyrefem.errors import InputError
 from tyrefem.strain import StrainCycle, Zone
 from tyrefem.strain.gauss_points import GaussPoints
+from tyrefem.strain.pressed_tyre import pressed_tyre
 
 if TYPE_CHECKING:
     from tyrefem.loading import LoadCase
@@ -77,16 +78,9 @@ def provider(study: Study) -> Callable[[LoadCase], StrainCycle]:
     InputError : when called: no equilibrium, or a deflection that is impossible.
     """
     from tyrefem.solid.flattening import flatten
-    from tyrefem.solid.inflation import inflate
-    from tyrefem.strain.fem import mechanical_mesh
 
     solved: dict[float, list[Flattened]] = {}
-
-    @functools.cache
-    def inflated(pressure: float) -> Inflation:
-        if pressure <= 0:
-            raise InputError("the strain law 'barrel' needs an inflated tyre", field="pressure")
-        return inflate(study, pressure, mechanical_mesh(study))
+    inflated = pressed_tyre(study).inflated
 
     def flattened(pressure: float, deflection: float) -> Flattened | None:
         if deflection <= 0:

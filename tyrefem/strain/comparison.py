@@ -10,7 +10,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from tyrefem.errors import InputError
-from tyrefem.strain import StrainCycle, Zone, deflection
+from tyrefem.strain import StrainCycle, Zone
 from tyrefem.strain.gauss_points import GaussPoints
 
 if TYPE_CHECKING:
@@ -49,7 +49,7 @@ class LawOutcome:
     @property
     def deflection(self) -> float:
         """Of the tyre in the load case, m: the load law's, or the footprint's own."""
-        return deflection(self.cycle, self.result.tyre.schedule.cases[self.phase][self.knot])
+        return self.result.tyre.schedule.cases[self.phase][self.knot].deflection
 
     def heating_density(self, part: Zone, points: Array) -> Array:
         """U that makes the heat, J/m3, at points (2, n) of a part: for ``fem`` that of all harmonics together."""
@@ -101,6 +101,14 @@ class LawComparison:
         """The drive's load case with the largest deflection."""
         first = self.outcomes[0]
         return first.result.tyre.schedule.cases[first.phase][first.knot]
+
+    @property
+    def load_law_deflection(self) -> float:
+        """What the study's load law makes of the load case, m: finite elements find their own."""
+        case, rating = self.case, self.study.section.rating
+        if case.contact is None or rating is None:
+            return case.deflection
+        return self.study.card.mechanics.load_law.deflection(case.load, case.pressure, rating)
 
     @functools.cached_property
     def mesh(self) -> TyreMesh:
@@ -193,7 +201,7 @@ class LawComparison:
             "phase": self.study.card.drive.phases[first.phase].name,
             "load_N": case.load,
             "pressure_Pa": case.pressure,
-            "load_law_deflection_m": case.deflection,
+            "load_law_deflection_m": self.load_law_deflection,
             "loss_convention": self.study.card.mechanics.loss_convention,
             "parts": {part.name: {"region": part.region, "title": part.title} for part in self.parts},
             "volume_m3": self.volumes,
