@@ -10,7 +10,7 @@ from typing import TYPE_CHECKING, Any
 from tyrefem.brief import Brief
 from tyrefem.cases import Case, read_cases
 from tyrefem.conduction import SolverError
-from tyrefem.errors import InputError
+from tyrefem.errors import InputError, nearest
 from tyrefem.output import write_json
 from tyrefem.studies import Study
 from tyrefem.summary import run_files, versions, write_tables
@@ -48,18 +48,32 @@ class Campaign(Brief):
         ------
         InputError : the study names none, or the table or a case of it is wrong (file and line).
         """
-        if study.card.cases is None:
-            raise InputError("the study has no 'cases' table", field="cases", file=study.file)
-        path = (study.folder or Path()) / study.card.cases
-        campaign = cls(study, read_cases(path))
+        campaign = cls(study, _rows(study))
         for case in campaign.cases:
-            try:
-                campaign.case_study(case)
-            except InputError as error:
-                own = error.file is None or error.file == study.file
-                reason = InputError(error.message, field=error.field) if own else error
-                raise InputError(f"line {case.line}, case '{case.name}': {reason}", file=path) from None
+            campaign._checked(case)
         return campaign
+
+    @classmethod
+    def case_of(cls, study: Study, name: str) -> Study:
+        """The study of the case of that name; the other cases are read, but not built.
+
+        Raises
+        ------
+        InputError : the study names no table, or it has no such case; the table or this case of it is wrong.
+        """
+        by_name = {case.name: case for case in _rows(study)}
+        if name not in by_name:
+            raise InputError(f"no case '{name}'{nearest(name, by_name)}", file=study.cases_file)
+        return cls(study, tuple(by_name.values()))._checked(by_name[name])
+
+    def _checked(self, case: Case) -> Study:
+        """The study of a case; what is wrong with it is said with its line in the table."""
+        try:
+            return self.case_study(case)
+        except InputError as error:
+            of_study = error.file is None or error.file == self.study.file
+            reason = InputError(error.message, field=error.field) if of_study else error
+            raise InputError(f"line {case.line}, case '{case.name}': {reason}", file=self.study.cases_file) from None
 
     def case_study(self, case: Case) -> Study:
         """The study of one case."""
@@ -88,6 +102,12 @@ class Campaign(Brief):
             return str(error)
         except Exception as error:  # one case's defect must not cost the others; it is named as what it is
             return f"defect, please report: {type(error).__name__}: {error}"
+
+
+def _rows(study: Study) -> tuple[Case, ...]:
+    if study.cases_file is None:
+        raise InputError("the study has no 'cases' table", field="cases", file=study.file)
+    return read_cases(study.cases_file)
 
 
 def row(case: Case, outcome: Result | str) -> dict[str, Any]:

@@ -19,6 +19,7 @@ from tyrefem.heat_budget import FRICTION
 from tyrefem.heating import LOSS_FACTOR, REMEMBERED, CycleSchedule, HeatSource
 from tyrefem.mechanics import same_cycles
 from tyrefem.meshing import TyreMesh
+from tyrefem.requirements import Requirements
 from tyrefem.result import GAS, RIM, Result
 from tyrefem.sliding.tread import SlidingTread
 from tyrefem.studies import Study
@@ -223,8 +224,18 @@ def _of_time(law: Callable[[float], float]) -> Callable[[Any, float], float]:
     return lambda _x, t: remembered(t)
 
 
+#: What a run needs of a study.
+NEEDS = Requirements("a run")
+
+
 def run(study: Study, progress: Callable[[float], None] | None = None, like: RollingTyre | None = None) -> Result:
-    """Simulate a study's drive; ``like``: see `RollingTyre`. With ``mechanics.feedback``: `tyrefem.feedback.run`."""
+    """Simulate a study's drive; ``like``: see `RollingTyre`. With ``mechanics.feedback``: `tyrefem.feedback.run`.
+
+    Raises
+    ------
+    InputError : a campaign, whose cases are run one by one: `Study.case`, `Study.campaign`.
+    """
+    NEEDS.check(study)
     if study.card.mechanics.feedback is not None:
         from tyrefem import feedback
 

@@ -11,6 +11,7 @@ from typing import TYPE_CHECKING, Any
 
 from tyrefem import library
 from tyrefem.brief import Brief
+from tyrefem.cases import read_cases
 from tyrefem.construction import check_cords_fit
 from tyrefem.dotted import all_changed, scaled, value_at
 from tyrefem.drive import as_written
@@ -440,19 +441,45 @@ class Study(Brief):
         """Does it name a table of cases?"""
         return self.card.cases is not None
 
+    @property
+    def cases_file(self) -> Path | None:
+        """The table of cases, its path made whole; None: the study is no campaign."""
+        return None if self.card.cases is None else (self.folder or Path()) / self.card.cases
+
+    @property
+    def case_names(self) -> tuple[str, ...]:
+        """Names of its cases, in the table's order; none without a table."""
+        return () if self.cases_file is None else tuple(case.name for case in read_cases(self.cases_file))
+
     def campaign(self) -> Campaign:
         """The cases of the study's table, each a study of its own."""
         from tyrefem.campaign import Campaign
 
         return Campaign.of(self)
 
+    def case(self, name: str) -> Study:
+        """One case of the study's table by its name, a study of its own.
+
+        Raises
+        ------
+        InputError : the study has no table of cases, or none of that name (says the nearest); the case is wrong.
+
+        >>> study("nasa-campaign").case("8pr-3270lbf-83psi-20mph").data["drive"]["load"]
+        '3270 lbf'
+        """
+        from tyrefem.campaign import Campaign
+
+        return Campaign.case_of(self, name)
+
 
 def _same(one: Effect, other: Effect) -> bool:
     return one.name == other.name and one.choice == other.choice
 
 
-def study(name: str | Path, changes: Mapping[str, Any] | None = None) -> Study:
+def study(name: str | Path, changes: Mapping[str, Any] | None = None, case: str | None = None) -> Study:
     """The study of a name or path, with values changed by dotted names.
+
+    ``case``: of a campaign, only this case; ``changes`` are then laid over the case's own values.
 
     Raises
     ------
@@ -462,5 +489,8 @@ def study(name: str | Path, changes: Mapping[str, Any] | None = None) -> Study:
 
     path = library.find("study", str(name))
     found_name = path.parent.name if path.name == "study.toml" else path.stem
-    data = all_changed(read_toml(path), changes or {})
-    return Study(found_name, data, path, path.parent.resolve())
+    changes = dict(changes or {})
+    # Another table of cases comes before the case that is taken of it.
+    first = changes if case is None else {key: changes.pop(key) for key in list(changes) if key == "cases"}
+    loaded = Study(found_name, all_changed(read_toml(path), first), path, path.parent.resolve())
+    return loaded if case is None else loaded.case(case).replace(changes)

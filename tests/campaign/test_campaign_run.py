@@ -25,7 +25,8 @@ def rows_of(path: Path) -> list[dict[str, str]]:
 def test_each_case_is_the_study_with_its_row(folder: Path, campaign: Campaign) -> None:
     table = run_campaign(campaign, folder / "out")
     assert list(table["case"]) == ["light", "usual", "crushed"]
-    alone = tf.study(folder).replace({"drive.load": "2700 lbf", "drive.pressure": "83 psi"}).run()
+    data = {key: value for key, value in campaign.study.data.items() if key != "cases"}
+    alone = tf.Study("alone", data, folder=folder).replace({"drive.load": "2700 lbf", "drive.pressure": "83 psi"}).run()
     usual = table.set_index("case").loc["usual"]
     peak = alone.extremes.iloc[0]
     assert usual["hottest_degC"] == pytest.approx(peak["temperature_degC"], abs=1e-9)

@@ -9,6 +9,7 @@ from typing import Annotated
 import typer
 
 from tyrefem.cli.common import (
+    CaseOption,
     ForceOption,
     JsonOption,
     QuietOption,
@@ -28,6 +29,7 @@ def blind(
     cases: Annotated[int, typer.Option(min=1, max=10_000, help="How many cases.")] = 20,
     seed: Annotated[int, typer.Option(min=0, help="Seed of what is hidden, and of the noise.")] = 1,
     changes: SetOption = None,
+    case: CaseOption = None,
     out: Annotated[Path | None, typer.Option("--out", help="Folder; default: results/STUDY-blind.")] = None,
     workers: Annotated[int | None, typer.Option(min=1, help="Processes; default: one per core.")] = None,
     reduced: ReducedOption = "auto",
@@ -39,10 +41,11 @@ def blind(
 
     Finished cases are kept: the same command goes on where an interrupted one was.
     """
-    from tyrefem.diagnose.blind_rates import run_blind
+    from tyrefem.diagnose.blind_rates import NEEDS, run_blind
     from tyrefem.studies import study as load
 
-    found = load(study, settings(changes))
+    found = load(study, settings(changes), case)
+    NEEDS.check(found)
     warn(found.warnings)
     place, names = out or Path("results") / f"{found.name}-blind", ("blind.json", "blind.png")
     with (

@@ -47,6 +47,9 @@ ForceOption = Annotated[
     bool, typer.Option("--force", help="Replace files that are not this command's; an input is never replaced.")
 ]
 QuietOption = Annotated[bool, typer.Option("--quiet", "-q", help="No progress on stderr.")]
+CaseOption = Annotated[
+    str | None, typer.Option("--case", metavar="NAME", help="Of a campaign, the case to take; --set is laid over it.")
+]
 JsonOption = Annotated[bool, typer.Option("--json", help="Print the result as JSON on stdout, nothing else.")]
 
 

@@ -12,6 +12,7 @@ from typing import Annotated
 import typer
 
 from tyrefem.cli.common import (
+    CaseOption,
     ForceOption,
     IgnoreOption,
     JsonOption,
@@ -36,6 +37,7 @@ def compare(
         Path | None, typer.Argument(metavar="[TABLE]", help="CSV of thermocouple histories; default: the study's own.")
     ] = None,
     changes: SetOption = None,
+    case: CaseOption = None,
     out: Annotated[Path | None, typer.Option("--out", help="Folder; default: results/STUDY-compare.")] = None,
     ignore: IgnoreOption = None,
     rename: RenameOption = None,
@@ -50,9 +52,11 @@ def compare(
 ) -> None:
     """Compare a study with measured tables: deviation per sensor, run and phase, against the validation uncertainty."""
     from tyrefem.compare.comparison import FILES
+    from tyrefem.compare.validation import NEEDS
     from tyrefem.studies import study as load
 
-    found = load(study, settings(changes))
+    found = load(study, settings(changes), case)
+    NEEDS.check(found, table)
     warn(found.warnings)
     place = out or Path("results") / f"{found.name}-compare"
     read = [table] if table else [entry.table for entry in found.measured]

@@ -9,6 +9,7 @@ from typing import Annotated
 import typer
 
 from tyrefem.cli.common import (
+    CaseOption,
     ForceOption,
     IgnoreOption,
     JsonOption,
@@ -38,6 +39,7 @@ def diagnose(
         Path | None, typer.Argument(metavar="[TABLE]", help="CSV of thermocouple histories; default: the study's own.")
     ] = None,
     changes: SetOption = None,
+    case: CaseOption = None,
     out: Annotated[Path | None, typer.Option("--out", help="Folder; default: results/STUDY-diagnosis.")] = None,
     ignore: IgnoreOption = None,
     rename: RenameOption = None,
@@ -57,9 +59,11 @@ def diagnose(
     """
     from tyrefem.diagnose.progress_store import ProgressStore
     from tyrefem.diagnose.record import FILES
+    from tyrefem.diagnose.workflow import NEEDS
     from tyrefem.studies import study as load
 
-    found = load(study, settings(changes))
+    found = load(study, settings(changes), case)
+    NEEDS.check(found, table)
     warn(found.warnings)
     place = out or Path("results") / f"{found.name}-diagnosis"
     read = [table] if table else [entry.table for entry in found.measured]

@@ -9,6 +9,7 @@ from typing import TYPE_CHECKING, Annotated
 import typer
 
 from tyrefem.cli.common import (
+    CaseOption,
     ForceOption,
     JsonOption,
     QuietOption,
@@ -64,6 +65,7 @@ def export(
         str | None, typer.Option(help="Of the drives it is trained and certified with; default: the study's.")
     ] = None,
     changes: SetOption = None,
+    case: CaseOption = None,
     fmu: Annotated[bool, typer.Option("--fmu", help="Write an FMU (FMI 2.0, co-simulation) beside the file.")] = False,
     workers: Annotated[int | None, typer.Option(min=1, help="Processes; default: one per core.")] = None,
     force: ForceOption = False,
@@ -76,6 +78,7 @@ def export(
     with numpy alone.
     """
     from tyrefem.quantity import parse
+    from tyrefem.reduced.certify import NEEDS
     from tyrefem.reduced.certify import export as write
     from tyrefem.studies import study as loaded
     from tyrefem.sweep.schedulers import Here, Local
@@ -84,7 +87,8 @@ def export(
     inputs = {"speed": speed, "load": load, "pressure": pressure, "ambient": ambient}
     for name, text in {**inputs, "road_temperature": road_temperature}.items():
         given |= _range(text, name)
-    chosen = loaded(study, settings(changes))
+    chosen = loaded(study, settings(changes), case)
+    NEEDS.check(chosen)
     warn(chosen.warnings)
     path = out or Path("results") / f"{chosen.name}.npz"
     allowed = parse(tolerance, "delta_degC")

@@ -10,6 +10,7 @@ from typing import Annotated
 import typer
 
 from tyrefem.cli.common import (
+    CaseOption,
     ForceOption,
     JsonOption,
     QuietOption,
@@ -29,6 +30,7 @@ FILES = ("isolability.csv", "isolability.json", "isolability.png")
 def isolability(
     study: StudyArgument,
     changes: SetOption = None,
+    case: CaseOption = None,
     out: Annotated[Path | None, typer.Option("--out", help="Folder; default: results/STUDY-isolability.")] = None,
     workers: Annotated[int | None, typer.Option(min=1, help="Processes; default: one per core, at most 4.")] = None,
     force: ForceOption = False,
@@ -36,12 +38,14 @@ def isolability(
     as_json: JsonOption = False,
 ) -> None:
     """Before any data: which effects the study's sensors and runs can tell apart, and how strong they must be."""
+    from tyrefem.diagnose.isolability import NEEDS
     from tyrefem.diagnose.isolability import isolability as found_by
     from tyrefem.diagnose.isolability_picture import picture
     from tyrefem.output import atomic_folder, jsonable
     from tyrefem.studies import study as load
 
-    found = load(study, settings(changes))
+    found = load(study, settings(changes), case)
+    NEEDS.check(found)
     warn(found.warnings)
     count = workers or min(os.cpu_count() or 1, 4)
     place = out or Path("results") / f"{found.name}-isolability"

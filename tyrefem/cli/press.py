@@ -9,6 +9,7 @@ from typing import TYPE_CHECKING, Annotated
 import typer
 
 from tyrefem.cli.common import (
+    CaseOption,
     ForceOption,
     JsonOption,
     QuietOption,
@@ -57,8 +58,10 @@ def press(
     quiet: QuietOption = False,
     as_json: JsonOption = False,
     changes: SetOption = None,
+    case: CaseOption = None,
 ) -> None:
     """Inflate the tyre by finite elements and press it on the road; by default as in the drive's first phase."""
+    from tyrefem.footprint.press import NEEDS
     from tyrefem.footprint.press import press as pressed_by
     from tyrefem.footprint.press_files import FILES, write_files
     from tyrefem.footprint.press_places import cycle_places, read_place
@@ -67,7 +70,8 @@ def press(
 
     texts = {"pressure": pressure, "load": load, "deflection": deflection, "drum_diameter": drum, "camber": camber}
     given = {name: _read(name, text) for name, text in texts.items() if text is not None}
-    found = load_study(study, settings(changes))
+    found = load_study(study, settings(changes), case)
+    NEEDS.check(found)
     warn(found.warnings)
     with (
         results_folder(out or Path("results") / f"{found.name}-press", "press", FILES, force=force) as folder,

@@ -8,6 +8,7 @@ from typing import TYPE_CHECKING, Annotated, Any
 import typer
 
 from tyrefem.cli.common import (
+    CaseOption,
     ForceOption,
     JsonOption,
     QuietOption,
@@ -32,6 +33,7 @@ if TYPE_CHECKING:
 def run(
     study: StudyArgument,
     changes: SetOption = None,
+    case: CaseOption = None,
     out: Annotated[Path | None, typer.Option("--out", help="Folder for the results; default: results/STUDY.")] = None,
     pictures: Annotated[bool, typer.Option(help="Draw the PNG pictures and the HTML report.")] = True,
     vtk: Annotated[bool, typer.Option(help="Write the .pvd and .vtu files.")] = True,
@@ -42,14 +44,14 @@ def run(
 ) -> None:
     """Simulate a study: temperatures, heat budget, rolling resistance, VTK, pictures and a report.
 
-    A study with a table of cases runs them all and writes one table.
+    A study with a table of cases runs them all, or the one of --case, and writes one table.
     """
     from tyrefem.campaign import campaign_files
     from tyrefem.studies import study as load
     from tyrefem.summary import run_files
 
     values = settings(changes)
-    found = load(study, values)
+    found = load(study, values, case)
     place = out or Path("results") / found.name
     quiet = quiet or as_json
     if found.is_campaign:

@@ -3,17 +3,25 @@
 from __future__ import annotations
 
 from pathlib import Path
-from typing import Annotated, Any
+from typing import TYPE_CHECKING, Annotated, Any
 
 import typer
 
-from tyrefem.cli.common import ForceOption, SetOption, settings, warn
+from tyrefem.cli.common import CaseOption, ForceOption, SetOption, settings, warn
 from tyrefem.errors import InputError, nearest
+from tyrefem.requirements import Requirements
 from tyrefem.results_file import results_file
 
 #: Suffixes of a picture and of a mesh.
 PICTURES, MESHES = (".png",), (".msh", ".vtu", ".vtk")
+if TYPE_CHECKING:
+    from tyrefem.studies import Study
+
 KINDS = ("section", "material", "study", "sweep", "mesh", "strain", "effect")
+#: Kinds that are shown of one case of a campaign.
+OF_A_CASE = ("study", "sweep", "mesh", "strain")
+#: What a drawing needs of a study.
+NEEDS = Requirements("a drawing")
 
 
 def complete_kinds(incomplete: str) -> list[str]:
@@ -38,6 +46,7 @@ def show(
     kind: Annotated[str, typer.Argument(help=", ".join(KINDS), autocompletion=complete_kinds)],
     name: Annotated[str, typer.Argument(help="Name or path of the card.", autocompletion=complete_names)],
     changes: SetOption = None,
+    case: CaseOption = None,
     out: Annotated[
         Path | None, typer.Option("--out", help="PNG to write (a mesh: also .msh, .vtu); default: KIND-NAME.png.")
     ] = None,
@@ -46,23 +55,25 @@ def show(
     """Show a card: `section`, `mesh` and `strain` drawn to a PNG; `material`, `study`, `sweep` and `effect` printed."""
     if kind not in KINDS:
         raise InputError(f"no kind '{kind}'{nearest(kind, KINDS)}")
+    if case is not None and kind not in OF_A_CASE:
+        raise InputError(f"goes with {', '.join(OF_A_CASE)}, not with a {kind}", field="--case")
     values = settings(changes)
     if kind == "effect":
         _effect(name)
         return
     if kind in ("material", "study", "sweep"):
-        _print(kind, name, values)
+        _print(kind, name, values, case)
         return
     if kind == "mesh" and out is not None and out.suffix in MESHES:
         with results_file(out, MESHES, force=force):
-            _write_mesh(name, values, out)
+            _write_mesh(name, values, case, out)
         return
     path = out or Path(f"{kind}-{Path(name).stem if name.endswith('.toml') else Path(name).resolve().name}.png")
     from tyrefem.output import atomic_path
     from tyrefem.plotting.style import png
 
     with results_file(path, PICTURES + (MESHES if kind == "mesh" else ()), force=force):
-        figure, facts = _SHOWN[kind](name, values)
+        figure, facts = _SHOWN[kind](name, values, case)
         with atomic_path(path) as temporary:
             temporary.write_bytes(png(figure))
     for key, value in facts.items():
@@ -70,7 +81,7 @@ def show(
     typer.echo(f"drawn in {path}")
 
 
-def _section(name: str, values: dict[str, Any]) -> tuple[Any, dict[str, Any]]:
+def _section(name: str, values: dict[str, Any], _case: str | None) -> tuple[Any, dict[str, Any]]:
     from tyrefem.dotted import changed
     from tyrefem.plotting.section import section_figure
     from tyrefem.section import load
@@ -83,44 +94,48 @@ def _section(name: str, values: dict[str, Any]) -> tuple[Any, dict[str, Any]]:
     return section_figure(section), section.summary()
 
 
-def _mesh(name: str, values: dict[str, Any]) -> tuple[Any, dict[str, Any]]:
-    from tyrefem.plotting.mesh import mesh_figure
+def _single(name: str, values: dict[str, Any], case: str | None) -> Study:
+    """The study to draw: a single drive, not a table of them."""
     from tyrefem.studies import study
 
-    found = study(name, values)
-    warn(found.warnings)
-    tyre = found.mesh()
+    chosen = study(name, values, case)
+    NEEDS.check(chosen)
+    warn(chosen.warnings)
+    return chosen
+
+
+def _mesh(name: str, values: dict[str, Any], case: str | None) -> tuple[Any, dict[str, Any]]:
+    from tyrefem.plotting.mesh import mesh_figure
+
+    tyre = _single(name, values, case).mesh()
     return mesh_figure(tyre), tyre.summary()
 
 
-def _write_mesh(name: str, values: dict[str, Any], path: Path) -> None:
+def _write_mesh(name: str, values: dict[str, Any], case: str | None, path: Path) -> None:
     from tyrefem import meshing
     from tyrefem.output import atomic_path
-    from tyrefem.studies import study
 
-    tyre = study(name, values).mesh()
+    tyre = _single(name, values, case).mesh()
     with atomic_path(path) as temporary:
         meshing.write(tyre, temporary)
     typer.echo(f"{tyre.n_nodes} nodes, {tyre.n_elements} elements written to {path}")
 
 
-def _strain(name: str, values: dict[str, Any]) -> tuple[Any, dict[str, Any]]:
+def _strain(name: str, values: dict[str, Any], case: str | None) -> tuple[Any, dict[str, Any]]:
     from tyrefem.plotting.strain import strain_figure
     from tyrefem.rolling import RollingTyre
-    from tyrefem.studies import study
 
-    found = study(name, values)
+    found = _single(name, values, case)
     if found.card.mechanics.strain != "arcs":
         raise InputError('the picture of the strain cycle needs strain = "arcs"', field="mechanics.strain", file=name)
-    warn(found.warnings)
-    case = RollingTyre(found).schedule.cases[0][-1]
+    largest = RollingTyre(found).schedule.cases[0][-1]
     facts = {
-        "load_N": case.load,
-        "pressure_Pa": case.pressure,
-        "deflection_m": case.deflection,
-        "rolling_radius_m": case.rolling_radius,
-        "footprint_length_m": case.footprint_length,
-        "road_fraction": case.road_fraction,
+        "load_N": largest.load,
+        "pressure_Pa": largest.pressure,
+        "deflection_m": largest.deflection,
+        "rolling_radius_m": largest.rolling_radius,
+        "footprint_length_m": largest.footprint_length,
+        "road_fraction": largest.road_fraction,
     }
     return strain_figure(found), facts
 
@@ -146,7 +161,7 @@ def _effect(name: str) -> None:
 _SHOWN = {"section": _section, "mesh": _mesh, "strain": _strain}
 
 
-def _print(kind: str, name: str, values: dict[str, Any]) -> None:
+def _print(kind: str, name: str, values: dict[str, Any], case: str | None) -> None:
     import tomli_w
 
     from tyrefem import library
@@ -157,17 +172,18 @@ def _print(kind: str, name: str, values: dict[str, Any]) -> None:
 
     data: dict[str, Any]
     if kind == "study":
-        found = study(name, values)
+        found = study(name, values, case)
         warn(found.warnings)
         data, path = dict(found.data), found.file
     elif kind == "sweep":
         from tyrefem.sweep.questions import loaded
 
         path = library.find("sweep", name)
-        sweep = loaded(str(path), values)
+        of_a_case = {} if case is None else {"case": case}
+        sweep = loaded(str(path), values, **of_a_case)
         warn(sweep.study.warnings)
         typer.echo(f"# {sweep.words}")
-        data = read_toml(path)
+        data = read_toml(path) | of_a_case
         if values:
             data["change"] = {**data.get("change", {}), **values}
     else:

@@ -8,6 +8,7 @@ from typing import TYPE_CHECKING, Annotated
 import typer
 
 from tyrefem.cli.common import (
+    CaseOption,
     ForceOption,
     JsonOption,
     QuietOption,
@@ -48,17 +49,19 @@ def strain(
     quiet: QuietOption = False,
     as_json: JsonOption = False,
     changes: SetOption = None,
+    case: CaseOption = None,
 ) -> None:
     """Run a study by every strain law: strain energy by region and temperatures side by side."""
     from tyrefem.output import atomic_folder, write_json
-    from tyrefem.strain.comparison import LAWS, compare_laws
+    from tyrefem.strain.comparison import LAWS, NEEDS, compare_laws
     from tyrefem.studies import study as load_study
 
     wanted = tuple(dict.fromkeys(law or LAWS))
     for one in wanted:
         if one not in LAWS:
             raise InputError(f"no strain law '{one}' to compare{nearest(one, LAWS)}", field="--law")
-    chosen = load_study(study, settings(changes))
+    chosen = load_study(study, settings(changes), case)
+    NEEDS.check(chosen)
     warn(chosen.warnings)
     with (
         results_folder(out or Path("results") / f"{chosen.name}-strain", "strain", FILES, force=force) as folder,

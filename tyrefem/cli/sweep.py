@@ -8,6 +8,7 @@ from typing import Annotated
 import typer
 
 from tyrefem.cli.common import (
+    CaseOption,
     ForceOption,
     JsonOption,
     QuietOption,
@@ -130,6 +131,7 @@ def sweep(
         str | None, typer.Option(metavar="FROM:TO", help="Of the envelope: '1 m/s:60 m/s'.", rich_help_panel=ANSWERS)
     ] = None,
     changes: SetOption = None,
+    case: CaseOption = None,
     out: Annotated[Path | None, typer.Option("--out", help="Folder; default: results/STUDY-sweep.")] = None,
     reduced: Annotated[str, typer.Option(help="Use a certified reduced model: auto, never, always.")] = "auto",
     tolerance: Annotated[str, typer.Option(help="Error that its certificate allows.")] = "0.01 K",
@@ -164,7 +166,7 @@ def sweep(
         how = Execution(restart=restart, reduced=reduced, tolerance=parse(tolerance, "delta_degC"))
     except InputError as error:
         raise error if error.field else error.within(field="--tolerance") from None
-    name, wanted = questions(study, said, settings(changes))
+    name, wanted = questions(study, said, settings(changes), case)
     warn(wanted.study.warnings)
     with (
         results_folder(out or Path("results") / f"{name}-sweep", "sweep", FILES, force=force, keeps=KEPT) as folder,

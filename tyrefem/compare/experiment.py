@@ -61,12 +61,10 @@ def experiments(
 
     Raises
     ------
-    InputError : no table; an entry names a run that the table lacks; columns that are no sensors of the study; a
+    InputError : no run; an entry names a run that the table lacks; columns that are no sensors of the study; a
         column to rename or to ignore that no table has.
     """
     given = _Given(dict(rename or {}), tuple(ignore))
-    if table is None and not study.measured:
-        raise InputError(f"study '{study.name}' has no [[measured]] table; name a table to compare with")
     entries = list(study.measured) if table is None else []
     runs: list[MeasuredRun] = []
     columns: list[str] = []

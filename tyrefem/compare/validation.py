@@ -13,9 +13,14 @@ from tyrefem.compare.experiment import Experiment, Table, experiments
 from tyrefem.compare.history import histories
 from tyrefem.compare.interface import ResultLike, StudyLike
 from tyrefem.errors import InputError
+from tyrefem.requirements import Requirements
+from tyrefem.studies import Study
 
 if TYPE_CHECKING:
     from tyrefem.compare.neighbours import Certificate
+
+#: What a comparison needs of a study.
+NEEDS = Requirements("a comparison", measured=True)
 
 
 def compare(
@@ -51,15 +56,19 @@ def compare(
 
     Raises
     ------
-    InputError : the table cannot be read, a column is no sensor, no measured time is within the simulated span.
+    InputError : a campaign; no measured runs; the table cannot be read, a column is no sensor, no measured time is
+        within the simulated span.
 
     Source: ASME V&V 20-2009; equations and simplifications in docs/validation.md.
     """
+    NEEDS.check(study, table)
     if not 0.0 < k < 100.0:
         raise InputError(f"the coverage factor k must be more than 0 and less than 100, not {k!r}")
     if reduced not in ("auto", "never"):
         raise InputError(f"reduced is 'auto' or 'never', not {reduced!r}")
     planned = experiments(study, table, ignore=ignore, rename=rename)
+    if result is None and isinstance(study, Study):
+        _check_times(study, planned)
     keys = dict(study.uncertainty) if inputs else {}
     solved, certificate, said = _solved(study, planned, result, keys, executor, progress, reduced)
     found, curves, notes = [], {}, []
@@ -68,7 +77,8 @@ def compare(
         own, outside = histories(experiment, study, computed, perturbed)
         found += own
         curves[experiment.name] = computed.readings
-        notes += _outside(experiment, computed, outside)
+        first, last = computed.readings["time_s"].iloc[[0, -1]]
+        notes += _outside(experiment, first, last, outside)
     if not found:
         raise InputError("no measured time is within the simulated span: " + "; ".join(notes))
     notes += [*said, *_left_out(planned), *_unstated(study, planned, inputs)]
@@ -150,7 +160,6 @@ def _by_model(
     """The runs that were made with the help of a reduced model: all, or full ones only if it did not hold."""
     from tyrefem.compare.neighbours import WORTH, Neighbours
     from tyrefem.result import Result
-    from tyrefem.studies import Study
 
     changed = [what for what in studies if what[1] is not None]
     own = {what: one for what, one in studies.items() if isinstance(one, Study)}
@@ -169,11 +178,23 @@ def _by_model(
     return dict(neighbours.found), certificate, [certificate.sentence]
 
 
-def _outside(experiment: Experiment, computed: ResultLike, outside: int) -> list[str]:
+def _check_times(study: Study, planned: Sequence[Experiment]) -> None:
+    """Refuse readings that are all outside their runs' drives, before these are simulated."""
+    notes: list[str] = []
+    for experiment in planned:
+        driven = study.with_drive(dict(experiment.drive)) if experiment.drive else study
+        times, end = experiment.run.times, driven.card.drive.end
+        outside = int(np.sum((times < 0.0) | (times > end * (1 + 1e-9))))
+        if outside < len(times):
+            return
+        notes += _outside(experiment, 0.0, end, outside)
+    raise InputError("no measured time is within the simulated span: " + "; ".join(notes))
+
+
+def _outside(experiment: Experiment, first: float, last: float, outside: int) -> list[str]:
     if not outside:
         return []
     total = len(experiment.run.times)
-    first, last = computed.readings["time_s"].iloc[[0, -1]]
     level = "ERROR" if 2 * outside > total else "Note"
     return [
         f"{level}: run '{experiment.name}': {outside} of {total} measured times lie outside the simulated span "

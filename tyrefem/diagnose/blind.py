@@ -68,6 +68,7 @@ def cases(study: Study, count: int, seed: int) -> list[Case]:
     """So many cases: kinds in fixed shares, every candidate effect in turn, amplitudes from barely visible to strong.
 
     Variants of an effect (sensors) are drawn; amplitudes are log-uniform from 0.25 to 3 prior standard deviations.
+    A study that may lack fewer than two physical effects has one where two are due.
     """
     found = candidates(study)
     names = sorted({one.name for one in found})
@@ -78,6 +79,8 @@ def cases(study: Study, count: int, seed: int) -> list[Case]:
     for number in range(count):
         rng = np.random.default_rng([seed, number + 1])
         kind = _kind(number, count)
+        if kind == "two" and len(physical) < 2:
+            kind = "one"
         base = (*base_unknowns(study), *sensor_unknowns(study, set(study.sensors)))
         values = {one: _within(one, rng.normal(0.0, one.sd)) for one in base}
         hidden: list[Candidate] = []
@@ -89,7 +92,7 @@ def cases(study: Study, count: int, seed: int) -> list[Case]:
             hidden = [_variant(found, physical[i], rng) for i in pair]
         elif kind == "outside":
             stranger, station = _stranger(study, rng)
-        elif rng.random() < 0.5:
+        elif rng.random() < 0.5 and study.uncertainty:
             # Wrong numbers dressed up as physics: one base number at two and a half standard deviations.
             one = base[int(rng.integers(len(study.uncertainty)))]
             values[one] = 2.5 * one.sd * rng.choice([-1.0, 1.0])

@@ -16,17 +16,20 @@ from typing import Any
 import tyrefem
 from tyrefem.diagnose.bench import Bench, Response
 from tyrefem.diagnose.blind import Outcome, cases, run_case
-from tyrefem.diagnose.isolability import planned
+from tyrefem.diagnose.isolability import candidates_of, layout_notes, planned
 from tyrefem.diagnose.laboratory import laboratory
 from tyrefem.diagnose.responses import responses, unknowns_of
 from tyrefem.diagnose.truth import own_mesh
 from tyrefem.errors import InputError
 from tyrefem.output import atomic_path, jsonable, write_json
 from tyrefem.processes import processes
+from tyrefem.requirements import Requirements
 from tyrefem.result import GAS
 from tyrefem.studies import Study
 
 Row = dict[str, Any]
+#: What a blind test needs of a study.
+NEEDS = Requirements("a blind test", fitted=True)
 #: A stranger's place is right when the missing heat is found within this part of the half meridian.
 NEAR = 1.5 / 7
 #: Amplitude, in prior standard deviations, from which an effect counts as strong.
@@ -69,11 +72,12 @@ class Rate:
 
 @dataclass(frozen=True, eq=False)
 class Blind:
-    """Finished cases of a blind test and their rates."""
+    """Finished cases of a blind test and their rates; ``notes``: what the study has not, in sentences."""
 
     study: str
     seed: int
     rows: tuple[Row, ...]
+    notes: tuple[str, ...] = ()
 
     def _of(self, kind: str) -> list[Row]:
         return [row for row in self.rows if row["kind"] == kind]
@@ -104,10 +108,12 @@ class Blind:
             "two effects: both named": _rate(two, _right),
             "two identifiable effects: both named": _rate(able_two, _right),
             "named rightly: held-out rms at most 1.2 times the noise": _rate(
-                right, lambda row: row["held_out_rms_K"]["after"] <= 1.2 * row["noise_K"]
+                [row for row in right if _held_out(row)],
+                lambda row: row["held_out_rms_K"]["after"] <= 1.2 * row["noise_K"],
             ),
             "strong and identifiable: held-out gap shrunk 3 times": _rate(
-                [row for row in strong if row["held_out_rms_K"]["before"] > 3 * row["noise_K"]], _shrunk
+                [row for row in strong if _held_out(row) and row["held_out_rms_K"]["before"] > 3 * row["noise_K"]],
+                _shrunk,
             ),
             "verdicts 'identified': right": _rate(named, _right),
         }
@@ -152,6 +158,7 @@ class Blind:
             "rates": {name: rate.to_dict() for name, rate in self.rates.items()},
             "reliability": self.reliability,
             "by_effect": self.by_effect,
+            "notes": list(self.notes),
         }
 
     def words(self) -> list[str]:
@@ -161,7 +168,7 @@ class Blind:
             low, high = rate.interval
             share = f"{100 * rate.value:5.1f} % ({100 * low:.0f} to {100 * high:.0f})" if rate.of else "    -"
             lines.append(f"{name:60s} {rate.right:4d} of {rate.of:4d}  {share}")
-        return lines
+        return [*lines, *self.notes]
 
 
 def _rate(rows: Sequence[Row], holds: Callable[[Row], bool]) -> Rate:
@@ -170,6 +177,11 @@ def _rate(rows: Sequence[Row], holds: Callable[[Row], bool]) -> Rate:
 
 def _right(row: Row) -> bool:
     return row["verdict"] == "identified" and set(row["named"]) == set(row["hidden"])
+
+
+def _held_out(row: Row) -> bool:
+    """Was any run held out? Without one, `jsonable` has made null of its root mean square."""
+    return row["held_out_rms_K"]["before"] is not None
 
 
 def _wrong(row: Row) -> bool:
@@ -221,7 +233,14 @@ def run_blind(
 
     Cases already there (same study, count, seed, ``reduced`` and version) are not run again. ``reduced`` as of
     `tyrefem.diagnose.diagnose`; all cases share what the reduced models are made of.
+
+    Raises
+    ------
+    InputError : as `isolability`.
     """
+    NEEDS.check(study)
+    candidates_of(study)
+    trials = planned(study)
     said = [jsonable(dict(study.data)), count, seed, reduced, tyrefem.__version__]
     text = json.dumps(said, sort_keys=True, default=str)
     tag = hashlib.sha256(text.encode()).hexdigest()[:12]
@@ -232,7 +251,7 @@ def run_blind(
         rows[int(path.stem.split("-")[1])] = json.loads(path.read_text(encoding="utf-8"))
     left = [number for number in range(count) if number not in rows]
     if left:
-        with laboratory(Bench(study, planned(study)), workers) as lab:
+        with laboratory(Bench(study, trials), workers) as lab:
             known = responses(lab, unknowns_of(study, [*study.sensors, GAS])[0])
         for number, row in _answers((study, known, reduced), left, count, seed, workers):
             rows[number] = row
@@ -240,7 +259,10 @@ def run_blind(
                 temporary.write_text(json.dumps(row), encoding="utf-8")
             if tick:
                 tick(len(rows))
-    found = Blind(study.name, seed, tuple(rows[number] for number in sorted(rows)))
+    notes = layout_notes(study)
+    if not any(one.hold_out for one in trials):
+        notes += ("No run is held out, so nothing is said of runs that were not fitted.",)
+    found = Blind(study.name, seed, tuple(rows[number] for number in sorted(rows)), notes)
     write_json(found.to_dict(), folder / "blind.json")
     from tyrefem.diagnose.blind_picture import picture
     from tyrefem.plotting.style import png

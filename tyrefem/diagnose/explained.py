@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 from dataclasses import dataclass
 from functools import cached_property
 from typing import TYPE_CHECKING
@@ -36,7 +37,8 @@ class Explained(Brief):
     ----------
     members : the set. unknowns : everything fitted. fit : posterior. log_evidence : ln p(fitted data | set).
     computed : trial -> block means of the fitted model, corrected for the mesh. misfit : |r|^2 + |x/sd|^2.
-    readings : number of fitted blocks. held_out : ln p(held-out data | fitted data, set). steps : simulations.
+    readings : number of fitted blocks. held_out : ln p(held-out data | fitted data, set), and
+        its chi-squared probability ``held_out_p``; NaN where no run is held out. steps : simulations.
     """
 
     members: Members
@@ -100,7 +102,7 @@ def explained(gap: Gap, one: Refinement) -> Explained:
     """What a refinement has come to."""
     values = one.named(one.x)
     computed = {i: gap.corrected(i, one.computed[i]) for i in gap.fitted}
-    log_held, p_held = 0.0, 1.0
+    log_held = p_held = math.nan
     if gap.held_out:
         answers = gap.predicted.predict([(one.members, values)], gap.held_out)[0]
         columns = [gap.unknowns.index(unknown) for unknown in one.unknowns if unknown in gap.unknowns]

@@ -21,12 +21,16 @@ from tyrefem.diagnose.responses import gap_of
 from tyrefem.diagnose.sets import Prior
 from tyrefem.diagnose.trials import Series, Trial
 from tyrefem.diagnose.unknowns import Candidate, candidates
+from tyrefem.errors import InputError
+from tyrefem.requirements import Requirements
 from tyrefem.studies import Study
 
 if TYPE_CHECKING:
     import pandas as pd
 
 Array = NDArray[np.float64]
+#: What isolability needs of a study.
+NEEDS = Requirements("isolability", fitted=True)
 #: Nats by which the true explanation must be ahead of every rival without noise, so that noise turns the order round,
 #: or leaves it undecided (less than 90 %), in one case of twenty: m - 1.645 sqrt(2 m) > ln 9.
 MARGIN = 9.3
@@ -35,12 +39,20 @@ EVERY = 10.0
 
 
 def planned(study: Study, sensors: Sequence[str] = ()) -> tuple[Trial, ...]:
-    """The runs of a study's ``[[measured]]`` entries (or its own drive) with all its sensors read every 10 s."""
+    """The runs of a study's ``[[measured]]`` entries (or its own drive) with all its sensors read every 10 s.
+
+    Raises
+    ------
+    InputError : a drive that is shorter than the time between two readings.
+    """
     entries = study.measured
     plans = [(entry.run or f"run {n + 1}", dict(entry.drive), entry.hold_out) for n, entry in enumerate(entries)]
     found = []
     for name, drive, hold_out in plans or [("the study's own drive", {}, False)]:
         driven = study.with_drive(drive) if drive else study
+        if driven.card.drive.end < EVERY:
+            message = f"{name} lasts {driven.card.drive.end:g} s; sensors are supposed to be read every {EVERY:g} s"
+            raise InputError(message, field="drive", file=study.file)
         times = np.arange(0.0, driven.card.drive.end + EVERY / 2, EVERY)
         choice = study.card.diagnosis
         names = list(sensors) or [*study.sensors, OUTSIDE_THE_RUBBER[0]]
@@ -59,6 +71,16 @@ def planned(study: Study, sensors: Sequence[str] = ()) -> tuple[Trial, ...]:
     return tuple(found)
 
 
+def layout_notes(study: Study) -> tuple[str, ...]:
+    """What a study has not, and what `planned` takes instead, in sentences."""
+    notes = []
+    if not study.sensors:
+        notes.append("The study has no [sensors]: the contained air is all that is read.")
+    if not study.measured:
+        notes.append("The study has no [[measured]] runs: its own drive is the only run.")
+    return tuple(notes)
+
+
 @dataclass(frozen=True, eq=False)
 class Isolability:
     """What a layout of sensors and runs can tell.
@@ -69,6 +91,7 @@ class Isolability:
         others, infinite if never within its bounds; ``seen`` : from which it is told from no effect.
     scale : prior sd of the amplitude. rivals : the last rival to be ruled out.
     apart : (n, n) nats by which effect i at its scale is ahead of effect j fitted to it. runs : smallest sets of runs.
+    notes : what the study has not, in sentences.
     """
 
     study: str
@@ -80,6 +103,7 @@ class Isolability:
     apart: Array
     runs: tuple[tuple[str, ...], ...]
     weights: Array
+    notes: tuple[str, ...] = ()
 
     @cached_property
     def table(self) -> pd.DataFrame:
@@ -126,6 +150,7 @@ class Isolability:
             "groups": [list(group) for group in self.groups],
             "fewest_runs": [list(one) for one in self.runs],
             "apart_nats": self.apart.round(2).tolist(),
+            "notes": list(self.notes),
         }
 
     def words(self) -> list[str]:
@@ -143,7 +168,7 @@ class Isolability:
         if self.runs:
             sets = "; ".join(" + ".join(one) for one in self.runs)
             lines.append(f"Fewest runs that identify as much: {sets}.")
-        return lines
+        return [*lines, *self.notes]
 
 
 def margins(linear: Linear, signal: Array, true: Members, rivals: Sequence[Members], prior: Prior) -> list[float]:
@@ -162,6 +187,20 @@ def rivals_of(true: Members, found: Sequence[Candidate]) -> list[Members]:
     return sets
 
 
+def candidates_of(study: Study) -> tuple[Candidate, ...]:
+    """The effects that a study may lack.
+
+    Raises
+    ------
+    InputError : there is none, so that there is nothing to tell apart.
+    """
+    found = candidates(study)
+    if not found:
+        message = "no effect of the catalogue is left that the study may lack: exclude fewer"
+        raise InputError(message, field="diagnosis.exclude", file=study.file)
+    return found
+
+
 def isolability(
     study: Study, *, workers: int = 1, progress: Callable[[str, int, int], None] | None = None, gap: Gap | None = None
 ) -> Isolability:
@@ -169,12 +208,13 @@ def isolability(
 
     Raises
     ------
-    InputError : a run's drive that the tyre cannot take.
+    InputError : a campaign; every run held out; every effect excluded; a run's drive that the tyre cannot take.
     """
+    NEEDS.check(study)
+    found = candidates_of(study)
     if gap is None:
         with laboratory(Bench(study, planned(study)), workers) as lab:
             gap = gap_of(lab, progress)
-    found = candidates(study)
     prior = Prior(found, study.card.diagnosis.effects_expected)
     linear = gap.linear(gap.fitted)
     n = len(found)
@@ -189,7 +229,9 @@ def isolability(
     runs = _fewest_runs(gap, found, prior, smallest)
     scale = np.array([one.amplitudes[0].sd if one.amplitudes else 1.0 for one in found])
     shares = np.array([1 / sum(other.name == one.name for other in found) for one in found])
-    return Isolability(study.name, found, smallest * scale, seen * scale, scale, tuple(last), apart, runs, shares)
+    return Isolability(
+        study.name, found, smallest * scale, seen * scale, scale, tuple(last), apart, runs, shares, layout_notes(study)
+    )
 
 
 def _response(linear: Linear, one: Candidate) -> Array:
@@ -230,6 +272,8 @@ def _fewest_runs(gap: Gap, found: Sequence[Candidate], prior: Prior, smallest: A
     """The smallest sets of fitted runs that identify at twice their usual strength all that all runs together do."""
     names = [one.name for one in gap.lab.bench.trials]
     wanted = [i for i in range(len(found)) if smallest[i] <= 2.0]
+    if not wanted:
+        return ()
     for size in range(1, len(gap.fitted) + 1):
         enough = []
         for chosen in itertools.combinations(gap.fitted, size):

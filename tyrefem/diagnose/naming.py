@@ -70,7 +70,7 @@ def _searched(
     null = next(one for _, members, one in scored if one is not None and not members)
     missing = linear(null)
     score, _, ahead = scored[0]
-    doubtful = ahead is None or min(ahead.p_value, ahead.held_out_p) < IMPROBABLE
+    doubtful = ahead is None or ahead.p_value < IMPROBABLE or ahead.held_out_p < IMPROBABLE
     if doubtful or outside + missing.log_evidence > score - NEAR:
         missing = missing_heat_fitted(gap, unknown, null, lambda: count("fitting heat of unknown origin"))
     return scored, missing

@@ -96,10 +96,12 @@ def record(
     edges = [*tyre.drive.starts, tyre.drive.end]
     times = np.unique(np.concatenate([np.linspace(a, b, round((b - a) / STEP) + 1) for a, b in pairwise(edges)]))
     values, reservoirs = backward(tyre.problem, times, tyre.drive.initial)
-    section = study.section
-    s, depth = section.locate(np.array(list(true_places(study).values())))
-    points = section.place(*section.clamp(s, depth, tyre.mesh.size**2 / 0.1))
-    at = (located(tyre.problem.operators, points).value() @ values.T).T
+    section, places = study.section, list(true_places(study).values())
+    at = np.zeros((len(times), 0))
+    if places:
+        s, depth = section.locate(np.array(places))
+        points = section.place(*section.clamp(s, depth, tyre.mesh.size**2 / 0.1))
+        at = (located(tyre.problem.operators, points).value() @ values.T).T
     clean: dict[str, Any] = dict(recorded(study, times, at))
     law: ContainedAirLaw = study.card.boundaries.contained_air
     names = list(tyre.problem.reservoirs)

@@ -180,7 +180,8 @@ def _closing(d: Diagnosis) -> str:
             parts.append(f"from {before:.1f} to {after:.1f} K on the {name} runs")
     study = "In the amended study" if d.best.members else "With corrections of base numbers and sensors alone"
     going = " and ".join(parts)
-    return f"{study} the rms of measured - computed goes {going}; the noise is {d.noise:.1f} K."
+    untried = "" if d.gap.held_out else " No run is held out, so nothing was checked on a run that was not fitted."
+    return f"{study} the rms of measured - computed goes {going}; the noise is {d.noise:.1f} K.{untried}"
 
 
 def _kelvin(d: Diagnosis, *, after: bool) -> str:

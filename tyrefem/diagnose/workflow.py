@@ -22,8 +22,11 @@ from tyrefem.diagnose.trials import trial
 from tyrefem.diagnose.unknowns import Unknown, candidates
 from tyrefem.diagnose.verdict import CONFOUNDED, IDENTIFIED, UNEXPLAINED, Judgement
 from tyrefem.errors import InputError
+from tyrefem.requirements import Requirements
 from tyrefem.studies import Study
 
+#: What a diagnosis needs of a study.
+NEEDS = Requirements("a diagnosis", measured=True, fitted=True)
 #: Diagnoses at most, each of what the one before it has left.
 LOOKS = 3
 
@@ -62,10 +65,11 @@ def diagnose(
 
     Raises
     ------
-    InputError : as `compare`; or every run is held out.
+    InputError : as `compare`; or every run is held out, or read outside the simulated drive only.
     """
     if reduced not in ("auto", "never"):
         raise InputError(f"reduced is 'auto' or 'never', not {reduced!r}")
+    NEEDS.check(study, table)
     found: list[Diagnosis] = []
     while not found or (found[-1].verdict == IDENTIFIED and len(found) < looks):
         number = len(found)
@@ -115,9 +119,11 @@ def _look(
     """One diagnosis."""
     began = time.perf_counter()
     planned = experiments(study, table, ignore=ignore, rename=rename)
+    NEEDS.check_fitted(study, [one.hold_out for one in planned])
     trials = tuple(one for one in (trial(each, study) for each in planned) if one.series)
     if not any(not one.hold_out for one in trials):
-        raise InputError("no reading within the simulated drive in any run that is not held out", file=study.file)
+        message = "no reading within the simulated drive in any run that is not held out"
+        raise InputError(message, field="measured", file=study.file)
     bench = Bench(study, trials)
     if store is not None and store.open(bench):
         tick(f"taking up {store.taken_up} simulations", 0, 0)

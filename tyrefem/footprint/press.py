@@ -13,6 +13,7 @@ from numpy.typing import NDArray
 from tyrefem.brief import Brief
 from tyrefem.errors import InputError
 from tyrefem.footprint.road import Road
+from tyrefem.requirements import Requirements
 from tyrefem.strain.pressed_tyre import TOLERANCE, mechanical_mesh
 
 if TYPE_CHECKING:
@@ -26,6 +27,8 @@ if TYPE_CHECKING:
     from tyrefem.studies import Study
 
 Array = NDArray[np.float64]
+#: What a footprint needs of a study.
+NEEDS = Requirements("a footprint")
 #: The curve of load over deflection goes this much further than the footprint, or to just before the rim.
 BEYOND = 1.25
 BEFORE_RIM = 0.98
@@ -213,7 +216,8 @@ def press(
 
     Raises
     ------
-    InputError : a value that is not positive; both load and deflection; no equilibrium; more than the tyre can carry.
+    InputError : a campaign; a value that is not positive; both load and deflection; no equilibrium; more than the
+        tyre can carry.
 
     >>> from tyrefem import study
     >>> found = press(study("nasa-22x5.5-8pr", {"mesh.size": "12 mm"}), deflection=0.015)
@@ -225,6 +229,7 @@ def press(
     from tyrefem.studies import study as load_study
 
     chosen = load_study(study) if isinstance(study, str) else study
+    NEEDS.check(chosen)
     phase = chosen.card.drive.phases[0]
     if load is not None and deflection is not None:
         raise InputError("give a load or a deflection, not both", field="load")

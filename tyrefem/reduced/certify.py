@@ -19,6 +19,7 @@ from tyrefem.reduced.export import arrays_of, outputs_of, write
 from tyrefem.reduced.model import NotReducibleError
 from tyrefem.reduced.tables import Probe
 from tyrefem.reduced.train import Fineness, Snapshots, trained
+from tyrefem.requirements import Requirements
 from tyrefem.rolling import RollingTyre
 from tyrefem.studies import Study
 from tyrefem.summary import versions
@@ -28,6 +29,8 @@ from tyrefem.sweep.schedulers import Here, Scheduler
 Array = NDArray[np.float64]
 #: Random drives to learn from, fresh steady and random ones to certify with, and rounds of both.
 LEARN, FRESH, ROUNDS = 6, 4, 4
+#: What a real-time model needs of a study.
+NEEDS = Requirements("a real-time model")
 #: Few modes: a step costs their square, and its matrix their cube.
 FINENESS = Fineness(modes_tolerance=2e-4, source_tolerance=2e-6, most_modes=60, most_sources=60, fields=40)
 #: Readings of a full run at most: the longer the drive, the rarer.
@@ -55,9 +58,10 @@ def export(
 
     Raises
     ------
-    InputError : the box holds loads that the tyre cannot carry; a study that a reduced model cannot follow; the
-        tolerance was not reached.
+    InputError : a campaign; the box holds loads that the tyre cannot carry; a study that a reduced model cannot follow;
+        the tolerance was not reached.
     """
+    NEEDS.check(study)
     if study.card.mechanics.feedback is not None:
         raise InputError("a real-time model has no feedback of temperature on the strain cycle", field="mechanics")
     tick = progress or (lambda what, done, total: None)

@@ -10,6 +10,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from tyrefem.errors import InputError
+from tyrefem.requirements import Requirements
 from tyrefem.strain import StrainCycle, Zone
 from tyrefem.strain.gauss_points import GaussPoints
 
@@ -25,6 +26,8 @@ Array = NDArray[np.float64]
 #: The laws that find a tyre's strain cycle, in the order of the columns.
 LAWS = ("arcs", "barrel", "fem")
 TOTAL = "whole tyre"
+#: What a comparison of strain laws needs of a study.
+NEEDS = Requirements("a comparison of strain laws")
 
 
 @dataclass(frozen=True, eq=False)
@@ -220,7 +223,7 @@ def compare_laws(study: Study | str, laws: tuple[str, ...] = LAWS) -> LawCompari
 
     Raises
     ------
-    InputError : a study that never rolls under load; no law has an answer.
+    InputError : a campaign; a study that never rolls under load; no law has an answer.
 
     >>> brief = {"drive.duration": "60 s", "mesh.size": "12 mm", "numerics.tolerance": "0.5 delta_degC"}
     >>> from tyrefem import study
@@ -231,6 +234,7 @@ def compare_laws(study: Study | str, laws: tuple[str, ...] = LAWS) -> LawCompari
     from tyrefem.studies import study as load_study
 
     chosen = load_study(study) if isinstance(study, str) else study
+    NEEDS.check(chosen)
     outcomes, refused = [], {}
     last: InputError | None = None
     for law in laws:

@@ -126,7 +126,8 @@ class SweepCard(Card):
 
     Parameters
     ----------
-    study : name or path (relative to the file). change : values changed first, for every variant.
+    study : name or path (relative to the file); ``case``: of a campaign, the case to take. change : values changed
+        first, for every variant.
     sample : how variants are chosen; ``count`` of them (Latin hypercube, Sobol; Saltelli: the base), ``seed``;
         ``cases``: CSV (list). Not given: a grid, or no variants but the optimiser's if there is ``[optimise]``.
     vary : dotted name -> how it varies. limits : answer -> what it must keep to.
@@ -139,6 +140,7 @@ class SweepCard(Card):
     kind: ClassVar[str] = "sweep"
     title: str = ""
     study: Text
+    case: Text | None = None
     change: dict[str, Any] = Field(default_factory=dict)
     sample: Sample | None = None
     count: Annotated[int, Field(ge=1, le=10_000_000)] | None = None
@@ -177,7 +179,7 @@ class SweepCard(Card):
 
         beside = None if near is None else near / self.study
         name = self.study if beside is None or not beside.exists() else str(beside)
-        return study(name, {**self.change, **(changes or {})})
+        return study(name, {**self.change, **(changes or {})}, self.case)
 
     @property
     def sampled(self) -> bool:

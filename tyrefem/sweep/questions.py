@@ -8,6 +8,7 @@ from pathlib import Path
 from typing import Any, Unpack
 
 from tyrefem.errors import InputError, nearest
+from tyrefem.requirements import Requirements
 from tyrefem.studies import Study
 from tyrefem.sweep.answers import check_answer
 from tyrefem.sweep.card import SweepCard
@@ -21,6 +22,9 @@ from tyrefem.sweep.plan import Plan, card_of, planned
 from tyrefem.sweep.responses import judged
 from tyrefem.sweep.sweep import sweep
 from tyrefem.sweep.tornado import Tornado, tornado_plan
+
+#: What a sweep needs of a study.
+NEEDS = Requirements("a sweep")
 
 
 @dataclass(frozen=True, eq=False)
@@ -81,8 +85,9 @@ def questions(study: Study, card: SweepCard, near: Path | None = None) -> Questi
 
     Raises
     ------
-    InputError : a name, value or answer that the study does not have; two variants that are the same.
+    InputError : a campaign; a name, value or answer that the study does not have; two variants that are the same.
     """
+    NEEDS.check(study)
     plan = planned(study, card, near)
     try:
         tornado = None if card.tornado is None else tornado_plan(study, card.tornado.tolerances, card.time_to)
@@ -116,6 +121,8 @@ def asked_of(study: Study, vary: Mapping[str, Any] | None = None, **options: Any
     if isinstance(run.get("folder"), str):
         run["folder"] = Path(run["folder"])
     how = Execution(**run)
+    if options.get("case") is not None:
+        study = study.case(options["case"])
     return questions(study, card_of(study, vary, **options)).answered(how)
 
 

@@ -1,0 +1,77 @@
+"""Blind tests of studies that lack something: rates without what is not there, and words that say so."""
+
+from __future__ import annotations
+
+import json
+from pathlib import Path
+from typing import Any
+
+import pytest
+from odd_studies import FITTED, write
+
+import tyrefem as tf
+from tyrefem.diagnose import blind_rates
+from tyrefem.diagnose.blind import cases
+from tyrefem.diagnose.blind_picture import picture
+from tyrefem.diagnose.blind_rates import Blind, run_blind
+
+
+def _row(held_out: bool, **more: Any) -> dict[str, Any]:
+    before, after = (4.0, 0.55) if held_out else (None, None)
+    return {
+        "kind": "one", "hidden": ["sun"], "verdict": "identified", "named": ["sun"], "set": ["sun"],
+        "identifiable": True, "amplitude": {"sun": 2.0}, "probability": 0.97, "best": "sun",
+        "held_out_rms_K": {"before": before, "after": after}, "noise_K": 0.5, "missing_station_m": 0.1,
+        "station_m": 0.1, "length_m": 0.15,
+    } | more  # fmt: skip
+
+
+def test_rates_of_held_out_runs_count_only_cases_that_have_some() -> None:
+    found = Blind("s", 1, (_row(False), _row(False), _row(True)))
+    rates = {name: (rate.right, rate.of) for name, rate in found.rates.items()}
+    assert rates["identifiable: named correctly"] == (3, 3)
+    assert rates["named rightly: held-out rms at most 1.2 times the noise"] == (1, 1)
+    assert rates["strong and identifiable: held-out gap shrunk 3 times"] == (1, 1)
+
+
+def test_without_held_out_runs_the_rates_and_the_picture_are_made() -> None:
+    found = Blind("s", 1, (_row(False),), ("No run is held out.",))
+    assert found.rates["named rightly: held-out rms at most 1.2 times the noise"].of == 0
+    assert found.words()[-1] == "No run is held out."
+    assert picture(found).axes
+
+
+@pytest.mark.parametrize("rivals", [["hot-road"], ["sensor-offset"], ["sensor-offset", "sun"]])
+def test_with_too_few_physical_effects_for_a_pair_one_is_hidden(rivals: list[str], here: Path) -> None:
+    study = tf.study(write(here / "few", rivals=rivals))
+    found = cases(study, 40, 1)
+    assert {one.kind for one in found} == {"one", "none", "outside"}
+    assert all(len(one.hidden) == (one.kind == "one") for one in found)
+
+
+def test_without_uncertain_numbers_none_is_far_off(here: Path) -> None:
+    study = tf.study(write(here / "sure"))
+    study.__dict__["uncertainty"] = {}
+    found = cases(study, 60, 1)
+    assert sum(one.kind == "none" for one in found) > 5
+
+
+def test_a_study_without_sensors_or_runs_is_tested_by_its_contained_air(
+    here: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    monkeypatch.setattr(blind_rates, "own_mesh", lambda: {"mesh.size": "10 mm"})
+    monkeypatch.setattr("tyrefem.diagnose.blind.own_mesh", lambda: {"mesh.size": "10 mm"})
+    found = run_blind(tf.study(write(here / "bare", sensors=False)), 2, 1, here / "out")
+    assert [row["verdict"] for row in found.rows] != ["failed", "failed"]
+    words = " ".join(found.words())
+    assert "the contained air is all that is read" in words
+    assert "No run is held out" in words
+    record = json.loads((here / "out/blind.json").read_text(encoding="utf-8"))
+    assert record["notes"] == list(found.notes)
+
+
+def test_one_fitted_run_is_enough(here: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setattr("tyrefem.diagnose.blind.own_mesh", lambda: {"mesh.size": "10 mm"})
+    found = run_blind(tf.study(write(here / "single", measured=[FITTED])), 2, 1, here / "out")
+    assert found.notes == ("No run is held out, so nothing is said of runs that were not fitted.",)
+    assert all(row["held_out_rms_K"] == {"before": None, "after": None} for row in found.rows)

@@ -1,0 +1,105 @@
+"""Studies without sensors, without measured runs, with every run held out, or with none: an answer or one error."""
+
+from __future__ import annotations
+
+import json
+import math
+from collections.abc import Callable
+from pathlib import Path
+
+import pytest
+from odd_studies import END, FITTED, HELD_OUT, SENSORS, table, write
+
+import tyrefem as tf
+from tyrefem.diagnose.isolability import isolability, planned
+from tyrefem.errors import InputError
+
+ALL_HELD_OUT = ({**FITTED, "hold_out": True}, HELD_OUT)
+
+
+@pytest.mark.parametrize("question", ["diagnose", "isolability", "blind"])
+def test_every_run_held_out_is_refused_before_anything_runs(
+    question: str, here: Path, refused: Callable[..., str], no_simulation: None
+) -> None:
+    words = refused(question, str(write(here / "held", measured=ALL_HELD_OUT)))
+    assert "held/study.toml: measured.hold_out: all 2 runs are held out" in words
+    assert "hold_out = false" in words
+
+
+def test_the_only_run_held_out_is_said_so(here: Path, refused: Callable[..., str]) -> None:
+    assert "the only run is held out" in refused("blind", str(write(here / "held", measured=ALL_HELD_OUT[:1])))
+
+
+def test_a_given_table_of_held_out_runs_is_refused(
+    here: Path, refused: Callable[..., str], no_simulation: None
+) -> None:
+    folder = write(here / "study", measured=[FITTED, HELD_OUT])
+    assert "measured.hold_out: the only run is held out" in refused("diagnose", str(folder), str(folder / "b.csv"))
+
+
+@pytest.mark.parametrize("question", ["compare", "diagnose"])
+@pytest.mark.parametrize("sensors", [True, False])
+def test_no_measured_runs_is_one_error(
+    question: str, sensors: bool, here: Path, refused: Callable[..., str], no_simulation: None
+) -> None:
+    words = refused(question, str(write(here / "bare", sensors=sensors)))
+    assert "bare/study.toml: measured: " in words
+    assert "[[measured]]" in words
+    assert "name a table" in words
+
+
+def test_readings_outside_the_drive_are_refused_before_anything_runs(here: Path, no_simulation: None) -> None:
+    late = table(here / "late.csv", list(SENSORS), start=END + 1)
+    study = tf.study(write(here / "study", measured=[FITTED]))
+    with pytest.raises(InputError, match=r"no measured time is within the simulated span.*0 to 60 s"):
+        study.compare(late)
+    with pytest.raises(InputError, match="measured: no reading within the simulated drive"):
+        study.diagnose(late)
+
+
+def test_no_effect_left_to_tell_apart_is_refused(here: Path, refused: Callable[..., str], no_simulation: None) -> None:
+    folder = str(write(here / "none", measured=[FITTED], rivals=()))
+    for question in ("isolability", "blind"):
+        assert "none/study.toml: diagnosis.exclude: no effect of the catalogue is left" in refused(question, folder)
+
+
+def test_a_drive_shorter_than_the_time_between_readings_is_refused(
+    here: Path, refused: Callable[..., str], no_simulation: None
+) -> None:
+    folder = str(write(here / "short", drive={"duration": "5 s"}))
+    for question in ("isolability", "blind"):
+        words = refused(question, folder)
+        assert "short/study.toml: drive: the study's own drive lasts 5 s" in words
+        assert "10 s" in words
+
+
+def test_without_sensors_the_contained_air_alone_is_planned_and_said(here: Path) -> None:
+    study = tf.study(write(here / "bare", sensors=False))
+    assert [[one.sensor for one in trial.series] for trial in planned(study)] == [["contained-air"]]
+    found = isolability(study)
+    assert set(found.table["effect"]) >= {"hot-road", "sun"}
+    assert "the contained air is all that is read" in " ".join(found.words())
+    assert "its own drive is the only run" in " ".join(found.to_dict()["notes"])
+
+
+def test_where_nothing_is_identifiable_no_runs_are_recommended(here: Path) -> None:
+    # Standing in the shade at ambient temperature: whatever warms a rolling tyre is not there to be seen.
+    study = tf.study(write(here / "standing", sensors=False, rivals=["tread-slip"], drive={"speed": "0 mph"}))
+    found = isolability(study)
+    assert not found.table["identifiable_at_usual"].any()
+    assert found.runs == ()
+
+
+@pytest.mark.parametrize("phases", [1, 2])
+def test_a_diagnosis_without_held_out_runs_claims_nothing_of_them(phases: int, here: Path) -> None:
+    drive = {} if phases == 1 else {"phases": [{"duration": "40 s"}, {"speed": "0 mph", "duration": "20 s"}]}
+    folder = write(here / "fitted", measured=[FITTED], drive=drive)
+    table(folder / "a.csv", list(SENSORS), rate=0.3)
+    found = tf.study(folder).diagnose(largest=1, looks=1)
+    assert math.isnan(found.null.held_out_p)
+    found.save(here / "out")
+    record = json.loads((here / "out/verdict.json").read_text(encoding="utf-8"))
+    assert record["gap"]["after"]["held_out_rms_K"] is None
+    assert {one["held_out_p"] for one in record["sets"] if "held_out_p" in one} == {None}
+    assert found.verdict != "no gap"
+    assert "No run is held out" in " ".join(record["summary"])
