@@ -194,7 +194,7 @@ class Study(Brief):
     @functools.cached_property
     def warnings(self) -> tuple[InputWarning, ...]:
         """What can be run but is perhaps not meant, in the study, its section and its material cards."""
-        return study_warnings(self)
+        return study_warnings(self.card, self.new_section, self.materials, self.file)
 
     @functools.cached_property
     def temperatures(self) -> Mapping[str, float] | None:

@@ -2,37 +2,38 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator
-from typing import TYPE_CHECKING
+from collections.abc import Iterator, Mapping
+from pathlib import Path
 
 from tyrefem.errors import InputWarning
+from tyrefem.materials import MaterialCard
+from tyrefem.section import Section
+from tyrefem.study_card import StudyCard
 
-if TYPE_CHECKING:
-    from tyrefem.studies import Study
 
-
-def study_warnings(study: Study) -> tuple[InputWarning, ...]:
+def study_warnings(
+    card: StudyCard, section: Section, materials: Mapping[str, MaterialCard], file: Path | None
+) -> tuple[InputWarning, ...]:
     """What can be run but is perhaps not meant, each with the study's file and the dotted name of the field.
 
     >>> from tyrefem.studies import study
     >>> light = study("nasa-22x5.5-8pr", {"materials.tread.density.value": "1.18 kg/m**3"})
-    >>> [warning.field for warning in study_warnings(light)]
+    >>> [warning.field for warning in light.warnings]
     ['materials.tread.density.value']
     """
-    card = study.card
-    found = [*card.warnings(), *_of_another_tyre(study)]
-    found += [warning.within(field="section") for warning in study.new_section.warnings]
-    found += _of_materials(study)
+    found = [*card.warnings(), *_of_another_tyre(card, section)]
+    found += [warning.within(field="section") for warning in section.warnings]
+    found += _of_materials(materials)
     if card.mechanics.energy is not None:
-        rows = card.mechanics.energy.without_effect(study.new_section)
+        rows = card.mechanics.energy.without_effect(section)
         found += [warning.within(field="mechanics.energy") for warning in rows]
-    return tuple(warning.within(file=study.file) for warning in found)
+    return tuple(warning.within(file=file) for warning in found)
 
 
-def _of_materials(study: Study) -> Iterator[InputWarning]:
+def _of_materials(materials: Mapping[str, MaterialCard]) -> Iterator[InputWarning]:
     """One warning for all regions of a card."""
     regions: dict[InputWarning, list[str]] = {}
-    for region, material in study.materials.items():
+    for region, material in materials.items():
         for warning in material.warnings():
             regions.setdefault(warning, []).append(region)
     for warning, named in regions.items():
@@ -40,11 +41,11 @@ def _of_materials(study: Study) -> Iterator[InputWarning]:
         yield InputWarning(f"{warning.message}{also}", warning.field).within(field=f"materials.{named[0]}")
 
 
-def _of_another_tyre(study: Study) -> Iterator[InputWarning]:
-    made_for, names = study.card.made_for, study.card.of_one_tyre
-    if made_for is not None and names and study.new_section.name != made_for:
+def _of_another_tyre(card: StudyCard, section: Section) -> Iterator[InputWarning]:
+    names = card.of_one_tyre
+    if card.made_for is not None and names and section.name != card.made_for:
         yield InputWarning(
-            f"{', '.join(names)}: these are of section '{made_for}', but the section is '{study.new_section.name}'; "
+            f"{', '.join(names)}: these are of section '{card.made_for}', but the section is '{section.name}'; "
             "give those of this tyre or remove them, then change made_for",
             field="made_for",
         )

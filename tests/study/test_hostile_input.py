@@ -146,6 +146,7 @@ PLIES = shipped("material", "nasa-carcass") | {
 def read_study(data):
     study = tf.Study("spoiled", data, None, library.shipped())
     assert study.uncertainty
+    assert all(str(warning) for warning in study.warnings)
 
 
 def test_the_unspoiled_are_understood():
@@ -171,12 +172,13 @@ def test_drives(data):
 def test_materials(original, data):
     spoiled_card = data.draw(spoiled(original))
     understood_or_refused(lambda card: MaterialCard.check(card).heat_capacity(), spoiled_card)
+    understood_or_refused(lambda card: MaterialCard.check(card).warnings(), spoiled_card)
 
 
 @FEW
 @given(spoiled(shipped("section", "nasa-22x5.5-8pr")))
 def test_sections(data):
-    understood_or_refused(lambda card: build(SectionCard.check(card)), data)
+    understood_or_refused(lambda card: build(SectionCard.check(card)).warnings, data)
 
 
 @FEW
