@@ -11,6 +11,7 @@ from tyrefem.brief import Brief
 from tyrefem.cases import Case, read_cases
 from tyrefem.conduction import SolverError
 from tyrefem.errors import InputError, nearest
+from tyrefem.interruption import held_back
 from tyrefem.output import write_json
 from tyrefem.studies import Study
 from tyrefem.summary import run_files, versions, write_tables
@@ -97,7 +98,7 @@ class Campaign(Brief):
 
     def _outcome(self, case: Case) -> Result | str:
         try:
-            return self.case_study(case).run()
+            return self.case_study(case).run(partial=True)
         except (InputError, SolverError) as error:
             return str(error)
         except Exception as error:  # one case's defect must not cost the others; it is named as what it is
@@ -167,12 +168,17 @@ def run_campaign(
     # From the start on: an older campaign's table in this folder must not pass for this one's.
     table = _write(campaign, rows, folder)
     for case, outcome in campaign.runs(progress):
-        if not isinstance(outcome, str):
-            write_tables(outcome, folder / "cases" / case.name)
-            if each is not None:
-                each(outcome, folder / "cases" / case.name)
-        rows.append(row(case, outcome))
-        table = _write(campaign, rows, folder)
+        try:
+            if not isinstance(outcome, str):
+                with held_back():
+                    write_tables(outcome, folder / "cases" / case.name)
+                if each is not None:
+                    each(outcome, folder / "cases" / case.name)
+        finally:
+            # A case whose pictures were interrupted is finished all the same.
+            with held_back():
+                rows.append(row(case, outcome))
+                table = _write(campaign, rows, folder)
     return table
 
 

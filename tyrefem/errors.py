@@ -7,6 +7,8 @@ from collections.abc import Iterable
 from dataclasses import dataclass, replace
 from pathlib import Path
 
+from tyrefem.interruption import Interrupted as Interrupted
+
 
 class InputError(ValueError):
     """Bad input from a person: a file, a field, a unit, a number outside its range.

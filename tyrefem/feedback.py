@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 from collections.abc import Callable
 from dataclasses import dataclass, replace
 from typing import TYPE_CHECKING, Any
@@ -39,7 +40,8 @@ class FeedbackOutcome:
     Attributes
     ----------
     changes : K, of every run: largest difference between the temperatures that it found and those of its strain
-        cycles, over contained air and mean of every region that softens, at every knot.
+        cycles, over contained air and mean of every region that softens, at every knot; infinite of a run that was
+        interrupted, for which nobody knows.
     start, end : pressure and deflection there. softened : region -> modulus of its compound at the end over the card's.
     """
 
@@ -62,7 +64,7 @@ class FeedbackOutcome:
     @property
     def warnings(self) -> tuple[str, ...]:
         """One line, if they do not agree."""
-        if self.converged:
+        if self.converged or math.isinf(self.changes[-1]):
             return ()
         return (
             f"the feedback of temperature on the strain cycle has not converged: after {self.iterations} runs "
@@ -73,9 +75,12 @@ class FeedbackOutcome:
     @property
     def words(self) -> str:
         """One line for people."""
-        state = "converged to" if self.converged else "NOT converged:"
+        change = f"{self.changes[-1]:.2g} K"
+        state = f"converged to {change}" if self.converged else f"NOT converged: {change}"
         runs = f"{self.iterations} run{'' if self.iterations == 1 else 's'}"
-        return f"{self.start} at the start, {self.end} at the end; {runs}, {state} {self.changes[-1]:.2g} K"
+        if math.isinf(self.changes[-1]):
+            state = "interrupted before the end of the drive"
+        return f"{self.start} at the start, {self.end} at the end; {runs}, {state}"
 
     def to_dict(self) -> dict[str, Any]:
         """JSON-ready."""
@@ -98,12 +103,15 @@ def run(
     progress: Callable[[float], None] | None = None,
     like: RollingTyre | None = None,
     start: Warmth | None = None,
+    *,
+    partial: bool = False,
 ) -> Result:
     """Simulate a study's drive again and again until its temperatures are those of its strain cycles.
 
     Every run takes its strain cycles at the temperatures of the one before (the first: ``start``, by default the
     drive's initial ones): T_(k+1) = run(cycles(T_k)). Where that converges slowly or not, steps are halved. What has
-    not converged after the iterations allowed is returned all the same, and warns.
+    not converged after the iterations allowed is returned all the same, and warns. ``partial``: as of
+    `tyrefem.rolling.run`; the part is one of the latest run.
 
     Raises
     ------
@@ -118,10 +126,10 @@ def run(
     share, first, wall_time = 1.0, like, 0.0
     while True:
         tyre = RollingTyre(study, first, cycles.schedule())
-        result = simulate(tyre, progress)
+        result = simulate(tyre, progress, partial=partial)
         first, wall_time = first or tyre, wall_time + result.wall_time
         found = Warmth.of(result)
-        changes.append(cycles.change(found))
+        changes.append(math.inf if result.history.interrupted else cycles.change(found))
         done = changes[-1] <= choice.tolerance or len(changes) == choice.iterations
         if done or result.history.interrupted:
             break

@@ -13,6 +13,7 @@ from pathlib import Path
 from typing import Any
 
 from tyrefem.errors import InputError
+from tyrefem.interruption import held_back
 
 #: Start of the names under which files are written until they are complete.
 TEMPORARY = ".tyrefem-"
@@ -36,6 +37,10 @@ _NOBODY = WriteGuard()
 #: The command in work and the files that it has read: one command at a time in a process.
 _guard = _NOBODY
 _read: dict[Path, None] = {}
+#: Folders that complete files were moved into, in this order; an interruption names the last.
+_written: dict[Path, None] = {}
+#: What a folder says of itself, whether or not there is a result in it.
+SUMMARY = "summary.json"
 
 
 @contextmanager
@@ -51,9 +56,10 @@ def guarded(guard: WriteGuard | None) -> Iterator[None]:
 
 @contextmanager
 def reading() -> Iterator[None]:
-    """The files read in this block are the inputs of one command."""
+    """The files read in this block are the inputs of one command, and `written_to` is about what it writes."""
     before = dict(_read)
     _read.clear()
+    _written.clear()
     try:
         yield
     finally:
@@ -69,6 +75,18 @@ def note_input(path: str | Path) -> None:
 def inputs_read() -> tuple[Path, ...]:
     """The files read so far by this command."""
     return tuple(_read)
+
+
+def written_to() -> Path | None:
+    """The folder that this command has last moved a complete file into; None: nothing is written yet."""
+    # Temporary folders are gone.
+    return next((folder for folder in reversed(_written) if folder.is_dir()), None)
+
+
+def _note_written(path: Path) -> None:
+    if path.name != SUMMARY:
+        _written.pop(path.parent, None)
+        _written[path.parent] = None
 
 
 def begin_writing(path: Path) -> None:
@@ -152,11 +170,13 @@ def atomic_path(path: str | Path) -> Iterator[Path]:
         path.parent.mkdir(parents=True, exist_ok=True)
         try:
             yield temporary
-            os.replace(temporary, path)
+            with held_back():
+                os.replace(temporary, path)
+                _note_written(path)
+                _guard.after_writing(path)
         finally:
-            with suppress(OSError):
+            with held_back(), suppress(OSError):
                 temporary.unlink(missing_ok=True)
-        _guard.after_writing(path)
 
 
 @contextmanager
@@ -179,10 +199,13 @@ def atomic_folder(folder: str | Path) -> Iterator[Path]:
             files = sorted(path for path in temporary.rglob("*") if path.is_file())
             for file in files:
                 _guard.before_writing(folder / file.relative_to(temporary))
-            for file in files:
-                _move(file, folder / file.relative_to(temporary))
+            # All of them or none: a file of this run beside one of the last would tell of neither.
+            with held_back():
+                for file in files:
+                    _move(file, folder / file.relative_to(temporary))
         finally:
-            shutil.rmtree(temporary, ignore_errors=True)
+            with held_back():
+                shutil.rmtree(temporary, ignore_errors=True)
 
 
 def _move(file: Path, target: Path) -> None:
@@ -190,6 +213,7 @@ def _move(file: Path, target: Path) -> None:
     if target.suffix == ".json" and _guard.takes_summary(target, json.loads(file.read_text(encoding="utf-8"))):
         return
     os.replace(file, target)
+    _note_written(target)
     _guard.after_writing(target)
 
 

@@ -18,9 +18,18 @@ from pathlib import Path
 from typing import Any
 
 from tyrefem.errors import InputError
-from tyrefem.output import TEMPORARY, WriteGuard, guarded, inputs_read, place_of_output, remove_temporary, write_json
+from tyrefem.interruption import held_back
+from tyrefem.output import (
+    SUMMARY,
+    TEMPORARY,
+    WriteGuard,
+    guarded,
+    inputs_read,
+    place_of_output,
+    remove_temporary,
+    write_json,
+)
 
-SUMMARY = "summary.json"
 #: Keys of ``summary.json`` that belong to the folder, not to the answer.
 COMMAND, COMPLETE, FILES, CHECKSUMS, WRITING = "command", "complete", "files", "checksums", "writing"
 BOOKKEEPING = (COMMAND, COMPLETE, FILES, CHECKSUMS, WRITING)
@@ -70,15 +79,17 @@ def results_folder(
                 with guarded(guard):
                     guard.mark(keeps)
                     yield Path(folder)
-                guard.finish()
+                with held_back():
+                    guard.finish()
             except BaseException:
-                with suppress(OSError, InputError):
+                with held_back(), suppress(OSError, InputError):
                     guard.leave()
                 raise
     finally:
-        for path in made:
-            with suppress(OSError):
-                path.rmdir()
+        with held_back():
+            for path in made:
+                with suppress(OSError):
+                    path.rmdir()
 
 
 @contextmanager
@@ -101,9 +112,10 @@ def _locked(folder: Path) -> Iterator[None]:
     try:
         yield
     finally:
-        with suppress(OSError):
-            os.unlink(lock.lock_file)
-        lock.release()
+        with held_back():
+            with suppress(OSError):
+                os.unlink(lock.lock_file)
+            lock.release()
 
 
 class ResultsFolder(WriteGuard):

@@ -228,8 +228,19 @@ def _of_time(law: Callable[[float], float]) -> Callable[[Any, float], float]:
 NEEDS = Requirements("a run")
 
 
-def run(study: Study, progress: Callable[[float], None] | None = None, like: RollingTyre | None = None) -> Result:
-    """Simulate a study's drive; ``like``: see `RollingTyre`. With ``mechanics.feedback``: `tyrefem.feedback.run`.
+def run(
+    study: Study,
+    progress: Callable[[float], None] | None = None,
+    like: RollingTyre | None = None,
+    *,
+    partial: bool = False,
+) -> Result:
+    """Simulate a study's drive. With ``mechanics.feedback``: `tyrefem.feedback.run`.
+
+    Parameters
+    ----------
+    progress : called with the time (s) after every step. like : see `RollingTyre`.
+    partial : Ctrl-C gives back what is finished, see `tyrefem.conduction.Conduction.transient`; else it is raised.
 
     Raises
     ------
@@ -239,12 +250,12 @@ def run(study: Study, progress: Callable[[float], None] | None = None, like: Rol
     if study.card.mechanics.feedback is not None:
         from tyrefem import feedback
 
-        return feedback.run(study, progress, like)
-    return simulate(RollingTyre(study, like), progress)
+        return feedback.run(study, progress, like, partial=partial)
+    return simulate(RollingTyre(study, like), progress, partial=partial)
 
 
-def simulate(tyre: RollingTyre, progress: Callable[[float], None] | None = None) -> Result:
-    """Simulate a tyre's drive with the strain cycles that it has."""
+def simulate(tyre: RollingTyre, progress: Callable[[float], None] | None = None, *, partial: bool = False) -> Result:
+    """Simulate a tyre's drive with the strain cycles that it has; parameters as of `run`."""
     began = clock.perf_counter()
     study = tyre.study
     times, fields = output_times(tyre)
@@ -254,6 +265,7 @@ def simulate(tyre: RollingTyre, progress: Callable[[float], None] | None = None)
         study.tolerance,
         breakpoints=tyre.drive.starts[1:],
         progress=progress,
+        partial=partial,
     )
     return Result(study, tyre, history, fields, clock.perf_counter() - began)
 

@@ -399,11 +399,14 @@ class Study(Brief):
         except InputError as error:
             raise error if error.file else error.within(field="mesh", file=self.file) from None
 
-    def run(self, progress: Progress | None = None) -> Result:
-        """Simulate the drive. ``progress`` is called with the time (s) after every step."""
+    def run(self, progress: Progress | None = None, *, partial: bool = False) -> Result:
+        """Simulate the drive. ``progress`` is called with the time (s) after every step.
+
+        ``partial``: Ctrl-C gives back what is finished (``result.history.interrupted``); else it is raised.
+        """
         from tyrefem.rolling import run
 
-        return run(self, progress)
+        return run(self, progress, partial=partial)
 
     def compare(self, table: Any = None, result: Result | None = None, **options: Any) -> Comparison:
         """Deviation from measured tables: the one given, or the study's own. Options: see `tyrefem.compare.compare`."""

@@ -60,10 +60,10 @@ def test_a_failing_case_is_named_and_the_others_go_on(folder: Path, campaign: Ca
 def test_a_defect_in_one_case_is_called_that(campaign: Campaign, folder: Path, monkeypatch: pytest.MonkeyPatch) -> None:
     run = Study.run
 
-    def sometimes(study: Study, progress: Any = None) -> Any:
+    def sometimes(study: Study, progress: Any = None, **how: Any) -> Any:
         if study.name == "light":
             raise ZeroDivisionError("float division by zero")
-        return run(study, progress)
+        return run(study, progress, **how)
 
     monkeypatch.setattr(Study, "run", sometimes)
     table = run_campaign(campaign, folder / "out")
@@ -80,8 +80,8 @@ def test_an_interrupted_campaign_keeps_what_is_finished(
         if time > 5.0:
             raise KeyboardInterrupt
 
-    def second_is_stopped(study: Study, progress: Any = None) -> Any:
-        return run(study, stop if study.name == "usual" else progress)
+    def second_is_stopped(study: Study, progress: Any = None, **how: Any) -> Any:
+        return run(study, stop if study.name == "usual" else progress, **how)
 
     monkeypatch.setattr(Study, "run", second_is_stopped)
     with pytest.raises(KeyboardInterrupt):
@@ -100,7 +100,7 @@ def test_an_older_table_does_not_pass_for_this_one(
     (folder / "out").mkdir()
     (folder / "out/campaign.csv").write_text("case,failure\nold,\n", encoding="utf-8")
 
-    def stopped(_study: Study, _progress: Any = None) -> None:
+    def stopped(_study: Study, _progress: Any = None, **_how: Any) -> None:
         raise KeyboardInterrupt
 
     monkeypatch.setattr(Study, "run", stopped)

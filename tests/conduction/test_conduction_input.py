@@ -196,7 +196,10 @@ def test_interrupted_run_keeps_what_was_finished() -> None:
 
     problem = Conduction(MESH, REGIONS, {"outside": Film(50.0, 20.0)}, {"tread": 2e5})
     whole = problem.transient(np.arange(0, 1001, 100.0), max_step=30.0)
-    part = problem.transient(np.arange(0, 1001, 100.0), max_step=30.0, progress=stop)
+    # A part is for those who ask for one: everybody else would take it for the whole.
+    with pytest.raises(KeyboardInterrupt):
+        problem.transient(np.arange(0, 1001, 100.0), max_step=30.0, progress=stop)
+    part = problem.transient(np.arange(0, 1001, 100.0), max_step=30.0, progress=stop, partial=True)
     assert part.interrupted
     assert not whole.interrupted
     assert part.times.tolist() == [0.0, 100.0, 200.0]

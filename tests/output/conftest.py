@@ -58,7 +58,7 @@ def standing(study):
 @pytest.fixture(scope="session")
 def stopped(study):
     """Interrupted after a good half of the drive."""
-    return study.run(stopper(70.0))
+    return study.run(stopper(70.0), partial=True)
 
 
 @pytest.fixture(scope="session")

@@ -41,6 +41,7 @@ def blind(
 
     Finished cases are kept: the same command goes on where an interrupted one was.
     """
+    from tyrefem.answer_store import PROGRESS
     from tyrefem.diagnose.blind_rates import NEEDS, run_blind
     from tyrefem.studies import study as load
 
@@ -49,7 +50,7 @@ def blind(
     warn(found.warnings)
     place, names = out or Path("results") / f"{found.name}-blind", ("blind.json", "blind.png")
     with (
-        results_folder(place, "blind", names, force=force, keeps=["cases/*.json"]) as folder,
+        results_folder(place, "blind", names, force=force, keeps=["cases/*.json", f"{PROGRESS}/*/*.npz"]) as folder,
         progress(f"{found.name}: {cases} cases", 1.0, quiet=quiet or as_json) as step,
     ):
         cores, tick = workers or os.cpu_count() or 1, lambda done: step(done / cases)

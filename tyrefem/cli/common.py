@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import sys
 import tomllib
 from collections.abc import Collection, Iterable
 from pathlib import Path
@@ -10,14 +9,8 @@ from typing import Annotated, Any
 
 import typer
 
+from tyrefem.cli.line import fail as fail
 from tyrefem.errors import InputError
-
-
-def fail(message: object, code: int = 2) -> int:
-    """One line on stderr, whatever the message quotes from a file; gives back the exit code."""
-    printable = "".join(letter if letter.isprintable() else " " for letter in str(message))
-    print(f"tyrefem: {' '.join(printable.split())}", file=sys.stderr)
-    return code
 
 
 def warn(warnings: Iterable[object], said: Collection[str] = ()) -> tuple[str, ...]:

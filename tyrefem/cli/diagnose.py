@@ -18,17 +18,15 @@ from tyrefem.cli.common import (
     RenameOption,
     SetOption,
     StudyArgument,
-    fail,
     print_json,
     renamed,
     settings,
     warn,
 )
 from tyrefem.cli.progress import stages
+from tyrefem.interruption import keeping
 from tyrefem.results_folder import results_folder
 
-#: Folder within ``--out`` that holds finished simulations until the diagnosis is done.
-PROGRESS = ".progress"
 #: More processes than this gain little: the fits wait for each other.
 MOST_WORKERS = 4
 
@@ -57,6 +55,7 @@ def diagnose(
 
     Interrupted, the same command goes on where it was.
     """
+    from tyrefem.answer_store import PROGRESS
     from tyrefem.diagnose.progress_store import ProgressStore
     from tyrefem.diagnose.record import FILES
     from tyrefem.diagnose.workflow import NEEDS
@@ -69,25 +68,21 @@ def diagnose(
     read = [table] if table else [entry.table for entry in found.measured]
     with results_folder(place, "diagnose", FILES, inputs=read, force=force, keeps=[f"{PROGRESS}*/*/*.npz"]) as folder:
         store = ProgressStore(folder / PROGRESS)
-        try:
-            with stages(quiet=quiet or as_json) as tick:
-                tick("reading", 0, 0)
-                diagnosis = found.diagnose(
-                    table,
-                    ignore=tuple(ignore or ()),
-                    rename=renamed(rename),
-                    largest=largest,
-                    looks=looks,
-                    workers=workers or min(os.cpu_count() or 1, MOST_WORKERS),
-                    progress=tick,
-                    store=store,
-                    reduced=reduced,
-                )
-                tick("drawing", 0, 0)
-                page = diagnosis.save(folder)
-        except KeyboardInterrupt:
-            kept = "; the same command goes on from there" if store.folder.is_dir() else ""
-            raise typer.Exit(fail(f"interrupted; {store.count} finished simulations are kept{kept}", 130)) from None
+        with keeping(lambda: store.kept), stages(quiet=quiet or as_json) as tick:
+            tick("reading", 0, 0)
+            diagnosis = found.diagnose(
+                table,
+                ignore=tuple(ignore or ()),
+                rename=renamed(rename),
+                largest=largest,
+                looks=looks,
+                workers=workers or min(os.cpu_count() or 1, MOST_WORKERS),
+                progress=tick,
+                store=store,
+                reduced=reduced,
+            )
+            tick("drawing", 0, 0)
+            page = diagnosis.save(folder)
         store.clear()
     if as_json:
         print_json(diagnosis.to_dict())

@@ -21,6 +21,7 @@ from tyrefem.cli.common import (
     warn,
 )
 from tyrefem.cli.progress import progress
+from tyrefem.interruption import keeping
 from tyrefem.results_folder import results_folder
 
 #: Files that the command writes.
@@ -38,9 +39,11 @@ def isolability(
     as_json: JsonOption = False,
 ) -> None:
     """Before any data: which effects the study's sensors and runs can tell apart, and how strong they must be."""
+    from tyrefem.answer_store import PROGRESS
     from tyrefem.diagnose.isolability import NEEDS
     from tyrefem.diagnose.isolability import isolability as found_by
     from tyrefem.diagnose.isolability_picture import picture
+    from tyrefem.diagnose.progress_store import ProgressStore
     from tyrefem.output import atomic_folder, jsonable
     from tyrefem.studies import study as load
 
@@ -49,14 +52,19 @@ def isolability(
     warn(found.warnings)
     count = workers or min(os.cpu_count() or 1, 4)
     place = out or Path("results") / f"{found.name}-isolability"
-    with results_folder(place, "isolability", FILES, force=force) as folder:
-        with progress(f"{found.name}: sensitivities", 1.0, quiet=quiet or as_json) as step:
-            result = found_by(found, workers=count, progress=lambda _what, done, total: step(done / max(total, 1)))
-        with atomic_folder(folder) as temporary:
-            result.table.to_csv(temporary / "isolability.csv", index=False, lineterminator="\n")
-            text = json.dumps(jsonable(result.to_dict()), indent=1, ensure_ascii=False, allow_nan=False)
-            (temporary / "isolability.json").write_text(text + "\n", encoding="utf-8")
-            (temporary / "isolability.png").write_bytes(picture(result))
+    with results_folder(place, "isolability", FILES, force=force, keeps=[f"{PROGRESS}/*/*.npz"]) as folder:
+        store = ProgressStore(folder / PROGRESS)
+        with keeping(lambda: store.kept):
+            with progress(f"{found.name}: sensitivities", 1.0, quiet=quiet or as_json) as step:
+                result = found_by(
+                    found, workers=count, progress=lambda _what, done, total: step(done / max(total, 1)), store=store
+                )
+            with atomic_folder(folder) as temporary:
+                result.table.to_csv(temporary / "isolability.csv", index=False, lineterminator="\n")
+                text = json.dumps(jsonable(result.to_dict()), indent=1, ensure_ascii=False, allow_nan=False)
+                (temporary / "isolability.json").write_text(text + "\n", encoding="utf-8")
+                (temporary / "isolability.png").write_bytes(picture(result))
+        store.clear()
     if as_json:
         print_json(jsonable(result.to_dict()))
         return

@@ -12,6 +12,7 @@ import typer
 
 from tyrefem.cli.show import complete_names
 from tyrefem.errors import InputError, nearest
+from tyrefem.interruption import held_back
 
 DEFAULTS = {"study": "nasa-22x5.5-8pr", "section": "nasa-22x5.5-8pr", "material": "nasa-tread"}
 
@@ -39,11 +40,12 @@ def new(
     place_of_output(target.parent)
     files = {target: source} | {target.parent / name: source.parent / name for name in _companions(kind, source)}
     first_line, note = _of_the_other_tyre(kind, source)
-    for place, file in files.items():
-        with atomic_path(place) as temporary:
-            shutil.copyfile(file, temporary)
-            if place == target and first_line:
-                temporary.write_text(first_line + file.read_text(encoding="utf-8-sig"), encoding="utf-8")
+    with held_back():
+        for place, file in files.items():
+            with atomic_path(place) as temporary:
+                shutil.copyfile(file, temporary)
+                if place == target and first_line:
+                    temporary.write_text(first_line + file.read_text(encoding="utf-8-sig"), encoding="utf-8")
     typer.echo(f"{target} written, a copy of {source.parent.name if kind == 'study' else source.stem}")
     if note:
         typer.echo(f"note: {note}")

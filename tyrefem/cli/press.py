@@ -65,7 +65,6 @@ def press(
     from tyrefem.footprint.press import press as pressed_by
     from tyrefem.footprint.press_files import FILES, write_files
     from tyrefem.footprint.press_places import cycle_places, read_place
-    from tyrefem.output import atomic_folder
     from tyrefem.studies import study as load_study
 
     texts = {"pressure": pressure, "load": load, "deflection": deflection, "drum_diameter": drum, "camber": camber}
@@ -85,8 +84,7 @@ def press(
             curve = result.curve()
         except InputError as error:
             raise _placed(error, given, found) from None
-        with atomic_folder(folder) as temporary:
-            write_files(result, temporary, places, curve, pictures=pictures, vtk=vtk)
+        write_files(result, folder, places, curve, pictures=pictures, vtk=vtk)
     if result.footprint.unstable:
         many = ", ".join(map(str, result.footprint.unstable))
         where = result.footprint.unstable_place

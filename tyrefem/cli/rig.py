@@ -3,13 +3,14 @@
 from __future__ import annotations
 
 from pathlib import Path
-from typing import Annotated
+from typing import Annotated, Any
 
 import typer
 
 from tyrefem.cli.common import ForceOption, JsonOption, QuietOption, print_json, warn
 from tyrefem.cli.progress import progress
-from tyrefem.errors import InputError
+from tyrefem.errors import InputError, Interrupted
+from tyrefem.interruption import held_back
 from tyrefem.results_folder import results_folder
 
 group = typer.Typer(
@@ -139,7 +140,7 @@ def layers(
     """Fit one set of readings with 1, 2, 3 ... layers: what more layers improve."""
     from tyrefem import rig as rigs
     from tyrefem.rig.find import tables as beside
-    from tyrefem.rig.layer_study import FILES, study, write
+    from tyrefem.rig.layer_study import FILES, LayerStudy, fits, write, write_table
     from tyrefem.rig.readings import matched
 
     card, file = rigs.load(rig)
@@ -148,11 +149,22 @@ def layers(
     counts = range(1, min(most, len(card.layers)) + 1)
     place = out or Path("results") / f"rig-{_name(file)}-layers"
     with results_folder(place, "rig layers", FILES, force=force) as folder:
-        with progress(f"{_name(file)}: layers", counts[-1], quiet=quiet or as_json) as step:
-            if not tests:
-                done = rigs.simulate(card, seed=seed)
-                tests = tuple(matched(card, run, list(card.sensors)) for run in done.runs.values())
-            found = study(card, tests, counts, progress=step)
+        finished: dict[int, Any] = {}
+        try:
+            with progress(f"{_name(file)}: layers", counts[-1], quiet=quiet or as_json) as step:
+                if not tests:
+                    done = rigs.simulate(card, seed=seed)
+                    tests = tuple(matched(card, run, list(card.sensors)) for run in done.runs.values())
+                for count, fit in fits(card, tests, counts):
+                    finished[count] = fit
+                    step(count)
+        except KeyboardInterrupt:
+            if not finished:
+                raise
+            with held_back():
+                write_table(LayerStudy(tuple(finished), tuple(finished.values())), folder, complete=False)
+            raise Interrupted(f"{len(finished)} of {len(counts)} fits are in {folder / 'layers.csv'}") from None
+        found = LayerStudy(tuple(finished), tuple(finished.values()))
         write(found, folder)
     if as_json:
         print_json({"rows": found.table().to_dict("records")})

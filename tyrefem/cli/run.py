@@ -21,7 +21,8 @@ from tyrefem.cli.common import (
     warn,
 )
 from tyrefem.cli.progress import progress
-from tyrefem.errors import InputError
+from tyrefem.errors import InputError, Interrupted
+from tyrefem.interruption import held_back, keeping
 from tyrefem.results_folder import results_folder
 
 if TYPE_CHECKING:
@@ -69,21 +70,25 @@ def run(
 def _single(study: Study, folder: Path, pictures: bool, vtk: bool, revolved: bool, as_json: bool, quiet: bool) -> None:
     said = warn(study.warnings)
     with progress(study.name, study.card.drive.end, quiet=quiet) as step:
-        result = study.run(step)
-    result.save(folder)
-    if vtk:
-        result.to_vtk(folder / "vtk", revolved=revolved)
-    if pictures:
-        result.plot(folder / "pictures")
-        result.report(folder / "report.html")
-    warn(result.warnings, said)
+        result = study.run(step, partial=True)
+    reached = f"{result.times[-1]:g} s" if result.history.interrupted else ""
+    tables = f"the tables up to {reached}" if reached else "the tables"
+    with keeping(f"{tables} are in {folder}, pictures and VTK files are not complete"):
+        with held_back():
+            result.save(folder)
+        if vtk:
+            result.to_vtk(folder / "vtk", revolved=revolved)
+        if pictures:
+            result.plot(folder / "pictures")
+            result.report(folder / "report.html")
+    warn(() if reached else result.warnings, said)
     if not as_json:
         typer.echo(_words(result))
         typer.echo(f"results in {folder}" + (f"; read {folder / 'report.html'}" if pictures else ""))
-    if result.history.interrupted:
+    if reached:
         if as_json:
             print_file(folder / "summary.json")
-        raise typer.Exit(fail(f"interrupted at {result.times[-1]:g} s; what is finished is in {folder}", 130))
+        raise Interrupted(f"what is finished is in {folder}", at=reached)
 
 
 def _words(result: Result) -> str:
@@ -128,13 +133,11 @@ def _campaign(
         if pictures:
             result.report(place / "report.html")
 
-    try:
+    with keeping(f"finished cases are in {folder / 'campaign.csv'}"):
         with progress(study.name, len(campaign.cases), quiet=quiet) as step:
             table = run_campaign(campaign, folder, lambda done, _all: step(done), each)
-    except KeyboardInterrupt:
-        raise typer.Exit(fail(f"interrupted; finished cases are in {folder / 'campaign.csv'}", 130)) from None
-    if pictures:
-        write_campaign_report(campaign, table, folder / "report.html")
+        if pictures:
+            write_campaign_report(campaign, table, folder / "report.html")
     failed = table[table["failure"] != ""]
     if as_json:
         print_json({"study": study.name, "cases": table.to_dict("records")})

@@ -20,7 +20,8 @@ from tyrefem.cli.common import (
     warn,
 )
 from tyrefem.cli.progress import stages
-from tyrefem.errors import InputError
+from tyrefem.errors import InputError, Interrupted
+from tyrefem.interruption import keeping
 from tyrefem.results_folder import results_folder
 
 #: Groups of options in the help.
@@ -174,7 +175,8 @@ def sweep(
     ):
         found = answered(wanted, how.given({"folder": folder, "progress": tick}), scheduler, workers)
         tick("drawing", 0, 1)
-        summary = write(found, folder, pictures=pictures)
+        with keeping(f"finished variants are in {folder}, the same command goes on"):
+            summary = write(found, folder, pictures=pictures)
     if as_json:
         print_file(folder / "summary.json")
     else:
@@ -185,9 +187,11 @@ def sweep(
         fail(f"variant {variant}: {reason}")
     if len(found.failed) > TOLD:
         fail(f"... and {len(found.failed) - TOLD} more; all are in {folder / 'sweep.csv'}")
+    kept = f"what is finished is in {folder}, the same command goes on"
+    if found.interrupted == "interrupted":
+        raise Interrupted(kept)
     if found.interrupted:
-        kept = f"{found.interrupted}; what is finished is in {folder}, the same command goes on"
-        raise typer.Exit(fail(kept, 130 if found.interrupted == "interrupted" else 1))
+        raise typer.Exit(fail(f"{found.interrupted}; {kept}", 1))
     if found.failed:
         raise typer.Exit(1)
 

@@ -180,6 +180,7 @@ class Conduction:
         progress: Callable[[float], None] | None = None,
         max_step: float | None = None,
         reservoirs_initial: Mapping[str, float] | None = None,
+        partial: bool = False,
     ) -> History:
         """Integrate from times[0] to times[-1] with error control.
 
@@ -191,9 +192,10 @@ class Conduction:
         breakpoints : times where data jump; steps end there, data are seen from the left before and the right after.
         progress : called with t after every accepted step. max_step : s.
         reservoirs_initial : name -> degC, over the reservoirs' own.
+        partial : Ctrl-C gives the finished part back, `interrupted` being True; without it, it is raised.
 
-        Raises InputError for bad times, tolerance or initial values, SolverError if the step vanishes. A
-        KeyboardInterrupt returns the finished part, `interrupted` being True.
+        Raises InputError for bad times, tolerance or initial values, SolverError if the step vanishes, and
+        KeyboardInterrupt: nobody takes a part for the whole who has not asked for it.
         """
         when = np.array(times, dtype=float)
         if when.ndim != 1 or when.size < 2 or not np.isfinite(when).all() or np.any(np.diff(when) <= 0):
@@ -225,10 +227,10 @@ class Conduction:
             with one_thread():
                 run.run(progress)
         except KeyboardInterrupt:
+            if not partial or not tally.kept:
+                raise
             interrupted = True
         done = len(tally.kept)
-        if not done:
-            raise KeyboardInterrupt
         when = when[:done]
         gas = np.array(run.gas[:done])
         peaks = run.peaks()

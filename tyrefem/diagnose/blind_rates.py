@@ -14,13 +14,16 @@ from pathlib import Path
 from typing import Any
 
 import tyrefem
+from tyrefem.answer_store import PROGRESS
 from tyrefem.diagnose.bench import Bench, Response
 from tyrefem.diagnose.blind import Outcome, cases, run_case
 from tyrefem.diagnose.isolability import candidates_of, layout_notes, planned
 from tyrefem.diagnose.laboratory import laboratory
+from tyrefem.diagnose.progress_store import ProgressStore
 from tyrefem.diagnose.responses import responses, unknowns_of
 from tyrefem.diagnose.truth import own_mesh
 from tyrefem.errors import InputError
+from tyrefem.interruption import held_back, keeping
 from tyrefem.output import atomic_path, jsonable, write_json
 from tyrefem.processes import processes
 from tyrefem.requirements import Requirements
@@ -250,25 +253,35 @@ def run_blind(
     for path in store.glob(f"{tag}-*.json"):
         rows[int(path.stem.split("-")[1])] = json.loads(path.read_text(encoding="utf-8"))
     left = [number for number in range(count) if number not in rows]
-    if left:
-        with laboratory(Bench(study, trials), workers) as lab:
-            known = responses(lab, unknowns_of(study, [*study.sensors, GAS])[0])
-        for number, row in _answers((study, known, reduced), left, count, seed, workers):
-            rows[number] = row
-            with atomic_path(store / f"{tag}-{number:05d}.json") as temporary:
-                temporary.write_text(json.dumps(row), encoding="utf-8")
-            if tick:
-                tick(len(rows))
-    notes = layout_notes(study)
-    if not any(one.hold_out for one in trials):
-        notes += ("No run is held out, so nothing is said of runs that were not fitted.",)
-    found = Blind(study.name, seed, tuple(rows[number] for number in sorted(rows)), notes)
-    write_json(found.to_dict(), folder / "blind.json")
-    from tyrefem.diagnose.blind_picture import picture
-    from tyrefem.plotting.style import png
+    # What the cases share is kept too until they are finished.
+    progress = ProgressStore(folder / PROGRESS)
 
-    with atomic_path(folder / "blind.png") as temporary:
-        temporary.write_bytes(png(picture(found)))
+    def kept() -> str:
+        return f"{len(rows)} of {count} cases are finished; the same command goes on from there"
+
+    with keeping(kept):
+        if left:
+            bench = Bench(study, trials)
+            progress.open(bench)
+            with laboratory(bench, workers, progress) as lab:
+                known = responses(lab, unknowns_of(study, [*study.sensors, GAS])[0])
+            for number, row in _answers((study, known, reduced), left, count, seed, workers):
+                rows[number] = row
+                with held_back(), atomic_path(store / f"{tag}-{number:05d}.json") as temporary:
+                    temporary.write_text(json.dumps(row), encoding="utf-8")
+                if tick:
+                    tick(len(rows))
+        notes = layout_notes(study)
+        if not any(one.hold_out for one in trials):
+            notes += ("No run is held out, so nothing is said of runs that were not fitted.",)
+        found = Blind(study.name, seed, tuple(rows[number] for number in sorted(rows)), notes)
+        write_json(found.to_dict(), folder / "blind.json")
+        from tyrefem.diagnose.blind_picture import picture
+        from tyrefem.plotting.style import png
+
+        with atomic_path(folder / "blind.png") as temporary:
+            temporary.write_bytes(png(picture(found)))
+    progress.clear()
     return found
 
 

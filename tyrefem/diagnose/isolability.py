@@ -17,6 +17,7 @@ from tyrefem.diagnose.bench import Bench
 from tyrefem.diagnose.evidence import Linear, Members
 from tyrefem.diagnose.gap import Gap
 from tyrefem.diagnose.laboratory import laboratory
+from tyrefem.diagnose.progress_store import ProgressStore
 from tyrefem.diagnose.responses import gap_of
 from tyrefem.diagnose.sets import Prior
 from tyrefem.diagnose.trials import Series, Trial
@@ -202,9 +203,16 @@ def candidates_of(study: Study) -> tuple[Candidate, ...]:
 
 
 def isolability(
-    study: Study, *, workers: int = 1, progress: Callable[[str, int, int], None] | None = None, gap: Gap | None = None
+    study: Study,
+    *,
+    workers: int = 1,
+    progress: Callable[[str, int, int], None] | None = None,
+    gap: Gap | None = None,
+    store: ProgressStore | None = None,
 ) -> Isolability:
     """What the sensors and runs of a study can tell apart, by the linear model about the study as it is.
+
+    ``gap``: where it is at hand. ``store``: keeps finished simulations, which an interrupted call takes up again.
 
     Raises
     ------
@@ -213,7 +221,10 @@ def isolability(
     NEEDS.check(study)
     found = candidates_of(study)
     if gap is None:
-        with laboratory(Bench(study, planned(study)), workers) as lab:
+        bench = Bench(study, planned(study))
+        if store is not None:
+            store.open(bench)
+        with laboratory(bench, workers, store) as lab:
             gap = gap_of(lab, progress)
     prior = Prior(found, study.card.diagnosis.effects_expected)
     linear = gap.linear(gap.fitted)

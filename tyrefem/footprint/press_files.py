@@ -10,7 +10,8 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
-from tyrefem.output import write_json
+from tyrefem.interruption import keeping
+from tyrefem.output import atomic_folder, write_json
 
 if TYPE_CHECKING:
     from tyrefem.footprint.cord_cycle import CordCycle
@@ -39,7 +40,8 @@ def write_files(
     """``press.json``, ``load-deflection.csv``, ``strain-cycle.csv``, ``cord-tension.csv``, ``harmonics.csv``; pictures
     of the same, of the section and of the contact pressure; ``tyre.vtu``.
 
-    Without cords there is no ``cord-tension``, and of a wheel that stands no ``harmonics``.
+    The tables are written before anything is drawn. Without cords there is no ``cord-tension``, and of a wheel that
+    stands no ``harmonics``.
 
     Parameters
     ----------
@@ -49,14 +51,16 @@ def write_files(
     from tyrefem.footprint.revolved import RevolvedTyre
 
     cords = cord_cycles(pressed.tyre, pressed.cycle)
-    write_json(pressed.summary(), folder / "press.json")
-    for name, rows in _tables(pressed, places, curve, cords).items():
-        (folder / f"{name}.csv").write_text(_csv(rows), encoding="utf-8")
-    if pictures:
-        for name, picture in _pictures(pressed, places, curve, cords).items():
-            (folder / f"{name}.png").write_bytes(picture)
-    if vtk:
-        RevolvedTyre(pressed).write(folder / "tyre.vtu")
+    with atomic_folder(folder) as place:
+        write_json(pressed.summary(), place / "press.json")
+        for name, rows in _tables(pressed, places, curve, cords).items():
+            (place / f"{name}.csv").write_text(_csv(rows), encoding="utf-8")
+    with keeping(f"the tables are in {folder}, the pictures are not"), atomic_folder(folder) as place:
+        if pictures:
+            for name, picture in _pictures(pressed, places, curve, cords).items():
+                (place / f"{name}.png").write_bytes(picture)
+        if vtk:
+            RevolvedTyre(pressed).write(place / "tyre.vtu")
 
 
 def _tables(

@@ -63,8 +63,6 @@ def sit(exam: Exam) -> dict[str, Any]:
     except (InputError, SolverError) as error:
         return {"failure": str(error)}
     _last.tyre = result.tyre
-    if result.history.interrupted:
-        raise KeyboardInterrupt
     readings, values = result.readings, np.asarray(result.history.values)
     columns = {name: readings[name].to_numpy() for name in readings.columns if name != "time_s"}
     speed = np.array([study.card.drive.value("speed", t) for t in result.times])

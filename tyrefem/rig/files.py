@@ -1,4 +1,4 @@
-"""What a rig's simulation, identification or layer study leaves in a folder; whole or not at all."""
+"""What a rig's simulation, identification or layer study leaves in a folder: tables first, pictures after them."""
 
 from __future__ import annotations
 
@@ -8,6 +8,7 @@ from glob import escape
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
+from tyrefem.interruption import keeping
 from tyrefem.output import atomic_folder, jsonable
 
 if TYPE_CHECKING:
@@ -34,9 +35,8 @@ def write(found: Identification, folder: Path, base: str | Sequence[str] | None 
 
     given = [base] if isinstance(base, str) else list(base or [])
     cards = layer_cards(found, bases(found.card, given))
-    data, drawn = summary(found), pictures(found)
+    data = summary(found)
     data["materials"] = {layer: f"materials/{layer}.toml" for layer in cards}
-    text = page(found, drawn, cards)
     with atomic_folder(folder) as place:
         put_json(place / "rig.json", data)
         short = (
@@ -52,13 +52,15 @@ def write(found: Identification, folder: Path, base: str | Sequence[str] | None 
         put_json(place / "summary.json", {key: data[key] for key in short})
         found.table.to_csv(place / "estimates.csv", index=False)
         _residuals(found).to_csv(place / "residuals.csv", index=False)
-        for name, content in drawn.items():
-            (place / name).write_bytes(content)
         if cards:
             (place / "materials").mkdir()
         for layer, card in cards.items():
             (place / "materials" / f"{layer}.toml").write_text(tomli_w.dumps(card), encoding="utf-8")
-        (place / "report.html").write_text(text, encoding="utf-8")
+    with keeping(f"the tables and cards are in {folder}, the page is not"), atomic_folder(folder) as place:
+        drawn = pictures(found)
+        for name, content in drawn.items():
+            (place / name).write_bytes(content)
+        (place / "report.html").write_text(page(found, drawn, cards), encoding="utf-8")
     return folder
 
 
@@ -96,13 +98,11 @@ def write_simulation(done: Simulation, folder: Path) -> Path:
     sensors = list(done.card.sensors)
     runs = {name: (run.times, run.temperatures.to_numpy()) for name, run in done.runs.items()}
     powers = {name: run.power for name, run in done.card.runs.items()}
-    drawn = {"readings.png": png(histories(done.card.phases, runs, sensors, powers))}
     on = done.clock.heating.size - 1
     strongest = max(powers, key=lambda name: powers[name])
     borders = [done.values[f"{layer.name}.thickness"] for layer in done.card.layers]
     layers = " | ".join(layer.name for layer in done.card.layers)
     words = f"{powers[strongest]:g} W, laser from above; layers: {layers}"
-    drawn["patch.png"] = png(heated_patch(done.twin.grid(done.values), done.fields[strongest][on], borders, words))
     summary = {
         "rig": done.card.title,
         "file": done.file,
@@ -121,9 +121,11 @@ def write_simulation(done: Simulation, folder: Path) -> Path:
     with atomic_folder(folder) as place:
         for name, run in done.runs.items():
             run.write(place / f"{name}.csv")
-        for name, content in drawn.items():
-            (place / name).write_bytes(content)
         put_json(place / "summary.json", summary)
+    with keeping(f"the tables are in {folder}, the pictures are not"), atomic_folder(folder) as place:
+        patch = heated_patch(done.twin.grid(done.values), done.fields[strongest][on], borders, words)
+        (place / "readings.png").write_bytes(png(histories(done.card.phases, runs, sensors, powers)))
+        (place / "patch.png").write_bytes(png(patch))
     return folder
 
 

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Sequence
+from collections.abc import Callable, Iterator, Sequence
 from dataclasses import dataclass
 from itertools import pairwise
 from pathlib import Path
@@ -12,6 +12,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from tyrefem.errors import InputError
+from tyrefem.interruption import keeping
 from tyrefem.rig.card import RigCard
 from tyrefem.rig.grid import Fineness
 from tyrefem.rig.identification import Identification, identify
@@ -128,12 +129,37 @@ def study(
     progress: Callable[[int], None] | None = None,
 ) -> LayerStudy:
     """Fit the tests with each number of layers, properties constant in temperature."""
-    fits = []
-    for count in counts:
-        fits.append(identify(merged(card, count), tests=tests, linear=False, fineness=fineness))
+    found: dict[int, Identification] = {}
+    for count, fit in fits(card, tests, counts, fineness):
+        found[count] = fit
         if progress:
             progress(count)
-    return LayerStudy(tuple(counts), tuple(fits))
+    return LayerStudy(tuple(found), tuple(found.values()))
+
+
+def fits(
+    card: RigCard,
+    tests: Sequence[HeatingTest],
+    counts: Sequence[int],
+    fineness: Fineness | None = None,
+) -> Iterator[tuple[int, Identification]]:
+    """The same one by one: number of layers, and its fit as soon as it is finished."""
+    for count in counts:
+        yield count, identify(merged(card, count), tests=tests, linear=False, fineness=fineness)
+
+
+def write_table(done: LayerStudy, folder: Path, *, complete: bool = True) -> Path:
+    """Write ``layers.csv`` and ``summary.json``, which says whether all fits are in it."""
+    from tyrefem.output import atomic_folder
+    from tyrefem.rig.files import put_json
+    from tyrefem.summary import versions
+
+    table = done.table()
+    with atomic_folder(folder) as place:
+        table.to_csv(place / "layers.csv", index=False)
+        summary = {"complete": complete, "rows": table.to_dict("records"), "versions": versions()}
+        put_json(place / "summary.json", summary)
+    return folder
 
 
 #: Files that `write` writes.
@@ -144,14 +170,9 @@ def write(done: LayerStudy, folder: Path) -> Path:
     """Write ``layers.csv``, ``layers.png`` and ``summary.json``."""
     from tyrefem.output import atomic_folder
     from tyrefem.plotting.style import png
-    from tyrefem.rig.files import put_json
     from tyrefem.rig.layer_pictures import layers_figure
-    from tyrefem.summary import versions
 
-    table = done.table()
-    picture = png(layers_figure(done))
-    with atomic_folder(folder) as place:
-        table.to_csv(place / "layers.csv", index=False)
-        (place / "layers.png").write_bytes(picture)
-        put_json(place / "summary.json", {"rows": table.to_dict("records"), "versions": versions()})
+    write_table(done, folder)
+    with keeping(f"the table is in {folder}, its picture is not"), atomic_folder(folder) as place:
+        (place / "layers.png").write_bytes(png(layers_figure(done)))
     return folder

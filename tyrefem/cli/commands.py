@@ -1,0 +1,110 @@
+"""The commands, one module each, and what their errors say. Heavy imports happen inside the commands."""
+
+from __future__ import annotations
+
+import importlib
+import pkgutil
+from typing import Annotated, Any
+
+import typer
+from typer.core import TyperGroup
+
+import tyrefem
+import tyrefem.cli
+from tyrefem.errors import InputError
+from tyrefem.output import reading
+
+
+class Stopped(BaseException):
+    """Ctrl-C on its way through the parser, which would make an exit without a word of it; caused by it."""
+
+
+class Commands(TyperGroup):
+    """The group of all commands; lets Ctrl-C through."""
+
+    def make_context(self, *given: Any, **named: Any) -> Any:
+        """Read the command line."""
+        try:
+            return super().make_context(*given, **named)
+        except KeyboardInterrupt as interruption:
+            raise Stopped from interruption
+
+    def invoke(self, *given: Any, **named: Any) -> Any:
+        """Run the command."""
+        try:
+            return super().invoke(*given, **named)
+        except KeyboardInterrupt as interruption:
+            raise Stopped from interruption
+
+
+app = typer.Typer(
+    name="tyrefem",
+    cls=Commands,
+    help="Temperatures of a rolling tyre: from its section to a report.",
+    no_args_is_help=True,
+    add_completion=True,
+    pretty_exceptions_enable=False,
+    context_settings={"help_option_names": ["-h", "--help"]},
+)
+
+
+def _version(wanted: bool) -> None:
+    if wanted:
+        typer.echo(f"tyrefem {tyrefem.__version__}")
+        raise typer.Exit
+
+
+@app.callback()
+def _options(
+    version: Annotated[
+        bool, typer.Option("--version", callback=_version, is_eager=True, help="Print the version and stop.")
+    ] = False,
+) -> None:
+    """Temperatures of a rolling tyre: from its section to a report."""
+
+
+def _register() -> None:
+    """Every module of the package that has a ``register`` is a command; ``ORDER`` is its place in the help."""
+    names = [found.name for found in pkgutil.iter_modules(tyrefem.cli.__path__) if found.name != "commands"]
+    modules = [importlib.import_module(f"tyrefem.cli.{name}") for name in names]
+    commands = [module for module in modules if hasattr(module, "register")]
+    for module in sorted(commands, key=lambda module: module.ORDER):
+        module.register(app)
+
+
+_register()
+
+
+def performed(arguments: list[str] | None) -> tuple[object, int]:
+    """Run a command line: the line that it ends with, or none, and its exit code."""
+    try:
+        with reading():
+            code = app(args=arguments, prog_name=app.info.name, standalone_mode=False)
+    except InputError as error:
+        return error, 2
+    except OSError as error:
+        return ": ".join(str(part) for part in (error.filename, error.strerror or error) if part), 2
+    except SystemExit as end:
+        return None, end.code if isinstance(end.code, int) else 0
+    except Exception as error:
+        return _other(error)
+    return None, code if isinstance(code, int) else 0
+
+
+def _other(error: Exception) -> tuple[object, int]:
+    """Usage errors of the parser, and a solver that cannot go on; anything else is a defect and shows itself."""
+    name = type(error).__name__
+    if isinstance(error, typer.Abort):
+        return "interrupted; nothing was written", 130
+    if name == "SolverError":
+        return f"no solution: {error}", 1
+    # The parser's usage errors: the class lives in click or inside typer, depending on typer's version.
+    message, code = getattr(error, "format_message", None), getattr(error, "exit_code", None)
+    if not callable(message) or not isinstance(code, int):
+        raise error
+    if name == "NoArgsIsHelpError":
+        typer.echo(message())
+        return None, code
+    context = getattr(error, "ctx", None)
+    command = context.command_path if context is not None else app.info.name
+    return f"{message()} ('{command} --help' tells more)", code
