@@ -17,6 +17,7 @@ import numpy as np
 
 from tyrefem import library
 from tyrefem.effects import catalogue
+from tyrefem.interruption import held_back
 from tyrefem.output import atomic_path, jsonable
 from tyrefem.studies import Study
 
@@ -55,7 +56,7 @@ class AnswerStore:
 
     def keep(self, name: str, question: Any, answer: Any) -> None:
         """Keep an answer: an array or a tuple of several."""
-        with atomic_path(self._file(name, question)) as temporary:
+        with held_back(), atomic_path(self._file(name, question)) as temporary:
             np.savez(temporary, *(answer if isinstance(answer, tuple) else (answer,)))
 
     @property
