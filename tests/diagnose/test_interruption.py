@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import json
 import os
 import signal
 import subprocess
@@ -38,5 +39,9 @@ def test_interruption_keeps_what_is_finished_and_nothing_else(case: Case, tmp_pa
     assert err.startswith("tyrefem: interrupted; ")
     assert "the same command goes on" in err
     assert err.count("\n") == 1
-    assert [file.name for file in out.iterdir()] == [".progress"]
-    assert all(file.suffix == ".npz" and not file.name.startswith(".") for file in out.rglob("*") if file.is_file())
+    # The folder says that it is not complete, and has the finished simulations, whole.
+    assert sorted(file.name for file in out.iterdir()) == [".progress", "summary.json"]
+    assert json.loads((out / "summary.json").read_text(encoding="utf-8"))["complete"] is False
+    kept = [file for file in (out / ".progress").rglob("*") if file.is_file()]
+    assert kept
+    assert all(file.suffix == ".npz" and not file.name.startswith(".") for file in kept)
