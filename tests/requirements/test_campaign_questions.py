@@ -8,10 +8,11 @@ from pathlib import Path
 from typing import Any
 
 import pytest
+import typer
 from odd_studies import FITTED, HELD_OUT, write
 
 import tyrefem as tf
-from tyrefem.cli import main
+from tyrefem.cli import app, main
 from tyrefem.diagnose.blind_rates import run_blind
 from tyrefem.diagnose.isolability import isolability
 from tyrefem.errors import InputError
@@ -62,6 +63,14 @@ def test_a_command_asks_for_one_case(
     assert f"{campaign}/study.toml: cases: the study is a campaign" in words
     assert "--case" in words
     assert words.rstrip().endswith("light, heavy")
+
+
+def test_every_command_that_takes_a_study_takes_a_case() -> None:
+    commands = typer.main.get_command(app).commands.items()  # type: ignore[attr-defined]
+    of_studies = {name: command for name, command in commands if any(one.name == "study" for one in command.params)}
+    assert set(of_studies) - {"run"} <= {parts[0] for parts in COMMANDS.values()}
+    for name, command in of_studies.items():
+        assert "case" in [one.name for one in command.params], name
 
 
 @pytest.mark.parametrize("name", VERBS)

@@ -11,7 +11,10 @@ import pytest
 from odd_studies import END, FITTED, HELD_OUT, SENSORS, table, write
 
 import tyrefem as tf
+from tyrefem.diagnose.bench import Bench
+from tyrefem.diagnose.experiment import drive_gain
 from tyrefem.diagnose.isolability import isolability, planned
+from tyrefem.diagnose.unknowns import candidates
 from tyrefem.errors import InputError
 
 ALL_HELD_OUT = ({**FITTED, "hold_out": True}, HELD_OUT)
@@ -88,6 +91,16 @@ def test_where_nothing_is_identifiable_no_runs_are_recommended(here: Path) -> No
     found = isolability(study)
     assert not found.table["identifiable_at_usual"].any()
     assert found.runs == ()
+
+
+def test_without_sensors_the_next_drive_is_judged_by_the_contained_air(here: Path) -> None:
+    study = tf.study(write(here / "bare", sensors=False, measured=[FITTED]))
+    bench = Bench(study, planned(study))
+    warmer, brighter = ({one.amplitudes[0]: one.amplitudes[0].sd} for one in candidates(study)[:2])
+    found = drive_gain(bench, "half the speed", {"speed": 0.5}, warmer, brighter)
+    assert found is not None
+    assert found["sensor"] == "contained-air"
+    assert found["gain"] > 0
 
 
 @pytest.mark.parametrize("phases", [1, 2])

@@ -30,6 +30,8 @@ DRIVES = {
     "four fifths of the pressure": {"pressure": 0.8},
 }
 STATIONS = 9
+#: Standard deviation of a reading that no sensor's card states, K: a new sensor's, or the contained air's.
+NOISE = 0.5
 #: A thermocouple is set no closer to a surface than this, m.
 SKIN = 1e-3
 
@@ -60,7 +62,7 @@ def next_experiment(gap: Gap, judgement: Judgement, fitted: Callable[[Members], 
             row["gain"] += gain
             if np.abs(delta).max() > row["largest_K"]:
                 row["largest_K"], row["run"] = float(np.abs(delta).max()), bench.trials[number].name
-    drives = [_drive(bench, name, factors, first, second) for name, factors in DRIVES.items()]
+    drives = [drive_gain(bench, name, factors, first, second) for name, factors in DRIVES.items()]
     return {
         "between": [sets[0].key, sets[1].key],
         "sensors": sorted(sensors.values(), key=lambda one: -one["gain"])[:5],
@@ -107,7 +109,9 @@ def _places(study: Study, pair: list[Lean]) -> list[tuple[str, dict[str, float],
     return found
 
 
-def _gain(times: Array, delta: Array, spread: Array, study: Study, noise: float = 0.5, accuracy: float = 1.0) -> float:
+def _gain(
+    times: Array, delta: Array, spread: Array, study: Study, noise: float = NOISE, accuracy: float = 1.0
+) -> float:
     choice = study.card.diagnosis
     thinned = slice(None, None, max(len(times) // 60, 1))
     t, d, g = times[thinned], delta[thinned], spread[thinned]
@@ -117,8 +121,8 @@ def _gain(times: Array, delta: Array, spread: Array, study: Study, noise: float 
     return float(d @ np.linalg.solve(covariance, d) / 2)
 
 
-def _drive(bench: Bench, name: str, factors: Mapping[str, float], *values: Any) -> dict[str, Any] | None:
-    """A drive's gain with the sensors that are there; None where the tyre cannot take it."""
+def drive_gain(bench: Bench, name: str, factors: Mapping[str, float], *values: Any) -> dict[str, Any] | None:
+    """A drive's gain with the study's sensors, or the contained air if it has none; None: the tyre cannot take it."""
     from tyrefem.dotted import scaled
 
     drive = bench.study.data["drive"]
@@ -128,18 +132,17 @@ def _drive(bench: Bench, name: str, factors: Mapping[str, float], *values: Any) 
             return None
         study = bench.study.with_drive(changed)
         times = np.arange(0.0, study.card.drive.end + 1e-9, 10.0)
-        series = tuple(
-            Series(one, times, np.zeros_like(times), sensor.noise, 0.1, 100.0) for one, sensor in study.sensors.items()
-        )
+        noises = {name: sensor.noise for name, sensor in study.sensors.items()} or {GAS: NOISE}
+        series = tuple(Series(name, times, np.zeros_like(times), sd, 0.1, 100.0) for name, sd in noises.items())
         pair = [Bench(bench.study, (Trial(name, changed, True, series),)).simulate(0, one) for one in values]
     except InputError:
         return None
     gain, largest, where = 0.0, 0.0, ""
-    for sensor, card in study.sensors.items():
+    for sensor, sd in noises.items():
         a, b = (one.readings for one in pair)
         delta = a[sensor] - b[sensor]
         # The sensors are the old ones: what their place and offset can do was used up by the fit.
-        gain += _gain(pair[0].grid, delta, np.zeros_like(delta), study, card.noise, 0.1)
+        gain += _gain(pair[0].grid, delta, np.zeros_like(delta), study, sd, 0.1)
         if np.abs(delta).max() > largest:
             largest, where = float(np.abs(delta).max()), sensor
     return {"drive": name, "changes": changed, "gain": gain, "largest_K": largest, "sensor": where}
