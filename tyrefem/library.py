@@ -91,7 +91,7 @@ def load(kind: str, reference: object, near: Path | None = None) -> tuple[dict[s
     """
     card, changes = _split(kind, reference)
     path = find(kind, card, near)
-    name = path.parent.name if kind in FILES else path.stem
+    name = Path(os.path.abspath(path)).parent.name if kind in FILES else path.stem
     return merged(read_toml(path), changes), path, name
 
 

@@ -491,9 +491,10 @@ def study(name: str | Path, changes: Mapping[str, Any] | None = None, case: str 
     from tyrefem.cards import read_toml
 
     path = library.find("study", str(name))
-    found_name = path.parent.name if path.name == "study.toml" else path.stem
+    folder = path.parent.resolve()
+    stem = folder.name if path.name == "study.toml" else path.stem
     changes = dict(changes or {})
     # Another table of cases comes before the case that is taken of it.
     first = changes if case is None else {key: changes.pop(key) for key in list(changes) if key == "cases"}
-    loaded = Study(found_name, all_changed(read_toml(path), first), path, path.parent.resolve())
+    loaded = Study(stem, all_changed(read_toml(path), first), path, folder)
     return loaded if case is None else loaded.case(case).replace(changes)

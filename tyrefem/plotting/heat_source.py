@@ -139,7 +139,8 @@ def _anchor(drawn: Canvas, zone: ZoneHeat) -> tuple[float, float]:
     x, y = millimetres(zone.points.T)
     here = np.flatnonzero(x >= 0)
     s, depth = drawn.section.locate(zone.points.T[here])
-    middle = (s.min() + s.max()) / 2
-    away = np.abs(s - middle) + np.abs(depth - np.median(depth[np.abs(s - middle) < 3e-3]))
+    off = np.abs(s - (s.min() + s.max()) / 2)
+    # On a coarse mesh no node may be near the middle.
+    away = off + np.abs(depth - np.median(depth[off < max(3e-3, 1.01 * float(off.min()))]))
     node = here[int(np.argmin(away))]
     return float(x[node]), float(y[node])

@@ -101,9 +101,12 @@ class Store:
         self.notes[name] = value
 
     def _write(self, *entries: Mapping[str, Any]) -> None:
-        self._file.write("".join(json.dumps(jsonable(entry)) + "\n" for entry in entries).encode())
-        self._file.flush()
-        os.fsync(self._file.fileno())
+        try:
+            self._file.write("".join(json.dumps(jsonable(entry)) + "\n" for entry in entries).encode())
+            self._file.flush()
+            os.fsync(self._file.fileno())
+        except OSError as error:
+            raise InputError(f"cannot be written: {error.strerror or error}", file=self.path) from None
 
     def close(self) -> None:
         """No more lines."""

@@ -1,0 +1,94 @@
+"""Every command, found by itself, against folders and files in which something of the user's could be lost."""
+
+from __future__ import annotations
+
+import json
+import os
+from pathlib import Path
+
+import pytest
+from content import content, half_written, one_line, unchanged
+from every_command import Command, commands
+from filelock import FileLock
+
+from tyrefem.cli import main
+
+WRITING = [each for each in commands() if "out" in each.options]
+
+
+def call(command: Command, capfd: pytest.CaptureFixture[str], out: str | Path, *more: str) -> tuple[int, str]:
+    """Exit code and stderr; stdout is thrown away."""
+    code = main(command.line(out, *more))
+    err = capfd.readouterr().err
+    assert "Traceback" not in err
+    return code, err
+
+
+@pytest.mark.parametrize("command", WRITING, ids=lambda command: command.name)
+def test_nothing_of_the_users_is_lost(command: Command, here: Path, capfd: pytest.CaptureFixture[str]) -> None:
+    before = content(here)
+    # Among the inputs: written beside them, or refused.
+    code, err = call(command, capfd, "." if command.writes_folder else command.out(here))
+    assert code in (0, 2), err
+    unchanged(before, here)
+    place = here
+    if code == 2:
+        one_line(err)
+        assert content(here) == before
+        place = command.out(here)
+        assert call(command, capfd, place)[0] == 0
+    written = {name: entry for name, entry in content(here).items() if name not in before}
+    assert written
+    assert half_written(here) == []
+    if command.writes_folder:
+        _folder(command, place, capfd)
+    else:
+        _file(command, place if place != here else command.out(here), capfd)
+    unchanged(before, here)
+
+
+def _refused(command: Command, out: Path, capfd: pytest.CaptureFixture[str], *more: str) -> str:
+    state = content(Path())
+    code, err = call(command, capfd, out, *more)
+    assert code == 2, err
+    one_line(err)
+    assert len(err.splitlines()) == 1
+    assert content(Path()) == state
+    return err
+
+
+def _folder(command: Command, place: Path, capfd: pytest.CaptureFixture[str]) -> None:
+    summary = json.loads((place / "summary.json").read_text(encoding="utf-8"))
+    assert summary["complete"] is True
+    assert summary["command"] == command.words
+    assert summary["files"]
+    for name in summary["files"]:
+        assert (place / name).is_file()
+    # A file that was changed since is the user's.
+    mine = place / summary["files"][0]
+    mine.write_bytes(b"mine")
+    assert summary["files"][0] in _refused(command, place, capfd)
+    # Another command at work in the folder.
+    with FileLock(place / ".tyrefem-lock"):
+        assert "another command" in _refused(command, place, capfd)
+    # Another command's results.
+    (place / "summary.json").write_text('{"command": "another"}')
+    assert "tyrefem another" in _refused(command, place, capfd)
+    # No folder at all.
+    Path("file").write_text("mine")
+    Path("link").symlink_to("nowhere")
+    assert "in the place" in _refused(command, Path("file"), capfd)
+    assert "link to nothing" in _refused(command, Path("link"), capfd)
+    assert "cannot be written" in _refused(command, Path("/proc/tyrefem"), capfd)
+    assert os.path.islink("link")
+
+
+def _file(command: Command, file: Path, capfd: pytest.CaptureFixture[str]) -> None:
+    assert file.is_file()
+    file.write_bytes(b"mine")
+    assert "--force" in _refused(command, file, capfd)
+    assert "is a folder" in _refused(command, Path(), capfd)
+    link = Path("link").with_suffix(file.suffix)
+    link.symlink_to("nowhere")
+    assert "link to nothing" in _refused(command, link, capfd)
+    assert "must end with" in _refused(command, Path("study.toml"), capfd, "--force")

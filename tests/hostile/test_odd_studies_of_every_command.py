@@ -1,0 +1,54 @@
+"""Every command that takes a study, given one that lacks what its question may need."""
+
+from __future__ import annotations
+
+from pathlib import Path
+
+import pytest
+import small
+from content import content, half_written, one_line, unchanged
+from every_command import Command, commands
+
+from tyrefem.cli import main
+
+PHASES = """[drive]
+load = "2700 lbf"
+pressure = "83 psi"
+ambient = "25 degC"
+[[drive.phases]]
+name = "rolling"
+speed = "20 mph"
+duration = "20 s"
+[[drive.phases]]
+name = "standing"
+speed = "0 mph"
+duration = "10 s"
+"""
+ODD = {
+    "campaign": small.study(cases='cases = "cases.csv"', measured=""),
+    "no-sensors": small.study(sensors="", measured=""),
+    "no-measured-runs": small.study(measured=""),
+    "nothing-held-out": small.study(measured=small.MEASURED.replace("true", "false")),
+    "everything-held-out": small.study(measured=small.MEASURED.replace("false", "true")),
+    "several-phases": small.study(drive=PHASES, measured=""),
+}
+QUESTIONS = [each for each in commands() if each.of_study]
+
+
+@pytest.mark.parametrize("odd", ODD)
+@pytest.mark.parametrize("command", QUESTIONS, ids=lambda command: command.name)
+def test_an_answer_or_one_error(command: Command, odd: str, here: Path, capfd: pytest.CaptureFixture[str]) -> None:
+    (here / "study.toml").write_text(ODD[odd])
+    (here / "cases.csv").write_text("name,drive.speed [mph]\nslow,10\nfast,20\n")
+    before = content(here)
+    out = command.out(here / "new")
+    code = main(command.line(out))
+    err = capfd.readouterr().err
+    assert code in (0, 2), err
+    one_line(err)
+    unchanged(before, here)
+    assert half_written(here) == []
+    if code == 2:
+        assert len(err.splitlines()) == 1
+        assert content(here) == before
+        assert not out.parent.exists()
