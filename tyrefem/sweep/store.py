@@ -65,6 +65,9 @@ class Store:
         except OSError as error:
             self.close()
             raise InputError(f"cannot be written: {error.strerror or error}", file=self.path) from None
+        except InputError:
+            self.close()
+            raise
         return len(self.done)
 
     def _read(self) -> int:
