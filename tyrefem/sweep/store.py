@@ -7,6 +7,7 @@ import math
 import os
 import sys
 from collections.abc import Iterator, Mapping
+from contextlib import suppress
 from dataclasses import dataclass, field
 from pathlib import Path
 from typing import Any
@@ -114,7 +115,9 @@ class Store:
     def close(self) -> None:
         """No more lines."""
         if self._file is not None:
-            self._file.close()
+            # What a full disk did not take was refused when it was written.
+            with suppress(OSError):
+                self._file.close()
             self._file = None
             end_writing(self.path.absolute())
 
