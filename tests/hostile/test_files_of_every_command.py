@@ -92,3 +92,21 @@ def _file(command: Command, file: Path, capfd: pytest.CaptureFixture[str]) -> No
     link.symlink_to("nowhere")
     assert "link to nothing" in _refused(command, link, capfd)
     assert "must end with" in _refused(command, Path("study.toml"), capfd, "--force")
+
+
+def test_a_rigs_own_tables_are_never_simulated_over(here: Path, capfd: pytest.CaptureFixture[str]) -> None:
+    before = content(here)
+    for force in ([], ["--force"]):
+        assert main(["rig", "simulate", "rig", "--out", "rig", *force]) == 2
+        assert "a.csv" in capfd.readouterr().err
+    assert content(here) == before
+
+
+def test_a_studys_own_table_is_never_replaced_by_a_run(here: Path, capfd: pytest.CaptureFixture[str]) -> None:
+    (here / "measured.csv").rename(here / "readings.csv")
+    (here / "study.toml").write_text((here / "study.toml").read_text().replace("measured.csv", "readings.csv"))
+    (here / "study.toml").rename(here / "mine.toml")
+    before = content(here)
+    assert main(["run", "mine.toml", "--out", ".", "--force"]) == 2
+    assert "is an input" in capfd.readouterr().err
+    assert content(here) == before

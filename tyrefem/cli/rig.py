@@ -39,6 +39,7 @@ def simulate(
     from tyrefem import rig as rigs
     from tyrefem.quantity import parse
     from tyrefem.rig.files import simulation_files, write_simulation
+    from tyrefem.rig.find import beside
 
     card, file = rigs.load(rig)
     warn(warning.within(file=file) for warning in card.warnings())
@@ -50,7 +51,7 @@ def simulate(
     if seed is not None and seed < 0:
         raise InputError("must not be negative", field="--seed")
     with (
-        results_folder(place, "rig simulate", simulation_files(card), force=force) as folder,
+        results_folder(place, "rig simulate", simulation_files(card), inputs=beside(card, file), force=force) as folder,
         progress(f"{_name(file)}: simulated tests", quiet=quiet or as_json),
     ):
         done = rigs.simulate(card, every=step, seed=seed)
@@ -88,13 +89,13 @@ def identify(
     """Conductivity and specific heat of every layer with 95 % intervals; what the tables cannot determine."""
     from tyrefem import rig as rigs
     from tyrefem.rig.files import FILES, write
-    from tyrefem.rig.find import tables as beside
+    from tyrefem.rig.find import tables as tables_of
     from tyrefem.rig.layer_cards import bases
     from tyrefem.rig.verdict import shown, spoken
 
     card, file = rigs.load(rig)
     warn(warning.within(file=file) for warning in card.warnings())
-    tests = rigs.read(card, beside(card, file, tables or ()), without or ())
+    tests = rigs.read(card, tables_of(card, file, tables or ()), without or ())
     chosen = bases(card, base or [])
     count = 0
     total = _USUAL * len(tests)
@@ -139,13 +140,13 @@ def layers(
 ) -> None:
     """Fit one set of readings with 1, 2, 3 ... layers: what more layers improve."""
     from tyrefem import rig as rigs
-    from tyrefem.rig.find import tables as beside
+    from tyrefem.rig.find import tables as tables_of
     from tyrefem.rig.layer_study import FILES, LayerStudy, fits, write, write_table
     from tyrefem.rig.readings import matched
 
     card, file = rigs.load(rig)
     warn(warning.within(file=file) for warning in card.warnings())
-    tests = rigs.read(card, beside(card, file, tables)) if tables else ()
+    tests = rigs.read(card, tables_of(card, file, tables)) if tables else ()
     counts = range(1, min(most, len(card.layers)) + 1)
     place = out or Path("results") / f"rig-{_name(file)}-layers"
     with results_folder(place, "rig layers", FILES, force=force) as folder:

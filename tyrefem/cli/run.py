@@ -55,13 +55,14 @@ def run(
     found = load(study, values, case)
     place = out or Path("results") / found.name
     quiet = quiet or as_json
+    tables = [entry.table for entry in found.measured]
     if found.is_campaign:
         campaign = found.campaign()
         _refuse_overlaid(campaign, values)
-        with results_folder(place, "run", campaign_files(campaign), force=force) as folder:
+        with results_folder(place, "run", campaign_files(campaign), inputs=tables, force=force) as folder:
             _campaign(campaign, folder, pictures, vtk, revolved, as_json, quiet)
     else:
-        with results_folder(place, "run", run_files(found), force=force) as folder:
+        with results_folder(place, "run", run_files(found), inputs=tables, force=force) as folder:
             _single(found, folder, pictures, vtk, revolved, as_json, quiet)
         if as_json:
             print_file(folder / "summary.json")

@@ -43,6 +43,11 @@ def load(name: str | Path) -> tuple[RigCard, Path]:
     return RigCard.check(read_toml(file), file), file
 
 
+def beside(card: RigCard, file: Path) -> list[Path]:
+    """Where the runs' tables lie if none are named: beside the card; they need not be there."""
+    return [file.parent / f"{run}.csv" for run in card.runs]
+
+
 def tables(card: RigCard, file: Path, given: Iterable[str | Path] = ()) -> list[Path]:
     """Files of measured tables: as given (here, else beside the card); without any, each run's ``RUN.csv`` there.
 
@@ -56,7 +61,7 @@ def tables(card: RigCard, file: Path, given: Iterable[str | Path] = ()) -> list[
     named = [Path(table) for table in given]
     if named:
         return [folder / one if not one.exists() and (folder / one).is_file() else one for one in named]
-    files = [folder / f"{run}.csv" for run in card.runs]
+    files = beside(card, file)
     missing = [table.name for table in files if not table.is_file()]
     if len(missing) == len(files):
         raise InputError(f"no table is given and none of {', '.join(missing)} lies beside the card", file=file)
