@@ -11,6 +11,8 @@ from pathlib import Path
 from tyrefem.errors import InputError
 from tyrefem.output import WriteGuard, guarded, inputs_read, place_of_output
 
+#: Forms of a picture, by the file's ending.
+PICTURES = (".png", ".pdf", ".svg")
 #: What stands in every single file that is written: in a picture's metadata, a comment of an archive or a mesh.
 MARK = b"tyrefem"
 #: Bytes at a file's beginning and end that are searched for it.

@@ -83,7 +83,7 @@ def compare(
     typer.echo(comparison.table[columns].to_string(index=False, float_format="%.3g"))
     typer.echo(comparison.summary)
     for note in comparison.notes:
-        typer.echo(f"note: {note}")
+        typer.echo(note if note.startswith(("Note: ", "ERROR: ")) else f"Note: {note}")
     typer.echo(f"results in {folder}; read {folder / 'comparison.html'}")
 
 

@@ -87,12 +87,11 @@ def diagnose(
     if as_json:
         print_json(diagnosis.to_dict())
         return
-    from tyrefem.diagnose.words import verdict_words
+    from tyrefem.diagnose.words import headed, verdict_words
 
     if store.taken_up:
         typer.echo(f"{store.taken_up} simulations were taken up from an interrupted diagnosis")
-    typer.echo(f"{diagnosis.verdict.upper()}: {verdict_words(diagnosis)[0]}")
-    for sentence in verdict_words(diagnosis)[1:]:
+    for sentence in headed(diagnosis.verdict, verdict_words(diagnosis)):
         typer.echo(sentence)
     typer.echo(f"results in {folder}; read {page}, run {folder / 'amended.toml'}")
 

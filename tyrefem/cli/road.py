@@ -11,7 +11,7 @@ import typer
 
 from tyrefem.cli.common import ForceOption
 from tyrefem.errors import InputError
-from tyrefem.results_file import results_file
+from tyrefem.results_file import PICTURES, results_file
 from tyrefem.results_folder import results_folder
 
 if TYPE_CHECKING:
@@ -24,8 +24,6 @@ road = typer.Typer(
 )
 Conductivity = Annotated[str, typer.Option("--conductivity", help="Tread's conductivity.")]
 HeatCapacity = Annotated[str, typer.Option("--heat-capacity", help="Tread's heat capacity by volume.")]
-#: Suffixes of a picture.
-PICTURES = (".png",)
 #: Speeds (km/h) and footprint lengths (m) of the averaging sweep.
 SPEEDS = (0.2, 0.5, 1, 2, 5, 10, 15, 20, 50, 100, 200, 300)
 LENGTHS = (0.10, 0.14, 0.20, 0.30)
@@ -109,7 +107,7 @@ def film(
 
 @road.command()
 def averaging(
-    out: Annotated[Path | None, typer.Option("--out", help="PNG to draw.")] = None,
+    out: Annotated[Path | None, typer.Option("--out", help="PNG, PDF or SVG to draw.")] = None,
     thickness: Annotated[str, typer.Option("--thickness", help="Tread thickness.")] = "10 mm",
     inner_temperature: Annotated[
         str, typer.Option("--inside", help="Temperature of the tread's inner side.")
@@ -175,10 +173,10 @@ def figures(
 
 def _save(drawn: Any, path: Path) -> None:
     from tyrefem.output import atomic_path
-    from tyrefem.plotting.style import png
+    from tyrefem.plotting.style import picture
 
     with atomic_path(path) as temporary:
-        temporary.write_bytes(png(drawn))
+        temporary.write_bytes(picture(drawn, path.suffix))
     typer.echo(f"drawn in {path}")
 
 

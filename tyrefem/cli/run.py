@@ -109,7 +109,7 @@ def _words(result: Result) -> str:
         f"  contained air       {result.gas_temperature[-1]:7.1f} degC, {result.gas_pressure[-1] / 1e3:.0f} kPa gauge",
         f"  heat generated      {budget.total('generated') / 1e3:7.1f} kJ, {rubbed}stored "
         f"{budget.total('stored') / 1e3:.1f} kJ, lost {budget.total('lost') / 1e3:.1f} kJ; "
-        f"closes to {budget.imbalance:.0e}",
+        f"{budget.closing}",
     ]
     if result.feedback is not None:
         lines.append(f"  feedback            {result.feedback.words}")

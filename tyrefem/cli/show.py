@@ -10,13 +10,13 @@ import typer
 from tyrefem.cli.common import CaseOption, ForceOption, SetOption, settings, warn
 from tyrefem.errors import InputError, nearest
 from tyrefem.requirements import Requirements
-from tyrefem.results_file import results_file
+from tyrefem.results_file import PICTURES, results_file
 
-#: Suffixes of a picture and of a mesh.
-PICTURES, MESHES = (".png",), (".msh", ".vtu", ".vtk")
 if TYPE_CHECKING:
     from tyrefem.studies import Study
 
+#: Suffixes of a mesh.
+MESHES = (".msh", ".vtu", ".vtk")
 KINDS = ("section", "material", "study", "sweep", "mesh", "strain", "effect")
 #: Kinds that are shown of one case of a campaign.
 OF_A_CASE = ("study", "sweep", "mesh", "strain")
@@ -48,37 +48,49 @@ def show(
     changes: SetOption = None,
     case: CaseOption = None,
     out: Annotated[
-        Path | None, typer.Option("--out", help="PNG to write (a mesh: also .msh, .vtu); default: KIND-NAME.png.")
+        Path | None,
+        typer.Option("--out", help="PNG, PDF or SVG to write (a mesh: also .msh, .vtu); default: KIND-NAME.png."),
     ] = None,
     force: ForceOption = False,
 ) -> None:
-    """Show a card: `section`, `mesh` and `strain` drawn to a PNG; `material`, `study`, `sweep` and `effect` printed."""
+    """Show a card: `section`, `mesh` and `strain` drawn; `material`, `study`, `sweep` and `effect` printed."""
     if kind not in KINDS:
         raise InputError(f"no kind '{kind}'{nearest(kind, KINDS)}")
     if case is not None and kind not in OF_A_CASE:
         raise InputError(f"goes with {', '.join(OF_A_CASE)}, not with a {kind}", field="--case")
     values = settings(changes)
+    if out is not None and kind not in _SHOWN:
+        raise InputError(f"a {kind} is printed, not drawn: leave it away", field="--out")
     if kind == "effect":
         _effect(name)
         return
     if kind in ("material", "study", "sweep"):
         _print(kind, name, values, case)
         return
-    if kind == "mesh" and out is not None and out.suffix in MESHES:
+    if kind == "mesh" and out is not None and out.suffix.lower() in MESHES:
         with results_file(out, MESHES, force=force):
             _write_mesh(name, values, case, out)
         return
     path = out or Path(f"{kind}-{Path(name).stem if name.endswith('.toml') else Path(name).resolve().name}.png")
     from tyrefem.output import atomic_path
-    from tyrefem.plotting.style import png
+    from tyrefem.plotting.style import picture
 
     with results_file(path, PICTURES + (MESHES if kind == "mesh" else ()), force=force):
         figure, facts = _SHOWN[kind](name, values, case)
         with atomic_path(path) as temporary:
-            temporary.write_bytes(png(figure))
+            temporary.write_bytes(picture(figure, path.suffix))
     for key, value in facts.items():
-        typer.echo(f"{key:28} {value:.6g}" if isinstance(value, float) else f"{key:28} {value}")
+        typer.echo(f"{key:28} {_shown(value)}")
     typer.echo(f"drawn in {path}")
+
+
+def _shown(value: Any) -> str:
+    """A fact as people read it: numbers to six digits, lists and tables without brackets."""
+    if isinstance(value, dict):
+        return ", ".join(f"{key} {_shown(entry)}" for key, entry in value.items())
+    if isinstance(value, list | tuple):
+        return ", ".join(map(_shown, value))
+    return f"{value:.6g}" if isinstance(value, float) else str(value)
 
 
 def _section(name: str, values: dict[str, Any], _case: str | None) -> tuple[Any, dict[str, Any]]:

@@ -11,7 +11,7 @@ import typer
 
 from tyrefem.cli.common import ForceOption, JsonOption, print_json
 from tyrefem.errors import InputError
-from tyrefem.results_file import results_file
+from tyrefem.results_file import PICTURES, results_file
 
 group = typer.Typer(
     name="slide",
@@ -75,7 +75,7 @@ def rise(
 
 @group.command()
 def tables(
-    out: Annotated[Path | None, typer.Option("--out", help="PNG of table 2 to write.")] = None,
+    out: Annotated[Path | None, typer.Option("--out", help="PNG, PDF or SVG of table 2 to write.")] = None,
     force: ForceOption = False,
     as_json: JsonOption = False,
 ) -> None:
@@ -114,7 +114,7 @@ def locked_wheel(
     decomposition: Annotated[
         str | None, typer.Option(help="Rise at which rubber decomposes; default '330 K' (estimate).")
     ] = None,
-    out: Annotated[Path | None, typer.Option("--out", help="PNG to write.")] = None,
+    out: Annotated[Path | None, typer.Option("--out", help="PNG, PDF or SVG to write.")] = None,
     force: ForceOption = False,
     as_json: JsonOption = False,
 ) -> None:
@@ -162,10 +162,10 @@ def locked_wheel(
 
 def _draw(picture: Callable[[Any], Any], shown: Any, out: Path, force: bool) -> None:
     from tyrefem.output import atomic_path
-    from tyrefem.plotting.style import png
+    from tyrefem.plotting.style import picture as written
 
-    with results_file(out, (".png",), force=force), atomic_path(out) as temporary:
-        temporary.write_bytes(png(picture(shown)))
+    with results_file(out, PICTURES, force=force), atomic_path(out) as temporary:
+        temporary.write_bytes(written(picture(shown), out.suffix))
 
 
 def _read(option: str, text: str, unit: str) -> float:

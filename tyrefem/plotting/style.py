@@ -49,15 +49,21 @@ def add_axes(drawn: Figure, left: float, bottom: float, width: float, height: fl
 
 def png(drawn: Figure) -> bytes:
     """The figure as a PNG file's bytes."""
-    stream = io.BytesIO()
-    drawn.savefig(
-        stream,
-        format="png",
-        dpi=DPI,
-        facecolor="white",
-        metadata={"Software": "tyrefem"},
-        pil_kwargs={"compress_level": 4},
-    )
+    return picture(drawn, ".png")
+
+
+def picture(drawn: Figure, suffix: str) -> bytes:
+    """The figure as the bytes of a file with an ending of `tyrefem.results_file.PICTURES`; the same at every time."""
+    from matplotlib import rc_context
+
+    stream, form = io.BytesIO(), suffix.lower().lstrip(".")
+    options: dict[str, dict[str, Any]] = {
+        "png": {"metadata": {"Software": "tyrefem"}, "pil_kwargs": {"compress_level": 4}},
+        "pdf": {"metadata": {"Creator": "tyrefem", "CreationDate": None}},
+        "svg": {"metadata": {"Creator": "tyrefem", "Date": None}},
+    }
+    with rc_context({"svg.hashsalt": "tyrefem"}):
+        drawn.savefig(stream, format=form, dpi=DPI, facecolor="white", **options[form])
     return stream.getvalue()
 
 
@@ -140,10 +146,12 @@ TITLE = 0.62
 
 
 def title(drawn: Figure, first: str, second: str = "") -> None:
-    """Bold first line, and a second line for the numbers; each cut to the figure's width."""
+    """Bold first line, and a second line for the numbers; each smaller, and at last cut, where the figure is narrow."""
     width, height = (float(size) for size in drawn.get_size_inches())
     for text, drop, size, weight in ((first, 0.12, FONT + 1.5, "bold"), (second, 0.36, FONT + 0.5, "normal")):
-        fits = int((width - 0.3) / (size * 0.0086 * (1.06 if weight == "bold" else 0.98)))
+        letter = 0.0086 * (1.06 if weight == "bold" else 0.98)
+        size = max(min(size, (width - 0.3) / (letter * max(len(text), 1))), 0.72 * size)
+        fits = int((width - 0.3) / (size * letter))
         drawn.text(
             0.15 / width, 1 - drop / height, short(text, fits), fontsize=size, fontweight=weight, color=INK, va="top"
         )
@@ -161,20 +169,3 @@ def section_axes(axes: Axes) -> None:
     axes.set_xlabel("axial position z [mm]", fontsize=FONT)
     axes.set_ylabel("radius r [mm]", fontsize=FONT)
     tidy(axes, grid=False)
-
-
-def phase_bands(axes: Axes, phases: list[tuple[str, float, float]], *, named: bool) -> None:
-    """Shade every other phase of a time axis; ``phases`` are (name, start, end) in the axis's unit."""
-    if len(phases) < 2:
-        return
-    low, high = phases[0][1], max(end for _, _, end in phases)
-    for number, (name, start, end) in enumerate(phases):
-        if number % 2:
-            axes.axvspan(start, end, color="#eef1f5", lw=0, zorder=0)
-        share = (end - start) / (high - low)
-        if named and share > 0.02:
-            upright = share < 0.012 * len(name) + 0.02
-            axes.annotate(
-                short(name, 22), ((start + end) / 2, 0.985), xycoords=("data", "axes fraction"), fontsize=FONT - 1.5,
-                color=QUIET, ha="center", va="top", rotation=90 if upright else 0,
-            )  # fmt: skip
