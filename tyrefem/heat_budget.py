@@ -32,7 +32,7 @@ class HeatBudget(Brief):
         ``generated`` by hysteresis (by strain zone), ``sliding`` (friction on the road, the tread's share; only with
         slip), ``stored`` (by region), ``lost`` (by boundary), ``lumped`` (gas, rim; J only).
     residual : (n,) J, generated + sliding - stored - lost. ``imbalance`` : largest residual over the largest
-        throughput.
+        throughput. ``floor`` : J, less is rounding (`tyrefem.conduction.budget.Budget`).
     """
 
     times: Array
@@ -40,6 +40,7 @@ class HeatBudget(Brief):
     powers: Mapping[tuple[str, str], Array]
     residual: Array
     imbalance: float
+    floor: float = 0.0
 
     def _facts(self) -> Mapping[str, Any]:
         kinds = dict.fromkeys(kind for kind, _ in self.energies if kind != "lumped")
@@ -54,6 +55,20 @@ class HeatBudget(Brief):
     def total(self, kind: str) -> float:
         """Energy of a kind at the end, J."""
         return float(sum(series[-1] for (k, _), series in self.energies.items() if k == kind))
+
+    @property
+    def empty(self) -> bool:
+        """Was no heat generated, stored or lost, but for rounding?"""
+        return max((float(np.abs(series).max()) for series in self.energies.values()), default=0.0) <= self.floor
+
+    @property
+    def closing(self) -> str:
+        """How well it closes, in words.
+
+        >>> HeatBudget(np.zeros(1), {("lost", "rim"): np.array([1e-8])}, {}, np.array([1e-8]), 1.0, floor=1e-3).closing
+        'no heat is turned over'
+        """
+        return "no heat is turned over" if self.empty else f"closes to {self.imbalance:.0e}"
 
     @property
     def made(self) -> float:
@@ -142,4 +157,4 @@ def whole_tyre(
     for reservoir, energy in budget.reservoir_stored.items():
         add("lumped", f"{reservoir}: stored", energy, None)
         add("lumped", f"{reservoir}: passed on", -budget.reservoir_gained[reservoir], None)
-    return HeatBudget(budget.times, energies, powers, factor * budget.residual, budget.imbalance)
+    return HeatBudget(budget.times, energies, powers, factor * budget.residual, budget.imbalance, factor * budget.floor)

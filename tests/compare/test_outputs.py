@@ -14,6 +14,7 @@ import pytest
 from toy_study import Sensor, measured_from
 
 from tyrefem.compare import compare
+from tyrefem.compare.pictures import deviations
 from tyrefem.errors import InputError
 from tyrefem.output import atomic_folder, atomic_path
 
@@ -146,3 +147,9 @@ def test_folders_within_are_moved_whole(tmp_path):
         (temporary / "fields").mkdir()
         (temporary / "fields" / "a.vtu").write_text("x")
     assert (tmp_path / "out" / "fields" / "a.vtu").read_text() == "x"
+
+
+def test_the_map_speaks_of_boxes_only_where_there_are_any(study):
+    for bias, words in ((0.0, "none is beyond 2 u_val"), (20.0, "boxed = beyond 2 u_val")):
+        run = measured_from(study, EVERY_20, bias=bias)
+        assert words in deviations(compare(study, run)).axes[0].get_title(loc="left")

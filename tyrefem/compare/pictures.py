@@ -10,6 +10,7 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 
 from tyrefem.compare.history import ALL
+from tyrefem.plotting.phases import Phase, draw_phases, make_room
 
 if TYPE_CHECKING:
     import pandas as pd
@@ -18,7 +19,7 @@ if TYPE_CHECKING:
 
     from tyrefem.compare.comparison import Comparison
 
-COMPUTED, MEASURED, BEYOND, QUIET = "#1f5a96", "#d1600a", "#a4161a", "#666666"
+COMPUTED, MEASURED, BEYOND = "#1f5a96", "#d1600a", "#a4161a"
 #: More points than this per panel are thinned out in the picture (never in the tables).
 MOST_POINTS = 400
 #: More columns than this are not legible on a page.
@@ -59,6 +60,10 @@ def histories(comparison: Comparison, run: str) -> Figure:
         _history(panel, part, comparison, run, sensor, divisor)
     for panel in axes[len(sensors) :]:
         panel.set_axis_off()
+    phases = _phases(residuals, divisor)
+    make_room(axes[0], phases)
+    for panel in axes[: len(sensors)]:
+        draw_phases(panel, phases, shaded=False)
     for column in range(columns):
         lowest = axes[max(i for i in range(len(sensors)) if i % columns == column)]
         lowest.set_xlabel(f"time [{unit}]")
@@ -69,6 +74,14 @@ def histories(comparison: Comparison, run: str) -> Figure:
     figure.legend(handles, labels, loc="lower center", ncols=3, frameon=False, fontsize=9)
     figure.suptitle(f"{_plain(comparison.study)}: run {_plain(run)}", fontsize=11, y=1 - 0.1 / height, va="top")
     return figure
+
+
+def _phases(residuals: pd.DataFrame, divisor: float) -> list[Phase]:
+    """Where the readings of a run's phases begin and end."""
+    spans = residuals.groupby("phase", sort=False)["time_s"].agg(["min", "max"]) / divisor
+    starts = spans["min"].sort_values()
+    ends = [*starts.iloc[1:], float(spans["max"].max())]
+    return [(str(name), float(start), float(end)) for (name, start), end in zip(starts.items(), ends, strict=True)]
 
 
 def _history(panel: Axes, part: pd.DataFrame, comparison: Comparison, run: str, sensor: str, divisor: float) -> None:
@@ -90,14 +103,6 @@ def _history(panel: Axes, part: pd.DataFrame, comparison: Comparison, run: str, 
     panel.set_title(
         f"{_plain(sensor)}: {row['bias_K']:+z.2f} K, rms {row['rms_K']:.2f} K, {verdict}", fontsize=9, color=color
     )
-    starts = part.groupby("phase", sort=False)["time_s"].min() / divisor
-    for number, (phase, start) in enumerate(starts.items() if len(starts) > 1 else ()):
-        if number:
-            panel.axvline(start, color=QUIET, lw=0.6, ls=":")
-        panel.annotate(
-            _plain(phase), (start, 0.02), xycoords=("data", "axes fraction"), fontsize=7, color=QUIET,
-            xytext=(2, 0), textcoords="offset points",
-        )  # fmt: skip
     panel.grid(alpha=0.25, lw=0.5)
 
 
@@ -132,8 +137,9 @@ def deviations(comparison: Comparison) -> Figure:
     axes.set_xticks(
         range(len(columns)), names, fontsize=8, rotation=90 if len(columns) > MOST_COLUMNS else 30, ha="right"
     )
+    boxed = "boxed =" if table["beyond"].any() else "none is"
     axes.set_title(
-        f"computed - measured: mean (rms) in K; boxed = beyond {comparison.k:g} u_val", fontsize=10, loc="left"
+        f"computed - measured: mean (rms) in K; {boxed} beyond {comparison.k:g} u_val", fontsize=10, loc="left"
     )
     figure.colorbar(image, ax=axes, label="mean deviation [K]", fraction=0.05)
     return figure

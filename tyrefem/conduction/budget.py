@@ -31,6 +31,7 @@ class Budget(Brief):
     residual : generated - stored - lost of the body, J.
     reservoir_residual : received + gained - stored of every reservoir, J.
     throughput : J, sum of |generated| + |lost| + |gained|: what the residuals compare with.
+    floor : J, a millionth of the heat that the body holds above 0 degC at the start: less is rounding.
     """
 
     times: Array
@@ -47,6 +48,7 @@ class Budget(Brief):
     residual: Array
     reservoir_residual: Mapping[str, Array]
     throughput: Array
+    floor: float = 0.0
 
     def _facts(self) -> Mapping[str, Any]:
         def last(series: Mapping[Any, Array]) -> str:
@@ -62,9 +64,10 @@ class Budget(Brief):
 
     @property
     def imbalance(self) -> float:
-        """Largest residual of body and reservoirs over the largest throughput."""
+        """Largest residual of body and reservoirs over the largest throughput, or the floor where that is more."""
         worst = max(float(np.max(np.abs(r))) for r in (self.residual, *self.reservoir_residual.values()))
-        return worst / float(np.max(self.throughput)) if np.max(self.throughput) > 0 else worst
+        turned_over = max(float(np.max(self.throughput)), self.floor)
+        return worst / turned_over if turned_over > 0 else worst
 
 
 class Tally:
@@ -80,6 +83,7 @@ class Tally:
     ) -> None:
         self.entries, self.regions, self.reservoirs = entries, regions, reservoirs
         self.into, self.between = into, between
+        self.floor = 0.0
         self.energy: list[Array] = []
         self.power: list[Array] = []
         self.stored: list[Array] = []
@@ -151,4 +155,5 @@ class Tally:
                 name: received[name] + gained[name] - kept[:, i] for i, name in enumerate(self.reservoirs)
             },
             throughput=throughput,
+            floor=self.floor,
         )

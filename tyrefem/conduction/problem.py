@@ -23,6 +23,8 @@ from tyrefem.conduction.transient import Integration
 from tyrefem.errors import InputError, nearest
 
 Array = NDArray[Any]
+#: Part of the heat that a body holds above 0 degC: a budget that turns over less has nothing in it but rounding.
+NEGLIGIBLE = 1e-6
 
 
 class Conduction:
@@ -221,6 +223,7 @@ class Conduction:
                 between[name, i] = (name, other if isinstance(other, str) else None)
         tally = Tally(balance.entries, list(self.regions), names, into, between)
         y = self._initial(balance, initial, float(when[0]), reservoirs_initial)
+        tally.floor = NEGLIGIBLE * abs(float(np.sum(balance.stored(np.zeros_like(y.u), y.u))))
         run = Integration(balance, when, y, float(tolerance), jumps, max_step or np.inf, tally)
         interrupted = False
         try:

@@ -14,6 +14,7 @@ from tyrefem.diagnose.tables import rms_table
 from tyrefem.diagnose.trials import Series, Trial
 from tyrefem.diagnose.verdict import UNEXPLAINED
 from tyrefem.diagnose.words import percent
+from tyrefem.plotting.phases import Phase, draw_phases, make_room
 from tyrefem.plotting.style import (
     FONT,
     INK,
@@ -141,8 +142,9 @@ def histories_figure(d: Diagnosis, number: int) -> Figure:
     wide, high, low = 3.0 if columns > 2 else 4.2, 1.75, 0.8
     left, step_x, step_y = 0.75, wide + 0.42, high + low + 0.72
     drawn = figure(left + columns * step_x, rows * step_y + TITLE + 0.12)
-    divisor, unit = time_unit(max(float(one.times[-1]) for one in trial.series))
+    divisor, unit = time_unit(_last(trial))
     spans = _spans(d, number, trial)
+    phases = _phases(d, number, divisor)
     for place, one in enumerate(trial.series):
         row, column = divmod(place, columns)
         bottom = 0.5 + (rows - 1 - row) * step_y
@@ -151,6 +153,9 @@ def histories_figure(d: Diagnosis, number: int) -> Figure:
         _history(d, number, one, upper, lower, divisor)
         upper.set_ylim(*spans[0])
         lower.set_ylim(*spans[1])
+        make_room(upper, phases)
+        draw_phases(upper, phases, shaded=False)
+        draw_phases(lower, phases, names=False, shaded=False)
         upper.tick_params(labelbottom=False)
         if column == 0:
             upper.set_ylabel("temperature [°C]", fontsize=FONT)
@@ -164,6 +169,22 @@ def histories_figure(d: Diagnosis, number: int) -> Figure:
     title(drawn, f"{trial.name} ({held})", "")
     _legend(drawn, [("original", BEFORE), ("amended", AFTER)], "noise ± 1 sd of a block", measured=True)
     return drawn
+
+
+def _last(trial: Trial) -> float:
+    """Time of the last reading, s."""
+    return max(float(one.times[-1]) for one in trial.series)
+
+
+def _phases(d: Diagnosis, number: int, divisor: float) -> list[Phase]:
+    """The phases of a run's drive, as far as there are readings."""
+    bench = d.gap.lab.bench
+    drive, last = bench.driven(bench.study, number).card.drive, _last(bench.trials[number])
+    return [
+        (phase.name, start / divisor, min(start + phase.duration, last) / divisor)
+        for start, phase in zip(drive.starts, drive.phases, strict=True)
+        if start < last
+    ]
 
 
 def _spans(d: Diagnosis, number: int, trial: Trial) -> tuple[tuple[float, float], tuple[float, float]]:
@@ -189,7 +210,7 @@ def _history(d: Diagnosis, number: int, one: Series, upper: Axes, lower: Axes, d
         lower.plot(t, trial.measured[place] - computed, color=color, lw=1.2, ls=_dashes(color), zorder=3)
     for axes in (upper, lower):
         tidy(axes)
-        axes.set_xlim(0.0, None)
+        axes.set_xlim(0.0, _last(trial) / divisor)
         if trial.hold_out:
             axes.set_facecolor(HELD_OUT)
     upper.set_title(short(one.sensor, 34), fontsize=FONT, loc="left", pad=3)

@@ -35,6 +35,8 @@ if TYPE_CHECKING:
 
 Array = NDArray[np.float64]
 DIVERGING = "RdBu_r"
+#: Share of the tyre's width that is between the two states of a sensor at the crown at least: they do not overlap.
+APART = 0.032
 
 
 def residual_figures(d: Diagnosis) -> dict[str, Figure]:
@@ -65,26 +67,28 @@ def _residuals(
     section: Section, places: dict[str, tuple[float, float]], means: dict[str, dict[str, float]], largest: float
 ) -> Figure:
     """Sensors coloured by their mean deviation; two states on the two sides of a half section."""
-    sides: list[tuple[float, list[tuple[Label, float]]]] = []
+    left: list[tuple[Label, float]] = []
+    right: list[tuple[Label, float]] = []
     for number, values in enumerate(means.values()):
-        mirror = -1.0 if number == 0 and len(means) == 2 else 1.0
-        labels = []
         for name, value in values.items():
-            x, y = millimetres(places[name])
-            labels.append((Label(f"{short(name)} {value:+z.1f} K", mirror * float(x), float(y)), value))
-        sides.append((mirror, labels))
-    left = [label for _, labels in sides for label, _ in labels if label.x < 0]
-    right = [label for _, labels in sides for label, _ in labels if label.x >= 0]
-    drawn = canvas(section, [one.text for one in left], [one.text for one in right], below=0.25)
+            x, y = (float(place) for place in millimetres(places[name]))
+            if len(means) == 2:
+                # A state has its own side; at the crown both would have one place.
+                x = (-1.0 if number == 0 else 1.0) * max(abs(x), APART / 2 * section.overall_width * 1e3)
+                side = right if number else left
+            else:
+                side = left if x < 0 else right
+            side.append((Label(f"{short(name)} {value:+z.1f} K", x, y), value))
+    drawn = canvas(section, [label.text for label, _ in left], [label.text for label, _ in right], below=0.25)
     _ground(drawn)
     image: Any = None
-    for _, labels in sides:
+    for side in (left, right):
         image = drawn.axes.scatter(
-            [label.x for label, _ in labels], [label.y for label, _ in labels], c=[value for _, value in labels],
+            [label.x for label, _ in side], [label.y for label, _ in side], c=[value for _, value in side],
             cmap=DIVERGING, vmin=-largest, vmax=largest, s=70, edgecolors=INK, linewidths=0.9, zorder=8,
         )  # fmt: skip
-    drawn.beside(sorted(left, key=lambda label: -label.y), -1.0)
-    drawn.beside(sorted(right, key=lambda label: -label.y), 1.0)
+    drawn.beside(sorted((label for label, _ in left), key=lambda label: -label.y), -1.0)
+    drawn.beside(sorted((label for label, _ in right), key=lambda label: -label.y), 1.0)
     bar = drawn.color_bar(image, "measured - computed [K]")
     bar.ax.set_ylabel("measured - computed, mean [K]", fontsize=FONT)
     names = list(means)

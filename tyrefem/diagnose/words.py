@@ -112,6 +112,18 @@ def verdict_words(d: Diagnosis) -> tuple[str, ...]:
     )
 
 
+def headed(verdict: str, sentences: Sequence[str]) -> list[str]:
+    """Sentences after the verdict in capitals, which does not stand there twice.
+
+    >>> headed("no gap", ["No gap: noise explains it."]), headed("identified", ["A film is missing."])
+    (['NO GAP: noise explains it.'], ['IDENTIFIED: A film is missing.'])
+    """
+    first, *rest = sentences
+    head = f"{verdict}: "
+    told = first[len(head) :] if first.lower().startswith(head) else first
+    return [f"{verdict.upper()}: {told}", *rest]
+
+
 def missing_words(d: Diagnosis) -> str:
     """Heat of unknown origin in one clause: what, where, how much."""
     missing, section = d.missing, d.original.section

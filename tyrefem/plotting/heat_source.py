@@ -112,7 +112,7 @@ def _row(zone: ZoneHeat, total: float) -> str:
 
 def _subtitle(result: Result, i: int | None, total: float) -> str:
     if i is None:
-        return "the tyre never rolls under load: no strain cycle, no heat"
+        return "the tyre never rolls under load and makes no heat; left: strain energy of a cycle, if it rolled"
     divisor, unit = time_unit(float(result.times[-1]))
     force = total / result.tyre.speed(float(result.times[i]) * (1 - 1e-12))
     return (

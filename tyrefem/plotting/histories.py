@@ -7,6 +7,7 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from tyrefem.plotting.labels import Label, line_ends
+from tyrefem.plotting.phases import draw_phases, make_room
 from tyrefem.plotting.style import (
     FONT,
     INK,
@@ -15,7 +16,6 @@ from tyrefem.plotting.style import (
     add_axes,
     figure,
     line_style,
-    phase_bands,
     short,
     tidy,
     time_unit,
@@ -46,7 +46,8 @@ def histories_figure(result: Result) -> Figure:
     axes = add_axes(drawn, LEFT, below, 10.0 - LEFT - RIGHT, HIGH)
     labels = _lines(axes, result, divisor)
     low, high = axes.get_ylim()
-    axes.set_ylim(low, high + (0.08 if len(bands) > 1 else 0.02) * (high - low))
+    axes.set_ylim(low, high + 0.02 * (high - low))
+    make_room(axes, bands)
     axes.set_ylabel("temperature [°C]", fontsize=FONT)
     lowest = axes
     if varies:
@@ -57,7 +58,7 @@ def histories_figure(result: Result) -> Figure:
         lowest.set_ylabel("speed [m/s]", fontsize=FONT)
         axes.tick_params(labelbottom=False)
     for panel in {axes, lowest}:
-        phase_bands(panel, bands, named=panel is axes)
+        draw_phases(panel, bands, names=panel is axes)
         tidy(panel)
         panel.set_xlim(0.0, max(last / divisor, 1e-9))
     lowest.set_xlabel(f"time [{unit}]", fontsize=FONT)

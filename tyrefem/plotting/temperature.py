@@ -18,6 +18,8 @@ if TYPE_CHECKING:
     from tyrefem.result import Result
 
 Array = NDArray[np.float64]
+#: K. A field that differs by less is the same everywhere, and has no hottest point.
+EVEN = 0.01
 
 
 def temperature_figure(result: Result, time: float | None = None) -> Figure:
@@ -39,8 +41,10 @@ def temperature_figure(result: Result, time: float | None = None) -> Figure:
     _map(drawn, result, temperatures)
     draw_outlines(drawn.axes, section, color="#404040", width=0.7)
     marks(drawn.axes, [*inside, *left, *right])
-    drawn.axes.plot([hottest.x], [hottest.y], "*", ms=12, mfc="white", mec=INK, mew=1.0, zorder=8)
-    drawn.inside([hottest, *inside])
+    if np.ptp(temperatures) > EVEN:
+        drawn.axes.plot([hottest.x], [hottest.y], "*", ms=12, mfc="white", mec=INK, mew=1.0, zorder=8)
+        inside = [hottest, *inside]
+    drawn.inside(inside)
     drawn.beside(right, 1.0)
     drawn.beside(sorted([*names, *left], key=lambda label: -label.y), -1.0)
     divisor, unit = time_unit(float(times[-1]))
@@ -62,7 +66,8 @@ def _map(drawn: Canvas, result: Result, temperatures: Array) -> None:
     corners, _ = triangles(operators)
     x, y = millimetres(operators.points.T)
     low, high = float(temperatures.min()), float(temperatures.max())
-    if high - low < 1e-3:
+    even = high - low < EVEN
+    if even:
         low, high = low - 0.5, high + 0.5
     image: Any = None
     colours = temperature_map()
@@ -72,11 +77,13 @@ def _map(drawn: Canvas, result: Result, temperatures: Array) -> None:
             rasterized=True, zorder=1,
         )  # fmt: skip
     levels = [level for level in MaxNLocator(8, steps=[1, 2, 5, 10]).tick_values(low, high) if low < level < high]
+    bar = drawn.color_bar(image, "temperature [°C]", ticks=levels)
+    bar.ax.hlines(levels, 0, 1, color="white", lw=0.6, transform=bar.ax.get_yaxis_transform())
+    if even:
+        return
     mirrored = -x if drawn.section.half else x
     lines = axes.tricontour(mirrored, y, corners, temperatures, levels=levels, colors="white", linewidths=0.6, zorder=2)
     decimals = max(0, int(np.ceil(-np.log10(levels[1] - levels[0]) - 1e-9))) if len(levels) > 1 else 1
     written = axes.clabel(lines, fmt=f"%.{decimals}f", fontsize=FONT - 1.5, inline=False, colors=INK)
     for text in written or ():
         text.set_path_effects(halo())
-    bar = drawn.color_bar(image, "temperature [°C]", ticks=levels)
-    bar.ax.hlines(levels, 0, 1, color="white", lw=0.6, transform=bar.ax.get_yaxis_transform())

@@ -96,7 +96,7 @@ def headline(result: Result) -> list[dict[str, str]]:
             "value": f"{number(budget.total('generated') / 1e3)} kJ",
             "note": f"{_rubbed(result)}stored {number(budget.total('stored') / 1e3)} kJ, "
             f"lost {number(budget.total('lost') / 1e3)} kJ; "
-            f"the budget closes to {format(budget.imbalance, '.0e').replace('-', '−')}",
+            f"{'' if budget.empty else 'the budget '}{budget.closing.replace('-', '−')}",
         }
     )
     cards += sliding_card(result)

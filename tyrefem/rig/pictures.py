@@ -9,6 +9,7 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 from numpy.typing import NDArray
 
+from tyrefem.plotting.phases import draw_phases, make_room
 from tyrefem.plotting.style import (
     FONT,
     INK,
@@ -17,7 +18,6 @@ from tyrefem.plotting.style import (
     TITLE,
     add_axes,
     figure,
-    phase_bands,
     plain,
     png,
     short,
@@ -86,15 +86,15 @@ def _histories(found: Identification, block: Block, high: Axes, low: Axes) -> No
     shown = bands(found.card.phases)
     for axes in (high, low):
         tidy(axes)
-        phase_bands(axes, shown, named=axes is high)
         axes.set_xlim(0, shown[-1][2])
     high.plot(t, one.readings, ".", ms=2.5, color=PALETTE[1])
     high.plot(t, block.computed, color=PALETTE[0], lw=1.3)
     rms = float(np.sqrt(np.mean(block.residual**2)))
     high.set_title(f"{short(one.sensor, 18)}: rms {rms:.2f} K", fontsize=FONT, color=INK, loc="left")
     high.set_xticklabels([])
-    bottom, top = high.get_ylim()
-    high.set_ylim(bottom, top + 0.12 * (top - bottom))
+    make_room(high, shown)
+    draw_phases(high, shown)
+    draw_phases(low, shown, names=False)
     sd = np.sqrt(noise.reading[one.sensor] ** 2 / one.counts + (noise.model[one.sensor] * block.rise) ** 2)
     low.fill_between(t, -1.96 * sd, 1.96 * sd, color="#dddddd", lw=0)
     low.plot(t, block.residual, ".", ms=2.5, color=PALETTE[1])
@@ -180,14 +180,13 @@ def histories(
     for number, sensor in enumerate(sensors):
         axes = add_axes(drawn, 0.6 + 3.4 * number, 0.5, 2.65, 2.5)
         tidy(axes)
-        phase_bands(axes, bands(phases), named=True)
         for color, (name, (times, values)) in zip(PALETTE, runs.items(), strict=False):
             axes.plot(times / 60, values[:, number], color=color, lw=1.4, label=short(name, 16))
         axes.set_title(short(sensor, 24), fontsize=FONT, color=INK, loc="left")
         axes.set_xlabel("time [min]", fontsize=FONT)
         axes.set_xlim(0, phases.end / 60)
-        low, high = axes.get_ylim()
-        axes.set_ylim(low, high + 0.12 * (high - low))
+        make_room(axes, bands(phases))
+        draw_phases(axes, bands(phases))
         if number == 0:
             axes.set_ylabel("temperature [°C]", fontsize=FONT)
             axes.legend(fontsize=FONT - 1, frameon=False, loc="center right")

@@ -31,6 +31,7 @@ SETTLED = 0.2
 class SlidingPhase:
     """A phase with slip. SI, degC; ``highest`` values are over the phase's readings.
 
+    ``sliding_speed`` is the highest, with the ``friction`` of that moment; ``pressure`` that of the contact at the end.
     ``tread_start``, ``tread_highest`` are means over the tread's surface by finite elements; ``half_space_highest``
     is the same of a half-space, for a locked wheel. ``exit_edge_highest`` is the hottest that a point of the contact
     gets. ``friction_work`` is mu F_z v_s in time; ``tread_heat`` the tread's part of it, both of one footprint.
@@ -221,7 +222,7 @@ def _phase(result: Result, number: int, numbers: Numbers, series: pd.DataFrame) 
         end=min(state.end, float(result.times[-1])),
         locked=state.locked,
         sliding_speed=float(series.sliding_speed_m_s.iloc[fastest]),
-        pressure=float(series.contact_pressure_Pa.iloc[fastest]),
+        pressure=float(series.contact_pressure_Pa.iloc[-1]),
         friction=sliding.friction(_within(result, number, int(numbers[fastest]))),
         friction_lowest=float(series.friction.min()),
         capped=bool(series.capped.any()),

@@ -6,7 +6,7 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from tyrefem.plotting.style import FONT, PALETTE, QUIET, TITLE, add_axes, figure, line_style, plain, short, tidy, title
+from tyrefem.plotting.style import FONT, PALETTE, QUIET, TITLE, add_axes, figure, line_style, plain, tidy, title
 from tyrefem.sweep.answer_words import difference_unit, name_of, shown
 from tyrefem.sweep.pictures import label
 
@@ -20,8 +20,8 @@ if TYPE_CHECKING:
 
 #: Bars of one picture.
 MOST = 15
-#: Inches per bar, and for the names before them.
-BAR, NAMES = 0.27, 3.5
+#: Inches per bar, and at least for the names before them; width of their letters.
+BAR, NAMES, LETTER = 0.27, 3.5, 0.0083 * (FONT - 1)
 
 
 def tornado(found: Tornado, answer: str) -> Figure:
@@ -30,14 +30,15 @@ def tornado(found: Tornado, answer: str) -> Figure:
     # What hardly moves it would only push the others together.
     table = rows[rows["range"] > 0.01 * rows["range"].max()].head(MOST).iloc[::-1]
     high = BAR * max(len(table), 2) + 0.1
-    drawn = figure(NAMES + 4.2, 1.0 + high + TITLE)
-    axes = add_axes(drawn, NAMES, 0.95, 4.0, high)
+    numbers = [f"{plain(row['number'])}  ±{100 * row['tolerance']:.3g} %" for row in table.to_dict("records")]
+    room = _room(numbers)
+    drawn = figure(room + 4.2, 1.0 + high + TITLE)
+    axes = add_axes(drawn, room, 0.95, 4.0, high)
     places = np.arange(len(table))
     axes.barh(places, table["less"], height=0.62, color=PALETTE[0], label="less of it")
     axes.barh(places, table["more"], height=0.62, color=PALETTE[1], label="more of it")
     axes.axvline(0, color="black", lw=0.8)
-    names = [f"{short(row['number'], 44)}  ±{100 * row['tolerance']:.3g} %" for row in table.to_dict("records")]
-    axes.set_yticks(places, names, fontsize=FONT - 1)
+    axes.set_yticks(places, numbers, fontsize=FONT - 1)
     axes.locator_params(axis="x", nbins=6)
     axes.set_xlabel(f"change of the {name_of(answer)} [{difference_unit(answer) or '-'}]", fontsize=FONT)
     axes.legend(fontsize=FONT - 1, frameon=False, loc="upper center", bbox_to_anchor=(0.5, -0.45 / high), ncols=2)
@@ -48,12 +49,19 @@ def tornado(found: Tornado, answer: str) -> Figure:
     return drawn
 
 
+def _room(names: list[str]) -> float:
+    """Inches that the longest name takes: none is cut."""
+    return max(NAMES, 0.3 + LETTER * max(map(len, names), default=0))
+
+
 def indices(table: pd.DataFrame, answer: str) -> Figure:
     """First-order and total indices of every number with their intervals."""
     rows = table.head(MOST).iloc[::-1]
     high = 1.5 * BAR * max(len(rows), 2) + 0.1
-    drawn = figure(NAMES + 4.2, 1.0 + high + TITLE)
-    axes = add_axes(drawn, NAMES, 0.95, 4.0, high)
+    numbers = [plain(name) for name in rows["number"]]
+    room = _room(numbers)
+    drawn = figure(room + 4.2, 1.0 + high + TITLE)
+    axes = add_axes(drawn, room, 0.95, 4.0, high)
     places = np.arange(len(rows))
     for up, share, colour, words in (
         (0.2, "first", PALETTE[0], "alone"),
@@ -64,7 +72,7 @@ def indices(table: pd.DataFrame, answer: str) -> Figure:
             error_kw={"ecolor": "black", "elinewidth": 0.8, "capsize": 2},
         )  # fmt: skip
     axes.axvline(0, color="black", lw=0.8)
-    axes.set_yticks(places, [short(name, 52) for name in rows["number"]], fontsize=FONT - 1)
+    axes.set_yticks(places, numbers, fontsize=FONT - 1)
     axes.set_xlim(right=max(1.0, axes.get_xlim()[1]))
     axes.set_xlabel("share of the variance", fontsize=FONT)
     axes.legend(fontsize=FONT - 1, frameon=False, loc="upper center", bbox_to_anchor=(0.5, -0.45 / high), ncols=2)

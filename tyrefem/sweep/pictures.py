@@ -66,7 +66,7 @@ def curves(found: Sweep, x: str, answer: str) -> Figure:
         if others:
             axes.legend(
                 fontsize=FONT - 1.5, frameon=False, loc="upper left", bbox_to_anchor=(1.02, 1.02), alignment="left",
-                title=plain(", ".join(map(short, others))), title_fontsize=FONT - 1.5,
+                title=", ".join(axis(other.split(".", 1)[-1]) for other in others), title_fontsize=FONT - 1.5,
             )  # fmt: skip
     else:
         _points(axes, table, x, answer)

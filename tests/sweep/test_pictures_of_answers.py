@@ -1,0 +1,39 @@
+"""Names in the pictures of a sweep are whole, with their units."""
+
+from __future__ import annotations
+
+from types import SimpleNamespace
+
+import pandas as pd
+
+import tyrefem as tf
+from tyrefem.sweep.answer_pictures import indices, tornado
+from tyrefem.sweep.pictures import curves
+from tyrefem.sweep.plan import plan_of
+from tyrefem.sweep.sweep import sweep
+
+LONG = "materials.shoulder-cushion-of-the-second-belt.conductivity.along"
+
+
+def test_a_tornado_names_its_numbers_whole_and_on_the_paper() -> None:
+    rows = pd.DataFrame(
+        {"number": [LONG], "tolerance": [0.2], "less": [-1.0], "more": [1.0], "range": [2.0], "nominal": [80.0]}
+    )
+    drawn = tornado(SimpleNamespace(of=lambda answer: rows), "hottest_degC")  # type: ignore[arg-type]
+    table = pd.DataFrame({"number": [LONG], "first": [0.5], "total": [0.6], "first_95": [0.1], "total_95": [0.1]})
+    for made in (drawn, indices(table, "hottest_degC")):
+        (label,) = made.axes[0].get_yticklabels()
+        assert label.get_text().startswith(LONG)
+        made.draw_without_rendering()
+        assert label.get_window_extent(made.canvas.get_renderer()).x0 > 0
+
+
+def test_what_a_curve_stands_for_has_its_unit() -> None:
+    study = tf.study("nasa-22x5.5-8pr", {"mesh.size": "12 mm", "drive.duration": "20 s"})
+    vary = {"drive.speed": ["10 mph", "20 mph"], "drive.load": ["2000 lbf", "2700 lbf"]}
+    found = sweep(plan_of(study, vary), reduced="never")
+    headings = found.plan.row(0)
+    (speed,) = [name for name in headings if "speed" in name]
+    legend = curves(found, speed, "hottest_degC").axes[0].get_legend()
+    assert legend is not None
+    assert legend.get_title().get_text() == "load [lbf]"
