@@ -147,7 +147,8 @@ def _study(name: str) -> tf.Study:
 def draw(effect: type[Effect], base: tf.Result) -> None:
     """The picture of one effect's signature."""
     from tyrefem.plotting.labels import Label, line_ends
-    from tyrefem.plotting.style import FONT, QUIET, add_axes, figure, line_style, phase_bands, png, tidy
+    from tyrefem.plotting.phases import draw_phases, make_room
+    from tyrefem.plotting.style import FONT, QUIET, add_axes, figure, line_style, png, tidy
 
     study = _study(effect.name)
     choice = CHOICES.get(effect.name, effect.variants(study)[-1] if effect.name == "yaw" else effect.variants(study)[0])
@@ -169,7 +170,9 @@ def draw(effect: type[Effect], base: tf.Result) -> None:
     axes.set_ylabel("change [K]", fontsize=FONT)
     axes.set_xlabel("time [min]", fontsize=FONT)
     axes.set_xlim(0, t[-1])
-    phase_bands(axes, [(phase.name, phase.start / 60, phase.end / 60) for phase in base.phases], named=False)
+    phases = [(phase.name, phase.start / 60, phase.end / 60) for phase in base.phases]
+    make_room(axes, phases)
+    draw_phases(axes, phases)
     tidy(axes)
     line_ends(axes, labels, room=1.7)
     PICTURES.mkdir(exist_ok=True)

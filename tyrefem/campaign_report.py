@@ -89,7 +89,10 @@ _AXES = {
 
 
 def bars(done: pd.DataFrame, column: str) -> Figure:
-    """One dot per case on its own line, coloured by tyre, in groups of one inflation pressure."""
+    """One dot per case on its own line, coloured by tyre, in groups of one inflation pressure.
+
+    The lines reach from side to side: the axis does not begin at 0, and a bar's length would tell a wrong ratio.
+    """
     from tyrefem.plotting.style import FONT, TITLE, add_axes, figure, line_style, plain, short, tidy, title
 
     name, label, form = _AXES[column]
@@ -105,7 +108,7 @@ def bars(done: pd.DataFrame, column: str) -> Figure:
     for number, section in enumerate(dict.fromkeys(done["section"])):
         chosen = [i for i, own in enumerate(done["section"]) if own == section]
         color: Any = line_style(number)["color"]
-        axes.hlines(chosen, axes.get_xlim()[0], [values[i] for i in chosen], color=color, lw=1.2, alpha=0.45)
+        axes.hlines(chosen, *axes.get_xlim(), color=color, lw=0.8, alpha=0.25)
         marker = "os^Dv"[number % 5]
         size = 5.5 if named else 3.5
         axes.plot([values[i] for i in chosen], chosen, marker, color=color, ms=size, label=short(section, 40))

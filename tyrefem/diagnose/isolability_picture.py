@@ -24,7 +24,7 @@ def picture(found: Isolability) -> bytes:
     FigureCanvasAgg(figure)
     axes = figure.subplots()
     levels = [-20.0, 0.0, MARGIN / 2, MARGIN, 30.0, 100.0, 1e6]
-    image = axes.imshow(values, cmap="RdYlGn", norm=BoundaryNorm(levels, 256))
+    image = axes.imshow(values, cmap="RdYlBu", norm=BoundaryNorm(levels, 256))
     axes.set_xticks(range(len(names)), names, rotation=90, fontsize=6)
     axes.set_yticks(range(len(names)), names, fontsize=6)
     axes.set_xlabel("rival, fitted to it", fontsize=8)

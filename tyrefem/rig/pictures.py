@@ -160,7 +160,7 @@ def correlation(found: Identification) -> Figure:
                 axes.text(
                     j,
                     i,
-                    f"{r:.1f}".replace("0.", ".").replace("1.0", "1"),
+                    _correlated(r),
                     ha="center",
                     va="center",
                     fontsize=6.5,
@@ -169,6 +169,19 @@ def correlation(found: Identification) -> Figure:
     bar = drawn.colorbar(image, cax=add_axes(drawn, size + 2.55, 1.75, 0.14, size))
     bar.ax.tick_params(labelsize=FONT)
     return drawn
+
+
+def _correlated(r: float) -> str:
+    """A correlation without its 0; 1 only where it is.
+
+    >>> _correlated(0.97), _correlated(-0.42), _correlated(0.9996)
+    ('.97', '-.4', '.9996')
+    """
+    for decimals in range(1, 6):
+        text = f"{r:.{decimals}f}"
+        if abs(float(text)) < 1:
+            return text.replace("0.", ".")
+    return f"{r:.0f}"
 
 
 def histories(
