@@ -12,7 +12,7 @@ from hidden import Case
 
 from tyrefem.diagnose import Diagnosis
 from tyrefem.diagnose.rivals import contenders, support
-from tyrefem.diagnose.verdict import CONFOUNDED, UNEXPLAINED, Standing
+from tyrefem.diagnose.verdict import CONFOUNDED, IDENTIFIED, NO_GAP, UNEXPLAINED, Standing
 from tyrefem.diagnose.words import verdict_words
 
 NEXT = {
@@ -84,8 +84,14 @@ def test_unexplained_draws_the_missing_heat_and_names_nothing(case: Case, tmp_pa
     assert len(said["missing_heat"]["runs"]) == 2
     assert said["missing_heat"]["runs"][0]["heat_W_m3"] == [2e4] * len(missing.stations)
     words = verdict_words(d)
-    assert words[0].startswith("Unexplained")
+    assert words[0] == "No effect in the catalogue accounts for the deviation."
     assert "heat inside the tread while it rolls, in the crown" in words[1]
     assert "+20.0 ± 1.0 kW/m³" in words[1]
     for name in ("missing-heat.png", "missing-heat-stations.png"):
         assert (tmp_path / name).stat().st_size > 10_000
+
+
+@pytest.mark.parametrize("verdict", [IDENTIFIED, CONFOUNDED, UNEXPLAINED, NO_GAP])
+def test_what_stands_behind_the_verdict_does_not_begin_with_it_again(verdict: str, case: Case) -> None:
+    d = replace(case.diagnosis, judgement=replace(case.diagnosis.judgement, verdict=verdict))
+    assert not verdict_words(d)[0].lower().startswith(verdict)

@@ -6,7 +6,6 @@ from matplotlib.collections import PathCollection
 
 import tyrefem as tf
 from tyrefem.diagnose.section_pictures import _residuals
-from tyrefem.diagnose.words import headed
 
 SECTION = tf.study("nasa-22x5.5-8pr").section
 
@@ -19,9 +18,3 @@ def test_a_sensor_at_the_crown_has_each_state_on_its_own_side() -> None:
     assert sides["crown -5.7 K"] < 0 < sides["crown +0.1 K"]
     first, second = (points.get_offsets()[0][0] for points in axes.collections if isinstance(points, PathCollection))
     assert first < 0 < second
-
-
-def test_the_verdict_is_said_once() -> None:
-    assert headed("no gap", ["No gap: noise accounts for it."]) == ["NO GAP: noise accounts for it."]
-    assert headed("unexplained", ["Unexplained: no effect does.", "More."]) == ["UNEXPLAINED: no effect does.", "More."]
-    assert headed("identified", ["The road is hot."]) == ["IDENTIFIED: The road is hot."]

@@ -87,11 +87,12 @@ def diagnose(
     if as_json:
         print_json(diagnosis.to_dict())
         return
-    from tyrefem.diagnose.words import headed, verdict_words
+    from tyrefem.diagnose.words import verdict_words
 
     if store.taken_up:
         typer.echo(f"{store.taken_up} simulations were taken up from an interrupted diagnosis")
-    for sentence in headed(diagnosis.verdict, verdict_words(diagnosis)):
+    first, *rest = verdict_words(diagnosis)
+    for sentence in (f"{diagnosis.verdict.upper()}: {first}", *rest):
         typer.echo(sentence)
     typer.echo(f"results in {folder}; read {page}, run {folder / 'amended.toml'}")
 

@@ -91,11 +91,11 @@ def effect_words(candidate: Candidate, fit: Explained) -> str:
 
 
 def verdict_words(d: Diagnosis) -> tuple[str, ...]:
-    """The verdict in a few plain sentences, the most important first."""
+    """What stands behind the verdict's name, in a few plain sentences, the most important first."""
     closing = _closing(d)
     if d.verdict == NO_GAP:
         extent = f"rms {_kelvin(d, after=False)}, noise {d.noise:.1f} K"
-        return (f"No gap: noise and the uncertainty of base numbers and sensors account for the deviation ({extent}).",)
+        return (f"Noise and the uncertainty of base numbers and sensors account for the deviation ({extent}).",)
     clauses = [effect_words(one, d.best) for one in d.best.members]
     if d.verdict == IDENTIFIED:
         said = _joined(clauses, [f"Probability {percent(d.judgement.probability)}."], closing)
@@ -105,23 +105,11 @@ def verdict_words(d: Diagnosis) -> tuple[str, ...]:
     found = f"What is missing is most clearly {missing_words(d)}."
     partly = [f"Part of the deviation is explained by {' and '.join(one.key for one in d.best.members)}."]
     return (
-        "Unexplained: no effect in the catalogue accounts for the deviation.",
+        "No effect in the catalogue accounts for the deviation.",
         found,
         *(partly if clauses else []),
         closing,
     )
-
-
-def headed(verdict: str, sentences: Sequence[str]) -> list[str]:
-    """Sentences after the verdict in capitals, which does not stand there twice.
-
-    >>> headed("no gap", ["No gap: noise explains it."]), headed("identified", ["A film is missing."])
-    (['NO GAP: noise explains it.'], ['IDENTIFIED: A film is missing.'])
-    """
-    first, *rest = sentences
-    head = f"{verdict}: "
-    told = first[len(head) :] if first.lower().startswith(head) else first
-    return [f"{verdict.upper()}: {told}", *rest]
 
 
 def missing_words(d: Diagnosis) -> str:
