@@ -143,14 +143,20 @@ def value_at(data: Mapping[str, Any], key: str, near: Any = None) -> Any:
 def scaled(value: Any, factor: float, significant: int | None = None) -> Any:
     """A quantity as written, its number times a factor; rounded to so many significant digits, if asked.
 
+    Of a table's rows the first column stays: temperatures, frequencies, places.
+
     >>> scaled("20 mph", 1.5), scaled("20 mph", 1.23456, significant=3), scaled(0.1, 1.23456, significant=3)
     ('30 mph', '24.7 mph', 0.123)
+    >>> scaled([["20 degC", "0.2 W/m/K"], ["80 degC", "0.3 W/m/K"]], 2.0)
+    [['20 degC', '0.4 W/m/K'], ['80 degC', '0.6 W/m/K']]
     """
     if isinstance(value, bool):
         raise InputError(f"{value!r} is not a number that can be scaled")
     if isinstance(value, int | float):
         return value * factor if significant is None else float(f"{value * factor:.{significant}g}")
     if isinstance(value, list):
+        if value and all(isinstance(row, list) and row for row in value):
+            return [[row[0], *scaled(row[1:], factor, significant)] for row in value]
         return [scaled(entry, factor, significant) for entry in value]
     match = _AMOUNT.match(value) if isinstance(value, str) else None
     if match is None:

@@ -19,6 +19,8 @@ Constant = Annotated[float, Unit("Pa", ge=-1e9, le=1e9)]
 DENSEST = math.pi / (2 * math.sqrt(3))
 #: Bulk modulus over shear modulus where the card gives none.
 BULK_RATIO = 100.0
+#: Constants of the strain-energy laws that are in proportion to the shear modulus.
+SHEAR_CONSTANTS = ("shear_modulus", "c10", "c01", "c20", "c30")
 
 
 class RubberLaw(Card):
@@ -34,6 +36,11 @@ class RubberLaw(Card):
         raise AttributeError("a law without constants has no shear modulus")
 
     @property
+    def uncertain_fields(self) -> tuple[tuple[str, ...], ...]:
+        """What ``relative_sd`` speaks of: all shear constants have one factor; a bulk modulus that is given stays."""
+        return (SHEAR_CONSTANTS,)
+
+    @property
     def bulk(self) -> float:
         """kappa [Pa]: the card's, or 100 times the shear modulus."""
         return self.bulk_modulus or BULK_RATIO * self.initial_shear_modulus
@@ -45,8 +52,8 @@ class RubberLaw(Card):
 
     def times(self, factor: float) -> Self:
         """The law with every shear constant times a factor; a bulk modulus that is given stays."""
-        names = ("shear_modulus", "c10", "c01", "c20", "c30")
-        return self.model_copy(update={name: factor * getattr(self, name) for name in names if hasattr(self, name)})
+        names = [name for name in SHEAR_CONSTANTS if hasattr(self, name)]
+        return self.model_copy(update={name: factor * getattr(self, name) for name in names})
 
     @model_validator(mode="after")
     def _hard_to_compress(self) -> Self:
@@ -189,6 +196,11 @@ class Cords(Card):
         if self.lift and self.angle_radius is None:
             raise InputError("missing; the lift law needs the radius where the angle is given", field="angle_radius")
         return self
+
+    @property
+    def uncertain_fields(self) -> tuple[tuple[str, ...], ...]:
+        """What ``relative_sd`` speaks of: the moduli in tension and compression have one factor."""
+        return (("modulus", "compression_modulus"),)
 
     @property
     def in_compression(self) -> float:

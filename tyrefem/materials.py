@@ -70,6 +70,11 @@ class Conductivity(Sourced):
         return super().warnings() + tuple(warning for table in tables for warning in table.unlikely(CONDUCTIVITY))
 
     @property
+    def uncertain_fields(self) -> tuple[tuple[str, ...], ...]:
+        """Along and across the plies are two numbers."""
+        return ("value",), ("along",), ("across",), ("table",)
+
+    @property
     def orthotropic(self) -> bool:
         """Does it differ along and across the plies?"""
         return self.along is not None or (self.table is not None and len(self._tables()) == 2)
@@ -198,6 +203,12 @@ class LossTangent(Sourced):
             return found + tuple(filter(None, [at_reference]))
         return found
 
+    @property
+    def uncertain_fields(self) -> tuple[tuple[str, ...], ...]:
+        """What the law multiplies by: none in a Prony series, where moduli and times make it."""
+        fields = {"table": "table", "frequency": "frequency.table"}
+        return ((fields.get(self.law, "value"),),)
+
     @functools.cached_property
     def _tabulated(self) -> PropertyTable:
         return PropertyTable(*columns(self.table or [], ("degC", "1")))
@@ -229,6 +240,11 @@ class Cord(Sourced):
     ply_shear_modulus: Annotated[float, Unit("Pa", gt=0), PLY_SHEAR_MODULUS] | None = None
     softening: Softening | None = None
 
+    @property
+    def uncertain_fields(self) -> tuple[tuple[str, ...], ...]:
+        """The modulus: an angle is not known to some per cent of itself."""
+        return (("ply_shear_modulus",),)
+
 
 class ThermalExpansion(Sourced):
     """Linear expansion of the compound, and of its cords along themselves, from the stress-free temperature."""
@@ -236,6 +252,11 @@ class ThermalExpansion(Sourced):
     coefficient: Annotated[float, Unit("1/delta_degC", ge=0, le=1e-3), EXPANSION]
     cords: Annotated[float, Unit("1/delta_degC", ge=-1e-4, le=1e-3)] = 0.0
     stress_free: Temperature = 25.0
+
+    @property
+    def uncertain_fields(self) -> tuple[tuple[str, ...], ...]:
+        """Compound and cords expand each for itself."""
+        return ("coefficient",), ("cords",)
 
 
 class MaterialCard(Card):

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import functools
 from collections.abc import Callable
 
 import numpy as np
@@ -142,7 +143,13 @@ class KnotSolver:
 
     def __init__(self, study: Study) -> None:
         _check_footprint(study)
-        self.study, self._cycle = study, _provider(study)
+        self.study = study
+        if study.card.mechanics.strain not in BY_ELEMENTS:
+            _ = self._cycle
+
+    @functools.cached_property
+    def _cycle(self) -> Callable[[LoadCase], StrainCycle]:
+        return _provider(self.study)
 
     def case(self, number: int, fraction: float, pressure_ratio: float = 1.0) -> LoadCase:
         """The load case at a fraction of a phase as driven; ``pressure_ratio``: absolute pressure over the drive's.

@@ -23,6 +23,11 @@ class Sourced(Card):
     #: Relative standard deviation of the number, where the source or an estimate gives one.
     relative_sd: Annotated[float, Unit("1", ge=0, lt=1)] | None = None
 
+    @property
+    def uncertain_fields(self) -> tuple[tuple[str, ...], ...]:
+        """Fields that ``relative_sd`` speaks of: those of one group have one factor, every group its own."""
+        return ("value",), ("table",)
+
 
 @dataclass(frozen=True)
 class PropertyTable:

@@ -19,6 +19,7 @@ from tyrefem.heat_budget import FRICTION
 from tyrefem.heating import LOSS_FACTOR, REMEMBERED, CycleSchedule, HeatSource
 from tyrefem.mechanics import same_cycles
 from tyrefem.meshing import TyreMesh
+from tyrefem.nearby_cycles import NearbyCycles
 from tyrefem.requirements import Requirements
 from tyrefem.result import GAS, RIM, Result
 from tyrefem.sliding.tread import SlidingTread
@@ -34,10 +35,12 @@ class RollingTyre(Surroundings):
 
     ``like``: another tyre, whose mesh (and so the operators assembled on it) is taken if the section is the same.
     ``cycles``: strain cycles in place of those at the drive's own pressure and the cards' moduli.
+    ``near``: takes strain cycles of studies near this one from few solutions, also for tyres that are ``like`` this.
     """
 
     like: RollingTyre | None = None
     cycles: CycleSchedule | None = None
+    near: NearbyCycles | None = None
 
     def __getstate__(self) -> dict[str, Any]:
         """What cannot be found again in no time: the mesh and the strain cycles. The rest is made again on demand."""
@@ -65,9 +68,17 @@ class RollingTyre(Surroundings):
         """Load cases and strain cycles of every phase."""
         if self.cycles is not None:
             return self.cycles
+        if self.near is not None:
+            return self.near.schedule
         if self.like is not None and self.like.cycles is None and same_cycles(self.study, self.like.study):
             return self.like.schedule
-        return super().schedule
+        nearby = None if self._nearby is None else self._nearby.of(self.study)
+        return super().schedule if nearby is None else nearby
+
+    @property
+    def _nearby(self) -> NearbyCycles | None:
+        """Its own, or that of the tyres it is like."""
+        return self.near if self.near is not None or self.like is None else self.like._nearby
 
     @functools.cached_property
     def mesh(self) -> TyreMesh:

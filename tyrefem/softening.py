@@ -49,6 +49,11 @@ class Softening(Sourced):
             raise InputError("the law 'exponential' needs 'rate', e.g. '0.004 1/delta_degC'")
         return self
 
+    @property
+    def uncertain_fields(self) -> tuple[tuple[str, ...], ...]:
+        """The rate: a table is relative, and has no one number."""
+        return (("rate",),)
+
     @functools.cached_property
     def _tabulated(self) -> PropertyTable:
         return PropertyTable(*columns(self.table or [], ("degC", "1")))

@@ -13,7 +13,7 @@ from tyrefem import library
 from tyrefem.brief import Brief
 from tyrefem.cases import read_cases
 from tyrefem.construction import check_cords_fit
-from tyrefem.dotted import all_changed, scaled, value_at
+from tyrefem.dotted import all_changed
 from tyrefem.drive import as_written
 from tyrefem.effects import catalogue
 from tyrefem.errors import InputError, InputWarning, nearest, quoted
@@ -21,6 +21,7 @@ from tyrefem.materials import MaterialCard
 from tyrefem.quantity import written
 from tyrefem.study_card import MeasuredEntry, Sensor, StudyCard
 from tyrefem.study_warnings import study_warnings
+from tyrefem.uncertain_numbers import UncertainNumber, uncertain_number, uncertain_numbers
 
 if TYPE_CHECKING:
     from collections.abc import Callable
@@ -228,25 +229,27 @@ class Study(Brief):
         """Standard deviation of a reading left by the mesh, K."""
         return self.card.numerics.mesh_sd
 
+    @property
+    def material_data(self) -> Mapping[str, tuple[Mapping[str, Any], Path]]:
+        """Region -> its material card as written, changes laid over it, and the card's file."""
+        _ = self.materials
+        data: Mapping[str, tuple[Mapping[str, Any], Path]] = self.__dict__["_material_data"]
+        return data
+
+    @functools.cached_property
+    def uncertain_numbers(self) -> tuple[UncertainNumber, ...]:
+        """Every number with a standard deviation, from the cards and the study, also those that cannot matter.
+
+        Raises
+        ------
+        InputError : a name in ``[uncertainty]`` that the study has not.
+        """
+        return uncertain_numbers(self)
+
     @functools.cached_property
     def uncertainty(self) -> dict[str, float]:
-        """Dotted name of an uncertain number -> relative standard deviation, from the cards and the study."""
-        found: dict[str, float] = {}
-        for region, card in self.materials.items():
-            for name in ("conductivity", "specific_heat", "loss_tangent"):
-                entry = getattr(card, name)
-                for key in ("value", "along", "across"):
-                    if entry.relative_sd and getattr(entry, key, None) is not None:
-                        found[f"materials.{region}.{name}.{key}"] = entry.relative_sd
-        self._check_uncertain_names()
-        return found | self.card.uncertainty
-
-    def _check_uncertain_names(self) -> None:
-        for key in self.card.uncertainty:
-            try:
-                scaled(value_at(self.data, key, self.folder), 1.0)
-            except InputError as error:
-                raise InputError(error.message, field=f"uncertainty.{key}", file=self.file) from None
+        """Dotted name of an uncertain number that can matter -> relative standard deviation."""
+        return {number.key: number.sd for number in self.uncertain_numbers if not number.idle}
 
     def _share(self, like: Study | None) -> None:
         """Take over what another study has built, where the two do not differ."""
@@ -345,8 +348,15 @@ class Study(Brief):
         return study
 
     def scaled(self, key: str, factor: float) -> Study:
-        """A new study with the number at a dotted name times a factor."""
-        return self.replace({key: scaled(value_at(self.data, key, self.folder), factor)})
+        """A new study with the number at a dotted name times a factor, in every region that takes it from that card.
+
+        An uncertain number that stands at several names (c10 and c01 of one compound) is moved as one.
+
+        >>> radial = study("passenger-205-55r16").scaled("materials.body-ply.conductivity.across", 2.0)
+        >>> radial.materials["turn-up"].conductivity.across == radial.materials["body-ply"].conductivity.across
+        True
+        """
+        return self.replace(uncertain_number(self, key).changes(factor))
 
     def with_drive(self, changes: Mapping[str, Any]) -> Study:
         """A new study with other values in its ``[drive]`` table."""

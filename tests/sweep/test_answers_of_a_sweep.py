@@ -401,3 +401,25 @@ def test_nothing_is_drawn_between_two_cards(tyre: Study) -> None:
     assert len(line.get_xdata()) == 2
     assert line.get_linestyle() == "None"
     assert line.get_marker() == "o"
+
+
+def test_tornado_moves_stiffness_too_and_a_shared_card_as_one(tyre: Study) -> None:
+    stiff = {"relative_sd": 0.2}
+    shared = {f"materials.{one}": {"base": "nasa-tread", "shear_modulus": stiff} for one in ("tread", "sidewall")}
+    idle = {"materials.bead.shear_modulus": {"value": "1 MPa", "source": "test", **stiff}}
+    study = tyre.replace({**shared, **idle})
+    key, other = (f"materials.{one}.shear_modulus.value" for one in ("tread", "sidewall"))
+    plan = tornado_plan(study)
+    assert key in plan.how["tolerances"]
+    assert other not in plan.how["tolerances"]
+    moved = [one for one in plan.variants if key in one]
+    assert [set(one) for one in moved] == [{key, other}, {key, other}]
+    found = Tornado(sweep(tornado_plan(study, {other: 0.2})), ("hottest_degC",))
+    (row,) = found.of("hottest_degC").to_dict("records")
+    assert row["also"] == "tread"
+    both = study.replace(dict(moved[1])).run().history.maximum.temperature
+    assert row["nominal"] + row["more"] == pytest.approx(both, abs=1e-6)
+    assert abs(row["more"]) > 0.01
+    assert plan.how["left_out"] == [
+        "left out, as the strain law 'arcs' does not read them: materials.bead.shear_modulus.value"
+    ]

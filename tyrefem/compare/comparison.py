@@ -24,6 +24,10 @@ if TYPE_CHECKING:
 FILES = ("comparison.csv", "residuals.csv", "comparison.json", "comparison.html", "histories-*.png", "deviations.png")
 
 
+#: Columns of `Comparison.inputs`.
+INPUTS = ("run", "sensor", "phase", "key", "relative_sd", "change_K", "regions")
+
+
 @dataclass(frozen=True, eq=False)
 class Comparison(Brief):
     """Deviations of a study from measurements.
@@ -36,7 +40,8 @@ class Comparison(Brief):
         readings, ``beyond`` and ``verdict``.
     residuals : one row per reading: ``run, time_s, sensor, phase, measured_degC, computed_degC, error_K`` and
         ``u_val_K``, the standard validation uncertainty of that reading.
-    inputs : one row per run, sensor, phase and uncertain input ``key``: ``relative_sd`` and ``change_K``,
+    inputs : one row per run, sensor, phase and uncertain input ``key``: ``relative_sd``, the ``regions`` that it is
+        moved in together (a card's number is one in all that take it from there) and ``change_K``,
         the change of the mean when that input is one standard deviation higher.
     curves : run -> computed readings at the saved times (``time_s``, degC).
     notes : what was left out, in sentences; those beginning with "ERROR" also stand in the summary.
@@ -190,20 +195,23 @@ def comparison_of(
     *,
     curves: Mapping[str, pd.DataFrame],
     relative_sd: Mapping[str, float],
+    regions: Mapping[str, tuple[str, ...]] | None = None,
     notes: tuple[str, ...] = (),
     k: float = 2.0,
     reduced: Certificate | None = None,
 ) -> Comparison:
-    """The comparison that follows from paired histories."""
+    """The comparison that follows from paired histories; ``regions``: input -> the regions that it is moved in."""
     import pandas as pd
 
     rows, inputs = [], []
+    places = {key: ", ".join(names) for key, names in (regions or {}).items()}
     for history in histories:
         for phase, mask in history.stretches():
             values, changes = row(history, phase, mask, k)
             rows.append(values)
             inputs += [
-                (history.run, history.sensor, phase, key, relative_sd[key], change) for key, change in changes.items()
+                (history.run, history.sensor, phase, key, relative_sd[key], change, places.get(key, ""))
+                for key, change in changes.items()
             ]
     residuals = pd.concat(
         [
@@ -227,7 +235,7 @@ def comparison_of(
         study=study,
         table=pd.DataFrame(rows, columns=list(COLUMNS)),
         residuals=residuals,
-        inputs=pd.DataFrame(inputs, columns=["run", "sensor", "phase", "key", "relative_sd", "change_K"]),
+        inputs=pd.DataFrame(inputs, columns=list(INPUTS)),
         curves=dict(curves),
         notes=notes,
         k=k,

@@ -11,6 +11,7 @@ import numpy as np
 
 from tyrefem.compare.computed import Computed, computed_of
 from tyrefem.errors import InputError
+from tyrefem.mechanics import BY_ELEMENTS, same_cycles
 from tyrefem.reduced.model import NotReducibleError, ReducedModel
 from tyrefem.reduced.residual import corrected
 from tyrefem.reduced.school import HORIZONS
@@ -83,6 +84,19 @@ def amended(work: tuple[Packed, Study, float]) -> Snapshots | None:
         return corrected(model, RollingTyre(study.replace({}, model.base.study), model.base), share)[0]
     except InputError:
         return None
+
+
+def followed(studies: Mapping[Key, Study]) -> dict[Key, Study]:
+    """The runs that a reduced model is worth making for: of strain cycles that take longer than a run, those that have
+    their drive's.
+
+    What changes the strain cycle needs a solution of its own either way, and more of them to learn from.
+    """
+    return {
+        (drive, name): study
+        for (drive, name), study in studies.items()
+        if study.card.mechanics.strain not in BY_ELEMENTS or name is None or same_cycles(study, studies[drive, None])
+    }
 
 
 @dataclass(eq=False)

@@ -25,6 +25,10 @@ def page(comparison: Comparison, pictures: Mapping[str, bytes]) -> str:
     embedded = {name: base64.b64encode(png).decode("ascii") for name, png in pictures.items()}
     whole = [record for record in records if record["phase"] == ALL]
     relative_sd = dict(zip(comparison.inputs["key"], comparison.inputs["relative_sd"], strict=True))
+    regions = {
+        key: ", ".join(names.split(", ")[1:])
+        for key, names in zip(comparison.inputs["key"], comparison.inputs["regions"], strict=True)
+    }
     return environment.get_template("page.html").render(
-        comparison=comparison, whole=whole, records=records, relative_sd=relative_sd, pictures=embedded
+        comparison=comparison, whole=whole, records=records, relative_sd=relative_sd, regions=regions, pictures=embedded
     )

@@ -13,8 +13,10 @@ from tyrefem.compare.experiment import Experiment, Table, experiments
 from tyrefem.compare.history import histories
 from tyrefem.compare.interface import ResultLike, StudyLike
 from tyrefem.errors import InputError
+from tyrefem.mechanics import BY_ELEMENTS, same_cycles
 from tyrefem.requirements import Requirements
 from tyrefem.studies import Study
+from tyrefem.uncertain_numbers import left_out
 
 if TYPE_CHECKING:
     from tyrefem.compare.neighbours import Certificate
@@ -45,7 +47,8 @@ def compare(
         a list of these; None = the study's own ``[[measured]]`` entries, with their drives, noise and offsets.
     result : the study's result if it is known; used for every run that was driven at the study's own drive,
         and for a single run in any case if it comes from another (amended, other drive) study.
-    inputs : run the study again with each quantity of ``study.uncertainty`` one standard deviation higher.
+    inputs : run the study again with each number of ``study.uncertainty`` one standard deviation higher: all that its
+        cards and ``[uncertainty]`` state and that can matter, a card's number in all its regions at once.
     ignore : columns of the tables to leave out. ``rename`` : column name -> sensor name; both beside what the
         ``[[measured]]`` entries say.
     k : coverage factor of the verdict; 2 for about 95 %.
@@ -82,9 +85,11 @@ def compare(
     if not found:
         raise InputError("no measured time is within the simulated span: " + "; ".join(notes))
     notes += [*said, *_left_out(planned), *_unstated(study, planned, inputs)]
+    regions = {number.key: number.regions for number in getattr(study, "uncertain_numbers", ())}
     return comparison_of(
-        study.name, found, curves=curves, relative_sd=keys, notes=tuple(notes), k=k, reduced=certificate
-    )
+        study.name, found, curves=curves, relative_sd=keys, regions=regions, notes=tuple(notes), k=k,
+        reduced=certificate,
+    )  # fmt: skip
 
 
 def _drive(experiment: Experiment) -> str:
@@ -141,7 +146,11 @@ def _solved(
         results, certificate, notes = _by_model(
             studies, lambda drive, key: drives[drive].scaled(key, 1 / (1 + keys[key])), known, each, done
         )
-    missing = [what for what in studies if what not in results]
+    # The same change at one drive after the other: what takes long to find for a change, its drives may share.
+    order: dict[str | None, int] = {None: -1}
+    order |= {key: number for number, key in enumerate(keys)}
+    missing = sorted((what for what in studies if what not in results), key=lambda what: order[what[1]])
+    notes += _cost(study, studies, drives)
     for what, computed in zip(missing, each(_run, [studies[what] for what in missing]), strict=True):
         results[what] = computed
         done(len(results))
@@ -158,15 +167,16 @@ def _by_model(
     done: Callable[[int], None],
 ) -> tuple[dict[Key, ResultLike], Certificate | None, list[str]]:
     """The runs that were made with the help of a reduced model: all, or full ones only if it did not hold."""
-    from tyrefem.compare.neighbours import WORTH, Neighbours
+    from tyrefem.compare.neighbours import WORTH, Neighbours, followed
     from tyrefem.result import Result
 
-    changed = [what for what in studies if what[1] is not None]
     own = {what: one for what, one in studies.items() if isinstance(one, Study)}
     at_hand = {drive: one for drive, one in known.items() if isinstance(one, Result)}
-    if len(changed) < WORTH or len(own) < len(studies) or len(at_hand) < len(known):
+    if len(own) < len(studies) or len(at_hand) < len(known):
         return {}, None, []
-    everything = {(drive, None): one.study for drive, one in at_hand.items()} | own
+    everything = followed({(drive, None): one.study for drive, one in at_hand.items()} | own)
+    if sum(key is not None for _, key in everything) < WORTH:
+        return {}, None, []
     neighbours = None
     try:
         neighbours = Neighbours(everything, lowered, at_hand, each, done)
@@ -189,6 +199,18 @@ def _check_times(study: Study, planned: Sequence[Experiment]) -> None:
             return
         notes += _outside(experiment, 0.0, end, outside)
     raise InputError("no measured time is within the simulated span: " + "; ".join(notes))
+
+
+def _cost(study: StudyLike, studies: Mapping[Key, StudyLike], drives: Mapping[str, StudyLike]) -> list[str]:
+    """What the changed inputs cost, where strain cycles take longer than a run."""
+    changed = {what: one for what, one in studies.items() if what[1] is not None}
+    if not changed or not isinstance(study, Study) or study.card.mechanics.strain not in BY_ELEMENTS:
+        return []
+    moved = sum(not same_cycles(one, drives[drive]) for (drive, _), one in changed.items())  # type: ignore[arg-type]
+    return [
+        f"Note: {len(changed)} runs with a changed input; {moved} of them change the strain cycle, which finite "
+        "elements solve anew"
+    ]
 
 
 def _outside(experiment: Experiment, first: float, last: float, outside: int) -> list[str]:
@@ -214,6 +236,8 @@ def _unstated(study: StudyLike, planned: Sequence[Experiment], inputs: bool) -> 
         notes.append("Note: the study states no uncertainty of its inputs, so u_input is 0")
     elif not inputs:
         notes.append("Note: the uncertainty of the inputs was left out, so u_input is 0")
+    if inputs:
+        notes += [f"Note: inputs {line}" for line in left_out(getattr(study, "uncertain_numbers", ()))]
     silent = {
         sensor: None
         for experiment in planned

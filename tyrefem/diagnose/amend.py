@@ -66,7 +66,8 @@ def amended(study: Study, change: Sequence[Change]) -> Study:
     new = with_values(study, {unknown: x for unknown, x in totals.items() if unknown.effect})
     base = [one for one in change if not one.unknown.effect]
     for one in base:
-        new = new.replace({one.unknown.key: _restated(study, one), **_provenance(study, one)})
+        for key in one.unknown.keys or (one.unknown.key,):
+            new = new.replace({key: _restated(study, one, key), **_provenance(study, one, key)})
     runs = [dict(entry) for entry in new.data.get("measured", [])]
     for unknown, x in totals.items():
         if unknown.effect is None and unknown.key.startswith("drive."):
@@ -101,16 +102,17 @@ def amended(study: Study, change: Sequence[Change]) -> Study:
     return new.replace({"title": title}) if change else new
 
 
-def _restated(study: Study, one: Change) -> Any:
+def _restated(study: Study, one: Change, key: str) -> Any:
     """A base number as the study writes it, changed, to the digits that a hundredth of its standard deviation has."""
-    written = value_at(study.data, one.unknown.key, study.folder)
+    written = value_at(study.data, key, study.folder)
     digits = max(3, int(np.ceil(-np.log10(max(one.sd, 1e-6) / 100))) + 1)
     return scaled(written, one.unknown.value(one.x), digits)
 
 
-def _provenance(study: Study, one: Change) -> dict[str, Any]:
+def _provenance(study: Study, one: Change, key: str) -> dict[str, Any]:
     """What a corrected number of a card must say: its new source and standard deviation."""
-    table, _, _ = one.unknown.key.rpartition(".")
+    # What a law over frequency says has source and deviation in the table above it.
+    table = key.rpartition(".")[0].removesuffix(".frequency")
     if not table.startswith("materials."):
         return {}
     before = value_at(study.data, f"{table}.source", study.folder)

@@ -6,6 +6,7 @@ import contextlib
 import functools
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
+from pathlib import Path
 from typing import Any
 
 import numpy as np
@@ -20,6 +21,8 @@ from tyrefem.diagnose.trials import Trial
 from tyrefem.diagnose.unknowns import Unknown, with_values
 from tyrefem.diagnose.varied import Varied
 from tyrefem.errors import InputError
+from tyrefem.mechanics import BY_ELEMENTS
+from tyrefem.nearby_cycles import NearbyCycles, SolvedCycles
 from tyrefem.reduced.model import NotReducibleError
 from tyrefem.result import GAS, RIM
 from tyrefem.rolling import RollingTyre, run
@@ -71,14 +74,18 @@ class Response(Brief):
 
 @dataclass(frozen=True, eq=False)
 class Bench(Brief):
-    """A study and the trials it is held against; simulates one trial at a time."""
+    """A study and the trials it is held against; simulates one trial at a time.
+
+    ``folder``: where strain cycles by finite elements are left for other processes.
+    """
 
     study: Study
     trials: tuple[Trial, ...]
+    folder: Path | None = None
 
     def __reduce__(self) -> tuple[Any, ...]:
         """Another process starts with what was stated, not with what was simulated."""
-        return Bench, (self.study, self.trials)
+        return Bench, (self.study, self.trials, self.folder)
 
     @functools.cached_property
     def coarse(self) -> Study:
@@ -101,8 +108,20 @@ class Bench(Brief):
         """The coarse study simulated at a trial's drive."""
         if number not in self._bases:
             like = next((one.tyre for one in self._bases.values()), None)
-            self._bases[number] = lean(self.driven(self.coarse, number), like)
+            driven = self.driven(self.coarse, number)
+            self._bases[number] = lean(driven, like, self.nearby(driven))
         return self._bases[number]
+
+    def nearby(self, driven: Study) -> NearbyCycles | None:
+        """Strain cycles near those of the coarse study at a trial's drive; None where each costs next to nothing."""
+        if driven.card.mechanics.strain not in BY_ELEMENTS:
+            return None
+        return NearbyCycles(driven, self._solved)
+
+    @functools.cached_property
+    def _solved(self) -> SolvedCycles:
+        """Strain cycles with a number moved, of all drives."""
+        return SolvedCycles(self.folder)
 
     def blocks(self, number: int, times: Array, readings: Mapping[str, Any]) -> Array:
         """Block means of a trial from readings at ``times``."""

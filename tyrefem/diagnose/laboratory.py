@@ -2,10 +2,12 @@
 
 from __future__ import annotations
 
+import tempfile
 from collections.abc import Callable, Iterator, Mapping, Sequence
 from concurrent.futures import Executor, as_completed
 from contextlib import contextmanager
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
+from pathlib import Path
 from typing import Any
 
 from tyrefem.brief import Brief
@@ -71,5 +73,7 @@ def laboratory(bench: Bench, workers: int = 1, store: ProgressStore | None = Non
     if workers <= 1:
         yield Laboratory(bench, store=store)
         return
-    with processes(workers, _install, bench) as pool:
-        yield Laboratory(bench, pool, store)
+    with tempfile.TemporaryDirectory(prefix="tyrefem-") as folder:
+        shared = replace(bench, folder=Path(folder))
+        with processes(workers, _install, shared) as pool:
+            yield Laboratory(shared, pool, store)

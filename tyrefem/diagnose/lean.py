@@ -14,6 +14,7 @@ from scipy.interpolate import CubicSpline
 from tyrefem.conduction.points import located
 from tyrefem.conduction.quick import quick
 from tyrefem.conduction.tangent import stage_times
+from tyrefem.nearby_cycles import NearbyCycles
 from tyrefem.result import GAS, RIM
 from tyrefem.rolling import RollingTyre
 from tyrefem.sensors import recorded, true_places
@@ -99,9 +100,9 @@ def read(study: Study, grid: Array, at_sensors: Array | None, lumped: dict[str, 
     return found
 
 
-def lean(study: Study, like: RollingTyre | None = None) -> Lean:
-    """Simulate a study's drive on fixed steps."""
-    tyre = RollingTyre(study, like)
+def lean(study: Study, like: RollingTyre | None = None, near: NearbyCycles | None = None) -> Lean:
+    """Simulate a study's drive on fixed steps; ``like``, ``near``: see `RollingTyre`."""
+    tyre = RollingTyre(study, like, near=near)
     times = stage_times([*tyre.drive.starts, tyre.drive.end])
     return Lean(study, tyre, times, *quick(tyre.problem, times, tyre.drive.initial))
 

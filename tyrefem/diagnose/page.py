@@ -13,6 +13,9 @@ from tyrefem.diagnose.rivals import candidate_rows, finite, set_rows
 from tyrefem.diagnose.unknowns import Unknown
 from tyrefem.diagnose.verdict import CONFOUNDED, IDENTIFIED, UNEXPLAINED
 from tyrefem.dotted import value_at
+from tyrefem.mechanics import BY_ELEMENTS
+from tyrefem.nearby_cycles import NearbyCycles
+from tyrefem.uncertain_numbers import left_out
 
 if TYPE_CHECKING:
     from tyrefem.diagnose.diagnosis import Diagnosis
@@ -137,7 +140,7 @@ def _correction(d: Diagnosis, one: Change) -> dict[str, str]:
         new = value_at(d.study.data, unknown.key, d.study.folder)
         relative = unknown.value(one.x) - 1
         return {
-            "what": unknown.key,
+            "what": unknown.label,
             "original": str(value_at(d.original.data, unknown.key, d.original.folder)),
             "amended": str(new),
             "change": f"{100 * relative:+z.1f} ± {100 * one.sd:.1f} %",
@@ -176,6 +179,17 @@ def _offers(d: Diagnosis, kind: str, what: str, at: str) -> list[dict[str, Any]]
     return [one for one in found if one["gain"] > TELLS]
 
 
+def _linear(d: Diagnosis) -> list[str]:
+    """What the fits take for the strain cycles of finite elements."""
+    if d.original.card.mechanics.strain not in BY_ELEMENTS:
+        return []
+    count = len(NearbyCycles(d.original).numbers)
+    return [
+        f"In the fits, strain cycles by finite elements are linear in {count} numbers: one solution for each at every "
+        "load. The study itself, before and after, is solved in full."
+    ]
+
+
 def _assumed(d: Diagnosis) -> list[str]:
     choice = d.original.card.diagnosis
     return [
@@ -183,6 +197,8 @@ def _assumed(d: Diagnosis) -> list[str]:
         f"{len({one.name for one in d.candidates})} effects ({len(d.candidates)} with their variants) and their sets.",
         f"Film coefficients are known to {100 * choice.film_sd:.0f} %; base numbers as the cards and the study's "
         "[uncertainty] table state; each sensor's place, lag and offset as its entry states.",
+        *(f"Base numbers {line}." for line in left_out(d.original.uncertain_numbers)),
+        *_linear(d),
         f"Even a right model misses by {choice.discrepancy:g} K, correlated over {choice.correlation_time:g} s; the "
         "noise of readings is independent.",
         *([f"Excluded by the study: {', '.join(choice.exclude)}."] if choice.exclude else []),

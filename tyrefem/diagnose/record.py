@@ -110,6 +110,7 @@ def change_rows(d: Diagnosis) -> list[dict[str, Any]]:
     return [
         {
             "key": one.unknown.key,
+            "keys": list(one.unknown.keys),
             "effect": one.unknown.effect,
             "variant": dict(one.unknown.choice),
             "missing": one.missing,

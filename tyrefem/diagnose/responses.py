@@ -35,7 +35,9 @@ def responses(lab: Laboratory, unknowns: tuple[Unknown, ...], tick: Tick | None 
         if tick:
             tick("sensitivities", done, count)
 
-    sensors = lab.bench.sensors
+    sensors, near = lab.bench.sensors, lab.bench.nearby(lab.bench.coarse)
+    if tick and near is not None:
+        tick(f"solving the strain cycle of every drive again for {len(near.numbers)} numbers", 0, 0)
     found = []
     for times, readings, correction, slopes, V in lab.ask("response", [(i, unknowns) for i in range(count)], step):
         by_sensor = [dict(zip(sensors, each, strict=True)) for each in (readings, correction, slopes)]

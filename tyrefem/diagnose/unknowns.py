@@ -27,6 +27,7 @@ class Unknown:
     ----------
     key : dotted name of a base number (x = ln of its factor), or of an effect's parameter (x = value - origin, SI).
     sd : standard deviation of its prior. low, high : bounds of x.
+    keys : of a base number, every dotted name that holds it: a card's number in all regions that take it from there.
     effect, choice, parameter : for an effect's parameter: name, variant, and the parameter.
     origin : the parameter's value at x = 0 where the study has the effect already.
     """
@@ -39,6 +40,7 @@ class Unknown:
     choice: Choice = ()
     parameter: Parameter | None = None
     origin: float | None = None
+    keys: tuple[str, ...] = ()
 
     @property
     def step(self) -> float:
@@ -47,6 +49,16 @@ class Unknown:
             return 1.0
         size = 0.02 * self.sd if self.effect else 0.01
         return size if self.high > 0 else -size
+
+    @property
+    def label(self) -> str:
+        """Its key, and the other regions in which a base number is moved with it.
+
+        >>> Unknown("materials.a.k.value", 0.1, keys=("materials.a.k.value", "materials.b.k.value")).label
+        'materials.a.k.value (also b)'
+        """
+        regions = list(dict.fromkeys(key.split(".")[1] for key in self.keys if key.startswith("materials.")))
+        return f"{self.key} (also {', '.join(regions[1:])})" if len(regions) > 1 else self.key
 
     @property
     def fixed(self) -> bool:
@@ -131,8 +143,11 @@ def of_effect(
 
 
 def base_unknowns(study: Study) -> tuple[Unknown, ...]:
-    """The uncertain base numbers: those of `Study.uncertainty`, the films, and effects stated with uncertain values."""
-    numbers = tuple(Unknown(key, sd) for key, sd in study.uncertainty.items())
+    """The uncertain base numbers: those of the study that can matter, the films, and effects stated with uncertain
+    values."""
+    numbers = tuple(
+        Unknown(number.key, number.sd, keys=number.keys) for number in study.uncertain_numbers if not number.idle
+    )
     known = catalogue()
     films: list[Unknown] = []
     for name in ("road", "outside_air", "contained_air", "rim"):
@@ -194,7 +209,7 @@ def with_values(study: Study, values: Mapping[Unknown, float], like: Study | Non
     for unknown, x in values.items():
         if unknown.effect is None:
             if x != 0.0:
-                changes[unknown.key] = scaled(_written(study, unknown.key), math.exp(x))
+                changes |= {key: scaled(_written(study, key), math.exp(x)) for key in unknown.keys or (unknown.key,)}
         else:
             # A sensor's offset may stand twice: as what every sensor has, and as a candidate that it is far off.
             totals[unknown.key] = unknown, totals.get(unknown.key, (unknown, 0.0))[1] + x

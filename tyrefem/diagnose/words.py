@@ -74,7 +74,7 @@ def percent(probability: float) -> str:
 
 def parameter_name(unknown: Unknown) -> str:
     """What an effect's parameter means."""
-    return unknown.parameter.prior.meaning if unknown.parameter else unknown.key
+    return unknown.parameter.prior.meaning if unknown.parameter else unknown.label
 
 
 def effect_amounts(candidate: Candidate, fit: Explained) -> list[str]:

@@ -11,6 +11,7 @@ from typing import TYPE_CHECKING, Any
 from tyrefem.mechanics import PRESSES
 from tyrefem.quantity import Unit
 from tyrefem.report.words import number
+from tyrefem.uncertain_numbers import stated_deviations
 
 if TYPE_CHECKING:
     from tyrefem.cards import Card
@@ -24,6 +25,8 @@ if TYPE_CHECKING:
 def material_rows(study: Study) -> tuple[list[dict[str, Any]], list[str]]:
     """One row per number: region, card, property, value, uncertainty, source, estimate or not; and the estimates."""
     rows, estimates = [], []
+    idle = {table for number in study.uncertain_numbers if number.idle for table in number.tables}
+    names = {id(entry): where for card in study.materials.values() for where, entry in stated_deviations(card)}
     for region, card in study.materials.items():
         for row, (label, entry, value) in enumerate(_properties(card)):
             guess = "estimate" in entry.source.lower()
@@ -31,6 +34,8 @@ def material_rows(study: Study) -> tuple[list[dict[str, Any]], list[str]]:
                 estimates.append(f"{region}: {label}")
             heads = ["", ""] if row else [region, card.title]
             sd = "–" if entry.relative_sd is None else f"± {100 * entry.relative_sd:.0f} %"
+            if f"materials.{region}.{names.get(id(entry), '')}" in idle:
+                sd += ", cannot matter here"
             rows.append({"cells": [*heads, label, value, sd, entry.source], "estimate": guess, "first": not row})
     return rows, estimates
 

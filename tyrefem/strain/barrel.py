@@ -12,7 +12,7 @@ from numpy.typing import NDArray
 
 from tyrefem.errors import InputError
 from tyrefem.strain import StrainCycle, Zone
-from tyrefem.strain.gauss_points import GaussPoints
+from tyrefem.strain.gauss_points import GaussPoints, PointEnergies
 from tyrefem.strain.pressed_tyre import pressed_tyre
 
 if TYPE_CHECKING:
@@ -60,12 +60,13 @@ class Barrel:
         return np.asarray(((storage @ strain) * strain).sum(axis=(-2, -1)) * determinant(self.tyre.deformation) / 2)
 
     @functools.cached_property
-    def _points(self) -> GaussPoints:
-        return GaussPoints(self.tyre.body.rings)
+    def energies(self) -> PointEnergies:
+        """The energies alone, without the tyre that they are of."""
+        return PointEnergies(self.zones, GaussPoints(self.tyre.body.rings), self.density[None])
 
     def energy_density(self, zone: str, points: Array) -> Array:
         """U, J/m3, at points (2, n) in (r, z) of a region of the undeformed section."""
-        return self._points.interpolate(self.density, zone, points)
+        return self.energies.energy_density(zone, points)
 
 
 def provider(study: Study) -> Callable[[LoadCase], StrainCycle]:

@@ -13,7 +13,7 @@ from numpy.typing import NDArray
 from tyrefem.heating import LOSS_FACTOR
 from tyrefem.loading import PressedContact
 from tyrefem.strain import Zone, by_order
-from tyrefem.strain.gauss_points import GaussPoints
+from tyrefem.strain.gauss_points import GaussPoints, PointEnergies
 from tyrefem.strain.pressed_tyre import pressed_tyre
 
 if TYPE_CHECKING:
@@ -81,19 +81,20 @@ class FiniteElements:
     @property
     def density(self) -> Array:
         """(n_elements, n_points) U, J/m3, at the Gauss points of the mechanical mesh."""
-        return np.asarray(self.densities.sum(axis=0))
+        return self.energies.density
 
     @functools.cached_property
-    def _points(self) -> GaussPoints:
-        return GaussPoints(self.tyre.body.rings)
+    def energies(self) -> PointEnergies:
+        """The energies alone, without the tyre that they are of."""
+        return PointEnergies(self.zones, GaussPoints(self.tyre.body.rings), self.densities)
 
     def energy_density(self, zone: str, points: Array) -> Array:
         """U, J/m3, at points (2, n) in (r, z) of a region of the undeformed section."""
-        return self._points.interpolate(self.density, zone, points)
+        return self.energies.energy_density(zone, points)
 
     def spectrum(self, zone: str, points: Array) -> Array:
         """(orders, n) the same by `strain.ORDERS`."""
-        return self._points.interpolate(self.densities, zone, points)
+        return self.energies.spectrum(zone, points)
 
 
 def provider(study: Study) -> Callable[[LoadCase], FiniteElements]:

@@ -2,11 +2,15 @@
 
 from __future__ import annotations
 
+import functools
+from collections.abc import Sequence
 from dataclasses import dataclass, field
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
 from numpy.typing import NDArray
+
+from tyrefem.strain import Zone
 
 if TYPE_CHECKING:
     from tyrefem.solid.elements import Rings
@@ -48,3 +52,38 @@ class GaussPoints:
             members = self.rings.mesh.subdomains[region]
             self._trees[region] = cKDTree(self.rings.points[:, members].reshape(2, -1).T)
         return self._trees[region]
+
+
+@dataclass(frozen=True, eq=False)
+class PointEnergies:
+    """A strain cycle as energies at Gauss points: ``densities`` (orders, n_elements, n_points) U, J/m3, by
+    `strain.ORDERS`, of ``zones`` that are whole regions."""
+
+    zones: tuple[Zone, ...]
+    points: GaussPoints
+    densities: Array
+
+    @functools.cached_property
+    def density(self) -> Array:
+        """(n_elements, n_points) U, J/m3."""
+        return np.asarray(self.densities.sum(axis=0))
+
+    def energy_density(self, zone: str, points: Array) -> Array:
+        """U, J/m3, at points (2, n) in (r, z) of a region of the undeformed section."""
+        return self.points.interpolate(self.density, zone, points)
+
+    def spectrum(self, zone: str, points: Array) -> Array:
+        """(orders, n) the same by `strain.ORDERS`."""
+        return self.points.interpolate(self.densities, zone, points)
+
+    def moved(self, others: Sequence[tuple[PointEnergies, float]]) -> PointEnergies:
+        """U + sum_i w_i (U_i - U) with shares w_i of the way to other cycles at the same points; nowhere below 0."""
+        size = max(len(one.densities) for one in (self, *(other for other, _ in others)))
+        found = _padded(self.densities, size)
+        for other, share in others:
+            found = found + share * (_padded(other.densities, size) - _padded(self.densities, size))
+        return PointEnergies(self.zones, self.points, np.maximum(found, 0.0))
+
+
+def _padded(densities: Array, size: int) -> Array:
+    return np.pad(densities, ((0, size - len(densities)), (0, 0), (0, 0)))

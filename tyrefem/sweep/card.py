@@ -68,7 +68,8 @@ class LimitCard(Card):
 class TornadoCard(Card):
     """Every uncertain number alone, less and more by its tolerance.
 
-    ``tolerances``: dotted name -> share of the number; by default one standard deviation of what cards and study state.
+    ``tolerances``: dotted name -> share of the number; by default one standard deviation of what cards and study state
+    and what can matter. A card's number is moved in every region that takes it from that card.
     """
 
     kind: ClassVar[str] = "sweep"

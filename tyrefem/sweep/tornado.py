@@ -13,40 +13,51 @@ from tyrefem.studies import Study
 from tyrefem.sweep.answer_words import difference_unit, name_of, shown
 from tyrefem.sweep.plan import Plan, sensible
 from tyrefem.sweep.sweep import Sweep
-from tyrefem.sweep.varied import DIGITS, scaled_value
+from tyrefem.sweep.varied import DIGITS
+from tyrefem.uncertain_numbers import UncertainNumber, left_out, uncertain_number
 
 if TYPE_CHECKING:
     import pandas as pd
     from matplotlib.figure import Figure
 
 
-def tolerances(study: Study, only: Mapping[str, float] | None = None) -> dict[str, float]:
-    """Dotted name -> relative tolerance: those given, or one standard deviation of what cards and study state.
+def tolerances(study: Study, only: Mapping[str, float] | None = None) -> tuple[UncertainNumber, ...]:
+    """The numbers to move, with their relative tolerances as sd: those given, or all that cards and study state a
+    standard deviation for and that can matter. A card's number is one in all regions that take it from that card.
 
     Raises
     ------
-    InputError : none stated.
+    InputError : none stated; a name that the study has not.
     """
-    found = dict(only or study.uncertainty)
+    found = [number for number in study.uncertain_numbers if not number.idle]
+    if only:
+        found = [uncertain_number(study, key, part) for key, part in only.items()]
     if not found:
         raise InputError(
             "no tolerances: neither cards (relative_sd) nor [uncertainty] state any; give --tolerance KEY=5%",
             file=study.file,
         )
-    return found
+    return tuple(found)
 
 
 def tornado_plan(study: Study, given: Mapping[str, float] | None = None, time_to: float | None = None) -> Plan:
     """The study as it is, then every number at 1 - tolerance and 1 + tolerance, the others as they are."""
     variants: list[dict[str, Any]] = [{}]
     names = ["as it is"]
-    parts = tolerances(study, given)
-    for key, part in parts.items():
+    numbers = tolerances(study, given)
+    for number in numbers:
         for sign, word in ((-1, "less"), (1, "more")):
-            variants.append({key: scaled_value(study, key, 1 + sign * part, DIGITS)})
-            names.append(f"{key}, {part:.3g} {word}")
+            variants.append(number.changes(1 + sign * number.sd, DIGITS))
+            names.append(f"{number.key}, {number.sd:.3g} {word}")
     sensible(study, list(zip(names, variants, strict=True)))
-    how = {"sample": "tolerances", "count": len(variants), "seed": None, "tolerances": parts}
+    how = {
+        "sample": "tolerances",
+        "count": len(variants),
+        "seed": None,
+        "tolerances": {number.key: number.sd for number in numbers},
+        "also": {number.key: list(number.regions[1:]) for number in numbers if len(number.regions) > 1},
+        "left_out": [] if given else left_out(study.uncertain_numbers),
+    }
     return Plan(study, (), tuple(variants), tuple(names), {}, time_to, how)
 
 
@@ -69,15 +80,15 @@ class Tornado:
     def table(self) -> pd.DataFrame:
         """Per answer and number: ``nominal``, ``less`` and ``more`` (changes of the answer), ``range``; widest first.
 
-        ``tolerance`` is the share by which the number was moved; all else is in the answer's unit.
+        ``tolerance`` is the share by which the number was moved; ``also`` the other regions of its card, moved with
+        it; all else is in the answer's unit.
         """
         import pandas as pd
 
         plan, rows = self.swept.plan, []
         for answer in self.answers:
             base = self._value(0, answer)
-            for n in range(1, len(plan.variants), 2):
-                (key,) = plan.variants[n]
+            for n, key in zip(range(1, len(plan.variants), 2), plan.how["tolerances"], strict=True):
                 less, more = (self._value(m, answer) - base for m in (n, n + 1))
                 width = max(less, more, 0.0) - min(less, more, 0.0) if math.isfinite(less + more) else math.nan
                 rows.append(
@@ -89,6 +100,7 @@ class Tornado:
                         "less": less,
                         "more": more,
                         "range": width,
+                        "also": ", ".join(plan.how["also"].get(key, ())),
                         "failure": "; ".join(filter(None, (self._failure(m) for m in (0, n, n + 1)))),
                     }
                 )
@@ -132,6 +144,7 @@ class Tornado:
             if len(rows) > 1:
                 told.append(f"All {len(rows)} together, if independent: ±{together:.2g} {unit}".rstrip() + ".")
         failed = self.swept.failed
+        told += [f"{one[0].upper()}{one[1:]}." for one in self.swept.plan.how["left_out"]]
         return told + ([f"{len(failed)} of {len(self.swept.plan.variants)} runs failed."] if failed else [])
 
     def figures(self) -> Iterator[tuple[str, str, Figure]]:

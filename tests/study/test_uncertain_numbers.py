@@ -1,0 +1,179 @@
+"""What cards say of their uncertainty is used: every number once, and only where a run can feel it."""
+
+from __future__ import annotations
+
+import functools
+from typing import Any
+
+import numpy as np
+import pytest
+
+import tyrefem as tf
+from tyrefem.mechanics import cycle_schedule
+from tyrefem.solid.tyre import tyre_body
+from tyrefem.strain.pressed_tyre import mechanical_mesh
+from tyrefem.strain.reads import READS, STIFFNESS
+from tyrefem.uncertain_numbers import UncertainNumber, left_out, stated_deviations, uncertain_number
+
+RADIAL, BIAS = "passenger-205-55r16", "nasa-22x5.5-8pr"
+SHIPPED = (RADIAL, "truck-295-80r22.5", "aircraft-radial", BIAS, "example-validation")
+LAWS = ("arcs", "barrel", "fem", "given")
+
+
+@functools.cache
+def radial(law: str = "fem") -> tf.Study:
+    return tf.study(RADIAL, {"mechanics.strain": law, "mesh.size": "12 mm", "mesh.element": "P1"})
+
+
+def by_key(study: tf.Study) -> dict[str, UncertainNumber]:
+    return {number.key: number for number in study.uncertain_numbers}
+
+
+@pytest.mark.parametrize("name", SHIPPED)
+def test_every_deviation_that_a_card_states_is_somebodys(name: str) -> None:
+    """What a report prints as +- 20 % is a number that counts, or says why it cannot."""
+    study = tf.study(name)
+    held = {table for number in study.uncertain_numbers for table in number.tables}
+    stated = {
+        f"materials.{region}.{where}"
+        for region, card in study.materials.items()
+        for where, _ in stated_deviations(card)
+    }
+    assert stated <= held
+    assert set(study.uncertainty) == {number.key for number in study.uncertain_numbers if not number.idle}
+
+
+def test_one_card_in_several_regions_is_one_number() -> None:
+    study = radial()
+    number = by_key(study)["materials.body-ply.cords.modulus"]
+    assert set(number.regions) == {"body-ply", "turn-up", "bead-wrap"}
+    assert number.card == "passenger-body-ply"
+    assert not {"materials.turn-up.cords.modulus", "materials.bead-wrap.cords.modulus"} & set(study.uncertainty)
+    stiffer = study.scaled("materials.turn-up.cords.modulus", 1.2)
+    for region in number.regions:
+        before, after = (one.materials[region].cords for one in (study, stiffer))
+        assert after.modulus == pytest.approx(1.2 * before.modulus)
+        assert after.in_compression == pytest.approx(1.2 * before.in_compression)
+    # Moved together it stays one number; a region with a value of its own is another.
+    assert set(by_key(stiffer)["materials.body-ply.cords.modulus"].regions) == set(number.regions)
+    apart = study.replace({"materials.turn-up.cords.modulus": "5 GPa"})
+    assert "turn-up" not in by_key(apart)["materials.body-ply.cords.modulus"].regions
+    assert by_key(apart)["materials.turn-up.cords.modulus"].regions == ("turn-up",)
+    assert "turn-up" in by_key(apart)["materials.body-ply.elasticity.shear_modulus"].regions
+
+
+def test_constants_of_one_law_have_one_factor_and_tables_keep_their_first_column() -> None:
+    rubber = {"law": "mooney-rivlin", "c10": "0.6 MPa", "c01": "0.2 MPa", "source": "test", "relative_sd": 0.2}
+    rows = [["20 degC", "0.2 W/m/K"], ["80 degC", "0.3 W/m/K"]]
+    card = {"base": "rubber-sidewall", "elasticity": rubber, "conductivity": {"table": rows}}
+    study = radial().replace({"materials.sidewall": card})
+    number = by_key(study)["materials.sidewall.elasticity.c10"]
+    assert number.keys == ("materials.sidewall.elasticity.c10", "materials.sidewall.elasticity.c01")
+    stiffer = study.scaled(number.key, 1.5).materials["sidewall"]
+    assert (stiffer.elasticity.c10, stiffer.elasticity.c01) == pytest.approx((0.9e6, 0.3e6))
+    better = study.scaled("materials.sidewall.conductivity.table", 2.0).materials["sidewall"].conductivity
+    assert better.table == [["20 degC", "0.4 W/m/K"], ["80 degC", "0.6 W/m/K"]]
+
+
+def test_what_cannot_matter_says_why() -> None:
+    numbers = by_key(radial())
+    assert "fem" in numbers["materials.tread.shear_modulus.value"].idle
+    assert not numbers["materials.tread.elasticity.shear_modulus"].idle
+    given = by_key(radial("given"))
+    assert all(number.idle for key, number in given.items() if key.split(".")[2] in STIFFNESS)
+    (line,) = left_out(radial().uncertain_numbers)
+    assert "'fem' does not read" in line
+    assert "and 8 more" in line
+    series = {"law": "prony", "equilibrium": "1 MPa", "series": [["0.4 MPa", "1 ms"]], "source": "test"}
+    loss = {"law": "frequency", "frequency": series, "source": "test", "relative_sd": 0.2}
+    prony = by_key(radial().replace({"materials.tread": {"base": "rubber-tread-passenger", "loss_tangent": loss}}))
+    assert "no one number" in prony["materials.tread.loss_tangent"].idle
+
+
+def test_softening_counts_where_temperatures_act_back() -> None:
+    soft = {"materials.tread.softening": {"rate": "0.006 1/delta_degC", "source": "test", "relative_sd": 0.3}}
+    key = "materials.tread.softening.rate"
+    assert "feedback" in by_key(radial().replace(soft))[key].idle
+    assert not by_key(radial().replace({**soft, "mechanics.feedback": {}}))[key].idle
+    assert by_key(radial().replace({**soft, "mechanics.feedback": {"modulus": False}}))[key].idle
+
+
+def test_the_studys_own_table_speaks_of_the_same_numbers() -> None:
+    turn_up, ply = "materials.turn-up.cords.modulus", "materials.body-ply.cords.modulus"
+    study = radial().replace(
+        {"uncertainty": {turn_up: "5 %", "drive.load": "2 %", "materials.tread.density.value": 0.03}}
+    )
+    assert study.uncertainty[ply] == pytest.approx(0.05)
+    assert turn_up not in study.uncertainty
+    assert study.uncertainty["drive.load"] == pytest.approx(0.02)
+    assert study.uncertainty["materials.tread.density.value"] == pytest.approx(0.03)
+    twice = radial().replace({"uncertainty": {turn_up: "5 %", ply: "6 %"}})
+    with pytest.raises(tf.InputError, match=r"uncertainty\.materials\.body-ply.*one number with 'materials\.turn-up"):
+        _ = twice.uncertainty
+
+
+# -- what a strain law reads -------------------------------------------------------------------------------------------
+
+
+def body_of(study: tf.Study) -> list[Any]:
+    """All numbers of the body that finite elements take."""
+    parts = tyre_body(study, mechanical_mesh(study)).parts
+    found: list[Any] = []
+    for part in parts.values():
+        found += [part.compound.c10, part.compound.bulk_modulus, part.cord_loss]
+        for layer in part.cords:
+            found += [layer.stiffness.copy(), layer.limit, layer.compression]
+    return [np.asarray(one, dtype=float) for one in found]
+
+
+def same(one: list[Any], other: list[Any]) -> bool:
+    return all(np.array_equal(a, b) for a, b in zip(one, other, strict=True))
+
+
+@pytest.mark.parametrize("name", [RADIAL, BIAS])
+def test_finite_elements_read_what_they_say(name: str) -> None:
+    """Each stiffness moved: the body changes if, and only if, the law says that it reads the table."""
+    study = tf.study(name, {"mechanics.strain": "fem", "mesh.size": "12 mm"})
+    before, reads = body_of(study), READS["fem"](study.materials)
+    tried = 0
+    for region, card in study.materials.items():
+        for table, field in (
+            ("shear_modulus", "value"), ("youngs_modulus", "value"), ("cord", "ply_shear_modulus"),
+            ("elasticity", "shear_modulus"), ("cords", "modulus"), ("loss_tangent", "value"),
+        ):  # fmt: skip
+            if getattr(card, table) is None:
+                continue
+            number = uncertain_number(study, f"materials.{region}.{table}.{field}")
+            changed = body_of(study.replace(number.changes(1.1)))
+            assert same(changed, before) == (not any(table in reads[one] for one in number.regions)), number.label
+            tried += 1
+    assert tried > 8
+
+
+@pytest.mark.parametrize("law", ["arcs", "given"])
+def test_the_other_laws_read_what_they_say(law: str) -> None:
+    own = {"materials.tread.elasticity": {"law": "neo-hookean", "shear_modulus": "1 MPa", "source": "test"}}
+    study = tf.study(BIAS, {"mesh.size": "8 mm", **own})
+    if law == "given":
+        energies = dict.fromkeys(study.materials, "10 kJ/m**3")
+        table = {"load": "12 kN", "pressure": "500 kPa", "regions": energies, "source": "test"}
+        study = study.replace({"mechanics.strain": "given", "mechanics.energy": table})
+
+    def energy(of: tf.Study) -> list[Any]:
+        (cycle,) = cycle_schedule(of).cycles[0]
+        points = {
+            "tread": ([0.0], [0.015]), "carcass": ([0.01, 0.1], [0.004, 0.003]), "sidewall": ([0.1], [0.008]),
+            "bead": ([0.135], [0.005]),
+        }  # fmt: skip
+        return [cycle.energy_density(zone.name, of.section.place(*points[zone.region]).T) for zone in cycle.zones]
+
+    before, reads = energy(study), READS[law](study.materials)
+    for region, card in study.materials.items():
+        for table, field in (
+            ("shear_modulus", "value"), ("youngs_modulus", "value"), ("cord", "ply_shear_modulus"),
+            ("elasticity", "shear_modulus"), ("loss_tangent", "value"),
+        ):  # fmt: skip
+            if getattr(card, table) is None:
+                continue
+            changed = energy(study.scaled(f"materials.{region}.{table}.{field}", 1.1))
+            assert same(changed, before) == (table not in reads.get(region, ())), (region, table)
