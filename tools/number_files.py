@@ -21,7 +21,7 @@ Leaf = float | int | str | dict[str, float]
 Entry = dict[str, Leaf]
 
 #: Keys of files that differ from run to run or from machine to machine.
-LEFT_OUT = {"versions", "wall_time_s", "seconds", "taken_up", "written", "date", "tool", "generationTool", "guid"}
+LEFT_OUT = {"versions", "wall_time_s", "seconds", "taken_up", "written", "date", "tool", "guid", "checksums", "command"}
 #: Keys that hold sentences. Sentences elsewhere are left out because they have blanks.
 SENTENCES = {"title", "notes", "source", "summary", "words", "warnings", "reasons", "description", "sentence"}
 LONGEST_LIST = 12
