@@ -6,7 +6,7 @@ A refactor must leave the numbers as they are:
     python tools/record_numbers.py record after.json
     python tools/record_numbers.py compare before.json after.json
 
-``record`` runs the command line (`python -m tyrefem ...`) and the top-level `tf.` interface on one core, about seven
+``record`` runs the command line (`python -m tyrefem ...`) and the top-level `tf.` interface on one core, about six
 minutes, of the tree in which this file lies or of ``--tree``. A study with long runs is run on a coarse mesh or with a
 short drive: `COMMANDS` says which. ``compare`` prints the largest relative difference of every entry and ends with
 exit code 1 above ``--tolerance`` (1e-9), or when an entry, a key or a name is missing. Times, dates, versions, paths
