@@ -2,16 +2,14 @@
 
 from __future__ import annotations
 
-from typing import TYPE_CHECKING, Annotated, ClassVar
+from typing import Annotated, ClassVar
 
 import numpy as np
 from numpy.typing import NDArray
 
 from tyrefem.effects.effect import Effect, Factor, Prior
+from tyrefem.effects.tyre import Tyre
 from tyrefem.quantity import Unit
-
-if TYPE_CHECKING:
-    from tyrefem.surroundings import Surroundings
 
 Array = NDArray[np.float64]
 
@@ -30,7 +28,7 @@ class HotRing(Effect):
     exponent: float
     heat: Annotated[float, Prior("W/m**3", "heat at 10 m/s", 1e5, 0.0, 1e7)] = 0.0
 
-    def heat_addend(self, tyre: Surroundings, zone: str, x: Array, t: float, T: Array) -> Factor:
+    def heat_addend(self, tyre: Tyre, zone: str, x: Array, t: float, T: Array) -> Factor:
         """W/m3 in one half of the thickness, between the stations."""
         s, depth = tyre.places(x)
         middle = np.asarray(tyre.study.section.total_thickness(s)) / 2
@@ -52,7 +50,7 @@ class Lamp(Effect):
     until: Annotated[float, Unit("s", gt=0)]
     shine: Annotated[float, Prior("W/m**2", "flux", 500.0, 0.0, 1e5)] = 0.0
 
-    def flux(self, tyre: Surroundings, surface: str, x: Array, t: float) -> Factor:
+    def flux(self, tyre: Tyre, surface: str, x: Array, t: float) -> Factor:
         """W/m2 between the stations, until it goes."""
         s, _ = tyre.places(x.reshape(2, -1))
         return np.asarray(self.shine * ((s > self.start) & (s < self.end)) * (t < self.until))

@@ -5,16 +5,14 @@ from __future__ import annotations
 import functools
 from collections.abc import Callable
 from dataclasses import dataclass
-from typing import TYPE_CHECKING, Any
+from typing import Any
 
 import numpy as np
 from numpy.typing import NDArray
 
 from tyrefem.conduction import Flux, Radiation
 from tyrefem.effects.effect import Effect
-
-if TYPE_CHECKING:
-    from tyrefem.surroundings import Surroundings
+from tyrefem.effects.tyre import Tyre
 
 Array = NDArray[np.float64]
 Source = Callable[[Array, float, Array], Array]
@@ -26,7 +24,7 @@ SURROUNDING = ("film_factor", "film_addend", "film_resistance", "sink_addend", "
 class Acting:
     """What a tyre's effects make of a quantity of the model."""
 
-    tyre: Surroundings
+    tyre: Tyre
     effects: tuple[Effect, ...]
 
     def at(self, *ports: str) -> tuple[Effect, ...]:
@@ -138,5 +136,5 @@ class Acting:
         return found
 
 
-def _flux_of(effect: Effect, tyre: Surroundings, surface: str) -> Callable[[Array, float], Any]:
+def _flux_of(effect: Effect, tyre: Tyre, surface: str) -> Callable[[Array, float], Any]:
     return lambda x, t: effect.flux(tyre, surface, x, t)

@@ -2,12 +2,10 @@
 
 from __future__ import annotations
 
-from typing import TYPE_CHECKING, Annotated, ClassVar
+from typing import Annotated, ClassVar
 
 from tyrefem.effects.effect import Effect, Prior
-
-if TYPE_CHECKING:
-    from tyrefem.surroundings import Surroundings
+from tyrefem.effects.tyre import Tyre
 
 
 class AmbientDrift(Effect):
@@ -30,6 +28,6 @@ class AmbientDrift(Effect):
         ),
     ] = 0.0
 
-    def sink_addend(self, tyre: Surroundings, sink: str, t: float) -> float:
+    def sink_addend(self, tyre: Tyre, sink: str, t: float) -> float:
         """K added to the ambient."""
         return self.rate * t if sink == "outside_air" else 0.0

@@ -2,12 +2,10 @@
 
 from __future__ import annotations
 
-from typing import TYPE_CHECKING, Annotated, ClassVar
+from typing import Annotated, ClassVar
 
 from tyrefem.effects.effect import Effect, Prior
-
-if TYPE_CHECKING:
-    from tyrefem.surroundings import Surroundings
+from tyrefem.effects.tyre import Tyre
 
 
 class BeadContactResistance(Effect):
@@ -24,6 +22,6 @@ class BeadContactResistance(Effect):
 
     resistance: Annotated[float, Prior("m**2*K/W", "thermal resistance between bead and rim", 1e-3, 0.0, 0.1)] = 0.0
 
-    def film_resistance(self, tyre: Surroundings, film: str, t: float) -> float:
+    def film_resistance(self, tyre: Tyre, film: str, t: float) -> float:
         """m2 K/W in series with the rim's film."""
         return self.resistance if film == "rim" else 0.0

@@ -2,16 +2,13 @@
 
 from __future__ import annotations
 
-from typing import TYPE_CHECKING, Annotated, ClassVar
+from typing import Annotated, ClassVar
 
 import numpy as np
 
 from tyrefem.effects.effect import Array, Effect, Factor, Prior
 from tyrefem.effects.shapes import deflection_ratio, no_carcass, revolutions
-
-if TYPE_CHECKING:
-    from tyrefem.studies import Study
-    from tyrefem.surroundings import Surroundings
+from tyrefem.effects.tyre import StudyOfTyre, Tyre
 
 
 class BeltEdgeShear(Effect):
@@ -48,7 +45,7 @@ class BeltEdgeShear(Effect):
         ),
     ] = 0.0
 
-    def heat_addend(self, tyre: Surroundings, zone: str, x: Array, t: float, T: Array) -> Factor:
+    def heat_addend(self, tyre: Tyre, zone: str, x: Array, t: float, T: Array) -> Factor:
         """Loss per revolution times revolutions per second, around the end of the tread-carcass border."""
         if tyre.region(zone) == "bead":
             return 0.0
@@ -59,6 +56,6 @@ class BeltEdgeShear(Effect):
         return np.asarray(self.loss * revolutions(tyre, t) * deflection_ratio(tyre, t) ** 2 * here)
 
     @classmethod
-    def refusal(cls, study: Study) -> str | None:
+    def refusal(cls, study: StudyOfTyre) -> str | None:
         """The place is measured from the region 'carcass'."""
         return no_carcass(study)

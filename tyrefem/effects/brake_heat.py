@@ -3,13 +3,10 @@
 from __future__ import annotations
 
 import math
-from typing import TYPE_CHECKING, Annotated, ClassVar
+from typing import Annotated, ClassVar
 
 from tyrefem.effects.effect import Effect, Prior
-
-if TYPE_CHECKING:
-    from tyrefem.studies import Study
-    from tyrefem.surroundings import Surroundings
+from tyrefem.effects.tyre import StudyOfTyre, Tyre
 
 
 class BrakeHeat(Effect):
@@ -28,12 +25,12 @@ class BrakeHeat(Effect):
         float, Prior("s", "time in which it warms", 200.0, 30.0, 3600.0, null=300.0, start=300.0, amplitude=False)
     ] = 300.0
 
-    def sink_addend(self, tyre: Surroundings, sink: str, t: float) -> float:
+    def sink_addend(self, tyre: Tyre, sink: str, t: float) -> float:
         """K added to the rim's temperature."""
         return self.warmer_by * -math.expm1(-t / self.lag) if sink == "rim" else 0.0
 
     @classmethod
-    def refusal(cls, study: Study) -> str | None:
+    def refusal(cls, study: StudyOfTyre) -> str | None:
         """A lumped rim finds its own temperature."""
         lumped = study.card.boundaries.rim.law == "lumped"  # type: ignore[attr-defined]
         return "the rim is lumped and finds its own temperature; use 'brake-power'" if lumped else None

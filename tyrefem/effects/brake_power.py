@@ -2,13 +2,10 @@
 
 from __future__ import annotations
 
-from typing import TYPE_CHECKING, Annotated, ClassVar
+from typing import Annotated, ClassVar
 
 from tyrefem.effects.effect import Effect, Prior
-
-if TYPE_CHECKING:
-    from tyrefem.studies import Study
-    from tyrefem.surroundings import Surroundings
+from tyrefem.effects.tyre import StudyOfTyre, Tyre
 
 
 class BrakePower(Effect):
@@ -24,12 +21,12 @@ class BrakePower(Effect):
 
     power: Annotated[float, Prior("W", "heat into the whole wheel while it turns", 200.0, 0.0, 2e4)] = 0.0
 
-    def rim_power(self, tyre: Surroundings, t: float) -> float:
+    def rim_power(self, tyre: Tyre, t: float) -> float:
         """W into the rim."""
         return self.power if tyre.speed(t) > 0 else 0.0
 
     @classmethod
-    def refusal(cls, study: Study) -> str | None:
+    def refusal(cls, study: StudyOfTyre) -> str | None:
         """Only a lumped rim takes up heat."""
         lumped = study.card.boundaries.rim.law == "lumped"  # type: ignore[attr-defined]
         return None if lumped else "only a lumped rim takes up heat; use 'brake-heat'"

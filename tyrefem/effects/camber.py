@@ -3,16 +3,13 @@
 from __future__ import annotations
 
 import math
-from typing import TYPE_CHECKING, Annotated, ClassVar
+from typing import Annotated, ClassVar
 
 import numpy as np
 
 from tyrefem.effects.effect import Array, Effect, Factor, Prior
 from tyrefem.effects.sides import half_width, needs_full
-
-if TYPE_CHECKING:
-    from tyrefem.studies import Study
-    from tyrefem.surroundings import Surroundings
+from tyrefem.effects.tyre import StudyOfTyre, Tyre
 
 
 class Camber(Effect):
@@ -38,7 +35,7 @@ class Camber(Effect):
         ),
     ] = 0.0
 
-    def heat_factor(self, tyre: Surroundings, zone: str, x: Array, t: float, T: Array) -> Factor:
+    def heat_factor(self, tyre: Tyre, zone: str, x: Array, t: float, T: Array) -> Factor:
         """The square of the local deflection over the mean one."""
         deflection = tyre.schedule.mean(lambda case: case.deflection, t)
         if deflection <= 0 or tyre.region(zone) == "bead":
@@ -47,6 +44,6 @@ class Camber(Effect):
         return np.asarray(np.maximum(1 + lateral * math.tan(self.angle) / deflection, 0.0) ** 2)
 
     @classmethod
-    def refusal(cls, study: Study) -> str | None:
+    def refusal(cls, study: StudyOfTyre) -> str | None:
         """A half section has one side only."""
         return needs_full(study)

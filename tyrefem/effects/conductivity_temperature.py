@@ -2,13 +2,11 @@
 
 from __future__ import annotations
 
-from typing import TYPE_CHECKING, Annotated, ClassVar
+from typing import Annotated, ClassVar
 
 from tyrefem.effects.effect import Array, Effect, Factor, Prior
 from tyrefem.effects.shapes import above_25
-
-if TYPE_CHECKING:
-    from tyrefem.surroundings import Surroundings
+from tyrefem.effects.tyre import Tyre
 
 
 class ConductivityTemperature(Effect):
@@ -21,7 +19,7 @@ class ConductivityTemperature(Effect):
 
     slope: Annotated[float, Prior("1/delta_degC", "relative change of k per kelvin", 1.5e-3, -3e-3, 6e-3)] = 0.0
 
-    def conductivity_factor(self, tyre: Surroundings, region: str, T: Array) -> tuple[Factor, Factor]:
+    def conductivity_factor(self, tyre: Tyre, region: str, T: Array) -> tuple[Factor, Factor]:
         """1 + slope (T - 25), the same along and across the plies."""
         factor = 1 + self.slope * above_25(T)
         return factor, factor

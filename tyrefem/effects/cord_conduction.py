@@ -2,14 +2,11 @@
 
 from __future__ import annotations
 
-from typing import TYPE_CHECKING, Annotated, ClassVar
+from typing import Annotated, ClassVar
 
 from tyrefem.effects.effect import Array, Effect, Factor, Prior
 from tyrefem.effects.shapes import no_carcass
-
-if TYPE_CHECKING:
-    from tyrefem.studies import Study
-    from tyrefem.surroundings import Surroundings
+from tyrefem.effects.tyre import StudyOfTyre, Tyre
 
 
 class CordConduction(Effect):
@@ -25,11 +22,11 @@ class CordConduction(Effect):
 
     gain: Annotated[float, Prior("1", "relative rise of the conductivity along the plies", 1.0, 0.0, 40.0)] = 0.0
 
-    def conductivity_factor(self, tyre: Surroundings, region: str, T: Array) -> tuple[Factor, Factor]:
+    def conductivity_factor(self, tyre: Tyre, region: str, T: Array) -> tuple[Factor, Factor]:
         """1 + gain along the plies of the carcass."""
         return (1 + self.gain, 1.0) if region == "carcass" else (1.0, 1.0)
 
     @classmethod
-    def refusal(cls, study: Study) -> str | None:
+    def refusal(cls, study: StudyOfTyre) -> str | None:
         """A section of plies and belts has no region 'carcass': its cards give the conductivity along the cords."""
         return no_carcass(study)

@@ -13,14 +13,13 @@ from pydantic import Field, GetCoreSchemaHandler
 from pydantic_core import CoreSchema, core_schema
 
 from tyrefem.cards import Card, Text
+from tyrefem.effects.tyre import StudyOfTyre, Tyre
 from tyrefem.errors import InputError, nearest
 from tyrefem.quantity import Unit, convert
 
 if TYPE_CHECKING:
     from tyrefem.conduction import Radiation
     from tyrefem.section import Section
-    from tyrefem.studies import Study
-    from tyrefem.surroundings import Surroundings
 
 Array = NDArray[np.float64]
 Factor = float | Array
@@ -158,68 +157,68 @@ class Effect(Card):
         return tuple(port for port in PORTS if cls.overrides(port))
 
     @classmethod
-    def refusal(cls, study: Study) -> str | None:
+    def refusal(cls, study: StudyOfTyre) -> str | None:
         """Why the effect has no meaning in a study; None where it has."""
         return None
 
-    def problem(self, study: Study) -> str | None:
+    def problem(self, study: StudyOfTyre) -> str | None:
         """What is wrong with this effect in a study: no meaning there, or a choice (a sensor) that it does not have."""
         return self.refusal(study)
 
     @classmethod
-    def variants(cls, study: Study) -> tuple[Mapping[str, str], ...]:
+    def variants(cls, study: StudyOfTyre) -> tuple[Mapping[str, str], ...]:
         """The choices (a sensor's name, say) to try in a study, one mapping each."""
         return ({},)
 
     # -- ports: heat and conduction ----------------------------------------------------------------------------------
 
-    def heat_factor(self, tyre: Surroundings, zone: str, x: Array, t: float, T: Array) -> Factor:
+    def heat_factor(self, tyre: Tyre, zone: str, x: Array, t: float, T: Array) -> Factor:
         """Factor on the heat source of a strain zone at points x (2, n), time t (s), temperatures T (n,), degC."""
         return 1.0
 
-    def heat_addend(self, tyre: Surroundings, zone: str, x: Array, t: float, T: Array) -> Factor:
+    def heat_addend(self, tyre: Tyre, zone: str, x: Array, t: float, T: Array) -> Factor:
         """Heat added to a strain zone's source, W/m3; arguments as of `heat_factor`."""
         return 0.0
 
-    def conductivity_factor(self, tyre: Surroundings, region: str, T: Array) -> tuple[Factor, Factor]:
+    def conductivity_factor(self, tyre: Tyre, region: str, T: Array) -> tuple[Factor, Factor]:
         """Factors on the conductivity along and across the plies at temperatures T (n,), degC."""
         return 1.0, 1.0
 
-    def capacity_factor(self, tyre: Surroundings, region: str, T: Array) -> Factor:
+    def capacity_factor(self, tyre: Tyre, region: str, T: Array) -> Factor:
         """Factor on the volumetric heat capacity at temperatures T (n,), degC."""
         return 1.0
 
     # -- ports: boundaries -------------------------------------------------------------------------------------------
 
-    def film_factor(self, tyre: Surroundings, film: str, t: float) -> float:
+    def film_factor(self, tyre: Tyre, film: str, t: float) -> float:
         """Factor on one of `FILMS` at time t (s)."""
         return 1.0
 
-    def film_addend(self, tyre: Surroundings, film: str, t: float) -> float:
+    def film_addend(self, tyre: Tyre, film: str, t: float) -> float:
         """W/m2/K added to one of `FILMS` at time t (s)."""
         return 0.0
 
-    def film_resistance(self, tyre: Surroundings, film: str, t: float) -> float:
+    def film_resistance(self, tyre: Tyre, film: str, t: float) -> float:
         """m2 K/W in series with one of `FILMS` at time t (s): 1/h -> 1/h + R."""
         return 0.0
 
-    def sink_addend(self, tyre: Surroundings, sink: str, t: float) -> float:
+    def sink_addend(self, tyre: Tyre, sink: str, t: float) -> float:
         """K added to the temperature of one of `SINKS` at time t (s)."""
         return 0.0
 
-    def flux(self, tyre: Surroundings, surface: str, x: Array, t: float) -> Factor:
+    def flux(self, tyre: Tyre, surface: str, x: Array, t: float) -> Factor:
         """W/m2 into the tyre through one of `SURFACES` at points x (2, n) and time t (s)."""
         return 0.0
 
-    def radiation(self, tyre: Surroundings, surface: str) -> Radiation | None:
+    def radiation(self, tyre: Tyre, surface: str) -> Radiation | None:
         """Radiation of one of `SURFACES`; None for none."""
         return None
 
-    def gas_capacity_factor(self, tyre: Surroundings) -> float:
+    def gas_capacity_factor(self, tyre: Tyre) -> float:
         """Factor on the heat capacity of the contained air."""
         return 1.0
 
-    def rim_power(self, tyre: Surroundings, t: float) -> float:
+    def rim_power(self, tyre: Tyre, t: float) -> float:
         """W put into the whole wheel's lumped rim at time t (s)."""
         return 0.0
 

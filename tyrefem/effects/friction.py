@@ -2,12 +2,8 @@
 
 from __future__ import annotations
 
-from typing import TYPE_CHECKING
-
+from tyrefem.effects.tyre import Tyre
 from tyrefem.road_contact import effusivity
-
-if TYPE_CHECKING:
-    from tyrefem.surroundings import Surroundings
 
 #: Friction coefficient of rubber on a dry road (estimate).
 FRICTION = 0.8
@@ -15,7 +11,7 @@ FRICTION = 0.8
 ROAD = effusivity(1.5, 2e6)
 
 
-def sliding_flux(tyre: Surroundings, t: float) -> float:
+def sliding_flux(tyre: Tyre, t: float) -> float:
     """mu p v f b_tyre / (b_tyre + b_road): W/m2 into the tread at a slip of 1, mean over the revolution.
 
     Friction stress times speed, divided as the effusivities (Roberts, eqs 2 and 5), for the fraction f of the

@@ -2,14 +2,11 @@
 
 from __future__ import annotations
 
-from typing import TYPE_CHECKING, Annotated, ClassVar
+from typing import Annotated, ClassVar
 
 from tyrefem.boundaries.contained_air import Gas
 from tyrefem.effects.effect import Effect, Prior
-
-if TYPE_CHECKING:
-    from tyrefem.studies import Study
-    from tyrefem.surroundings import Surroundings
+from tyrefem.effects.tyre import StudyOfTyre, Tyre
 
 
 class GasMass(Effect):
@@ -27,7 +24,7 @@ class GasMass(Effect):
         float, Prior("1", "0: the report's air at 1 atm; 1: the gas at its pressure", 1.0, 0.0, 3.0)
     ] = 0.0
 
-    def gas_capacity_factor(self, tyre: Surroundings) -> float:
+    def gas_capacity_factor(self, tyre: Tyre) -> float:
         """1 + fraction (C_gas / C_report - 1)."""
         air = tyre.study.card.boundaries.contained_air
         start = tyre.drive.initial if air.initial is None else air.initial
@@ -37,7 +34,7 @@ class GasMass(Effect):
         return 1 + self.fraction * (gas / report - 1)
 
     @classmethod
-    def refusal(cls, study: Study) -> str | None:
+    def refusal(cls, study: StudyOfTyre) -> str | None:
         """Where the air is not the report's."""
         law = study.card.boundaries.contained_air.law  # type: ignore[attr-defined]
         return None if law == "report" else f"the contained air's law is '{law}', not 'report'"

@@ -2,13 +2,11 @@
 
 from __future__ import annotations
 
-from typing import TYPE_CHECKING, Annotated, ClassVar
+from typing import Annotated, ClassVar
 
 from tyrefem.effects.effect import Effect, Prior
 from tyrefem.effects.shapes import REFERENCE_SPEED
-
-if TYPE_CHECKING:
-    from tyrefem.surroundings import Surroundings
+from tyrefem.effects.tyre import Tyre
 
 
 class GasMixing(Effect):
@@ -25,6 +23,6 @@ class GasMixing(Effect):
 
     gain: Annotated[float, Prior("1", "relative rise of the film at 10 m/s", 2.0, 0.0, 20.0)] = 0.0
 
-    def film_factor(self, tyre: Surroundings, film: str, t: float) -> float:
+    def film_factor(self, tyre: Tyre, film: str, t: float) -> float:
         """1 + gain v / v_ref on the contained air's film."""
         return 1 + self.gain * tyre.speed(t) / REFERENCE_SPEED if film == "contained_air" else 1.0

@@ -2,13 +2,11 @@
 
 from __future__ import annotations
 
-from typing import TYPE_CHECKING, Annotated, ClassVar
+from typing import Annotated, ClassVar
 
 from tyrefem.effects.effect import Array, Effect, Factor, Prior
 from tyrefem.effects.shapes import above_25
-
-if TYPE_CHECKING:
-    from tyrefem.surroundings import Surroundings
+from tyrefem.effects.tyre import Tyre
 
 
 class HeatCapacityTemperature(Effect):
@@ -23,6 +21,6 @@ class HeatCapacityTemperature(Effect):
 
     slope: Annotated[float, Prior("1/delta_degC", "relative rise of rho c per kelvin", 2.5e-3, 0.0, 8e-3)] = 0.0
 
-    def capacity_factor(self, tyre: Surroundings, region: str, T: Array) -> Factor:
+    def capacity_factor(self, tyre: Tyre, region: str, T: Array) -> Factor:
         """1 + slope (T - 25)."""
         return 1 + self.slope * above_25(T)

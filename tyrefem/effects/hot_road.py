@@ -2,12 +2,10 @@
 
 from __future__ import annotations
 
-from typing import TYPE_CHECKING, Annotated, ClassVar
+from typing import Annotated, ClassVar
 
 from tyrefem.effects.effect import Effect, Prior
-
-if TYPE_CHECKING:
-    from tyrefem.surroundings import Surroundings
+from tyrefem.effects.tyre import Tyre
 
 
 class HotRoad(Effect):
@@ -24,6 +22,6 @@ class HotRoad(Effect):
 
     warmer_by: Annotated[float, Prior("delta_degC", "road above its stated temperature", 10.0, -30.0, 60.0)] = 0.0
 
-    def sink_addend(self, tyre: Surroundings, sink: str, t: float) -> float:
+    def sink_addend(self, tyre: Tyre, sink: str, t: float) -> float:
         """K added to the road's temperature."""
         return self.warmer_by if sink == "road" else 0.0

@@ -2,14 +2,10 @@
 
 from __future__ import annotations
 
-from typing import TYPE_CHECKING
-
-if TYPE_CHECKING:
-    from tyrefem.studies import Study
-    from tyrefem.surroundings import Surroundings
+from tyrefem.effects.tyre import StudyOfTyre, Tyre
 
 
-def deflection_change(tyre: Surroundings, t: float, pressure_factor: float) -> float:
+def deflection_change(tyre: Tyre, t: float, pressure_factor: float) -> float:
     """D(F, factor p) / D(F, p) of the load-deflection law; 1 without load, or where the drive gives the deflection."""
     law, rating = tyre.study.card.mechanics.load_law, tyre.study.section.rating
     assert rating is not None
@@ -19,7 +15,7 @@ def deflection_change(tyre: Surroundings, t: float, pressure_factor: float) -> f
     return law.deflection(load, pressure_factor * pressure, rating) / law.deflection(load, pressure, rating)
 
 
-def no_load(study: Study) -> str | None:
+def no_load(study: StudyOfTyre) -> str | None:
     """Why pressure does not matter in a study: its drive gives the deflection, or its law knows no pressure."""
     if study.card.mechanics.load_law.law == "vertical-stiffness":
         return "the load law 'vertical-stiffness' does not depend on pressure"

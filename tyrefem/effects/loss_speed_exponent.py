@@ -2,13 +2,11 @@
 
 from __future__ import annotations
 
-from typing import TYPE_CHECKING, Annotated, ClassVar
+from typing import Annotated, ClassVar
 
 from tyrefem.effects.effect import Array, Effect, Factor, Prior
 from tyrefem.effects.shapes import speed_ratio
-
-if TYPE_CHECKING:
-    from tyrefem.surroundings import Surroundings
+from tyrefem.effects.tyre import Tyre
 
 
 class LossSpeedExponent(Effect):
@@ -24,6 +22,6 @@ class LossSpeedExponent(Effect):
 
     exponent: Annotated[float, Prior("1", "exponent of speed in the loss per revolution", 0.15, 0.0, 1.0)] = 0.0
 
-    def heat_factor(self, tyre: Surroundings, zone: str, x: Array, t: float, T: Array) -> Factor:
+    def heat_factor(self, tyre: Tyre, zone: str, x: Array, t: float, T: Array) -> Factor:
         """(v / v_ref)^exponent."""
         return float(speed_ratio(tyre, t) ** self.exponent)

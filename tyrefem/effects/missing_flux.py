@@ -2,16 +2,14 @@
 
 from __future__ import annotations
 
-from typing import TYPE_CHECKING, Annotated, ClassVar
+from typing import Annotated, ClassVar
 
 import numpy as np
 from numpy.typing import NDArray
 
 from tyrefem.effects.effect import Effect, Factor, Prior
+from tyrefem.effects.tyre import Tyre
 from tyrefem.quantity import Unit
-
-if TYPE_CHECKING:
-    from tyrefem.surroundings import Surroundings
 
 Array = NDArray[np.float64]
 
@@ -35,7 +33,7 @@ class MissingFlux(Effect):
         """Where."""
         return {"station": f"{self.station!r} m", "width": f"{self.width!r} m"}
 
-    def flux(self, tyre: Surroundings, surface: str, x: Array, t: float) -> Factor:
+    def flux(self, tyre: Tyre, surface: str, x: Array, t: float) -> Factor:
         """W/m2 at points x (2, n)."""
         s, _ = tyre.places(x)
         return np.asarray(self.into * np.exp(-(((s - self.station) / self.width) ** 2) / 2))

@@ -2,16 +2,14 @@
 
 from __future__ import annotations
 
-from typing import TYPE_CHECKING, Annotated, ClassVar
+from typing import Annotated, ClassVar
 
 import numpy as np
 from numpy.typing import NDArray
 
 from tyrefem.effects.effect import Effect, Factor, Prior
+from tyrefem.effects.tyre import Tyre
 from tyrefem.quantity import Unit
-
-if TYPE_CHECKING:
-    from tyrefem.surroundings import Surroundings
 
 Array = NDArray[np.float64]
 
@@ -34,7 +32,7 @@ class MissingHeat(Effect):
         """Where."""
         return {"station": f"{self.station!r} m", "width": f"{self.width!r} m"}
 
-    def heat_addend(self, tyre: Surroundings, zone: str, x: Array, t: float, T: Array) -> Factor:
+    def heat_addend(self, tyre: Tyre, zone: str, x: Array, t: float, T: Array) -> Factor:
         """W/m3 at points x (2, n)."""
         if tyre.speed(t) == 0:
             return 0.0

@@ -3,14 +3,11 @@
 from __future__ import annotations
 
 from collections.abc import Mapping
-from typing import TYPE_CHECKING
 
 from tyrefem.cards import Text
 from tyrefem.effects.effect import Effect
+from tyrefem.effects.tyre import StudyOfTyre
 from tyrefem.errors import nearest
-
-if TYPE_CHECKING:
-    from tyrefem.studies import Study
 
 
 class OfSensor(Effect):
@@ -24,17 +21,17 @@ class OfSensor(Effect):
         return {"sensor": self.sensor}
 
     @classmethod
-    def refusal(cls, study: Study) -> str | None:
+    def refusal(cls, study: StudyOfTyre) -> str | None:
         """A study without sensors."""
         return None if study.sensors else "the study has no sensors"
 
-    def problem(self, study: Study) -> str | None:
+    def problem(self, study: StudyOfTyre) -> str | None:
         """A sensor that the study does not have."""
         if self.refusal(study) is None and self.sensor not in study.sensors:
             return f"the study has no sensor '{self.sensor}'{nearest(self.sensor, study.sensors)}"
         return self.refusal(study)
 
     @classmethod
-    def variants(cls, study: Study) -> tuple[Mapping[str, str], ...]:
+    def variants(cls, study: StudyOfTyre) -> tuple[Mapping[str, str], ...]:
         """One for every sensor."""
         return tuple({"sensor": name} for name in study.sensors)

@@ -2,13 +2,11 @@
 
 from __future__ import annotations
 
-from typing import TYPE_CHECKING, Annotated, ClassVar
+from typing import Annotated, ClassVar
 
 from tyrefem.effects.effect import Effect, Prior
 from tyrefem.effects.shapes import speed_ratio
-
-if TYPE_CHECKING:
-    from tyrefem.surroundings import Surroundings
+from tyrefem.effects.tyre import Tyre
 
 
 class OutsideFilmSpeed(Effect):
@@ -29,7 +27,7 @@ class OutsideFilmSpeed(Effect):
 
     exponent: Annotated[float, Prior("1", "added to the exponent of speed of the forced part", 0.3, -0.9, 1.5)] = 0.0
 
-    def film_factor(self, tyre: Surroundings, film: str, t: float) -> float:
+    def film_factor(self, tyre: Tyre, film: str, t: float) -> float:
         """The forced part times (v / v_ref)^exponent; nothing at rest."""
         if film != "outside_air" or tyre.speed(t) == 0:
             return 1.0

@@ -2,14 +2,11 @@
 
 from __future__ import annotations
 
-from typing import TYPE_CHECKING, Annotated, ClassVar
+from typing import Annotated, ClassVar
 
 from tyrefem.effects.effect import Array, Effect, Factor, Prior
 from tyrefem.effects.leak import deflection_change, no_load
-
-if TYPE_CHECKING:
-    from tyrefem.studies import Study
-    from tyrefem.surroundings import Surroundings
+from tyrefem.effects.tyre import StudyOfTyre, Tyre
 
 
 class PressureLoss(Effect):
@@ -27,7 +24,7 @@ class PressureLoss(Effect):
         float, Prior("Pa/s", "gauge pressure lost per time, from the start", 30.0, 0.0, 1000.0, written="kPa/min")
     ] = 0.0
 
-    def heat_factor(self, tyre: Surroundings, zone: str, x: Array, t: float, T: Array) -> Factor:
+    def heat_factor(self, tyre: Tyre, zone: str, x: Array, t: float, T: Array) -> Factor:
         """(D'/D)^2 at the lower pressure, of which a fifth is left at least."""
         if tyre.region(zone) in ("tread", "bead"):
             return 1.0
@@ -35,6 +32,6 @@ class PressureLoss(Effect):
         return deflection_change(tyre, t, max(1 - self.rate * t / pressure, 0.2) if pressure > 0 else 1.0) ** 2
 
     @classmethod
-    def refusal(cls, study: Study) -> str | None:
+    def refusal(cls, study: StudyOfTyre) -> str | None:
         """A drive at a given deflection does not feel the pressure."""
         return no_load(study)

@@ -3,14 +3,11 @@
 from __future__ import annotations
 
 import math
-from typing import TYPE_CHECKING, Annotated, ClassVar
+from typing import Annotated, ClassVar
 
 from tyrefem.effects.effect import Array, Effect, Factor, Prior
 from tyrefem.effects.leak import deflection_change, no_load
-
-if TYPE_CHECKING:
-    from tyrefem.studies import Study
-    from tyrefem.surroundings import Surroundings
+from tyrefem.effects.tyre import StudyOfTyre, Tyre
 
 
 class PressureRise(Effect):
@@ -31,14 +28,14 @@ class PressureRise(Effect):
         float, Prior("s", "time in which it rises", 300.0, 30.0, 3600.0, null=400.0, start=400.0, amplitude=False)
     ] = 400.0
 
-    def heat_factor(self, tyre: Surroundings, zone: str, x: Array, t: float, T: Array) -> Factor:
+    def heat_factor(self, tyre: Tyre, zone: str, x: Array, t: float, T: Array) -> Factor:
         """(D'/D)^2 at the risen pressure."""
         if tyre.region(zone) in ("tread", "bead"):
             return 1.0
         return deflection_change(tyre, t, 1 + self.rise * -math.expm1(-t / self.lag)) ** 2
 
     @classmethod
-    def refusal(cls, study: Study) -> str | None:
+    def refusal(cls, study: StudyOfTyre) -> str | None:
         """A drive at a given deflection does not feel the pressure; feedback raises it already."""
         feedback = study.card.mechanics.feedback
         if feedback is not None and feedback.pressure:

@@ -2,14 +2,12 @@
 
 from __future__ import annotations
 
-from typing import TYPE_CHECKING, Annotated, ClassVar
+from typing import Annotated, ClassVar
 
 from tyrefem.conduction import Radiation
 from tyrefem.effects.effect import Effect, Prior
+from tyrefem.effects.tyre import Tyre
 from tyrefem.plausible import EMISSIVITY
-
-if TYPE_CHECKING:
-    from tyrefem.surroundings import Surroundings
 
 
 class RadiationToAmbient(Effect):
@@ -27,6 +25,6 @@ class RadiationToAmbient(Effect):
 
     emissivity: Annotated[float, Prior("1", "emissivity of the outer surface", 0.6, 0.0, 1.0), EMISSIVITY] = 0.0
 
-    def radiation(self, tyre: Surroundings, surface: str) -> Radiation | None:
+    def radiation(self, tyre: Tyre, surface: str) -> Radiation | None:
         """To the ambient."""
         return Radiation(self.emissivity, lambda x, t: tyre.ambient(t))

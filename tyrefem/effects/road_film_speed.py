@@ -2,14 +2,11 @@
 
 from __future__ import annotations
 
-from typing import TYPE_CHECKING, Annotated, ClassVar
+from typing import Annotated, ClassVar
 
 from tyrefem.effects.effect import Effect, Prior
 from tyrefem.effects.shapes import speed_ratio
-
-if TYPE_CHECKING:
-    from tyrefem.studies import Study
-    from tyrefem.surroundings import Surroundings
+from tyrefem.effects.tyre import StudyOfTyre, Tyre
 
 
 class RoadFilmSpeed(Effect):
@@ -26,12 +23,12 @@ class RoadFilmSpeed(Effect):
 
     exponent: Annotated[float, Prior("1", "exponent of speed in the road film", 0.5, 0.0, 1.5)] = 0.0
 
-    def film_factor(self, tyre: Surroundings, film: str, t: float) -> float:
+    def film_factor(self, tyre: Tyre, film: str, t: float) -> float:
         """(v / v_ref)^exponent on the road film."""
         return float(speed_ratio(tyre, t) ** self.exponent) if film == "road" else 1.0
 
     @classmethod
-    def refusal(cls, study: Study) -> str | None:
+    def refusal(cls, study: StudyOfTyre) -> str | None:
         """A law that has the speed in it already."""
         law = study.card.boundaries.road.law  # type: ignore[attr-defined]
         return None if law == "constant" else f"the road's law '{law}' has the speed in it already"

@@ -2,14 +2,10 @@
 
 from __future__ import annotations
 
-from typing import TYPE_CHECKING
-
 import numpy as np
 from numpy.typing import NDArray
 
-if TYPE_CHECKING:
-    from tyrefem.studies import Study
-    from tyrefem.surroundings import Surroundings
+from tyrefem.effects.tyre import StudyOfTyre, Tyre
 
 Array = NDArray[np.float64]
 #: Speed at which a power law of speed changes nothing, m/s: within what tyres are tested at.
@@ -20,28 +16,28 @@ SLOWEST = 1.0
 COLDEST, HOTTEST = -50.0, 250.0
 
 
-def no_carcass(study: Study) -> str | None:
+def no_carcass(study: StudyOfTyre) -> str | None:
     """Why an effect that is placed by the region 'carcass' has no meaning in a study; None where there is one."""
     section = study.section
     return None if "carcass" in section.regions else f"section '{section.name}' has no region 'carcass'"
 
 
-def speed_ratio(tyre: Surroundings, t: float) -> float:
+def speed_ratio(tyre: Tyre, t: float) -> float:
     """v / v_ref, at least 0.1."""
     return max(tyre.speed(t), SLOWEST) / REFERENCE_SPEED
 
 
-def deflection_ratio(tyre: Surroundings, t: float) -> float:
+def deflection_ratio(tyre: Tyre, t: float) -> float:
     """D over the deflection at the rated load and pressure."""
     return tyre.schedule.mean(lambda case: case.deflection, t) / tyre.rated_deflection
 
 
-def revolutions(tyre: Surroundings, t: float) -> float:
+def revolutions(tyre: Tyre, t: float) -> float:
     """Revolutions per second, v / (2 pi r_r)."""
     return tyre.schedule.revolution_rate(t) / np.pi
 
 
-def beyond_shoulder(tyre: Surroundings, x: Array) -> Array:
+def beyond_shoulder(tyre: Tyre, x: Array) -> Array:
     """0 at the crown, rising over the shoulder to 1 in the sidewall: half way at 0.85 of the shoulder's station."""
     s, _ = tyre.places(x)
     shoulder = tyre.study.section.line.shoulder_s

@@ -2,20 +2,16 @@
 
 from __future__ import annotations
 
-from typing import TYPE_CHECKING
-
-if TYPE_CHECKING:
-    from tyrefem.studies import Study
-    from tyrefem.surroundings import Surroundings
+from tyrefem.effects.tyre import StudyOfTyre, Tyre
 
 
-def half_width(tyre: Surroundings) -> tuple[float, float]:
+def half_width(tyre: Tyre) -> tuple[float, float]:
     """z of the two shoulders on the meridian, m."""
     line = tyre.study.section.line
     z = float(line.position([line.shoulder_s])[0, 1])
     return -z, z
 
 
-def needs_full(study: Study) -> str | None:
+def needs_full(study: StudyOfTyre) -> str | None:
     """Why an effect that tells the sides apart has no meaning in a study."""
     return None if study.card.mesh.section == "full" else "needs the full section: [mesh] section = 'full'"

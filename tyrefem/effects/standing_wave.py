@@ -2,14 +2,12 @@
 
 from __future__ import annotations
 
-from typing import TYPE_CHECKING, Annotated, ClassVar
+from typing import Annotated, ClassVar
 
 import numpy as np
 
 from tyrefem.effects.effect import Array, Effect, Factor, Prior
-
-if TYPE_CHECKING:
-    from tyrefem.surroundings import Surroundings
+from tyrefem.effects.tyre import Tyre
 
 
 class StandingWave(Effect):
@@ -34,7 +32,7 @@ class StandingWave(Effect):
         float, Prior("m/s", "speed of the onset", 15.0, 15.0, 150.0, null=50.0, start=50.0, amplitude=False)
     ] = 50.0
 
-    def heat_factor(self, tyre: Surroundings, zone: str, x: Array, t: float, T: Array) -> Factor:
+    def heat_factor(self, tyre: Tyre, zone: str, x: Array, t: float, T: Array) -> Factor:
         """1 + gain times the smooth positive part of v/v_c - 1."""
         if tyre.region(zone) == "bead":
             return 1.0

@@ -2,12 +2,10 @@
 
 from __future__ import annotations
 
-from typing import TYPE_CHECKING, Annotated, ClassVar
+from typing import Annotated, ClassVar
 
 from tyrefem.effects.effect import Array, Effect, Factor, Prior
-
-if TYPE_CHECKING:
-    from tyrefem.surroundings import Surroundings
+from tyrefem.effects.tyre import Tyre
 
 
 class Sun(Effect):
@@ -27,6 +25,6 @@ class Sun(Effect):
         float, Prior("W/m**2", "absorbed by the outer surface, mean over the revolution", 100.0, 0.0, 600.0)
     ] = 0.0
 
-    def flux(self, tyre: Surroundings, surface: str, x: Array, t: float) -> Factor:
+    def flux(self, tyre: Tyre, surface: str, x: Array, t: float) -> Factor:
         """W/m2 into the tyre, from the start to the end."""
         return self.absorbed

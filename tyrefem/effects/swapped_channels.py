@@ -4,14 +4,12 @@ from __future__ import annotations
 
 import itertools
 from collections.abc import Mapping
-from typing import TYPE_CHECKING, ClassVar
+from typing import ClassVar
 
 from tyrefem.cards import Text
 from tyrefem.effects.effect import Effect
+from tyrefem.effects.tyre import StudyOfTyre
 from tyrefem.errors import nearest
-
-if TYPE_CHECKING:
-    from tyrefem.studies import Study
 
 
 class SwappedChannels(Effect):
@@ -35,11 +33,11 @@ class SwappedChannels(Effect):
         return {"sensor": self.sensor, "other": self.other}
 
     @classmethod
-    def refusal(cls, study: Study) -> str | None:
+    def refusal(cls, study: StudyOfTyre) -> str | None:
         """Fewer than two sensors."""
         return None if len(study.sensors) > 1 else "needs two sensors in the study"
 
-    def problem(self, study: Study) -> str | None:
+    def problem(self, study: StudyOfTyre) -> str | None:
         """A sensor that the study does not have, one swapped with itself, or one swapped twice."""
         for name in (self.sensor, self.other):
             if len(study.sensors) > 1 and name not in study.sensors:
@@ -52,6 +50,6 @@ class SwappedChannels(Effect):
         return f"'{twice[0]}' is swapped twice" if twice else self.refusal(study)
 
     @classmethod
-    def variants(cls, study: Study) -> tuple[Mapping[str, str], ...]:
+    def variants(cls, study: StudyOfTyre) -> tuple[Mapping[str, str], ...]:
         """Every pair of sensors."""
         return tuple({"sensor": one, "other": other} for one, other in itertools.combinations(study.sensors, 2))

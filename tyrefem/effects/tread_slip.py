@@ -2,13 +2,11 @@
 
 from __future__ import annotations
 
-from typing import TYPE_CHECKING, Annotated, ClassVar
+from typing import Annotated, ClassVar
 
 from tyrefem.effects.effect import Array, Effect, Factor, Prior
 from tyrefem.effects.friction import sliding_flux
-
-if TYPE_CHECKING:
-    from tyrefem.surroundings import Surroundings
+from tyrefem.effects.tyre import Tyre
 
 
 class TreadSlip(Effect):
@@ -29,6 +27,6 @@ class TreadSlip(Effect):
 
     surfaces: ClassVar[tuple[str, ...]] = ("road",)
 
-    def flux(self, tyre: Surroundings, surface: str, x: Array, t: float) -> Factor:
+    def flux(self, tyre: Tyre, surface: str, x: Array, t: float) -> Factor:
         """W/m2 into the tread, the same over its width."""
         return self.slip * sliding_flux(tyre, t)

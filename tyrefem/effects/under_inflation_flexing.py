@@ -2,13 +2,11 @@
 
 from __future__ import annotations
 
-from typing import TYPE_CHECKING, Annotated, ClassVar
+from typing import Annotated, ClassVar
 
 from tyrefem.effects.effect import Array, Effect, Factor, Prior
 from tyrefem.effects.shapes import beyond_shoulder, deflection_ratio
-
-if TYPE_CHECKING:
-    from tyrefem.surroundings import Surroundings
+from tyrefem.effects.tyre import Tyre
 
 
 class UnderInflationFlexing(Effect):
@@ -29,7 +27,7 @@ class UnderInflationFlexing(Effect):
         float, Prior("1", "relative heat added in the sidewall at twice the rated deflection", 1.0, 0.0, 8.0)
     ] = 0.0
 
-    def heat_factor(self, tyre: Surroundings, zone: str, x: Array, t: float, T: Array) -> Factor:
+    def heat_factor(self, tyre: Tyre, zone: str, x: Array, t: float, T: Array) -> Factor:
         """1 + gain w(s) times the deflection in excess of the rated one."""
         excess = deflection_ratio(tyre, t) - 1
         if excess <= 0 or tyre.region(zone) == "bead":

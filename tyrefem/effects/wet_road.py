@@ -2,12 +2,10 @@
 
 from __future__ import annotations
 
-from typing import TYPE_CHECKING, Annotated, ClassVar
+from typing import Annotated, ClassVar
 
 from tyrefem.effects.effect import Effect, Prior
-
-if TYPE_CHECKING:
-    from tyrefem.surroundings import Surroundings
+from tyrefem.effects.tyre import Tyre
 
 
 class WetRoad(Effect):
@@ -30,7 +28,7 @@ class WetRoad(Effect):
 
     film_gain: Annotated[float, Prior("1", "relative rise of the road film; 1 for a wet road", 1.0, 0.0, 8.0)] = 0.0
 
-    def film_factor(self, tyre: Surroundings, film: str, t: float) -> float:
+    def film_factor(self, tyre: Tyre, film: str, t: float) -> float:
         """1 + film_gain on the road, 1 + 2.8 film_gain on the tread between two contacts; at rest the tread dries."""
         if tyre.speed(t) == 0:
             return 1.0

@@ -5,10 +5,10 @@ from __future__ import annotations
 from typing import TYPE_CHECKING, Annotated, ClassVar
 
 from tyrefem.effects.effect import Effect, Prior
+from tyrefem.effects.tyre import StudyOfTyre
 
 if TYPE_CHECKING:
     from tyrefem.section import Section
-    from tyrefem.studies import Study
 
 
 class WornTread(Effect):
@@ -29,6 +29,6 @@ class WornTread(Effect):
         return section.worn("tread", self.fraction)
 
     @classmethod
-    def refusal(cls, study: Study) -> str | None:
+    def refusal(cls, study: StudyOfTyre) -> str | None:
         """A mesh that the user gave does not follow the section."""
         return None if study.card.mesh.file is None else "the study's mesh comes from a file and does not wear"

@@ -3,17 +3,14 @@
 from __future__ import annotations
 
 from collections.abc import Mapping
-from typing import TYPE_CHECKING, Annotated, ClassVar, Literal
+from typing import Annotated, ClassVar, Literal
 
 import numpy as np
 
 from tyrefem.effects.effect import Array, Effect, Factor, Prior
 from tyrefem.effects.friction import sliding_flux
 from tyrefem.effects.sides import half_width, needs_full
-
-if TYPE_CHECKING:
-    from tyrefem.studies import Study
-    from tyrefem.surroundings import Surroundings
+from tyrefem.effects.tyre import StudyOfTyre, Tyre
 
 
 class Yaw(Effect):
@@ -35,7 +32,7 @@ class Yaw(Effect):
     side: Literal["left", "right"] = "right"
     slip: Annotated[float, Prior("1", "sideways sliding speed over the tyre's speed", 0.01, 0.0, 0.2)] = 0.0
 
-    def flux(self, tyre: Surroundings, surface: str, x: Array, t: float) -> Factor:
+    def flux(self, tyre: Tyre, surface: str, x: Array, t: float) -> Factor:
         """W/m2 into the tread; ``right`` is z > 0."""
         low, high = half_width(tyre)
         lateral = np.clip(x[1], low, high) / high * (1 if self.side == "right" else -1)
@@ -47,11 +44,11 @@ class Yaw(Effect):
         return {"side": self.side}
 
     @classmethod
-    def variants(cls, study: Study) -> tuple[Mapping[str, str], ...]:
+    def variants(cls, study: StudyOfTyre) -> tuple[Mapping[str, str], ...]:
         """Either side."""
         return {"side": "left"}, {"side": "right"}
 
     @classmethod
-    def refusal(cls, study: Study) -> str | None:
+    def refusal(cls, study: StudyOfTyre) -> str | None:
         """A half section has one side only."""
         return needs_full(study)

@@ -1,0 +1,226 @@
+"""What an effect may ask of the tyre that it acts on, and of the study that describes it. SI units, degC.
+
+Effects know these protocols only, not the modules that simulate a tyre or read a study: `tyrefem.surroundings` and
+`tyrefem.studies` satisfy them. Whoever writes an effect that needs more adds the member here, with its unit.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Mapping, Sequence
+from typing import TYPE_CHECKING, Protocol
+
+import numpy as np
+from numpy.typing import NDArray
+
+if TYPE_CHECKING:
+    from tyrefem.boundaries.contained_air import ContainedAirLaw
+    from tyrefem.boundaries.outside_air import OutsideAirLaw
+    from tyrefem.boundaries.rim import RimLaw
+    from tyrefem.boundaries.road import RoadLaw
+    from tyrefem.section import Section
+    from tyrefem.section.layer import Rating
+
+Array = NDArray[np.float64]
+
+
+class Tyre(Protocol):
+    """A tyre on its drive: the argument of every port that acts on heat, conduction and boundaries."""
+
+    @property
+    def study(self) -> StudyOfTyre:
+        """The study that describes it."""
+
+    @property
+    def drive(self) -> DriveOfTyre:
+        """Its drive."""
+
+    @property
+    def schedule(self) -> LoadSchedule:
+        """Its load cases over time."""
+
+    @property
+    def rated_deflection(self) -> float:
+        """Deflection at the rated load and pressure, m."""
+
+    @property
+    def tread(self) -> tuple[float, float]:
+        """Conductivity through the tread, W/m/K, and its volumetric heat capacity, J/m3/K, at 25 degC."""
+
+    def speed(self, t: float) -> float:
+        """Speed over the road at time t (s), m/s."""
+
+    def ambient(self, t: float) -> float:
+        """Ambient temperature at time t (s), degC, with the effects on it."""
+
+    def road_fraction(self, t: float) -> float:
+        """Part of the time that the section is on the road, 0 to 1, at time t (s)."""
+
+    def region(self, zone: str) -> str:
+        """The region of the section that a strain zone is part of."""
+
+    def places(self, x: Array) -> tuple[Array, Array]:
+        """|s| along the meridian from the crown and depth from the inner surface of points x (2, n), m."""
+
+
+class LoadSchedule(Protocol):
+    """The load cases of a drive, interpolated in time."""
+
+    def mean(self, quantity: Callable[[LoadOnTyre], float], time: float) -> float:
+        """A quantity of the load case at a time (s): ``mean(lambda case: case.deflection, t)``."""
+
+    def revolution_rate(self, time: float) -> float:
+        """pi times the revolutions per second, 1/s, at a time (s)."""
+
+
+class LoadOnTyre(Protocol):
+    """One load case."""
+
+    @property
+    def load(self) -> float:
+        """Vertical load, N."""
+
+    @property
+    def deflection(self) -> float:
+        """Deflection, m."""
+
+    @property
+    def pressure(self) -> float:
+        """Gauge pressure, Pa."""
+
+
+class DriveOfTyre(Protocol):
+    """The drive as the study says it."""
+
+    @property
+    def initial(self) -> float:
+        """Temperature at the start, degC."""
+
+    @property
+    def phases(self) -> Sequence[PhaseOfDrive]:
+        """Its phases in their order."""
+
+    def locate(self, time: float) -> tuple[int, float]:
+        """Number of the phase at a time (s), and the fraction of it that has passed, 0 to 1."""
+
+
+class PhaseOfDrive(Protocol):
+    """A phase of the drive."""
+
+    @property
+    def load(self) -> object | None:
+        """None where the drive gives the deflection, and the load follows."""
+
+    @property
+    def pressure(self) -> PressureOfPhase:
+        """Its gauge pressure."""
+
+
+class PressureOfPhase(Protocol):
+    """Gauge pressure during a phase."""
+
+    @property
+    def start(self) -> float:
+        """At the beginning of the phase, Pa."""
+
+
+class StudyOfTyre(Protocol):
+    """A study: what says whether an effect has a meaning in it."""
+
+    @property
+    def card(self) -> CardOfStudy:
+        """The study file, validated, in SI."""
+
+    @property
+    def section(self) -> Section:
+        """The section, worn as the effects say."""
+
+    @property
+    def sensors(self) -> Mapping[str, object]:
+        """Thermocouples by name."""
+
+
+class CardOfStudy(Protocol):
+    """The tables of a study file that effects may read."""
+
+    @property
+    def drive(self) -> DriveOfTyre:
+        """``[drive]``."""
+
+    @property
+    def mesh(self) -> MeshOfStudy:
+        """``[mesh]``."""
+
+    @property
+    def mechanics(self) -> MechanicsOfStudy:
+        """``[mechanics]``."""
+
+    @property
+    def boundaries(self) -> BoundariesOfStudy:
+        """``[boundaries]``."""
+
+    @property
+    def effects(self) -> Sequence[object]:
+        """All entries of ``[[effects]]``, those at null too."""
+
+
+class MeshOfStudy(Protocol):
+    """``[mesh]`` of a study."""
+
+    @property
+    def section(self) -> str:
+        """``half`` or ``full``."""
+
+    @property
+    def file(self) -> str | None:
+        """The user's own mesh; None where the section is meshed."""
+
+
+class MechanicsOfStudy(Protocol):
+    """``[mechanics]`` of a study."""
+
+    @property
+    def load_law(self) -> LoadLaw:
+        """Load to deflection."""
+
+    @property
+    def feedback(self) -> FeedbackOfStudy | None:
+        """What temperatures act back on; None for nothing."""
+
+
+class LoadLaw(Protocol):
+    """A load-deflection law."""
+
+    @property
+    def law(self) -> str:
+        """Its name in study files."""
+
+    def deflection(self, load: float, pressure: float, tyre: Rating) -> float:
+        """Deflection, m, at a load (N) and gauge pressure (Pa)."""
+
+
+class FeedbackOfStudy(Protocol):
+    """``[mechanics.feedback]`` of a study."""
+
+    @property
+    def pressure(self) -> bool:
+        """Does the gauge pressure follow the contained air's temperature?"""
+
+
+class BoundariesOfStudy(Protocol):
+    """``[boundaries]`` of a study: one law per side."""
+
+    @property
+    def road(self) -> RoadLaw:
+        """Tread and road."""
+
+    @property
+    def outside_air(self) -> OutsideAirLaw:
+        """Outer surface and air."""
+
+    @property
+    def contained_air(self) -> ContainedAirLaw:
+        """Inner surface and contained air."""
+
+    @property
+    def rim(self) -> RimLaw:
+        """Bead and rim."""
