@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import functools
+import math
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass, field
 from typing import Any
@@ -41,13 +42,13 @@ class CycleSchedule(Brief, Stated):
         return self._moment(time)[0]
 
     def _moment(self, time: float) -> tuple[list[tuple[int, int, float]], float]:
-        """Weights and revolution rate of a time; remembered, as every zone and film asks for the same times."""
+        """Weights and revolutions per second of a time; remembered, as every zone and film asks for the same times."""
         if time not in self._moments:
             if len(self._moments) >= REMEMBERED:
                 self._moments.clear()
             weights = self._weights(time)
             radius = sum(weight * self.cases[phase][knot].rolling_radius for phase, knot, weight in weights)
-            self._moments[time] = weights, self.drive.slip(time).rolling_speed / (2 * radius)
+            self._moments[time] = weights, self.drive.slip(time).rolling_speed / (2 * math.pi * radius)
         return self._moments[time]
 
     @functools.cached_property
@@ -72,18 +73,18 @@ class CycleSchedule(Brief, Stated):
         """The strain provider's zones."""
         return self.cycles[0][0].zones
 
-    def revolution_rate(self, time: float) -> float:
-        """v / (2 r_r), 1/s: pi times the revolutions per second, as in q = U tan d v / (2 r_r) (eq 26); v less slip."""
+    def revolutions_per_second(self, time: float) -> float:
+        """v / (2 pi r_r), 1/s, v the speed of the tread on the rolling radius: the vehicle's less slip."""
         return self._moment(time)[1]
 
 
 @dataclass(eq=False)
 class HeatSource:
-    """q = U tan(delta)(T) v / (2 r_r), W/m3, of one zone (Clark & Dodge 1980, eq 26); twice that for ``sinusoid``.
+    """q = W f, W/m3, of one zone: W = pi U tan(delta)(T) lost per revolution (Clark & Dodge 1980, eq 25), f = v / (2 pi
+    r_r) revolutions per second, so q = U tan(delta)(T) v / (2 r_r) (eq 26); twice that for ``sinusoid``.
 
-    Where tan delta depends on frequency (``over_frequency``), q = v / (2 r_r) sum_n U_n tan(delta)(n f, T), f the
-    revolutions per second and U_n the share of the cycle that runs n times per revolution; one for all where the
-    strain law knows one cycle only.
+    Where tan delta depends on frequency (``over_frequency``), q = pi f sum_n U_n tan(delta)(n f, T), U_n the share of
+    the cycle that runs n times per revolution; one for all where the strain law knows one cycle only.
 
     Called by the conduction solver with nodes x (2, n), time t (s) and temperatures T (n,), degC. The strain energy at
     the nodes is evaluated once per load case, as the solver passes the same x at every call.
@@ -98,6 +99,11 @@ class HeatSource:
     _energies: dict[tuple[int, int], Array] = field(default_factory=dict, init=False, repr=False)
     _spectra: dict[tuple[int, int], Array] = field(default_factory=dict, init=False, repr=False)
     _losses: tuple[float, Array] | None = field(default=None, init=False, repr=False)
+
+    @property
+    def lost_per_revolution(self) -> float:
+        """W / (U tan delta): energy lost per revolution over strain energy and loss tangent, pi or 2 pi (eq 25)."""
+        return math.pi * self.loss_factor
 
     def energy_density(self, x: Array, t: float) -> Array:
         """U, J/m3, at nodes and time."""
@@ -133,20 +139,19 @@ class HeatSource:
             self._spectra.clear()
 
     def __call__(self, x: Array, t: float, T: Array) -> Array:
-        rate = self.loss_factor * self.schedule.revolution_rate(t)
-        if rate == 0:
+        revolutions = self.schedule.revolutions_per_second(t)
+        if revolutions == 0:
             return np.zeros(x.shape[1])
         if self._nodes is not x or self._losses is None or self._losses[0] != t:
             work = self.energy_density if self.over_frequency is None else self.spectrum
-            self._losses = t, rate * work(x, t)
+            self._losses = t, self.lost_per_revolution * revolutions * work(x, t)
         losses = self._losses[1]
         if self.over_frequency is None:
             return losses * self.loss_tangent(T)
-        frequency = self.schedule.revolution_rate(t) / np.pi
         heat: Array = np.zeros(x.shape[1])
         for order, loss in zip(ORDERS, losses, strict=False):
             if loss.any():
-                heat += loss * self.over_frequency(order * frequency, T)
+                heat += loss * self.over_frequency(order * revolutions, T)
         return heat
 
 

@@ -43,6 +43,7 @@ def test_one_loss_per_revolution():
     source, case = tyre.sources["III"], tyre.schedule.cases[0][0]
     x = tyre.study.section.place(np.array([0.08]), np.array([0.003])).T
     revolutions = tyre.speed(0.0) / (2 * math.pi * case.rolling_radius)
+    assert tyre.schedule.revolutions_per_second(0.0) == pytest.approx(revolutions, rel=1e-14)
     loss = math.pi * source.energy_density(x, 0.0) * 0.1
     assert source(x, 0.0, np.array([90.0])) == pytest.approx(loss * revolutions, rel=1e-12)
 

@@ -68,7 +68,7 @@ def test_the_road_film_is_that_of_the_footprint(name: str) -> None:
     speed, tread = tyre.speed(1.0), tyre.tread
     assert tyre.road_film(1.0) == pytest.approx(triangular_film(speed, own.length, *tread), rel=1e-8)
     assert tyre.propagation_depth(1.0) == pytest.approx(propagation_depth(own.length / speed, *tread), rel=1e-8)
-    revolutions = tyre.schedule.revolution_rate(1.0) / math.pi
+    revolutions = tyre.schedule.revolutions_per_second(1.0)
     assert revolutions == pytest.approx(speed / (2 * math.pi * own.rolling_radius), rel=1e-8)
 
 

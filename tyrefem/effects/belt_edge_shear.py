@@ -7,7 +7,7 @@ from typing import Annotated, ClassVar
 import numpy as np
 
 from tyrefem.effects.effect import Array, Effect, Factor, Prior
-from tyrefem.effects.shapes import deflection_ratio, no_carcass, revolutions
+from tyrefem.effects.shapes import deflection_ratio, no_carcass
 from tyrefem.effects.tyre import StudyOfTyre, Tyre
 
 
@@ -53,7 +53,8 @@ class BeltEdgeShear(Effect):
         along = (s - self.CENTRE * section.line.shoulder_s) / self.ALONG
         across = (section.midline_offset(s, depth) - section.thickness("carcass", s) / 2) / self.ACROSS
         here = np.exp(-(along**2 + across**2) / 2)
-        return np.asarray(self.loss * revolutions(tyre, t) * deflection_ratio(tyre, t) ** 2 * here)
+        lost = self.loss * tyre.schedule.revolutions_per_second(t)
+        return np.asarray(lost * deflection_ratio(tyre, t) ** 2 * here)
 
     @classmethod
     def refusal(cls, study: StudyOfTyre) -> str | None:

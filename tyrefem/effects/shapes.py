@@ -32,11 +32,6 @@ def deflection_ratio(tyre: Tyre, t: float) -> float:
     return tyre.schedule.mean(lambda case: case.deflection, t) / tyre.rated_deflection
 
 
-def revolutions(tyre: Tyre, t: float) -> float:
-    """Revolutions per second, v / (2 pi r_r)."""
-    return tyre.schedule.revolution_rate(t) / np.pi
-
-
 def beyond_shoulder(tyre: Tyre, x: Array) -> Array:
     """0 at the crown, rising over the shoulder to 1 in the sidewall: half way at 0.85 of the shoulder's station."""
     s, _ = tyre.places(x)

@@ -68,8 +68,8 @@ class LoadSchedule(Protocol):
     def mean(self, quantity: Callable[[LoadOnTyre], float], time: float) -> float:
         """A quantity of the load case at a time (s): ``mean(lambda case: case.deflection, t)``."""
 
-    def revolution_rate(self, time: float) -> float:
-        """pi times the revolutions per second, 1/s, at a time (s)."""
+    def revolutions_per_second(self, time: float) -> float:
+        """Revolutions of the wheel per second, 1/s, at a time (s)."""
 
 
 class LoadOnTyre(Protocol):

@@ -88,8 +88,10 @@ class TabledHeat:
         return place
 
     def _losses(self, times: Sequence[float]) -> Array | None:
-        """Strain energy x revolution rate x convention, (B, n_samples, 1 or k) W/m3 per unit of tan delta; None: all
-        stand still."""
+        """Energy lost per revolution x revolutions per second, (B, n_samples, 1 or k) W/m3 per unit of tan delta.
+
+        None: all stand still.
+        """
         drive, schedule = self.balances[0].tyre.drive, self.balances[0].tyre.schedule
         phase, _ = drive.locate(times[0])
         if self._phase != phase:
@@ -104,7 +106,7 @@ class TabledHeat:
         if key not in self._known:
             if len(self._known) > 4:
                 self._known.clear()
-            rates = np.array([[one.tyre.schedule.revolution_rate(t) for t in times] for one in self.balances])
+            rates = np.array([[one.tyre.schedule.revolutions_per_second(t) for t in times] for one in self.balances])
             shares = np.zeros((self._energies.shape[1], len(times)))
             for column, t in enumerate(times):
                 for _, knot, weight in schedule.weights(t):
@@ -120,7 +122,7 @@ def _same_speed(balance: ReducedBalance, phase: int) -> bool:
 
 
 def _energies(balance: ReducedBalance, phase: int) -> Array:
-    """(n_knots, n_samples) J/m3 x the convention's factor."""
+    """(n_knots, n_samples) J/m3 lost per revolution, per unit of tan delta."""
     tyre, model = balance.tyre, balance.model
     found = np.zeros((len(tyre.schedule.knots[phase]), model.at_samples.shape[0]))
     speed = tyre.drive.phases[phase].speed
@@ -130,5 +132,7 @@ def _energies(balance: ReducedBalance, phase: int) -> Array:
         for zone, part in model.sample_slices.items():
             if part.start == part.stop:
                 continue
-            row[part] = tyre.hysteresis[zone].loss_factor * cycle.energy_density(zone, model.sample_points[zone])
+            row[part] = tyre.hysteresis[zone].lost_per_revolution * cycle.energy_density(
+                zone, model.sample_points[zone]
+            )
     return found

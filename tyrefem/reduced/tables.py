@@ -183,10 +183,10 @@ def _ends(*axes: Array) -> Array:
 
 
 def _per_metre(tyre: RollingTyre, t: float) -> Array:
-    """(nodes of all zones,) strain energy x revolution rate x convention over speed: J/m3 per metre."""
+    """(nodes of all zones,) energy lost per revolution, per unit of tan delta, x revolutions per metre: J/m3/m."""
     parts = []
     for zone, source in tyre.hysteresis.items():
-        rate = source.loss_factor * source.schedule.revolution_rate(t) / tyre.speed(t)
+        rate = source.lost_per_revolution * source.schedule.revolutions_per_second(t) / tyre.speed(t)
         parts.append(rate * source.energy_density(tyre.problem.points(zone), t))
     return np.concatenate(parts)
 
