@@ -13,10 +13,10 @@ from typing import Any
 __version__ = "0.1.0"
 
 _WHERE = {
-    "study": "studies",
-    "Study": "studies",
-    "Result": "result",
-    "Campaign": "campaign",
+    "study": "api",
+    "Study": "api",
+    "Result": "api",
+    "Campaign": "api",
     "Comparison": "compare",
     "InputError": "errors",
     "Conduction": "conduction",

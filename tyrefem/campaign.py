@@ -3,16 +3,17 @@
 from __future__ import annotations
 
 from collections.abc import Callable, Iterator, Mapping
-from dataclasses import dataclass, replace
+from dataclasses import dataclass
 from pathlib import Path
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING, Any, Self
 
 from tyrefem.brief import Brief
-from tyrefem.cases import Case, read_cases
+from tyrefem.cases import Case
 from tyrefem.conduction import SolverError
-from tyrefem.errors import InputError, nearest
+from tyrefem.errors import InputError
 from tyrefem.interruption import held_back
 from tyrefem.output import write_json
+from tyrefem.rolling import run
 from tyrefem.studies import Study
 from tyrefem.summary import run_files, versions, write_tables
 from tyrefem.vtk import file_names
@@ -42,46 +43,20 @@ class Campaign(Brief):
         }
 
     @classmethod
-    def of(cls, study: Study) -> Campaign:
+    def of(cls, study: Study) -> Self:
         """The campaign of a study that names a table of cases.
 
         Raises
         ------
         InputError : the study names none, or the table or a case of it is wrong (file and line).
         """
-        campaign = cls(study, _rows(study))
-        for case in campaign.cases:
-            campaign._checked(case)
-        return campaign
-
-    @classmethod
-    def case_of(cls, study: Study, name: str) -> Study:
-        """The study of the case of that name; the other cases are read, but not built.
-
-        Raises
-        ------
-        InputError : the study names no table, or it has no such case; the table or this case of it is wrong.
-        """
-        by_name = {case.name: case for case in _rows(study)}
-        if name not in by_name:
-            raise InputError(f"no case '{name}'{nearest(name, by_name)}", file=study.cases_file)
-        return cls(study, tuple(by_name.values()))._checked(by_name[name])
-
-    def _checked(self, case: Case) -> Study:
-        """The study of a case; what is wrong with it is said with its line in the table."""
-        try:
-            return self.case_study(case)
-        except InputError as error:
-            of_study = error.file is None or error.file == self.study.file
-            reason = InputError(error.message, field=error.field) if of_study else error
-            raise InputError(f"line {case.line}, case '{case.name}': {reason}", file=self.study.cases_file) from None
+        for case in study.cases:
+            study.case_study(case)
+        return cls(study, study.cases)
 
     def case_study(self, case: Case) -> Study:
         """The study of one case."""
-        changed = self.study.replace(case.changes)
-        data = {key: value for key, value in changed.data.items() if key != "cases"}
-        data["title"] = f"{case.name}: {case.note}" if case.note else case.name
-        return replace(changed, name=case.name, data=data)
+        return self.study.case_study(case)
 
     def runs(self, progress: Callable[[int, int], None] | None = None) -> Iterator[tuple[Case, Result | str]]:
         """Run the cases in their order; a case that fails gives its reason in place of a result.
@@ -89,26 +64,21 @@ class Campaign(Brief):
         An interruption (Ctrl-C) yields the part of the case that is finished, then raises ``KeyboardInterrupt``.
         """
         for number, case in enumerate(self.cases):
-            outcome = self._outcome(case)
+            outcome = self.outcome(case)
             if progress is not None:
                 progress(number + 1, len(self.cases))
             yield case, outcome
             if not isinstance(outcome, str) and outcome.history.interrupted:
                 raise KeyboardInterrupt
 
-    def _outcome(self, case: Case) -> Result | str:
+    def outcome(self, case: Case) -> Result | str:
+        """The result of a case, or why there is none."""
         try:
-            return self.case_study(case).run(partial=True)
+            return run(self.case_study(case), partial=True)
         except (InputError, SolverError) as error:
             return str(error)
         except Exception as error:  # one case's defect must not cost the others; it is named as what it is
             return f"defect, please report: {type(error).__name__}: {error}"
-
-
-def _rows(study: Study) -> tuple[Case, ...]:
-    if study.cases_file is None:
-        raise InputError("the study has no 'cases' table", field="cases", file=study.file)
-    return read_cases(study.cases_file)
 
 
 def row(case: Case, outcome: Result | str) -> dict[str, Any]:
@@ -157,7 +127,7 @@ def run_campaign(
     campaign: Campaign,
     folder: Path,
     progress: Callable[[int, int], None] | None = None,
-    each: Callable[[Result, Path], None] | None = None,
+    each: Callable[[Any, Path], None] | None = None,
 ) -> pd.DataFrame:
     """Run a campaign into a folder: a folder per case, ``campaign.csv`` and ``summary.json``.
 

@@ -5,7 +5,6 @@ from __future__ import annotations
 import functools
 from collections.abc import Callable, Mapping
 from dataclasses import dataclass
-from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
@@ -60,7 +59,7 @@ class Result(Brief):
     def __reduce__(self) -> tuple[Any, ...]:
         """Functions of time and temperature do not travel: they are made again from the study."""
         history = {name: getattr(self.history, name) for name in KEPT}
-        return _again, (self.study, self.tyre, history, self.field_times, self.wall_time, self.feedback)
+        return _again, (type(self), self.study, self.tyre, history, self.field_times, self.wall_time, self.feedback)
 
     def _title(self) -> str:
         return f"of {self.study.name}"
@@ -319,42 +318,16 @@ class Result(Brief):
         """What of the input is perhaps not meant, and where the run left its own assumptions; one line each."""
         return warnings_of(self)
 
-    # -- output ------------------------------------------------------------------------------------------------------
-
-    def summary(self) -> dict[str, Any]:
-        """What `summary.json` holds: inputs, versions, mesh, tolerance, and the numbers that matter."""
-        from tyrefem.summary import summary
-
-        return summary(self)
-
-    def to_vtk(self, folder: str | Path, *, revolved: bool = False) -> Path:
-        """Write ``<name>.pvd`` and a .vtu per saved time: regions, T, heat source, strain energy."""
-        from tyrefem.vtk import write_series
-
-        return write_series(self, Path(folder), revolved=revolved)
-
-    def plot(self, folder: str | Path) -> list[Path]:
-        """Write the standard pictures as PNG files."""
-        from tyrefem.plotting import write_pictures
-
-        return write_pictures(self, Path(folder))
-
-    def report(self, path: str | Path) -> Path:
-        """Write one self-contained HTML report."""
-        from tyrefem.report import write_report
-
-        return write_report(self, Path(path))
-
-    def save(self, folder: str | Path) -> Path:
-        """Write readings, extremes and heat budget as CSV, and ``summary.json``."""
-        from tyrefem.summary import write_tables
-
-        return write_tables(self, Path(folder))
-
 
 def _again(
-    study: Study, tyre: RollingTyre, history: dict[str, Any], times: Array, wall_time: float, feedback: Any
+    kind: type[Result],
+    study: Study,
+    tyre: RollingTyre,
+    history: dict[str, Any],
+    times: Array,
+    wall_time: float,
+    feedback: Any,
 ) -> Result:
     """A result out of what is stored of it."""
     problem = tyre.problem
-    return Result(study, tyre, History(problem.operators, problem.regions, **history), times, wall_time, feedback)
+    return kind(study, tyre, History(problem.operators, problem.regions, **history), times, wall_time, feedback)

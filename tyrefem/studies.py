@@ -5,13 +5,14 @@ from __future__ import annotations
 import copy
 import functools
 from collections.abc import Mapping
-from dataclasses import dataclass, field
+from dataclasses import dataclass, field, replace
 from pathlib import Path
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING, Any, Self
 
 from tyrefem import library
 from tyrefem.brief import Brief
-from tyrefem.cases import read_cases
+from tyrefem.cards import read_toml
+from tyrefem.cases import Case, read_cases
 from tyrefem.construction import check_cords_fit
 from tyrefem.dotted import all_changed
 from tyrefem.drive import as_written
@@ -24,18 +25,9 @@ from tyrefem.study_warnings import study_warnings
 from tyrefem.uncertain_numbers import UncertainNumber, uncertain_number, uncertain_numbers
 
 if TYPE_CHECKING:
-    from collections.abc import Callable
-
-    from tyrefem.campaign import Campaign
-    from tyrefem.compare import Comparison
-    from tyrefem.diagnose import Diagnosis
     from tyrefem.effects import Effect
     from tyrefem.meshing import TyreMesh
-    from tyrefem.result import Result
     from tyrefem.section import Section
-    from tyrefem.sweep.design import Design
-
-    Progress = Callable[[float], None]
 
 
 @dataclass(frozen=True, eq=False)
@@ -55,6 +47,25 @@ class Study(Brief):
     #: Folder that relative references (cards, tables) start from.
     folder: Path | None = None
     card: StudyCard = field(init=False, repr=False)
+
+    @classmethod
+    def load(cls, name: str | Path, changes: Mapping[str, Any] | None = None, case: str | None = None) -> Self:
+        """The study of a name or path, with values changed by dotted names.
+
+        ``case``: of a campaign, only this case; ``changes`` are then laid over the case's own values.
+
+        Raises
+        ------
+        InputError : no such study, or something wrong in it or in a card it names: file, field, what is allowed.
+        """
+        path = library.find("study", str(name))
+        folder = path.parent.resolve()
+        stem = folder.name if path.name == "study.toml" else path.stem
+        changes = dict(changes or {})
+        # Another table of cases comes before the case that is taken of it.
+        first = changes if case is None else {key: changes.pop(key) for key in list(changes) if key == "cases"}
+        loaded = cls(stem, all_changed(read_toml(path), first), path, folder)
+        return loaded if case is None else loaded.case(case).replace(changes)
 
     def __post_init__(self) -> None:
         like = self.__dict__.pop("_like", None)
@@ -181,12 +192,12 @@ class Study(Brief):
         data, path, _ = library.load("material", reference, self.folder)
         return MaterialCard.check(data, path), (data, path)
 
-    def warmed(self, temperatures: Mapping[str, float]) -> Study:
+    def warmed(self, temperatures: Mapping[str, float]) -> Self:
         """This study with the moduli that its cards have at the mean temperatures of the regions, degC.
 
         What it is made of is shared; it is for finding strain cycles, not for writing or changing.
         """
-        study = object.__new__(Study)
+        study = object.__new__(type(self))
         study.__dict__.update(self.__dict__)
         cards = {region: card.warmed(temperatures[region]) for region, card in self.materials.items()}
         study.__dict__.update(materials=cards, temperatures=dict(temperatures))
@@ -330,7 +341,7 @@ class Study(Brief):
 
     # -- change ------------------------------------------------------------------------------------------------------
 
-    def replace(self, changes: Mapping[str, Any], like: Study | None = None) -> Study:
+    def replace(self, changes: Mapping[str, Any], like: Study | None = None) -> Self:
         """A new study with values changed by dotted names; units as text, as in a file.
 
         What another study, ``like`` (this one, if not given), has built is taken over where the two do not differ.
@@ -341,13 +352,13 @@ class Study(Brief):
         """
         return self._with(all_changed(self.data, changes), self if like is None else like)
 
-    def _with(self, data: Mapping[str, Any], like: Study) -> Study:
-        study = object.__new__(Study)
+    def _with(self, data: Mapping[str, Any], like: Study) -> Self:
+        study = object.__new__(type(self))
         study.__dict__.update(name=self.name, data=data, file=self.file, folder=self.folder, _like=like)
         study.__post_init__()
         return study
 
-    def scaled(self, key: str, factor: float) -> Study:
+    def scaled(self, key: str, factor: float) -> Self:
         """A new study with the number at a dotted name times a factor, in every region that takes it from that card.
 
         An uncertain number that stands at several names (c10 and c01 of one compound) is moved as one.
@@ -358,7 +369,7 @@ class Study(Brief):
         """
         return self.replace(uncertain_number(self, key).changes(factor))
 
-    def with_drive(self, changes: Mapping[str, Any]) -> Study:
+    def with_drive(self, changes: Mapping[str, Any]) -> Self:
         """A new study with other values in its ``[drive]`` table."""
         return self.replace({f"drive.{key}": value for key, value in changes.items()})
 
@@ -409,46 +420,6 @@ class Study(Brief):
         except InputError as error:
             raise error if error.file else error.within(field="mesh", file=self.file) from None
 
-    def run(self, progress: Progress | None = None, *, partial: bool = False) -> Result:
-        """Simulate the drive. ``progress`` is called with the time (s) after every step.
-
-        ``partial``: Ctrl-C gives back what is finished (``result.history.interrupted``); else it is raised.
-        """
-        from tyrefem.rolling import run
-
-        return run(self, progress, partial=partial)
-
-    def compare(self, table: Any = None, result: Result | None = None, **options: Any) -> Comparison:
-        """Deviation from measured tables: the one given, or the study's own. Options: see `tyrefem.compare.compare`."""
-        from tyrefem.compare import compare
-
-        return compare(self, table, result, **options)
-
-    def diagnose(self, table: Any = None, **options: Any) -> Diagnosis:
-        """What the model is missing, judged by measured tables: the one given, or the study's own.
-
-        Options: see `tyrefem.diagnose.diagnose`.
-        """
-        from tyrefem.diagnose import diagnose
-
-        return diagnose(self, table, **options)
-
-    def sweep(self, vary: Mapping[str, Any] | None = None, **options: Any) -> Design:
-        """Many variants of the study, and what they say: response, Pareto front, tornado, indices, optimum, envelope.
-
-        ``vary``: dotted name -> tuple (from, to) or (from, to, levels), list of values, or what a sweep file says.
-        Options: every other key of a sweep file (docs/sweeps.md), and those of
-        `tyrefem.sweep.questions.Questions.answered`.
-
-        >>> coarse = study("nasa-22x5.5-8pr", {"mesh.size": "12 mm", "drive.duration": "60 s"})
-        >>> found = coarse.sweep({"drive.speed": ["10 mph", "20 mph"]}, limits={"hottest_degC": {"below": 35}})
-        >>> found.table["feasible"].tolist()
-        [True, False]
-        """
-        from tyrefem.sweep.questions import asked_of
-
-        return asked_of(self, vary, **options)
-
     @property
     def is_campaign(self) -> bool:
         """Does it name a table of cases?"""
@@ -460,17 +431,23 @@ class Study(Brief):
         return None if self.card.cases is None else (self.folder or Path()) / self.card.cases
 
     @property
+    def cases(self) -> tuple[Case, ...]:
+        """The rows of its table of cases.
+
+        Raises
+        ------
+        InputError : it has no table, or the table is wrong.
+        """
+        if self.cases_file is None:
+            raise InputError("the study has no 'cases' table", field="cases", file=self.file)
+        return read_cases(self.cases_file)
+
+    @property
     def case_names(self) -> tuple[str, ...]:
         """Names of its cases, in the table's order; none without a table."""
-        return () if self.cases_file is None else tuple(case.name for case in read_cases(self.cases_file))
+        return tuple(case.name for case in self.cases) if self.is_campaign else ()
 
-    def campaign(self) -> Campaign:
-        """The cases of the study's table, each a study of its own."""
-        from tyrefem.campaign import Campaign
-
-        return Campaign.of(self)
-
-    def case(self, name: str) -> Study:
+    def case(self, name: str) -> Self:
         """One case of the study's table by its name, a study of its own.
 
         Raises
@@ -480,9 +457,22 @@ class Study(Brief):
         >>> study("nasa-campaign").case("8pr-3270lbf-83psi-20mph").data["drive"]["load"]
         '3270 lbf'
         """
-        from tyrefem.campaign import Campaign
+        by_name = {case.name: case for case in self.cases}
+        if name not in by_name:
+            raise InputError(f"no case '{name}'{nearest(name, by_name)}", file=self.cases_file)
+        return self.case_study(by_name[name])
 
-        return Campaign.case_of(self, name)
+    def case_study(self, case: Case) -> Self:
+        """The study of one row of its table; what is wrong with it is said with its line there."""
+        try:
+            changed = self.replace(case.changes)
+            data = {key: value for key, value in changed.data.items() if key != "cases"}
+            data["title"] = f"{case.name}: {case.note}" if case.note else case.name
+            return replace(changed, name=case.name, data=data)
+        except InputError as error:
+            of_study = error.file is None or error.file == self.file
+            reason = InputError(error.message, field=error.field) if of_study else error
+            raise InputError(f"line {case.line}, case '{case.name}': {reason}", file=self.cases_file) from None
 
 
 def _same(one: Effect, other: Effect) -> bool:
@@ -490,21 +480,5 @@ def _same(one: Effect, other: Effect) -> bool:
 
 
 def study(name: str | Path, changes: Mapping[str, Any] | None = None, case: str | None = None) -> Study:
-    """The study of a name or path, with values changed by dotted names.
-
-    ``case``: of a campaign, only this case; ``changes`` are then laid over the case's own values.
-
-    Raises
-    ------
-    InputError : no such study, or something wrong in it or in a card it names: file, field, what is allowed.
-    """
-    from tyrefem.cards import read_toml
-
-    path = library.find("study", str(name))
-    folder = path.parent.resolve()
-    stem = folder.name if path.name == "study.toml" else path.stem
-    changes = dict(changes or {})
-    # Another table of cases comes before the case that is taken of it.
-    first = changes if case is None else {key: changes.pop(key) for key in list(changes) if key == "cases"}
-    loaded = Study(stem, all_changed(read_toml(path), first), path, folder)
-    return loaded if case is None else loaded.case(case).replace(changes)
+    """The study of a name or path, with values changed by dotted names: `Study.load`."""
+    return Study.load(name, changes, case)

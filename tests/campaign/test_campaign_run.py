@@ -12,9 +12,9 @@ from typing import Any
 import pytest
 
 import tyrefem as tf
+from tyrefem.api import Study
 from tyrefem.campaign import Campaign, run_campaign, write_campaign_report
 from tyrefem.cli import main
-from tyrefem.studies import Study
 
 
 def rows_of(path: Path) -> list[dict[str, str]]:

@@ -8,10 +8,10 @@ from pathlib import Path
 import numpy as np
 import pytest
 
+from tyrefem.api import Study, study
 from tyrefem.compare import Comparison, neighbours
 from tyrefem.errors import InputError
 from tyrefem.processes import processes
-from tyrefem.studies import Study, study
 
 #: Coarse in space and time.
 QUICK = {"mesh.size": "9 mm", "mesh.element": "P1", "numerics.tolerance": "0.05 delta_degC", "output.every": "20 s"}

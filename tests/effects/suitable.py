@@ -9,9 +9,9 @@ from typing import Any
 import numpy as np
 
 import tyrefem as tf
+from tyrefem.api import Result
 from tyrefem.effects import Effect, catalogue
 from tyrefem.effects.effect import MEASUREMENT_PORTS
-from tyrefem.result import Result
 
 COARSE = {
     "mesh.size": "8 mm",

@@ -5,11 +5,11 @@ from __future__ import annotations
 import numpy as np
 import pytest
 
+from tyrefem.api import study
 from tyrefem.footprint.elements import SectionElements
 from tyrefem.footprint.harmonics import Harmonics
 from tyrefem.meshing import build
 from tyrefem.solid.inflation import inflate
-from tyrefem.studies import study
 
 
 @pytest.mark.parametrize(

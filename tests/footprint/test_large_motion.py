@@ -7,6 +7,7 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
+from tyrefem.api import study
 from tyrefem.errors import InputError
 from tyrefem.footprint.balance import Balance
 from tyrefem.footprint.contact import Pressing
@@ -16,7 +17,6 @@ from tyrefem.footprint.pressed import Footprint
 from tyrefem.loading import TrR64
 from tyrefem.meshing import build
 from tyrefem.solid.inflation import Inflation, inflate
-from tyrefem.studies import study
 
 COARSE = 18e-3
 

@@ -9,6 +9,7 @@ from typing import Any, get_args
 import pytest
 
 from tyrefem import library
+from tyrefem.api import study
 from tyrefem.boundaries import laws
 from tyrefem.cards import Card, read_toml
 from tyrefem.effects import Prior, catalogue
@@ -28,7 +29,6 @@ from tyrefem.plausible import (
 from tyrefem.quantity import Unit, parse
 from tyrefem.rig import RigCard
 from tyrefem.rig import load as rig
-from tyrefem.studies import study
 
 SLIPS: list[tuple[str, dict[str, Any]]] = [
     ("density.value", {"density": {"value": "1.18 kg/m**3"}}),

@@ -8,8 +8,8 @@ from pathlib import Path
 import pytest
 
 import tyrefem
+from tyrefem.api import Study
 from tyrefem.reduced import certify, tables
-from tyrefem.studies import Study
 
 
 @dataclass(frozen=True)

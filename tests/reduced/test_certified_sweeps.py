@@ -9,13 +9,13 @@ import pytest
 from scipy.integrate import simpson
 
 from tyrefem import study
+from tyrefem.api import Study
 from tyrefem.reduced.model import NotReducibleError
 from tyrefem.reduced.readout import Readout
 from tyrefem.reduced.surrogate import Surrogate, reduced_outcomes, surrogate, temperature_error
 from tyrefem.reduced.variant import Variant
 from tyrefem.reduced.work import ReducedTask, pack, perform_reduced
 from tyrefem.rolling import RollingTyre, output_times, run
-from tyrefem.studies import Study
 from tyrefem.sweep.answers import answers
 from tyrefem.sweep.plan import Plan, plan_of
 from tyrefem.sweep.sweep import Sweep, sweep

@@ -6,10 +6,10 @@ import numpy as np
 import pytest
 
 from tyrefem import study
+from tyrefem.api import Study
 from tyrefem.reduced.batch import Batch, steady
 from tyrefem.reduced.surrogate import reduced_answers, surrogate, temperature_error
 from tyrefem.rolling import RollingTyre, run
-from tyrefem.studies import Study
 from tyrefem.sweep.answers import answers
 from tyrefem.sweep.plan import plan_of
 

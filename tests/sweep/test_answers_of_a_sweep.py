@@ -15,9 +15,9 @@ from hypothesis import given
 from hypothesis import strategies as st
 
 from tyrefem import study
+from tyrefem.api import Study
 from tyrefem.errors import InputError
 from tyrefem.reduced.surrogate import Certificate
-from tyrefem.studies import Study
 from tyrefem.sweep.answers import TIME_TO, answer_names
 from tyrefem.sweep.card import EnvelopeCard, LimitCard, OptimiseCard
 from tyrefem.sweep.envelope import envelope

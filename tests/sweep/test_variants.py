@@ -10,9 +10,9 @@ from hypothesis import given
 from hypothesis import strategies as st
 
 from tyrefem import study
+from tyrefem.api import Study
 from tyrefem.errors import InputError
 from tyrefem.quantity import parse
-from tyrefem.studies import Study
 from tyrefem.sweep import task
 from tyrefem.sweep.card import SweepCard
 from tyrefem.sweep.plan import plan_of, planned

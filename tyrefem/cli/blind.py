@@ -42,8 +42,8 @@ def blind(
     Finished cases are kept: the same command goes on where an interrupted one was.
     """
     from tyrefem.answer_store import PROGRESS
+    from tyrefem.api import study as load
     from tyrefem.diagnose.blind_rates import NEEDS, run_blind
-    from tyrefem.studies import study as load
 
     found = load(study, settings(changes), case)
     NEEDS.check(found)

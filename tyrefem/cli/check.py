@@ -92,7 +92,7 @@ def _card(path: Path) -> str:
         card = material(str(path.resolve()))
         warn(warning.within(file=path) for warning in card.warnings())
         return f"a material card, {card.title}"
-    from tyrefem.studies import study
+    from tyrefem.api import study
     from tyrefem.study_check import check_study
 
     found = study(str(path.resolve()))

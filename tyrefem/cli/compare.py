@@ -51,9 +51,9 @@ def compare(
     as_json: JsonOption = False,
 ) -> None:
     """Compare a study with measured tables: deviation per sensor, run and phase, against the validation uncertainty."""
+    from tyrefem.api import study as load
     from tyrefem.compare.comparison import FILES
     from tyrefem.compare.validation import NEEDS
-    from tyrefem.studies import study as load
 
     found = load(study, settings(changes), case)
     NEEDS.check(found, table)

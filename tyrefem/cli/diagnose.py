@@ -56,10 +56,10 @@ def diagnose(
     Interrupted, the same command goes on where it was.
     """
     from tyrefem.answer_store import PROGRESS
+    from tyrefem.api import study as load
     from tyrefem.diagnose.progress_store import ProgressStore
     from tyrefem.diagnose.record import FILES
     from tyrefem.diagnose.workflow import NEEDS
-    from tyrefem.studies import study as load
 
     found = load(study, settings(changes), case)
     NEEDS.check(found, table)

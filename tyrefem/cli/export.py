@@ -77,10 +77,10 @@ def export(
     It is trained on full runs of the study in the ranges, certified on fresh ones, and stepped by tyrefem/realtime.py
     with numpy alone.
     """
+    from tyrefem.api import study as loaded
     from tyrefem.quantity import parse
     from tyrefem.reduced.certify import NEEDS
     from tyrefem.reduced.certify import export as write
-    from tyrefem.studies import study as loaded
     from tyrefem.sweep.schedulers import Here, Local
 
     given: dict[str, tuple[str, str]] = {}

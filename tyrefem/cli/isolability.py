@@ -40,12 +40,12 @@ def isolability(
 ) -> None:
     """Before any data: which effects the study's sensors and runs can tell apart, and how strong they must be."""
     from tyrefem.answer_store import PROGRESS
+    from tyrefem.api import study as load
     from tyrefem.diagnose.isolability import NEEDS
     from tyrefem.diagnose.isolability import isolability as found_by
     from tyrefem.diagnose.isolability_picture import picture
     from tyrefem.diagnose.progress_store import ProgressStore
     from tyrefem.output import atomic_folder, jsonable
-    from tyrefem.studies import study as load
 
     found = load(study, settings(changes), case)
     NEEDS.check(found)

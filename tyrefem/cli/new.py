@@ -55,7 +55,7 @@ def new(
 def _of_the_other_tyre(kind: str, source: Path) -> tuple[str, str]:
     """What a copy must say of numbers that are one tyre's and no other's: a line for the file, one for the screen."""
     if kind == "study":
-        from tyrefem.studies import study
+        from tyrefem.api import study
 
         try:
             copied = study(source)

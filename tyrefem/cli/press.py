@@ -25,8 +25,8 @@ from tyrefem.errors import InputError
 from tyrefem.results_folder import results_folder
 
 if TYPE_CHECKING:
+    from tyrefem.api import Study
     from tyrefem.footprint.press import Pressed
-    from tyrefem.studies import Study
 
 #: What may be given: option and unit.
 OPTIONS = {
@@ -61,11 +61,11 @@ def press(
     case: CaseOption = None,
 ) -> None:
     """Inflate the tyre by finite elements and press it on the road; by default as in the drive's first phase."""
+    from tyrefem.api import study as load_study
     from tyrefem.footprint.press import NEEDS
     from tyrefem.footprint.press import press as pressed_by
     from tyrefem.footprint.press_files import FILES, write_files
     from tyrefem.footprint.press_places import cycle_places, read_place
-    from tyrefem.studies import study as load_study
 
     texts = {"pressure": pressure, "load": load, "deflection": deflection, "drum_diameter": drum, "camber": camber}
     given = {name: _read(name, text) for name, text in texts.items() if text is not None}

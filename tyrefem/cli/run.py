@@ -26,9 +26,8 @@ from tyrefem.interruption import held_back, keeping
 from tyrefem.results_folder import results_folder
 
 if TYPE_CHECKING:
+    from tyrefem.api import Result, Study
     from tyrefem.campaign import Campaign
-    from tyrefem.result import Result
-    from tyrefem.studies import Study
 
 
 def run(
@@ -47,8 +46,8 @@ def run(
 
     A study with a table of cases runs them all, or the one of --case, and writes one table.
     """
+    from tyrefem.api import study as load
     from tyrefem.campaign import campaign_files
-    from tyrefem.studies import study as load
     from tyrefem.summary import run_files
 
     values = settings(changes)

@@ -13,7 +13,7 @@ from tyrefem.requirements import Requirements
 from tyrefem.results_file import PICTURES, results_file
 
 if TYPE_CHECKING:
-    from tyrefem.studies import Study
+    from tyrefem.api import Study
 
 #: Suffixes of a mesh.
 MESHES = (".msh", ".vtu", ".vtk")
@@ -108,7 +108,7 @@ def _section(name: str, values: dict[str, Any], _case: str | None) -> tuple[Any,
 
 def _single(name: str, values: dict[str, Any], case: str | None) -> Study:
     """The study to draw: a single drive, not a table of them."""
-    from tyrefem.studies import study
+    from tyrefem.api import study
 
     chosen = study(name, values, case)
     NEEDS.check(chosen)
@@ -177,10 +177,10 @@ def _print(kind: str, name: str, values: dict[str, Any], case: str | None) -> No
     import tomli_w
 
     from tyrefem import library
+    from tyrefem.api import study
     from tyrefem.cards import read_toml
     from tyrefem.dotted import changed
     from tyrefem.materials import MaterialCard
-    from tyrefem.studies import study
 
     data: dict[str, Any]
     if kind == "study":

@@ -52,9 +52,9 @@ def strain(
     case: CaseOption = None,
 ) -> None:
     """Run a study by every strain law: strain energy by region and temperatures side by side."""
+    from tyrefem.api import study as load_study
     from tyrefem.output import atomic_folder, write_json
     from tyrefem.strain.comparison import LAWS, NEEDS, compare_laws
-    from tyrefem.studies import study as load_study
 
     wanted = tuple(dict.fromkeys(law or LAWS))
     for one in wanted:

@@ -24,8 +24,8 @@ def questions(
     InputError : nothing has that name; something asked makes no sense.
     """
     from tyrefem import library
+    from tyrefem.api import study as load
     from tyrefem.cards import read_toml
-    from tyrefem.studies import study as load
     from tyrefem.sweep import questions as asked
     from tyrefem.sweep.card import SweepCard
 

@@ -20,7 +20,7 @@ from tyrefem.reduced.train import Fineness, Snapshots, snapshots, trained
 from tyrefem.reduced.variant import Variant
 from tyrefem.reduced.work import Packed, pack, remember
 from tyrefem.result import Result
-from tyrefem.rolling import RollingTyre
+from tyrefem.rolling import RollingTyre, run
 from tyrefem.studies import Study
 from tyrefem.sweep.bundle import bundle
 
@@ -69,7 +69,7 @@ class Certificate:
 
 def taught(study: Study) -> tuple[Computed, Snapshots]:
     """Done in a worker: a full run, and what a reduced model learns of it."""
-    result = study.run()
+    result = run(study)
     return computed_of(result), snapshots(result, FIELDS)
 
 

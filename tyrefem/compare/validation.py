@@ -15,6 +15,7 @@ from tyrefem.compare.interface import ResultLike, StudyLike
 from tyrefem.errors import InputError
 from tyrefem.mechanics import BY_ELEMENTS, same_cycles
 from tyrefem.requirements import Requirements
+from tyrefem.rolling import run
 from tyrefem.studies import Study
 from tyrefem.uncertain_numbers import left_out
 
@@ -100,7 +101,8 @@ def _drive(experiment: Experiment) -> str:
 def _run(study: StudyLike) -> ResultLike:
     from tyrefem.compare.computed import computed_of
 
-    return computed_of(study.run())
+    other: Any = study
+    return computed_of(run(study) if isinstance(study, Study) else other.run())
 
 
 #: Drive and changed input; None: as the study has it.

@@ -11,6 +11,7 @@ from numpy.typing import NDArray
 
 from tyrefem.errors import InputError
 from tyrefem.requirements import Requirements
+from tyrefem.rolling import run
 from tyrefem.strain import StrainCycle, Zone
 from tyrefem.strain.gauss_points import GaussPoints
 
@@ -251,7 +252,7 @@ def compare_laws(study: Study | str, laws: tuple[str, ...] = LAWS) -> LawCompari
 
 
 def _outcome(study: Study, law: str) -> LawOutcome:
-    result = study.replace({"mechanics.strain": law}).run()
+    result = run(study.replace({"mechanics.strain": law}))
     cases = result.tyre.schedule.cases
     deflections = {(i, k): case.deflection for i, phase in enumerate(cases) for k, case in enumerate(phase)}
     phase, knot = max(deflections, key=lambda place: deflections[place])

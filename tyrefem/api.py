@@ -1,0 +1,135 @@
+"""What people work with: a study and its answers, with their verbs.
+
+The classes that they stand on are data; each verb is one line that calls the room where the work is done.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Mapping
+from pathlib import Path
+from typing import TYPE_CHECKING, Any, TypeVar
+
+from tyrefem import campaign, result, studies
+
+if TYPE_CHECKING:
+    from tyrefem.cases import Case
+    from tyrefem.compare import Comparison
+    from tyrefem.diagnose import Diagnosis
+    from tyrefem.sweep.design import Design
+
+Data = TypeVar("Data")
+
+
+def with_verbs(kind: type[Data], data: Any) -> Data:
+    """The same data as an object of ``kind``, a class with verbs that stands on the data's own."""
+    found = object.__new__(kind)
+    found.__dict__.update(data.__dict__)
+    return found
+
+
+class Result(result.Result):
+    """A run's result, and how to write and show it."""
+
+    def summary(self) -> dict[str, Any]:
+        """What `summary.json` holds: inputs, versions, mesh, tolerance, and the numbers that matter."""
+        from tyrefem.summary import summary
+
+        return summary(self)
+
+    def to_vtk(self, folder: str | Path, *, revolved: bool = False) -> Path:
+        """Write ``<name>.pvd`` and a .vtu per saved time: regions, T, heat source, strain energy."""
+        from tyrefem.vtk import write_series
+
+        return write_series(self, Path(folder), revolved=revolved)
+
+    def plot(self, folder: str | Path) -> list[Path]:
+        """Write the standard pictures as PNG files."""
+        from tyrefem.plotting import write_pictures
+
+        return write_pictures(self, Path(folder))
+
+    def report(self, path: str | Path) -> Path:
+        """Write one self-contained HTML report."""
+        from tyrefem.report import write_report
+
+        return write_report(self, Path(path))
+
+    def save(self, folder: str | Path) -> Path:
+        """Write readings, extremes and heat budget as CSV, and ``summary.json``."""
+        from tyrefem.summary import write_tables
+
+        return write_tables(self, Path(folder))
+
+
+class Campaign(campaign.Campaign):
+    """The cases of a study, each a study of its own, whose results can be written and shown."""
+
+    def outcome(self, case: Case) -> Result | str:
+        """The result of a case, or why there is none."""
+        found = super().outcome(case)
+        return found if isinstance(found, str) else with_verbs(Result, found)
+
+
+class Study(studies.Study):
+    """A study, and what can be asked of it. Made by `study`; changed by `replace`.
+
+    >>> coarse = study("nasa-22x5.5-8pr", {"mesh.size": "12 mm", "drive.duration": "60 s"})
+    >>> f"{coarse.run().peaks['tyre'].temperature:.0f} degC"
+    '39 degC'
+    """
+
+    def run(self, progress: Callable[[float], None] | None = None, *, partial: bool = False) -> Result:
+        """Simulate the drive. ``progress`` is called with the time (s) after every step.
+
+        ``partial``: Ctrl-C gives back what is finished (``result.history.interrupted``); else it is raised.
+        """
+        from tyrefem.rolling import run
+
+        return with_verbs(Result, run(self, progress, partial=partial))
+
+    def compare(self, table: Any = None, result: result.Result | None = None, **options: Any) -> Comparison:
+        """Deviation from measured tables: the one given, or the study's own. Options: see `tyrefem.compare.compare`."""
+        from tyrefem.compare import compare
+
+        return compare(self, table, result, **options)
+
+    def diagnose(self, table: Any = None, **options: Any) -> Diagnosis:
+        """What the model is missing, judged by measured tables: the one given, or the study's own.
+
+        Options: see `tyrefem.diagnose.diagnose`.
+        """
+        from tyrefem.diagnose import diagnose
+
+        return diagnose(self, table, **options)
+
+    def sweep(self, vary: Mapping[str, Any] | None = None, **options: Any) -> Design:
+        """Many variants of the study, and what they say: response, Pareto front, tornado, indices, optimum, envelope.
+
+        ``vary``: dotted name -> tuple (from, to) or (from, to, levels), list of values, or what a sweep file says.
+        Options: every other key of a sweep file (docs/sweeps.md), and those of
+        `tyrefem.sweep.questions.Questions.answered`.
+
+        >>> coarse = study("nasa-22x5.5-8pr", {"mesh.size": "12 mm", "drive.duration": "60 s"})
+        >>> found = coarse.sweep({"drive.speed": ["10 mph", "20 mph"]}, limits={"hottest_degC": {"below": 35}})
+        >>> found.table["feasible"].tolist()
+        [True, False]
+        """
+        from tyrefem.sweep.questions import asked_of
+
+        return asked_of(self, vary, **options)
+
+    def campaign(self) -> Campaign:
+        """The cases of the study's table, each a study of its own."""
+        return Campaign.of(self)
+
+
+def study(name: str | Path, changes: Mapping[str, Any] | None = None, case: str | None = None) -> Study:
+    """The study of a name or path, with values changed by dotted names.
+
+    ``case``: of a campaign, only this case; ``changes`` are then laid over the case's own values.
+
+    Raises
+    ------
+    InputError : no such study, or something wrong in it or in a card it names: file, field, what is allowed.
+    """
+    return Study.load(name, changes, case)
