@@ -75,7 +75,7 @@ class Study(studies.Study):
 
     >>> coarse = study("nasa-22x5.5-8pr", {"mesh.size": "12 mm", "drive.duration": "60 s"})
     >>> f"{coarse.run().peaks['tyre'].temperature:.0f} degC"
-    '39 degC'
+    '36 degC'
     """
 
     def run(self, progress: Callable[[float], None] | None = None, *, partial: bool = False) -> Result:

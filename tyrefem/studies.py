@@ -363,8 +363,8 @@ class Study(Brief):
 
         An uncertain number that stands at several names (c10 and c01 of one compound) is moved as one.
 
-        >>> radial = study("passenger-205-55r16").scaled("materials.body-ply.conductivity.across", 2.0)
-        >>> radial.materials["turn-up"].conductivity.across == radial.materials["body-ply"].conductivity.across
+        >>> radial = study("passenger-205-55r16").scaled("materials.body-ply.conductivity.value", 2.0)
+        >>> radial.materials["turn-up"].conductivity.value == radial.materials["body-ply"].conductivity.value
         True
         """
         return self.replace(uncertain_number(self, key).changes(factor))

@@ -12,6 +12,7 @@ from typing import Any
 import pytest
 
 import tyrefem as tf
+from tyrefem import campaign as campaigns
 from tyrefem.api import Study
 from tyrefem.campaign import Campaign, run_campaign, write_campaign_report
 from tyrefem.cli import main
@@ -58,14 +59,14 @@ def test_a_failing_case_is_named_and_the_others_go_on(folder: Path, campaign: Ca
 
 
 def test_a_defect_in_one_case_is_called_that(campaign: Campaign, folder: Path, monkeypatch: pytest.MonkeyPatch) -> None:
-    run = Study.run
+    run = campaigns.run
 
     def sometimes(study: Study, progress: Any = None, **how: Any) -> Any:
         if study.name == "light":
             raise ZeroDivisionError("float division by zero")
         return run(study, progress, **how)
 
-    monkeypatch.setattr(Study, "run", sometimes)
+    monkeypatch.setattr(campaigns, "run", sometimes)
     table = run_campaign(campaign, folder / "out")
     assert table["failure"][0] == "defect, please report: ZeroDivisionError: float division by zero"
     assert table["failure"][1] == ""
@@ -74,7 +75,7 @@ def test_a_defect_in_one_case_is_called_that(campaign: Campaign, folder: Path, m
 def test_an_interrupted_campaign_keeps_what_is_finished(
     campaign: Campaign, folder: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:
-    run = Study.run
+    run = campaigns.run
 
     def stop(time: float) -> None:
         if time > 5.0:
@@ -83,7 +84,7 @@ def test_an_interrupted_campaign_keeps_what_is_finished(
     def second_is_stopped(study: Study, progress: Any = None, **how: Any) -> Any:
         return run(study, stop if study.name == "usual" else progress, **how)
 
-    monkeypatch.setattr(Study, "run", second_is_stopped)
+    monkeypatch.setattr(campaigns, "run", second_is_stopped)
     with pytest.raises(KeyboardInterrupt):
         run_campaign(campaign, folder / "out")
     written = rows_of(folder / "out/campaign.csv")
@@ -103,7 +104,7 @@ def test_an_older_table_does_not_pass_for_this_one(
     def stopped(_study: Study, _progress: Any = None, **_how: Any) -> None:
         raise KeyboardInterrupt
 
-    monkeypatch.setattr(Study, "run", stopped)
+    monkeypatch.setattr(campaigns, "run", stopped)
     with pytest.raises(KeyboardInterrupt):
         run_campaign(campaign, folder / "out")
     assert rows_of(folder / "out/campaign.csv") == []
