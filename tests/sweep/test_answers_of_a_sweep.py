@@ -183,6 +183,40 @@ def test_tornado_takes_the_tolerances_that_cards_state(tyre: Study) -> None:
         tornado_plan(tyre, {"materials.tred.loss_tangent.value": 0.2})
 
 
+def test_a_sample_of_all_uncertain_numbers_moves_a_shared_card_as_one(tyre: Study) -> None:
+    stiff = {"relative_sd": 0.2}
+    shared = {f"materials.{one}": {"base": "nasa-tread", "shear_modulus": stiff} for one in ("tread", "sidewall")}
+    study = tyre.replace(shared)
+    plan = plan_of(study, {"drive.speed": ("10 mph", "30 mph")}, uncertain=1.5, sample="latin-hypercube", count=6)
+    assert {one.key for one in plan.varied} == {"drive.speed", *study.uncertainty}
+    key, other = (f"materials.{one}.shear_modulus.value" for one in ("tread", "sidewall"))
+    factors = [plan.row(n)[f"{key} [x]"] for n in range(6)]
+    assert min(factors) > 0.7
+    assert max(factors) < 1.3
+    assert max(factors) - min(factors) > 0.3
+    for variant, factor in zip(plan.variants, factors, strict=True):
+        assert variant[key] == variant[other] == f"{335 * factor:.9g} psi"
+    assert f"{other} [x]" not in plan.row(0)
+    assert other not in plan.row(0)
+    with pytest.raises(InputError, match=r"uncertain: 5 standard deviations of 'materials\..*reach zero"):
+        plan_of(study, {}, uncertain=5, sample="latin-hypercube", count=4)
+    with pytest.raises(InputError, match=r"uncertain: the numbers of 'materials.tread', which is swapped"):
+        plan_of(study, {"materials.tread": ["nasa-tread", "rubber-tread-aircraft"]}, uncertain=1)
+
+
+def test_a_reduced_model_follows_uncertain_numbers(tyre: Study) -> None:
+    """Moved in two regions at once, by full runs and by the model."""
+    from tyrefem.reduced.surrogate import outside
+
+    shared = {f"materials.{one}": "nasa-tread" for one in ("tread", "sidewall")}
+    plan = plan_of(tyre.replace(shared), {}, uncertain=1, sample="sobol", count=2)
+    for variant in plan.variants:
+        assert outside(plan.study.replace(variant), plan.study, plan.varied) == ""
+    alone = {key: value for key, value in plan.variants[0].items() if not key.startswith("materials.sidewall.")}
+    assert len(alone) < len(plan.variants[0])
+    assert "does not follow" in outside(plan.study.replace(alone), plan.study, plan.varied)
+
+
 BOX = {"drive.speed": ("10 m/s", "20 m/s"), "drive.ambient": ("10 degC", "30 degC")}
 
 

@@ -51,6 +51,14 @@ def sweep(
             rich_help_panel=VARIANTS,
         ),
     ] = None,
+    uncertain: Annotated[
+        float | None,
+        typer.Option(
+            metavar="K",
+            help="Vary every uncertain number too, within K standard deviations.",
+            rich_help_panel=VARIANTS,
+        ),
+    ] = None,
     sample: Annotated[
         str | None,
         typer.Option(help="grid (default), latin-hypercube, sobol, saltelli or list.", rich_help_panel=VARIANTS),
@@ -159,9 +167,10 @@ def sweep(
     from tyrefem.sweep.output import FILES, KEPT, write
 
     said = asked(
-        vary=vary, sample=sample, count=count, seed=seed, cases=cases, limit=limit, time_to=time_to, answer=answer,
-        pareto=pareto, indices=indices, tornado=tornado, tolerance_of=tolerance_of, minimise=minimise,
-        maximise=maximise, runs=runs, envelope=envelope, loads=loads, pressures=pressures, speeds=speeds,
+        vary=vary, uncertain=uncertain, sample=sample, count=count, seed=seed, cases=cases, limit=limit,
+        time_to=time_to, answer=answer, pareto=pareto, indices=indices, tornado=tornado, tolerance_of=tolerance_of,
+        minimise=minimise, maximise=maximise, runs=runs, envelope=envelope, loads=loads, pressures=pressures,
+        speeds=speeds,
     )  # fmt: skip
     try:
         how = Execution(restart=restart, reduced=reduced, tolerance=parse(tolerance, "delta_degC"))

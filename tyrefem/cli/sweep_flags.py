@@ -12,6 +12,7 @@ from tyrefem.errors import InputError
 def asked(
     *,
     vary: list[str] | None = None,
+    uncertain: float | None = None,
     sample: str | None = None,
     count: int | None = None,
     seed: int | None = None,
@@ -39,6 +40,7 @@ def asked(
     tolerances = _once([_tolerance(one) for one in tolerance_of or []], "--tolerance-of")
     said: dict[str, Any] = {
         "vary": _once([varied(one) for one in vary or []], "--vary"),
+        "uncertain": uncertain,
         "sample": "saltelli" if indices is not None else sample,
         "count": count if indices is None else indices,
         "seed": seed,

@@ -18,6 +18,7 @@ from tyrefem.reduced.work import Packed, base_of, pack, remember
 from tyrefem.rolling import RollingTyre, run
 from tyrefem.sweep.answers import answers
 from tyrefem.sweep.plan import Plan
+from tyrefem.sweep.samples import changes_at
 from tyrefem.sweep.schedulers import Scheduler
 from tyrefem.sweep.task import Task
 
@@ -117,7 +118,7 @@ class School:
 
     def variant(self, place: Array) -> dict[str, Any]:
         """Changes at a place of the unit box."""
-        return {one.key: one.at(float(u)) for one, u in zip(self.plan.varied, place, strict=True)}
+        return changes_at(self.plan.varied, place)
 
     def run(self, places: Sequence[Array], time_tolerance: float, what: str, asked: bool) -> list[dict[str, Any]]:
         """Outcomes of full runs; their snapshots are learnt."""

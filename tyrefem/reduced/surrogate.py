@@ -25,6 +25,7 @@ from tyrefem.studies import Study
 from tyrefem.sweep.answers import answers
 from tyrefem.sweep.bundle import Bundle
 from tyrefem.sweep.plan import Plan
+from tyrefem.sweep.samples import changes_at
 from tyrefem.sweep.schedulers import Here, Scheduler
 from tyrefem.sweep.varied import Varied
 
@@ -117,7 +118,9 @@ def outside(study: Study, base: Study, varied: Sequence[Varied]) -> str:
         value = value_at(study.data, one.key, study.folder)
         if not one.contains(value):
             return f"'{one.key}' = {value!r} is outside the box of the reduced model"
-    same = {one.key: one.at(0.5) for one in varied}
+        if not one.together(value, {key: value_at(study.data, key, study.folder) for key, _ in one.also}):
+            return f"'{one.also[0][0]}' does not follow '{one.key}', as it did for the reduced model"
+    same = changes_at(varied, [0.5] * len(varied))
     mine, theirs = (all_changed(each.data, same) for each in (study, base))
     for key in dict.fromkeys([*mine, *theirs]):
         if key not in UNSEEN and mine.get(key) != theirs.get(key):

@@ -131,7 +131,9 @@ class SweepCard(Card):
         first, for every variant.
     sample : how variants are chosen; ``count`` of them (Latin hypercube, Sobol; Saltelli: the base), ``seed``;
         ``cases``: CSV (list). Not given: a grid, or no variants but the optimiser's if there is ``[optimise]``.
-    vary : dotted name -> how it varies. limits : answer -> what it must keep to.
+    vary : dotted name -> how it varies. uncertain : every uncertain number that can matter varies too, evenly within so
+        many standard deviations either way; a card's number in all regions that use the card.
+    limits : answer -> what it must keep to.
     time_to : temperature whose first reaching is an answer (``time_to_limit_s``).
     answers : what is drawn and judged; by default temperature and rolling resistance (and time to the limit).
     pareto : answer -> "min" or "max"; by default temperature, rolling resistance and mass, all "min".
@@ -148,6 +150,7 @@ class SweepCard(Card):
     seed: Annotated[int, Field(ge=0)] = 1
     cases: str | None = None
     vary: dict[str, VaryCard] = Field(default_factory=dict)
+    uncertain: Annotated[float, Unit("1", gt=0, le=5)] | None = None
     limits: dict[str, LimitCard] = Field(default_factory=dict)
     time_to: Temperature | None = None
     answers: tuple[Text, ...] = ()
@@ -185,7 +188,12 @@ class SweepCard(Card):
     @property
     def sampled(self) -> bool:
         """Are variants chosen beforehand?"""
-        return self.sample is not None or bool(self.vary and self.optimise is None)
+        return self.sample is not None or (self.varies and self.optimise is None)
+
+    @property
+    def varies(self) -> bool:
+        """Is there a box?"""
+        return bool(self.vary) or self.uncertain is not None
 
     @property
     def chosen(self) -> Sample:
@@ -197,11 +205,11 @@ class SweepCard(Card):
         if self.chosen == "list":
             if self.cases is None:
                 raise InputError("sample = 'list' needs a CSV file of cases", field="cases")
-            if self.vary:
+            if self.varies:
                 raise InputError("sample = 'list' takes its values from 'cases' alone", field="vary")
         elif self.cases is not None:
             raise InputError("goes with sample = 'list'", field="cases")
-        elif not self.vary and (self.sample or self.optimise or not (self.tornado or self.envelope)):
+        elif not self.varies and (self.sample or self.optimise or not (self.tornado or self.envelope)):
             raise InputError("nothing varies; e.g. \"drive.speed\" = { from = '10 mph', to = '40 mph' }", field="vary")
         if self.chosen in ("grid", "list"):
             if self.count is not None:

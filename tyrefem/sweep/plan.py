@@ -19,7 +19,8 @@ from tyrefem.sweep.bundle import Bundle, bundle
 from tyrefem.sweep.card import LimitCard, SweepCard, VaryCard
 from tyrefem.sweep.samples import drawn, grid, listed, without_repeats
 from tyrefem.sweep.task import Task
-from tyrefem.sweep.varied import Varied, varied
+from tyrefem.sweep.varied import Varied, uncertain, varied
+from tyrefem.uncertain_numbers import left_out
 
 
 @dataclass(frozen=True, eq=False)
@@ -64,9 +65,11 @@ class Plan:
     def row(self, number: int) -> dict[str, Any]:
         """What a table shows of a variant: its name and the values that it has."""
         by_key, changes = {one.key: one for one in self.varied}, self.variants[number]
+        beside = {key for one in self.varied for key, _ in one.also}
         shown = {
             (by_key[key].heading if key in by_key else key): (by_key[key].of(value) if key in by_key else value)
             for key, value in changes.items()
+            if key not in beside
         }
         return {"variant": self.names[number], **shown}
 
@@ -96,7 +99,9 @@ def planned(study: Study, card: SweepCard, near: Path | None = None) -> Plan:
             raise error if error.file else error.within(file=path) from None
     else:
         chosen = tuple(varied(study, key, one) for key, one in _outer_first(card.vary).items())
-        sensible(study, [("", {one.key: value}) for one in chosen for value in one.ends])
+        if card.uncertain is not None:
+            chosen += _beside(chosen, uncertain(study, card.uncertain))
+        sensible(study, [("", one.changes(value)) for one in chosen for value in one.ends])
         if not card.sampled:
             variants = []
         elif card.chosen == "grid":
@@ -108,8 +113,29 @@ def planned(study: Study, card: SweepCard, near: Path | None = None) -> Plan:
         if card.chosen != "saltelli":
             without_repeats(variants, names)
     seed = card.seed if card.chosen in ("latin-hypercube", "sobol", "saltelli") else None
-    how = {"sample": card.chosen if card.sampled else None, "count": len(variants), "seed": seed}
+    how: dict[str, Any] = {"sample": card.chosen if card.sampled else None, "count": len(variants), "seed": seed}
+    if card.uncertain is not None:
+        also = {one.key: [key for key, _ in one.also] for one in chosen if one.also}
+        how |= {"uncertain": card.uncertain, "also": also, "left_out": left_out(study.uncertain_numbers)}
     return Plan(study, chosen, tuple(variants), tuple(names), dict(card.limits), card.time_to, how)
+
+
+def _beside(chosen: Sequence[Varied], numbers: Sequence[Varied]) -> tuple[Varied, ...]:
+    """The uncertain numbers that do not vary otherwise.
+
+    Raises
+    ------
+    InputError : the card of one of them is swapped.
+    """
+    named = {one.key for one in chosen}
+    found = tuple(one for one in numbers if not named & {one.key, *(key for key, _ in one.also)})
+    for one in found:
+        for key in (one.key, *(key for key, _ in one.also)):
+            outer = next((name for name in named if key.startswith(f"{name}.")), None)
+            if outer is not None:
+                message = f"the numbers of '{outer}', which is swapped, have no one value to vary about ('{key}')"
+                raise InputError(message, field="uncertain")
+    return found
 
 
 def _outer_first(vary: Mapping[str, VaryCard]) -> dict[str, VaryCard]:

@@ -28,8 +28,14 @@ def grid(varied: Sequence[Varied]) -> list[dict[str, Any]]:
     count = math.prod(len(one.grid) for one in varied)
     if count > MOST:
         raise InputError(f"the grid has {count:,} variants; allowed: {MOST:,}. Use fewer levels, or a Sobol sequence")
-    names = [one.key for one in varied]
-    return [dict(zip(names, values, strict=True)) for values in itertools.product(*(one.grid for one in varied))]
+    return [_changes(varied, values) for values in itertools.product(*(one.grid for one in varied))]
+
+
+def _changes(varied: Sequence[Varied], values: Sequence[Any]) -> dict[str, Any]:
+    found: dict[str, Any] = {}
+    for one, value in zip(varied, values, strict=True):
+        found |= one.changes(value)
+    return found
 
 
 def places(varied: Sequence[Varied], sample: str, count: int, seed: int) -> Array:
@@ -61,10 +67,12 @@ def problem(varied: Sequence[Varied]) -> dict[str, Any]:
 
 def drawn(varied: Sequence[Varied], sample: str, count: int, seed: int) -> list[dict[str, Any]]:
     """A sample as changes of the study."""
-    return [
-        {one.key: one.at(float(u)) for one, u in zip(varied, row, strict=True)}
-        for row in places(varied, sample, count, seed)
-    ]
+    return [changes_at(varied, row) for row in places(varied, sample, count, seed)]
+
+
+def changes_at(varied: Sequence[Varied], place: Sequence[float] | Array) -> dict[str, Any]:
+    """Changes of the study at a place of the unit cube."""
+    return _changes(varied, [one.at(float(u)) for one, u in zip(varied, place, strict=True)])
 
 
 def listed(path: Path) -> tuple[list[dict[str, Any]], list[str]]:

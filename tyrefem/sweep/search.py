@@ -87,10 +87,10 @@ def evolve(asked: Asked, card: OptimiseCard, tick: Callable[[str, int, int], Non
 
 
 def _variant(varied: Sequence[Varied], x: Array) -> dict[str, Any]:
-    return {
-        one.key: one.values[round(float(u))] if one.values else one.at(float(np.clip(u, 0.0, 1.0)))
-        for one, u in zip(varied, x, strict=True)
-    }
+    found: dict[str, Any] = {}
+    for one, u in zip(varied, x, strict=True):
+        found |= one.changes(one.values[round(float(u))] if one.values else one.at(float(np.clip(u, 0.0, 1.0))))
+    return found
 
 
 def objective(outcome: Outcome, card: OptimiseCard) -> float:

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import math
 import re
-from collections.abc import Sequence
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 from typing import TYPE_CHECKING, Any
 
@@ -33,6 +33,7 @@ class Varied:
     values : listed values, as written; empty where the quantity is continuous.
     low, high : ends of a continuous range, in ``unit``. log : spaced by ratios. levels : values in a grid.
     nominal : the value as the study has it; the numbers are factors on it.
+    also : other dotted names, and what stands there, that take the same factor: a card's number in other regions.
     """
 
     key: str
@@ -43,6 +44,24 @@ class Varied:
     log: bool = False
     levels: int = 5
     nominal: Any = None
+    also: tuple[tuple[str, Any], ...] = ()
+
+    def changes(self, value: Any) -> dict[str, Any]:
+        """Dotted name -> value, of a value as a study writes it.
+
+        >>> ply = Varied("materials.ply.k", low=0.5, high=1.5, nominal="2 W", also=(("materials.wrap.k", "2 W"),))
+        >>> ply.changes(ply.at(1.0))
+        {'materials.ply.k': '3 W', 'materials.wrap.k': '3 W'}
+        """
+        if not self.also:
+            return {self.key: value}
+        factor = _ratio(value, self.nominal)
+        return {self.key: value, **{key: scaled(own, factor, DIGITS) for key, own in self.also}}
+
+    def together(self, value: Any, others: Mapping[str, Any]) -> bool:
+        """Do other names have the factor that a value of this has?"""
+        factor = _ratio(value, self.nominal) if self.also else 1.0
+        return all(math.isclose(_ratio(others[key], own), factor, rel_tol=1e-6) for key, own in self.also)
 
     @property
     def heading(self) -> str:
@@ -140,6 +159,29 @@ def varied(study: Study, key: str, card: VaryCard) -> Varied:
     except InputError as error:
         raise error if error.field == key else error.within(field=f"vary.{key}") from None
     return Varied(key, unit, (), low, high, card.scale == "log", card.levels)
+
+
+def uncertain(study: Study, deviations: float) -> list[Varied]:
+    """Every uncertain number of a study that can matter, evenly within so many standard deviations either way.
+
+    Raises
+    ------
+    InputError : none is stated; a range that reaches zero.
+    """
+    found = []
+    for number in study.uncertain_numbers:
+        if number.idle:
+            continue
+        reach = deviations * number.sd
+        if reach >= 1:
+            message = f"{deviations:g} standard deviations of '{number.key}' ({100 * number.sd:.3g} %) reach zero"
+            raise InputError(message, field="uncertain")
+        pairs = zip(number.keys, number.written, strict=True)
+        (key, nominal), *also = pairs
+        found.append(Varied(key, "", (), 1 - reach, 1 + reach, nominal=nominal, also=tuple(also)))
+    if not found:
+        raise InputError("neither cards (relative_sd) nor [uncertainty] state a standard deviation", field="uncertain")
+    return found
 
 
 def _listed(key: str, values: list[Any]) -> Varied:
