@@ -6,12 +6,14 @@
 from __future__ import annotations
 
 import sys
+import textwrap
 from pathlib import Path
 from typing import Any
 
 import tyrefem as tf
 from tyrefem.effects import Effect, catalogue
 from tyrefem.effects.description import COLUMNS, by_family, equation, example, parameter_rows, ports
+from tyrefem.effects.effect import PORTS
 from tyrefem.output import atomic_path
 
 PAGE = Path("docs/effects.md")
@@ -93,9 +95,10 @@ class Lamp(Effect):
 ```
 
 `Prior` takes unit, meaning, prior sd, lower and upper bound; the method is one of the ports of
-`tyrefem.effects.Effect`, whose docstrings give arguments and units: `heat_factor`, `heat_addend`,
-`conductivity_factor`, `capacity_factor`, `film_factor`, `film_addend`, `film_resistance`, `sink_addend`, `flux`,
-`radiation`, `gas_capacity_factor`, `rim_power`, `worn`, `displacement`, `lag_addend`, `offset`, `clock`, `channel`.
+`tyrefem.effects.Effect`, whose docstrings give arguments and units:
+PORTS
+What a port may ask of its `tyre` (speed, places, load cases, section) is listed with units in
+`tyrefem/effects/tyre.py`. A choice (a sensor, a side) is a field with `Field(description=..., examples=[...])`.
 
 `of_drive: ClassVar[bool] = True` says that what the effect does to films, surrounding temperatures and the rim depends
 on time through the drive alone (speed, load, pressure): constant where the drive is. Reduced models then ask for it
@@ -112,7 +115,8 @@ def page() -> str:
     """The text of docs/effects.md."""
     effects = {name: one for name, one in catalogue().items() if _shown(one)}
     families = by_family(effects)
-    parts = [INTRODUCTION, "## Catalogue\n", "| effect | family | what it is |\n|---|---|---|"]
+    names = textwrap.fill(", ".join(f"`{port.name}`" for port in PORTS) + ".", 119)
+    parts = [INTRODUCTION.replace("PORTS", names), "## Catalogue\n", "| effect | family | what it is |\n|---|---|---|"]
     for family, members in families.items():
         parts += [f"| [{one.name}](#{one.name}) | {family} | {one.sentence} |" for one in members]
     for members in families.values():

@@ -11,7 +11,6 @@ import numpy as np
 import tyrefem as tf
 from tyrefem.api import Result
 from tyrefem.effects import Effect, catalogue
-from tyrefem.effects.effect import MEASUREMENT_PORTS
 
 COARSE = {
     "mesh.size": "8 mm",
@@ -30,9 +29,12 @@ FULL = {"mesh.section": "full", "sensors.left": {"s": "-2.00 in", "depth": "0.07
 
 @dataclass(frozen=True)
 class Case:
-    """What a study needs for an effect to show, the choice of its variant, and the sign of what it does to columns."""
+    """What a study needs for an effect to show, the choice of its variant, and the sign of what it does to columns.
 
-    signs: dict[str, int]
+    An effect without a case is tested all the same: in the coarse study, its first variant, whatever its sign.
+    """
+
+    signs: dict[str, int] = field(default_factory=dict)
     changes: dict[str, Any] = field(default_factory=dict)
     choice: dict[str, str] = field(default_factory=dict)
 
@@ -81,13 +83,24 @@ CASES = {
     ),
     "yaw": Case({"shoulder-edge": 1}, FULL, {"side": "right"}),
 }  # fmt: skip
-NAMES = sorted(CASES)
+#: Every effect that a diagnosis may name.
+NAMES = sorted(name for name, effect in catalogue().items() if not effect.calibration)
+
+
+def case(name: str) -> Case:
+    """What an effect needs to be tested."""
+    return CASES.get(name, Case())
+
+
+def choice(name: str) -> dict[str, str]:
+    """The variant of an effect that is tested: of its case, else the first that its study has."""
+    return case(name).choice or dict(catalogue()[name].variants(suitable(name))[0])
 
 
 @functools.cache
 def suitable(name: str) -> tf.Study:
     """The coarse study in which an effect shows."""
-    return tf.study("example-validation").replace({**COARSE, **CASES[name].changes})
+    return tf.study("example-validation").replace({**COARSE, **case(name).changes})
 
 
 def entry(name: str, multiple: float) -> dict[str, Any]:
@@ -97,7 +110,7 @@ def entry(name: str, multiple: float) -> dict[str, Any]:
         one.name: f"{one.prior.null + multiple * one.prior.scale!r} {'' if one.prior.unit == '1' else one.prior.unit}"
         for one in amplitudes
     }
-    return {"name": name, **CASES[name].choice, **values}
+    return {"name": name, **choice(name), **values}
 
 
 def has_amplitude(effect: type[Effect]) -> bool:
@@ -112,19 +125,19 @@ def _base(changes: str, name: str) -> Result:
 
 def base(name: str) -> Result:
     """The suitable study without the effect; run once for all effects that share it."""
-    return _base(repr(CASES[name].changes), _first(repr(CASES[name].changes)))
+    return _base(repr(case(name).changes), _first(repr(case(name).changes)))
 
 
 @functools.cache
 def _first(changes: str) -> str:
-    return next(name for name in NAMES if repr(CASES[name].changes) == changes)
+    return next(name for name in NAMES if repr(case(name).changes) == changes)
 
 
 @functools.cache
 def result(name: str, multiple: float) -> Result:
     """The suitable study with the effect at a multiple of its scale."""
     study = suitable(name).replace({"effects": [entry(name, multiple)]})
-    if set(catalogue()[name].ports()) <= set(MEASUREMENT_PORTS):  # the tyre is the same; only what is read differs
+    if catalogue()[name].only_measures():  # the tyre is the same; only what is read differs
         return replace(base(name), study=study)
     return study.run()
 

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import tomllib
 from pathlib import Path
 from typing import Any
 
@@ -10,6 +11,8 @@ from suitable import COARSE
 
 import tyrefem as tf
 from tyrefem.effects import catalogue
+from tyrefem.effects.description import example, parameter_rows, ports
+from tyrefem.effects.effect import PORTS
 from tyrefem.report.inputs import effect_rows
 
 OWN = '''
@@ -33,6 +36,32 @@ class Lamp(Effect):
 
     def flux(self, tyre, surface, x, t):
         return self.shine
+'''
+
+
+CHOOSING = '''
+from typing import Annotated, ClassVar, Literal
+
+from pydantic import Field
+
+from tyrefem.effects import Effect, Prior
+
+
+class Draught(Effect):
+    """Film of one side times 1 + gain."""
+
+    name: ClassVar[str] = "draught"
+    family: ClassVar[str] = "boundary"
+    sentence: ClassVar[str] = "A draught blows on one side."
+    source: ClassVar[str] = "estimate: made up for a test"
+
+    side: Literal["left", "right"]
+    place: str
+    fan: Annotated[str, Field(description="name of the fan", examples=["hall"])]
+    gain: Annotated[float, Prior("1", "part by which the film grows", 0.5, 0.0, 5.0)] = 0.0
+
+    def film_factor(self, tyre, film, t):
+        return 1 + self.gain
 '''
 
 
@@ -186,3 +215,24 @@ def test_a_folder_that_is_none(monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.setenv("TYREFEM_EFFECTS", "/nowhere/at/all")
     with pytest.raises(tf.InputError, match="TYREFEM_EFFECTS names '/nowhere/at/all', which is no folder"):
         catalogue()
+
+
+def test_an_effect_says_of_itself_what_it_is(own: Path) -> None:
+    """Port, meaning and example of a choice stand in the effect's own file; a choice without example has one too."""
+    (own / "draught.py").write_text(CHOOSING, encoding="utf-8")
+    effect = catalogue()["draught"]
+    assert ports(effect) == "factor on films"
+    assert {row[0]: row[1] for row in parameter_rows(effect)} == {
+        "gain": "part by which the film grows", "side": "choice", "place": "choice", "fan": "name of the fan"
+    }  # fmt: skip
+    assert tomllib.loads(example(effect))["effects"] == [
+        {"name": "draught", "side": "left", "place": "...", "fan": "hall", "gain": 0.5}
+    ]
+
+
+def test_ports_that_only_measure() -> None:
+    measuring = {name for name, effect in catalogue().items() if effect.only_measures()}
+    assert measuring == {name for name, effect in catalogue().items() if effect.family == "measurement"}
+    assert {port.name for port in PORTS if port.changes == "measurement"} == {
+        "displacement", "lag_addend", "offset", "clock", "channel"
+    }  # fmt: skip

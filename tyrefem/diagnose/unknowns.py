@@ -10,7 +10,7 @@ from typing import Any
 from tyrefem.brief import Brief
 from tyrefem.dotted import scaled, value_at
 from tyrefem.effects import catalogue
-from tyrefem.effects.effect import MEASUREMENT_PORTS, Effect, Parameter
+from tyrefem.effects.effect import Effect, Parameter
 from tyrefem.quantity import parse
 from tyrefem.studies import Study
 
@@ -68,7 +68,7 @@ class Unknown:
     @property
     def measures(self) -> bool:
         """Does it change what is measured, but not the tyre?"""
-        return self.effect is not None and set(catalogue()[self.effect].ports()) <= set(MEASUREMENT_PORTS)
+        return self.effect is not None and catalogue()[self.effect].only_measures()
 
     def value(self, x: float) -> float:
         """The parameter's own value, SI: a factor for a base number."""

@@ -11,13 +11,13 @@ import numpy as np
 from numpy.typing import NDArray
 
 from tyrefem.conduction import Flux, Radiation
-from tyrefem.effects.effect import Effect
+from tyrefem.effects.effect import PORTS, Effect
 from tyrefem.effects.tyre import Tyre
 
 Array = NDArray[np.float64]
 Source = Callable[[Array, float, Array], Array]
 #: Ports that act on what surrounds the tyre.
-SURROUNDING = ("film_factor", "film_addend", "film_resistance", "sink_addend", "rim_power")
+SURROUNDING = tuple(port.name for port in PORTS if port.changes == "surroundings")
 
 
 @dataclass(frozen=True, eq=False)

@@ -3,11 +3,13 @@
 from __future__ import annotations
 
 import inspect
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, Literal, get_args, get_origin
 
 from tyrefem.effects.effect import FAMILIES, PORTS, Effect
 
 if TYPE_CHECKING:
+    from pydantic.fields import FieldInfo
+
     from tyrefem.effects.effect import Prior
 
 #: Heading of the columns of `parameter_rows`.
@@ -27,7 +29,7 @@ def equation(effect: type[Effect]) -> str:
 
 def ports(effect: type[Effect]) -> str:
     """Where it enters, in words."""
-    return ", ".join(WORDS[port] for port in effect.ports())
+    return ", ".join(port.words for port in PORTS if effect.overrides(port.name))
 
 
 def parameter_rows(effect: type[Effect]) -> list[list[str]]:
@@ -41,9 +43,8 @@ def parameter_rows(effect: type[Effect]) -> list[list[str]]:
     numbers = {one.name for one in effect.parameters()}
     for name, field in effect.model_fields.items():
         if name not in numbers | set(Effect.model_fields):
-            rows.append(
-                [name, TEXTS.get(name, "choice"), "", "" if field.is_required() else f"default: {field.default}", ""]
-            )
+            default = "" if field.is_required() else f"default: {field.default}"
+            rows.append([name, field.description or "choice", "", default, ""])
     return rows
 
 
@@ -51,12 +52,11 @@ def _start(prior: Prior) -> float:
     return prior.null if prior.start is None else prior.start
 
 
-def example(effect: type[Effect], sensors: tuple[str, ...] = ("crown-inner", "crown-middle")) -> str:
-    """An entry of a study file with the amplitudes at the prior's scale."""
-    texts = dict(zip(("sensor", "other"), sensors, strict=True))
-    texts |= {"film": "outside_air", "station": "60 mm", "width": "10 mm"}
+def example(effect: type[Effect]) -> str:
+    """An entry of a study file: each choice as its field's first example, each amplitude at the prior's scale."""
     lines = ["[[effects]]", f'name = "{effect.name}"']
-    lines += [f'{name} = "{texts[name]}"' for name, field in effect.model_fields.items() if field.is_required()]
+    required = {name: field for name, field in effect.model_fields.items() if field.is_required()}
+    lines += [f'{name} = "{_first_example(field)}"' for name, field in required.items()]
     for one in effect.parameters():
         if one.prior.amplitude:
             value = one.prior.text(one.prior.null + one.prior.scale)
@@ -64,31 +64,7 @@ def example(effect: type[Effect], sensors: tuple[str, ...] = ("crown-inner", "cr
     return "\n".join(lines)
 
 
-#: Port -> what it is, in words.
-WORDS = dict(
-    zip(
-        PORTS,
-        (
-            "factor on the heat source",
-            "addend to the heat source",
-            "factor on the conductivity",
-            "factor on the heat capacity",
-            "factor on films",
-            "addend to films",
-            "resistance in series with a film",
-            "shift of a surrounding temperature",
-            "flux through a surface",
-            "radiation of a surface",
-            "factor on the contained air's heat capacity",
-            "power into a lumped rim",
-            "the section",
-            "place of a sensor",
-            "lag of a sensor",
-            "offset of a sensor",
-            "the logger's clock",
-            "the logger's channels",
-        ),
-        strict=True,
-    )
-)
-TEXTS = {"sensor": "name of the sensor", "other": "name of the other sensor", "side": "loaded side, left or right"}
+def _first_example(field: FieldInfo) -> str:
+    """What the effect gives as an example of a choice; else the first that is allowed, or dots."""
+    allowed = get_args(field.annotation) if get_origin(field.annotation) is Literal else ()
+    return str(next(iter([*(field.examples or ()), *allowed, "..."])))

@@ -13,6 +13,7 @@ from pydantic import Field, GetCoreSchemaHandler
 from pydantic_core import CoreSchema, core_schema
 
 from tyrefem.cards import Card, Text
+from tyrefem.effects.port import port, ports_of
 from tyrefem.effects.tyre import StudyOfTyre, Tyre
 from tyrefem.errors import InputError, nearest
 from tyrefem.quantity import Unit, convert
@@ -154,7 +155,12 @@ class Effect(Card):
     @classmethod
     def ports(cls) -> tuple[str, ...]:
         """The ports where the effect enters."""
-        return tuple(port for port in PORTS if cls.overrides(port))
+        return tuple(port.name for port in PORTS if cls.overrides(port.name))
+
+    @classmethod
+    def only_measures(cls) -> bool:
+        """Does it change what is measured, and nothing of the tyre?"""
+        return all(port.changes == "measurement" for port in PORTS if cls.overrides(port.name))
 
     @classmethod
     def refusal(cls, study: StudyOfTyre) -> str | None:
@@ -172,83 +178,103 @@ class Effect(Card):
 
     # -- ports: heat and conduction ----------------------------------------------------------------------------------
 
+    @port("factor on the heat source")
     def heat_factor(self, tyre: Tyre, zone: str, x: Array, t: float, T: Array) -> Factor:
         """Factor on the heat source of a strain zone at points x (2, n), time t (s), temperatures T (n,), degC."""
         return 1.0
 
+    @port("addend to the heat source")
     def heat_addend(self, tyre: Tyre, zone: str, x: Array, t: float, T: Array) -> Factor:
         """Heat added to a strain zone's source, W/m3; arguments as of `heat_factor`."""
         return 0.0
 
+    @port("factor on the conductivity")
     def conductivity_factor(self, tyre: Tyre, region: str, T: Array) -> tuple[Factor, Factor]:
         """Factors on the conductivity along and across the plies at temperatures T (n,), degC."""
         return 1.0, 1.0
 
+    @port("factor on the heat capacity")
     def capacity_factor(self, tyre: Tyre, region: str, T: Array) -> Factor:
         """Factor on the volumetric heat capacity at temperatures T (n,), degC."""
         return 1.0
 
     # -- ports: boundaries -------------------------------------------------------------------------------------------
 
+    @port("factor on films", changes="surroundings")
     def film_factor(self, tyre: Tyre, film: str, t: float) -> float:
         """Factor on one of `FILMS` at time t (s)."""
         return 1.0
 
+    @port("addend to films", changes="surroundings")
     def film_addend(self, tyre: Tyre, film: str, t: float) -> float:
         """W/m2/K added to one of `FILMS` at time t (s)."""
         return 0.0
 
+    @port("resistance in series with a film", changes="surroundings")
     def film_resistance(self, tyre: Tyre, film: str, t: float) -> float:
         """m2 K/W in series with one of `FILMS` at time t (s): 1/h -> 1/h + R."""
         return 0.0
 
+    @port("shift of a surrounding temperature", changes="surroundings")
     def sink_addend(self, tyre: Tyre, sink: str, t: float) -> float:
         """K added to the temperature of one of `SINKS` at time t (s)."""
         return 0.0
 
+    @port("flux through a surface")
     def flux(self, tyre: Tyre, surface: str, x: Array, t: float) -> Factor:
         """W/m2 into the tyre through one of `SURFACES` at points x (2, n) and time t (s)."""
         return 0.0
 
+    @port("radiation of a surface")
     def radiation(self, tyre: Tyre, surface: str) -> Radiation | None:
         """Radiation of one of `SURFACES`; None for none."""
         return None
 
+    @port("factor on the contained air's heat capacity")
     def gas_capacity_factor(self, tyre: Tyre) -> float:
         """Factor on the heat capacity of the contained air."""
         return 1.0
 
+    @port("power into a lumped rim", changes="surroundings")
     def rim_power(self, tyre: Tyre, t: float) -> float:
         """W put into the whole wheel's lumped rim at time t (s)."""
         return 0.0
 
     # -- ports: section and measurement ------------------------------------------------------------------------------
 
+    @port("the section")
     def worn(self, section: Section) -> Section:
         """The section as it is in truth."""
         return section
 
+    @port("place of a sensor", changes="measurement")
     def displacement(self, sensor: str) -> tuple[float, float]:
         """How far a sensor sits from its stated place: along the meridian and in depth, m."""
         return 0.0, 0.0
 
+    @port("lag of a sensor", changes="measurement")
     def lag_addend(self, sensor: str) -> float:
         """s added to a sensor's lag."""
         return 0.0
 
+    @port("offset of a sensor", changes="measurement")
     def offset(self, sensor: str) -> float:
         """K that a sensor shows too much."""
         return 0.0
 
+    @port("the logger's clock", changes="measurement")
     def clock(self) -> float:
         """s by which the logger's clock is late: what it calls t was measured at t + clock."""
         return 0.0
 
+    @port("the logger's channels", changes="measurement")
     def channel(self, sensor: str) -> str:
         """The sensor whose temperature is recorded under a sensor's name."""
         return sensor
 
 
+#: The ports, in the order of their methods.
+PORTS = ports_of(Effect)
 #: What an effect may change.
 FAMILIES = ("heat", "conduction", "boundary", "section", "asymmetry", "measurement", "calibration")
 
@@ -261,7 +287,7 @@ def _complaint(cls: type[Effect]) -> str | None:
     if cls.family not in FAMILIES:
         return f"unknown family '{cls.family}'{nearest(cls.family, FAMILIES)}"
     if not cls.ports():
-        return f"overrides no port; allowed: {', '.join(PORTS)}"
+        return f"overrides no port; allowed: {', '.join(port.name for port in PORTS)}"
     for name, field in cls.model_fields.items():
         prior = next((item for item in field.metadata if isinstance(item, Prior)), None)
         if prior is None:
@@ -274,27 +300,3 @@ def _complaint(cls: type[Effect]) -> str | None:
         if field.default != begin:
             return f"parameter '{name}' must have the default {begin:g}"
     return None
-
-
-PORTS = (
-    "heat_factor",
-    "heat_addend",
-    "conductivity_factor",
-    "capacity_factor",
-    "film_factor",
-    "film_addend",
-    "film_resistance",
-    "sink_addend",
-    "flux",
-    "radiation",
-    "gas_capacity_factor",
-    "rim_power",
-    "worn",
-    "displacement",
-    "lag_addend",
-    "offset",
-    "clock",
-    "channel",
-)
-#: Ports that change what is measured, not the tyre.
-MEASUREMENT_PORTS = PORTS[-5:]

@@ -5,6 +5,7 @@ from __future__ import annotations
 from typing import Annotated, ClassVar, Literal
 
 import numpy as np
+from pydantic import Field
 
 from tyrefem.effects.effect import Effect, Prior
 from tyrefem.effects.tyre import Tyre
@@ -20,7 +21,10 @@ class FilmScale(Effect):
     sentence: ClassVar[str] = "A film coefficient is larger or smaller than its law says, at every speed alike."
     source: ClassVar[str] = "estimate: correlations of forced convection scatter by 20 to 30 % (handbook values)"
 
-    film: Literal["road", "outside_air", "contained_air", "rim"]
+    film: Annotated[
+        Literal["road", "outside_air", "contained_air", "rim"],
+        Field(description="which film: road, outside_air, contained_air or rim", examples=["outside_air"]),
+    ]
     log_factor: Annotated[float, Prior("1", "natural logarithm of the factor", 0.2, -2.0, 2.0)] = 0.0
 
     @property

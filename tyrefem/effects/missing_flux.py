@@ -6,6 +6,7 @@ from typing import Annotated, ClassVar
 
 import numpy as np
 from numpy.typing import NDArray
+from pydantic import Field
 
 from tyrefem.effects.effect import Effect, Factor, Prior
 from tyrefem.effects.tyre import Tyre
@@ -24,8 +25,12 @@ class MissingFlux(Effect):
     source: ClassVar[str] = "none: what a diagnosis finds when nothing in the catalogue explains a gap"
     surfaces: ClassVar[tuple[str, ...]] = ("road", "outside_air")
 
-    station: Annotated[float, Unit("m", ge=0)]
-    width: Annotated[float, Unit("m", gt=0)]
+    station: Annotated[
+        float, Unit("m", ge=0), Field(description="distance from the crown on the meridian", examples=["60 mm"])
+    ]
+    width: Annotated[
+        float, Unit("m", gt=0), Field(description="standard deviation about the station", examples=["10 mm"])
+    ]
     into: Annotated[float, Prior("W/m**2", "flux at the station", 200.0, -1e5, 1e5)] = 0.0
 
     @property

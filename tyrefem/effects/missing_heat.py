@@ -6,6 +6,7 @@ from typing import Annotated, ClassVar
 
 import numpy as np
 from numpy.typing import NDArray
+from pydantic import Field
 
 from tyrefem.effects.effect import Effect, Factor, Prior
 from tyrefem.effects.tyre import Tyre
@@ -23,8 +24,12 @@ class MissingHeat(Effect):
     sentence: ClassVar[str] = "Heat of unknown origin about one station of the meridian, in W/m3, while the tyre rolls."
     source: ClassVar[str] = "none: what a diagnosis finds when nothing in the catalogue explains a gap"
 
-    station: Annotated[float, Unit("m", ge=0)]
-    width: Annotated[float, Unit("m", gt=0)]
+    station: Annotated[
+        float, Unit("m", ge=0), Field(description="distance from the crown on the meridian", examples=["60 mm"])
+    ]
+    width: Annotated[
+        float, Unit("m", gt=0), Field(description="standard deviation about the station", examples=["10 mm"])
+    ]
     heat: Annotated[float, Prior("W/m**3", "heat at the station", 5e4, -1e7, 1e7)] = 0.0
 
     @property

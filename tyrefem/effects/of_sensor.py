@@ -3,6 +3,9 @@
 from __future__ import annotations
 
 from collections.abc import Mapping
+from typing import Annotated
+
+from pydantic import Field
 
 from tyrefem.cards import Text
 from tyrefem.effects.effect import Effect
@@ -13,7 +16,7 @@ from tyrefem.errors import nearest
 class OfSensor(Effect):
     """An effect on the thermocouple that ``sensor`` names."""
 
-    sensor: Text
+    sensor: Annotated[Text, Field(description="name of the sensor", examples=["crown-inner"])]
 
     @property
     def choice(self) -> dict[str, str]:

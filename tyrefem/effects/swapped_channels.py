@@ -4,7 +4,9 @@ from __future__ import annotations
 
 import itertools
 from collections.abc import Mapping
-from typing import ClassVar
+from typing import Annotated, ClassVar
+
+from pydantic import Field
 
 from tyrefem.cards import Text
 from tyrefem.effects.effect import Effect
@@ -20,8 +22,8 @@ class SwappedChannels(Effect):
     sentence: ClassVar[str] = "Two thermocouples are plugged into each other's channels."
     source: ClassVar[str] = "estimate: the commonest mistake at the patch panel of a rig with many thermocouples"
 
-    sensor: Text
-    other: Text
+    sensor: Annotated[Text, Field(description="name of the sensor", examples=["crown-inner"])]
+    other: Annotated[Text, Field(description="name of the other sensor", examples=["crown-middle"])]
 
     def channel(self, sensor: str) -> str:
         """The sensor whose temperature is recorded under a sensor's name."""

@@ -6,6 +6,7 @@ from collections.abc import Mapping
 from typing import Annotated, ClassVar, Literal
 
 import numpy as np
+from pydantic import Field
 
 from tyrefem.effects.effect import Array, Effect, Factor, Prior
 from tyrefem.effects.friction import sliding_flux
@@ -29,7 +30,7 @@ class Yaw(Effect):
 
     surfaces: ClassVar[tuple[str, ...]] = ("road",)
 
-    side: Literal["left", "right"] = "right"
+    side: Annotated[Literal["left", "right"], Field(description="loaded side, left or right")] = "right"
     slip: Annotated[float, Prior("1", "sideways sliding speed over the tyre's speed", 0.01, 0.0, 0.2)] = 0.0
 
     def flux(self, tyre: Tyre, surface: str, x: Array, t: float) -> Factor:
