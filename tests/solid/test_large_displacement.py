@@ -12,10 +12,11 @@ from solid_bodies import skewed, torus, tube
 
 from tyrefem.errors import InputError
 from tyrefem.solid import newton
-from tyrefem.solid.body import Body, Part
+from tyrefem.solid.body import Body
 from tyrefem.solid.compounds import mooney_rivlin, neo_hookean
 from tyrefem.solid.cords import CordLayer
 from tyrefem.solid.newton import NewtonChoice, equilibrium
+from tyrefem.solid.parts import Part
 
 
 def lame(body: Body, pressure: float, shear: float, bulk: float) -> tuple[np.ndarray, np.ndarray]:

@@ -14,11 +14,12 @@ from tyrefem import study
 from tyrefem.footprint.compliance import TreadCompliance
 from tyrefem.footprint.harmonics import Harmonics
 from tyrefem.meshing import build
-from tyrefem.solid.body import Body, Part
+from tyrefem.solid.body import Body
 from tyrefem.solid.compounds import determinant, neo_hookean
 from tyrefem.solid.elements import Rings
 from tyrefem.solid.inflation import Inflation, inflate
 from tyrefem.solid.newton import NewtonChoice, equilibrium
+from tyrefem.solid.parts import Part
 from tyrefem.solid.rim import FLANGE, SEAT, Flange, on_rim
 
 END = 1e-9

@@ -10,10 +10,11 @@ from solid_bodies import tube
 
 import tyrefem as tf
 from tyrefem.errors import InputError
-from tyrefem.solid.body import Body, Part
+from tyrefem.solid.body import Body
 from tyrefem.solid.compounds import neo_hookean
 from tyrefem.solid.cords import CordLayer
 from tyrefem.solid.inflation import inflate
+from tyrefem.solid.parts import Part
 from tyrefem.solid.thermal import Expansion, expansions, relaxed, warm
 
 G, KAPPA = 1e6, 1e8

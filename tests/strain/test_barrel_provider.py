@@ -13,12 +13,13 @@ import tyrefem as tf
 from tyrefem.errors import InputError
 from tyrefem.loading import LoadCase
 from tyrefem.mechanics import cycle_schedule
-from tyrefem.solid.body import Body, Part
+from tyrefem.solid.body import Body
 from tyrefem.solid.compounds import neo_hookean
 from tyrefem.solid.cords import CordLayer
 from tyrefem.solid.flattening import flatten
 from tyrefem.solid.inflation import Inflation
 from tyrefem.solid.newton import equilibrium
+from tyrefem.solid.parts import Part
 from tyrefem.strain import StrainCycle
 from tyrefem.strain.barrel import Barrel, provider
 from tyrefem.strain.gauss_points import GaussPoints

@@ -4,13 +4,13 @@ from __future__ import annotations
 
 import importlib
 import pkgutil
+from pathlib import Path
 from typing import Annotated, Any
 
 import typer
 from typer.core import TyperGroup
 
 import tyrefem
-import tyrefem.cli
 from tyrefem.errors import InputError
 from tyrefem.output import reading
 
@@ -65,8 +65,8 @@ def _options(
 
 def _register() -> None:
     """Every module of the package that has a ``register`` is a command; ``ORDER`` is its place in the help."""
-    names = [found.name for found in pkgutil.iter_modules(tyrefem.cli.__path__) if found.name != "commands"]
-    modules = [importlib.import_module(f"tyrefem.cli.{name}") for name in names]
+    names = [found.name for found in pkgutil.iter_modules([str(Path(__file__).parent)]) if found.name != "commands"]
+    modules = [importlib.import_module(f"{__package__}.{name}") for name in names]
     commands = [module for module in modules if hasattr(module, "register")]
     for module in sorted(commands, key=lambda module: module.ORDER):
         module.register(app)

@@ -8,28 +8,21 @@ from typing import Any
 from weakref import WeakValueDictionary
 
 import numpy as np
-import skfem
 from numpy.typing import NDArray
 from scipy.sparse import csr_matrix, hstack
 
 from tyrefem.conduction.factor import Ordering
+from tyrefem.conduction.function_space import FunctionSpace
 from tyrefem.conduction.quadrature import Quadrature, Surface
-from tyrefem.errors import InputError, nearest
 
 Array = NDArray[Any]
 
-_ELEMENTS = {
-    ("tri", "P1"): skfem.ElementTriP1,
-    ("tri", "P2"): skfem.ElementTriP2,
-    ("quad", "P1"): skfem.ElementQuad1,
-    ("quad", "P2"): skfem.ElementQuad2,
-}
 #: The latest; and all that are still held by anyone, however many meshes came since.
 _RECENT: OrderedDict[tuple[int, str, bool], Operators] = OrderedDict()
 _ALIVE: WeakValueDictionary[tuple[int, str, bool], Operators] = WeakValueDictionary()
 
 
-class Operators:
+class Operators(FunctionSpace):
     """Mass, conduction and surface operators of a mesh, all on one sparsity pattern.
 
     Every operator is an array of values on the common CSR pattern, so K = sum k_i K_i + sum h_j R_j is a sum of
@@ -45,30 +38,7 @@ class Operators:
     """
 
     def __init__(self, mesh: Any, element: str = "P1", axisymmetric: bool = True) -> None:
-        kind = {"MeshTri": "tri", "MeshQua": "quad"}.get(type(mesh).__name__[:7])
-        if kind is None:
-            raise InputError(f"a {type(mesh).__name__} is not supported; use MeshTri or MeshQuad", field="mesh")
-        if element not in ("P1", "P2"):
-            raise InputError(f"unknown element {element!r}{nearest(str(element), ['P1', 'P2'])}", field="element")
-        if axisymmetric and mesh.p[0].min() < -1e-12 * np.ptp(mesh.p, axis=1).max():
-            raise InputError(f"radius is negative: {mesh.p[0].min():.6g} m", field="mesh")
-        self.mesh, self.element, self.axisymmetric = mesh, element, axisymmetric
-        self.skfem_element = _ELEMENTS[kind, element]()
-        self.intorder = 3 if element == "P1" else 5
-        self.basis = skfem.Basis(mesh, self.skfem_element, intorder=self.intorder)
-        self.size = int(self.basis.N)
-        self.points: Array = self.basis.doflocs
-        self.element_dofs: Array = self.basis.element_dofs
-        shape = self.basis.dx.shape
-        self.phi = np.broadcast_to(
-            np.stack([np.broadcast_to(np.asarray(b[0]), shape)[:1] for b in self.basis.basis]),
-            (len(self.basis.basis), *shape),
-        )
-        self._grad = np.stack([b[0].grad for b in self.basis.basis])
-        self.x: Array = np.asarray(self.basis.global_coordinates())
-        self.weight: Array = self.basis.dx * (2 * np.pi * self.x[0] if axisymmetric else 1.0)
-        self.constant_slopes = type(mesh) is skfem.MeshTri1 and element == "P1"
-        self._pattern()
+        super().__init__(mesh, element, axisymmetric)
         self.remembered: dict[Any, Any] = {}
 
     def __reduce__(self) -> tuple[Any, ...]:
@@ -79,28 +49,10 @@ class Operators:
         shape = "axisymmetric" if self.axisymmetric else "planar"
         return f"Operators ({self.element}, {shape}, {self.size} unknowns)"
 
-    def _pattern(self) -> None:
-        n, dofs = self.size, self.element_dofs.astype(np.int64)
-        keys = dofs[:, None, :] * n + dofs[None, :, :]
-        unique, self.place = np.unique(keys.reshape(-1), return_inverse=True)
-        self.place = self.place.reshape(keys.shape)
-        self.keys = unique
-        self.indices = (unique % n).astype(np.int32)
-        self.indptr = np.concatenate(([0], np.cumsum(np.bincount(unique // n, minlength=n)))).astype(np.int32)
-
     def _once(self, key: Any, make: Callable[[], Any]) -> Any:
         if key not in self.remembered:
             self.remembered[key] = make()
         return self.remembered[key]
-
-    @property
-    def nnz(self) -> int:
-        """Number of stored values of every operator."""
-        return int(self.indices.size)
-
-    def matrix(self, data: Array) -> csr_matrix:
-        """Values on the common pattern as a sparse matrix (n, n)."""
-        return csr_matrix((data, self.indices, self.indptr), (self.size, self.size))
 
     def mean_weight(self) -> Array:
         """Weights (n,) whose product with the unknowns is the volume mean."""
@@ -111,13 +63,6 @@ class Operators:
             return row / row.sum()
 
         return self._once("mean", make)
-
-    def elements(self, name: str) -> Array:
-        """Element numbers of a named subdomain."""
-        subdomains = self.mesh.subdomains or {}
-        if name not in subdomains:
-            raise InputError(f"unknown region {name!r}{nearest(name, subdomains)}", field="regions")
-        return np.asarray(subdomains[name], dtype=np.int64)
 
     def dofs(self, name: str) -> Array:
         """Unknowns of a named subdomain, increasing."""
@@ -146,19 +91,6 @@ class Operators:
     def mass_row(self, name: str) -> Array:
         """Integral of every shape function over a subdomain, (n,): what a unit of heat per volume does."""
         return self._once(("mass row", name), lambda: self.matrix(self.mass(name)) @ np.ones(self.size))
-
-    def directed_gradients(self, name: str, direction: Callable[..., Any] | None) -> tuple[Array, Array]:
-        """Shape-function slopes along and across `direction` at the quadrature points, (n_local, n_el, n_q)."""
-        e = self.elements(name)
-        grad = self._grad[:, :, e]
-        if direction is None:
-            return grad[:, 0], grad[:, 1]
-        x = self.x[:, e]
-        d = np.asarray(direction(x.reshape(2, -1)), dtype=float)
-        if d.shape != (2, x[0].size) or not np.allclose(np.hypot(*d), 1.0, atol=1e-6):
-            raise InputError("direction must return unit vectors of shape (2, n)", field=f"regions.{name}")
-        d = d.reshape(x.shape)
-        return d[0] * grad[:, 0] + d[1] * grad[:, 1], -d[1] * grad[:, 0] + d[0] * grad[:, 1]
 
     def conduction(self, name: str, direction: Callable[..., Any] | None) -> tuple[Array, Array]:
         """Values of the integrals of v,1 u,1 and v,2 u,2 (along, across `direction`) over a subdomain."""

@@ -4,17 +4,15 @@ from __future__ import annotations
 
 import functools
 from collections.abc import Callable
-from typing import TYPE_CHECKING, Any
+from typing import Any
 
 import numpy as np
 import skfem
 from numpy.typing import NDArray
 from scipy.sparse import csr_matrix
 
+from tyrefem.conduction.function_space import FunctionSpace
 from tyrefem.errors import InputError, nearest
-
-if TYPE_CHECKING:
-    from tyrefem.conduction.operators import Operators
 
 Array = NDArray[Any]
 
@@ -25,29 +23,29 @@ _FEW = 128
 class Quadrature:
     """Values and slopes of a field at a region's quadrature points, and the way back to operator values."""
 
-    def __init__(self, ops: Operators, name: str, direction: Callable[..., Any] | None) -> None:
-        e = ops.elements(name)
-        self.weight = ops.weight[e].reshape(-1)
-        dofs = ops.element_dofs[:, e]
-        n_local, n_q = dofs.shape[0], ops.weight.shape[1]
+    def __init__(self, space: FunctionSpace, name: str, direction: Callable[..., Any] | None) -> None:
+        e = space.elements(name)
+        self.weight = space.weight[e].reshape(-1)
+        dofs = space.element_dofs[:, e]
+        n_local, n_q = dofs.shape[0], space.weight.shape[1]
         columns = np.repeat(dofs.T[:, None, :], n_q, axis=1).reshape(-1)
         rows = np.arange(0, columns.size + 1, n_local)
 
         def at_points(local: Array) -> csr_matrix:
-            return csr_matrix((np.moveaxis(local, 0, -1).reshape(-1), columns, rows), (rows.size - 1, ops.size))
+            return csr_matrix((np.moveaxis(local, 0, -1).reshape(-1), columns, rows), (rows.size - 1, space.size))
 
-        phi = ops.phi[:, e]
-        slopes = ops.directed_gradients(name, direction)
+        phi = space.phi[:, e]
+        slopes = space.directed_gradients(name, direction)
         self.value = at_points(phi)
         self.slopes = tuple(at_points(g) for g in slopes)
         self.slopes_t = tuple(g.T.tocsr() for g in self.slopes)
-        place = ops.place[:, :, e]
+        place = space.place[:, :, e]
         q = np.broadcast_to(np.arange(self.weight.size).reshape(e.size, n_q), (n_local, n_local, e.size, n_q))
         where = np.broadcast_to(place[..., None], q.shape).reshape(-1)
 
         def scatter(local: Array) -> csr_matrix:
-            product = local[:, None] * local[None] * ops.weight[e]
-            return csr_matrix((product.reshape(-1), (where, q.reshape(-1))), (ops.nnz, self.weight.size))
+            product = local[:, None] * local[None] * space.weight[e]
+            return csr_matrix((product.reshape(-1), (where, q.reshape(-1))), (space.nnz, self.weight.size))
 
         self.mass = scatter(phi)
         self.conduction = tuple(scatter(g) for g in slopes)
@@ -56,21 +54,21 @@ class Quadrature:
 class Surface:
     """Quadrature of a named boundary: points x (2, n_q), weights, and the trace of the unknowns there."""
 
-    def __init__(self, ops: Operators, name: str) -> None:
-        boundaries = ops.mesh.boundaries or {}
+    def __init__(self, space: FunctionSpace, name: str) -> None:
+        boundaries = space.mesh.boundaries or {}
         if name not in boundaries:
             raise InputError(f"unknown boundary {name!r}{nearest(name, boundaries)}", field="boundaries")
         facets = np.asarray(boundaries[name], dtype=np.int64)
         if facets.size == 0:
             raise InputError(f"boundary {name!r} has no facets", field="boundaries")
         try:
-            basis = skfem.FacetBasis(ops.mesh, ops.skfem_element, facets=facets, intorder=ops.intorder)
+            basis = skfem.FacetBasis(space.mesh, space.skfem_element, facets=facets, intorder=space.intorder)
         except Exception as error:  # scikit-fem raises a bare Exception where its inverse mapping does not converge
             message = f"elements at boundary {name!r} are too thin or distorted: {error}"
             raise InputError(message, field="boundaries") from error
         x = np.asarray(basis.global_coordinates())
         self.name, self.x = name, np.ascontiguousarray(x.reshape(2, -1))
-        self.weight = (basis.dx * (2 * np.pi * x[0] if ops.axisymmetric else 1.0)).reshape(-1)
+        self.weight = (basis.dx * (2 * np.pi * x[0] if space.axisymmetric else 1.0)).reshape(-1)
         self.area = float(self.weight.sum())
         phi = np.stack([np.broadcast_to(np.asarray(b[0]), basis.dx.shape) for b in basis.basis])
         dofs = np.broadcast_to(basis.element_dofs[:, :, None], phi.shape)
@@ -81,8 +79,8 @@ class Surface:
         self.trace = csr_matrix((phi[used], (q[used], column)), shape)
         self.trace_t = self.trace.T.tocsr()
         self.row = self.trace_t @ self.weight
-        self.points = np.ascontiguousarray(ops.points[:, self.dofs])
-        self._keys, self._size = ops.keys, ops.size
+        self.points = np.ascontiguousarray(space.points[:, self.dofs])
+        self._keys, self._size = space.keys, space.size
 
     def load(self, q: Any) -> Array:
         """Load (n_dofs,) W of a flux: a number or its values at the points, W/m2."""

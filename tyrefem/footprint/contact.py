@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import functools
 import math
 from dataclasses import dataclass, field
 from typing import Any
@@ -10,69 +9,24 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
-from tyrefem.brief import Brief
 from tyrefem.errors import InputError
 from tyrefem.footprint.complementarity import contact_forces
-from tyrefem.footprint.compliance import TreadCompliance
 from tyrefem.footprint.grid import ContactGrid
-from tyrefem.footprint.harmonics import Harmonics
 from tyrefem.footprint.pressed import Footprint
 from tyrefem.footprint.road import Road
+from tyrefem.footprint.tyre_on_road import FLAT, TyreOnRoad
 from tyrefem.solid.state import Prestressed
 
 Array = NDArray[np.float64]
 #: Harmonics tried in turn until the error measure is met.
 LADDER = (24, 36, 54, 80, 120, 180, 270)
-FLAT = Road()
 
 
 @dataclass(frozen=True, eq=False)
-class Pressing(Brief):
-    """A tyre that can be pressed on a road; compliances are remembered between loads and numbers of harmonics.
+class Pressing(TyreOnRoad):
+    """A tyre that can be pressed on its road; compliances are remembered between loads and numbers of harmonics."""
 
-    Parameters
-    ----------
-    state : the inflated tyre.
-    road : flat or drum, camber (camber needs a full section).
-
-    Raises
-    ------
-    InputError : camber on a half section.
-    """
-
-    state: Prestressed
-    road: Road = FLAT
     _grids: dict[int, ContactGrid] = field(default_factory=dict, init=False, repr=False)
-
-    def __post_init__(self) -> None:
-        if self.road.camber and self.state.symmetric in self.state.mesh.boundaries:
-            raise InputError("camber needs a full section; this one is a half", field="camber")
-
-    @functools.cached_property
-    def harmonics(self) -> Harmonics:
-        """Stiffness of every harmonic."""
-        return Harmonics(self.state)
-
-    @functools.cached_property
-    def tread(self) -> TreadCompliance:
-        """Compliance of the tread."""
-        return TreadCompliance(self.harmonics)
-
-    @functools.cached_property
-    def reach(self) -> float:
-        """How far the free tyre reaches towards the road, m."""
-        return self.road.lowest(self.tread.places)
-
-    @functools.cached_property
-    def bottoming(self) -> float:
-        """Deflection at which the crown's inner surface would meet the highest held point (the rim's flange), m."""
-        elements, state = self.harmonics.elements, self.state
-        held = [elements.nodes[0, elements.boundary_nodes(name)].max() for name in state.fixed]
-        held += [state.rim_top] if state.rim_top else []
-        if not held or not state.pressure:
-            return float(max(0.9 * (self.reach - max(held, default=0.0)), 0.0))
-        inner = elements.nodes[0, elements.boundary_nodes(state.pressurised)].max()
-        return float(inner - max(held))
 
     def grid(self, harmonics: int, deflection: float) -> ContactGrid:
         """Angles that may touch: the part of the free tyre below the road and a third beyond."""

@@ -42,7 +42,8 @@ class Pressed(Brief):
 
     Parameters
     ----------
-    study : the study. mesh : the mechanical mesh. tyre : the inflated tyre. footprint : the tyre on the road.
+    study : the study. mesh : the mechanical mesh. tyre : the inflated tyre.
+    pressing : what presses it on its road. footprint : the tyre on the road.
     tolerance : change with the number of harmonics that was allowed.
     path : (deflection, load), m and N, on the way to a footprint in large motion; empty: linear about the inflation.
     """
@@ -50,6 +51,7 @@ class Pressed(Brief):
     study: Study
     mesh: TyreMesh
     tyre: Inflation
+    pressing: Pressing
     footprint: Footprint
     tolerance: float = TOLERANCE
     path: tuple[tuple[float, float], ...] = ()
@@ -64,11 +66,6 @@ class Pressed(Brief):
     def balanced(self) -> bool:
         """Is the footprint in large motion?"""
         return self.footprint.balanced is not None
-
-    @property
-    def pressing(self) -> Pressing:
-        """The inflated tyre and its road."""
-        return self.footprint.pressing
 
     @property
     def bead_tension(self) -> float | None:
@@ -192,7 +189,7 @@ class Pressed(Brief):
 
 
 def press(
-    study: Study | str,
+    study: Study,
     *,
     pressure: float | None = None,
     load: float | None = None,
@@ -206,7 +203,7 @@ def press(
 
     Parameters
     ----------
-    study : a study, or its name.
+    study : the study.
     pressure : Pa above the ambient, positive.
     load, deflection : N or m, positive; at most one of them.
     drum_diameter : m; infinite for a flat road.
@@ -226,11 +223,9 @@ def press(
     """
     from tyrefem.footprint.contact import Pressing
     from tyrefem.solid.inflation import inflate
-    from tyrefem.studies import study as load_study
 
-    chosen = load_study(study) if isinstance(study, str) else study
-    NEEDS.check(chosen)
-    phase = chosen.card.drive.phases[0]
+    NEEDS.check(study)
+    phase = study.card.drive.phases[0]
     if load is not None and deflection is not None:
         raise InputError("give a load or a deflection, not both", field="load")
     if load is None and deflection is None:
@@ -241,7 +236,7 @@ def press(
     for name, (value, unit) in wanted.items():
         if value is not None and not value > 0:
             raise InputError(f"must be more than 0 {unit}, not {value:g} {unit}", field=name)
-    smallest = SMALLEST_DRUM * chosen.section.outer_diameter
+    smallest = SMALLEST_DRUM * study.section.outer_diameter
     drum = phase.drum_diameter if drum_diameter is None else drum_diameter
     if 0 < drum < smallest:
         raise InputError(
@@ -249,16 +244,16 @@ def press(
             field="drum_diameter",
         )
     road = Road(drum, camber)
-    if camber and chosen.section.half:
-        chosen = chosen.replace({"mesh.section": "full"})
-    mesh = mechanical_mesh(chosen)
-    tyre = inflate(chosen, pressure, mesh)
+    if camber and study.section.half:
+        study = study.replace({"mesh.section": "full"})
+    mesh = mechanical_mesh(study)
+    tyre = inflate(study, pressure, mesh)
     pressing = Pressing(tyre.state, road)
     if not balanced:
         found = pressing.solve(load=load, deflection=deflection, tolerance=tolerance)
-        return Pressed(chosen, mesh, tyre, found, tolerance)
+        return Pressed(study, mesh, tyre, pressing, found, tolerance)
     from tyrefem.footprint.balance import Balance
 
     balance = Balance(pressing)
     found = balance.solve(load=load, deflection=deflection, tolerance=tolerance)
-    return Pressed(chosen, mesh, tyre, found, tolerance, tuple(balance.path))
+    return Pressed(study, mesh, tyre, pressing, found, tolerance, tuple(balance.path))

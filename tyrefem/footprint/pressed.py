@@ -5,26 +5,25 @@ from __future__ import annotations
 import functools
 from collections.abc import Mapping
 from dataclasses import dataclass, replace
-from typing import TYPE_CHECKING, Any
+from typing import Any
 
 import numpy as np
 from numpy.typing import NDArray
 
 from tyrefem.brief import Brief
 from tyrefem.footprint.grid import ContactGrid
-
-if TYPE_CHECKING:
-    from tyrefem.footprint.contact import Pressing
+from tyrefem.footprint.tyre_on_road import TyreOnRoad
 
 Array = NDArray[np.float64]
 
 
 @dataclass(frozen=True, eq=False)
 class Footprint(Brief):
-    """A tyre in contact with a road. Made by `contact.Pressing`.
+    """A tyre in contact with a road. Made by `footprint.contact.Pressing`.
 
     Parameters
     ----------
+    pressing : the inflated tyre and its road. grid : angles and tread nodes that may touch.
     deflection : how far the free tyre would reach into the road, m.
     load : force along the road's normal, N, of the whole tyre.
     stiffness : d load / d deflection at this deflection, N/m.
@@ -37,7 +36,7 @@ class Footprint(Brief):
         compared.
     """
 
-    pressing: Pressing
+    pressing: TyreOnRoad
     grid: ContactGrid
     deflection: float
     load: float

@@ -3,19 +3,18 @@
 from __future__ import annotations
 
 from collections.abc import Callable
-from typing import TYPE_CHECKING, Any
+from typing import Any
 
 import numpy as np
 from numpy.typing import NDArray
 
-if TYPE_CHECKING:
-    from tyrefem.section.section import Section
+from tyrefem.section.layer import Layered
 
 Array = NDArray[np.float64]
 _GAUSS = np.polynomial.legendre.leggauss(16)
 
 
-def _integral(section: Section, start: float, end: float, density: Callable[[Array], Array]) -> float:
+def _integral(section: Layered, start: float, end: float, density: Callable[[Array], Array]) -> float:
     stations = np.unique([start, *(s for s in section.breaks if start < s < end), end])
     x, w = _GAUSS
     half = np.diff(stations)[:, None] / 2
@@ -23,7 +22,7 @@ def _integral(section: Section, start: float, end: float, density: Callable[[Arr
     return float((density(s) * half * w).sum())
 
 
-def _over_pieces(section: Section, region: str | None, radius_power: int) -> float:
+def _over_pieces(section: Layered, region: str | None, radius_power: int) -> float:
     """Integral of r^power dA, power 0 or 1, across the layers in closed form: a polynomial in y."""
     if region is not None:
         section.require_region(region)
@@ -45,17 +44,17 @@ def _over_pieces(section: Section, region: str | None, radius_power: int) -> flo
     return total if section.half else 2 * total
 
 
-def area(section: Section, region: str | None = None) -> float:
+def area(section: Layered, region: str | None = None) -> float:
     """Integral of (1 + kappa y) dy ds [m2]."""
     return _over_pieces(section, region, 0)
 
 
-def volume(section: Section, region: str | None = None) -> float:
+def volume(section: Layered, region: str | None = None) -> float:
     """Integral of 2 pi (r + y n_r)(1 + kappa y) dy ds [m3]."""
     return 2 * np.pi * _over_pieces(section, region, 1)
 
 
-def _inner_face(section: Section, s: Array) -> tuple[Array, Array, Array]:
+def _inner_face(section: Layered, s: Array) -> tuple[Array, Array, Array]:
     """r of the inner face, dz/ds along it, and dl/ds."""
     line, y, slope = section.line, section.interfaces(s)[0], section.interface_slopes(s)[0]
     normal = line.normal(s)
@@ -65,7 +64,7 @@ def _inner_face(section: Section, s: Array) -> tuple[Array, Array, Array]:
     return r, dz, np.hypot(stretch, slope)
 
 
-def inner_surface_area(section: Section) -> float:
+def inner_surface_area(section: Layered) -> float:
     """Integral of 2 pi r dl along the inner face [m2]."""
 
     def density(s: Array) -> Array:
@@ -76,7 +75,7 @@ def inner_surface_area(section: Section) -> float:
     return total if section.half else 2 * total
 
 
-def gas_volume(section: Section) -> float:
+def gas_volume(section: Layered) -> float:
     """Integral of pi (r^2 - r_bead^2) dz along the inner face [m3]."""
     r_bead = float(section.place(section.line.length, 0.0)[0])
 
@@ -88,7 +87,7 @@ def gas_volume(section: Section) -> float:
     return total if section.half else 2 * total
 
 
-def overall_width(section: Section) -> float:
+def overall_width(section: Layered) -> float:
     """Twice the largest z of the outer face [m]."""
 
     def z(s: Array) -> Array:
@@ -104,7 +103,7 @@ def overall_width(section: Section) -> float:
     return 2 * float(z(samples).max())
 
 
-def summary(section: Section) -> dict[str, Any]:
+def summary(section: Layered) -> dict[str, Any]:
     """Sizes, areas and volumes in SI units."""
     bead = section.line.position(section.line.length)
     return {

@@ -3,32 +3,30 @@
 from __future__ import annotations
 
 from itertools import pairwise
-from typing import TYPE_CHECKING
 
 import numpy as np
 from numpy.typing import NDArray
 
-if TYPE_CHECKING:
-    from tyrefem.section.section import Section
+from tyrefem.section.layer import Layered
 
 Array = NDArray[np.float64]
 _MIRROR = np.array([1.0, -1.0])
 
 
-def stations(section: Section, start: float, end: float, spacing: float) -> Array:
+def stations(section: Layered, start: float, end: float, spacing: float) -> Array:
     """Stations from start to end no further apart than ``spacing``, every kink of the geometry among them."""
     knots = np.unique([start, *(s for s in section.breaks if start + 1e-9 < s < end - 1e-9), end])
     runs = [np.linspace(a, b, max(2, int(np.ceil((b - a) / spacing - 1e-9)) + 1))[:-1] for a, b in pairwise(knots)]
     return np.concatenate([*runs, knots[-1:]])
 
 
-def face(section: Section, index: int, s: Array) -> Array:
+def face(section: Layered, index: int, s: Array) -> Array:
     """Points of the inner face (index 0) or of a layer's outer face (index 1, 2, ...), shape (n, 2)."""
     y = section.interfaces(s)[index]
     return np.asarray(section.line.position(s) + y[..., None] * section.line.normal(s))
 
 
-def region_outlines(section: Section, region: str, spacing: float) -> list[Array]:
+def region_outlines(section: Layered, region: str, spacing: float) -> list[Array]:
     """Closed polygons of a region, one per connected piece of a layer."""
     polygons = []
     for piece in section.pieces:
@@ -44,7 +42,7 @@ def region_outlines(section: Section, region: str, spacing: float) -> list[Array
     return polygons
 
 
-def boundary_lines(section: Section, name: str, spacing: float) -> list[Array]:
+def boundary_lines(section: Layered, name: str, spacing: float) -> list[Array]:
     """Open polylines of a boundary."""
     length, n = section.line.length, len(section.layers)
     end_face = section.place(length, section.interfaces(length) - section.interfaces(length)[0])
@@ -75,7 +73,7 @@ def boundary_lines(section: Section, name: str, spacing: float) -> list[Array]:
     return lines
 
 
-def _ribs(section: Section, start: float, end: float) -> list[tuple[float, float]]:
+def _ribs(section: Layered, start: float, end: float) -> list[tuple[float, float]]:
     """What grooves leave of a stretch of the outer face."""
     ribs, begin = [], start
     for low, high in section.grooves:
@@ -86,7 +84,7 @@ def _ribs(section: Section, start: float, end: float) -> list[tuple[float, float
     return [*ribs, (begin, end)]
 
 
-def _signed_stations(section: Section, start: float, end: float, spacing: float) -> Array:
+def _signed_stations(section: Layered, start: float, end: float, spacing: float) -> Array:
     if start >= 0:
         return stations(section, start, end, spacing)
     if end <= 0:

@@ -2,18 +2,14 @@
 
 from __future__ import annotations
 
+from collections.abc import Iterator
 from itertools import pairwise
-from typing import TYPE_CHECKING
 
 import numpy as np
 from numpy.typing import NDArray
 
 from tyrefem.errors import InputWarning
-
-if TYPE_CHECKING:
-    from collections.abc import Iterator
-
-    from tyrefem.section.section import Section
+from tyrefem.section.layer import Layered
 
 Array = NDArray[np.float64]
 #: A table that goes on further beyond the meridian's end, over its length, was made for another one (a judgement).
@@ -28,7 +24,7 @@ ROUNDING = np.radians(3.0)
 KINK, CORNER = 5.0, np.radians(10.0)
 
 
-def warnings_of(section: Section) -> tuple[InputWarning, ...]:
+def warnings_of(section: Layered) -> tuple[InputWarning, ...]:
     """What is unlikely in a section, with the field of its card.
 
     >>> from tyrefem.section import load
@@ -40,7 +36,7 @@ def warnings_of(section: Section) -> tuple[InputWarning, ...]:
     return (*_tables(section), *_widths(section), *_meridian(section))
 
 
-def _tables(section: Section) -> Iterator[InputWarning]:
+def _tables(section: Layered) -> Iterator[InputWarning]:
     """Rows beyond the end of the meridian, which have no effect, and tables made for a longer meridian."""
     length = section.line.length
     for index, layer in enumerate(section.built_layers):
@@ -58,7 +54,7 @@ def _tables(section: Section) -> Iterator[InputWarning]:
             )
 
 
-def _widths(section: Section) -> Iterator[InputWarning]:
+def _widths(section: Layered) -> Iterator[InputWarning]:
     """Widths and diameters that belong to different tyres."""
     ratio = section.overall_width / section.nominal_width
     if not WIDTH[0] <= ratio <= WIDTH[1]:
@@ -82,7 +78,7 @@ def _widths(section: Section) -> Iterator[InputWarning]:
             )
 
 
-def _meridian(section: Section) -> Iterator[InputWarning]:
+def _meridian(section: Layered) -> Iterator[InputWarning]:
     """Kinks, and stretches bent the wrong way: a wall under pressure is drawn outwards, and turns there.
 
     The meridian of a tyre is convex from the crown on and may be hollow towards the bead, once.
@@ -123,7 +119,7 @@ def _stretches(turns: Array) -> list[tuple[int, int]]:
     return stretches
 
 
-def _kinks(section: Section, s: Array, curvature: Array) -> Iterator[str]:
+def _kinks(section: Layered, s: Array, curvature: Array) -> Iterator[str]:
     """Corners in words: tighter than the wall is thick, or far tighter than the rest of the line."""
     thickness = section.total_thickness(s)
     mean = float(np.abs(curvature).mean())

@@ -2,24 +2,18 @@
 
 from __future__ import annotations
 
-from typing import TYPE_CHECKING
-
 import numpy as np
 from numpy.typing import NDArray
 
 from tyrefem.errors import InputError
-from tyrefem.section.layup import Layup
+from tyrefem.section.layer import Layered
 from tyrefem.section.outlines import face, stations
-
-if TYPE_CHECKING:
-    from tyrefem.section.section import Section
 
 Array = NDArray[np.float64]
 
 
-def check_possible(section: Section) -> None:
-    """Raise `InputError` with field and reason unless the section can be built."""
-    Layup(section.layers, section.reference, section.as_built)
+def check_possible(section: Layered) -> None:
+    """Raise `InputError` with field and reason unless the layers can be laid along the meridian."""
     _ends(section)
     length = section.line.length
     s = stations(section, 0.0, length, length / 120)
@@ -34,7 +28,7 @@ def _both_sides(breaks: tuple[float, ...]) -> Array:
     return np.concatenate([inner * (1 - 1e-12), inner * (1 + 1e-12)])
 
 
-def _ends(section: Section) -> None:
+def _ends(section: Layered) -> None:
     length = section.line.length
     for layer in section.layers:
         if abs(layer.regions.ends[-1] - length) > 1e-9:
@@ -48,7 +42,7 @@ def _ends(section: Section) -> None:
         raise InputError(f"'{taken.pop()}' is the name of another boundary", field="boundaries")
 
 
-def _no_folding(section: Section, s: Array) -> None:
+def _no_folding(section: Layered, s: Array) -> None:
     faces = section.interfaces(s)
     stretch = 1 + section.line.curvature(s) * faces
     if (stretch <= 1e-3).any():
@@ -61,7 +55,7 @@ def _no_folding(section: Section, s: Array) -> None:
         )
 
 
-def _belts(section: Section, s: Array) -> None:
+def _belts(section: Layered, s: Array) -> None:
     """Regions with 'belt' in their name end before the section turns inwards again."""
     widest = float(s[int(np.argmax(section.line.position(s)[:, 1]))])
     for index, layer in enumerate(section.layers):
@@ -74,7 +68,7 @@ def _belts(section: Section, s: Array) -> None:
                 )
 
 
-def _apart(section: Section, s: Array) -> None:
+def _apart(section: Layered, s: Array) -> None:
     """The half outline must stay above the axis, on its own side of the mid plane, and not cross itself."""
     inner, outer = face(section, 0, s), face(section, len(section.layers), s)
     both = np.concatenate([inner, outer])

@@ -17,6 +17,8 @@ from tyrefem.section.division import Division
 from tyrefem.section.layer import Layer, Piece, Rating
 from tyrefem.section.layup import Layup
 from tyrefem.section.line import Line
+from tyrefem.section.plausible import warnings_of
+from tyrefem.section.possible import check_possible
 from tyrefem.section.wrap import Wrap
 
 Array = NDArray[np.float64]
@@ -80,8 +82,7 @@ class Section(Brief, Stated):
     wrap: str | None = None
 
     def __post_init__(self) -> None:
-        from tyrefem.section.possible import check_possible
-
+        _ = self._layup
         check_possible(self)
 
     def _facts(self) -> Mapping[str, Any]:
@@ -160,8 +161,6 @@ class Section(Brief, Stated):
     @cached_property
     def warnings(self) -> tuple[InputWarning, ...]:
         """What can be built but is perhaps not meant: tables beyond the meridian, kinks, ratings of another tyre."""
-        from tyrefem.section.plausible import warnings_of
-
         return warnings_of(self)
 
     @cached_property

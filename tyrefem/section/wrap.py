@@ -4,15 +4,12 @@ from __future__ import annotations
 
 from dataclasses import dataclass
 from functools import cached_property
-from typing import TYPE_CHECKING
 
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
 from tyrefem.errors import InputError
-
-if TYPE_CHECKING:
-    from tyrefem.section.section import Section
+from tyrefem.section.layer import Layered
 
 Array = NDArray[np.float64]
 
@@ -39,7 +36,7 @@ class Wrap:
     (1.1, (1, 2, 3))
     """
 
-    section: Section
+    section: Layered
     region: str
 
     def __post_init__(self) -> None:

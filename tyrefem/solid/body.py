@@ -12,27 +12,15 @@ from numpy.typing import NDArray
 
 from tyrefem.brief import Brief
 from tyrefem.errors import InputError, nearest
-from tyrefem.solid.compounds import Compound, determinant
-from tyrefem.solid.cords import CordLayer
+from tyrefem.solid.compounds import determinant
 from tyrefem.solid.elements import Indices, PressedWall, Rings
 from tyrefem.solid.finite_law import BodyLaw
+from tyrefem.solid.parts import Part
 from tyrefem.solid.rim import Flange
 from tyrefem.solid.state import Prestressed
 from tyrefem.solid.voigt import SYMMETRIC_UNIT, UNIT, outer, over
 
 Array = NDArray[np.float64]
-
-
-@dataclass(frozen=True, eq=False)
-class Part:
-    """What a region is made of: a compound and layers of cords at the points of the region's elements.
-
-    ``cord_loss`` is the cords' tan delta over the compound's: 0 where the cords lose nothing.
-    """
-
-    compound: Compound
-    cords: tuple[CordLayer, ...] = ()
-    cord_loss: float = 0.0
 
 
 @dataclass(frozen=True, eq=False)
@@ -262,7 +250,7 @@ class Body(Brief):
             fixed=fixed, pressurised=self.pressurised,
             support=self._support(displacement, 3) if self.flanges else None,
             rim_top=max((flange.centre[0] + flange.radius for flange in self.flanges), default=0.0),
-            law=BodyLaw(self, f),
+            law=BodyLaw(self.rings, self.parts, self.mesh.subdomains, self.bulk, f),
         )  # fmt: skip
 
 

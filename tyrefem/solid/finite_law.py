@@ -4,18 +4,17 @@ in Green's strain."""
 from __future__ import annotations
 
 import functools
+from collections.abc import Mapping
 from dataclasses import dataclass, replace
-from typing import TYPE_CHECKING, Protocol
+from typing import Protocol
 
 import numpy as np
 from numpy.typing import NDArray
 
 from tyrefem.solid.compounds import determinant
+from tyrefem.solid.elements import Indices, Rings
+from tyrefem.solid.parts import Part
 from tyrefem.solid.voigt import SYMMETRIC_UNIT, UNIT, over
-
-if TYPE_CHECKING:
-    from tyrefem.solid.body import Body, Part
-    from tyrefem.solid.elements import Rings
 
 Array = NDArray[np.float64]
 #: Where a tensor's component stands among the six.
@@ -139,25 +138,30 @@ class GreenLaw:
 
 @dataclass(frozen=True, eq=False)
 class BodyLaw:
-    """The stress of a `Body`'s compounds and cords at F F_0: cords slack or taut as they are at every angle.
+    """The stress of a body's compounds and cords at F F_0: cords slack or taut as they are at every angle.
 
     Parameters
     ----------
-    body : what was inflated. inflated : (3, 3, e, q) F_0.
+    rings : shape functions of the body before inflation.
+    parts : region -> what it is made of. members : region -> numbers of its elements.
+    bulk_modulus : (e,) Pa. inflated : (3, 3, e, q) F_0.
     """
 
-    body: Body
+    rings: Rings
+    parts: Mapping[str, Part]
+    members: Mapping[str, Indices]
+    bulk_modulus: Array
     inflated: Array
 
     @functools.cached_property
     def _bulk(self) -> Array:
-        return np.asarray(self.body.bulk[:, None, None] * np.eye(3))
+        return np.asarray(self.bulk_modulus[:, None, None] * np.eye(3))
 
     @functools.cached_property
     def _parts(self) -> dict[str, Part]:
         """The parts, with values at the points ready for one more axis, that of the angles."""
         found = {}
-        for name, part in self.body.parts.items():
+        for name, part in self.parts.items():
             layers = [
                 replace(
                     one,
@@ -173,7 +177,7 @@ class BodyLaw:
     def _gathered(self, deformation: Array, method: str, axes: tuple[int, ...]) -> Array:
         found = np.empty((*axes, *deformation.shape[2:]))
         for name, part in self._parts.items():
-            members = self.body.mesh.subdomains[name]
+            members = self.members[name]
             here = deformation[:, :, members]
             total = getattr(part.compound, method)(here)
             for layer in part.cords:
@@ -183,7 +187,7 @@ class BodyLaw:
 
     def response(self, gradient: Array, tangent: bool = True) -> Response:
         """P = tau F^-T, A = F^-1 (J c + tau 1) F^-T."""
-        rings, size = self.body.rings, gradient.shape[2]
+        rings, size = self.rings, gradient.shape[2]
         functions, weights = rings.linear_functions, rings.weights[..., None]
         stress, volume = np.empty(gradient.shape), np.empty(gradient.shape)
         found = np.empty((*gradient.shape, 9) if tangent else 0)

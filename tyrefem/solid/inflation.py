@@ -135,7 +135,7 @@ def _spread(values: Array, weights: Array) -> tuple[float, float, float]:
 
 
 def inflate(
-    study: Study | str,
+    study: Study,
     pressure: float | None = None,
     mesh: TyreMesh | None = None,
     choice: NewtonChoice | None = None,
@@ -145,7 +145,7 @@ def inflate(
 
     Parameters
     ----------
-    study : a study, or its name.
+    study : the study.
     pressure : Pa above the ambient; by default that of the drive's first phase.
     mesh : a mesh of the study's section in quadrilaterals; by default the study's own.
     temperature : degC, as `tyrefem.solid.thermal.warm` takes it; by default nothing expands.
@@ -162,21 +162,19 @@ def inflate(
     True
     """
     from tyrefem.solid.tyre import tyre_body
-    from tyrefem.studies import study as load_study
 
-    chosen = load_study(study) if isinstance(study, str) else study
     if pressure is None:
-        pressure = float(chosen.card.drive.phases[0].pressure.start)
+        pressure = float(study.card.drive.phases[0].pressure.start)
     if not (np.isfinite(pressure) and pressure >= 0):
         raise InputError(f"must be a pressure of 0 Pa or more, not {pressure:g}", field="pressure")
-    body = tyre_body(chosen, mesh)
+    body = tyre_body(study, mesh)
     try:
         if temperature is None:
-            return Inflation(body, equilibrium(body, pressure, choice), chosen.section.half)
+            return Inflation(body, equilibrium(body, pressure, choice), study.section.half)
         from tyrefem.solid import thermal
 
-        warmed = thermal.warm(body, temperature, thermal.expansions(chosen))
+        warmed = thermal.warm(body, temperature, thermal.expansions(study))
         found = thermal.relaxed(warmed, equilibrium(body, pressure, choice))
     except InputError as error:
-        raise error if error.file else InputError(error.message, field=error.field, file=chosen.file) from None
-    return Inflation(warmed, found, chosen.section.half)
+        raise error if error.file else InputError(error.message, field=error.field, file=study.file) from None
+    return Inflation(warmed, found, study.section.half)

@@ -11,10 +11,11 @@ import numpy as np
 from numpy.typing import NDArray
 
 from tyrefem.errors import InputError, nearest
-from tyrefem.solid.body import Body, Part
+from tyrefem.solid.body import Body
 from tyrefem.solid.compounds import Compound, determinant
 from tyrefem.solid.cords import CordLayer
 from tyrefem.solid.newton import Equilibrium
+from tyrefem.solid.parts import Part
 from tyrefem.solid.state import Prestressed
 
 if TYPE_CHECKING:

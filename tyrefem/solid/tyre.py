@@ -9,10 +9,11 @@ import numpy as np
 from numpy.typing import NDArray
 
 from tyrefem.errors import InputError
-from tyrefem.solid.body import Body, Part
+from tyrefem.solid.body import Body
 from tyrefem.solid.compounds import Compound, neo_hookean
 from tyrefem.solid.cords import CordLayer, lifted_angle, lifted_ends
 from tyrefem.solid.elements import Rings
+from tyrefem.solid.parts import Part
 from tyrefem.solid.rim import FLANGE_RADIUS, SEAT, on_rim
 
 if TYPE_CHECKING:
