@@ -15,7 +15,7 @@ from tyrefem.brief import SHOWN, Brief
 from tyrefem.conduction.history import History
 from tyrefem.conduction.points import OutsideMeshError, as_points
 from tyrefem.heat_budget import HeatBudget, whole_tyre
-from tyrefem.limits import warnings_of
+from tyrefem.limits import deep_contacts
 from tyrefem.meshing.sagitta import snapped
 from tyrefem.phase_state import PhaseState, phase_states
 from tyrefem.rolling_resistance import RollingResistance, just_before, rolling_reading, rolling_resistance
@@ -316,7 +316,12 @@ class Result(Brief):
     @functools.cached_property
     def warnings(self) -> tuple[str, ...]:
         """What of the input is perhaps not meant, and where the run left its own assumptions; one line each."""
-        return warnings_of(self)
+        return (
+            *map(str, self.study.warnings),
+            *(() if self.feedback is None else self.feedback.warnings),
+            *deep_contacts(self.study.section, self.phases),
+            *(() if self.sliding is None else self.sliding.warnings),
+        )
 
 
 def _again(

@@ -201,7 +201,7 @@ class RollingTyre(Surroundings):
     @functools.cached_property
     def sliding(self) -> SlidingTread:
         """Friction heat of the tread on the road, in phases with slip."""
-        return SlidingTread(self)
+        return SlidingTread(self, self.mesh)
 
     @functools.cached_property
     def problem(self) -> Conduction:

@@ -10,9 +10,11 @@ from scipy.integrate import simpson
 
 from tyrefem import study
 from tyrefem.api import Study
+from tyrefem.reduced.answers import reduced_outcomes
+from tyrefem.reduced.balance import reduced_balance
 from tyrefem.reduced.model import NotReducibleError
 from tyrefem.reduced.readout import Readout
-from tyrefem.reduced.surrogate import Surrogate, reduced_outcomes, surrogate, temperature_error
+from tyrefem.reduced.surrogate import Surrogate, surrogate, temperature_error
 from tyrefem.reduced.variant import Variant
 from tyrefem.reduced.work import ReducedTask, pack, perform_reduced
 from tyrefem.rolling import RollingTyre, output_times, run
@@ -115,7 +117,7 @@ def test_outside_its_box_it_is_not_asked(found: Surrogate, tyre: Study) -> None:
 def test_another_mesh_is_refused(found: Surrogate, tyre: Study) -> None:
     finer = tyre.replace({"mesh.size": "11 mm"})
     with pytest.raises(NotReducibleError, match="mesh"):
-        found.model.balance(RollingTyre(finer, found.model.base))
+        reduced_balance(found.model, RollingTyre(finer, found.model.base))
 
 
 def test_above_its_tolerance_it_falls_back_to_full_runs(tyre: Study, monkeypatch: pytest.MonkeyPatch) -> None:

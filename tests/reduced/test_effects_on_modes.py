@@ -7,8 +7,11 @@ import pytest
 
 from tyrefem import study
 from tyrefem.api import Study
+from tyrefem.reduced.answers import reduced_answers
+from tyrefem.reduced.balance import reduced_balance
 from tyrefem.reduced.batch import Batch, steady
-from tyrefem.reduced.surrogate import reduced_answers, surrogate, temperature_error
+from tyrefem.reduced.march import march
+from tyrefem.reduced.surrogate import surrogate, temperature_error
 from tyrefem.rolling import RollingTyre, run
 from tyrefem.sweep.answers import answers
 from tyrefem.sweep.plan import plan_of
@@ -66,9 +69,9 @@ def test_films_that_follow_a_constant_drive_are_asked_for_once(plain: Study) -> 
         ({"name": "gas-mixing", "gain": 2.0}, True),
         ({"name": "ambient-drift", "rate": "40 delta_degC/hour"}, False),
     ):
-        balance = found.model.balance(RollingTyre(plain.replace({"effects": [effect]}), base))
+        balance = reduced_balance(found.model, RollingTyre(plain.replace({"effects": [effect]}), base))
         assert steady(balance, 0) is constant
-        marched = Batch(found.model, [balance]).march()
+        marched = march(Batch(found.model, [balance]))
         assert all(window.steady is constant for window in marched.windows)
         moments = [Batch(found.model, [balance]).outside(t) for t in (1.0, 77.0, 150.0)]
         assert all(np.array_equal(one.sinks, moments[0].sinks) for one in moments) is constant

@@ -12,10 +12,10 @@ import numpy as np
 from tyrefem.compare.computed import Computed, computed_of
 from tyrefem.errors import InputError
 from tyrefem.mechanics import BY_ELEMENTS, same_cycles
+from tyrefem.reduced.answers import reduced_outcomes
 from tyrefem.reduced.model import NotReducibleError, ReducedModel
 from tyrefem.reduced.residual import corrected
 from tyrefem.reduced.school import HORIZONS
-from tyrefem.reduced.surrogate import reduced_outcomes
 from tyrefem.reduced.train import Fineness, Snapshots, snapshots, trained
 from tyrefem.reduced.variant import Variant
 from tyrefem.reduced.work import Packed, pack, remember

@@ -15,10 +15,11 @@ from tyrefem.conduction.tangent import Tangents
 from tyrefem.diagnose.lean import Lean, read, sensor_points
 from tyrefem.diagnose.unknowns import Unknown
 from tyrefem.errors import InputError
+from tyrefem.reduced.answers import side_by_side
+from tyrefem.reduced.balance import ReducedBalance, reduced_balance
 from tyrefem.reduced.marched import Marched
-from tyrefem.reduced.model import NotReducibleError, ReducedBalance, ReducedModel
+from tyrefem.reduced.model import NotReducibleError, ReducedModel
 from tyrefem.reduced.modes import modes
-from tyrefem.reduced.surrogate import side_by_side
 from tyrefem.reduced.train import weight
 from tyrefem.result import GAS, RIM
 from tyrefem.rolling import RollingTyre
@@ -59,7 +60,7 @@ def modes_of(base: Lean, unknowns: Sequence[Unknown], found: Tangents | None) ->
     """
     tyre, last = base.tyre, len(base.times) - 1
     try:
-        ReducedModel(tyre, np.ones((len(base.values[0]), 1)), {}, np.zeros((0, 0))).balance(tyre)
+        reduced_balance(ReducedModel(tyre, np.ones((len(base.values[0]), 1)), {}, np.zeros((0, 0))), tyre)
     except NotReducibleError:
         return np.zeros((len(base.values[0]), 0))
     rows = [base.values[np.unique(np.linspace(0, last, FIELDS).round().astype(int))]]

@@ -29,8 +29,8 @@ def sliding_figure(outcome: SlidingOutcome) -> Figure:
     wide = max(WIDE, (NARROWEST - 0.3) / across - LEFT)
     cell_w, cell_h = wide + LEFT, HIGH + BELOW + 0.3
     drawn = figure(across * cell_w + 0.3, down * cell_h + TITLE + 0.3)
-    title(drawn, outcome.result.study.title, "contact with the road in phases with slip")
-    limit = outcome.result.tyre.sliding.law.decomposition_temperature
+    title(drawn, outcome.title, "contact with the road in phases with slip")
+    limit = outcome.decomposition_temperature
     for number, phase in enumerate(outcome.phases):
         row, place = divmod(number, ACROSS)
         axes = add_axes(drawn, LEFT + place * cell_w, 0.3 + BELOW + (down - 1 - row) * cell_h, wide, HIGH)

@@ -4,72 +4,18 @@ from __future__ import annotations
 
 import functools
 from collections.abc import Mapping, Sequence
-from dataclasses import dataclass
-from typing import TYPE_CHECKING, Any
+from typing import Any
 
 import numpy as np
 from numpy.typing import NDArray
 
-from tyrefem.brief import Brief
-from tyrefem.conduction import Film, Reservoir
-
-if TYPE_CHECKING:
-    from tyrefem.reduced.model import ReducedModel
-    from tyrefem.rolling import RollingTyre
+from tyrefem.conduction import Film, Material, Reservoir
+from tyrefem.conduction.conditions import is_number
+from tyrefem.reduced.exchanges import Layout
+from tyrefem.reduced.model import NotReducibleError, ReducedModel
+from tyrefem.rolling import RollingTyre
 
 Array = NDArray[np.float64]
-
-
-@dataclass(frozen=True, eq=False)
-class Exchanges(Brief):
-    """Everything that exchanges heat: sides in the order of their films, then the reservoirs among themselves.
-
-    Parameters
-    ----------
-    matrices : (n_exchanges, n, n) for 1 W/m2/K, or 1 W/K. loads : (n_exchanges, n) of a given sink.
-    rows : (n_exchanges, n) W into the body (or the owner) per kelvin. areas : (n_exchanges,) m2, or 1.
-    given : whether the sink is a given temperature.
-    """
-
-    matrices: Array
-    loads: Array
-    rows: Array
-    areas: Array
-    given: NDArray[np.bool_]
-
-
-#: (side, reservoir or None) of every film; (owner, other reservoir or None) of every exchange; names of reservoirs.
-Layout = tuple[tuple[tuple[str, str | None], ...], tuple[tuple[str, str | None], ...], tuple[str, ...]]
-
-
-def exchanges(model: ReducedModel, layout: Layout) -> Exchanges:
-    """The exchanges of a layout, built once per model."""
-    if layout not in model.layouts:
-        films, among, names = layout
-        m, n, count = model.size, model.size + len(names), len(films) + len(among)
-        found = Exchanges(
-            np.zeros((count, n, n)), np.zeros((count, n)), np.zeros((count, n)), np.ones(count), np.zeros(count, bool)
-        )
-        for j, (side, sink) in enumerate(films):
-            R, r, area = model.surfaces[side]
-            found.matrices[j, :m, :m], found.rows[j, :m], found.areas[j] = R, -r, area
-            if sink is None:
-                found.loads[j, :m], found.given[j] = r, True
-            else:
-                g = m + names.index(sink)
-                found.matrices[j, :m, g] = found.matrices[j, g, :m] = -r
-                found.matrices[j, g, g] = found.rows[j, g] = area
-        for j, (owner, other) in enumerate(among, len(films)):
-            i = m + names.index(owner)
-            found.matrices[j, i, i], found.rows[j, i] = 1.0, -1.0
-            if other is None:
-                found.loads[j, i], found.given[j] = 1.0, True
-            else:
-                k = m + names.index(other)
-                found.matrices[j, i, k] = found.matrices[j, k, i] = -1.0
-                found.matrices[j, k, k] = found.rows[j, k] = 1.0
-        model.layouts[layout] = found
-    return model.layouts[layout]
 
 
 class ReducedBalance:
@@ -92,7 +38,7 @@ class ReducedBalance:
             tuple((name, _reservoir(other)) for name, (_, other) in among),
             tuple(names),
         )
-        self.exchanges = exchanges(model, self.layout)
+        self.exchanges = model.exchanges(self.layout)
         #: (coefficient, sink) of every exchange: numbers or functions f(x, t).
         self.data = [(film.h, film.sink) for _, _, film in films]
         self.data += [(_timed(conductance), _timed(other)) for _, (conductance, other) in among]
@@ -107,12 +53,12 @@ class ReducedBalance:
     @functools.cached_property
     def M(self) -> Array:
         """(n, n) J/K."""
-        return matrices([self])[0][0]
+        return matrices_of([self])[0][0]
 
     @functools.cached_property
     def K(self) -> Array:
         """(n, n) W/K of conduction."""
-        return matrices([self])[1][0]
+        return matrices_of([self])[1][0]
 
     @property
     def stack(self) -> Array:
@@ -144,7 +90,41 @@ class ReducedBalance:
         return [_value(_timed(one.power), t) for one in self.reservoirs.values()]
 
 
-def matrices(balances: Sequence[ReducedBalance]) -> tuple[Array, Array]:
+def reduced_balance(model: ReducedModel, tyre: RollingTyre) -> ReducedBalance:
+    """The heat balance of a tyre on the modes of a model.
+
+    Raises
+    ------
+    NotReducibleError : another mesh, properties that depend on temperature, fluxes, radiation, sliding.
+    """
+    if tyre.study.card.mechanics.feedback is not None and tyre.cycles is None:
+        raise NotReducibleError("strain cycles that follow the temperature")
+    if tyre.mesh is not model.base.mesh:
+        raise NotReducibleError("another mesh: geometry, strain zones or [mesh] differ")
+    bodies = {region: _constant(region, body) for region, body in tyre.bodies.items()}
+    films: list[tuple[str, int, Film]] = []
+    for side, conditions in tyre.boundaries.items():
+        for number, condition in enumerate(conditions):
+            if not isinstance(condition, Film):
+                raise NotReducibleError(f"{type(condition).__name__} at '{side}'")
+            films.append((side, number, condition))
+    reservoirs = tyre._reservoirs()
+    for name, reservoir in reservoirs.items():
+        if not is_number(reservoir.heat_capacity) or not float(reservoir.heat_capacity) > 0:  # type: ignore[arg-type]
+            raise NotReducibleError(f"heat capacity of '{name}' is none, or depends on temperature")
+    return ReducedBalance(model, tyre, bodies, films, reservoirs)
+
+
+def _constant(region: str, body: Material) -> tuple[float, float, float]:
+    """Conductivity along, across, and heat capacity."""
+    k = body.conductivity
+    if callable(k) or not is_number(body.heat_capacity):
+        raise NotReducibleError(f"conductivity or heat capacity of '{region}' depends on temperature")
+    along, across = k if isinstance(k, tuple | list) else (k, k)
+    return float(along), float(across), float(body.heat_capacity)  # type: ignore[arg-type]
+
+
+def matrices_of(balances: Sequence[ReducedBalance]) -> tuple[Array, Array]:
     """M and K of variants on the same modes, (B, n, n) each."""
     first = balances[0]
     model, m, regions = first.model, first.model.size, list(first.model.mass)

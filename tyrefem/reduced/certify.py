@@ -13,6 +13,7 @@ from numpy.typing import NDArray
 
 from tyrefem.errors import InputError
 from tyrefem.realtime import RealTimeTyre
+from tyrefem.reduced.balance import reduced_balance
 from tyrefem.reduced.driving import NAMES, Box, Course, box_of, random_course, steady
 from tyrefem.reduced.exam import Certificate, Exam, certificate, differences, sit
 from tyrefem.reduced.export import arrays_of, outputs_of, write
@@ -162,7 +163,7 @@ class _Tool:
 
     def about(self) -> dict[str, Any]:
         """What the file says of itself."""
-        balance = self.reduced.balance(self.base)
+        balance = reduced_balance(self.reduced, self.base)
         return {
             "study": self.study.name,
             "title": self.study.title,

@@ -14,7 +14,8 @@ from tyrefem.conduction.points import located
 from tyrefem.errors import InputError
 from tyrefem.output import atomic_path, jsonable
 from tyrefem.realtime import ATMOSPHERE, FORMAT, KELVIN
-from tyrefem.reduced.model import ReducedBalance, ReducedModel
+from tyrefem.reduced.balance import ReducedBalance, reduced_balance
+from tyrefem.reduced.model import ReducedModel
 from tyrefem.reduced.tables import COLD, FINE, Probe, Tables, loss_tables
 from tyrefem.result import GAS, RIM
 from tyrefem.results_file import mark_archive
@@ -35,7 +36,7 @@ def arrays_of(model: ReducedModel, probe: Probe, tables: Tables, hot: Array) -> 
     hot : numbers of the nodes among which the hottest is looked for.
     """
     study, chosen = probe.study, probe.middle()
-    balance = model.balance(chosen.tyre)
+    balance = reduced_balance(model, chosen.tyre)
     m, n = model.size, len(balance.start)
     low = np.linalg.inv(np.linalg.cholesky(balance.M[:m, :m]))
     rates, turned = np.linalg.eigh(low @ balance.K[:m, :m] @ low.T)

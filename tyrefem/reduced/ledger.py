@@ -3,17 +3,14 @@
 from __future__ import annotations
 
 from collections.abc import Sequence
-from typing import TYPE_CHECKING
 
 import numpy as np
 from numpy.typing import NDArray
 
 from tyrefem.conduction.budget import Budget, Tally
 from tyrefem.conduction.history import History, Peak, Steps
-from tyrefem.reduced.model import ReducedBalance
-
-if TYPE_CHECKING:
-    from tyrefem.reduced.batch import Moment
+from tyrefem.reduced.balance import ReducedBalance
+from tyrefem.reduced.boundary_data import BoundaryData
 
 Array = NDArray[np.float64]
 
@@ -29,11 +26,11 @@ class Ledger:
         """Number of entries."""
         return len(self.b.model.zones) + len(self.at.areas) + len(self.b.reservoirs)
 
-    def powers(self, moment: Moment, q: Array, y: Array) -> Array:
+    def powers(self, data: BoundaryData, q: Array, y: Array) -> Array:
         """(B, width) W of sources q (B, n_samples) and states y (B, n)."""
         at = self.at
-        exchanged = moment.films * (y @ at.rows.T + np.where(at.given, moment.sinks * at.areas, 0.0))
-        return np.concatenate([q @ self.b.model.power.T, exchanged, moment.powers], axis=1)
+        exchanged = data.films * (y @ at.rows.T + np.where(at.given, data.sinks * at.areas, 0.0))
+        return np.concatenate([q @ self.b.model.power.T, exchanged, data.powers], axis=1)
 
     def rest(self, q: Array, films: Array, sinks: Array, powers: Array, frozen: Array, y: Array) -> Array:
         """(B, width, k) W but for what frozen films (B, n_exchanges) exchange with states y (B, n, k)."""

@@ -5,17 +5,15 @@ from __future__ import annotations
 import functools
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass
-from typing import TYPE_CHECKING
 
 import numpy as np
 from numpy.typing import NDArray
 
 from tyrefem.conduction.history import History
+from tyrefem.reduced.batch import Batch
+from tyrefem.reduced.boundary_data import BoundaryData
 from tyrefem.reduced.ledger import budget, history
 from tyrefem.reduced.relaxing import relaxed
-
-if TYPE_CHECKING:
-    from tyrefem.reduced.batch import Batch, Moment
 
 Array = NDArray[np.float64]
 #: Lobatto-Chebyshev points of a window; TO_POWERS @ values at them = coefficients of powers of time.
@@ -42,7 +40,7 @@ class Window:
     inside: tuple[float, float]
     decay: Array
     back: Array
-    frozen: Moment
+    frozen: BoundaryData
     steady: bool
     start: Array
     heat: Array

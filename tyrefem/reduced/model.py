@@ -11,17 +11,14 @@ import numpy as np
 from numpy.typing import NDArray
 
 from tyrefem.brief import Brief
-from tyrefem.conduction import Film, Material
-from tyrefem.conduction.conditions import is_number
 from tyrefem.conduction.operators import Operators
 from tyrefem.conduction.points import located
 from tyrefem.errors import InputError
-from tyrefem.reduced.balance import Exchanges, Layout, ReducedBalance
+from tyrefem.reduced.exchanges import Exchanges, Layout, exchanges
 from tyrefem.reduced.modes import CHOICE
 from tyrefem.rolling import RollingTyre
 from tyrefem.wall import wall_of
 
-__all__ = ["NotReducibleError", "ReducedBalance", "ReducedModel"]
 Array = NDArray[np.float64]
 
 
@@ -69,9 +66,14 @@ class ReducedModel(Brief):
         """Number of modes."""
         return int(self.V.shape[1])
 
+    def exchanges(self, layout: Layout) -> Exchanges:
+        """The exchanges of a layout, built once."""
+        if layout not in self._exchanges:
+            self._exchanges[layout] = exchanges(layout, self.size, self.surfaces)
+        return self._exchanges[layout]
+
     @functools.cached_property
-    def layouts(self) -> dict[Layout, Exchanges]:
-        """What `exchanges` has built."""
+    def _exchanges(self) -> dict[Layout, Exchanges]:
         return {}
 
     @functools.cached_property
@@ -223,36 +225,3 @@ class ReducedModel(Brief):
         """V^T A V of a matrix A whose other rows than ``dofs`` are empty."""
         rows = self.operators.matrix(data)[dofs]
         return np.asarray(self.V[dofs].T @ (rows @ self.V))
-
-    def balance(self, tyre: RollingTyre) -> ReducedBalance:
-        """The heat balance of a tyre on these modes.
-
-        Raises
-        ------
-        NotReducibleError : another mesh, properties that depend on temperature, fluxes, radiation, sliding.
-        """
-        if tyre.study.card.mechanics.feedback is not None and tyre.cycles is None:
-            raise NotReducibleError("strain cycles that follow the temperature")
-        if tyre.mesh is not self.base.mesh:
-            raise NotReducibleError("another mesh: geometry, strain zones or [mesh] differ")
-        bodies = {region: _constant(region, body) for region, body in tyre.bodies.items()}
-        films: list[tuple[str, int, Film]] = []
-        for side, conditions in tyre.boundaries.items():
-            for number, condition in enumerate(conditions):
-                if not isinstance(condition, Film):
-                    raise NotReducibleError(f"{type(condition).__name__} at '{side}'")
-                films.append((side, number, condition))
-        reservoirs = tyre._reservoirs()
-        for name, one in reservoirs.items():
-            if not is_number(one.heat_capacity) or not float(one.heat_capacity) > 0:  # type: ignore[arg-type]
-                raise NotReducibleError(f"heat capacity of '{name}' is none, or depends on temperature")
-        return ReducedBalance(self, tyre, bodies, films, reservoirs)
-
-
-def _constant(region: str, body: Material) -> tuple[float, float, float]:
-    """Conductivity along, across, and heat capacity."""
-    k = body.conductivity
-    if callable(k) or not is_number(body.heat_capacity):
-        raise NotReducibleError(f"conductivity or heat capacity of '{region}' depends on temperature")
-    along, across = k if isinstance(k, tuple | list) else (k, k)
-    return float(along), float(across), float(body.heat_capacity)  # type: ignore[arg-type]

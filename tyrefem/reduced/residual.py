@@ -12,7 +12,9 @@ from tyrefem.conduction.loads import State
 from tyrefem.conduction.ros34pw2 import GAMMA
 from tyrefem.conduction.setup import balance_of
 from tyrefem.conduction.stage_matrix import StageMatrix
+from tyrefem.reduced.balance import reduced_balance
 from tyrefem.reduced.batch import Batch
+from tyrefem.reduced.march import march
 from tyrefem.reduced.marched import Marched
 from tyrefem.reduced.model import ReducedModel
 from tyrefem.reduced.train import Snapshots, sources_at
@@ -29,7 +31,7 @@ TIME_TOLERANCE = 0.2
 
 def corrected(model: ReducedModel, tyre: RollingTyre, share: float) -> tuple[Snapshots, float]:
     """`correction` of a variant that is marched alone."""
-    return correction(Batch(model, [model.balance(tyre)], TIME_TOLERANCE).march(), 0, share)
+    return correction(march(Batch(model, [reduced_balance(model, tyre)], TIME_TOLERANCE)), 0, share)
 
 
 def correction(marched: Marched, place: int, share: float) -> tuple[Snapshots, float]:
@@ -78,7 +80,7 @@ def nearby(model: ReducedModel, number: int, share: float) -> StageMatrix:
         base = model.base
         ends = [*base.drive.starts, base.drive.end]
         span = ends[number + 1] - ends[number]
-        balance = model.balance(base)
+        balance = reduced_balance(model, base)
         full = balance_of(model.operators, base.bodies, base.boundaries, base.sources, balance.reservoirs)
         even = State(np.full(len(model.V), base.drive.initial), balance.start[model.size :])
         full.freeze(ends[number] + PARTS[2] * span * (1 - 1e-9), even)

@@ -8,7 +8,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from tyrefem.heating import HeatSource
-from tyrefem.reduced.model import ReducedBalance
+from tyrefem.reduced.balance import ReducedBalance
 
 Array = NDArray[np.float64]
 #: Temperatures, degC, between which tan delta is tabulated, every 0.25 K.

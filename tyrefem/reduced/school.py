@@ -10,6 +10,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from tyrefem.errors import InputError
+from tyrefem.reduced.answers import side_by_side
 from tyrefem.reduced.model import NotReducibleError, ReducedModel
 from tyrefem.reduced.residual import TIME_TOLERANCE as CORRECTED_TO
 from tyrefem.reduced.residual import correction
@@ -74,8 +75,6 @@ class Amendment:
 
 def amend(work: Amendment, packed: Packed) -> dict[str, Any]:
     """Done in a worker: ``{"each"}``: ``{"snapshots", "correction"}``, ``{"failure"}`` or ``{"not_reducible"}``."""
-    from tyrefem.reduced.surrogate import side_by_side
-
     model, base = packed.unpacked(), packed.unpacked().base
     found: list[dict[str, Any]] = [{} for _ in work.changes]
     tyres: dict[int, RollingTyre] = {}

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator, Mapping, Sequence
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 from typing import Any
 
@@ -11,18 +11,12 @@ from numpy.typing import NDArray
 
 from tyrefem.brief import Brief
 from tyrefem.dotted import all_changed, value_at
-from tyrefem.errors import InputError
-from tyrefem.reduced.batch import Batch
-from tyrefem.reduced.marched import Marched
-from tyrefem.reduced.model import NotReducibleError, ReducedBalance, ReducedModel
-from tyrefem.reduced.readout import Readout
+from tyrefem.reduced.answers import reduced_answers
+from tyrefem.reduced.model import NotReducibleError, ReducedModel
 from tyrefem.reduced.school import School, Tick
 from tyrefem.reduced.train import Fineness
-from tyrefem.reduced.variant import Variant
 from tyrefem.reduced.work import Packed, pack
-from tyrefem.rolling import RollingTyre, output_times
 from tyrefem.studies import Study
-from tyrefem.sweep.answers import answers
 from tyrefem.sweep.bundle import Bundle
 from tyrefem.sweep.plan import Plan
 from tyrefem.sweep.samples import changes_at
@@ -30,10 +24,6 @@ from tyrefem.sweep.schedulers import Here, Scheduler
 from tyrefem.sweep.varied import Varied
 
 Array = NDArray[np.float64]
-#: Variants marched side by side.
-SIDE_BY_SIDE = 32
-#: K, of the reduced model's time integration; see `Batch`.
-TIME_TOLERANCE = 0.2
 #: Fresh full runs that a certificate is made of; how often it is tried.
 FRESH, TRIALS = 3, 3
 #: Time error of the training runs over the wanted tolerance: snapshots need not be good, certification is.
@@ -134,59 +124,6 @@ def _keys(mine: Mapping[str, Any], theirs: Mapping[str, Any], key: str) -> list[
     if not isinstance(first, Mapping) or not isinstance(second, Mapping):
         return []
     return [k for k in dict.fromkeys([*first, *second]) if first.get(k) != second.get(k)]
-
-
-def reduced_answers(model: ReducedModel, studies: Sequence[Study], time_to: float | None) -> list[dict[str, Any]]:
-    """``{"answers"}``, ``{"failure"}`` or ``{"not_reducible"}`` per study."""
-    found: list[dict[str, Any]] = [{} for _ in studies]
-    for number, outcome in reduced_outcomes(model, studies):
-        found[number] = {"answers": answers(outcome, time_to)} if isinstance(outcome, Variant) else outcome
-    return found
-
-
-def reduced_outcomes(
-    model: ReducedModel, studies: Sequence[Study], tolerance: float = TIME_TOLERANCE
-) -> Iterator[tuple[int, Variant | dict[str, str]]]:
-    """(number, variant) of every study, marched side by side; or ``{"failure"}`` or ``{"not_reducible"}``.
-
-    Parameters
-    ----------
-    tolerance : K, of time integration.
-    """
-    tyres = [RollingTyre(study, model.base) for study in studies]
-    for numbers, part in side_by_side(model, tyres, tolerance):
-        if isinstance(part, dict):
-            yield numbers[0], part
-            continue
-        readout = Readout(part, output_times(part.batch.balances[0].tyre)[0])
-        for place, number in enumerate(numbers):
-            yield number, Variant(readout, place)
-
-
-def side_by_side(
-    model: ReducedModel, tyres: Sequence[RollingTyre], tolerance: float = TIME_TOLERANCE, most: int = SIDE_BY_SIDE
-) -> Iterator[tuple[list[int], Marched | dict[str, str]]]:
-    """Tyres marched together where their drives allow it, ``most`` at a time: (their numbers, the march).
-
-    Or (a number, ``{"failure"}``) of a tyre that cannot be, (a number, ``{"not_reducible"}``) of one that the model
-    cannot follow.
-    """
-    groups: dict[Any, list[tuple[int, ReducedBalance]]] = {}
-    for number, tyre in enumerate(tyres):
-        try:
-            balance = model.balance(tyre)
-        except NotReducibleError as error:
-            yield [number], {"not_reducible": str(error)}
-        except InputError as error:
-            yield [number], {"failure": str(error)}
-        else:
-            output = tyre.study.card.output
-            key = tyre.drive.starts, tyre.drive.end, tyre.schedule.knots, balance.layout, output.every, output.fields
-            groups.setdefault(key, []).append((number, balance))
-    for members in groups.values():
-        for first in range(0, len(members), most):
-            part = members[first : first + most]
-            yield [number for number, _ in part], Batch(model, [balance for _, balance in part], tolerance).march()
 
 
 def temperature_error(one: Mapping[str, Any], other: Mapping[str, Any]) -> float:

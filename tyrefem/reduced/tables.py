@@ -12,8 +12,9 @@ from numpy.typing import NDArray
 from tyrefem.errors import InputError
 from tyrefem.heating import HeatSource
 from tyrefem.realtime import STANDSTILL, Table
+from tyrefem.reduced.balance import ReducedBalance, reduced_balance
 from tyrefem.reduced.driving import NAMES, Box, Course
-from tyrefem.reduced.model import ReducedBalance, ReducedModel
+from tyrefem.reduced.model import ReducedModel
 from tyrefem.rolling import RollingTyre
 from tyrefem.studies import Study
 
@@ -97,7 +98,7 @@ class Probe:
     def balance(self, course: Course) -> ReducedBalance:
         """The tyre on a drive, with one even mode: what acts on it is all that is asked for."""
         even = ReducedModel(self.base, np.ones((self.base.problem.operators.size, 1)), {}, np.zeros((0, 0)))
-        return even.balance(RollingTyre(course.study(self.study), self.base))
+        return reduced_balance(even, RollingTyre(course.study(self.study), self.base))
 
     def middle(self, initial: float | None = None, **inputs: float) -> ReducedBalance:
         """The tyre with the inputs in the middle of the box but for some."""

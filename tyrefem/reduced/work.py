@@ -12,6 +12,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from tyrefem.errors import InputError
+from tyrefem.reduced.answers import reduced_answers
 from tyrefem.reduced.model import ReducedModel
 from tyrefem.rolling import RollingTyre
 from tyrefem.sweep.bundle import Bundle
@@ -83,8 +84,6 @@ class ReducedTask:
 
 def perform_reduced(task: ReducedTask, packed: Packed) -> dict[str, Any]:
     """``{"outcomes": [...]}``, one per variant: ``answers``, ``failure`` or ``not_reducible``."""
-    from tyrefem.reduced.surrogate import reduced_answers
-
     model = packed.unpacked()
     found: list[dict[str, Any]] = [{} for _ in task.changes]
     studies, places = [], []

@@ -6,7 +6,7 @@ import functools
 import math
 from collections.abc import Iterator, Mapping
 from dataclasses import asdict, dataclass
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING, Any, Protocol
 
 import numpy as np
 from numpy.typing import NDArray
@@ -17,7 +17,11 @@ from tyrefem.sliding.skid import half_space_surface
 if TYPE_CHECKING:
     import pandas as pd
 
-    from tyrefem.result import Result
+    from tyrefem.conduction.history import History
+    from tyrefem.heat_budget import HeatBudget
+    from tyrefem.phase_state import PhaseState
+    from tyrefem.rolling import RollingTyre
+    from tyrefem.studies import Study
 
 Array = NDArray[np.float64]
 Numbers = NDArray[np.intp]
@@ -25,6 +29,23 @@ Numbers = NDArray[np.intp]
 UNRESOLVED = 0.05
 #: Part of a skid after which that is asked: no mesh resolves its first instant.
 SETTLED = 0.2
+
+
+class SlidingRun(Protocol):
+    """What the sliding of a run is read from; a `Result` is one."""
+
+    @property
+    def study(self) -> Study: ...
+    @property
+    def tyre(self) -> RollingTyre: ...
+    @property
+    def history(self) -> History: ...
+    @property
+    def times(self) -> Array: ...
+    @property
+    def phases(self) -> tuple[PhaseState, ...]: ...
+    @property
+    def heat_budget(self) -> HeatBudget: ...
 
 
 @dataclass(frozen=True)
@@ -63,11 +84,20 @@ class SlidingPhase:
 
 @dataclass(frozen=True, eq=False)
 class SlidingOutcome(Brief):
-    """Sliding in a run. ``phases`` : one entry per phase with slip that was reached. ``warnings`` : for people."""
+    """Sliding in a run.
 
-    result: Result
+    Parameters
+    ----------
+    title : of the study. decomposition_temperature : of the tread's rubber, degC.
+    phases : one entry per phase with slip that was reached. series : the contact over time, one row per reading.
+    warnings : for people, one line each.
+    """
+
+    title: str
+    decomposition_temperature: float
     phases: tuple[SlidingPhase, ...]
     series: pd.DataFrame
+    warnings: tuple[str, ...]
 
     def _facts(self) -> Mapping[str, Any]:
         return {
@@ -92,66 +122,68 @@ class SlidingOutcome(Brief):
         """JSON-ready: one entry per phase."""
         return {"phases": [asdict(phase) for phase in self.phases]}
 
-    @functools.cached_property
-    def warnings(self) -> tuple[str, ...]:
-        """Friction that was limited, what a locked wheel stands for, skids that the mesh does not resolve."""
-        return tuple(line for phase in self.phases for line in self._warnings(phase))
 
-    def _warnings(self, phase: SlidingPhase) -> Iterator[str]:
-        limit = self.result.tyre.sliding.law.decomposition_temperature
-        if phase.capped:
-            yield (
-                f"phase '{phase.name}': friction falls from {phase.friction:.2g} to {phase.friction_lowest:.2g}, so "
-                f"that the contact stays below {limit:g} degC, where its rubber decomposes"
-            )
-        if not phase.locked:
-            return
-        tyre, middle = self.result.tyre, (phase.start + phase.end) / 2
+def _warnings(run: SlidingRun, phase: SlidingPhase, series: pd.DataFrame) -> Iterator[str]:
+    """Friction that was limited, what a locked wheel stands for, skids that the mesh does not resolve."""
+    limit = run.tyre.sliding.law.decomposition_temperature
+    if phase.capped:
         yield (
-            f"phase '{phase.name}': the wheel is locked, the section is the one on the road; the heat budget counts a "
-            f"ring of such sections, {1 / tyre.sliding.footprint_share(middle):.3g} times the footprint"
+            f"phase '{phase.name}': friction falls from {phase.friction:.2g} to {phase.friction_lowest:.2g}, so "
+            f"that the contact stays below {limit:g} degC, where its rubber decomposes"
         )
-        late = self.series[(self.series.phase == phase.name) & (self.series.time_s > phase.start)]
-        late = late[late.time_s >= phase.start + SETTLED * (phase.end - phase.start)]
-        apart = (late.tread_mean_degC - late.half_space_degC).abs().max()
-        rise = late.half_space_degC.max() - phase.tread_start
-        if apart > UNRESOLVED * abs(rise):
-            yield (
-                f"phase '{phase.name}': heat goes {phase.heated_depth * 1e3:.2g} mm deep, elements are "
-                f"{tyre.mesh.size * 1e3:.2g} mm: the section's surface is up to {apart:.2g} K off the half-space "
-                "value, which is given beside it; a smaller mesh.size helps"
-            )
+    if not phase.locked:
+        return
+    tyre, middle = run.tyre, (phase.start + phase.end) / 2
+    yield (
+        f"phase '{phase.name}': the wheel is locked, the section is the one on the road; the heat budget counts a "
+        f"ring of such sections, {1 / tyre.sliding.footprint_share(middle):.3g} times the footprint"
+    )
+    late = series[series.time_s > phase.start]
+    late = late[late.time_s >= phase.start + SETTLED * (phase.end - phase.start)]
+    apart = (late.tread_mean_degC - late.half_space_degC).abs().max()
+    rise = late.half_space_degC.max() - phase.tread_start
+    if apart > UNRESOLVED * abs(rise):
+        yield (
+            f"phase '{phase.name}': heat goes {phase.heated_depth * 1e3:.2g} mm deep, elements are "
+            f"{tyre.mesh.size * 1e3:.2g} mm: the section's surface is up to {apart:.2g} K off the half-space "
+            "value, which is given beside it; a smaller mesh.size helps"
+        )
 
 
-def sliding_outcome(result: Result) -> SlidingOutcome | None:
+def sliding_outcome(run: SlidingRun) -> SlidingOutcome | None:
     """The sliding of a run; None where no phase with slip was reached."""
     import pandas as pd
 
-    phases, rows = [], []
-    for number, phase in enumerate(result.study.card.drive.phases):
-        start = result.study.card.drive.starts[number]
-        numbers = np.flatnonzero((result.times >= start - 1e-6) & (result.times <= start + phase.duration + 1e-6))
+    phases, rows, warnings = [], [], []
+    for number, phase in enumerate(run.study.card.drive.phases):
+        start = run.study.card.drive.starts[number]
+        numbers = np.flatnonzero((run.times >= start - 1e-6) & (run.times <= start + phase.duration + 1e-6))
         if phase.slides and len(numbers) > 1:
-            found = list(_series(result, number, numbers))
-            rows += found
-            phases.append(_phase(result, number, numbers, pd.DataFrame(found)))
-    return SlidingOutcome(result, tuple(phases), pd.DataFrame(rows)) if phases else None
+            readings = list(_series(run, number, numbers))
+            series = pd.DataFrame(readings)
+            rows += readings
+            phases.append(_phase(run, number, numbers, series))
+            warnings += _warnings(run, phases[-1], series)
+    if not phases:
+        return None
+    limit = run.tyre.sliding.law.decomposition_temperature
+    return SlidingOutcome(run.study.title, limit, tuple(phases), pd.DataFrame(rows), tuple(warnings))
 
 
-def _within(result: Result, number: int, i: int) -> float:
+def _within(run: SlidingRun, number: int, i: int) -> float:
     """The time of a reading, seen from inside a phase."""
-    drive = result.study.card.drive
+    drive = run.study.card.drive
     start, duration = drive.starts[number], drive.phases[number].duration
-    return float(np.clip(result.times[i], start + 1e-9 * duration, start + duration * (1 - 1e-9)))
+    return float(np.clip(run.times[i], start + 1e-9 * duration, start + duration * (1 - 1e-9)))
 
 
-def _series(result: Result, number: int, numbers: Numbers) -> Iterator[dict[str, Any]]:
-    sliding, drive = result.tyre.sliding, result.study.card.drive
+def _series(run: SlidingRun, number: int, numbers: Numbers) -> Iterator[dict[str, Any]]:
+    sliding, drive = run.tyre.sliding, run.study.card.drive
     surface, phase = sliding.surface, drive.phases[number]
-    beside = _half_space(result, number, numbers)
+    beside = _half_space(run, number, numbers)
     for i, skid in zip(numbers, beside, strict=True):
-        t = _within(result, number, int(i))
-        nodes = result.history.values[i][surface.dofs]
+        t = _within(run, number, int(i))
+        nodes = run.history.values[i][surface.dofs]
         T = surface.trace @ nodes
         mean, flux = float(surface.weight @ T / surface.area), sliding.friction_flux(t, T)
         used, wanted = float(surface.weight @ flux / surface.area), sliding.uncapped_flux(t)
@@ -159,10 +191,10 @@ def _series(result: Result, number: int, numbers: Numbers) -> Iterator[dict[str,
         locked = drive.locked_since(t) is not None
         share = 0.0 if passage is None else passage.tread_share
         if locked and used > 0:
-            share = 1.0 - sliding.skid_film(t) * (skid - result.tyre.road_temperature(t)) / used
+            share = 1.0 - sliding.skid_film(t) * (skid - run.tyre.road_temperature(t)) / used
         yield {
             "phase": phase.name,
-            "time_s": float(result.times[i]),
+            "time_s": float(run.times[i]),
             "sliding_speed_m_s": drive.slip(t).sliding_speed,
             "contact_pressure_Pa": sliding.pressure(t),
             "friction": friction * used / wanted if wanted > 0 else friction,
@@ -176,16 +208,16 @@ def _series(result: Result, number: int, numbers: Numbers) -> Iterator[dict[str,
         }
 
 
-def _half_space(result: Result, number: int, numbers: Numbers) -> Array:
+def _half_space(run: SlidingRun, number: int, numbers: Numbers) -> Array:
     """Surface of a locked wheel's half-space at readings, from the section's mean when it locked; NaN for another."""
-    tyre, drive = result.tyre, result.study.card.drive
-    inside = [_within(result, number, int(i)) for i in numbers]
+    tyre, drive = run.tyre, run.study.card.drive
+    inside = [_within(run, number, int(i)) for i in numbers]
     since = drive.locked_since(inside[0])
     if since is None:
         return np.full(len(numbers), math.nan)
     sliding = tyre.sliding
-    first = int(np.searchsorted(result.times, since - 1e-6))
-    initial = _mean_surface(result, first)
+    first = int(np.searchsorted(run.times, since - 1e-6))
+    initial = _mean_surface(run, first)
     last = drive.starts[number] + drive.phases[number].duration
 
     def at(time: float) -> float:
@@ -201,17 +233,17 @@ def _half_space(result: Result, number: int, numbers: Numbers) -> Array:
     )
 
 
-def _mean_surface(result: Result, i: int) -> float:
-    surface = result.tyre.sliding.surface
-    return float(surface.row @ result.history.values[i][surface.dofs] / surface.area)
+def _mean_surface(run: SlidingRun, i: int) -> float:
+    surface = run.tyre.sliding.surface
+    return float(surface.row @ run.history.values[i][surface.dofs] / surface.area)
 
 
-def _phase(result: Result, number: int, numbers: Numbers, series: pd.DataFrame) -> SlidingPhase:
-    sliding, tyre = result.tyre.sliding, result.tyre
-    drive, state = result.study.card.drive, result.phases[number]
+def _phase(run: SlidingRun, number: int, numbers: Numbers, series: pd.DataFrame) -> SlidingPhase:
+    sliding, tyre = run.tyre.sliding, run.tyre
+    drive, state = run.study.card.drive, run.phases[number]
     seconds = series.time_s.to_numpy()
     hottest, fastest = int(series.exit_edge_degC.argmax()), int(series.sliding_speed_m_s.argmax())
-    energy = sum(e for (kind, _), e in result.heat_budget.energies.items() if kind == "sliding")
+    energy = sum(e for (kind, _), e in run.heat_budget.energies.items() if kind == "sliding")
     heat = float(energy[numbers[-1]] - energy[numbers[0]])  # type: ignore[index]
     middle = float(seconds[0] + seconds[-1]) / 2
     k, capacity = tyre.tread
@@ -219,11 +251,11 @@ def _phase(result: Result, number: int, numbers: Numbers, series: pd.DataFrame) 
     return SlidingPhase(
         name=state.name,
         start=state.start,
-        end=min(state.end, float(result.times[-1])),
+        end=min(state.end, float(run.times[-1])),
         locked=state.locked,
         sliding_speed=float(series.sliding_speed_m_s.iloc[fastest]),
         pressure=float(series.contact_pressure_Pa.iloc[-1]),
-        friction=sliding.friction(_within(result, number, int(numbers[fastest]))),
+        friction=sliding.friction(_within(run, number, int(numbers[fastest]))),
         friction_lowest=float(series.friction.min()),
         capped=bool(series.capped.any()),
         friction_work=float(np.trapezoid(series.friction_power_W, seconds)),

@@ -16,7 +16,8 @@ from tyrefem.sliding.contact import Passage
 if TYPE_CHECKING:
     from tyrefem.boundaries.sliding import SlidingLaw
     from tyrefem.drive import Drive
-    from tyrefem.rolling import RollingTyre
+    from tyrefem.meshing import TyreMesh
+    from tyrefem.surroundings import Surroundings
 
 Array = NDArray[np.float64]
 #: Readings that a phase with slip gets beside those of ``output.every``; closer at its start, where a skid warms fast.
@@ -29,20 +30,24 @@ class SlidingTread:
     A rolling tread point takes its share of mu p v_s once per revolution; the mean over the revolution goes into the
     section. A locked wheel does not turn: the section modelled is the one on the road, takes mu p v all the time and
     gives to the road that passes under it through `Passage.skid_film`.
+
+    Parameters
+    ----------
+    surroundings : the drive, the boundary laws and the load cases. mesh : has the tread's surface, ``road``.
     """
 
-    def __init__(self, tyre: RollingTyre) -> None:
-        self.tyre = tyre
+    def __init__(self, surroundings: Surroundings, mesh: TyreMesh) -> None:
+        self.surroundings, self.mesh = surroundings, mesh
 
     @property
     def drive(self) -> Drive:
         """The drive."""
-        return self.tyre.drive
+        return self.surroundings.drive
 
     @property
     def law(self) -> SlidingLaw:
         """The study's ``[boundaries] sliding``."""
-        return self.tyre.study.card.boundaries.sliding
+        return self.surroundings.study.card.boundaries.sliding
 
     @property
     def conditions(self) -> list[Flux | Film]:
@@ -53,7 +58,7 @@ class SlidingTread:
         heat = Flux(self.mean_heat, of_temperature=True)
         if all(self.drive.locked_since(start) is None for start in self.drive.starts):
             return [heat]
-        return [heat, Film(lambda _x, t: self.skid_film(t), lambda _x, t: self.tyre.road_temperature(t))]
+        return [heat, Film(lambda _x, t: self.skid_film(t), lambda _x, t: self.surroundings.road_temperature(t))]
 
     @property
     def readings(self) -> list[float]:
@@ -65,19 +70,21 @@ class SlidingTread:
     @functools.cached_property
     def surface(self) -> Surface:
         """Quadrature of the tread's surface."""
-        return operators_of(self.tyre.mesh.mesh, self.tyre.study.card.mesh.element, True).surface("road")
+        return operators_of(self.mesh.mesh, self.surroundings.study.card.mesh.element, True).surface("road")
 
     @functools.cached_property
     def effusivities(self) -> tuple[float, float]:
         """b of tread (its card at 25 degC) and road, J/m2/K/s^0.5."""
-        return effusivity(*self.tyre.tread), self.law.road_effusivity(self.tyre.study.card.boundaries.road)
+        return effusivity(*self.surroundings.tread), self.law.road_effusivity(
+            self.surroundings.study.card.boundaries.road
+        )
 
     def footprint_share(self, t: float) -> float:
         """Part of the tread's surface in contact while the wheel turns: the area of a strain law that presses the tyre
         on its road; else, and where the road's law gives the fraction, the fraction of a revolution on the road."""
-        area = self.tyre.footprint_area(t)
-        if area is None or self.tyre.study.card.boundaries.road.fraction is not None:
-            return self.tyre.rolling_fraction(t)
+        area = self.surroundings.footprint_area(t)
+        if area is None or self.surroundings.study.card.boundaries.road.fraction is not None:
+            return self.surroundings.rolling_fraction(t)
         return area / (self.surface.area * self._sides)
 
     def contact_area(self, t: float) -> float:
@@ -86,12 +93,12 @@ class SlidingTread:
 
     @property
     def _sides(self) -> float:
-        return 2.0 if self.tyre.study.section.half else 1.0
+        return 2.0 if self.surroundings.study.section.half else 1.0
 
     def pressure(self, t: float) -> float:
         """Contact pressure, Pa: the law's, else load over `contact_area`; none off the road."""
         area = self.contact_area(t)
-        load = float(self.tyre.schedule.mean(lambda case: case.load, t))
+        load = float(self.surroundings.schedule.mean(lambda case: case.load, t))
         if area <= 0 or load <= 0:
             return 0.0
         return load / area if self.law.pressure is None else self.law.pressure
@@ -102,7 +109,7 @@ class SlidingTread:
 
     def passage(self, t: float) -> Passage | None:
         """The passage through the footprint; None where tread and road do not touch or do not move."""
-        slip, length = self.drive.slip(t), self.tyre.schedule.mean(lambda case: case.footprint_length, t)
+        slip, length = self.drive.slip(t), self.surroundings.schedule.mean(lambda case: case.footprint_length, t)
         if not (slip.forward > 0 and length > 0):
             return None
         rolling = 0.0 if self.drive.locked_since(t) is not None else slip.rolling_speed
@@ -118,7 +125,7 @@ class SlidingTread:
         passage = self.passage(t)
         if passage is None or not flux.any():
             return np.zeros(np.shape(T))
-        most = passage.largest_flux(self.law.decomposition_temperature, T, self.tyre.road_temperature(t))
+        most = passage.largest_flux(self.law.decomposition_temperature, T, self.surroundings.road_temperature(t))
         return np.asarray(np.minimum(flux, np.maximum(most, 0.0)))
 
     def mean_heat(self, _x: Any, t: float, T: Array) -> Array:
@@ -127,7 +134,7 @@ class SlidingTread:
         if passage is None:
             return flux
         if self.drive.locked_since(t) is not None:
-            return self.tyre.road_fraction(t) * flux
+            return self.surroundings.road_fraction(t) * flux
         return self.footprint_share(t) * passage.tread_share * flux
 
     def skid_film(self, t: float) -> float:
@@ -143,7 +150,7 @@ class SlidingTread:
         Rolling: `Passage.meeting` plus the rise of the passage (1, 3, 5). Locked: the rise of the surface over the
         road, which is the mean over the contact, times exit over mean.
         """
-        passage, road = self.passage(t), self.tyre.road_temperature(t)
+        passage, road = self.passage(t), self.surroundings.road_temperature(t)
         if passage is None:
             return np.asarray(T)
         since = self.drive.locked_since(t)

@@ -1,0 +1,76 @@
+"""Answers of studies by a reduced model: what can be marched together is."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator, Sequence
+from typing import Any
+
+from tyrefem.errors import InputError
+from tyrefem.reduced.balance import ReducedBalance, reduced_balance
+from tyrefem.reduced.batch import Batch
+from tyrefem.reduced.march import march
+from tyrefem.reduced.marched import Marched
+from tyrefem.reduced.model import NotReducibleError, ReducedModel
+from tyrefem.reduced.readout import Readout
+from tyrefem.reduced.variant import Variant
+from tyrefem.rolling import RollingTyre, output_times
+from tyrefem.studies import Study
+from tyrefem.sweep.answers import answers
+
+#: Variants marched side by side.
+SIDE_BY_SIDE = 32
+#: K, of the reduced model's time integration; see `Batch`.
+TIME_TOLERANCE = 0.2
+
+
+def reduced_answers(model: ReducedModel, studies: Sequence[Study], time_to: float | None) -> list[dict[str, Any]]:
+    """``{"answers"}``, ``{"failure"}`` or ``{"not_reducible"}`` per study."""
+    found: list[dict[str, Any]] = [{} for _ in studies]
+    for number, outcome in reduced_outcomes(model, studies):
+        found[number] = {"answers": answers(outcome, time_to)} if isinstance(outcome, Variant) else outcome
+    return found
+
+
+def reduced_outcomes(
+    model: ReducedModel, studies: Sequence[Study], tolerance: float = TIME_TOLERANCE
+) -> Iterator[tuple[int, Variant | dict[str, str]]]:
+    """(number, variant) of every study, marched side by side; or ``{"failure"}`` or ``{"not_reducible"}``.
+
+    Parameters
+    ----------
+    tolerance : K, of time integration.
+    """
+    tyres = [RollingTyre(study, model.base) for study in studies]
+    for numbers, part in side_by_side(model, tyres, tolerance):
+        if isinstance(part, dict):
+            yield numbers[0], part
+            continue
+        readout = Readout(part, output_times(part.batch.balances[0].tyre)[0])
+        for place, number in enumerate(numbers):
+            yield number, Variant(readout, place)
+
+
+def side_by_side(
+    model: ReducedModel, tyres: Sequence[RollingTyre], tolerance: float = TIME_TOLERANCE, most: int = SIDE_BY_SIDE
+) -> Iterator[tuple[list[int], Marched | dict[str, str]]]:
+    """Tyres marched together where their drives allow it, ``most`` at a time: (their numbers, the march).
+
+    Or (a number, ``{"failure"}``) of a tyre that cannot be, (a number, ``{"not_reducible"}``) of one that the model
+    cannot follow.
+    """
+    groups: dict[Any, list[tuple[int, ReducedBalance]]] = {}
+    for number, tyre in enumerate(tyres):
+        try:
+            balance = reduced_balance(model, tyre)
+        except NotReducibleError as error:
+            yield [number], {"not_reducible": str(error)}
+        except InputError as error:
+            yield [number], {"failure": str(error)}
+        else:
+            output = tyre.study.card.output
+            key = tyre.drive.starts, tyre.drive.end, tyre.schedule.knots, balance.layout, output.every, output.fields
+            groups.setdefault(key, []).append((number, balance))
+    for members in groups.values():
+        for first in range(0, len(members), most):
+            part = members[first : first + most]
+            yield [number for number, _ in part], march(Batch(model, [balance for _, balance in part], tolerance))
