@@ -118,6 +118,7 @@ def test_a_tyre_off_the_road_does_not_rub():
     assert flying.heat_budget.total("sliding") == 0
     assert flying.sliding.phases[0].friction_work == 0
     assert flying.tyre.road_fraction(5.0) == 0
+    assert not any("ring of such sections" in line for line in flying.warnings)
 
 
 # -- locked ----------------------------------------------------------------------------------------------------------

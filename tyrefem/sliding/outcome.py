@@ -131,12 +131,14 @@ def _warnings(run: SlidingRun, phase: SlidingPhase, series: pd.DataFrame) -> Ite
             f"phase '{phase.name}': friction falls from {phase.friction:.2g} to {phase.friction_lowest:.2g}, so "
             f"that the contact stays below {limit:g} degC, where its rubber decomposes"
         )
-    if not phase.locked:
+    tyre = run.tyre
+    share = tyre.sliding.footprint_share((phase.start + phase.end) / 2)
+    # A wheel off the road slides on nothing.
+    if not phase.locked or share == 0:
         return
-    tyre, middle = run.tyre, (phase.start + phase.end) / 2
     yield (
         f"phase '{phase.name}': the wheel is locked, the section is the one on the road; the heat budget counts a "
-        f"ring of such sections, {1 / tyre.sliding.footprint_share(middle):.3g} times the footprint"
+        f"ring of such sections, {1 / share:.3g} times the footprint"
     )
     late = series[series.time_s > phase.start]
     late = late[late.time_s >= phase.start + SETTLED * (phase.end - phase.start)]
