@@ -156,7 +156,8 @@ def sliding_outcome(run: SlidingRun) -> SlidingOutcome | None:
     """The sliding of a run; None where no phase with slip was reached."""
     import pandas as pd
 
-    phases, rows, warnings = [], [], []
+    phases, rows = [], []
+    warnings: list[str] = []
     for number, phase in enumerate(run.study.card.drive.phases):
         start = run.study.card.drive.starts[number]
         numbers = np.flatnonzero((run.times >= start - 1e-6) & (run.times <= start + phase.duration + 1e-6))
