@@ -16,6 +16,7 @@ import time
 from pathlib import Path
 
 import tyrefem as tf
+from tyrefem.diagnose.blind_picture import save
 from tyrefem.diagnose.blind_rates import run_blind
 
 
@@ -31,6 +32,7 @@ def main() -> None:
     given = parser.parse_args()
     began = time.perf_counter()
     found = run_blind(tf.study(given.study), given.cases, given.seed, given.out, given.workers, reduced=given.reduced)
+    save(found, given.out)
     for line in found.words():
         print(line)
     print()

@@ -17,7 +17,7 @@ _WHERE = {
     "Study": "api",
     "Result": "api",
     "Campaign": "api",
-    "Comparison": "compare",
+    "Comparison": "api",
     "InputError": "errors",
     "Conduction": "conduction",
     "Material": "conduction",

@@ -5,17 +5,22 @@ The classes that they stand on are data; each verb is one line that calls the ro
 
 from __future__ import annotations
 
-from collections.abc import Callable, Mapping
+from collections.abc import Callable, Iterable, Mapping, Sequence
+from functools import cached_property
 from pathlib import Path
 from typing import TYPE_CHECKING, Any, TypeVar
 
 from tyrefem import campaign, result, studies
+from tyrefem.compare import comparison
+from tyrefem.diagnose import diagnosis
+from tyrefem.rig import identification
+from tyrefem.sweep import design
 
 if TYPE_CHECKING:
     from tyrefem.cases import Case
-    from tyrefem.compare import Comparison
-    from tyrefem.diagnose import Diagnosis
-    from tyrefem.sweep.design import Design
+    from tyrefem.rig.card import RigCard
+    from tyrefem.rig.grid import Fineness
+    from tyrefem.rig.readings import HeatingTest
 
 Data = TypeVar("Data")
 
@@ -70,6 +75,94 @@ class Campaign(campaign.Campaign):
         return found if isinstance(found, str) else with_verbs(Result, found)
 
 
+class Comparison(comparison.Comparison):
+    """Deviations of a study from measurements, with `save`."""
+
+    def save(self, folder: str | Path) -> Path:
+        """Write tables, pictures and a self-contained page into a folder; returns the page.
+
+        Raises
+        ------
+        InputError : the folder cannot be written.
+        """
+        from tyrefem.compare.page import save
+
+        return save(self, folder)
+
+
+class Diagnosis(diagnosis.Diagnosis):
+    """What a diagnosis says, with `to_dict` and `save`."""
+
+    @classmethod
+    def of(cls, data: diagnosis.Diagnosis) -> Diagnosis:
+        """The same diagnosis, and every further look at the same data, with verbs."""
+        verbal = with_verbs(cls, data)
+        if data.again is not None:
+            verbal.__dict__["again"] = cls.of(data.again)
+        return verbal
+
+    def to_dict(self) -> dict[str, Any]:
+        """What `verdict.json` holds."""
+        from tyrefem.diagnose.record import record
+
+        return record(self)
+
+    def save(self, folder: str | Path) -> Path:
+        """Write verdict.json, amended.toml, tables, pictures and one self-contained page; returns the page.
+
+        Raises
+        ------
+        InputError : the folder cannot be written.
+        """
+        from tyrefem.diagnose.page import save
+
+        return save(self, folder)
+
+
+class Design(design.Design):
+    """The answers to a design study, with `save`."""
+
+    def save(self, folder: str | Path, *, pictures: bool = True) -> Path:
+        """Write every table (CSV and Parquet), ``summary.json``, and with pictures the PNG files and ``sweep.html``.
+
+        Raises
+        ------
+        InputError : the folder cannot be written.
+        """
+        from tyrefem.sweep.output import save
+
+        save(self, Path(folder), pictures=pictures)
+        return Path(folder)
+
+
+class Identification(identification.Identification):
+    """What a rig's tables say about its layers, with `words`, `to_dict` and `save`."""
+
+    @cached_property
+    def words(self) -> tuple[str, ...]:
+        """What the data cannot determine and what else a reader must know, a sentence each."""
+        from tyrefem.rig.verdict import sentences
+
+        return sentences(self)
+
+    def to_dict(self) -> dict[str, Any]:
+        """What `rig.json` holds."""
+        from tyrefem.rig.summary import summary
+
+        return summary(self)
+
+    def save(self, folder: str | Path, base: str | None = None) -> Path:
+        """Write JSON, tables, pictures, ``report.html`` and, with a base card, material cards.
+
+        Raises
+        ------
+        InputError : the folder cannot be written, or there is no such base card.
+        """
+        from tyrefem.rig.files import save
+
+        return save(self, folder, base)
+
+
 class Study(studies.Study):
     """A study, and what can be asked of it. Made by `study`; changed by `replace`.
 
@@ -91,7 +184,7 @@ class Study(studies.Study):
         """Deviation from measured tables: the one given, or the study's own. Options: see `tyrefem.compare.compare`."""
         from tyrefem.compare import compare
 
-        return compare(self, table, result, **options)
+        return with_verbs(Comparison, compare(self, table, result, **options))
 
     def diagnose(self, table: Any = None, **options: Any) -> Diagnosis:
         """What the model is missing, judged by measured tables: the one given, or the study's own.
@@ -100,7 +193,7 @@ class Study(studies.Study):
         """
         from tyrefem.diagnose import diagnose
 
-        return diagnose(self, table, **options)
+        return Diagnosis.of(diagnose(self, table, **options))
 
     def sweep(self, vary: Mapping[str, Any] | None = None, **options: Any) -> Design:
         """Many variants of the study, and what they say: response, Pareto front, tornado, indices, optimum, envelope.
@@ -116,7 +209,7 @@ class Study(studies.Study):
         """
         from tyrefem.sweep.questions import asked_of
 
-        return asked_of(self, vary, **options)
+        return with_verbs(Design, asked_of(self, vary, **options))
 
     def campaign(self) -> Campaign:
         """The cases of the study's table, each a study of its own."""
@@ -133,3 +226,30 @@ def study(name: str | Path, changes: Mapping[str, Any] | None = None, case: str 
     InputError : no such study, or something wrong in it or in a card it names: file, field, what is allowed.
     """
     return Study.load(name, changes, case)
+
+
+def identify(
+    rig: str | Path | RigCard,
+    tables: Iterable[str | Path] = (),
+    *,
+    tests: Sequence[HeatingTest] = (),
+    without: Sequence[str] = (),
+    linear: bool = True,
+    fineness: Fineness | None = None,
+    progress: Callable[[], None] | None = None,
+) -> Identification:
+    """Find conductivity and specific heat of every layer of a rig from its measured tables.
+
+    Parameters
+    ----------
+    rig : name, path or card. tables : CSV files whose runs are named like the card's; none: those beside the card.
+    tests, without, linear, fineness, progress : as of `tyrefem.rig.identification.identify`.
+
+    Raises
+    ------
+    InputError : a card or table that cannot be used.
+    """
+    data = identification.identify(
+        rig, tables, tests=tests, without=without, linear=linear, fineness=fineness, progress=progress
+    )
+    return with_verbs(Identification, data)

@@ -4,23 +4,16 @@ from __future__ import annotations
 
 from collections.abc import Callable, Iterator, Mapping
 from dataclasses import dataclass
-from pathlib import Path
 from typing import TYPE_CHECKING, Any, Self
 
 from tyrefem.brief import Brief
 from tyrefem.cases import Case
 from tyrefem.conduction import SolverError
 from tyrefem.errors import InputError
-from tyrefem.interruption import held_back
-from tyrefem.output import write_json
 from tyrefem.rolling import run
 from tyrefem.studies import Study
-from tyrefem.summary import run_files, versions, write_tables
-from tyrefem.vtk import file_names
 
 if TYPE_CHECKING:
-    import pandas as pd
-
     from tyrefem.result import Result
 
 
@@ -110,79 +103,4 @@ def row(case: Case, outcome: Result | str) -> dict[str, Any]:
         **({} if outcome.sliding is None else {"exit_edge_max_degC": outcome.sliding.hottest.exit_edge_highest}),
         "heat_budget_imbalance": outcome.heat_budget.imbalance,
         "failure": f"interrupted at {outcome.times[-1]:g} s" if outcome.history.interrupted else "",
-    }
-
-
-def campaign_files(campaign: Campaign) -> list[str]:
-    """The files that `run_campaign` and its report may write, relative to their folder."""
-    from glob import escape
-
-    cases = [f"cases/{escape(case.name)}/{name}" for case in campaign.cases for name in run_files(campaign.study)]
-    vtk = [f"cases/{escape(case.name)}/vtk/{name}" for case in campaign.cases for name in file_names(case.name)]
-    return ["campaign.csv", "report.html", *(name for name in cases if "/vtk/" not in name), *vtk,
-            *(f"cases/{escape(case.name)}/summary.json" for case in campaign.cases)]  # fmt: skip
-
-
-def run_campaign(
-    campaign: Campaign,
-    folder: Path,
-    progress: Callable[[int, int], None] | None = None,
-    each: Callable[[Any, Path], None] | None = None,
-) -> pd.DataFrame:
-    """Run a campaign into a folder: a folder per case, ``campaign.csv`` and ``summary.json``.
-
-    The table is written anew after every case, so that an interrupted campaign leaves what it finished.
-    ``each`` may write more of a case (pictures, VTK) into its folder.
-    """
-    rows: list[dict[str, Any]] = []
-    # From the start on: an older campaign's table in this folder must not pass for this one's.
-    table = _write(campaign, rows, folder)
-    for case, outcome in campaign.runs(progress):
-        try:
-            if not isinstance(outcome, str):
-                with held_back():
-                    write_tables(outcome, folder / "cases" / case.name)
-                if each is not None:
-                    each(outcome, folder / "cases" / case.name)
-        finally:
-            # A case whose pictures were interrupted is finished all the same.
-            with held_back():
-                rows.append(row(case, outcome))
-                table = _write(campaign, rows, folder)
-    return table
-
-
-def write_campaign_report(campaign: Campaign, table: pd.DataFrame, path: str | Path) -> Path:
-    """One self-contained HTML page: all cases in a table, two pictures, failed cases with their reasons."""
-    from tyrefem.campaign_report import write
-
-    return write(campaign, table, Path(path))
-
-
-def _write(campaign: Campaign, rows: list[dict[str, Any]], folder: Path) -> pd.DataFrame:
-    import pandas as pd
-
-    from tyrefem.output import atomic_path
-
-    names = dict.fromkeys(name for entry in rows for name in entry if name != "failure")
-    table = pd.DataFrame(rows, columns=[*(names or ("case", "note")), "failure"])
-    with atomic_path(folder / "campaign.csv") as temporary:
-        table.to_csv(temporary, index=False, float_format="%.6g")
-    stopped = len(rows) < len(campaign.cases) or rows[-1]["failure"].startswith("interrupted")
-    write_json(_summary(campaign, table, not stopped), folder / "summary.json")
-    return table
-
-
-def _summary(campaign: Campaign, table: pd.DataFrame, complete: bool) -> dict[str, Any]:
-    return {
-        "study": campaign.study.name,
-        "title": campaign.study.title,
-        "complete": complete,
-        "cases": table.to_dict("records"),
-        "failed": [entry["case"] for entry in table.to_dict("records") if entry.get("failure")],
-        "tolerance_K": campaign.study.tolerance,
-        "mesh": campaign.study.card.mesh.model_dump(),
-        "versions": versions(),
-        "random_seed": None,
-        "input": dict(campaign.study.data),
     }

@@ -1,26 +1,97 @@
-"""A campaign as one self-contained HTML page: every case in a table, hottest point and rolling resistance drawn."""
+"""A campaign in a folder: a table and a folder per case as they finish; and one page, with two pictures, of all."""
 
 from __future__ import annotations
 
 import base64
+from collections.abc import Callable
+from glob import escape
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
-from tyrefem.output import atomic_path
-from tyrefem.summary import versions
+from tyrefem.campaign import Campaign, row
+from tyrefem.interruption import held_back
+from tyrefem.output import atomic_path, write_json
+from tyrefem.plotting.style import FONT, TITLE, add_axes, figure, line_style, plain, png, short, tidy, title
+from tyrefem.summary import run_files, versions, write_tables
+from tyrefem.vtk import file_names
 
 if TYPE_CHECKING:
     import pandas as pd
     from matplotlib.figure import Figure
 
-    from tyrefem.campaign import Campaign
 
 #: With more cases than this their names are left out of the pictures: they would be too small to read.
 MOST_NAMES = 60
 
 
-def write(campaign: Campaign, table: pd.DataFrame, path: Path) -> Path:
-    """Write the page. ``table`` is what `tyrefem.campaign.run_campaign` returns.
+def campaign_files(campaign: Campaign) -> list[str]:
+    """The files that `run_campaign` and its report may write, relative to their folder."""
+    cases = [f"cases/{escape(case.name)}/{name}" for case in campaign.cases for name in run_files(campaign.study)]
+    vtk = [f"cases/{escape(case.name)}/vtk/{name}" for case in campaign.cases for name in file_names(case.name)]
+    return ["campaign.csv", "report.html", *(name for name in cases if "/vtk/" not in name), *vtk,
+            *(f"cases/{escape(case.name)}/summary.json" for case in campaign.cases)]  # fmt: skip
+
+
+def run_campaign(
+    campaign: Campaign,
+    folder: Path,
+    progress: Callable[[int, int], None] | None = None,
+    each: Callable[[Any, Path], None] | None = None,
+) -> pd.DataFrame:
+    """Run a campaign into a folder: a folder per case, ``campaign.csv`` and ``summary.json``.
+
+    The table is written anew after every case, so that an interrupted campaign leaves what it finished.
+    ``each`` may write more of a case (pictures, VTK) into its folder.
+    """
+    rows: list[dict[str, Any]] = []
+    # From the start on: an older campaign's table in this folder must not pass for this one's.
+    table = _write_table(campaign, rows, folder)
+    for case, outcome in campaign.runs(progress):
+        try:
+            if not isinstance(outcome, str):
+                with held_back():
+                    write_tables(outcome, folder / "cases" / case.name)
+                if each is not None:
+                    each(outcome, folder / "cases" / case.name)
+        finally:
+            # A case whose pictures were interrupted is finished all the same.
+            with held_back():
+                rows.append(row(case, outcome))
+                table = _write_table(campaign, rows, folder)
+    return table
+
+
+def _write_table(campaign: Campaign, rows: list[dict[str, Any]], folder: Path) -> pd.DataFrame:
+    import pandas as pd
+
+    names = dict.fromkeys(name for entry in rows for name in entry if name != "failure")
+    table = pd.DataFrame(rows, columns=[*(names or ("case", "note")), "failure"])
+    with atomic_path(folder / "campaign.csv") as temporary:
+        table.to_csv(temporary, index=False, float_format="%.6g")
+    stopped = len(rows) < len(campaign.cases) or rows[-1]["failure"].startswith("interrupted")
+    write_json(_summary(campaign, table, not stopped), folder / "summary.json")
+    return table
+
+
+def _summary(campaign: Campaign, table: pd.DataFrame, complete: bool) -> dict[str, Any]:
+    return {
+        "study": campaign.study.name,
+        "title": campaign.study.title,
+        "complete": complete,
+        "cases": table.to_dict("records"),
+        "failed": [entry["case"] for entry in table.to_dict("records") if entry.get("failure")],
+        "tolerance_K": campaign.study.tolerance,
+        "mesh": campaign.study.card.mesh.model_dump(),
+        "versions": versions(),
+        "random_seed": None,
+        "input": dict(campaign.study.data),
+    }
+
+
+def write_campaign_report(campaign: Campaign, table: pd.DataFrame, path: str | Path) -> Path:
+    """Write one self-contained page: all cases in a table, two pictures, failed cases with their reasons.
+
+    ``table`` is what `run_campaign` returns.
 
     Raises
     ------
@@ -32,14 +103,14 @@ def write(campaign: Campaign, table: pd.DataFrame, path: Path) -> Path:
         loader=FileSystemLoader(Path(__file__).parent), autoescape=True, undefined=StrictUndefined,
         trim_blocks=True, lstrip_blocks=True,
     )  # fmt: skip
-    done = finished(table)
+    path, done = Path(path), finished(table)
     failed = table[table["failure"] != ""]
     page = environment.get_template("campaign_report.html").render(
         campaign=campaign,
         summary=_one_line(campaign, done),
         rows=done.to_dict("records"),
         failed=failed.to_dict("records"),
-        pictures=[(words, base64.b64encode(png).decode("ascii")) for words, png in _pictures(done)],
+        pictures=[(words, base64.b64encode(drawn).decode("ascii")) for words, drawn in _pictures(done)],
         links={name for name in done["case"] if (path.parent / "cases" / name / "report.html").is_file()},
         versions=versions(),
     )
@@ -69,8 +140,6 @@ def _one_line(campaign: Campaign, done: pd.DataFrame) -> str:
 
 
 def _pictures(done: pd.DataFrame) -> list[tuple[str, bytes]]:
-    from tyrefem.plotting.style import png
-
     if not len(done):
         return []
     return [
@@ -93,8 +162,6 @@ def bars(done: pd.DataFrame, column: str) -> Figure:
 
     The lines reach from side to side: the axis does not begin at 0, and a bar's length would tell a wrong ratio.
     """
-    from tyrefem.plotting.style import FONT, TITLE, add_axes, figure, line_style, plain, short, tidy, title
-
     name, label, form = _AXES[column]
     named = len(done) <= MOST_NAMES
     line = 0.21 if named else 8.0 / len(done)

@@ -14,7 +14,8 @@ import pytest
 import tyrefem as tf
 from tyrefem import campaign as campaigns
 from tyrefem.api import Study
-from tyrefem.campaign import Campaign, run_campaign, write_campaign_report
+from tyrefem.campaign import Campaign
+from tyrefem.campaign_report import run_campaign, write_campaign_report
 from tyrefem.cli import main
 
 

@@ -14,6 +14,7 @@ import pytest
 from toy_study import Sensor, measured_from
 
 from tyrefem.compare import compare
+from tyrefem.compare.page import save
 from tyrefem.compare.pictures import deviations
 from tyrefem.errors import InputError
 from tyrefem.output import atomic_folder, atomic_path
@@ -40,7 +41,7 @@ def comparison():
 def folder(comparison, tmp_path_factory):
     folder = tmp_path_factory.mktemp("out")
     (folder / "mine.txt").write_text("kept")
-    assert comparison.save(folder) == folder / "comparison.html"
+    assert save(comparison, folder) == folder / "comparison.html"
     return folder
 
 

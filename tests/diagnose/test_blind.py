@@ -9,7 +9,7 @@ import numpy as np
 import pytest
 
 import tyrefem as tf
-from tyrefem.diagnose import blind_rates
+from tyrefem.diagnose import blind_picture, blind_rates
 from tyrefem.diagnose.blind import KINDS, cases
 from tyrefem.diagnose.blind_rates import Blind, Rate
 from tyrefem.diagnose.truth import backward
@@ -99,6 +99,7 @@ def test_finished_cases_are_not_run_again(tmp_path: Path, monkeypatch: pytest.Mo
         blind_rates.run_blind(study, 4, 7, tmp_path)
     assert not (tmp_path / "blind.json").exists()
     found = blind_rates.run_blind(study, 4, 7, tmp_path)
+    blind_picture.save(found, tmp_path)
     assert ran == [0, 1, 2, 2, 3]
     assert found.rates["no effect: no gap"].right == 4
     assert (tmp_path / "blind.json").is_file()

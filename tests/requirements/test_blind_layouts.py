@@ -12,7 +12,7 @@ from odd_studies import FITTED, write
 import tyrefem as tf
 from tyrefem.diagnose import blind_rates
 from tyrefem.diagnose.blind import cases
-from tyrefem.diagnose.blind_picture import picture
+from tyrefem.diagnose.blind_picture import picture, save
 from tyrefem.diagnose.blind_rates import Blind, run_blind
 
 
@@ -66,6 +66,7 @@ def test_a_study_without_sensors_or_runs_is_tested_by_its_contained_air(
     words = " ".join(found.words())
     assert "the contained air is all that is read" in words
     assert "No run is held out" in words
+    save(found, here / "out")
     record = json.loads((here / "out/blind.json").read_text(encoding="utf-8"))
     assert record["notes"] == list(found.notes)
 

@@ -11,9 +11,10 @@ from tyrefem.cli import main
 from tyrefem.materials import material
 from tyrefem.measured import read_table
 from tyrefem.rig import load, simulate
+from tyrefem.rig.files import save_layers
 from tyrefem.rig.find import find
 from tyrefem.rig.grid import Fineness
-from tyrefem.rig.layer_study import merged, study, write
+from tyrefem.rig.layer_study import merged, study
 from tyrefem.rig.readings import matched
 
 SHORT = ("--set", "drive.duration=10 s", "--set", "mesh.size=8 mm", "--set", "output.fields=2")
@@ -83,7 +84,7 @@ def test_layer_study_improves_with_the_true_layers(tmp_path: Path) -> None:
     one, two = found.table().to_dict("records")
     assert two["transient_misfit_K"] < 0.5 * one["transient_misfit_K"]
     assert two["log_evidence"] > one["log_evidence"] + 10
-    assert {file.name for file in write(found, tmp_path / "out").iterdir()} == {
+    assert {file.name for file in save_layers(found, tmp_path / "out").iterdir()} == {
         "layers.csv",
         "layers.png",
         "summary.json",

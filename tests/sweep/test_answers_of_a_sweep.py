@@ -18,14 +18,16 @@ from tyrefem import study
 from tyrefem.api import Study
 from tyrefem.errors import InputError
 from tyrefem.reduced.surrogate import Certificate
+from tyrefem.sweep import answer_pictures  # noqa: F401  registers its pictures
 from tyrefem.sweep.answers import TIME_TO, answer_names
 from tyrefem.sweep.card import EnvelopeCard, LimitCard, OptimiseCard
-from tyrefem.sweep.envelope import envelope
+from tyrefem.sweep.envelope import Envelope, envelope
 from tyrefem.sweep.execution import Execution
 from tyrefem.sweep.indices import Indices, indices
 from tyrefem.sweep.operating_points import checked_pairs
-from tyrefem.sweep.optimum import optimum
-from tyrefem.sweep.pareto import front, undominated
+from tyrefem.sweep.optimum import Optimum, optimum
+from tyrefem.sweep.pareto import ParetoFront, front, undominated
+from tyrefem.sweep.pictures import figures
 from tyrefem.sweep.plan import Plan, plan_of
 from tyrefem.sweep.responses import Responses, main_effects
 from tyrefem.sweep.samples import drawn
@@ -93,7 +95,7 @@ def test_limits_that_nothing_keeps_are_said_to_be_so(swept: Sweep) -> None:
     assert told[0] == "None of 6 variants keeps the limits."
     assert told[1].startswith("Highest temperature of all: from")
     # The limit, 10 K below all of them, does not press the curves together.
-    for _, _, picture in Responses(none).figures():
+    for _, _, picture in figures(Responses(none)):
         low, high = picture.axes[0].dataLim.intervaly
         assert picture.axes[0].get_ylim()[0] > low - (high - low)
 
@@ -429,7 +431,7 @@ def test_an_empty_sweep_has_an_empty_table(tyre: Study) -> None:
 def test_nothing_is_drawn_between_two_cards(tyre: Study) -> None:
     plan = plan_of(tyre, {"materials.tread": ["nasa-tread", "rubber-tread-aircraft"]})
     found = Responses(Sweep(plan, {n: {"answers": {"hottest_degC": 50.0 + n}, "by": "full"} for n in range(2)}))
-    ((name, _, picture),) = found.figures()
+    ((name, _, picture),) = figures(found)
     assert name.startswith("bars-")
     (line,) = picture.axes[0].get_lines()
     assert len(line.get_xdata()) == 2
@@ -457,3 +459,11 @@ def test_tornado_moves_stiffness_too_and_a_shared_card_as_one(tyre: Study) -> No
     assert plan.how["left_out"] == [
         "left out, as the strain law 'arcs' does not read them: materials.bead.shear_modulus.value"
     ]
+
+
+def test_every_kind_of_answer_has_registered_pictures() -> None:
+    """A new answer needs a function beside the code that draws it; without one nothing is drawn in silence."""
+    for kind in (Responses, ParetoFront, Indices, Tornado, Optimum, Envelope):
+        assert figures.dispatch(kind) is not figures.dispatch(object), kind
+    with pytest.raises(TypeError, match="no pictures are registered for dict"):
+        figures({})

@@ -43,18 +43,20 @@ def blind(
     """
     from tyrefem.answer_store import PROGRESS
     from tyrefem.api import study as load
+    from tyrefem.diagnose.blind_picture import FILES, save
     from tyrefem.diagnose.blind_rates import NEEDS, run_blind
 
     found = load(study, settings(changes), case)
     NEEDS.check(found)
     warn(found.warnings)
-    place, names = out or Path("results") / f"{found.name}-blind", ("blind.json", "blind.png")
+    place = out or Path("results") / f"{found.name}-blind"
     with (
-        results_folder(place, "blind", names, force=force, keeps=["cases/*.json", f"{PROGRESS}/*/*.npz"]) as folder,
+        results_folder(place, "blind", FILES, force=force, keeps=["cases/*.json", f"{PROGRESS}/*/*.npz"]) as folder,
         progress(f"{found.name}: {cases} cases", 1.0, quiet=quiet or as_json) as step,
     ):
         cores, tick = workers or os.cpu_count() or 1, lambda done: step(done / cases)
         result = run_blind(found, cases, seed, folder, cores, tick, reduced=reduced)
+        save(result, folder)
     if as_json:
         print_json(result.to_dict())
         return

@@ -52,7 +52,7 @@ def compare(
 ) -> None:
     """Compare a study with measured tables: deviation per sensor, run and phase, against the validation uncertainty."""
     from tyrefem.api import study as load
-    from tyrefem.compare.comparison import FILES
+    from tyrefem.compare.page import FILES
     from tyrefem.compare.validation import NEEDS
 
     found = load(study, settings(changes), case)

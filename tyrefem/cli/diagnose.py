@@ -57,8 +57,8 @@ def diagnose(
     """
     from tyrefem.answer_store import PROGRESS
     from tyrefem.api import study as load
+    from tyrefem.diagnose.page import FILES
     from tyrefem.diagnose.progress_store import ProgressStore
-    from tyrefem.diagnose.record import FILES
     from tyrefem.diagnose.workflow import NEEDS
 
     found = load(study, settings(changes), case)

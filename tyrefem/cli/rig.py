@@ -88,7 +88,7 @@ def identify(
 ) -> None:
     """Conductivity and specific heat of every layer with 95 % intervals; what the tables cannot determine."""
     from tyrefem import rig as rigs
-    from tyrefem.rig.files import FILES, write
+    from tyrefem.rig.files import FILES, save
     from tyrefem.rig.find import tables as tables_of
     from tyrefem.rig.layer_cards import bases
     from tyrefem.rig.verdict import shown, spoken
@@ -110,7 +110,7 @@ def identify(
                 step(min(count, total))
 
             found = rigs.identify(card, tests=tests, linear=not constant, progress=one_more)
-        write(found, folder, base or [])
+        save(found, folder, base or [])
     if as_json:
         print_json(found.to_dict())
         return
@@ -140,8 +140,9 @@ def layers(
 ) -> None:
     """Fit one set of readings with 1, 2, 3 ... layers: what more layers improve."""
     from tyrefem import rig as rigs
+    from tyrefem.rig.files import LAYER_FILES, save_layer_table, save_layers
     from tyrefem.rig.find import tables as tables_of
-    from tyrefem.rig.layer_study import FILES, LayerStudy, fits, write, write_table
+    from tyrefem.rig.layer_study import LayerStudy, fits
     from tyrefem.rig.readings import matched
 
     card, file = rigs.load(rig)
@@ -149,7 +150,7 @@ def layers(
     tests = rigs.read(card, tables_of(card, file, tables)) if tables else ()
     counts = range(1, min(most, len(card.layers)) + 1)
     place = out or Path("results") / f"rig-{_name(file)}-layers"
-    with results_folder(place, "rig layers", FILES, force=force) as folder:
+    with results_folder(place, "rig layers", LAYER_FILES, force=force) as folder:
         finished: dict[int, Any] = {}
         try:
             with progress(f"{_name(file)}: layers", counts[-1], quiet=quiet or as_json) as step:
@@ -163,10 +164,10 @@ def layers(
             if not finished:
                 raise
             with held_back():
-                write_table(LayerStudy(tuple(finished), tuple(finished.values())), folder, complete=False)
+                save_layer_table(LayerStudy(tuple(finished), tuple(finished.values())), folder, complete=False)
             raise Interrupted(f"{len(finished)} of {len(counts)} fits are in {folder / 'layers.csv'}") from None
         found = LayerStudy(tuple(finished), tuple(finished.values()))
-        write(found, folder)
+        save_layers(found, folder)
     if as_json:
         print_json({"rows": found.table().to_dict("records")})
         return

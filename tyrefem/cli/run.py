@@ -47,7 +47,7 @@ def run(
     A study with a table of cases runs them all, or the one of --case, and writes one table.
     """
     from tyrefem.api import study as load
-    from tyrefem.campaign import campaign_files
+    from tyrefem.campaign_report import campaign_files
     from tyrefem.summary import run_files
 
     values = settings(changes)
@@ -121,7 +121,7 @@ def _words(result: Result) -> str:
 def _campaign(
     campaign: Campaign, folder: Path, pictures: bool, vtk: bool, revolved: bool, as_json: bool, quiet: bool
 ) -> None:
-    from tyrefem.campaign import run_campaign, write_campaign_report
+    from tyrefem.campaign_report import run_campaign, write_campaign_report
 
     study = campaign.study
 

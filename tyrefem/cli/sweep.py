@@ -164,7 +164,7 @@ def sweep(
     from tyrefem.cli.sweep_workers import answered
     from tyrefem.quantity import parse
     from tyrefem.sweep.execution import Execution
-    from tyrefem.sweep.output import FILES, KEPT, write
+    from tyrefem.sweep.output import FILES, KEPT, save
 
     said = asked(
         vary=vary, uncertain=uncertain, sample=sample, count=count, seed=seed, cases=cases, limit=limit,
@@ -185,7 +185,7 @@ def sweep(
         found = answered(wanted, how.given({"folder": folder, "progress": tick}), scheduler, workers)
         tick("drawing", 0, 1)
         with keeping(f"finished variants are in {folder}, the same command goes on"):
-            summary = write(found, folder, pictures=pictures)
+            summary = save(found, folder, pictures=pictures)
     if as_json:
         print_file(folder / "summary.json")
     else:

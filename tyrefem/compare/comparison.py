@@ -2,26 +2,21 @@
 
 from __future__ import annotations
 
-import json
 import math
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 from functools import cached_property
-from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
 from tyrefem.brief import Brief
 from tyrefem.compare.history import ALL, History
 from tyrefem.compare.judgement import COLUMNS, row
+from tyrefem.output import jsonable
 
 if TYPE_CHECKING:
     import pandas as pd
 
     from tyrefem.compare.neighbours import Certificate
-
-
-#: Files that `Comparison.save` may write.
-FILES = ("comparison.csv", "residuals.csv", "comparison.json", "comparison.html", "histories-*.png", "deviations.png")
 
 
 #: Columns of `Comparison.inputs`.
@@ -157,36 +152,8 @@ class Comparison(Brief):
             "rows": self.table.to_dict(orient="records"),
             "inputs": self.inputs.to_dict(orient="records"),
         }
-        from tyrefem.output import jsonable
-
         plain: dict[str, Any] = jsonable(data)
         return plain
-
-    def save(self, folder: str | Path) -> Path:
-        """Write tables, pictures and a self-contained page into a folder; returns the page.
-
-        ``comparison.csv``, ``residuals.csv``, ``comparison.json``, ``histories-<run>.png``, ``deviations.png``,
-        ``comparison.html``. Each file is complete or not there.
-
-        Raises
-        ------
-        InputError : the folder cannot be written.
-        """
-        from tyrefem.compare.page import page
-        from tyrefem.compare.pictures import pictures
-        from tyrefem.output import atomic_folder
-
-        folder = Path(folder)
-        with atomic_folder(folder) as temporary:
-            self.table.to_csv(temporary / "comparison.csv", index=False, lineterminator="\n")
-            self.residuals.to_csv(temporary / "residuals.csv", index=False, lineterminator="\n")
-            text = json.dumps(self.to_dict(), indent=1, ensure_ascii=False, allow_nan=False)
-            (temporary / "comparison.json").write_text(text + "\n", encoding="utf-8")
-            drawn = pictures(self)
-            for name, picture in drawn.items():
-                (temporary / name).write_bytes(picture)
-            (temporary / "comparison.html").write_text(page(self, drawn), encoding="utf-8")
-        return folder / "comparison.html"
 
 
 def comparison_of(

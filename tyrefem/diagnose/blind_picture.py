@@ -1,12 +1,15 @@
-"""A blind benchmark in one picture: rates with intervals, stated against true probabilities, every effect."""
+"""A blind benchmark as JSON and in one picture: rates with intervals, stated and true probabilities, every effect."""
 
 from __future__ import annotations
 
+from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
-from tyrefem.plotting.style import FONT, PALETTE, QUIET, TITLE, add_axes, figure, plain, tidy, title
+from tyrefem.interruption import keeping
+from tyrefem.output import atomic_path, write_json
+from tyrefem.plotting.style import FONT, PALETTE, QUIET, TITLE, add_axes, figure, plain, png, tidy, title
 
 if TYPE_CHECKING:
     from matplotlib.figure import Figure
@@ -15,6 +18,22 @@ if TYPE_CHECKING:
 
 #: Height of a line of text, inches.
 LINE = 0.21
+#: Files that `save` writes.
+FILES = ("blind.json", "blind.png")
+
+
+def save(found: Blind, folder: Path) -> None:
+    """Write ``blind.json`` and ``blind.png``, each complete or not there.
+
+    Raises
+    ------
+    InputError : the folder cannot be written.
+    """
+    count = len(found.rows)
+    with keeping(f"{count} of {count} cases are finished; the same command goes on from there"):
+        write_json(found.to_dict(), folder / "blind.json")
+        with atomic_path(folder / "blind.png") as temporary:
+            temporary.write_bytes(png(picture(found)))
 
 
 def picture(found: Blind) -> Figure:

@@ -24,7 +24,7 @@ from tyrefem.diagnose.responses import responses, unknowns_of
 from tyrefem.diagnose.truth import own_mesh
 from tyrefem.errors import InputError
 from tyrefem.interruption import held_back, keeping
-from tyrefem.output import atomic_path, jsonable, write_json
+from tyrefem.output import atomic_path, jsonable
 from tyrefem.processes import processes
 from tyrefem.requirements import Requirements
 from tyrefem.result import GAS
@@ -232,7 +232,7 @@ def run_blind(
     *,
     reduced: str = "auto",
 ) -> Blind:
-    """Run cases side by side; every finished one is kept in ``folder``/cases; at the end blind.json and blind.png.
+    """Run cases side by side; every finished one is kept in ``folder``/cases.
 
     Cases already there (same study, count, seed, ``reduced`` and version) are not run again. ``reduced`` as of
     `tyrefem.diagnose.diagnose`; all cases share what the reduced models are made of.
@@ -274,15 +274,8 @@ def run_blind(
         notes = layout_notes(study)
         if not any(one.hold_out for one in trials):
             notes += ("No run is held out, so nothing is said of runs that were not fitted.",)
-        found = Blind(study.name, seed, tuple(rows[number] for number in sorted(rows)), notes)
-        write_json(found.to_dict(), folder / "blind.json")
-        from tyrefem.diagnose.blind_picture import picture
-        from tyrefem.plotting.style import png
-
-        with atomic_path(folder / "blind.png") as temporary:
-            temporary.write_bytes(png(picture(found)))
     progress.clear()
-    return found
+    return Blind(study.name, seed, tuple(rows[number] for number in sorted(rows)), notes)
 
 
 def _answers(

@@ -5,7 +5,6 @@ from __future__ import annotations
 import functools
 from collections.abc import Mapping
 from dataclasses import dataclass
-from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
@@ -15,11 +14,11 @@ from tyrefem.diagnose.amend import Change
 from tyrefem.diagnose.explained import Explained
 from tyrefem.diagnose.gap import Gap
 from tyrefem.diagnose.missing import MissingHeat
+from tyrefem.diagnose.numbers import percent
 from tyrefem.diagnose.sets import Prior
 from tyrefem.diagnose.unknowns import Candidate
 from tyrefem.diagnose.verdict import Judgement
 from tyrefem.diagnose.where import gap_table, rms
-from tyrefem.diagnose.words import percent
 from tyrefem.studies import Study
 
 if TYPE_CHECKING:
@@ -112,15 +111,3 @@ class Diagnosis(Brief):
         series = [one for each in self.gap.lab.bench.trials for one in each.series]
         weights = np.array([len(one.times) for one in series], dtype=float)
         return float(np.sqrt(np.average([one.noise**2 for one in series], weights=weights)))
-
-    def to_dict(self) -> dict[str, Any]:
-        """What `verdict.json` holds."""
-        from tyrefem.diagnose.record import record
-
-        return record(self)
-
-    def save(self, folder: str | Path) -> Path:
-        """Write verdict.json, amended.toml, tables, pictures and one self-contained page; returns the page."""
-        from tyrefem.diagnose.record import write
-
-        return write(self, Path(folder))

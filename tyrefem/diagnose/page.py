@@ -1,42 +1,80 @@
-"""A diagnosis as one self-contained HTML page: the verdict in words first, pictures embedded."""
+"""A diagnosis in a folder: record, amended study, tables, pictures, and one self-contained page, verdict first."""
 
 from __future__ import annotations
 
 import base64
 import math
 from collections.abc import Mapping
+from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
+import tyrefem
 from tyrefem.diagnose import words
 from tyrefem.diagnose.amend import Change, difference
+from tyrefem.diagnose.numbers import percent
+from tyrefem.diagnose.pictures import pictures
+from tyrefem.diagnose.record import AMENDED, record, where
 from tyrefem.diagnose.rivals import candidate_rows, finite, set_rows
+from tyrefem.diagnose.tables import history_table, where_table
 from tyrefem.diagnose.unknowns import Unknown
-from tyrefem.diagnose.verdict import CONFOUNDED, IDENTIFIED, UNEXPLAINED
+from tyrefem.diagnose.verdict import CONFOUNDED, IDENTIFIED, NO_GAP, UNEXPLAINED
 from tyrefem.dotted import value_at
 from tyrefem.mechanics import BY_ELEMENTS
 from tyrefem.nearby_cycles import NearbyCycles
+from tyrefem.output import atomic_folder, write_json
 from tyrefem.uncertain_numbers import left_out
 
 if TYPE_CHECKING:
     from tyrefem.diagnose.diagnosis import Diagnosis
 
+PAGE = "diagnosis.html"
+_FILES = ("verdict.json", AMENDED, "difference.txt", "where.csv", "histories.csv", PAGE, "rms.png", "residual-map*.png",
+          "probabilities.png", "histories-*.png", "missing-heat*.png")  # fmt: skip
+#: Looks at the same data at most.
+MOST_LOOKS = 9
+#: Files that `save` may write.
+FILES = tuple(f"{words.AGAIN}/" * look + name for look in range(MOST_LOOKS) for name in _FILES)
 #: Rows that are shown before the rest is folded away.
 SHOWN = 12
 #: Gain, ln of odds, that is worth a row.
 TELLS = 0.1
 
 
-def page(d: Diagnosis, pictures: Mapping[str, bytes], *, version: str) -> str:
-    """The page's HTML; ``pictures`` maps file name -> PNG, as `tyrefem.diagnose.pictures.pictures` returns."""
-    from jinja2 import Environment, PackageLoader, StrictUndefined
+def save(d: Diagnosis, folder: str | Path) -> Path:
+    """Write everything into a folder, each file complete or not there; returns the page.
 
-    from tyrefem.diagnose.record import where
+    ``verdict.json``, ``amended.toml``, ``difference.txt``, ``where.csv``, ``histories.csv``, the pictures, and
+    ``diagnosis.html``. A further look at the data has a folder ``again``, unless it left no gap.
+
+    Raises
+    ------
+    InputError : the folder cannot be written.
+    """
+    folder, drawn = Path(folder), pictures(d)
+    with atomic_folder(folder) as temporary:
+        write_json(record(d), temporary / "verdict.json")
+        d.study.save(temporary / AMENDED)
+        lines = difference(d.original, d.study)
+        (temporary / "difference.txt").write_text("\n".join([*lines, ""]) if lines else "", encoding="utf-8")
+        where_table(d).to_csv(temporary / "where.csv", index=False, lineterminator="\n")
+        history_table(d).to_csv(temporary / "histories.csv", index=False, lineterminator="\n")
+        for name, picture in drawn.items():
+            (temporary / name).write_bytes(picture)
+        (temporary / PAGE).write_text(page(d, drawn, version=tyrefem.__version__), encoding="utf-8")
+    if d.again is not None and d.again.verdict != NO_GAP:
+        save(d.again, folder / words.AGAIN)
+    return folder / PAGE
+
+
+def page(d: Diagnosis, images: Mapping[str, bytes], *, version: str) -> str:
+    """The page's HTML; ``images`` maps file name -> PNG, as `tyrefem.diagnose.pictures.pictures` returns."""
+    from jinja2 import Environment, PackageLoader, StrictUndefined
 
     environment = Environment(
         loader=PackageLoader("tyrefem.diagnose", "."), autoescape=True, undefined=StrictUndefined, trim_blocks=True,
         lstrip_blocks=True,
     )  # fmt: skip
-    embedded = {name: base64.b64encode(png).decode("ascii") for name, png in pictures.items()}
+    embedded = {name: base64.b64encode(png).decode("ascii") for name, png in images.items()}
     return environment.get_template("page.html").render(
         d=d,
         version=version,
@@ -80,7 +118,7 @@ def _named(d: Diagnosis) -> list[dict[str, Any]]:
     return [
         {
             "key": one.key,
-            "probability": words.percent(d.judgement.named.get(one.key, 0.0)),
+            "probability": percent(d.judgement.named.get(one.key, 0.0)),
             "sentence": one.effect.sentence,
             "source": one.effect.source,
             "amounts": words.effect_amounts(one, d.best),
@@ -93,7 +131,7 @@ def _candidate(row: Mapping[str, Any]) -> dict[str, str]:
     shown = ", ".join(row["variant"].values())
     return {
         "name": f"{row['name']} ({shown})" if shown else row["name"],
-        "probability": words.percent(row["probability"]),
+        "probability": percent(row["probability"]),
         "gain": f"{row['log_evidence_gain']:+z,.{1 if abs(row['log_evidence_gain']) < 1000 else 0}f}",
         "parameters": "; ".join(
             words.amount(entry["value"], entry["sd"], entry["unit"]) for entry in row["parameters"].values()
@@ -106,7 +144,7 @@ def _candidate(row: Mapping[str, Any]) -> dict[str, str]:
 def _set(row: Mapping[str, Any]) -> dict[str, Any]:
     return {
         "name": " + ".join(row["effects"]) or "no effect",
-        "probability": words.percent(row["probability"]),
+        "probability": percent(row["probability"]),
         "below": f"{-row['log_score_below_best']:z.1f}",
         "credible": row["credible"],
         **_fitness(row),
@@ -124,8 +162,6 @@ def _fitness(row: Mapping[str, Any]) -> dict[str, str]:
 
 
 def _where(d: Diagnosis) -> list[dict[Any, Any]]:
-    from tyrefem.diagnose.tables import where_table
-
     return where_table(d).to_dict(orient="records")
 
 
@@ -193,7 +229,7 @@ def _linear(d: Diagnosis) -> list[str]:
 def _assumed(d: Diagnosis) -> list[str]:
     choice = d.original.card.diagnosis
     return [
-        f"Probability beforehand that anything is missing: {words.percent(choice.effects_expected)}, shared by "
+        f"Probability beforehand that anything is missing: {percent(choice.effects_expected)}, shared by "
         f"{len({one.name for one in d.candidates})} effects ({len(d.candidates)} with their variants) and their sets.",
         f"Film coefficients are known to {100 * choice.film_sd:.0f} %; base numbers as the cards and the study's "
         "[uncertainty] table state; each sensor's place, lag and offset as its entry states.",

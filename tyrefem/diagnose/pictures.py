@@ -8,12 +8,12 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
+from tyrefem.diagnose.numbers import percent
 from tyrefem.diagnose.rivals import candidate_rows, set_rows
 from tyrefem.diagnose.section_pictures import missing_figures, residual_figures
 from tyrefem.diagnose.tables import rms_table
 from tyrefem.diagnose.trials import Series, Trial
 from tyrefem.diagnose.verdict import UNEXPLAINED
-from tyrefem.diagnose.words import percent
 from tyrefem.plotting.phases import Phase, draw_phases, make_room
 from tyrefem.plotting.style import (
     FONT,

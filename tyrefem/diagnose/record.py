@@ -1,29 +1,20 @@
-"""What a program gets of a diagnosis: `verdict.json`; and the folder with everything that a person gets."""
+"""What a program gets of a diagnosis: what `verdict.json` holds."""
 
 from __future__ import annotations
 
-from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
-import tyrefem
-from tyrefem.diagnose.amend import difference
 from tyrefem.diagnose.rivals import candidate_rows, parameters, set_rows
-from tyrefem.diagnose.tables import history_table, where_table
 from tyrefem.diagnose.verdict import CONFOUNDED, IDENTIFIED, NO_GAP, UNEXPLAINED
-from tyrefem.diagnose.words import AGAIN, look_folder, verdict_words
-from tyrefem.output import atomic_folder, jsonable, write_json
+from tyrefem.diagnose.words import look_folder, verdict_words
+from tyrefem.output import jsonable
 from tyrefem.summary import versions
 
 if TYPE_CHECKING:
     from tyrefem.diagnose.diagnosis import Diagnosis
 
-AMENDED, PAGE = "amended.toml", "diagnosis.html"
-_FILES = ("verdict.json", AMENDED, "difference.txt", "where.csv", "histories.csv", PAGE, "rms.png", "residual-map*.png",
-          "probabilities.png", "histories-*.png", "missing-heat*.png")  # fmt: skip
-#: Looks at the same data at most.
-MOST_LOOKS = 9
-#: Files that `write` may write.
-FILES = tuple(f"{AGAIN}/" * look + name for look in range(MOST_LOOKS) for name in _FILES)
+#: File of the amended study, beside the record.
+AMENDED = "amended.toml"
 
 
 def record(d: Diagnosis) -> dict[str, Any]:
@@ -173,33 +164,3 @@ def _runs(d: Diagnosis) -> list[dict[str, Any]]:
         }
         for one in d.gap.lab.bench.trials
     ]
-
-
-def write(d: Diagnosis, folder: Path) -> Path:
-    """Write everything into a folder, each file complete or not there; returns the page.
-
-    A further look at the data that found something has a folder ``again`` of its own.
-    ``verdict.json``, ``amended.toml``, ``difference.txt``, ``where.csv``, ``histories.csv``, the pictures, and
-    ``diagnosis.html``.
-
-    Raises
-    ------
-    InputError : the folder cannot be written.
-    """
-    from tyrefem.diagnose.page import page
-    from tyrefem.diagnose.pictures import pictures
-
-    drawn = pictures(d)
-    with atomic_folder(folder) as temporary:
-        write_json(record(d), temporary / "verdict.json")
-        d.study.save(temporary / AMENDED)
-        lines = difference(d.original, d.study)
-        (temporary / "difference.txt").write_text("\n".join([*lines, ""]) if lines else "", encoding="utf-8")
-        where_table(d).to_csv(temporary / "where.csv", index=False, lineterminator="\n")
-        history_table(d).to_csv(temporary / "histories.csv", index=False, lineterminator="\n")
-        for name, picture in drawn.items():
-            (temporary / name).write_bytes(picture)
-        (temporary / PAGE).write_text(page(d, drawn, version=tyrefem.__version__), encoding="utf-8")
-    if d.again is not None and d.again.verdict != NO_GAP:
-        write(d.again, folder / AGAIN)
-    return folder / PAGE

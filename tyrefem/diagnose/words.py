@@ -8,6 +8,7 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
+from tyrefem.diagnose.numbers import percent
 from tyrefem.diagnose.rivals import contenders, support
 from tyrefem.diagnose.unknowns import Candidate, Unknown
 from tyrefem.diagnose.verdict import CONFOUNDED, IDENTIFIED, NO_GAP, SURE
@@ -56,20 +57,6 @@ def _decimals(sd: float) -> int:
         return 2
     size = math.floor(math.log10(sd))
     return 1 - size if sd / 10.0**size < 3.55 else -size
-
-
-def percent(probability: float) -> str:
-    """A probability, never rounded to certainty.
-
-    >>> percent(0.99286), percent(0.99987), percent(0.99999), percent(0.0004), percent(0.62)
-    ('99.3 %', '99.99 %', 'more than 99.99 %', 'less than 0.1 %', '62 %')
-    """
-    if probability < 1e-3:
-        return "less than 0.1 %"
-    for above, decimals in ((0.9999, None), (0.999, 2), (0.98, 1)):
-        if probability > above:
-            return "more than 99.99 %" if decimals is None else f"{100 * probability:.{decimals}f} %"
-    return f"{100 * probability:.0f} %" if probability >= 0.1 else f"{100 * probability:.1f} %"
 
 
 def parameter_name(unknown: Unknown) -> str:

@@ -2,10 +2,12 @@
 
 from __future__ import annotations
 
+import importlib
+from typing import Any
+
 from tyrefem.rig.air import air, natural_film, nusselt
 from tyrefem.rig.card import RigCard
 from tyrefem.rig.find import load
-from tyrefem.rig.identification import Identification, identify
 from tyrefem.rig.patch import Layer, Patch, Property
 from tyrefem.rig.readings import read
 from tyrefem.rig.simulation import Simulation, simulate
@@ -25,3 +27,16 @@ __all__ = [
     "read",
     "simulate",
 ]
+
+#: What a person gets has the verbs of `tyrefem.api`; the data alone: `tyrefem.rig.identification`.
+_WHERE = {"Identification": "tyrefem.api", "identify": "tyrefem.api"}
+
+
+def __getattr__(name: str) -> Any:
+    if name not in _WHERE:
+        raise AttributeError(f"module 'tyrefem.rig' has no attribute '{name}'")
+    return getattr(importlib.import_module(_WHERE[name]), name)
+
+
+def __dir__() -> list[str]:
+    return sorted(__all__)

@@ -10,29 +10,35 @@ from typing import TYPE_CHECKING, Any
 
 from tyrefem.interruption import keeping
 from tyrefem.output import atomic_folder, jsonable
+from tyrefem.plotting.style import png
+from tyrefem.rig.layer_cards import bases, layer_cards
+from tyrefem.rig.layer_pictures import layers_figure
+from tyrefem.rig.page import page
+from tyrefem.rig.pictures import heated_patch, histories, pictures
+from tyrefem.rig.summary import summary
+from tyrefem.summary import versions
 
 if TYPE_CHECKING:
     from tyrefem.rig.card import RigCard
     from tyrefem.rig.identification import Identification
+    from tyrefem.rig.layer_study import LayerStudy
     from tyrefem.rig.simulation import Simulation
 
-#: Files that `write` may write.
+#: Files that `save` may write.
 FILES = ("report.html", "rig.json", "estimates.csv", "residuals.csv", "residuals-*.png", "intervals.png",
          "correlation.png", "histories*.png", "materials/*.toml")  # fmt: skip
+#: Files that `save_layers` writes.
+LAYER_FILES = ("layers.csv", "layers.png")
 
 
-def write(found: Identification, folder: Path, base: str | Sequence[str] | None = None) -> Path:
+def save(found: Identification, folder: str | Path, base: str | Sequence[str] | None = None) -> Path:
     """Write an identification: ``report.html``, ``rig.json``, ``summary.json``, CSV tables, PNGs, material cards.
 
     ``base``: the card, or ``LAYER=CARD`` entries, that give what the rig cannot know; without it no card is written.
     """
     import tomli_w
 
-    from tyrefem.rig.layer_cards import bases, layer_cards
-    from tyrefem.rig.page import page
-    from tyrefem.rig.pictures import pictures
-    from tyrefem.rig.summary import summary
-
+    folder = Path(folder)
     given = [base] if isinstance(base, str) else list(base or [])
     cards = layer_cards(found, bases(found.card, given))
     data = summary(found)
@@ -91,10 +97,6 @@ def simulation_files(card: RigCard) -> list[str]:
 
 def write_simulation(done: Simulation, folder: Path) -> Path:
     """Write simulated tables (``RUN.csv``, which `identify` reads), ``summary.json`` and pictures."""
-    from tyrefem.plotting.style import png
-    from tyrefem.rig.pictures import heated_patch, histories
-    from tyrefem.summary import versions
-
     sensors = list(done.card.sensors)
     runs = {name: (run.times, run.temperatures.to_numpy()) for name, run in done.runs.items()}
     powers = {name: run.power for name, run in done.card.runs.items()}
@@ -103,7 +105,7 @@ def write_simulation(done: Simulation, folder: Path) -> Path:
     borders = [done.values[f"{layer.name}.thickness"] for layer in done.card.layers]
     layers = " | ".join(layer.name for layer in done.card.layers)
     words = f"{powers[strongest]:g} W, laser from above; layers: {layers}"
-    summary = {
+    record = {
         "rig": done.card.title,
         "file": done.file,
         "values": dict(done.values),
@@ -121,7 +123,7 @@ def write_simulation(done: Simulation, folder: Path) -> Path:
     with atomic_folder(folder) as place:
         for name, run in done.runs.items():
             run.write(place / f"{name}.csv")
-        put_json(place / "summary.json", summary)
+        put_json(place / "summary.json", record)
     with keeping(f"the tables are in {folder}, the pictures are not"), atomic_folder(folder) as place:
         patch = heated_patch(done.twin.grid(done.values), done.fields[strongest][on], borders, words)
         (place / "readings.png").write_bytes(png(histories(done.card.phases, runs, sensors, powers)))
@@ -132,6 +134,24 @@ def write_simulation(done: Simulation, folder: Path) -> Path:
 def _at_switch(done: Simulation, name: str) -> list[float]:
     seen = done.twin.seen(done.values, done.clock, done.fields[name])
     return [float(value) for value in seen[done.clock.heating.size - 1]]
+
+
+def save_layers(done: LayerStudy, folder: Path) -> Path:
+    """Write ``layers.csv``, ``layers.png`` and ``summary.json``."""
+    save_layer_table(done, folder)
+    with keeping(f"the table is in {folder}, its picture is not"), atomic_folder(folder) as place:
+        (place / "layers.png").write_bytes(png(layers_figure(done)))
+    return folder
+
+
+def save_layer_table(done: LayerStudy, folder: Path, *, complete: bool = True) -> Path:
+    """Write ``layers.csv`` and ``summary.json``, which says whether all fits are in it."""
+    table = done.table()
+    with atomic_folder(folder) as place:
+        table.to_csv(place / "layers.csv", index=False)
+        rows = {"complete": complete, "rows": table.to_dict("records"), "versions": versions()}
+        put_json(place / "summary.json", rows)
+    return folder
 
 
 def put_json(path: Path, data: dict[str, Any]) -> None:

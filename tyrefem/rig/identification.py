@@ -78,25 +78,6 @@ class Identification(Brief):
 
         return pd.DataFrame([one.to_dict() for one in self.estimates])
 
-    @cached_property
-    def words(self) -> tuple[str, ...]:
-        """What the data cannot determine and what else a reader must know, one sentence each."""
-        from tyrefem.rig.verdict import sentences
-
-        return sentences(self)
-
-    def to_dict(self) -> dict[str, Any]:
-        """What `rig.json` holds."""
-        from tyrefem.rig.summary import summary
-
-        return summary(self)
-
-    def save(self, folder: str | Path, base: str | None = None) -> Path:
-        """Write JSON, tables, pictures, ``report.html`` and, with a base card, material cards."""
-        from tyrefem.rig.files import write
-
-        return write(self, Path(folder), base)
-
 
 def identify(
     rig: str | Path | RigCard,

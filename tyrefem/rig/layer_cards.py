@@ -5,8 +5,11 @@ from __future__ import annotations
 from collections.abc import Mapping, Sequence
 from typing import TYPE_CHECKING, Any
 
+from tyrefem import library
+from tyrefem.cards import merged
 from tyrefem.errors import InputError, nearest
-from tyrefem.materials import MaterialCard
+from tyrefem.materials import MaterialCard, material
+from tyrefem.rig.verdict import sentences
 
 if TYPE_CHECKING:
     from tyrefem.rig.card import RigCard
@@ -21,8 +24,6 @@ def bases(card: RigCard, given: Sequence[str]) -> dict[str, str]:
 
     Raises InputError for a layer that the rig does not have, or an unknown card.
     """
-    from tyrefem.materials import material
-
     names = [layer.name for layer in card.layers]
     chosen: dict[str, str] = {}
     for text in given:
@@ -45,9 +46,6 @@ def layer_card(found: Identification, layer: str, base: str) -> dict[str, Any]:
 
     Raises InputError for an unknown base card.
     """
-    from tyrefem import library
-    from tyrefem.cards import merged
-
     data, _, name = library.load("material", base)
     own = next(one for one in found.card.layers if one.name == layer)
     tests = ", ".join(f"{test.name} ({test.run.power:g} W)" for test in found.tests)
@@ -57,7 +55,7 @@ def layer_card(found: Identification, layer: str, base: str) -> dict[str, Any]:
         "notes": (
             f"Conductivity and specific heat: laser rig, at {own.reference_temperature:g} degC where constant. "
             f"The rig cannot know loss tangent, stiffness and cords: they are those of the card '{name}'. "
-            + " ".join(words for words in found.words if layer in words)
+            + " ".join(words for words in sentences(found) if layer in words)
         ).strip(),
         "conductivity": _property(found, layer, "conductivity", "W/m/K", source),
         "density": {"value": f"{own.density.value:.6g} kg/m**3", "source": own.density.source},

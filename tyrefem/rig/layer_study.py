@@ -5,14 +5,12 @@ from __future__ import annotations
 from collections.abc import Callable, Iterator, Sequence
 from dataclasses import dataclass
 from itertools import pairwise
-from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
 from numpy.typing import NDArray
 
 from tyrefem.errors import InputError
-from tyrefem.interruption import keeping
 from tyrefem.rig.card import RigCard
 from tyrefem.rig.grid import Fineness
 from tyrefem.rig.identification import Identification, identify
@@ -146,33 +144,3 @@ def fits(
     """The same one by one: number of layers, and its fit as soon as it is finished."""
     for count in counts:
         yield count, identify(merged(card, count), tests=tests, linear=False, fineness=fineness)
-
-
-def write_table(done: LayerStudy, folder: Path, *, complete: bool = True) -> Path:
-    """Write ``layers.csv`` and ``summary.json``, which says whether all fits are in it."""
-    from tyrefem.output import atomic_folder
-    from tyrefem.rig.files import put_json
-    from tyrefem.summary import versions
-
-    table = done.table()
-    with atomic_folder(folder) as place:
-        table.to_csv(place / "layers.csv", index=False)
-        summary = {"complete": complete, "rows": table.to_dict("records"), "versions": versions()}
-        put_json(place / "summary.json", summary)
-    return folder
-
-
-#: Files that `write` writes.
-FILES = ("layers.csv", "layers.png")
-
-
-def write(done: LayerStudy, folder: Path) -> Path:
-    """Write ``layers.csv``, ``layers.png`` and ``summary.json``."""
-    from tyrefem.output import atomic_folder
-    from tyrefem.plotting.style import png
-    from tyrefem.rig.layer_pictures import layers_figure
-
-    write_table(done, folder)
-    with keeping(f"the table is in {folder}, its picture is not"), atomic_folder(folder) as place:
-        (place / "layers.png").write_bytes(png(layers_figure(done)))
-    return folder

@@ -10,7 +10,7 @@ from typing import TYPE_CHECKING, Any
 from tyrefem.rig.estimate import COVERAGE
 from tyrefem.rig.pictures import references
 from tyrefem.rig.summary import diffusivities, ranked
-from tyrefem.rig.verdict import spoken
+from tyrefem.rig.verdict import sentences, spoken
 
 if TYPE_CHECKING:
     from tyrefem.rig.identification import Identification
@@ -26,6 +26,7 @@ def page(found: Identification, pictures: Mapping[str, bytes], cards: Mapping[st
     )  # fmt: skip
     return environment.get_template("page.html").render(
         found=found,
+        sentences=sentences(found),
         coverage=COVERAGE,
         references=references(found.card),
         spoken=spoken,

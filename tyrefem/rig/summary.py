@@ -8,6 +8,8 @@ import numpy as np
 
 from tyrefem.rig.estimate import COVERAGE
 from tyrefem.rig.parameters import PROPERTY
+from tyrefem.rig.verdict import sentences
+from tyrefem.summary import versions
 
 if TYPE_CHECKING:
     from tyrefem.rig.identification import Identification
@@ -15,8 +17,6 @@ if TYPE_CHECKING:
 
 def summary(found: Identification) -> dict[str, Any]:
     """What ``rig.json`` holds: estimates, correlation, verdict, selection, noise, misfit."""
-    from tyrefem.summary import versions
-
     names = [one.name for one in found.estimates]
     return {
         "rig": found.card.title,
@@ -38,7 +38,7 @@ def summary(found: Identification) -> dict[str, Any]:
         "determined": [one.name for one in found.properties if one.verdict == "determined"],
         "not_determined": [one.name for one in found.properties if one.verdict == "not determined"],
         "poorly_determined": [one.name for one in found.properties if one.verdict == "poor"],
-        "words": list(found.words),
+        "words": list(sentences(found)),
         "correlation": {"names": names, "matrix": found.correlation.round(4)},
         "linear_in_temperature": {
             "chosen": list(found.selection.chosen),

@@ -2,26 +2,57 @@
 
 from __future__ import annotations
 
+from collections.abc import Iterator
 from typing import TYPE_CHECKING
 
 import numpy as np
 
 from tyrefem.plotting.style import FONT, PALETTE, QUIET, TITLE, add_axes, figure, line_style, plain, tidy, title
 from tyrefem.sweep.answer_words import difference_unit, name_of, shown
-from tyrefem.sweep.pictures import label
+from tyrefem.sweep.envelope import Envelope
+from tyrefem.sweep.indices import Indices
+from tyrefem.sweep.optimum import Optimum
+from tyrefem.sweep.pictures import figures, label
+from tyrefem.sweep.tornado import Tornado
 
 if TYPE_CHECKING:
     import pandas as pd
     from matplotlib.figure import Figure
 
-    from tyrefem.sweep.envelope import Envelope
-    from tyrefem.sweep.optimum import Optimum
-    from tyrefem.sweep.tornado import Tornado
-
 #: Bars of one picture.
 MOST = 15
 #: Inches per bar, and at least for the names before them; width of their letters.
 BAR, NAMES, LETTER = 0.27, 3.5, 0.0083 * (FONT - 1)
+
+
+@figures.register(Tornado)
+def _tornado(answer: Tornado) -> Iterator[tuple[str, str, Figure]]:
+    """A picture per answer."""
+    for name in answer.answers:
+        caption = f"{name_of(name)}: every number alone, less and more by its tolerance"
+        yield f"tornado-{name}", caption, tornado(answer, name)
+
+
+@figures.register(Indices)
+def _indices(answer: Indices) -> Iterator[tuple[str, str, Figure]]:
+    """A picture per answer."""
+    for name, table in answer.tables.items():
+        yield f"indices-{name}", f"{name_of(name)}: shares of its variance, with 95 % intervals", indices(table, name)
+
+
+@figures.register(Optimum)
+def _optimum(answer: Optimum) -> Iterator[tuple[str, str, Figure]]:
+    """The search, and where it looked."""
+    if answer.answer in answer.table:
+        caption = f"{name_of(answer.answer)} of every evaluated variant, and the best so far"
+        yield "optimum", caption, search(answer)
+
+
+@figures.register(Envelope)
+def _envelope(answer: Envelope) -> Iterator[tuple[str, str, Figure]]:
+    """Speed over load, a curve per pressure."""
+    if answer.table["speed_m_s"].notna().any():
+        yield "envelope", "Below each curve the tyre keeps the limit; grey: equal load times speed", envelope(answer)
 
 
 def tornado(found: Tornado, answer: str) -> Figure:

@@ -2,9 +2,8 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator, Mapping
+from collections.abc import Mapping
 from dataclasses import dataclass
-from pathlib import Path
 from typing import TYPE_CHECKING, Any, Protocol
 
 from tyrefem.brief import Brief
@@ -21,11 +20,13 @@ from tyrefem.sweep.tornado import Tornado
 
 if TYPE_CHECKING:
     import pandas as pd
-    from matplotlib.figure import Figure
 
 
 class Part(Protocol):
-    """One answer: a table, words, pictures. Its folder of finished variants and its files have its ``name``."""
+    """One answer: a table and words. Its folder of finished variants and its files have its ``name``.
+
+    Its pictures are what is registered for its class with `tyrefem.sweep.pictures.figures`.
+    """
 
     name: str
     heading: str
@@ -38,10 +39,6 @@ class Part(Protocol):
     @property
     def words(self) -> list[str]:
         """Sentences."""
-        ...
-
-    def figures(self) -> Iterator[tuple[str, str, Figure]]:
-        """(file name without ending, caption, picture)."""
         ...
 
     def to_dict(self) -> dict[str, Any]:
@@ -119,10 +116,3 @@ class Design(Brief):
     def words(self) -> list[str]:
         """All answers in sentences."""
         return [line for part in self.parts for line in part.words]
-
-    def save(self, folder: str | Path, *, pictures: bool = True) -> Path:
-        """Write every table (CSV and Parquet), ``summary.json``, and with pictures the PNG files and ``sweep.html``."""
-        from tyrefem.sweep.output import write
-
-        write(self, Path(folder), pictures=pictures)
-        return Path(folder)

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Iterator, Mapping
+from collections.abc import Mapping
 from dataclasses import dataclass
 from typing import TYPE_CHECKING, Any, Unpack
 
@@ -20,7 +20,6 @@ from tyrefem.sweep.varied import Varied
 
 if TYPE_CHECKING:
     import pandas as pd
-    from matplotlib.figure import Figure
 
     from tyrefem.reduced.surrogate import Certificate
 
@@ -79,13 +78,6 @@ class Envelope:
             by = f"{self.runs} variants by a reduced model, temperatures good to {self.certificate.worst:.2g} K"
         told.append(f"Found by {by}.")
         return told
-
-    def figures(self) -> Iterator[tuple[str, str, Figure]]:
-        """Speed over load, a curve per pressure."""
-        from tyrefem.sweep.answer_pictures import envelope as drawn
-
-        if self.table["speed_m_s"].notna().any():
-            yield "envelope", "Below each curve the tyre keeps the limit; grey: equal load times speed", drawn(self)
 
     def to_dict(self) -> dict[str, Any]:
         """JSON-ready."""

@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 import functools
-from collections.abc import Iterator
 from dataclasses import dataclass
 from typing import TYPE_CHECKING, Any
 
@@ -16,7 +15,6 @@ from tyrefem.sweep.sweep import Sweep
 
 if TYPE_CHECKING:
     import pandas as pd
-    from matplotlib.figure import Figure
 
 #: Half a 95 % interval of a total index beyond which the sample is too small to say much.
 WIDE = 0.15
@@ -118,17 +116,6 @@ class Indices:
             if wide > WIDE:
                 told.append(f"Intervals of up to ±{100 * wide:.0f} % are wide: take a larger base.")
         return told
-
-    def figures(self) -> Iterator[tuple[str, str, Figure]]:
-        """One picture per answer."""
-        from tyrefem.sweep.answer_pictures import indices as drawn
-
-        for answer, one in self.tables.items():
-            yield (
-                f"indices-{answer}",
-                f"{name_of(answer)}: shares of its variance, with 95 % intervals",
-                drawn(one, answer),
-            )
 
     def to_dict(self) -> dict[str, Any]:
         """JSON-ready."""

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import functools
 import math
-from collections.abc import Iterator, Mapping
+from collections.abc import Mapping
 from dataclasses import dataclass
 from typing import TYPE_CHECKING, Any, Unpack
 
@@ -23,7 +23,6 @@ from tyrefem.sweep.sweep import Sweep
 
 if TYPE_CHECKING:
     import pandas as pd
-    from matplotlib.figure import Figure
 
 Array = NDArray[np.float64]
 Outcome = Mapping[str, Any]
@@ -106,13 +105,6 @@ class Optimum:
             error = "" if stated is None else f"; {name_of(self.answer)} to ±{shown(self.answer, stated, 2)}"
             told.append(f"The search used a reduced model, good to {certificate.worst:.2g} K{error}.")
         return told
-
-    def figures(self) -> Iterator[tuple[str, str, Figure]]:
-        """The search, and where it looked."""
-        from tyrefem.sweep.answer_pictures import search
-
-        if self.answer in self.table:
-            yield "optimum", f"{name_of(self.answer)} of every evaluated variant, and the best so far", search(self)
 
     def to_dict(self) -> dict[str, Any]:
         """JSON-ready."""

@@ -10,6 +10,7 @@ from tyrefem.output import atomic_path, write_json
 from tyrefem.summary import versions
 from tyrefem.sweep.leftovers import FILES as LIST
 from tyrefem.sweep.leftovers import clear, earlier
+from tyrefem.sweep.page import write_page
 from tyrefem.sweep.store import NAME as VARIANTS
 from tyrefem.sweep.sweep import Sweep
 
@@ -19,7 +20,7 @@ if TYPE_CHECKING:
     from tyrefem.sweep.design import Design
 
 PAGE = "sweep.html"
-#: Answers that have tables, and the files that `write` may write.
+#: Answers that have tables, and the files that `save` may write.
 PARTS = ("sweep", "pareto", "indices", "tornado", "optimum", "envelope")
 PICTURES = ("map-*.png", "curves-*.png", "bars-*.png", "pareto*.png", "indices-*.png", "tornado-*.png", "optimum.png",
             "envelope.png")  # fmt: skip
@@ -33,7 +34,7 @@ FILES = (
 KEPT = (VARIANTS, *(f"{name}/{VARIANTS}" for name in PARTS))
 
 
-def write(found: Design, folder: Path, *, pictures: bool = True) -> dict[str, Any]:
+def save(found: Design, folder: Path, *, pictures: bool = True) -> dict[str, Any]:
     """Write ``NAME.csv`` and ``.parquet`` of every part, ``summary.json`` and the page; returns the summary.
 
     ``errors.csv`` is there where a reduced model answered: the largest error of every answer in fresh full runs.
@@ -46,8 +47,6 @@ def write(found: Design, folder: Path, *, pictures: bool = True) -> dict[str, An
         written += write_errors(found.swept, folder)
     summary = summarised(found)
     if pictures:
-        from tyrefem.sweep.page import write_page
-
         written += write_page(found, summary, folder)
     summary[LIST] = clear(folder, before, summary, written)
     write_json(summary, folder / "summary.json")

@@ -8,7 +8,10 @@ from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
 from tyrefem.output import atomic_path
+from tyrefem.plotting.style import png
+from tyrefem.sweep import answer_pictures  # noqa: F401  registers its pictures
 from tyrefem.sweep.answer_words import difference_unit, name_of, shown
+from tyrefem.sweep.pictures import figures
 from tyrefem.sweep.sweep import Sweep
 
 if TYPE_CHECKING:
@@ -56,10 +59,8 @@ def write_page(found: Design, summary: Mapping[str, Any], folder: Path) -> list[
 
 def _part(part: Part, folder: Path) -> dict[str, Any]:
     """Heading, words, pictures and table of an answer."""
-    from tyrefem.plotting.style import png
-
     drawn = []
-    for name, caption, picture in part.figures():
+    for name, caption, picture in figures(part):
         content = png(picture)
         file = f"pictures/{name}.png"
         with atomic_path(folder / file) as temporary:

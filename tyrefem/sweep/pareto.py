@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator, Mapping
+from collections.abc import Mapping
 from dataclasses import dataclass
 from typing import TYPE_CHECKING, Any
 
@@ -14,7 +14,6 @@ from tyrefem.sweep.answers import NEVER
 
 if TYPE_CHECKING:
     import pandas as pd
-    from matplotlib.figure import Figure
 
     from tyrefem.sweep.sweep import Sweep
 
@@ -110,22 +109,6 @@ class ParetoFront:
             values = ", ".join(f"{name_of(name)} {shown(name, row[name])}" for name in aims)
             told.append(f"Best in {' and '.join(map(name_of, names))}: {named(self.swept, row)}; {values}.")
         return told
-
-    def figures(self) -> Iterator[tuple[str, str, Figure]]:
-        """The front in every pair of aims."""
-        import itertools
-
-        from tyrefem.sweep.answer_words import name_of
-        from tyrefem.sweep.pictures import pareto
-
-        aims = [name for name in self.chosen if name in self.swept.table]
-        for y, x in itertools.combinations(aims, 2):
-            if len(self.table):
-                yield (
-                    f"pareto-{y}-{x}",
-                    f"{name_of(y)} against {name_of(x)}; the front is of all aims together",
-                    pareto(self.swept, self.table, x, y),
-                )
 
     def to_dict(self) -> dict[str, Any]:
         """JSON-ready."""

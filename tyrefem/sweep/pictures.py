@@ -1,7 +1,10 @@
-"""Pictures of a sweep's variants: response curves, maps, the Pareto front."""
+"""Pictures of a sweep's variants: response curves, maps, the Pareto front; and which answer has which pictures."""
 
 from __future__ import annotations
 
+import functools
+import itertools
+from collections.abc import Iterator
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
@@ -21,7 +24,8 @@ from tyrefem.plotting.style import (
     title,
 )  # fmt: skip
 from tyrefem.sweep.answer_words import name_of, unit_of
-from tyrefem.sweep.responses import finished, short
+from tyrefem.sweep.pareto import ParetoFront
+from tyrefem.sweep.responses import Responses, finished, judged, main_effects, numeric, short
 
 if TYPE_CHECKING:
     import pandas as pd
@@ -32,6 +36,55 @@ if TYPE_CHECKING:
 BROKEN = "#D55E00"
 #: Lines of one picture; more are drawn as points with their mean.
 MOST_LINES = 8
+#: Maps and curves of an answer, at most.
+MOST_MAPS, MOST_CURVES = 3, 4
+
+
+@functools.singledispatch
+def figures(answer: object) -> Iterator[tuple[str, str, Figure]]:
+    """Pictures of an answer: file name without ending, caption, picture.
+
+    A new kind of answer registers its function here, beside the code that draws it.
+
+    Raises
+    ------
+    TypeError : no function is registered for this kind of answer.
+    """
+    raise TypeError(f"no pictures are registered for {type(answer).__name__}")
+
+
+@figures.register(Responses)
+def _responses(answer: Responses) -> Iterator[tuple[str, str, Figure]]:
+    """Maps over the two or three numbers that move the answer most, and curves over every number."""
+    swept = answer.swept
+    if len(finished(swept)) < 2:
+        return
+    axes = numeric(swept)
+    averaged = swept.plan.how.get("sample") == "grid" and len(swept.plan.varied) > 2
+    mean = "; mean over the other numbers" if averaged else ""
+    for name in judged(swept, answer.wanted):
+        order = [number for number in main_effects(swept, name)["number"] if number in axes]
+        for x, y in itertools.combinations(order[:MOST_MAPS], 2):
+            yield _file("map", name, x, y), f"{name_of(name)} over {x} and {y}{mean}", response_map(swept, x, y, name)
+        for x in order[:MOST_CURVES]:
+            yield _file("curves", name, x), f"{name_of(name)} over {x}", curves(swept, x, name)
+        cards = [varied.heading for varied in swept.plan.varied if varied.heading not in axes]
+        for card in cards if not axes else []:
+            yield _file("bars", name, card), f"{name_of(name)} by {card}", curves(swept, card, name)
+
+
+@figures.register(ParetoFront)
+def _pareto(answer: ParetoFront) -> Iterator[tuple[str, str, Figure]]:
+    """The front in every pair of aims."""
+    aims = [name for name in answer.chosen if name in answer.swept.table]
+    for y, x in itertools.combinations(aims, 2):
+        if len(answer.table):
+            caption = f"{name_of(y)} against {name_of(x)}; the front is of all aims together"
+            yield f"pareto-{y}-{x}", caption, pareto(answer.swept, answer.table, x, y)
+
+
+def _file(*parts: str) -> str:
+    return "-".join(short(part).replace(".", "-").replace(" ", "-") for part in parts)
 
 
 def label(answer: str) -> str:

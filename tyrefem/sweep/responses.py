@@ -2,8 +2,7 @@
 
 from __future__ import annotations
 
-import itertools
-from collections.abc import Iterator, Mapping
+from collections.abc import Mapping
 from dataclasses import dataclass
 from typing import TYPE_CHECKING, Any
 
@@ -15,12 +14,9 @@ from tyrefem.sweep.sweep import Sweep
 
 if TYPE_CHECKING:
     import pandas as pd
-    from matplotlib.figure import Figure
 
 #: Answers that are drawn and judged, unless a sweep file says otherwise.
 USUAL = ("hottest_degC", "rolling_resistance_coefficient")
-#: Maps and curves of an answer, at most.
-MOST_MAPS, MOST_CURVES = 3, 4
 #: A number with more values than this has its effect from a straight line, not from means at its levels.
 MOST_LEVELS = 12
 
@@ -168,36 +164,9 @@ class Responses:
         """The answer in sentences."""
         return words(self.swept, self.wanted)
 
-    def figures(self) -> Iterator[tuple[str, str, Figure]]:
-        """Maps over the two or three numbers that move the answer most, and curves over every number."""
-        from tyrefem.sweep.pictures import curves, response_map
-
-        if len(finished(self.swept)) < 2:
-            return
-        axes = numeric(self.swept)
-        averaged = self.swept.plan.how.get("sample") == "grid" and len(self.swept.plan.varied) > 2
-        mean = "; mean over the other numbers" if averaged else ""
-        for answer in judged(self.swept, self.wanted):
-            order = [name for name in main_effects(self.swept, answer)["number"] if name in axes]
-            for x, y in list(itertools.combinations(order[:MOST_MAPS], 2)):
-                yield (
-                    _file("map", answer, x, y),
-                    f"{name_of(answer)} over {x} and {y}{mean}",
-                    response_map(self.swept, x, y, answer),
-                )
-            for x in order[:MOST_CURVES]:
-                yield _file("curves", answer, x), f"{name_of(answer)} over {x}", curves(self.swept, x, answer)
-            cards = [one.heading for one in self.swept.plan.varied if one.heading not in axes]
-            for name in cards if not axes else []:
-                yield _file("bars", answer, name), f"{name_of(answer)} by {name}", curves(self.swept, name, answer)
-
     def to_dict(self) -> dict[str, Any]:
         """JSON-ready."""
         found = {
             answer: main_effects(self.swept, answer).to_dict("records") for answer in judged(self.swept, self.wanted)
         }
         return {"main_effects": found, "words": self.words}
-
-
-def _file(*parts: str) -> str:
-    return "-".join(short(part).replace(".", "-").replace(" ", "-") for part in parts)

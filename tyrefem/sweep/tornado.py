@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import functools
 import math
-from collections.abc import Iterator, Mapping
+from collections.abc import Mapping
 from dataclasses import dataclass
 from typing import TYPE_CHECKING, Any
 
@@ -18,7 +18,6 @@ from tyrefem.uncertain_numbers import UncertainNumber, left_out, uncertain_numbe
 
 if TYPE_CHECKING:
     import pandas as pd
-    from matplotlib.figure import Figure
 
 
 def tolerances(study: Study, only: Mapping[str, float] | None = None) -> tuple[UncertainNumber, ...]:
@@ -146,17 +145,6 @@ class Tornado:
         failed = self.swept.failed
         told += [f"{one[0].upper()}{one[1:]}." for one in self.swept.plan.how["left_out"]]
         return told + ([f"{len(failed)} of {len(self.swept.plan.variants)} runs failed."] if failed else [])
-
-    def figures(self) -> Iterator[tuple[str, str, Figure]]:
-        """One picture per answer."""
-        from tyrefem.sweep.answer_pictures import tornado
-
-        for answer in self.answers:
-            yield (
-                f"tornado-{answer}",
-                f"{name_of(answer)}: every number alone, less and more by its tolerance",
-                tornado(self, answer),
-            )
 
     def to_dict(self) -> dict[str, Any]:
         """JSON-ready."""

@@ -1,0 +1,66 @@
+"""The verbs of `tyrefem.api`: the same data as another class, whatever it goes through."""
+
+from __future__ import annotations
+
+import dataclasses
+import pickle
+from dataclasses import dataclass
+from pathlib import Path
+
+import pytest
+
+import tyrefem as tf
+from tyrefem.api import Comparison, Diagnosis, with_verbs
+from tyrefem.brief import Brief
+from tyrefem.compare import compare
+from tyrefem.diagnose import diagnosis as diagnosis_data
+
+
+@dataclass(frozen=True, eq=False)
+class Readings(Brief):
+    """Data."""
+
+    sensor: str
+    values: tuple[float, ...]
+
+
+class Shown(Readings):
+    """The same with a verb."""
+
+    def show(self) -> str:
+        """In a line."""
+        return f"{self.sensor}: {self.values}"
+
+
+def test_verbs_take_the_data_as_they_are() -> None:
+    data = Readings("crown", (1.0, 2.0))
+    shown = with_verbs(Shown, data)
+    assert shown.show() == "crown: (1.0, 2.0)"
+    assert shown.values is data.values
+    assert repr(shown) == repr(data).replace("Readings", "Shown")
+    assert dataclasses.replace(shown, sensor="bead").show() == "bead: (1.0, 2.0)"
+    with pytest.raises(dataclasses.FrozenInstanceError):
+        shown.sensor = "bead"  # type: ignore[misc]
+    assert pickle.loads(pickle.dumps(shown)).show() == shown.show()
+
+
+def test_every_further_look_of_a_diagnosis_has_verbs() -> None:
+    second = object.__new__(diagnosis_data.Diagnosis)
+    second.__dict__["again"] = None
+    first = object.__new__(diagnosis_data.Diagnosis)
+    first.__dict__["again"] = second
+    looks = Diagnosis.of(first).looks
+    assert [type(look) for look in looks] == [Diagnosis, Diagnosis]
+    assert first.again is second
+
+
+def test_a_comparison_has_verbs_and_its_data_have_none(tmp_path: Path) -> None:
+    study = tf.study("example-validation", {"mesh.size": "12 mm"})
+    comparison = study.compare(inputs=False)
+    assert type(comparison) is tf.Comparison is Comparison
+    assert repr(comparison).startswith("Comparison of example-validation")
+    back = pickle.loads(pickle.dumps(comparison))
+    assert back.save(tmp_path) == tmp_path / "comparison.html"
+    data = compare(study, inputs=False)
+    assert not hasattr(data, "save")
+    assert data.to_dict() == comparison.to_dict()
