@@ -10,19 +10,20 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 
 from tyrefem.brief import Brief
-from tyrefem.diagnose.amend import Change
-from tyrefem.diagnose.explained import Explained
-from tyrefem.diagnose.gap import Gap
-from tyrefem.diagnose.missing import MissingHeat
 from tyrefem.diagnose.numbers import percent
 from tyrefem.diagnose.sets import Prior
-from tyrefem.diagnose.unknowns import Candidate
-from tyrefem.diagnose.verdict import Judgement
 from tyrefem.diagnose.where import gap_table, rms
-from tyrefem.studies import Study
 
 if TYPE_CHECKING:
     import pandas as pd
+
+    from tyrefem.diagnose.amend import Change
+    from tyrefem.diagnose.explained import Explained
+    from tyrefem.diagnose.gap import Gap
+    from tyrefem.diagnose.missing import MissingHeat
+    from tyrefem.diagnose.unknowns import Candidate
+    from tyrefem.diagnose.verdict import Judgement
+    from tyrefem.studies import Study
 
 
 @dataclass(frozen=True, eq=False)

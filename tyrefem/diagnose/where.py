@@ -8,11 +8,11 @@ from typing import TYPE_CHECKING
 import numpy as np
 from numpy.typing import NDArray
 
-from tyrefem.diagnose.gap import Gap
-from tyrefem.diagnose.trials import Series
-
 if TYPE_CHECKING:
     import pandas as pd
+
+    from tyrefem.diagnose.gap import Gap
+    from tyrefem.diagnose.trials import Series
 
 Array = NDArray[np.float64]
 #: A sensor is on its plateau where it changes by less than this part of its fastest rate (a convention).
