@@ -33,6 +33,8 @@ if TYPE_CHECKING:
 
 Array = NDArray[np.float64]
 GAS, RIM = "contained-air", "rim"
+#: Warning of a run that is asked of a campaign as a whole.
+CASES_LEFT_OUT = "the study is a campaign: this is its own drive; study.campaign() and 'tyrefem run' take its cases"
 #: Of a history, what is stored; operators and materials are the problem's.
 KEPT = (
     "times", "values", "reservoirs", "budget", "maximum", "region_maximum", "steps", "interrupted",
@@ -318,6 +320,7 @@ class Result(Brief):
         """What of the input is perhaps not meant, and where the run left its own assumptions; one line each."""
         return (
             *map(str, self.study.warnings),
+            *((CASES_LEFT_OUT,) if self.study.is_campaign else ()),
             *(() if self.feedback is None else self.feedback.warnings),
             *deep_contacts(self.study.section, self.phases),
             *(() if self.sliding is None else self.sliding.warnings),

@@ -20,7 +20,6 @@ from tyrefem.heating import LOSS_FACTOR, REMEMBERED, CycleSchedule, HeatSource
 from tyrefem.mechanics import same_cycles
 from tyrefem.meshing import TyreMesh
 from tyrefem.nearby_cycles import NearbyCycles
-from tyrefem.requirements import Requirements
 from tyrefem.result import GAS, RIM, Result
 from tyrefem.sliding.tread import SlidingTread
 from tyrefem.studies import Study
@@ -235,10 +234,6 @@ def _of_time(law: Callable[[float], float]) -> Callable[[Any, float], float]:
     return lambda _x, t: remembered(t)
 
 
-#: What a run needs of a study.
-NEEDS = Requirements("a run")
-
-
 def run(
     study: Study,
     progress: Callable[[float], None] | None = None,
@@ -253,11 +248,8 @@ def run(
     progress : called with the time (s) after every step. like : see `RollingTyre`.
     partial : Ctrl-C gives back what is finished, see `tyrefem.conduction.Conduction.transient`; else it is raised.
 
-    Raises
-    ------
-    InputError : a campaign, whose cases are run one by one: `Study.case`, `Study.campaign`.
+    A campaign's own drive is simulated, which `Result.warnings` says; its cases are run by `Campaign.runs`.
     """
-    NEEDS.check(study)
     if study.card.mechanics.feedback is not None:
         from tyrefem import feedback
 

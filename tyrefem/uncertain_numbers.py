@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections.abc import Iterable, Iterator, Mapping
 from dataclasses import dataclass, replace
 from pathlib import Path
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING, Any, Protocol
 
 from tyrefem.cards import Card
 from tyrefem.dotted import scaled, value_at
@@ -13,7 +13,8 @@ from tyrefem.errors import InputError
 from tyrefem.strain.reads import READS, STIFFNESS
 
 if TYPE_CHECKING:
-    from tyrefem.studies import Study
+    from tyrefem.materials import MaterialCard
+    from tyrefem.study_card import StudyCard
 
 #: Names that a sentence lists before it counts.
 NAMED = 3
@@ -66,7 +67,26 @@ class UncertainNumber:
         return f"{self.key} (also {', '.join(self.regions[1:])})" if len(self.regions) > 1 else self.key
 
 
-def uncertain_numbers(study: Study) -> tuple[UncertainNumber, ...]:
+class StudyOfCards(Protocol):
+    """What is asked of a study: its numbers as written, and its cards with the data and file of each region."""
+
+    @property
+    def card(self) -> StudyCard: ...
+    @property
+    def data(self) -> Mapping[str, Any]: ...
+    @property
+    def file(self) -> Path | None: ...
+    @property
+    def folder(self) -> Path | None: ...
+    @property
+    def materials(self) -> Mapping[str, MaterialCard]: ...
+    @property
+    def material_data(self) -> Mapping[str, tuple[Mapping[str, Any], Path]]: ...
+    @property
+    def uncertain_numbers(self) -> tuple[UncertainNumber, ...]: ...
+
+
+def uncertain_numbers(study: StudyOfCards) -> tuple[UncertainNumber, ...]:
     """All of them, also those that cannot matter, which say why.
 
     In the order of the regions; what only a strain law reads comes after the rest, then the study's own table.
@@ -98,7 +118,7 @@ def uncertain_numbers(study: Study) -> tuple[UncertainNumber, ...]:
     return tuple(numbers)
 
 
-def uncertain_number(study: Study, key: str, sd: float = 0.0) -> UncertainNumber:
+def uncertain_number(study: StudyOfCards, key: str, sd: float = 0.0) -> UncertainNumber:
     """The number at a dotted name, with a relative standard deviation given here.
 
     Raises
@@ -113,7 +133,7 @@ def uncertain_number(study: Study, key: str, sd: float = 0.0) -> UncertainNumber
     return replace(together, key=key, sd=sd, regions=regions)
 
 
-def _named(study: Study, key: str, sd: float) -> UncertainNumber:
+def _named(study: StudyOfCards, key: str, sd: float) -> UncertainNumber:
     """The number at a dotted name, with the other regions that take it from the same card."""
     value = value_at(study.data, key, study.folder)
     parts = key.split(".")
@@ -133,7 +153,7 @@ def _named(study: Study, key: str, sd: float) -> UncertainNumber:
     )
 
 
-def written_at(study: Study, key: str) -> Any:
+def written_at(study: StudyOfCards, key: str) -> Any:
     """What stands at a dotted name of a study or its cards."""
     parts = key.split(".")
     if parts[0] == "materials" and len(parts) > 2 and parts[1] in study.material_data:
@@ -159,7 +179,7 @@ def _listed(names: list[str]) -> str:
     return "; ".join(names) if more <= 1 else f"{'; '.join(names[:NAMED])}; and {more} more"
 
 
-def _of_cards(study: Study) -> list[UncertainNumber]:
+def _of_cards(study: StudyOfCards) -> list[UncertainNumber]:
     """Those of the material cards, a card's number in several regions once."""
     together: dict[tuple[Any, ...], list[str]] = {}
     written: dict[tuple[Any, ...], tuple[Any, ...]] = {}
@@ -178,7 +198,7 @@ def _of_cards(study: Study) -> list[UncertainNumber]:
     return [_number(study, key, regions, written[key]) for key, regions in together.items()]
 
 
-def _number(study: Study, key: tuple[Any, ...], regions: list[str], values: tuple[Any, ...]) -> UncertainNumber:
+def _number(study: StudyOfCards, key: tuple[Any, ...], regions: list[str], values: tuple[Any, ...]) -> UncertainNumber:
     path, where, fields, _, sd = key
     keys = tuple(f"materials.{region}.{field}" for region in regions for field in fields)
     idle = _idle(study, regions, where) if fields else "they have no one number that a factor could move"
@@ -197,7 +217,7 @@ def stated_deviations(card: Card, where: str = "") -> Iterator[tuple[str, Any]]:
             yield from stated_deviations(value, path)
 
 
-def _idle(study: Study, regions: list[str], within: str) -> str:
+def _idle(study: StudyOfCards, regions: list[str], within: str) -> str:
     """Why a number of a card cannot change a run; empty: it can."""
     mechanics, table = study.card.mechanics, within.split(".")[0]
     law, feedback = mechanics.strain, mechanics.feedback

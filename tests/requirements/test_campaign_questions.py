@@ -38,7 +38,6 @@ COMMANDS = {
     "strain cycle": ["show", "strain", "STUDY"],
 }
 VERBS: dict[str, Callable[[tf.Study], Any]] = {
-    "run": lambda study: study.run(),
     "compare": lambda study: study.compare(),
     "diagnose": lambda study: study.diagnose(),
     "sweep": lambda study: study.sweep({"drive.speed": ["10 mph", "20 mph"]}),
@@ -151,3 +150,8 @@ def test_show_prints_and_draws_one_case(
     assert main(["show", "strain", campaign, "--case", "light", "--out", "cycle.png"]) == 0
     assert "load_N                       8896.44" in capfd.readouterr().out
     assert "--case: goes with study" in refused("show", "material", "nasa-tread", "--case", "light")
+
+
+def test_a_campaign_run_as_a_whole_says_that_its_cases_are_left_out(campaign: str) -> None:
+    result = tf.study(campaign, {"mesh.size": "15 mm", "drive.duration": "10 s"}).run()
+    assert any("study.campaign()" in line for line in result.warnings)
