@@ -54,6 +54,10 @@ class AnswerStore:
             return None
         return arrays if len(arrays) > 1 else arrays[0] if arrays else None
 
+    def has(self, name: str, question: Any) -> bool:
+        """Is there an answer to a question?"""
+        return self._place is not None and self._file(name, question).is_file()
+
     def keep(self, name: str, question: Any, answer: Any) -> None:
         """Keep an answer: an array or a tuple of several."""
         with held_back(), atomic_path(self._file(name, question)) as temporary:

@@ -202,3 +202,21 @@ def _of(process: psutil.Process, group: int) -> bool:
         return os.getsid(process.pid) == group and process.status() != psutil.STATUS_ZOMBIE
     except (psutil.Error, OSError):
         return False
+
+
+def test_a_comparison_goes_on(here: Path) -> None:
+    coarse = [word for change in ("size=12 mm", "element=P1") for word in ("--set", f"mesh.{change}")]
+    coarse += ["--set", "output.every=20 s", "--reduced", "never"]
+    command = ("compare", "example-validation", *coarse, "--workers", "2", "--out", "out")
+    done = interrupted(*command, at="tyrefem.answer_store:AnswerStore.keep:6", folder=here)
+    lines = done.err.splitlines()
+    assert done.code == 130
+    assert lines[0].startswith("tyrefem: 45 simulations: 3 drives as driven; 42 with one uncertain input changed")
+    assert lines[1:] == ["tyrefem: interrupted; 5 finished simulations are kept; the same command goes on from there"]
+    done = interrupted(*command, at="tyrefem.compare.pictures:pictures:1", folder=here)
+    lines = done.err.splitlines()
+    assert done.code == 130
+    assert lines[0].endswith("; 2 are taken up from an interrupted comparison")
+    assert lines[1:] == ["tyrefem: interrupted; 45 finished simulations are kept; the same command goes on from there"]
+    assert main([*command, "--quiet"]) == 0
+    assert not (here / "out/.progress").exists()

@@ -21,12 +21,14 @@ from tyrefem.cli.common import (
     RenameOption,
     SetOption,
     StudyArgument,
+    fail,
     print_json,
     renamed,
     settings,
     warn,
 )
 from tyrefem.cli.progress import progress
+from tyrefem.interruption import keeping
 from tyrefem.processes import processes
 from tyrefem.results_folder import results_folder
 
@@ -45,12 +47,17 @@ def compare(
         bool, typer.Option(help="Propagate the cards' uncertainties into the validation uncertainty.")
     ] = True,
     k: Annotated[float, typer.Option("-k", min=0.1, help="Coverage factor of the validation uncertainty.")] = 2.0,
+    workers: Annotated[int | None, typer.Option(min=1, help="Processes; default: one per core.")] = None,
     reduced: ReducedOption = "auto",
     force: ForceOption = False,
     quiet: QuietOption = False,
     as_json: JsonOption = False,
 ) -> None:
-    """Compare a study with measured tables: deviation per sensor, run and phase, against the validation uncertainty."""
+    """Compare a study with measured tables: deviation per sensor, run and phase, against the validation uncertainty.
+
+    Interrupted, the same command goes on where it was.
+    """
+    from tyrefem.answer_store import PROGRESS, AnswerStore
     from tyrefem.api import study as load
     from tyrefem.compare.page import FILES
     from tyrefem.compare.validation import NEEDS
@@ -60,10 +67,13 @@ def compare(
     warn(found.warnings)
     place = out or Path("results") / f"{found.name}-compare"
     read = [table] if table else [entry.table for entry in found.measured]
-    with results_folder(place, "compare", FILES, inputs=read, force=force) as folder:
+    quiet, keeps = quiet or as_json, [f"{PROGRESS}/*/*.npz"]
+    with results_folder(place, "compare", FILES, inputs=read, force=force, keeps=keeps) as folder:
+        store = AnswerStore(folder / PROGRESS)
         with (
-            progress(f"{found.name}: simulations", 1.0, quiet=quiet or as_json) as step,
-            _side_by_side(inputs) as executor,
+            keeping(lambda: store.kept),
+            progress(f"{found.name}: simulations", 1.0, quiet=quiet) as step,
+            _side_by_side(workers or (os.cpu_count() or 1 if inputs else 1)) as executor,
         ):
             comparison = found.compare(
                 table,
@@ -74,8 +84,11 @@ def compare(
                 executor=executor,
                 progress=lambda done, total: step(done / total),
                 reduced=reduced,
+                store=store,
+                begin=None if quiet else fail,
             )
-        comparison.save(folder)
+            comparison.save(folder)
+        store.clear()
     if as_json:
         print_json(comparison.to_dict())
         return
@@ -88,13 +101,12 @@ def compare(
 
 
 @contextmanager
-def _side_by_side(many: bool) -> Iterator[Executor | None]:
-    """A process per core where there are many simulations; none where starting processes takes longer than them."""
-    cores = os.cpu_count() or 1
-    if not many or cores < 2:
+def _side_by_side(count: int) -> Iterator[Executor | None]:
+    """So many processes; none where one is enough."""
+    if count < 2:
         yield None
         return
-    with processes(cores) as executor:
+    with processes(count) as executor:
         yield executor
 
 

@@ -4,17 +4,20 @@ from __future__ import annotations
 
 from collections.abc import Callable, Iterable, Mapping, Sequence
 from concurrent.futures import Executor
+from dataclasses import dataclass
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
+from tyrefem.answer_store import AnswerStore
 from tyrefem.compare.comparison import Comparison, comparison_of
+from tyrefem.compare.computed import computed_of
 from tyrefem.compare.experiment import Experiment, Table, experiments
 from tyrefem.compare.history import histories
 from tyrefem.compare.interface import ResultLike, StudyLike
 from tyrefem.errors import InputError
-from tyrefem.mechanics import BY_ELEMENTS, same_cycles
 from tyrefem.requirements import Requirements
+from tyrefem.result import Result
 from tyrefem.rolling import run
 from tyrefem.studies import Study
 from tyrefem.uncertain_numbers import left_out
@@ -38,6 +41,8 @@ def compare(
     executor: Executor | None = None,
     progress: Callable[[int, int], None] | None = None,
     reduced: str = "auto",
+    store: AnswerStore | None = None,
+    begin: Callable[[str], None] | None = None,
 ) -> Comparison:
     """Deviations between a study and measured temperature histories, E = computed - measured.
 
@@ -57,6 +62,8 @@ def compare(
     progress : called with (simulations done, simulations in all) after each.
     reduced : "auto" makes a reduced model of the drives' runs for the changed inputs, where there are at least 12 of
         these, tries it on three or more of them that are run in full, and uses it if it held; "never" does not.
+    store : keeps finished simulations, so that an interrupted comparison takes them up again.
+    begin : called before the first simulation with a sentence of how many there are.
 
     Raises
     ------
@@ -74,7 +81,8 @@ def compare(
     if result is None and isinstance(study, Study):
         _check_times(study, planned)
     keys = dict(study.uncertainty) if inputs else {}
-    solved, certificate, said = _solved(study, planned, result, keys, executor, progress, reduced)
+    how = _How(executor, progress, reduced, store, begin)
+    solved, certificate, said = _solved(study, planned, result, keys, how)
     found, curves, notes = [], {}, []
     for experiment in planned:
         computed, perturbed = solved[_drive(experiment)]
@@ -98,15 +106,24 @@ def _drive(experiment: Experiment) -> str:
     return repr(sorted(experiment.drive.items()))
 
 
-def _run(study: StudyLike) -> ResultLike:
-    from tyrefem.compare.computed import computed_of
-
-    other: Any = study
-    return computed_of(run(study) if isinstance(study, Study) else other.run())
-
-
 #: Drive and changed input; None: as the study has it.
 Key = tuple[str, str | None]
+Solved = tuple[dict[Key, ResultLike], "Certificate | None", list[str]]
+
+
+@dataclass(frozen=True, eq=False)
+class _How:
+    """How the simulations are made, see `compare`."""
+
+    executor: Executor | None
+    progress: Callable[[int, int], None] | None
+    reduced: str
+    store: AnswerStore | None
+    begin: Callable[[str], None] | None
+
+    def done(self, total: int) -> Callable[[int], None]:
+        """What is called with the number of simulations made."""
+        return lambda count: self.progress(count, total) if self.progress is not None else None
 
 
 def _solved(
@@ -114,80 +131,88 @@ def _solved(
     planned: Sequence[Experiment],
     result: ResultLike | None,
     keys: Mapping[str, float],
-    executor: Executor | None,
-    progress: Callable[[int, int], None] | None,
-    reduced: str,
+    how: _How,
 ) -> tuple[dict[str, tuple[ResultLike, dict[str, ResultLike]]], Certificate | None, list[str]]:
     """Drive -> its result, and its results with each uncertain input one sd higher; certificate; notes."""
     known: dict[str, ResultLike] = {}
     studies: dict[Key, StudyLike] = {}
-    drives: dict[str, StudyLike] = {}
     for experiment in planned:
         drive = _drive(experiment)
-        if drive in known or (drive, None) in studies:
+        if (drive, None) in studies:
             continue
         driven = study.with_drive(dict(experiment.drive)) if experiment.drive else study
         amended = result is not None and len(planned) == 1 and result.study is not study
         if result is not None and (not experiment.drive or amended):
             known[drive] = result
             driven = result.study
-        else:
-            studies[drive, None] = driven
-        drives[drive] = driven
+        studies[drive, None] = driven
         studies |= {(drive, key): driven.scaled(key, 1.0 + sd) for key, sd in keys.items()}
-
-    def done(count: int) -> None:
-        if progress is not None:
-            progress(count, len(studies))
-
-    each: Any = executor.map if executor is not None else map
-    results: dict[Key, ResultLike] = {}
-    certificate: Certificate | None = None
-    notes: list[str] = []
-    if reduced == "auto":
-        results, certificate, notes = _by_model(
-            studies, lambda drive, key: drives[drive].scaled(key, 1 / (1 + keys[key])), known, each, done
-        )
-    # The same change at one drive after the other: what takes long to find for a change, its drives may share.
-    order: dict[str | None, int] = {None: -1}
-    order |= {key: number for number, key in enumerate(keys)}
-    missing = sorted((what for what in studies if what not in results), key=lambda what: order[what[1]])
-    notes += _cost(study, studies, drives)
-    for what, computed in zip(missing, each(_run, [studies[what] for what in missing]), strict=True):
-        results[what] = computed
-        done(len(results))
-    known |= {drive: found for (drive, key), found in results.items() if key is None}
-    together = {drive: (computed, {key: results[drive, key] for key in keys}) for drive, computed in known.items()}
+    own = {key: one for key, one in studies.items() if isinstance(one, Study)}
+    at_hand = {drive: one for drive, one in known.items() if isinstance(one, Result)}
+    if len(own) == len(studies) and len(at_hand) == len(known):
+        found, certificate, notes = _by_runs(own, at_hand, keys, how)
+    else:
+        found, certificate, notes = _one_by_one(studies, known, how)
+    together = {
+        drive: (one, {key: found[drive, key] for key in keys}) for (drive, name), one in found.items() if not name
+    }
     return together, certificate, notes
 
 
-def _by_model(
-    studies: Mapping[Key, StudyLike],
-    lowered: Callable[[str, str], Any],
-    known: Mapping[str, ResultLike],
-    each: Any,
-    done: Callable[[int], None],
-) -> tuple[dict[Key, ResultLike], Certificate | None, list[str]]:
-    """The runs that were made with the help of a reduced model: all, or full ones only if it did not hold."""
-    from tyrefem.compare.neighbours import WORTH, Neighbours, followed
-    from tyrefem.result import Result
+def _one_by_one(studies: Mapping[Key, StudyLike], known: Mapping[str, ResultLike], how: _How) -> Solved:
+    """The runs of studies of any kind, every one in full."""
+    each: Any = how.executor.map if how.executor is not None else map
+    results: dict[Key, ResultLike] = {(drive, None): result for drive, result in known.items()}
+    missing, done = [key for key in studies if key not in results], how.done(len(studies))
+    for key, computed in zip(missing, each(_run, [studies[key] for key in missing]), strict=True):
+        results[key] = computed
+        done(len(results))
+    return results, None, []
 
-    own = {what: one for what, one in studies.items() if isinstance(one, Study)}
-    at_hand = {drive: one for drive, one in known.items() if isinstance(one, Result)}
-    if len(own) < len(studies) or len(at_hand) < len(known):
-        return {}, None, []
-    everything = followed({(drive, None): one.study for drive, one in at_hand.items()} | own)
-    if sum(key is not None for _, key in everything) < WORTH:
-        return {}, None, []
-    neighbours = None
-    try:
-        neighbours = Neighbours(everything, lowered, at_hand, each, done)
-        certificate = neighbours.solve()
-    except (InputError, np.linalg.LinAlgError) as error:
-        # What is wrong with the study itself is said by its full run.
-        made = {} if neighbours is None else neighbours.found
-        return dict(made), None, [f"Note: all runs with a changed input are full ones: {error}"]
-    return dict(neighbours.found), certificate, [certificate.sentence]
+
+def _run(study: StudyLike) -> ResultLike:
+    other: Any = study
+    return computed_of(run(study) if isinstance(study, Study) else other.run())
+
+
+def _by_runs(studies: Mapping[Key, Study], known: Mapping[str, Result], keys: Mapping[str, float], how: _How) -> Solved:
+    """The runs of studies, those with a changed input by a reduced model where it holds."""
+    from tyrefem.compare.neighbours import Certificate, Neighbours, followed, worth
+    from tyrefem.compare.runs import Runs, store_key
+
+    model = how.reduced == "auto" and worth(followed(studies))
+    if how.store is not None:
+        how.store.take_up(store_key(next(iter(studies.values()))))
+    with Runs(studies, keys, known, how.executor, how.store, how.done(len(studies))) as runs:
+        verdict = runs.noted if model else None
+        refused = verdict is not None and verdict.dtype.kind == "U"
+        certified = verdict is not None and not refused
+        complete = how.store is not None and runs.take_up_all(reduced=certified)
+        if how.begin is not None:
+            how.begin(runs.workload(model=model))
+        if complete:
+            certificate = Certificate.of(verdict) if certified else None
+            why = str(verdict) if refused else ""
+            return dict(runs.found), certificate, [*runs.cost, *_said(model, certificate, why)]
+        runs.begin()
+        certificate, why = None, str(verdict) if refused else ""
+        if model and not why:
+            try:
+                certificate = Neighbours(runs).solve()
+                runs.note(certificate.values)
+            except (InputError, np.linalg.LinAlgError) as error:
+                # What is wrong with the study itself is said by its full run.
+                why = str(error)
+                runs.note(why)
+        runs.fill()
+    return dict(runs.found), certificate, [*runs.cost, *_said(model, certificate, why)]
+
+
+def _said(model: bool, certificate: Certificate | None, why: str) -> list[str]:
+    """What the notes say of the reduced model."""
+    if certificate is not None:
+        return [certificate.sentence]
+    return [f"Note: all runs with a changed input are full ones: {why}"] if model else []
 
 
 def _check_times(study: Study, planned: Sequence[Experiment]) -> None:
@@ -201,18 +226,6 @@ def _check_times(study: Study, planned: Sequence[Experiment]) -> None:
             return
         notes += _outside(experiment, 0.0, end, outside)
     raise InputError("no measured time is within the simulated span: " + "; ".join(notes))
-
-
-def _cost(study: StudyLike, studies: Mapping[Key, StudyLike], drives: Mapping[str, StudyLike]) -> list[str]:
-    """What the changed inputs cost, where strain cycles take longer than a run."""
-    changed = {what: one for what, one in studies.items() if what[1] is not None}
-    if not changed or not isinstance(study, Study) or study.card.mechanics.strain not in BY_ELEMENTS:
-        return []
-    moved = sum(not same_cycles(one, drives[drive]) for (drive, _), one in changed.items())  # type: ignore[arg-type]
-    return [
-        f"Note: {len(changed)} runs with a changed input; {moved} of them change the strain cycle, which finite "
-        "elements solve anew"
-    ]
 
 
 def _outside(experiment: Experiment, first: float, last: float, outside: int) -> list[str]:

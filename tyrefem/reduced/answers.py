@@ -40,7 +40,13 @@ def reduced_outcomes(
     ----------
     tolerance : K, of time integration.
     """
-    tyres = [RollingTyre(study, model.base) for study in studies]
+    yield from outcomes_of(model, [RollingTyre(study, model.base) for study in studies], tolerance)
+
+
+def outcomes_of(
+    model: ReducedModel, tyres: Sequence[RollingTyre], tolerance: float = TIME_TOLERANCE
+) -> Iterator[tuple[int, Variant | dict[str, str]]]:
+    """The same of tyres on the model's mesh."""
     for numbers, part in side_by_side(model, tyres, tolerance):
         if isinstance(part, dict):
             yield numbers[0], part

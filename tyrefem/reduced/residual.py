@@ -21,12 +21,28 @@ from tyrefem.reduced.train import Snapshots, sources_at
 from tyrefem.rolling import RollingTyre
 
 Array = NDArray[np.float64]
-#: Parts of a phase at which fields are corrected.
-PARTS = np.array([0.02, 0.1, 0.3, 0.6, 1.0])
+#: Parts of a phase at which fields are corrected, and the one whose exchanges its matrix has.
+PARTS, MIDDLE = np.array([0.02, 0.1, 0.3, 0.6, 1.0]), 0.3
+#: The first field of a phase is one of its first s: a surface answers within seconds, however long the phase lasts.
+EARLY, EARLIER = 15.0, 4.0
 #: Factored matrices kept; error of a correction that is left over to the next, and solves for it at most.
 KEPT, LEFT, ITERATIONS = 8, 0.1, 8
 #: K, of the time integration of what is corrected.
 TIME_TOLERANCE = 0.2
+
+
+def parts(span: float) -> Array:
+    """Parts of a phase of so many s at which its fields are corrected: `PARTS`, and in a long phase earlier ones.
+
+    >>> parts(600.0)
+    array([0.02, 0.1 , 0.3 , 0.6 , 1.  ])
+    >>> parts(10_800.0)[:3] * 10_800.0
+    array([ 13.5,  54. , 216. ])
+    """
+    found = list(PARTS)
+    while found[0] * span > EARLY:
+        found.insert(0, found[0] / EARLIER)
+    return np.array(found)
 
 
 def corrected(model: ReducedModel, tyre: RollingTyre, share: float) -> tuple[Snapshots, float]:
@@ -55,10 +71,11 @@ def correction(marched: Marched, place: int, share: float) -> tuple[Snapshots, f
     fields, sources, largest = [], [], 0.0
     for number, (start, end) in enumerate(pairwise([*tyre.drive.starts, tyre.drive.end])):
         span = end - start
-        times = start + PARTS * span * (1 - 1e-9)
+        times = start + parts(span) * span * (1 - 1e-9)
         states, slopes = marched.states(times)[:, place], marched.slopes(times)[:, place]
         values, rates = (each[:, :m] @ model.V.T for each in (states, slopes))
-        full.freeze(float(times[2]), State(values[2], states[2, m:]))
+        middle = len(times) - len(PARTS) + int(np.searchsorted(PARTS, MIDDLE))
+        full.freeze(float(times[middle]), State(values[middle], states[middle, m:]))
         tau = share * span
         right, lumped = np.empty((len(model.V), len(times))), np.empty((len(full.C), len(times)))
         for i, t in enumerate(times):
@@ -83,7 +100,7 @@ def nearby(model: ReducedModel, number: int, share: float) -> StageMatrix:
         balance = reduced_balance(model, base)
         full = balance_of(model.operators, base.bodies, base.boundaries, base.sources, balance.reservoirs)
         even = State(np.full(len(model.V), base.drive.initial), balance.start[model.size :])
-        full.freeze(ends[number] + PARTS[2] * span * (1 - 1e-9), even)
+        full.freeze(ends[number] + MIDDLE * span * (1 - 1e-9), even)
         if len(kept) >= KEPT:
             kept.pop(next(iter(kept)))
         kept[number, share] = StageMatrix(full, share * span / GAMMA)
