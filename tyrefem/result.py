@@ -27,7 +27,7 @@ if TYPE_CHECKING:
     import pandas as pd
 
     from tyrefem.conduction.history import Peak
-    from tyrefem.feedback import FeedbackOutcome
+    from tyrefem.feedback_outcome import FeedbackOutcome
     from tyrefem.rolling import RollingTyre
     from tyrefem.studies import Study
 

@@ -5,7 +5,7 @@ from __future__ import annotations
 import math
 from dataclasses import dataclass
 from functools import cached_property
-from typing import TYPE_CHECKING
+from typing import Any
 
 import numpy as np
 from numpy.typing import NDArray
@@ -16,9 +16,6 @@ from tyrefem.diagnose.evidence import Members
 from tyrefem.diagnose.gap import Gap
 from tyrefem.diagnose.gauss import Fit
 from tyrefem.diagnose.unknowns import Unknown
-
-if TYPE_CHECKING:
-    from tyrefem.diagnose.refine import Refinement
 
 Array = NDArray[np.float64]
 #: A fit with a misfit of so many times the number of readings nearly explains them.
@@ -55,7 +52,8 @@ class Explained(Brief):
     #: Linear model of the fitted trials about the fit, d = J x + e: whitened data and jacobian of ``unknowns``.
     data: Array
     jacobian: Array
-    refinement: Refinement
+    #: State of the fit, from which `tyrefem.diagnose.refine` goes on.
+    refinement: Any
 
     @property
     def close(self) -> bool:
@@ -98,7 +96,7 @@ class Explained(Brief):
         return tuple(one.key for one, beyond in pairs if beyond > PRESSED and one in own)
 
 
-def explained(gap: Gap, one: Refinement) -> Explained:
+def explained(gap: Gap, one: Any) -> Explained:
     """What a refinement has come to."""
     values = one.named(one.x)
     computed = {i: gap.corrected(i, one.computed[i]) for i in gap.fitted}

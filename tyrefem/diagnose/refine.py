@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import copy
 from collections.abc import Callable, Mapping, Sequence
 
 import numpy as np
@@ -173,11 +174,16 @@ class Refinement(Brief):
         self.shapes = [one for one in self.shapes if one not in shapes]
         self.moved, self.wants_tangents = False, True
 
-    def go_on(self) -> None:
-        """Take tangents here and some more steps; for a fit that matters and has not converged."""
-        self.done, self.matters = False, True
-        self.tangents, self.limit, self.radius = MORE_TANGENTS - 1, self.steps + MORE_STEPS, max(self.radius, 1.0)
-        self._new_tangents(self.shapes)
+    def carried_on(self) -> Refinement:
+        """A fit that begins here with tangents and takes some more steps; this one stays as it is."""
+        further = copy.copy(self)
+        further.unknowns, further.shapes = list(self.unknowns), list(self.shapes)
+        further.computed = dict(self.computed)
+        further.done, further.matters = False, True
+        further.tangents, further.limit = MORE_TANGENTS - 1, self.steps + MORE_STEPS
+        further.radius = max(self.radius, 1.0)
+        further._new_tangents(further.shapes)
+        return further
 
     def take(self, answers: Sequence[Array]) -> None:
         """Take tangents where they are wanted, else the simulations at the trial point."""
@@ -206,9 +212,7 @@ def refined(
 
 def polished(gap: Gap, fits: Sequence[Explained], tick: Callable[[], None] | None = None) -> list[Explained]:
     """First fits carried on to convergence with tangents at where they are, their shape parameters fitted too."""
-    for one in fits:
-        one.refinement.go_on()
-    return _run(gap, [one.refinement for one in fits], tick)
+    return _run(gap, [fit.refinement.carried_on() for fit in fits], tick)
 
 
 def _run(gap: Gap, running: Sequence[Refinement], tick: Callable[[], None] | None) -> list[Explained]:

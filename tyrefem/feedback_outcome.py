@@ -1,0 +1,84 @@
+"""What the feedback of temperature on the strain cycle came to."""
+
+from __future__ import annotations
+
+import math
+from dataclasses import dataclass
+from typing import Any
+
+
+@dataclass(frozen=True)
+class Contact:
+    """Gauge pressure, Pa, and deflection, m, at a time, s."""
+
+    time: float
+    pressure: float
+    deflection: float
+
+    def __str__(self) -> str:
+        return f"{self.deflection * 1e3:.1f} mm at {self.pressure / 1e3:.0f} kPa"
+
+
+@dataclass(frozen=True)
+class FeedbackOutcome:
+    """Whether strain cycles and temperatures agree, and what the feedback did.
+
+    Attributes
+    ----------
+    changes : K, of every run: largest difference between the temperatures that it found and those of its strain
+        cycles, over contained air and mean of every region that softens, at every knot; infinite of a run that was
+        interrupted, for which nobody knows.
+    start, end : pressure and deflection there. softened : region -> modulus of its compound at the end over the card's.
+    """
+
+    tolerance: float
+    changes: tuple[float, ...]
+    start: Contact
+    end: Contact
+    softened: dict[str, float]
+
+    @property
+    def iterations(self) -> int:
+        """Runs of the whole drive."""
+        return len(self.changes)
+
+    @property
+    def converged(self) -> bool:
+        """Do they agree within the tolerance?"""
+        return self.changes[-1] <= self.tolerance
+
+    @property
+    def warnings(self) -> tuple[str, ...]:
+        """One line, if they do not agree."""
+        if self.converged or math.isinf(self.changes[-1]):
+            return ()
+        return (
+            f"the feedback of temperature on the strain cycle has not converged: after {self.iterations} runs "
+            f"temperatures still differ by {self.changes[-1]:.2g} K from those of the strain cycles (tolerance "
+            f"{self.tolerance:g} K); raise mechanics.feedback.iterations",
+        )
+
+    @property
+    def words(self) -> str:
+        """One line for people."""
+        change = f"{self.changes[-1]:.2g} K"
+        state = f"converged to {change}" if self.converged else f"NOT converged: {change}"
+        runs = f"{self.iterations} run{'' if self.iterations == 1 else 's'}"
+        if math.isinf(self.changes[-1]):
+            state = "interrupted before the end of the drive"
+        return f"{self.start} at the start, {self.end} at the end; {runs}, {state}"
+
+    def to_dict(self) -> dict[str, Any]:
+        """JSON-ready."""
+        contacts = {
+            when: {"time_s": at.time, "gauge_pressure_Pa": at.pressure, "deflection_m": at.deflection}
+            for when, at in (("start", self.start), ("end", self.end))
+        }
+        return {
+            "converged": self.converged,
+            "iterations": self.iterations,
+            "change_K": list(self.changes),
+            "tolerance_K": self.tolerance,
+            **contacts,
+            "relative_modulus_at_end": self.softened,
+        }
