@@ -17,7 +17,6 @@ from __future__ import annotations
 import argparse
 import importlib
 import json
-import os
 import re
 import sys
 import tempfile
@@ -26,7 +25,7 @@ from pathlib import Path
 from typing import Any
 
 from interface_parts import Part, card_trees, commands, effects, import_everything, members, public_name
-from record_numbers import COARSE, SHORT, environment, run_command
+from record_numbers import COARSE, SHORT, elsewhere, run_command
 
 #: One quick run of every command that writes files or prints JSON.
 RUNS = (
@@ -105,6 +104,7 @@ def written(command: str, tree: Path) -> dict[str, list[str]]:
             files["printed"] = sorted(set(json_keys(json.loads(done.stdout))))
         for path in sorted(path for path in folder.rglob("*") if path.is_file()):
             files[path.relative_to(folder).as_posix()] = sorted(set(file_keys(path)))
+    print(f"exit {done.returncode}: {command}", flush=True)
     return files
 
 
@@ -151,30 +151,25 @@ def documented(tree: Path) -> list[str]:
 
 def record(tree: Path) -> dict[str, Any]:
     """The whole interface as plain data."""
-    os.environ.update(environment(tree))
-    sys.path.insert(0, str(tree))
-    import typer.main
+    with elsewhere(tree) as folder:
+        import typer.main
 
-    import tyrefem
+        import tyrefem
 
-    import_everything(tyrefem)
-    cards, effect = importlib.import_module("tyrefem.cards"), importlib.import_module("tyrefem.effects")
-    group = typer.main.get_command(importlib.import_module("tyrefem.cli").app)
-    listed = {kind: run_command(f"list {kind}", tree, tree).stdout.splitlines() for kind in KINDS}
-    outputs = {}
-    for command in RUNS:
-        outputs[command] = written(command, tree)
-        print(f"exit {outputs[command]['exit code'][0]}: {command}", flush=True)
-    return {
-        "names": {name: public_name(getattr(tyrefem, name)) for name in tyrefem.__all__},
-        "objects": {name: {"members": members(value)} for name, value in objects()},
-        "commands": dict(commands(group)),
-        "cards": card_trees(cards.Card, effect.Effect),
-        "effects": effects(effect.Effect),
-        "library": {kind: [" ".join(_names(kind, line)) for line in lines] for kind, lines in listed.items()},
-        "outputs": outputs,
-        "documented": documented(tree),
-    }
+        import_everything(tyrefem)
+        cards, effect = importlib.import_module("tyrefem.cards"), importlib.import_module("tyrefem.effects")
+        group = typer.main.get_command(importlib.import_module("tyrefem.cli").app)
+        listed = {kind: run_command(f"list {kind}", tree, folder).stdout.splitlines() for kind in KINDS}
+        parts = {
+            "names": {name: public_name(getattr(tyrefem, name)) for name in tyrefem.__all__},
+            "objects": {name: {"members": members(value)} for name, value in objects()},
+            "commands": dict(commands(group)),
+            "cards": card_trees(cards.Card, effect.Effect),
+            "effects": effects(effect.Effect),
+            "library": {kind: [" ".join(_names(kind, line)) for line in lines] for kind, lines in listed.items()},
+            "documented": documented(tree),
+        }
+    return parts | {"outputs": {command: written(command, tree) for command in RUNS}}
 
 
 def _names(kind: str, line: str) -> list[str]:
@@ -241,7 +236,8 @@ def main() -> int:
     if options.command == "compare":
         before, after = (json.loads(path.read_text(encoding="utf-8")) for path in (options.before, options.after))
         return compare(before, after)
-    options.out.write_text(json.dumps(record(options.tree.resolve()), indent=1), encoding="utf-8")
+    out = options.out.resolve()
+    out.write_text(json.dumps(record(options.tree.resolve()), indent=1), encoding="utf-8")
     return 0
 
 

@@ -19,6 +19,7 @@ and first moment. Columns of text tables are compared to the digits that they pr
 from __future__ import annotations
 
 import argparse
+import contextlib
 import json
 import os
 import shlex
@@ -27,7 +28,7 @@ import sys
 import tempfile
 import time
 import tomllib
-from collections.abc import Callable
+from collections.abc import Callable, Iterator
 from concurrent.futures import ThreadPoolExecutor
 from pathlib import Path
 from typing import Any
@@ -107,6 +108,17 @@ def environment(tree: Path) -> dict[str, str]:
     return kept | threads | {"PYTHONPATH": str(tree), "PYTHONDONTWRITEBYTECODE": "1", "COLUMNS": "200"}
 
 
+@contextlib.contextmanager
+def elsewhere(tree: Path) -> Iterator[Path]:
+    """This process uses ``tree``'s package in an empty folder: studies of the current one would be found first."""
+    for key in [key for key in os.environ if key.startswith("TYREFEM")]:
+        del os.environ[key]
+    os.environ |= environment(tree)
+    sys.path.insert(0, str(tree))
+    with tempfile.TemporaryDirectory() as folder, contextlib.chdir(folder):
+        yield Path(folder)
+
+
 def run_command(command: str, tree: Path, folder: Path) -> subprocess.CompletedProcess[str]:
     """Run one command of the command line in a folder; its output is captured."""
     arguments = [sys.executable, "-m", "tyrefem", *shlex.split(command)]
@@ -144,11 +156,11 @@ def record_run(result: Any) -> Entry:
     return entry | {"resistance N": float(resistance.force), "resistance": float(resistance.coefficient)}
 
 
-def record_effect(name: str, tree: Path) -> Entry:
+def record_effect(name: str, tree: Path, folder: Path) -> Entry:
     """A run with one effect, at the values of the example that `show effect` prints."""
     import tyrefem as tf
 
-    text = run_command(f"show effect {name}", tree, tree).stdout
+    text = run_command(f"show effect {name}", tree, folder).stdout
     table = tomllib.loads(text[text.index("[[effects]]") :])["effects"]
     for study, needed in EFFECT_STUDIES:
         try:
@@ -198,37 +210,44 @@ def record_conduction() -> Entry:
     return entry
 
 
-def interface_cases(tree: Path) -> dict[str, Callable[[], Entry]]:
+def interface_cases(tree: Path, folder: Path) -> dict[str, Callable[[], Entry]]:
     """Name -> a case of the Python interface."""
     import tyrefem as tf
 
     cases: dict[str, Callable[[], Entry]] = {"tf.conduction": record_conduction}
     for name in WHOLE:
         cases[f"tf.study {name}"] = lambda name=name: record_run(tf.study(name).run())
-    for line in run_command("list effects", tree, tree).stdout.splitlines():
+    for line in run_command("list effects", tree, folder).stdout.splitlines():
         effect = line.split()[0]
-        cases[f"tf.study effect {effect}"] = lambda effect=effect: record_effect(effect, tree)
+        cases[f"tf.study effect {effect}"] = lambda effect=effect: record_effect(effect, tree, folder)
     return cases
+
+
+def attempted(case: Callable[[], Entry]) -> Entry:
+    """An entry; of a case that fails, the kind of its error."""
+    try:
+        return case()
+    except Exception as error:
+        print(f"{type(error).__name__}: {error}", flush=True)
+        return {"failed": type(error).__name__}
 
 
 def record(tree: Path, chosen: str = "", jobs: int = 1) -> dict[str, Entry]:
     """Every entry whose name holds ``chosen``."""
-    os.environ |= environment(tree)
-    sys.path.insert(0, str(tree))
     commands = [command for command in COMMANDS if chosen in command]
     entries: dict[str, Entry] = {}
 
     def timed(name: str, case: Callable[[], Entry]) -> None:
         began = time.perf_counter()
-        entries[name] = case()
+        entries[name] = attempted(case)
         failed = f"  EXIT CODE {entries[name]['exit code']}" if entries[name].get("exit code") else ""
         print(f"{time.perf_counter() - began:6.1f} s  {len(entries[name]):5d} numbers  {name}{failed}", flush=True)
 
-    with ThreadPoolExecutor(jobs) as pool:
+    with elsewhere(tree) as folder, ThreadPoolExecutor(jobs) as pool:
         list(pool.map(lambda command: timed(command, lambda: record_command(command, tree)), commands))
-    for name, case in interface_cases(tree).items():
-        if chosen in name:
-            timed(name, case)
+        for name, case in interface_cases(tree, folder).items():
+            if chosen in name:
+                timed(name, case)
     return {name: entries[name] for name in sorted(entries)}
 
 
@@ -249,8 +268,9 @@ def main() -> int:
     if options.command == "compare":
         before, after = (json.loads(path.read_text(encoding="utf-8")) for path in (options.before, options.after))
         return compare(before, after, options.tolerance)
+    out = options.out.resolve()
     entries = record(options.tree.resolve(), options.only, options.jobs)
-    options.out.write_text(json.dumps(entries, indent=1), encoding="utf-8")
+    out.write_text(json.dumps(entries, indent=1), encoding="utf-8")
     print(f"{sum(os.times()[:4]):.0f} s of processor time, {len(entries)} entries")
     return 0
 
