@@ -177,7 +177,9 @@ class Study(studies.Study):
         ``partial``: Ctrl-C gives back what is finished (``result.history.interrupted``); else it is raised.
         """
         from tyrefem.rolling import run
+        from tyrefem.run_estimate import RunEstimate
 
+        RunEstimate.of(self).announce()
         return with_verbs(Result, run(self, progress, partial=partial))
 
     def compare(self, table: Any = None, result: result.Result | None = None, **options: Any) -> Comparison:

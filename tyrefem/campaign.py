@@ -3,18 +3,24 @@
 from __future__ import annotations
 
 from collections.abc import Callable, Iterator, Mapping
+from contextlib import suppress
 from dataclasses import dataclass
 from typing import TYPE_CHECKING, Any, Self
 
+from tyrefem import estimate
 from tyrefem.brief import Brief
 from tyrefem.cases import Case
 from tyrefem.conduction import SolverError
 from tyrefem.errors import InputError
 from tyrefem.rolling import run
+from tyrefem.run_estimate import RunEstimate
 from tyrefem.studies import Study
 
 if TYPE_CHECKING:
     from tyrefem.result import Result
+
+#: Cases that are looked at to judge how long all will take.
+LOOKED_AT = 10
 
 
 @dataclass(frozen=True, eq=False)
@@ -56,6 +62,7 @@ class Campaign(Brief):
 
         An interruption (Ctrl-C) yields the part of the case that is finished, then raises ``KeyboardInterrupt``.
         """
+        self._warn()
         for number, case in enumerate(self.cases):
             outcome = self.outcome(case)
             if progress is not None:
@@ -63,6 +70,17 @@ class Campaign(Brief):
             yield case, outcome
             if not isinstance(outcome, str) and outcome.history.interrupted:
                 raise KeyboardInterrupt
+
+    def _warn(self) -> None:
+        """Of long work, judged by some of the cases."""
+        some = self.cases[:: max(len(self.cases) // LOOKED_AT, 1)]
+        times: list[float] = []
+        for case in some:
+            with suppress(InputError):  # a case that is wrong is a row of the table that says so
+                times.append(RunEstimate.of(self.case_study(case)).total.time)
+        if times:
+            mean = sum(times) / len(times)
+            estimate.warn_of(mean * len(self.cases), f"{len(self.cases):,} cases of {self.study.name}")
 
     def outcome(self, case: Case) -> Result | str:
         """The result of a case, or why there is none."""

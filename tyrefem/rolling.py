@@ -21,6 +21,7 @@ from tyrefem.mechanics import same_cycles
 from tyrefem.meshing import TyreMesh
 from tyrefem.nearby_cycles import NearbyCycles
 from tyrefem.result import GAS, RIM, Result
+from tyrefem.run_estimate import RunEstimate
 from tyrefem.sliding.tread import SlidingTread
 from tyrefem.studies import Study
 from tyrefem.surroundings import Surroundings
@@ -249,7 +250,13 @@ def run(
     partial : Ctrl-C gives back what is finished, see `tyrefem.conduction.Conduction.transient`; else it is raised.
 
     A campaign's own drive is simulated, which `Result.warnings` says; its cases are run by `Campaign.runs`.
+
+    Raises
+    ------
+    InputError : more than there is memory for.
     """
+    if like is None:
+        RunEstimate.of(study).check()
     if study.card.mechanics.feedback is not None:
         from tyrefem import feedback
 

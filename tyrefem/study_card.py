@@ -16,6 +16,7 @@ from tyrefem.cards import Card, Text
 from tyrefem.drive import Drive
 from tyrefem.effects import Effect, EffectOf
 from tyrefem.errors import InputError
+from tyrefem.estimate import check_readings, smallest_tolerance
 from tyrefem.footprint import TR_R_64, FootprintLaw
 from tyrefem.loading import TrR64, VerticalStiffness
 from tyrefem.published import Published
@@ -220,4 +221,19 @@ class StudyCard(Card):
         for name in self.sensors:
             if name in ("time_s", "contained-air", "rim") or not name.strip():
                 raise InputError(f"'{name}' is a name that readings already use", field="sensors")
+        return self
+
+    @model_validator(mode="after")
+    def _resolved(self) -> StudyCard:
+        """No more readings than a table may have; no tolerance below the rounding of the drive's temperatures."""
+        check_readings(self.drive.end, self.output.every, "output.every")
+        given = [self.drive.initial, *(end for p in self.drive.phases for end in (p.ambient.start, p.ambient.end))]
+        least = smallest_tolerance(max(map(abs, given)))
+        tolerances = {"numerics.tolerance": self.numerics.tolerance}
+        if self.mechanics.feedback is not None:
+            tolerances["mechanics.feedback.tolerance"] = self.mechanics.feedback.tolerance
+        for field, tolerance in tolerances.items():
+            if tolerance < least:
+                message = f"{tolerance:g} K is lost in the rounding of temperatures: must be at least {least:.0e} K"
+                raise InputError(message, field=field)
         return self

@@ -158,7 +158,7 @@ def _tops(section: Section, s: float) -> list[float]:
         ({"cell": "hex"}, "cell", "quad, tri"),
         ({"size": 0.0}, "size", "positive length"),
         ({"size": float("nan")}, "size", "positive length"),
-        ({"size": 2e-6}, "size", "more than 2,000,000 elements"),
+        ({"size": 2e-6}, "size", "nodes; that takes about .* GiB of memory"),
         ({"size": 2.0}, "size", "too coarse"),
         ({"through": 0}, "through", "1 or more"),
     ],

@@ -73,7 +73,7 @@ def test_a_box_without_width_no_sensors_held_air_and_a_tolerance_that_cannot_be_
     study = tyrefem.study(STUDY, changes)
     ranges = {"load": ("12 kN",), "pressure": ("560 kPa",), "ambient": (20.0, 20.0)}
     with pytest.raises(InputError, match="still differ by"):
-        export(study, tmp_path / "no.npz", ranges=ranges, duration=40.0, tolerance=1e-7)
+        export(study, tmp_path / "no.npz", ranges=ranges, duration=40.0, tolerance=0.01)
     assert not (tmp_path / "no.npz").exists()
     found = export(study, tmp_path / "tyre.npz", ranges=ranges, duration=40.0, tolerance=1.0)
     assert found.worst < 1.0

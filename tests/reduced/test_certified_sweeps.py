@@ -129,13 +129,19 @@ def test_above_its_tolerance_it_falls_back_to_full_runs(tyre: Study, monkeypatch
         sample="sobol",
         count=12,
     )
-    swept = sweep(few, tolerance=1e-9)
+    swept = sweep(few, tolerance=1e-6)
     assert (swept.table["by"] == "full").all()
     assert swept.certificate is None
     assert "still off by" in swept.why_full
-    assert "x 1e-09 K" in swept.why_full
+    assert "x 1e-06 K" in swept.why_full
     with pytest.raises(NotReducibleError):
-        sweep(few, tolerance=1e-9, reduced="always")
+        sweep(few, tolerance=1e-6, reduced="always")
+
+
+def test_a_tolerance_that_nothing_is_certified_to_costs_no_training(tyre: Study) -> None:
+    few = plan_of(tyre, {"drive.speed": ("10 mph", "40 mph")}, sample="sobol", count=16)
+    with pytest.raises(NotReducibleError, match=r"certified to 1e-12 K; allowed: 1e-06 K or more"):
+        sweep(few, tolerance=1e-12, reduced="always")
 
 
 @pytest.mark.parametrize(

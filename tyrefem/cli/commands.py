@@ -4,6 +4,9 @@ from __future__ import annotations
 
 import importlib
 import pkgutil
+import warnings
+from collections.abc import Iterator
+from contextlib import contextmanager
 from pathlib import Path
 from typing import Annotated, Any
 
@@ -11,7 +14,9 @@ import typer
 from typer.core import TyperGroup
 
 import tyrefem
+from tyrefem.cli.line import fail
 from tyrefem.errors import InputError
+from tyrefem.estimate import LongWorkWarning
 from tyrefem.output import reading
 
 
@@ -78,7 +83,7 @@ _register()
 def performed(arguments: list[str] | None) -> tuple[object, int]:
     """Run a command line: the line that it ends with, or none, and its exit code."""
     try:
-        with reading():
+        with reading(), _warnings_shown():
             code = app(args=arguments, prog_name=app.info.name, standalone_mode=False)
     except InputError as error:
         return error, 2
@@ -89,6 +94,23 @@ def performed(arguments: list[str] | None) -> tuple[object, int]:
     except Exception as error:
         return _other(error)
     return None, code if isinstance(code, int) else 0
+
+
+@contextmanager
+def _warnings_shown() -> Iterator[None]:
+    """Warnings of long work as one line on stderr."""
+    with warnings.catch_warnings():
+        usual = warnings.showwarning
+
+        def show(message: Warning | str, category: type[Warning], *rest: Any, **options: Any) -> None:
+            if issubclass(category, LongWorkWarning):
+                fail(f"warning: {message}")
+            else:
+                usual(message, category, *rest, **options)
+
+        warnings.showwarning = show
+        warnings.simplefilter("always", LongWorkWarning)
+        yield
 
 
 def _other(error: Exception) -> tuple[object, int]:

@@ -78,7 +78,6 @@ def export(
     with numpy alone.
     """
     from tyrefem.api import study as loaded
-    from tyrefem.quantity import parse
     from tyrefem.reduced.certify import NEEDS
     from tyrefem.reduced.certify import export as write
     from tyrefem.sweep.schedulers import Here, Local
@@ -91,10 +90,10 @@ def export(
     NEEDS.check(chosen)
     warn(chosen.warnings)
     path = out or Path("results") / f"{chosen.name}.npz"
-    allowed = parse(tolerance, "delta_degC")
+    allowed = _read("--tolerance", tolerance, "delta_degC")
     if not allowed > 0:
         raise InputError(f"must be positive, not {tolerance}", field="--tolerance")
-    lasting = None if duration is None else parse(duration, "s")
+    lasting = None if duration is None else _read("--duration", duration, "s")
     if lasting is not None and not lasting >= 1:
         raise InputError(f"must be a second or more, not {duration}", field="--duration")
     count = workers or os.cpu_count() or 1
@@ -123,6 +122,15 @@ def export(
         typer.echo(f"wrote {one} ({one.stat().st_size / 1e3:.0f} kB)")
     if fmu and not has_binary(files["fmu"]):
         fail("no C compiler was found: the FMU holds its source only; the importing tool has to compile it")
+
+
+def _read(option: str, text: str, unit: str) -> float:
+    from tyrefem.quantity import parse
+
+    try:
+        return parse(text, unit)
+    except InputError as error:
+        raise error.within(field=option) from None
 
 
 def has_binary(path: Path) -> bool:

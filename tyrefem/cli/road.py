@@ -24,6 +24,10 @@ road = typer.Typer(
 )
 Conductivity = Annotated[str, typer.Option("--conductivity", help="Tread's conductivity.")]
 HeatCapacity = Annotated[str, typer.Option("--heat-capacity", help="Tread's heat capacity by volume.")]
+#: No road, tread or contact has less or more, by unit: beyond, nothing of a table is resolved.
+LEAST = {"m/s": 1e-6, "m": 1e-4, "W/m/K": 1e-4, "J/m**3/K": 1e3}
+HOTTEST = 2000.0
+MOST = {"m/s": 400.0, "m": 10.0, "W/m/K": 1e4, "J/m**3/K": 1e9}
 #: Speeds (km/h) and footprint lengths (m) of the averaging sweep.
 SPEEDS = (0.2, 0.5, 1, 2, 5, 10, 15, 20, 50, 100, 200, 300)
 LENGTHS = (0.10, 0.14, 0.20, 0.30)
@@ -33,7 +37,7 @@ def _positive(text: str, unit: str, option: str) -> float:
     from tyrefem.quantity import Unit
 
     try:
-        return Unit(unit, gt=0)(text)
+        return Unit(unit, gt=0, ge=LEAST[unit], le=MOST[unit])(text)
     except InputError as error:
         raise error.within(field=option) from None
 
@@ -118,12 +122,12 @@ def averaging(
 ) -> None:
     """Averaging the film over the revolution against every contact resolved, over speed and footprint length."""
     from tyrefem.plotting.road import averaging_figure
-    from tyrefem.quantity import parse
+    from tyrefem.quantity import Unit
     from tyrefem.revolution import averaging_sweep
     from tyrefem.tread_point import TreadPoint
 
     try:
-        inside = parse(inner_temperature, "degC")
+        inside = Unit("degC", le=HOTTEST)(inner_temperature)
     except InputError as error:
         raise error.within(field="--inside") from None
     point = TreadPoint(

@@ -19,6 +19,8 @@ group = typer.Typer(
     no_args_is_help=True,
     context_settings={"help_option_names": ["-h", "--help"]},
 )
+#: No pad, wheel or track has more, by unit: beyond, a rise is no number.
+MOST = {"m/s": 400.0, "m": 1e5, "1": 100.0, "Pa": 1e10, "N": 1e9, "delta_degC": 1e4}
 #: Speeds of the printed table of the locked wheel, km/h.
 SPEEDS = (10, 20, 30, 40, 50, 60, 80, 100, 130)
 
@@ -169,10 +171,10 @@ def _draw(picture: Callable[[Any], Any], shown: Any, out: Path, force: bool) -> 
 
 
 def _read(option: str, text: str, unit: str) -> float:
-    from tyrefem.quantity import parse
+    from tyrefem.quantity import Unit
 
     try:
-        return parse(text, unit)
+        return Unit(unit, le=MOST[unit])(text)
     except InputError as error:
         raise error.within(field=option) from None
 

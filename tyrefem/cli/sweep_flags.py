@@ -77,8 +77,8 @@ def varied(text: str) -> tuple[str, dict[str, Any]]:
         raise InputError(f"'{values}' has more than from:to:levels", field="--vary")
     levels: dict[str, Any] = {}
     if len(parts) == 3:
-        if not parts[2].isdigit():
-            raise InputError(f"'{parts[2]}' is not a number of levels", field="--vary")
+        if re.fullmatch("[0-9]{1,99}", parts[2]) is None:
+            raise InputError(f"'{parts[2][:99]}' is not a number of levels", field="--vary")
         levels = {"levels": int(parts[2])}
     if parts[0].startswith("x") and parts[1].startswith("x"):
         try:

@@ -21,6 +21,7 @@ from tyrefem.conduction.setup import balance_of, check_partition
 from tyrefem.conduction.steady import anchored, solve_steady
 from tyrefem.conduction.transient import Integration
 from tyrefem.errors import InputError, nearest
+from tyrefem.estimate import check_memory, history, matrices, rounded_down, smallest_tolerance
 
 Array = NDArray[Any]
 #: Part of the heat that a body holds above 0 degC: a budget that turns over less has nothing in it but rounding.
@@ -70,6 +71,7 @@ class Conduction:
         element: str = "P1",
         reservoirs: Mapping[str, Reservoir] | None = None,
     ) -> None:
+        _check_memory(mesh, element)
         self.operators = operators_of(mesh, element, axisymmetric)
         self.regions, self.sources = dict(regions), dict(sources or {})
         self.reservoirs = dict(reservoirs or {})
@@ -196,14 +198,16 @@ class Conduction:
         reservoirs_initial : name -> degC, over the reservoirs' own.
         partial : Ctrl-C gives the finished part back, `interrupted` being True; without it, it is raised.
 
-        Raises InputError for bad times, tolerance or initial values, SolverError if the step vanishes, and
-        KeyboardInterrupt: nobody takes a part for the whole who has not asked for it.
+        Raises InputError for bad times, tolerance or initial values and more times than memory holds,
+        SolverError if the step vanishes, and KeyboardInterrupt: nobody takes a part for the whole who has not asked
+        for it.
         """
         when = np.array(times, dtype=float)
         if when.ndim != 1 or when.size < 2 or not np.isfinite(when).all() or np.any(np.diff(when) <= 0):
             raise InputError("must be at least two finite, strictly increasing times", field="times")
         if not (is_number(tolerance) and np.isfinite(tolerance) and tolerance > 0):
             raise InputError(f"must be positive, not {tolerance!r}", field="tolerance")
+        _check_kept(self.operators.size, when.size)
         jumps = np.asarray(breakpoints, dtype=float)
         if jumps.ndim != 1 or not np.isfinite(jumps).all():
             raise InputError("must be finite times", field="breakpoints")
@@ -223,6 +227,12 @@ class Conduction:
                 between[name, i] = (name, other if isinstance(other, str) else None)
         tally = Tally(balance.entries, list(self.regions), names, into, between)
         y = self._initial(balance, initial, float(when[0]), reservoirs_initial)
+        least = smallest_tolerance(float(np.abs(y.u).max()))
+        if tolerance < least:
+            raise InputError(
+                f"{tolerance:g} K is lost in the rounding of temperatures: must be at least {least:.0e} K",
+                field="tolerance",
+            )
         tally.floor = NEGLIGIBLE * abs(float(np.sum(balance.stored(np.zeros_like(y.u), y.u))))
         run = Integration(balance, when, y, float(tolerance), jumps, max_step or np.inf, tally)
         interrupted = False
@@ -249,3 +259,24 @@ class Conduction:
             steps=Steps(run.accepted, run.rejected, run.matrices.factorisations, run.matrices.solves),
             interrupted=interrupted,
         )
+
+
+def _check_memory(mesh: Any, element: str) -> None:
+    """Raise `InputError` for a mesh whose matrices do not fit in memory."""
+    unknowns = mesh.p.shape[1] + (mesh.facets.shape[1] + mesh.t.shape[1] if element == "P2" else 0)
+    try:
+        check_memory(matrices(unknowns), f"{unknowns:,} unknowns", "a coarser mesh or linear elements would fit")
+    except InputError as error:
+        raise error.within(field="mesh") from None
+
+
+def _check_kept(unknowns: int, times: int) -> None:
+    """Raise `InputError` for more times than there is memory for."""
+    try:
+        check_memory(
+            history(unknowns, times),
+            f"{times:,} times of {unknowns:,} unknowns",
+            lambda free: f"{rounded_down(free / history(unknowns, 1)):,.0f} times would fit",
+        )
+    except InputError as error:
+        raise error.within(field="times") from None

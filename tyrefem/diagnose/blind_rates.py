@@ -17,6 +17,7 @@ import tyrefem
 from tyrefem.answer_store import PROGRESS
 from tyrefem.diagnose.bench import Bench, Response
 from tyrefem.diagnose.blind import Outcome, cases, run_case
+from tyrefem.diagnose.effort import CASE, SENSITIVITIES, check_effort
 from tyrefem.diagnose.isolability import candidates_of, layout_notes, planned
 from tyrefem.diagnose.laboratory import laboratory
 from tyrefem.diagnose.progress_store import ProgressStore
@@ -262,6 +263,7 @@ def run_blind(
     with keeping(kept):
         if left:
             bench = Bench(study, trials)
+            check_effort(bench, f"{len(left):,} blind cases", SENSITIVITIES + len(left) * CASE, workers)
             progress.open(bench)
             with laboratory(bench, workers, progress) as lab:
                 known = responses(lab, unknowns_of(study, [*study.sensors, GAS])[0])

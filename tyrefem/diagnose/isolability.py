@@ -14,6 +14,7 @@ from numpy.typing import NDArray
 
 from tyrefem.compare.experiment import OUTSIDE_THE_RUBBER
 from tyrefem.diagnose.bench import Bench
+from tyrefem.diagnose.effort import SENSITIVITIES, check_effort
 from tyrefem.diagnose.evidence import Linear, Members
 from tyrefem.diagnose.gap import Gap
 from tyrefem.diagnose.laboratory import laboratory
@@ -222,6 +223,7 @@ def isolability(
     found = candidates_of(study)
     if gap is None:
         bench = Bench(study, planned(study))
+        check_effort(bench, f"the sensitivities of {study.name}", SENSITIVITIES, workers)
         if store is not None:
             store.open(bench)
         with laboratory(bench, workers, store) as lab:

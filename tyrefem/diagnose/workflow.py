@@ -11,6 +11,7 @@ from tyrefem.compare.experiment import Table, experiments
 from tyrefem.diagnose.amend import Change, amended, changes
 from tyrefem.diagnose.bench import Bench, Response
 from tyrefem.diagnose.diagnosis import Diagnosis
+from tyrefem.diagnose.effort import check_effort
 from tyrefem.diagnose.explained import Explained
 from tyrefem.diagnose.gap import Gap
 from tyrefem.diagnose.laboratory import laboratory
@@ -125,6 +126,8 @@ def _look(
         message = "no reading within the simulated drive in any run that is not held out"
         raise InputError(message, field="measured", file=study.file)
     bench = Bench(study, trials)
+    if known is None:
+        check_effort(bench, f"the diagnosis of {study.name}", 1.0, workers)
     if store is not None and store.open(bench):
         tick(f"taking up {store.taken_up} simulations", 0, 0)
     with laboratory(bench, workers, store) as lab:

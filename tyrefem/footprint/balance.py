@@ -73,6 +73,7 @@ class Balance:
         """
         if (deflection is None) == (load is None):
             raise InputError("give exactly one of 'deflection' and 'load'")
+        self.pressing.check_harmonics(self.harmonics)
         ladder = (*(n for n in LADDER if n < self.harmonics), self.harmonics)
         moment, found = self._way(deflection, load, ladder[0]), None
         for count in ladder:

@@ -9,6 +9,7 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
+from tyrefem import estimate
 from tyrefem.errors import InputError
 from tyrefem.footprint.complementarity import contact_forces
 from tyrefem.footprint.grid import ContactGrid
@@ -29,14 +30,44 @@ class Pressing(TyreOnRoad):
     _grids: dict[int, ContactGrid] = field(default_factory=dict, init=False, repr=False)
 
     def grid(self, harmonics: int, deflection: float) -> ContactGrid:
-        """Angles that may touch: the part of the free tyre below the road and a third beyond."""
+        """Angles that may touch: the part of the free tyre below the road and a third beyond.
+
+        Raises
+        ------
+        InputError : no number of harmonics, or more than there is memory for.
+        """
         radius = self.reach
         round_drum = 1.0 / (1.0 + 2 * radius / self.road.drum_diameter)
         half_angle = math.acos(max(1 - deflection * round_drum / radius, -0.5))
-        needed = min(math.ceil(1.35 * half_angle * harmonics / np.pi) + 3, harmonics)
+        share = 1.35 * half_angle / np.pi
+        self.check_harmonics(harmonics, share)
+        needed = min(math.ceil(share * harmonics) + 3, harmonics)
         if harmonics not in self._grids or self._grids[harmonics].n_angles < needed:
             self._grids[harmonics] = ContactGrid(self.tread, harmonics, min(needed + 2, harmonics))
         return self._grids[harmonics]
+
+    def check_harmonics(self, harmonics: int, share: float = 0.0) -> None:
+        """Raises `InputError` for what is no number of harmonics, or needs more memory than is free; ``share`` of the
+        angles may touch."""
+        if not (isinstance(harmonics, int | np.integer) and harmonics >= 1):
+            raise InputError(f"must be a whole number, 1 or more, not {harmonics!r}", field="harmonics")
+        nodes, components = len(self.tread.nodes), len(self.tread.components)
+
+        def needed(count: float) -> float:
+            return estimate.contact(nodes, min(count, 10**12), share * min(count, 10**12) + 3, components)
+
+        def fits(free: float) -> str:
+            most = min(harmonics, 10**12)
+            while most > 1 and needed(most) > free:
+                most //= 2
+            return f"{most:,} would fit"
+
+        try:
+            estimate.check_memory(
+                needed(harmonics), f"{min(harmonics, 10**12):,} harmonics of {nodes} tread nodes", fits
+            )
+        except InputError as error:
+            raise error.within(field="harmonics") from None
 
     def check(self, deflection: float) -> None:
         """Raises `InputError` for a deflection that is negative or would press the crown on the rim."""

@@ -10,9 +10,11 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 from numpy.typing import NDArray
 
+from tyrefem import estimate
 from tyrefem.brief import Brief
 from tyrefem.errors import InputError
 from tyrefem.footprint.road import Road
+from tyrefem.meshing.expected import QUADRATIC
 from tyrefem.requirements import Requirements
 from tyrefem.strain.pressed_tyre import TOLERANCE, mechanical_mesh
 
@@ -246,7 +248,9 @@ def press(
     road = Road(drum, camber)
     if camber and study.section.half:
         study = study.replace({"mesh.section": "full"})
-    mesh = mechanical_mesh(study)
+    mesh = mechanical_mesh(study, large=balanced)
+    nodes = QUADRATIC * mesh.n_nodes
+    estimate.warn_of(estimate.mechanics(nodes, large=balanced).time, f"the footprint of {nodes:,} nodes")
     tyre = inflate(study, pressure, mesh)
     pressing = Pressing(tyre.state, road)
     if not balanced:

@@ -9,6 +9,7 @@ from dataclasses import dataclass
 from pathlib import Path
 
 from tyrefem.errors import InputError
+from tyrefem.estimate import TEXT, check_memory
 from tyrefem.measured.heading import is_time, parts
 from tyrefem.output import note_input
 
@@ -43,10 +44,12 @@ def decode(path: Path) -> str:
     try:
         if path.stat().st_size > LARGEST_BYTES:
             raise InputError(f"larger than {LARGEST_BYTES // 10**6} MB; thin the table out", file=path)
+        size = path.stat().st_size
+        check_memory(TEXT * size, f"a table of {size / 1e6:.0f} MB")
         data = path.read_bytes()
     except (OSError, ValueError) as error:
         if isinstance(error, InputError):
-            raise
+            raise error.within(file=path) from None
         raise InputError(f"cannot be read: {getattr(error, 'strerror', None) or error}", file=path) from None
     if data.startswith((b"PK\x03\x04", b"\xd0\xcf\x11\xe0")):
         raise InputError("is a spreadsheet or archive, not text: save the sheet as CSV", file=path)

@@ -5,13 +5,13 @@ from __future__ import annotations
 import math
 
 from tyrefem.errors import InputError, nearest
+from tyrefem.estimate import check_memory, matrices, smallest
+from tyrefem.meshing.expected import expected_nodes
 from tyrefem.meshing.tyre_mesh import TyreMesh
 from tyrefem.section.section import Section
 
 MESHERS = ("mapped", "gmsh")
 CELLS = {"mapped": ("quad", "tri"), "gmsh": ("tri", "quad")}
-#: Most elements a mesh may have: a size given in the wrong unit is found before it fills the memory.
-MOST_ELEMENTS = 2_000_000
 
 
 def build(
@@ -34,7 +34,8 @@ def build(
 
     Raises
     ------
-    InputError : unknown mesher or cell, a size out of range or too coarse for the section.
+    InputError : unknown mesher or cell, a size out of range or too coarse for the section; more nodes than linear
+        elements on them have memory for.
     MissingLibraryError : gmsh is asked for and cannot be loaded.
 
     >>> from tyrefem.section import load
@@ -53,13 +54,12 @@ def build(
         raise InputError(f"must be a positive length, not {size!r}", field="size")
     if through < 1 or through != int(through):
         raise InputError(f"must be a whole number, 1 or more, not {through!r}", field="through")
-    if 12 * section.area() / size**2 > MOST_ELEMENTS:
-        raise InputError(f"{size:g} m would make more than {MOST_ELEMENTS:,} elements", field="size")
     if size > section.line.length / 4:
         raise InputError(
             f"{size:g} m is too coarse: at most a quarter of the meridian, {section.line.length / 4:.3g} m",
             field="size",
         )
+    _check_memory(section, mesher, size, int(through))
     if mesher == "mapped":
         from tyrefem.meshing.mapped import mapped_mesh
 
@@ -72,3 +72,20 @@ def build(
     if not tyre.quality["scaled_jacobian"] > 0:
         raise InputError(f"elements of {size:g} m fold over in this section; choose a smaller size", field="size")
     return tyre
+
+
+def _check_memory(section: Section, mesher: str, size: float, through: int) -> None:
+    """A size in the wrong unit is found before it fills the memory."""
+
+    def needed(size: float) -> float:
+        return matrices(expected_nodes(section, size, mesher=mesher, through=through))
+
+    def fits(free: float) -> str:
+        coarser = smallest(lambda one: needed(one) <= free, size, section.line.length / 4)
+        return f"{coarser * 1e3:g} mm or more would fit" if coarser else "fewer elements through every layer would fit"
+
+    nodes = expected_nodes(section, size, mesher=mesher, through=through)
+    try:
+        check_memory(matrices(nodes), f"{size * 1e3:g} mm makes {nodes:,.0f} nodes", fits)
+    except InputError as error:
+        raise error.within(field="size") from None

@@ -49,6 +49,12 @@ def make_grid(section: Section, size: float, through: int) -> Grid:
     return Grid(s, np.concatenate(heights), np.repeat(np.arange(len(rows)), rows))
 
 
+def grid_lines(section: Section, size: float, through: int) -> tuple[int, int]:
+    """How many lines `make_grid` lays across the meridian and along it."""
+    rows = [_rows(section, index, size, through) for index in range(len(section.layers))]
+    return len(_stations(section, size, rows)), sum(rows) + 1
+
+
 def _outermost(section: Section, index: int) -> bool:
     return index == len(section.layers) - 1
 

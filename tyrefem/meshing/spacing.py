@@ -67,7 +67,8 @@ def _ratio(thickness: float, first: float, rows: int) -> float:
     if rows == 1 or thickness <= first * rows:
         return 1.0
     low, high, powers = 1.0, 1.0 + thickness / first, np.arange(rows)
-    for _ in range(80):
-        middle = (low + high) / 2
-        low, high = (middle, high) if first * (middle**powers).sum() < thickness else (low, middle)
+    with np.errstate(over="ignore"):
+        for _ in range(80):
+            middle = (low + high) / 2
+            low, high = (middle, high) if first * (middle**powers).sum() < thickness else (low, middle)
     return (low + high) / 2

@@ -11,6 +11,7 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
+from tyrefem import estimate
 from tyrefem.errors import InputError
 from tyrefem.realtime import RealTimeTyre
 from tyrefem.reduced.balance import reduced_balance
@@ -22,10 +23,11 @@ from tyrefem.reduced.tables import Probe
 from tyrefem.reduced.train import Fineness, Snapshots, trained
 from tyrefem.requirements import Requirements
 from tyrefem.rolling import RollingTyre
+from tyrefem.run_estimate import RunEstimate
 from tyrefem.studies import Study
 from tyrefem.summary import versions
 from tyrefem.sweep.bundle import bundle
-from tyrefem.sweep.schedulers import Here, Scheduler
+from tyrefem.sweep.schedulers import Here, Local, Scheduler
 
 Array = NDArray[np.float64]
 #: Random drives to learn from, fresh steady and random ones to certify with, and rounds of both.
@@ -34,6 +36,9 @@ LEARN, FRESH, ROUNDS = 6, 4, 4
 NEEDS = Requirements("a real-time model")
 #: Few modes: a step costs their square, and its matrix their cube.
 FINENESS = Fineness(modes_tolerance=2e-4, source_tolerance=2e-6, most_modes=60, most_sources=60, fields=40)
+#: What it costs: full runs of drives of several phases in runs of one, strain cycles by finite elements for the tables,
+#: s of stepping per s of a drive (8PR at 12 and 3 mm, drives of 60 to 20 000 s: 0.8 to 1.2 times what was measured).
+RUNS, CYCLES, STEPPING = 25.0, 10.0, 2e-3
 #: Readings of a full run at most: the longer the drive, the rarer.
 READINGS = 900
 
@@ -60,13 +65,19 @@ def export(
     Raises
     ------
     InputError : a campaign; the box holds loads that the tyre cannot carry; a study that a reduced model cannot follow;
-        the tolerance was not reached.
+        the tolerance was not reached, or is less than the study's own; more than there is memory for.
     """
     NEEDS.check(study)
     if study.card.mechanics.feedback is not None:
         raise InputError("a real-time model has no feedback of temperature on the strain cycle", field="mechanics")
     tick = progress or (lambda what, done, total: None)
     scheduler, choice = scheduler or Here(), choice or FINENESS
+    if tolerance < study.tolerance:
+        raise InputError(
+            f"{tolerance:g} K is less than the time error of the full runs themselves: must be at least "
+            f"numerics.tolerance, {study.tolerance:g} K",
+            field="tolerance",
+        )
     box, horizon = box_of(study, ranges), float(duration or study.card.drive.end)
     tick("tables", 0, 1)
     tool = _Tool(study, box, horizon, choice, tick, scheduler)
@@ -116,12 +127,21 @@ class _Tool:
     scheduler: Scheduler
 
     def __post_init__(self) -> None:
-        middle = steady(self.box, np.full(5, 0.5), self.horizon)
-        self.base = RollingTyre(middle.study(self.study))
+        self.every = max(1.0, float(np.ceil(self.horizon / READINGS)))
+        middle = steady(self.box, np.full(5, 0.5), self.horizon).study(self.study, self.every)
+        self._expect(middle)
+        self.base = RollingTyre(middle)
         self.probe = Probe(self.study, self.box, self.base)
         self.tables = self.probe.tables()
         self.packed = bundle(self.study)
-        self.every = max(1.0, float(np.ceil(self.horizon / READINGS)))
+
+    def _expect(self, study: Study) -> None:
+        """Refuse full runs that do not fit side by side in memory; warn of long work."""
+        run, workers = RunEstimate.of(study), getattr(self.scheduler, "workers", 1)
+        if isinstance(self.scheduler, Here | Local):
+            run.check(workers)
+        seconds = RUNS * run.march.time / workers + CYCLES * run.mechanics.time + STEPPING * self.horizon
+        estimate.warn_of(seconds, f"training and certifying a real-time model of {self.study.name}")
 
     def full(self, courses: Sequence[Course], what: str) -> list[dict[str, Any]]:
         """Full runs of drives."""

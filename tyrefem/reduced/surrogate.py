@@ -30,6 +30,8 @@ FRESH, TRIALS = 3, 3
 COARSER = 100.0
 #: K: no full run is asked for a smaller time error. What is to be nearer than that fails for a reason.
 FINEST = 1e-3
+#: K: the full runs that a certificate compares with do not agree so well among themselves, whatever is learnt.
+HOPELESS = 1e-6
 #: Rounds of corrections before the first certificate.
 ROUNDS = 3
 #: Largest correction of a round over the tolerance that ends the rounds: what is left is a fraction of it.
@@ -151,6 +153,8 @@ def surrogate(
     NotReducibleError : the box varies what a reduced model cannot follow, or the tolerance was not reached.
     """
     check_varied(plan)
+    if tolerance < HOPELESS:
+        raise NotReducibleError(f"no reduced model is certified to {tolerance:g} K; allowed: {HOPELESS:g} K or more")
     tick = progress or (lambda what, done, total: None)
     lesson = School(plan, scheduler or Here(), choice or Fineness.of(tolerance), tick, seed)
     # Two opposite corners: the rest of the box is learnt from residuals.

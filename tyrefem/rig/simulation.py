@@ -12,6 +12,7 @@ from numpy.typing import NDArray
 from threadpoolctl import threadpool_limits
 
 from tyrefem.errors import InputError
+from tyrefem.estimate import check_readings
 from tyrefem.measured import MeasuredRun
 from tyrefem.rig.card import RigCard
 from tyrefem.rig.clock import Clock
@@ -87,8 +88,9 @@ def simulate(
     card, file = (rig, None) if isinstance(rig, RigCard) else load(rig)
     import pandas as pd
 
-    if not every > 0 or card.phases.end / every > _MOST:
-        raise InputError(f"{every:g} s gives no readings, or more than {_MOST}", field="--every")
+    check_readings(card.phases.end, every, "--every", _MOST)
+    if every > card.phases.end:
+        raise InputError(f"{every:g} s leaves no reading after the first of {card.phases.end:g} s", field="--every")
     sensors = tuple(card.sensors)
     parameters = parameters_of(card, sensors)
     known = parameters.values(np.zeros(len(parameters)))

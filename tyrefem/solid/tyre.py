@@ -8,7 +8,9 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 from numpy.typing import NDArray
 
+from tyrefem import estimate
 from tyrefem.errors import InputError
+from tyrefem.meshing.expected import QUADRATIC
 from tyrefem.solid.body import Body
 from tyrefem.solid.compounds import Compound, neo_hookean
 from tyrefem.solid.cords import CordLayer, lifted_angle, lifted_ends
@@ -44,6 +46,11 @@ def tyre_body(study: Study, mesh: TyreMesh | None = None) -> Body:
     InputError : triangles; a region without a modulus; cords that the lift law cannot place.
     """
     meshed = study.mesh() if mesh is None else mesh
+    nodes = QUADRATIC * meshed.n_nodes
+    try:
+        estimate.check_memory(estimate.mechanics(nodes).memory, f"{nodes:,} nodes of nine-node elements")
+    except InputError as error:
+        raise error.within(field="mesh", file=study.file) from None
     reader = _Reader(study, meshed, Rings(meshed.mesh))
     parts = {}
     for region in study.section.regions:

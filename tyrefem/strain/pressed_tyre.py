@@ -11,8 +11,9 @@ from pathlib import Path
 from threading import Lock
 from typing import TYPE_CHECKING, Any
 
-from tyrefem import meshing
+from tyrefem import estimate, meshing
 from tyrefem.errors import InputError
+from tyrefem.meshing.expected import QUADRATIC, expected_nodes
 from tyrefem.strain.reads import values_read
 
 if TYPE_CHECKING:
@@ -33,20 +34,23 @@ REMEMBERED = 10
 TYRES = 2
 
 
-def mechanical_mesh(study: Study) -> TyreMesh:
+def mechanical_mesh(study: Study, *, large: bool | None = None) -> TyreMesh:
     """The study's own mesh file; gmsh's quadrilaterals where the study asks for these; otherwise a mapped mesh of
     nine-node elements twice as large as the study asks for, also beside gmsh's triangles (nine-node elements need
-    quadrilaterals; energies go over by region and place).
+    quadrilaterals; energies go over by region and place). ``large``: for large motion; None: as the study says.
 
     Raises
     ------
-    InputError : a size too coarse or too fine for the section.
+    InputError : a size too coarse or too fine for the section, or for the memory that is free.
     """
     choice = study.card.mesh
     if choice.file is not None:
         return study.mesh()
     own = choice.mesher == "gmsh" and choice.cell == "quad"
     mesher, size = ("gmsh", choice.size) if own else ("mapped", COARSER * choice.size)
+    mechanics = study.card.mechanics
+    in_large = mechanics.strain == "fem" and mechanics.motion == "large" if large is None else large
+    _check_memory(study, mesher, size, in_large)
     try:
         return meshing.build(study.section, mesher=mesher, size=size, cell="quad", through=1)
     except InputError as error:
@@ -54,6 +58,26 @@ def mechanical_mesh(study: Study) -> TyreMesh:
             raise error.within(field="mesh", file=study.file) from None
         message = f"the mesh of the mechanics, {COARSER:g} times as coarse: {error.message}"
         raise InputError(message, field=f"mesh.{error.field}", file=study.file) from None
+
+
+def _check_memory(study: Study, mesher: str, size: float, large: bool) -> None:
+    """Refuse a mesh on which the footprint has no room."""
+
+    def nodes(size: float) -> float:
+        return QUADRATIC * expected_nodes(study.section, size, mesher=mesher)
+
+    def fits(free: float) -> str:
+        length = study.section.line.length
+        coarser = estimate.smallest(
+            lambda one: estimate.mechanics(nodes(one), large=large).memory <= free, size, length / 4
+        )
+        return f"{coarser / (size / study.card.mesh.size) * 1e3:g} mm or more would fit" if coarser else ""
+
+    what = f"{study.card.mesh.size * 1e3:g} mm makes {nodes(size):,.0f} nodes of the footprint's finite elements"
+    try:
+        estimate.check_memory(estimate.mechanics(nodes(size), large=large).memory, what, fits)
+    except InputError as error:
+        raise error.within(field="mesh.size", file=study.file) from None
 
 
 @dataclass(frozen=True, eq=False)

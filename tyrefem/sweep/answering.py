@@ -6,9 +6,11 @@ from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import asdict
 from typing import TYPE_CHECKING, Any, Self
 
+from tyrefem import estimate
+from tyrefem.run_estimate import RunEstimate
 from tyrefem.sweep.execution import Execution
 from tyrefem.sweep.plan import Plan
-from tyrefem.sweep.schedulers import Scheduler
+from tyrefem.sweep.schedulers import Here, Local, Scheduler
 from tyrefem.sweep.store import Name, Store
 from tyrefem.sweep.task import Task, perform, perform_all
 
@@ -36,6 +38,9 @@ class Answering:
     ``certificate``: of the reduced model. ``reduced``: does it answer? ``why_full``: why there is none.
     ``taken_up``: how many the folder had.
     """
+
+    #: Before the number of variants that is told beforehand.
+    at_most = ""
 
     def __init__(self, plan: Plan, how: Execution, variants: Sequence[Mapping[str, Any]], digest: str) -> None:
         self.plan, self.how, self.variants = plan, how, variants
@@ -84,14 +89,33 @@ class Answering:
         ------
         NotReducibleError : there is none, and nothing else is allowed.
         """
+        self._expect(expected)
         if self.how.reduced == "never":
             return
-        if self.how.reduced == "auto" and expected < WORTH_TRAINING * max(len(self.plan.varied), 1):
+        if not self._trains(expected):
             self.why_full = f"{expected} variants are too few to train for"
             return
         self.reduced = True
         if self.certificate is None:
             self._make()
+
+    def _trains(self, expected: int) -> bool:
+        """Is a reduced model allowed, and worth training?"""
+        enough = WORTH_TRAINING * max(len(self.plan.varied), 1)
+        return self.how.reduced == "always" or (self.how.reduced == "auto" and expected >= enough)
+
+    def _expect(self, expected: int) -> None:
+        """Refuse runs that do not fit side by side in memory; warn of long work."""
+        where, run = self.how.where, RunEstimate.of(self.plan.study)
+        workers = max(min(getattr(where, "workers", 1), expected), 1)
+        if isinstance(where, Here | Local):
+            run.check(workers)
+        full = expected * run.total.time / workers
+        time, more = full, ""
+        if self._trains(expected):
+            time = (estimate.TRAINING * run.total.time + expected * estimate.REDUCED) / workers
+            more = f" by a reduced model, or {estimate.duration(full)} by full runs if none can be certified"
+        estimate.warn_of(time, f"{self.at_most}{expected:,} variants of {self.plan.study.name}", more)
 
     def _make(self) -> None:
         from tyrefem.reduced.model import NotReducibleError

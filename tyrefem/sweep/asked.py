@@ -24,6 +24,7 @@ class Asked(Answering):
 
     #: What was asked for, in its order.
     variants: list[Mapping[str, Any]]
+    at_most = "up to "
 
     def __init__(self, plan: Plan, how: Execution) -> None:
         boxes = [dataclasses.asdict(one) for one in plan.varied]

@@ -32,7 +32,7 @@ class VaryCard(Card):
     low: str | float | None = Field(default=None, alias="from")
     high: str | float | None = Field(default=None, alias="to")
     factor: tuple[float, float] | None = None
-    levels: Annotated[int, Field(ge=2, le=10_000)] = LEVELS
+    levels: Annotated[int, Field(ge=2)] = LEVELS
     scale: Literal["linear", "log"] = "linear"
 
     @model_validator(mode="after")
@@ -146,7 +146,7 @@ class SweepCard(Card):
     case: Text | None = None
     change: dict[str, Any] = Field(default_factory=dict)
     sample: Sample | None = None
-    count: Annotated[int, Field(ge=1, le=10_000_000)] | None = None
+    count: Annotated[int, Field(ge=1)] | None = None
     seed: Annotated[int, Field(ge=0)] = 1
     cases: str | None = None
     vary: dict[str, VaryCard] = Field(default_factory=dict)

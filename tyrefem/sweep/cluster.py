@@ -126,6 +126,11 @@ class Dask:
             if self.client.status == "running":
                 self.client.cancel([*going.futures, *shared])
 
+    @property
+    def workers(self) -> int:
+        """Threads of all workers."""
+        return max(self._threads(), 1)
+
     def _threads(self) -> int:
         """Threads of all workers."""
         try:

@@ -17,7 +17,7 @@ from tyrefem.studies import Study
 from tyrefem.sweep.answers import check_answer
 from tyrefem.sweep.bundle import Bundle, bundle
 from tyrefem.sweep.card import LimitCard, SweepCard, VaryCard
-from tyrefem.sweep.samples import drawn, grid, listed, without_repeats
+from tyrefem.sweep.samples import drawn, grid, listed, size_of, without_repeats
 from tyrefem.sweep.task import Task
 from tyrefem.sweep.varied import Varied, uncertain, varied
 from tyrefem.uncertain_numbers import left_out
@@ -79,7 +79,8 @@ def planned(study: Study, card: SweepCard, near: Path | None = None) -> Plan:
 
     Raises
     ------
-    InputError : a name that the study does not have, a value that it refuses, two variants that are the same.
+    InputError : a name that the study does not have, a value that it refuses, two variants that are the same; more
+        variants than there is memory for.
     """
     for name in (*card.limits, *card.answers, *card.pareto):
         try:
@@ -101,6 +102,8 @@ def planned(study: Study, card: SweepCard, near: Path | None = None) -> Plan:
         chosen = tuple(varied(study, key, one) for key, one in _outer_first(card.vary).items())
         if card.uncertain is not None:
             chosen += _beside(chosen, uncertain(study, card.uncertain))
+        if card.sampled:
+            size_of(chosen, card.chosen, card.count)
         sensible(study, [("", one.changes(value)) for one in chosen for value in one.ends])
         if not card.sampled:
             variants = []

@@ -12,11 +12,46 @@ import numpy as np
 from numpy.typing import NDArray
 
 from tyrefem.errors import InputError
+from tyrefem.estimate import check_memory, rounded_down, variants
 from tyrefem.sweep.varied import Varied, alike
 
 Array = NDArray[np.float64]
-#: More variants than this from one grid are a slip of the pen.
-MOST = 1_000_000
+
+
+def size_of(varied: Sequence[Varied], sample: str, count: int | None) -> int:
+    """How many variants a sample has, before any of them is made; raises as `check_size`.
+
+    >>> size_of([Varied("a", levels=3), Varied("b", values=("x",))], "grid", None)
+    3
+    >>> size_of([Varied("a")], "sobol", 100), size_of([Varied("a"), Varied("b")], "saltelli", 64)
+    (128, 256)
+    """
+    if sample == "grid":
+        found = math.prod(len(one.values) or one.levels for one in varied)
+        check_size(found, len(varied), "the grid", "vary")
+        return found
+    assert count is not None
+    found = {"sobol": 1 << (count - 1).bit_length(), "saltelli": count * (len(varied) + 2)}.get(sample, count)
+    check_size(found, len(varied), f"sample = '{sample}'", "count")
+    return found
+
+
+def check_size(count: int, numbers: int, what: str, field: str) -> None:
+    """Refuse more variants than there is memory for, with all that is said of them.
+
+    Raises
+    ------
+    InputError : at ``field``; how many would fit.
+    """
+    words = f"{count:,}" if count < 10**15 else "more than 10^15"
+    try:
+        check_memory(
+            variants(count, numbers),
+            f"{what} makes {words} variants",
+            lambda free: f"{rounded_down(free / variants(1, numbers)):,.0f} variants would fit",
+        )
+    except InputError as error:
+        raise error.within(field=field) from None
 
 
 def grid(varied: Sequence[Varied]) -> list[dict[str, Any]]:
@@ -25,9 +60,6 @@ def grid(varied: Sequence[Varied]) -> list[dict[str, Any]]:
     >>> grid([Varied("a", values=(1, 2)), Varied("b", values=("x",))])
     [{'a': 1, 'b': 'x'}, {'a': 2, 'b': 'x'}]
     """
-    count = math.prod(len(one.grid) for one in varied)
-    if count > MOST:
-        raise InputError(f"the grid has {count:,} variants; allowed: {MOST:,}. Use fewer levels, or a Sobol sequence")
     return [_changes(varied, values) for values in itertools.product(*(one.grid for one in varied))]
 
 
@@ -85,14 +117,16 @@ def listed(path: Path) -> tuple[list[dict[str, Any]], list[str]]:
     from tyrefem.cases import read_cases
 
     found = read_cases(path)
-    variants, names = [dict(case.changes) for case in found], [case.name for case in found]
-    columns = {key: alike([one.get(key) for one in variants]) for one in variants for key in one}
-    plain = [{key: columns[key][place] for key in one} for place, one in enumerate(variants)]
+    keys = list(dict.fromkeys(key for case in found for key in case.changes))
+    check_size(len(found), len(keys), path.name, "cases")
+    changes, names = [dict(case.changes) for case in found], [case.name for case in found]
+    columns = {key: alike([one.get(key) for one in changes]) for key in keys}
+    plain = [{key: columns[key][place] for key in one} for place, one in enumerate(changes)]
     try:
         without_repeats(plain, names)
     except InputError as error:
         raise error.within(file=path) from None
-    return variants, names
+    return changes, names
 
 
 def without_repeats(variants: Sequence[dict[str, Any]], names: Sequence[str]) -> None:

@@ -26,6 +26,7 @@ class Scheduler(Protocol):
     """Runs ``work(task)`` for every task; yields (place of the task, outcome) in the order they are finished.
 
     With ``common``, something large that all tasks need, ``work(task, common)``: it travels once per worker.
+    One that runs several tasks at a time may say so by ``workers``.
     """
 
     def outcomes(self, work: Work, tasks: Sequence[Any], common: Any = None) -> Iterator[tuple[int, Outcome]]:
@@ -35,6 +36,8 @@ class Scheduler(Protocol):
 
 class Here:
     """One after the other in this process."""
+
+    workers = 1
 
     def outcomes(self, work: Work, tasks: Sequence[Any], common: Any = None) -> Iterator[tuple[int, Outcome]]:
         """Outcomes in the order of the tasks."""

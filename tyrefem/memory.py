@@ -1,0 +1,96 @@
+"""How much memory work may still take on this machine."""
+
+from __future__ import annotations
+
+import contextlib
+import os
+from pathlib import Path
+
+#: Bytes taken for free where the machine says nothing.
+UNKNOWN = 8 * 2**30
+#: A limit of a control group beyond this is none: version 1 writes the largest number that it has.
+NO_LIMIT = 2**60
+
+
+def free_memory(root: Path = Path("/")) -> float:
+    """Bytes that this process may still take: the least of what the machine, its control group and `ulimit` leave.
+
+    Linux says it in ``/proc/meminfo`` (MemAvailable) and ``/sys/fs/cgroup`` (versions 1 and 2); elsewhere the whole
+    memory of the machine is taken, and `UNKNOWN` where not even that is known.
+
+    Parameters
+    ----------
+    root : folder that holds ``proc`` and ``sys``.
+
+    >>> free_memory() > 0
+    True
+    """
+    limits = [_of_machine(root), *_of_groups(root), _of_process(root)]
+    return max(min((limit for limit in limits if limit is not None), default=float(UNKNOWN)), 0.0)
+
+
+def _of_machine(root: Path) -> float | None:
+    for line in _text(root / "proc/meminfo").splitlines():
+        name, _, value = line.partition(":")
+        if name == "MemAvailable" and value.split():
+            return float(value.split()[0]) * 1024
+    with contextlib.suppress(AttributeError, ValueError, OSError):
+        pages = os.sysconf("SC_PHYS_PAGES")
+        return float(pages * os.sysconf("SC_PAGE_SIZE")) if pages > 0 else None
+    return None
+
+
+def _of_groups(root: Path) -> list[float]:
+    """What the control groups of this process leave, and those above them."""
+    found: list[float] = []
+    for line in _text(root / "proc/self/cgroup").splitlines():
+        _, _, rest = line.partition(":")
+        names, _, path = rest.partition(":")
+        if names == "":
+            base, limit, used = root / "sys/fs/cgroup", "memory.max", "memory.current"
+        elif "memory" in names.split(","):
+            base, limit, used = root / "sys/fs/cgroup/memory", "memory.limit_in_bytes", "memory.usage_in_bytes"
+        else:
+            continue
+        inside = base / path.strip().lstrip("/")
+        # In a container its own group is the root, whatever the path says outside.
+        for group in [inside, *[one for one in inside.parents if base in (one, *one.parents)]]:
+            most, now = _number(group / limit), _number(group / used)
+            if most is not None and most < NO_LIMIT:
+                found.append(most - (now or 0.0) + _cached(group))
+    return found
+
+
+def _cached(group: Path) -> float:
+    """Bytes of files that a group has read and would give back."""
+    for line in _text(group / "memory.stat").splitlines():
+        name, _, value = line.partition(" ")
+        if name in ("inactive_file", "total_inactive_file") and value.strip().isdigit():
+            return float(value)
+    return 0.0
+
+
+def _of_process(root: Path) -> float | None:
+    """What ``ulimit -v`` leaves."""
+    try:
+        import resource
+    except ImportError:  # not on Windows
+        return None
+    most = resource.getrlimit(resource.RLIMIT_AS)[0]
+    if most == resource.RLIM_INFINITY:
+        return None
+    pages = _text(root / "proc/self/statm").split()
+    used = int(pages[0]) * os.sysconf("SC_PAGE_SIZE") if pages else 0
+    return float(most - used)
+
+
+def _number(path: Path) -> float | None:
+    text = _text(path).strip()
+    return float(text) if text.isdigit() else None
+
+
+def _text(path: Path) -> str:
+    try:
+        return path.read_text(encoding="utf-8", errors="replace")
+    except OSError:
+        return ""
