@@ -15,6 +15,7 @@ from hidden import FINISHED, HELD_OUT, NOISE, RUNS, WARMER, Case
 
 import tyrefem as tf
 from tyrefem.cli import main
+from tyrefem.cli.diagnose import PROGRESS
 from tyrefem.diagnose.bench import Bench
 from tyrefem.diagnose.progress_store import ProgressStore, key_of
 from tyrefem.diagnose.unknowns import base_unknowns, sensor_unknowns, with_values
@@ -168,10 +169,10 @@ def test_the_command_goes_on_where_it_was_and_says_so(
     out = tmp_path / "out"
     shutil.copytree(case.kept, out / ".progress")
     shutil.copytree(case.kept.with_name("kept-2"), out / ".progress-2")
-    assert (
-        main(["diagnose", str(case.study.file), "--out", str(out), "--workers", "1", "--largest", "1", "--looks", "2"])
-        == 0
-    )
+    mark = {"command": "diagnose", "complete": False, "writing": [f"{PROGRESS}*/*/*.npz"]}
+    (out / "summary.json").write_text(json.dumps(mark), encoding="utf-8")
+    flags = ["--workers", "1", "--largest", "1", "--looks", "2", "--quiet"]
+    assert main(["diagnose", str(case.study.file), "--out", str(out), *flags]) == 0
     said, err = capfd.readouterr()
     assert err == ""
     assert said.startswith(f"{len(list(case.kept.rglob('*.npz')))} simulations were taken up")
