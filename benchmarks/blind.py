@@ -16,8 +16,8 @@ import time
 from pathlib import Path
 
 import tyrefem as tf
-from tyrefem.diagnose.blind_picture import save
 from tyrefem.diagnose.blind_rates import run_blind
+from tyrefem.reports.blind import save
 
 
 def main() -> None:

@@ -15,12 +15,12 @@ import time
 
 import tyrefem as tf
 from tyrefem.compare.experiment import experiments
-from tyrefem.diagnose.bench import Bench
-from tyrefem.diagnose.laboratory import laboratory
-from tyrefem.diagnose.responses import responses, unknowns_of
-from tyrefem.diagnose.trials import trial
+from tyrefem.diagnose.evaluations import laboratory
+from tyrefem.diagnose.forward_model import Bench
+from tyrefem.diagnose.runs import trial
+from tyrefem.diagnose.sensitivities import responses, unknowns_of
 from tyrefem.diagnose.workflow import diagnose
-from tyrefem.result import GAS
+from tyrefem.simulation.surroundings import GAS
 
 
 def main() -> None:

@@ -14,15 +14,15 @@ import resource
 import time
 
 from tyrefem import study
-from tyrefem.footprint.contact import Pressing
-from tyrefem.footprint.cycle import StrainCycle
-from tyrefem.footprint.hexahedra import Hexahedra, angles_near_contact
-from tyrefem.footprint.loss import RevolutionLoss
-from tyrefem.footprint.loss_tangent import OfTemperature
-from tyrefem.footprint.plain import PlainTyre
-from tyrefem.footprint.road import Road
-from tyrefem.meshing import build
-from tyrefem.solid.inflation import inflate
+from tyrefem.geometry.meshing import build
+from tyrefem.materials.loss_tangent import OfTemperature
+from tyrefem.mechanics.footprint.contact import Pressing
+from tyrefem.mechanics.footprint.example_tyre import PlainTyre
+from tyrefem.mechanics.footprint.loss import RevolutionLoss
+from tyrefem.mechanics.footprint.reference_3d import Hexahedra, angles_near_contact
+from tyrefem.mechanics.footprint.road import Road
+from tyrefem.mechanics.footprint.strain_harmonics import StrainCycle
+from tyrefem.mechanics.solid.inflation import inflate
 
 MESHES = ((24, (1, 1, 1)), (60, (1, 1, 2)), (130, (1, 2, 6)), (240, (2, 2, 6)))
 HARMONICS = (20, 40, 80, 160)

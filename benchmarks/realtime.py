@@ -26,7 +26,7 @@ from pathlib import Path
 
 import numpy as np
 
-from tyrefem.realtime import Inputs, RealTimeTyre
+from tyrefem.realtime.tyre import Inputs, RealTimeTyre
 
 STEPS, REPEATS = 500, 5
 
@@ -61,7 +61,7 @@ def unit(file: Path, folder: Path) -> Callable[[Inputs], object] | None:
     import fmpy
     from fmpy.fmi2 import FMU2Slave
 
-    from tyrefem.fmu import write_fmu
+    from tyrefem.realtime.fmu import write_fmu
 
     path = str(write_fmu(file, folder / "tyre.fmu"))
     found = FMU2Slave(
@@ -94,7 +94,7 @@ def main() -> None:
         folder, file = Path(name), options.file
         if file is None:
             from tyrefem import study
-            from tyrefem.reduced.certify import export
+            from tyrefem.realtime.certificate import export
 
             file = folder / "tyre.npz"
             tyre_study = study("nasa-22x5.5-8pr", {"mesh.size": "6 mm"})

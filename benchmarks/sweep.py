@@ -25,10 +25,10 @@ import time
 
 import tyrefem
 from tyrefem.reduced.surrogate import surrogate, temperature_error
-from tyrefem.reduced.work import ReducedTask, pack, perform_reduced
+from tyrefem.reduced.training_rounds import ReducedTask, pack, perform_reduced
 from tyrefem.sweep.answering import PIECE
-from tyrefem.sweep.plan import plan_of
-from tyrefem.sweep.task import perform
+from tyrefem.variants.plan import plan_of
+from tyrefem.variants.task import perform
 
 BOX = {
     "drive.speed": ("10 mph", "30 mph"),

@@ -150,9 +150,8 @@ def _study(name: str) -> tf.Study:
 
 def draw(effect: type[Effect], base: tf.Result) -> None:
     """The picture of one effect's signature."""
-    from tyrefem.plotting.labels import Label, line_ends
-    from tyrefem.plotting.phases import draw_phases, make_room
-    from tyrefem.plotting.style import FONT, QUIET, add_axes, figure, line_style, png, tidy
+    from tyrefem.reports.figures.phases import draw_phases, make_room
+    from tyrefem.reports.figures.style import FONT, QUIET, Label, add_axes, figure, line_ends, line_style, png, tidy
 
     study = _study(effect.name)
     choice = CHOICES.get(effect.name, effect.variants(study)[-1] if effect.name == "yaw" else effect.variants(study)[0])

@@ -10,14 +10,15 @@ from functools import cached_property
 from pathlib import Path
 from typing import TYPE_CHECKING, Any, TypeVar
 
-from tyrefem import campaign, result, studies
 from tyrefem.compare import comparison
 from tyrefem.diagnose import diagnosis
+from tyrefem.inputs import study as studies
 from tyrefem.rig import identification
-from tyrefem.sweep import design
+from tyrefem.simulation import result
+from tyrefem.sweep import campaign, design
 
 if TYPE_CHECKING:
-    from tyrefem.cases import Case
+    from tyrefem.measured.cases import Case
     from tyrefem.rig.card import RigCard
     from tyrefem.rig.grid import Fineness
     from tyrefem.rig.readings import HeatingTest
@@ -37,31 +38,31 @@ class Result(result.Result):
 
     def summary(self) -> dict[str, Any]:
         """What `summary.json` holds: inputs, versions, mesh, tolerance, and the numbers that matter."""
-        from tyrefem.summary import summary
+        from tyrefem.reports.run_files import summary
 
         return summary(self)
 
     def to_vtk(self, folder: str | Path, *, revolved: bool = False) -> Path:
         """Write ``<name>.pvd`` and a .vtu per saved time: regions, T, heat source, strain energy."""
-        from tyrefem.vtk import write_series
+        from tyrefem.reports.vtk import write_series
 
         return write_series(self, Path(folder), revolved=revolved)
 
     def plot(self, folder: str | Path) -> list[Path]:
         """Write the standard pictures as PNG files."""
-        from tyrefem.plotting import write_pictures
+        from tyrefem.reports.figures import write_pictures
 
         return write_pictures(self, Path(folder))
 
     def report(self, path: str | Path) -> Path:
         """Write one self-contained HTML report."""
-        from tyrefem.report import write_report
+        from tyrefem.reports.run import write_report
 
         return write_report(self, Path(path))
 
     def save(self, folder: str | Path) -> Path:
         """Write readings, extremes and heat budget as CSV, and ``summary.json``."""
-        from tyrefem.summary import write_tables
+        from tyrefem.reports.run_files import write_tables
 
         return write_tables(self, Path(folder))
 
@@ -85,7 +86,7 @@ class Comparison(comparison.Comparison):
         ------
         InputError : the folder cannot be written.
         """
-        from tyrefem.compare.page import save
+        from tyrefem.reports.comparison import save
 
         return save(self, folder)
 
@@ -114,7 +115,7 @@ class Diagnosis(diagnosis.Diagnosis):
         ------
         InputError : the folder cannot be written.
         """
-        from tyrefem.diagnose.page import save
+        from tyrefem.reports.diagnosis import save
 
         return save(self, folder)
 
@@ -129,7 +130,7 @@ class Design(design.Design):
         ------
         InputError : the folder cannot be written.
         """
-        from tyrefem.sweep.output import save
+        from tyrefem.reports.sweep_files import save
 
         save(self, Path(folder), pictures=pictures)
         return Path(folder)
@@ -158,7 +159,7 @@ class Identification(identification.Identification):
         ------
         InputError : the folder cannot be written, or there is no such base card.
         """
-        from tyrefem.rig.files import save
+        from tyrefem.reports.rig import save
 
         return save(self, folder, base)
 
@@ -176,8 +177,8 @@ class Study(studies.Study):
 
         ``partial``: Ctrl-C gives back what is finished (``result.history.interrupted``); else it is raised.
         """
-        from tyrefem.rolling import run
-        from tyrefem.run_estimate import RunEstimate
+        from tyrefem.simulation.estimate import RunEstimate
+        from tyrefem.simulation.run import run
 
         RunEstimate.of(self).announce()
         return with_verbs(Result, run(self, progress, partial=partial))
@@ -202,14 +203,14 @@ class Study(studies.Study):
 
         ``vary``: dotted name -> tuple (from, to) or (from, to, levels), list of values, or what a sweep file says.
         Options: every other key of a sweep file (docs/sweeps.md), and those of
-        `tyrefem.sweep.questions.Questions.answered`.
+        `tyrefem.sweep.design.Questions.answered`.
 
         >>> coarse = study("nasa-22x5.5-8pr", {"mesh.size": "12 mm", "drive.duration": "60 s"})
         >>> found = coarse.sweep({"drive.speed": ["10 mph", "20 mph"]}, limits={"hottest_degC": {"below": 35}})
         >>> found.table["feasible"].tolist()
         [True, False]
         """
-        from tyrefem.sweep.questions import asked_of
+        from tyrefem.sweep.design import asked_of
 
         return with_verbs(Design, asked_of(self, vary, **options))
 

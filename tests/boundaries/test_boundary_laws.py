@@ -8,7 +8,7 @@ import tyrefem as tf
 from tyrefem.boundaries import Contact, LawOf
 from tyrefem.errors import InputError
 from tyrefem.quantity import parse
-from tyrefem.rolling import RollingTyre
+from tyrefem.simulation.rolling_tyre import RollingTyre
 
 
 def law(side, name, **numbers):

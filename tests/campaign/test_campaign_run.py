@@ -12,11 +12,11 @@ from typing import Any
 import pytest
 
 import tyrefem as tf
-from tyrefem import campaign as campaigns
 from tyrefem.api import Study
-from tyrefem.campaign import Campaign
-from tyrefem.campaign_report import run_campaign, write_campaign_report
 from tyrefem.cli import main
+from tyrefem.reports.campaign import run_campaign, write_campaign_report
+from tyrefem.sweep import campaign as campaigns
+from tyrefem.sweep.campaign import Campaign
 
 
 def rows_of(path: Path) -> list[dict[str, str]]:

@@ -7,8 +7,8 @@ from pathlib import Path
 import pytest
 
 import tyrefem as tf
-from tyrefem.cases import read_cases
 from tyrefem.errors import InputError
+from tyrefem.measured.cases import read_cases
 
 
 def read(folder: Path, text: str | bytes) -> dict[str, dict[str, str]]:

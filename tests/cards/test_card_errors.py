@@ -9,7 +9,7 @@ import pytest
 from tyrefem import library
 from tyrefem.cards import merged, read_toml
 from tyrefem.errors import InputError
-from tyrefem.materials import MaterialCard, material
+from tyrefem.materials.card import MaterialCard, material
 
 
 @pytest.fixture

@@ -9,8 +9,8 @@ import pytest
 
 from tyrefem import library
 from tyrefem.cards import read_toml
-from tyrefem.materials import material
-from tyrefem.section import load as section
+from tyrefem.geometry import load as section
+from tyrefem.materials.card import material
 
 MATERIALS = sorted(library.names("material"))
 SECTIONS = sorted(library.names("section"))

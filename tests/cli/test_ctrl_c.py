@@ -15,7 +15,7 @@ from interrupting import Interrupted, interrupted
 from terminal import NASA, SHORT, TABLES
 
 from tyrefem.cli import main
-from tyrefem.rig.find import find
+from tyrefem.rig.card import find
 
 #: In the middle of a simulation, of a picture, of a table.
 STEP = "tyrefem.conduction.balance:HeatBalance.remainder:40"
@@ -59,11 +59,14 @@ def test_while_loading(here: Path, arguments: list[str]) -> None:
     ("arguments", "moment"),
     [
         (["run", NASA, *SHORT], LOADING),
-        (["run", NASA, *SHORT], "tyrefem.meshing:build:1"),
+        (["run", NASA, *SHORT], "tyrefem.geometry.meshing:build:1"),
         (["compare", "example-validation", "--no-inputs"], STEP),
-        (["press", "passenger-205-55r16"], "tyrefem.solid.newton:_newton:1"),
+        (["press", "passenger-205-55r16"], "tyrefem.mechanics.solid.newton:_newton:1"),
         (["export", NASA, "--workers", "1", "--set", "mesh.size=12 mm"], STEP),
-        (["isolability", "hidden-effect", "--workers", "1", "--set", "mesh.size=12 mm"], "tyrefem.rolling:simulate:1"),
+        (
+            ["isolability", "hidden-effect", "--workers", "1", "--set", "mesh.size=12 mm"],
+            "tyrefem.simulation.simulate:simulate:1",
+        ),
         (["rig", "simulate", "trtlab"], STEP),
         (["rig", "identify", "trtlab"], STEP),
         (["rig", "layers", "trtlab"], "tyrefem.conduction.balance:HeatBalance.remainder:3"),
@@ -88,7 +91,7 @@ def test_a_run_keeps_what_it_reached(here: Path) -> None:
     ("moment", "kept"),
     [
         (TABLE, "the tables are in out, pictures and VTK files are not complete"),
-        ("tyrefem.vtk:_write:1", "the tables are in out, pictures and VTK files are not complete"),
+        ("tyrefem.reports.vtk:_write:1", "the tables are in out, pictures and VTK files are not complete"),
         (PICTURE, "the tables are in out, pictures and VTK files are not complete"),
         ("tyrefem.cli.run:_words:1", "complete files are in out"),
     ],
@@ -118,7 +121,7 @@ def test_a_campaign_keeps_its_cases(here: Path) -> None:
     study.write_text('cases = "cases.csv"\n' + study.read_text(encoding="utf-8"), encoding="utf-8")
     study.with_name("cases.csv").write_text("name,drive.speed\na,10 mph\nb,20 mph\n", encoding="utf-8")
     command = ("run", "mine", *SHORT, "--no-vtk", "--out", "out")
-    second = "tyrefem.studies:Study.case_study:4"
+    second = "tyrefem.inputs.study:Study.case_study:4"
     line = clean(here, interrupted(*command, at=second, folder=here))
     assert line == "tyrefem: interrupted; finished cases are in out/campaign.csv\n"
     # While the first one's report is drawn: its numbers are in the table.
@@ -152,13 +155,13 @@ def test_press_keeps_its_tables(here: Path) -> None:
 def test_blind_and_isolability_go_on(here: Path) -> None:
     coarse = ("--workers", "2", "--set", "mesh.size=12 mm", "--set", "mesh.element=P1", "--out", "out")
     # The third answer of a worker is waited for when the first two are kept.
-    third = "tyrefem.answer_store:AnswerStore.keep:3"
+    third = "tyrefem.variants.answer_store:AnswerStore.keep:3"
     line = clean(here, interrupted("isolability", "hidden-effect", *coarse, at=third, folder=here))
     assert line == "tyrefem: interrupted; 2 finished simulations are kept; the same command goes on from there\n"
     # The two have the same runs: what the first has finished serves the second.
     (here / "out").rename(here / "blind")
     (here / "blind/summary.json").unlink()
-    coarse, last = (*coarse[:-1], "blind"), "tyrefem.diagnose.laboratory:Laboratory.ask:1"
+    coarse, last = (*coarse[:-1], "blind"), "tyrefem.diagnose.evaluations:Laboratory.ask:1"
     line = clean(here, interrupted("blind", "hidden-effect", "--cases", "1", "--force", *coarse, at=last, folder=here))
     assert line == "tyrefem: interrupted; 0 of 1 cases are finished; the same command goes on from there\n"
     assert len(list((here / "blind/.progress").rglob("*.npz"))) == 2
@@ -208,12 +211,12 @@ def test_a_comparison_goes_on(here: Path) -> None:
     coarse = [word for change in ("size=12 mm", "element=P1") for word in ("--set", f"mesh.{change}")]
     coarse += ["--set", "output.every=20 s", "--reduced", "never"]
     command = ("compare", "example-validation", *coarse, "--workers", "2", "--out", "out")
-    done = interrupted(*command, at="tyrefem.answer_store:AnswerStore.keep:6", folder=here)
+    done = interrupted(*command, at="tyrefem.variants.answer_store:AnswerStore.keep:6", folder=here)
     lines = done.err.splitlines()
     assert done.code == 130
     assert lines[0].startswith("tyrefem: 45 simulations: 3 drives as driven; 42 with one uncertain input changed")
     assert lines[1:] == ["tyrefem: interrupted; 5 finished simulations are kept; the same command goes on from there"]
-    done = interrupted(*command, at="tyrefem.compare.pictures:pictures:1", folder=here)
+    done = interrupted(*command, at="tyrefem.reports.comparison:pictures:1", folder=here)
     lines = done.err.splitlines()
     assert done.code == 130
     assert lines[0].endswith("; 2 are taken up from an interrupted comparison")

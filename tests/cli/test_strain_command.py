@@ -10,7 +10,7 @@ from pathlib import Path
 import pytest
 
 from tyrefem.cli import main
-from tyrefem.strain.comparison import LAWS, TOTAL
+from tyrefem.simulation.law_comparison import LAWS, TOTAL
 
 STUDY = "nasa-22x5.5-8pr"
 BRIEF = ("--set", "mesh.size=10 mm", "--set", "drive.duration=120 s", "--set", "numerics.tolerance=0.1 delta_degC")

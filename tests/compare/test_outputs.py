@@ -14,10 +14,9 @@ import pytest
 from toy_study import Sensor, measured_from
 
 from tyrefem.compare import compare
-from tyrefem.compare.page import save
-from tyrefem.compare.pictures import deviations
 from tyrefem.errors import InputError
 from tyrefem.output import atomic_folder, atomic_path
+from tyrefem.reports.comparison import deviations, save
 
 EVERY_20 = np.arange(0.0, 1201.0, 20.0)
 

@@ -9,7 +9,8 @@ import numpy as np
 import pytest
 
 from tyrefem.api import Study, study
-from tyrefem.compare import Comparison, neighbours
+from tyrefem.compare import Comparison
+from tyrefem.compare import reduced_inputs as neighbours
 from tyrefem.errors import InputError
 from tyrefem.processes import processes
 

@@ -9,15 +9,15 @@ import pandas as pd
 import pytest
 
 import tyrefem as tf
-from tyrefem.answer_store import AnswerStore
 from tyrefem.compare import runs
-from tyrefem.compare.neighbours import Certificate, Neighbours
+from tyrefem.compare.reduced_inputs import Certificate, Neighbours
 from tyrefem.compare.runs import Runs
+from tyrefem.inputs.study import Study
+from tyrefem.mechanics.footprint.pressed_tyre import REMEMBERED_TYRES
 from tyrefem.processes import processes
 from tyrefem.reduced import residual
 from tyrefem.reduced.model import NotReducibleError
-from tyrefem.strain.pressed_tyre import REMEMBERED_TYRES
-from tyrefem.studies import Study
+from tyrefem.variants.answer_store import AnswerStore
 
 QUICK = {"mesh.size": "12 mm", "mesh.element": "P1", "numerics.tolerance": "0.1 delta_degC", "output.every": "20 s"}
 

@@ -41,8 +41,8 @@ def test_a_shared_stiffness_is_one_input_moved_in_all_its_regions(tmp_path: Path
 def test_each_changed_stiffness_costs_one_solution_and_the_rest_none(
     tmp_path: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:
-    from tyrefem.solid import inflation
-    from tyrefem.strain.pressed_tyre import REMEMBERED_TYRES
+    from tyrefem.mechanics.footprint.pressed_tyre import REMEMBERED_TYRES
+    from tyrefem.mechanics.solid import inflation
 
     study = tf.study("nasa-22x5.5-8pr", {**SHORT, **SHARED, "mechanics.strain": "fem"})
     table = measured(study, tmp_path)

@@ -11,8 +11,7 @@ import pytest
 from toy_study import Sensor, measured_from
 
 from tyrefem.compare import compare
-from tyrefem.compare.judgement import WITHIN
-from tyrefem.compare.uncertainty import effective_number
+from tyrefem.compare.uncertainty import WITHIN, effective_number
 from tyrefem.errors import InputError
 from tyrefem.measured import MeasuredRun
 

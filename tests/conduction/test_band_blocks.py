@@ -6,7 +6,7 @@ import numpy as np
 import pytest
 from scipy.linalg import cholesky_banded
 
-from tyrefem.conduction.blocks import Blocks
+from tyrefem.conduction.linear_solver import Blocks
 
 
 @pytest.mark.parametrize(("size", "width"), [(10, 3), (24, 24), (100, 1), (131, 30), (240, 40)])

@@ -9,8 +9,8 @@ import pytest
 import skfem
 
 from tyrefem.conduction import Conduction, Film, Fixed, Flux, Material, Radiation, Reservoir, SolverError
-from tyrefem.conduction.datum import checked
-from tyrefem.conduction.factor import Ordering
+from tyrefem.conduction.conditions import checked
+from tyrefem.conduction.linear_solver import Ordering
 from tyrefem.errors import InputError
 
 RUBBER = Material(conductivity=0.21, heat_capacity=2.09e6)

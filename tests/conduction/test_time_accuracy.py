@@ -8,10 +8,8 @@ import skfem
 
 from tyrefem.conduction import Conduction, Film, Fixed, Flux, Material, Radiation, Reservoir
 from tyrefem.conduction.loads import State
-from tyrefem.conduction.ros34pw2 import ALPHA, DENSE, EMBEDDED, GAMMA, LOWER, NODE, SHIFT, WEIGHT
-from tyrefem.conduction.rosenbrock import Step
-from tyrefem.conduction.setup import balance_of
-from tyrefem.conduction.stage_matrix import StageMatrices
+from tyrefem.conduction.problem import balance_of
+from tyrefem.conduction.rosenbrock import ALPHA, DENSE, EMBEDDED, GAMMA, LOWER, NODE, SHIFT, WEIGHT, StageMatrices, Step
 
 RUBBER = Material(conductivity=0.21, heat_capacity=2.09e6)
 

@@ -7,7 +7,7 @@ from dataclasses import dataclass
 from typing import Any
 
 import tyrefem as tf
-from tyrefem.section import Section, load
+from tyrefem.geometry import Section, load
 
 
 @dataclass(frozen=True)

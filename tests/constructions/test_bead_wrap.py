@@ -8,10 +8,10 @@ from constructions import RADIALS
 
 import tyrefem as tf
 from tyrefem.errors import InputError
-from tyrefem.meshing import build
-from tyrefem.section.wrap import Wrap
-from tyrefem.solid.inflation import inflate
-from tyrefem.solid.tyre import tyre_body
+from tyrefem.geometry.layup import Wrap
+from tyrefem.geometry.meshing import build
+from tyrefem.mechanics.solid.inflation import inflate
+from tyrefem.mechanics.solid.tyre_body import tyre_body
 
 BODY = {"passenger": "body-ply", "truck": "body-ply", "aircraft": "body-plies"}
 

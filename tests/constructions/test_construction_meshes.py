@@ -6,7 +6,7 @@ import numpy as np
 import pytest
 from constructions import RADIALS
 
-from tyrefem.meshing import build
+from tyrefem.geometry.meshing import build
 
 BOUNDARIES = {"road", "outside_air", "rim", "contained_air", "symmetry"}
 

@@ -9,7 +9,7 @@ import pytest
 from constructions import RADIALS, coarse_run
 
 import tyrefem as tf
-from tyrefem.rolling import RollingTyre
+from tyrefem.simulation.rolling_tyre import RollingTyre
 
 PASSENGER = "passenger-205-55r16"
 

@@ -9,13 +9,13 @@ import pytest
 from constructions import RADIALS
 
 import tyrefem as tf
-from tyrefem.construction import masses
-from tyrefem.footprint.press import Pressed, press
-from tyrefem.meshing import build
-from tyrefem.plotting.footprint import pressure_map
-from tyrefem.section import Section, load
-from tyrefem.sweep.answers import answers
-from tyrefem.wall import wall_of
+from tyrefem.geometry import Section, load
+from tyrefem.geometry.meshing import build
+from tyrefem.geometry.wall import wall_of
+from tyrefem.materials.cord_layers import masses
+from tyrefem.mechanics.footprint.press import Pressed, press
+from tyrefem.reports.figures.footprint import pressure_map
+from tyrefem.variants.answers import answers
 
 ROAD_TYRES = ("passenger", "truck")
 SMOOTH = {"section.grooves.width": "0 mm"}

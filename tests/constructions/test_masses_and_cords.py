@@ -9,9 +9,9 @@ import pytest
 from constructions import RADIALS
 
 import tyrefem as tf
-from tyrefem.construction import masses, region_thickness
-from tyrefem.material_elasticity import Cords, MooneyRivlin, NeoHookean, Yeoh
-from tyrefem.materials import material
+from tyrefem.materials.card import material
+from tyrefem.materials.cord_layers import masses, region_thickness
+from tyrefem.materials.elasticity import Cords, MooneyRivlin, NeoHookean, Yeoh
 
 STEEL, POLYESTER, NYLON, HYBRID = 7850.0, 1380.0, 1140.0, 1290.0
 #: Card -> (tyre, region, density of a filament, share of the cord's round outline that filaments fill).

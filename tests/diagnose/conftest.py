@@ -11,8 +11,8 @@ import pytest
 from hidden import FINISHED, WARMER, Case, measure, study
 
 from tyrefem.diagnose import search
-from tyrefem.diagnose.bench import Bench
-from tyrefem.diagnose.progress_store import ProgressStore
+from tyrefem.diagnose.evaluations import ProgressStore
+from tyrefem.diagnose.forward_model import Bench
 
 
 @pytest.fixture(scope="session", autouse=True)

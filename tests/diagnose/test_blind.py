@@ -9,11 +9,12 @@ import numpy as np
 import pytest
 
 import tyrefem as tf
-from tyrefem.diagnose import blind_picture, blind_rates
+from tyrefem.diagnose import blind_rates
 from tyrefem.diagnose.blind import KINDS, cases
 from tyrefem.diagnose.blind_rates import Blind, Rate
-from tyrefem.diagnose.truth import backward
-from tyrefem.rolling import RollingTyre
+from tyrefem.diagnose.synthetic import backward
+from tyrefem.reports import blind as blind_picture
+from tyrefem.simulation.rolling_tyre import RollingTyre
 
 
 def test_the_truth_s_own_time_integration_agrees_with_the_solver() -> None:

@@ -12,8 +12,8 @@ import pytest
 import tyrefem as tf
 from tyrefem.compare.experiment import experiments
 from tyrefem.diagnose.amend import Change, amended
-from tyrefem.diagnose.bench import Bench
-from tyrefem.diagnose.trials import trial
+from tyrefem.diagnose.forward_model import Bench
+from tyrefem.diagnose.runs import trial
 from tyrefem.diagnose.unknowns import base_unknowns, with_values
 
 STIFF = {"relative_sd": 0.2}
@@ -44,7 +44,7 @@ def test_a_card_in_two_regions_is_one_unknown_and_amended_in_both() -> None:
 
 
 def test_fits_solve_no_strain_cycle_for_each_point(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
-    from tyrefem.solid import inflation
+    from tyrefem.mechanics.solid import inflation
 
     fem = study().replace({"uncertainty": {"drive.load": "3 %"}})
     readings = fem.run().readings

@@ -8,7 +8,7 @@ from scipy.integrate import quad
 from scipy.optimize import minimize
 from scipy.stats import multivariate_normal, norm
 
-from tyrefem.diagnose.gauss import fit
+from tyrefem.diagnose.evidence import fit
 
 FREE = np.array([-np.inf]), np.array([np.inf])
 

@@ -16,8 +16,8 @@ from hidden import FINISHED, HELD_OUT, NOISE, RUNS, WARMER, Case
 import tyrefem as tf
 from tyrefem.cli import main
 from tyrefem.cli.diagnose import PROGRESS
-from tyrefem.diagnose.bench import Bench
-from tyrefem.diagnose.progress_store import ProgressStore, key_of
+from tyrefem.diagnose.evaluations import ProgressStore, key_of
+from tyrefem.diagnose.forward_model import Bench
 from tyrefem.diagnose.unknowns import base_unknowns, sensor_unknowns, with_values
 from tyrefem.diagnose.words import verdict_words
 from tyrefem.measured import MeasuredRun
@@ -225,9 +225,9 @@ def test_noise_alone_is_no_gap(case: Case) -> None:
 
 def test_python_can_start_workers_and_they_agree(case: Case) -> None:
     code = (
-        "import sys; import tyrefem as tf; from tyrefem.diagnose.bench import Bench\n"
-        "from tyrefem.diagnose.laboratory import laboratory\n"
-        "from tyrefem.compare.experiment import experiments; from tyrefem.diagnose.trials import trial\n"
+        "import sys; import tyrefem as tf; from tyrefem.diagnose.forward_model import Bench\n"
+        "from tyrefem.diagnose.evaluations import laboratory\n"
+        "from tyrefem.compare.experiment import experiments; from tyrefem.diagnose.runs import trial\n"
         "if __name__ == '__main__':\n"
         "    study = tf.study(sys.argv[1])\n"
         "    bench = Bench(study, tuple(trial(one, study) for one in experiments(study)))\n"

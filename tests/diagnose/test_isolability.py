@@ -6,12 +6,12 @@ import numpy as np
 import pytest
 from hidden import RIVALS, Case
 
-from tyrefem.diagnose.bench import Bench
-from tyrefem.diagnose.gap import Gap
+from tyrefem.diagnose.evaluations import Laboratory
+from tyrefem.diagnose.forward_model import Bench
 from tyrefem.diagnose.isolability import MARGIN, Isolability, isolability, margins, planned, rivals_of
-from tyrefem.diagnose.laboratory import Laboratory
-from tyrefem.diagnose.responses import gap_of
-from tyrefem.diagnose.sets import Prior
+from tyrefem.diagnose.linearised import Gap
+from tyrefem.diagnose.search import Prior
+from tyrefem.diagnose.sensitivities import gap_of
 
 
 @pytest.fixture(scope="module")

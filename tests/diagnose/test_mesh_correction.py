@@ -8,7 +8,7 @@ from typing import Any, cast
 import numpy as np
 import pytest
 
-from tyrefem.diagnose.gap import Gap
+from tyrefem.diagnose.linearised import Gap
 
 START = 25.0
 #: A sensor near the surface that hardly warms, in a steep gradient; two inside. Rise, and what the mesh adds, K.

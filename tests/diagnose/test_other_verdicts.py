@@ -11,7 +11,7 @@ import pytest
 from hidden import Case
 
 from tyrefem.diagnose import Diagnosis
-from tyrefem.diagnose.rivals import contenders, support
+from tyrefem.diagnose.contenders import contenders, support
 from tyrefem.diagnose.verdict import CONFOUNDED, IDENTIFIED, NO_GAP, UNEXPLAINED, Standing
 from tyrefem.diagnose.words import verdict_words
 

@@ -13,12 +13,12 @@ from numpy.typing import NDArray
 import tyrefem as tf
 from tyrefem.compare.experiment import experiments
 from tyrefem.diagnose import Diagnosis
-from tyrefem.diagnose.bench import FOLLOWED, NOT_FOLLOWED, UNSAID, Bench, Response
-from tyrefem.diagnose.laboratory import Laboratory
-from tyrefem.diagnose.predictions import ALLOWED, Predictions
-from tyrefem.diagnose.reduced_drive import Modes, ReducedDrive
-from tyrefem.diagnose.responses import responses, unknowns_of
-from tyrefem.diagnose.trials import trial
+from tyrefem.diagnose.evaluations import Laboratory
+from tyrefem.diagnose.forward_model import FOLLOWED, NOT_FOLLOWED, UNSAID, Bench, Response
+from tyrefem.diagnose.multifidelity import ALLOWED, Predictions
+from tyrefem.diagnose.reduced_forward import Modes, ReducedDrive
+from tyrefem.diagnose.runs import trial
+from tyrefem.diagnose.sensitivities import responses, unknowns_of
 from tyrefem.diagnose.unknowns import Candidate, Unknown, candidates, with_values
 from tyrefem.effects import catalogue
 

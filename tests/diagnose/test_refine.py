@@ -11,10 +11,10 @@ import pytest
 from numpy.typing import NDArray
 from scipy.optimize import minimize
 
-from tyrefem.diagnose import refine
-from tyrefem.diagnose.explained import Explained
-from tyrefem.diagnose.gap import Gap
-from tyrefem.diagnose.refine import polished, refined
+from tyrefem.diagnose import fit as refine
+from tyrefem.diagnose.fit import polished, refined
+from tyrefem.diagnose.fitted import Explained
+from tyrefem.diagnose.linearised import Gap
 from tyrefem.diagnose.unknowns import Candidate, Unknown
 from tyrefem.effects.effect import Parameter, Prior
 

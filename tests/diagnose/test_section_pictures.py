@@ -5,7 +5,7 @@ from __future__ import annotations
 from matplotlib.collections import PathCollection
 
 import tyrefem as tf
-from tyrefem.diagnose.section_pictures import _residuals
+from tyrefem.reports.diagnosis_sections import _residuals
 
 SECTION = tf.study("nasa-22x5.5-8pr").section
 

@@ -9,7 +9,7 @@ import pytest
 from skfem import MeshQuad
 
 from tyrefem.conduction import Conduction, Film, Flux, Material, Reservoir
-from tyrefem.conduction.tangent import Perturbed, stage_times, tangents
+from tyrefem.conduction.sensitivity import Perturbed, stage_times, tangents
 from tyrefem.errors import InputError
 
 BREAKS = (0.0, 300.0, 600.0)

@@ -6,7 +6,7 @@ import numpy as np
 import pytest
 from hidden import Case
 
-from tyrefem.diagnose.bench import Bench
+from tyrefem.diagnose.forward_model import Bench
 from tyrefem.diagnose.unknowns import Unknown, base_unknowns, candidates
 
 #: Effect -> x of its unknown: where the tangents are taken.

@@ -5,8 +5,8 @@ from __future__ import annotations
 import numpy as np
 import pytest
 
-from tyrefem.diagnose.trials import BLOCKS, Series, Trial, _scatter
-from tyrefem.diagnose.where import stretches
+from tyrefem.diagnose.residuals import stretches
+from tyrefem.diagnose.runs import BLOCKS, Series, Trial, _scatter
 
 
 def _series(count: int = 200, *, noise: float = 0.5, discrepancy: float = 0.1, tau: float = 120.0) -> Series:

@@ -7,7 +7,7 @@ import copy
 import pytest
 
 import tyrefem as tf
-from tyrefem.dotted import changed, scaled, value_at
+from tyrefem.inputs.changes import changed, scaled, value_at
 
 PHASES = {"drive": {"load": "1 kN", "phases": [{"name": "a", "load": "2 kN"}, {"name": "b", "deflection": "1 mm"}]}}
 

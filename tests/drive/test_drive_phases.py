@@ -4,8 +4,8 @@ from __future__ import annotations
 
 import pytest
 
-from tyrefem.drive import Drive
 from tyrefem.errors import InputError
+from tyrefem.inputs.drive import Drive
 
 STEADY = {"speed": "36 km/h", "load": "12 kN", "pressure": "5 bar", "duration": "600 s"}
 

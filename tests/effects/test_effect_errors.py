@@ -13,7 +13,7 @@ import tyrefem as tf
 from tyrefem.effects import catalogue
 from tyrefem.effects.description import example, parameter_rows, ports
 from tyrefem.effects.effect import PORTS
-from tyrefem.report.inputs import effect_rows
+from tyrefem.reports.inputs import effect_rows
 
 OWN = '''
 """A lamp beside the tyre."""

@@ -10,10 +10,10 @@ from suitable import COARSE
 
 import tyrefem as tf
 from tyrefem.effects import Effect, catalogue
-from tyrefem.result import GAS
-from tyrefem.rolling import RollingTyre
-from tyrefem.section import load
-from tyrefem.sensors import lagged, recorded, true_places
+from tyrefem.geometry import load
+from tyrefem.simulation.rolling_tyre import RollingTyre
+from tyrefem.simulation.sensors import lagged, recorded, true_places
+from tyrefem.simulation.surroundings import GAS
 
 
 def tyre(effects: list[dict] | None = None, name: str = "example-validation", **changes: object) -> RollingTyre:

@@ -9,11 +9,12 @@ from hypothesis import given
 from hypothesis import strategies as st
 
 import tyrefem
-from tyrefem import estimate, library
+from tyrefem import library
 from tyrefem.conduction.operators import operators_of
-from tyrefem.meshing import build
-from tyrefem.meshing.expected import expected_nodes
-from tyrefem.run_estimate import RunEstimate
+from tyrefem.estimates import work as estimate
+from tyrefem.geometry.meshing import build
+from tyrefem.geometry.meshing.expected import expected_nodes
+from tyrefem.simulation.estimate import RunEstimate
 
 NASA = "nasa-22x5.5-8pr"
 STUDIES = sorted(library.names("study"))

@@ -8,7 +8,7 @@ from pathlib import Path
 
 import pytest
 
-from tyrefem.memory import UNKNOWN, free_memory
+from tyrefem.estimates.memory import UNKNOWN, free_memory
 
 MEMINFO = "MemTotal:       16777216 kB\nMemFree:  1000 kB\nMemAvailable:    8388608 kB\n"
 GIB = 2**30

@@ -16,17 +16,17 @@ import pytest
 import tyrefem
 from tyrefem.conduction import Conduction, Film, Material
 from tyrefem.errors import InputError
-from tyrefem.estimate import GIB
-from tyrefem.footprint.balance import Balance
-from tyrefem.footprint.contact import Pressing
-from tyrefem.footprint.plain import PlainTyre
-from tyrefem.footprint.press import press
+from tyrefem.estimates.work import GIB
+from tyrefem.geometry.meshing import build
 from tyrefem.measured import read_table
-from tyrefem.meshing import build
-from tyrefem.reduced.certify import export
-from tyrefem.sweep.plan import plan_of
-from tyrefem.sweep.schedulers import Local
+from tyrefem.mechanics.footprint.contact import Pressing
+from tyrefem.mechanics.footprint.example_tyre import PlainTyre
+from tyrefem.mechanics.footprint.harmonic_balance import Balance
+from tyrefem.mechanics.footprint.press import press
+from tyrefem.realtime.certificate import export
 from tyrefem.sweep.sweep import sweep
+from tyrefem.variants.plan import plan_of
+from tyrefem.variants.schedulers import Local
 
 NASA, RADIAL = "nasa-22x5.5-8pr", "passenger-205-55r16"
 COARSE = {"mesh.size": "12 mm"}
@@ -38,7 +38,7 @@ def free(monkeypatch: pytest.MonkeyPatch) -> Callable[[float], None]:
     """Says how many GiB are free."""
 
     def say(gib: float) -> None:
-        monkeypatch.setattr("tyrefem.memory.free_memory", lambda: gib * GIB)
+        monkeypatch.setattr("tyrefem.estimates.memory.free_memory", lambda: gib * GIB)
 
     return say
 
@@ -95,7 +95,9 @@ def test_what_is_said_to_fit_fits(free: Callable[[float], None], monkeypatch: py
     error = refused(tyrefem.study(NASA, {"mesh.size": "0.3 mm"}).run, "mesh.size", "would fit")
     (size,) = re.findall(r"([\d.]+) mm or more would fit", str(error))
     begun: list[Any] = []
-    monkeypatch.setattr("tyrefem.rolling.simulate", lambda tyre, *_given, **_named: begun.append(tyre) or tyre)
+    monkeypatch.setattr(
+        "tyrefem.simulation.simulate.simulate", lambda tyre, *_given, **_named: begun.append(tyre) or tyre
+    )
     tyrefem.study(NASA, {"mesh.size": f"{size} mm"}).run()
     assert len(begun) == 1
     nearly = f"{0.9 * float(size)} mm"

@@ -10,15 +10,15 @@ import pytest
 
 import tyrefem
 from tyrefem.cli import main
-from tyrefem.diagnose.bench import Bench
 from tyrefem.diagnose.effort import CASE, check_effort
+from tyrefem.diagnose.forward_model import Bench
 from tyrefem.diagnose.isolability import planned
 from tyrefem.errors import InputError
-from tyrefem.estimate import LongWorkWarning, warn_of
-from tyrefem.footprint.press import press
-from tyrefem.reduced.certify import export
-from tyrefem.sweep.plan import plan_of
+from tyrefem.estimates.work import LongWorkWarning, warn_of
+from tyrefem.mechanics.footprint.press import press
+from tyrefem.realtime.certificate import export
 from tyrefem.sweep.sweep import sweep
+from tyrefem.variants.plan import plan_of
 
 NASA = "nasa-22x5.5-8pr"
 STOP = "work begins"

@@ -11,11 +11,11 @@ from lumped import RATE, lumped, rubber, softening
 from scipy.integrate import solve_ivp
 
 import tyrefem as tf
-from tyrefem import feedback
 from tyrefem.errors import InputError
-from tyrefem.mechanics import cycle_schedule
-from tyrefem.rolling import RollingTyre
-from tyrefem.warmth import Warmth
+from tyrefem.mechanics.cycle_schedule import cycle_schedule
+from tyrefem.simulation import feedback
+from tyrefem.simulation.rolling_tyre import RollingTyre
+from tyrefem.simulation.warm_cycles import Warmth
 
 FINE = {"tolerance": "0.01 delta_degC"}
 BIAS = {"mesh.size": "8 mm", "mesh.element": "P1", "drive.duration": "300 s", "output.every": "30 s"}
@@ -175,7 +175,7 @@ def test_an_effect_that_would_count_twice_is_refused() -> None:
 
 
 def test_a_diagnosis_of_a_study_with_feedback_is_refused() -> None:
-    from tyrefem.diagnose.lean import lean
+    from tyrefem.diagnose.fast_simulation import lean
 
     with pytest.raises(InputError, match=r"mechanics.feedback: only a run finds"):
         lean(coupled().study)

@@ -10,7 +10,7 @@ import pytest
 
 from tyrefem.errors import InputError
 from tyrefem.output import atomic_folder, atomic_path, note_input, reading, write_json
-from tyrefem.results_folder import results_folder
+from tyrefem.output.folder import results_folder
 
 NAMES = ("readings.csv", "report.html", "pictures/*.png")
 

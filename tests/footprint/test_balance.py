@@ -7,12 +7,12 @@ import pytest
 from footprint_bodies import half_torus
 
 from tyrefem.errors import InputError
-from tyrefem.footprint.balance import Balance
-from tyrefem.footprint.contact import Pressing
-from tyrefem.footprint.cycle import StrainCycle
-from tyrefem.footprint.harmonics import Harmonics
-from tyrefem.footprint.nonlinear import NonlinearForces
-from tyrefem.footprint.plain import PlainTyre, pressurised, stress_free
+from tyrefem.mechanics.footprint.contact import Pressing
+from tyrefem.mechanics.footprint.example_tyre import PlainTyre, pressurised, stress_free
+from tyrefem.mechanics.footprint.harmonic_balance import Balance
+from tyrefem.mechanics.footprint.harmonics import Harmonics
+from tyrefem.mechanics.footprint.nonlinear import NonlinearForces
+from tyrefem.mechanics.footprint.strain_harmonics import StrainCycle
 
 
 @pytest.fixture(scope="module")
@@ -94,6 +94,6 @@ def test_balance_under_a_load(tyre: Pressing) -> None:
 
 
 def test_out_of_reach_says_how_far_it_got(tyre: Pressing, monkeypatch: pytest.MonkeyPatch) -> None:
-    monkeypatch.setattr("tyrefem.footprint.balance.MOST", 1)
+    monkeypatch.setattr("tyrefem.mechanics.footprint.harmonic_balance.MOST", 1)
     with pytest.raises(InputError, match=r"reaches .* mm \(.* N\), not 90 mm"):
         Balance(tyre, 8).at_deflection(0.09)

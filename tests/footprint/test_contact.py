@@ -12,11 +12,11 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 
 from tyrefem.errors import InputError
-from tyrefem.footprint.complementarity import contact_forces
-from tyrefem.footprint.compliance import interpolation, solved_harmonics
-from tyrefem.footprint.contact import Pressing
-from tyrefem.footprint.plain import PlainTyre, stress_free
-from tyrefem.footprint.road import Road
+from tyrefem.mechanics.footprint.complementarity import contact_forces
+from tyrefem.mechanics.footprint.compliance import interpolation, solved_harmonics
+from tyrefem.mechanics.footprint.contact import Pressing
+from tyrefem.mechanics.footprint.example_tyre import PlainTyre, stress_free
+from tyrefem.mechanics.footprint.road import Road
 
 
 @pytest.fixture(scope="module")

@@ -6,12 +6,12 @@ import numpy as np
 import pytest
 
 from tyrefem.errors import InputError
-from tyrefem.footprint.contact import Pressing
-from tyrefem.footprint.cycle import StrainCycle
-from tyrefem.footprint.loss import RevolutionLoss
-from tyrefem.footprint.loss_tangent import FrequencyTable, OfTemperature, PowerLaw, Prony, Shift
-from tyrefem.footprint.plain import PlainTyre
-from tyrefem.materials import material
+from tyrefem.materials.card import material
+from tyrefem.materials.loss_tangent import FrequencyTable, OfTemperature, PowerLaw, Prony, Shift
+from tyrefem.mechanics.footprint.contact import Pressing
+from tyrefem.mechanics.footprint.example_tyre import PlainTyre
+from tyrefem.mechanics.footprint.loss import RevolutionLoss
+from tyrefem.mechanics.footprint.strain_harmonics import StrainCycle
 
 REGIONS = ("ply", "belt", "tread", "sidewall")
 

@@ -5,13 +5,13 @@ from __future__ import annotations
 import numpy as np
 import pytest
 
-from tyrefem.footprint.contact import Pressing
-from tyrefem.footprint.cycle import StrainCycle
-from tyrefem.footprint.loss import RevolutionLoss
-from tyrefem.footprint.loss_tangent import OfTemperature
-from tyrefem.footprint.plain import PlainTyre
-from tyrefem.footprint.pressed import Footprint
-from tyrefem.plotting.footprint import (
+from tyrefem.materials.loss_tangent import OfTemperature
+from tyrefem.mechanics.footprint.contact import Pressing
+from tyrefem.mechanics.footprint.example_tyre import PlainTyre
+from tyrefem.mechanics.footprint.footprint import Footprint
+from tyrefem.mechanics.footprint.loss import RevolutionLoss
+from tyrefem.mechanics.footprint.strain_harmonics import StrainCycle
+from tyrefem.reports.figures.footprint import (
     deformed_figure,
     harmonics_figure,
     pressure_map,

@@ -10,10 +10,9 @@ from footprint_bodies import block, half_torus
 from scipy.sparse.linalg import spsolve
 
 from tyrefem.errors import InputError
-from tyrefem.footprint.elements import SectionElements
-from tyrefem.footprint.follower import follower_stiffness, pressure_load
-from tyrefem.footprint.harmonics import Harmonics
-from tyrefem.footprint.plain import PlainTyre, pressurised, stress_free
+from tyrefem.mechanics.footprint.elements import SectionElements
+from tyrefem.mechanics.footprint.example_tyre import PlainTyre, pressurised, stress_free
+from tyrefem.mechanics.footprint.harmonics import Harmonics, follower_stiffness, pressure_load
 
 
 def rigid_motions(elements: SectionElements) -> dict[str, tuple[int, np.ndarray]]:

@@ -5,11 +5,11 @@ from __future__ import annotations
 import numpy as np
 import pytest
 
-from tyrefem.footprint.contact import Pressing
-from tyrefem.footprint.cycle import StrainCycle
-from tyrefem.footprint.harmonics import Harmonics
-from tyrefem.footprint.hexahedra import Hexahedra, angles_near_contact
-from tyrefem.footprint.plain import PlainTyre
+from tyrefem.mechanics.footprint.contact import Pressing
+from tyrefem.mechanics.footprint.example_tyre import PlainTyre
+from tyrefem.mechanics.footprint.harmonics import Harmonics
+from tyrefem.mechanics.footprint.reference_3d import Hexahedra, angles_near_contact
+from tyrefem.mechanics.footprint.strain_harmonics import StrainCycle
 
 
 @pytest.mark.parametrize("n", [1, 2, 3])

@@ -6,10 +6,10 @@ import numpy as np
 import pytest
 
 from tyrefem.api import study
-from tyrefem.footprint.elements import SectionElements
-from tyrefem.footprint.harmonics import Harmonics
-from tyrefem.meshing import build
-from tyrefem.solid.inflation import inflate
+from tyrefem.geometry.meshing import build
+from tyrefem.mechanics.footprint.elements import SectionElements
+from tyrefem.mechanics.footprint.harmonics import Harmonics
+from tyrefem.mechanics.solid.inflation import inflate
 
 
 @pytest.mark.parametrize(

@@ -9,14 +9,14 @@ import pytest
 
 from tyrefem.api import study
 from tyrefem.errors import InputError
-from tyrefem.footprint.balance import Balance
-from tyrefem.footprint.contact import Pressing
-from tyrefem.footprint.nonlinear import NonlinearForces
-from tyrefem.footprint.plain import PlainTyre
-from tyrefem.footprint.pressed import Footprint
-from tyrefem.loading import TrR64
-from tyrefem.meshing import build
-from tyrefem.solid.inflation import Inflation, inflate
+from tyrefem.geometry.meshing import build
+from tyrefem.inputs.loading import TrR64
+from tyrefem.mechanics.footprint.contact import Pressing
+from tyrefem.mechanics.footprint.example_tyre import PlainTyre
+from tyrefem.mechanics.footprint.footprint import Footprint
+from tyrefem.mechanics.footprint.harmonic_balance import Balance
+from tyrefem.mechanics.footprint.nonlinear import NonlinearForces
+from tyrefem.mechanics.solid.inflation import Inflation, inflate
 
 COARSE = 18e-3
 
@@ -124,6 +124,6 @@ def test_stiffness_is_the_slope_between_two_deflections_and_far_less_than_linear
 
 
 def test_more_than_the_tyre_can_carry(pressing: Pressing, monkeypatch: pytest.MonkeyPatch) -> None:
-    monkeypatch.setattr("tyrefem.footprint.large_motion.BEFORE_RIM", 0.1)
+    monkeypatch.setattr("tyrefem.mechanics.footprint.large_motion.BEFORE_RIM", 0.1)
     with pytest.raises(InputError, match=r"cannot carry 12010 N: the crown meets the rim at .* mm\)"):
         Balance(pressing, 8).at_load(12010.0)

@@ -12,13 +12,12 @@ import pyvista
 
 from tyrefem import study
 from tyrefem.errors import InputError
-from tyrefem.footprint.cord_cycle import cord_cycles
-from tyrefem.footprint.press import Pressed, press
-from tyrefem.footprint.press_files import write_files
-from tyrefem.footprint.press_places import cycle_places, read_place
-from tyrefem.footprint.pressed import Footprint
-from tyrefem.footprint.revolved import RevolvedTyre
-from tyrefem.meshing import build, write
+from tyrefem.geometry.meshing import build, write
+from tyrefem.mechanics.footprint.cord_cycle import cord_cycles
+from tyrefem.mechanics.footprint.footprint import Footprint
+from tyrefem.mechanics.footprint.press import Pressed, press
+from tyrefem.reports.press import RevolvedTyre, write_files
+from tyrefem.reports.press_places import cycle_places, read_place
 
 STUDY = "nasa-22x5.5-8pr"
 COARSE = {"mesh.size": "12 mm"}

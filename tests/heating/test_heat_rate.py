@@ -10,9 +10,9 @@ import pint
 import pytest
 
 import tyrefem as tf
-from tyrefem.heating import ramp_knots
-from tyrefem.loading import TrR64
-from tyrefem.rolling import RollingTyre
+from tyrefem.inputs.loading import TrR64
+from tyrefem.mechanics.cycle_schedule import ramp_knots
+from tyrefem.simulation.rolling_tyre import RollingTyre
 
 CONSTANT = {f"materials.{r}.loss_tangent.law": "constant" for r in ("carcass", "tread", "sidewall", "bead")}
 COARSE = {"mesh.size": "4 mm", "mesh.element": "P1", **CONSTANT}

@@ -10,8 +10,8 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 
 from tyrefem.errors import InputError
-from tyrefem.loading import LoadCase, TrR64, VerticalStiffness, load_case
-from tyrefem.section import load as section
+from tyrefem.geometry import load as section
+from tyrefem.inputs.loading import LoadCase, TrR64, VerticalStiffness, load_case
 
 INCH, PSI, LBF = 0.0254, 6894.757293168361, 4.4482216152605
 

@@ -10,8 +10,8 @@ import pytest
 
 from tyrefem import library
 from tyrefem.errors import InputError
-from tyrefem.footprint.loss_tangent import Prony, Shift
-from tyrefem.materials import MaterialCard, material
+from tyrefem.materials.card import MaterialCard, material
+from tyrefem.materials.loss_tangent import Prony, Shift
 
 WLF = {"c1": 8.86, "c2": "101.6 delta_degC", "reference": "20 degC"}
 SERIES = [["1.2 MPa", "10 us"], ["0.5 MPa", "1 ms"], ["0.2 MPa", "0.1 s"]]

@@ -9,7 +9,7 @@ import pytest
 
 from tyrefem import library
 from tyrefem.errors import InputError
-from tyrefem.materials import MaterialCard
+from tyrefem.materials.card import MaterialCard
 
 
 def card(**changes):

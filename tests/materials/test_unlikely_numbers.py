@@ -12,9 +12,7 @@ from tyrefem import library
 from tyrefem.api import study
 from tyrefem.boundaries import laws
 from tyrefem.cards import Card, read_toml
-from tyrefem.effects import Prior, catalogue
-from tyrefem.materials import material
-from tyrefem.plausible import (
+from tyrefem.cards.plausible import (
     AIR_FILM,
     CONDUCTIVITY,
     CONTACT_FILM,
@@ -26,6 +24,8 @@ from tyrefem.plausible import (
     SPECIFIC_HEAT,
     Plausible,
 )
+from tyrefem.effects import Prior, catalogue
+from tyrefem.materials.card import material
 from tyrefem.quantity import Unit, parse
 from tyrefem.rig import RigCard
 from tyrefem.rig import load as rig

@@ -6,8 +6,8 @@ import numpy as np
 import pytest
 
 from tyrefem.errors import InputError
-from tyrefem.meshing import TyreMesh, build
-from tyrefem.section import Section, load
+from tyrefem.geometry import Section, load
+from tyrefem.geometry.meshing import TyreMesh, build
 
 
 @pytest.fixture(params=["nasa-22x5.5-8pr", "nasa-22x5.5-12pr"])

@@ -12,8 +12,8 @@ from typing import Any
 import pytest
 
 from tyrefem.errors import InputError, MissingLibraryError
-from tyrefem.meshing import build
-from tyrefem.section import load
+from tyrefem.geometry import load
+from tyrefem.geometry.meshing import build
 
 
 @pytest.mark.parametrize(
@@ -53,7 +53,7 @@ def test_quiet_and_without_traces(capfd: pytest.CaptureFixture[str]) -> None:
 def test_a_broken_pipe_is_still_an_error_and_not_the_end() -> None:
     # In a process of its own: gmsh's own start leaves it so that it would be killed without a word.
     code = (
-        "import os; from tyrefem.meshing import build; from tyrefem.section import load\n"
+        "import os; from tyrefem.geometry.meshing import build; from tyrefem.geometry import load\n"
         "build(load('nasa-22x5.5-8pr'), mesher='gmsh', size=2e-2)\n"
         "there, here = os.pipe(); os.close(there)\n"
         "try: os.write(here, b'x')\n"
@@ -113,7 +113,7 @@ def test_mapped_mesher_needs_no_gmsh() -> None:
     import subprocess
 
     code = (
-        "import sys; from tyrefem.section import load; from tyrefem.meshing import build;"
+        "import sys; from tyrefem.geometry import load; from tyrefem.geometry.meshing import build;"
         "build(load('nasa-22x5.5-8pr'), size=6e-3); sys.exit('gmsh' in sys.modules or 'pygmsh' in sys.modules)"
     )
     assert subprocess.run([sys.executable, "-c", code], check=False).returncode == 0

@@ -9,8 +9,8 @@ import numpy as np
 import pytest
 
 from tyrefem.errors import InputError
-from tyrefem.meshing import TyreMesh, build, read, read_for, write
-from tyrefem.section import Section, load
+from tyrefem.geometry import Section, load
+from tyrefem.geometry.meshing import TyreMesh, build, read, read_for, write
 
 
 @pytest.fixture(scope="module")

@@ -7,8 +7,8 @@ from hypothesis import HealthCheck, given, settings
 from hypothesis import strategies as st
 
 from tyrefem.errors import InputError
-from tyrefem.meshing import build
-from tyrefem.section import load
+from tyrefem.geometry import load
+from tyrefem.geometry.meshing import build
 
 
 def inches(low: float, high: float) -> st.SearchStrategy[str]:

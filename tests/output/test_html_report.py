@@ -9,8 +9,9 @@ from html.parser import HTMLParser
 
 import pytest
 
-from tyrefem.plotting import pictures
-from tyrefem.report.words import number, place
+from tyrefem.geometry.place_names import place
+from tyrefem.reports.figures import pictures
+from tyrefem.reports.words import number
 
 VOID = {"meta", "img", "br", "link", "input", "hr"}
 NAME = '<b onclick="x()">$hot$ & "cold"</b>'
@@ -159,7 +160,7 @@ def test_the_study_file_as_written_or_as_run(written, tmp_path):
     assert "Study file as run" in written
     assert "5 mm" in written
     plain = tf.study("nasa-22x5.5-8pr")
-    from tyrefem.report.inputs import study_text
+    from tyrefem.reports.inputs import study_text
 
     text, as_written = study_text(plain)
     assert as_written

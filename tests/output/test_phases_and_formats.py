@@ -8,14 +8,14 @@ from pathlib import Path
 import pytest
 
 import tyrefem as tf
-from tyrefem.plotting.budget import budget_figure
-from tyrefem.plotting.heat_source import heat_source_figure
-from tyrefem.plotting.histories import histories_figure
-from tyrefem.plotting.phases import LINE, named
-from tyrefem.plotting.sliding import sliding_figure
-from tyrefem.plotting.style import add_axes, figure, picture, title
-from tyrefem.plotting.temperature import temperature_figure
-from tyrefem.results_file import made_by_this_tool
+from tyrefem.output.file import made_by_this_tool
+from tyrefem.reports.figures.budget import budget_figure
+from tyrefem.reports.figures.heat_source import heat_source_figure
+from tyrefem.reports.figures.histories import histories_figure
+from tyrefem.reports.figures.phases import LINE, named
+from tyrefem.reports.figures.road import sliding_figure
+from tyrefem.reports.figures.style import add_axes, figure, picture, title
+from tyrefem.reports.figures.temperature import temperature_figure
 
 
 @pytest.fixture(scope="module")

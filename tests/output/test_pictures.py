@@ -10,16 +10,15 @@ import numpy as np
 import pytest
 
 from tyrefem.errors import InputError
-from tyrefem.plotting import pictures, write_pictures
-from tyrefem.plotting.budget import budget_figure, waterfall
-from tyrefem.plotting.cells import linear_cells, triangles
-from tyrefem.plotting.heat_source import ZoneHeat, heat_source_figure, scale_top, zone_heat
-from tyrefem.plotting.histories import histories_figure
-from tyrefem.plotting.labels import spread
-from tyrefem.plotting.mesh import mesh_figure
-from tyrefem.plotting.section import section_figure
-from tyrefem.plotting.strain import along, strain_figure
-from tyrefem.plotting.temperature import temperature_figure
+from tyrefem.reports.figures import pictures, write_pictures
+from tyrefem.reports.figures.budget import budget_figure, waterfall
+from tyrefem.reports.figures.cells import linear_cells, triangles
+from tyrefem.reports.figures.heat_source import ZoneHeat, heat_source_figure, scale_top, zone_heat
+from tyrefem.reports.figures.histories import histories_figure
+from tyrefem.reports.figures.mesh import mesh_figure, section_figure
+from tyrefem.reports.figures.strain import along, strain_figure
+from tyrefem.reports.figures.style import spread
+from tyrefem.reports.figures.temperature import temperature_figure
 
 STANDARD = {
     "temperature.png", "histories.png", "heat-budget.png", "heat-source.png", "strain-cycle.png", "mesh.png",
@@ -192,7 +191,7 @@ def test_heat_in_a_sliver_only_still_has_a_scale():
 
 
 def test_a_peak_beyond_the_heat_scale_is_told_by_an_arrow_and_its_value(result, monkeypatch):
-    from tyrefem.plotting import heat_source
+    from tyrefem.reports.figures import heat_source
 
     zones = zone_heat(result, len(result.times) - 1)
     highest = max(range(len(zones)), key=lambda n: zones[n].source.max())

@@ -10,8 +10,8 @@ import numpy as np
 import pytest
 import pyvista
 
-from tyrefem import view3d
-from tyrefem.vtk import saved_times, write_series
+from tyrefem.reports import view3d
+from tyrefem.reports.vtk import saved_times, write_series
 
 
 @pytest.fixture(scope="module", params=["result", "quadratic"])

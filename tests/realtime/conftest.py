@@ -9,7 +9,8 @@ import pytest
 
 import tyrefem
 from tyrefem.api import Study
-from tyrefem.reduced import certify, tables
+from tyrefem.realtime import certificate as certify
+from tyrefem.realtime import tables
 
 
 @dataclass(frozen=True)

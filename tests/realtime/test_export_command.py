@@ -11,12 +11,12 @@ import pytest
 import tyrefem
 from tyrefem.cli import main
 from tyrefem.errors import InputError
-from tyrefem.fmu import write_fmu
-from tyrefem.fmu.description import variable_names
-from tyrefem.realtime import INPUTS, Inputs, RealTimeTyre
-from tyrefem.reduced import certify, tables
-from tyrefem.reduced.certify import export
-from tyrefem.reduced.driving import box_of
+from tyrefem.realtime import certificate as certify
+from tyrefem.realtime import tables
+from tyrefem.realtime.certificate import export
+from tyrefem.realtime.fmu import variable_names, write_fmu
+from tyrefem.realtime.inputs import box_of
+from tyrefem.realtime.tyre import INPUTS, Inputs, RealTimeTyre
 
 STUDY = "nasa-22x5.5-8pr"
 

@@ -13,9 +13,8 @@ from fmpy.fmi2 import FMU2Slave
 from fmpy.validation import validate_fmu
 
 from tyrefem.errors import InputError
-from tyrefem.fmu import write_fmu
-from tyrefem.fmu.description import variable_names
-from tyrefem.realtime import INPUTS, Inputs, RealTimeTyre
+from tyrefem.realtime.fmu import variable_names, write_fmu
+from tyrefem.realtime.tyre import INPUTS, Inputs, RealTimeTyre
 
 HELD = (
     Inputs(10.0, 12e3, 560e3, 20.0, 30.0),

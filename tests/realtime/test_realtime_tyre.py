@@ -12,11 +12,11 @@ import numpy as np
 import pytest
 
 import tyrefem
-from tyrefem import realtime
-from tyrefem.realtime import GAMMA, PHI, PHI_2, Inputs, RealTimeTyre, inverse
-from tyrefem.reduced.driving import Box, Course, random_course
-from tyrefem.reduced.exam import Exam, sit
-from tyrefem.sweep.bundle import bundle
+from tyrefem.realtime import tyre as realtime
+from tyrefem.realtime.certificate import Exam, sit
+from tyrefem.realtime.inputs import Box, Course, random_course
+from tyrefem.realtime.tyre import GAMMA, PHI, PHI_2, Inputs, RealTimeTyre, inverse
+from tyrefem.variants.task import bundle
 
 WARM = Inputs(10.0, 12e3, 560e3, 20.0, 30.0)
 

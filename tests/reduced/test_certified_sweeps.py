@@ -15,13 +15,15 @@ from tyrefem.reduced.balance import reduced_balance
 from tyrefem.reduced.model import NotReducibleError
 from tyrefem.reduced.readout import Readout
 from tyrefem.reduced.surrogate import Surrogate, surrogate, temperature_error
+from tyrefem.reduced.training_rounds import ReducedTask, pack, perform_reduced
 from tyrefem.reduced.variant import Variant
-from tyrefem.reduced.work import ReducedTask, pack, perform_reduced
-from tyrefem.rolling import RollingTyre, output_times, run
-from tyrefem.sweep.answers import answers
-from tyrefem.sweep.plan import Plan, plan_of
+from tyrefem.simulation.rolling_tyre import RollingTyre
+from tyrefem.simulation.run import run
+from tyrefem.simulation.simulate import output_times
 from tyrefem.sweep.sweep import Sweep, sweep
-from tyrefem.sweep.task import perform
+from tyrefem.variants.answers import answers
+from tyrefem.variants.plan import Plan, plan_of
+from tyrefem.variants.task import perform
 
 BOX = {
     "drive.speed": ("12 mph", "25 mph"),
@@ -170,7 +172,7 @@ def test_what_cannot_be_reduced_says_why(
 
 
 def _named(key: str) -> object:
-    from tyrefem.sweep.varied import Varied
+    from tyrefem.variants.varied import Varied
 
     return Varied(key, "mm", low=10.0, high=12.0)
 

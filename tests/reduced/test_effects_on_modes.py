@@ -12,9 +12,10 @@ from tyrefem.reduced.balance import reduced_balance
 from tyrefem.reduced.batch import Batch, steady
 from tyrefem.reduced.march import march
 from tyrefem.reduced.surrogate import surrogate, temperature_error
-from tyrefem.rolling import RollingTyre, run
-from tyrefem.sweep.answers import answers
-from tyrefem.sweep.plan import plan_of
+from tyrefem.simulation.rolling_tyre import RollingTyre
+from tyrefem.simulation.run import run
+from tyrefem.variants.answers import answers
+from tyrefem.variants.plan import plan_of
 
 SHORT = {"mesh.size": "12 mm", "drive.duration": "200 s", "output.every": "20 s"}
 SPEEDS = {"drive.speed": ("12 mph", "25 mph")}

@@ -6,8 +6,8 @@ import numpy as np
 import pytest
 from scipy.integrate import solve_ivp
 
-from tyrefem.reduced.modes import modes, places
-from tyrefem.reduced.relaxing import relaxed, responses
+from tyrefem.reduced.exponential import relaxed, responses
+from tyrefem.reduced.pod import modes, places
 
 
 def test_modes_keep_what_they_are_asked_to_keep() -> None:

@@ -8,7 +8,7 @@ from pathlib import Path
 import pytest
 
 from tyrefem.cli import main
-from tyrefem.diagnose.bench import Bench
+from tyrefem.diagnose.forward_model import Bench
 
 
 @pytest.fixture(autouse=True)
@@ -44,4 +44,4 @@ def no_simulation(monkeypatch: pytest.MonkeyPatch) -> None:
         raise AssertionError("simulated before the study was checked")
 
     monkeypatch.setattr(Bench, "response", never)
-    monkeypatch.setattr("tyrefem.rolling.simulate", never)
+    monkeypatch.setattr("tyrefem.simulation.simulate.simulate", never)

@@ -12,8 +12,8 @@ from odd_studies import FITTED, write
 import tyrefem as tf
 from tyrefem.diagnose import blind_rates
 from tyrefem.diagnose.blind import cases
-from tyrefem.diagnose.blind_picture import picture, save
 from tyrefem.diagnose.blind_rates import Blind, run_blind
+from tyrefem.reports.blind import picture, save
 
 
 def _row(held_out: bool, **more: Any) -> dict[str, Any]:

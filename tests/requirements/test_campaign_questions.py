@@ -16,10 +16,10 @@ from tyrefem.cli import app, main
 from tyrefem.diagnose.blind_rates import run_blind
 from tyrefem.diagnose.isolability import isolability
 from tyrefem.errors import InputError
-from tyrefem.footprint.press import press
-from tyrefem.reduced.certify import export
-from tyrefem.strain.comparison import compare_laws
-from tyrefem.sweep.questions import loaded
+from tyrefem.mechanics.footprint.press import press
+from tyrefem.realtime.certificate import export
+from tyrefem.simulation.law_comparison import compare_laws
+from tyrefem.sweep.design import loaded
 
 BRIEF = ("--no-pictures", "--no-vtk")
 #: Command lines with the campaign's folder in the place of "STUDY".

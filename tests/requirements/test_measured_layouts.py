@@ -11,9 +11,9 @@ import pytest
 from odd_studies import END, FITTED, HELD_OUT, SENSORS, table, write
 
 import tyrefem as tf
-from tyrefem.diagnose.bench import Bench
-from tyrefem.diagnose.experiment import drive_gain
+from tyrefem.diagnose.forward_model import Bench
 from tyrefem.diagnose.isolability import isolability, planned
+from tyrefem.diagnose.next_experiment import drive_gain
 from tyrefem.diagnose.unknowns import candidates
 from tyrefem.errors import InputError
 

@@ -11,12 +11,12 @@ import pytest
 import skfem
 
 import tyrefem as tf
-from tyrefem.footprint.press import press
+from tyrefem.mechanics.footprint.press import press
 from tyrefem.reduced.surrogate import surrogate
 from tyrefem.rig import identify, load, simulate
 from tyrefem.rig.grid import Fineness
 from tyrefem.rig.readings import matched
-from tyrefem.sweep.plan import plan_of
+from tyrefem.variants.plan import plan_of
 
 QUICK = {"mesh.size": "12 mm", "drive.duration": "60 s"}
 

@@ -6,7 +6,7 @@ import numpy as np
 import pytest
 
 import tyrefem as tf
-from tyrefem.meshing.sagitta import sagitta
+from tyrefem.geometry.meshing.sagitta import sagitta
 
 
 @pytest.fixture(scope="module")

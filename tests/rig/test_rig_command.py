@@ -8,11 +8,11 @@ from pathlib import Path
 import pytest
 
 from tyrefem.cli import main
-from tyrefem.materials import material
+from tyrefem.materials.card import material
 from tyrefem.measured import read_table
+from tyrefem.reports.rig import save_layers
 from tyrefem.rig import load, simulate
-from tyrefem.rig.files import save_layers
-from tyrefem.rig.find import find
+from tyrefem.rig.card import find
 from tyrefem.rig.grid import Fineness
 from tyrefem.rig.layer_study import merged, study
 from tyrefem.rig.readings import matched

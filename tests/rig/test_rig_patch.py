@@ -9,11 +9,11 @@ from curved_patch import CurvedPatch, TrueLayer, Truth
 from scipy.special import erfc
 
 from tyrefem.rig import Layer, Patch, Property, load
-from tyrefem.rig.clock import Clock, since_switch
+from tyrefem.rig.card import Clock, since_switch
 from tyrefem.rig.grid import Fineness, Grid
 from tyrefem.rig.parameters import at, parameters_of
+from tyrefem.rig.readings import view
 from tyrefem.rig.twin import Twin
-from tyrefem.rig.views import view
 
 COARSE = Fineness(3, 6, 3)
 

@@ -8,11 +8,10 @@ import numpy as np
 import pytest
 
 import tyrefem as tf
+from tyrefem.boundaries.road_film import hedekel_length, radial_deflection
 from tyrefem.errors import InputError
-from tyrefem.footprint import GivenFootprint, HedekelFootprint
-from tyrefem.loading import LoadCase
-from tyrefem.road_contact import hedekel_length, radial_deflection
-from tyrefem.rolling import RollingTyre
+from tyrefem.inputs.loading import GivenFootprint, HedekelFootprint, LoadCase
+from tyrefem.simulation.rolling_tyre import RollingTyre
 
 R, D = 0.28, 0.03
 HEDEKEL = HedekelFootprint(law="hedekel")

@@ -8,11 +8,10 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
+from tyrefem.boundaries.averaging import TreadPoint, averaging_error, averaging_sweep, periodic_state
 from tyrefem.conduction import Film
 from tyrefem.errors import InputError
-from tyrefem.plotting.road import averaging_figure, holds_above
-from tyrefem.revolution import averaging_error, averaging_sweep, periodic_state
-from tyrefem.tread_point import TreadPoint
+from tyrefem.reports.figures.road import averaging_figure, holds_above
 
 CITY = TreadPoint(speed=50 / 3.6, footprint_length=0.14)
 

@@ -6,8 +6,8 @@ import json
 
 import pytest
 
+from tyrefem.boundaries.road_film import propagation_depth
 from tyrefem.cli import main
-from tyrefem.road_contact import propagation_depth
 
 PNG = b"\x89PNG"
 

@@ -10,8 +10,8 @@ import numpy as np
 import pytest
 import skfem
 
-from tyrefem import road_contact as rc
 from tyrefem.boundaries import Contact, LawOf
+from tyrefem.boundaries import road_film as rc
 from tyrefem.conduction import Conduction, Material
 from tyrefem.errors import InputError
 from tyrefem.library import names, shipped

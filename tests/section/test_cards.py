@@ -11,8 +11,8 @@ import ring_section
 
 from tyrefem.cards import read_toml
 from tyrefem.errors import InputError
+from tyrefem.geometry import Profile, SectionCard, build, load
 from tyrefem.library import names
-from tyrefem.section import Profile, SectionCard, build, load
 
 
 @pytest.fixture

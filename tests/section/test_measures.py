@@ -6,8 +6,8 @@ import numpy as np
 import pytest
 import ring_section
 
-from tyrefem.section import Section, SectionCard, build, load
-from tyrefem.section.outlines import face, stations
+from tyrefem.geometry import Section, SectionCard, build, load
+from tyrefem.geometry.outlines import face, stations
 
 
 @pytest.fixture

@@ -6,7 +6,7 @@ import numpy as np
 import pytest
 
 from tyrefem.errors import InputError
-from tyrefem.section import Section, load
+from tyrefem.geometry import Section, load
 
 NAMES = ["nasa-22x5.5-8pr", "nasa-22x5.5-12pr"]
 

@@ -9,7 +9,7 @@ import pytest
 import ring_section
 
 from tyrefem.errors import InputError
-from tyrefem.section import SectionCard, SplineLine, build
+from tyrefem.geometry import SectionCard, SplineLine, build
 
 
 @pytest.fixture

@@ -6,7 +6,7 @@ import numpy as np
 import pytest
 
 from tyrefem.errors import InputError
-from tyrefem.section import TwoArcs, load
+from tyrefem.geometry import TwoArcs, load
 
 INCH = 0.0254
 # Tables H1 and H2: YS of the inner nodes and R of each row, crown to bead [in].

@@ -10,7 +10,7 @@ import pytest
 import tyrefem as tf
 from tyrefem import library
 from tyrefem.errors import InputError
-from tyrefem.section import load
+from tyrefem.geometry import load
 
 RADIAL, BIAS = "passenger-205-55r16", "nasa-22x5.5-8pr"
 POINTS = np.array(library.load("section", RADIAL)[0]["line"]["points"]["values"], dtype=float)
@@ -133,8 +133,8 @@ class TestMeridian:
 
 def _turn(study: tf.Study) -> float:
     """Largest rotation, rad, of the wall from s = 100 to 120 mm in inflation."""
-    from tyrefem.meshing import build
-    from tyrefem.solid.inflation import inflate
+    from tyrefem.geometry.meshing import build
+    from tyrefem.mechanics.solid.inflation import inflate
 
     tyre = inflate(study, None, build(study.section, size=10e-3, through=1))
     F = tyre.deformation

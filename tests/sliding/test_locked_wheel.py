@@ -4,8 +4,8 @@ from __future__ import annotations
 
 import pytest
 
+from tyrefem.boundaries.friction_names import MILD, SEVERE, LockedWheel
 from tyrefem.errors import InputError
-from tyrefem.sliding import MILD, SEVERE, LockedWheel
 
 KMH = 1 / 3.6
 

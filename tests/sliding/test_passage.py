@@ -8,13 +8,12 @@ import numpy as np
 import pytest
 from scipy.special import erfcx
 
-from tyrefem import sliding
+from tyrefem.boundaries import friction_names as sliding
+from tyrefem.boundaries.averaging import TreadPoint
+from tyrefem.boundaries.friction_names import ASPHALT, RUBBER, LockedWheel
+from tyrefem.boundaries.skid import Passage, half_space_surface
 from tyrefem.conduction import Conduction, Film, Flux, Material
 from tyrefem.errors import InputError
-from tyrefem.sliding import ASPHALT, RUBBER, LockedWheel
-from tyrefem.sliding.contact import Passage
-from tyrefem.sliding.skid import half_space_surface
-from tyrefem.tread_point import TreadPoint
 
 LENGTH, SPEED = 0.15, 20.0
 

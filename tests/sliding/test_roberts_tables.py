@@ -6,9 +6,10 @@ from pathlib import Path
 
 import pytest
 
-from tyrefem import library, sliding
+from tyrefem import library
+from tyrefem.boundaries import friction_names as sliding
+from tyrefem.boundaries.friction_tables import PRINTED_TOLERANCE
 from tyrefem.errors import InputError
-from tyrefem.sliding.tables import PRINTED_TOLERANCE
 
 WOOD = {row.name: row for row in sliding.wood_rows()}
 DO_NOT_FOLLOW = {"40x36-slow", "22x15"}

@@ -9,9 +9,9 @@ import numpy as np
 import pytest
 import skfem
 
-from tyrefem import sliding
+from tyrefem.boundaries import friction_names as sliding
+from tyrefem.boundaries.friction_names import ICE, RUBBER, TEAK, Solid
 from tyrefem.conduction import Conduction, Fixed, Flux, History, Material
-from tyrefem.sliding import ICE, RUBBER, TEAK, Solid
 
 #: Relative error of a rise. Measured: 1e-5 at most.
 AGREES = 1e-4

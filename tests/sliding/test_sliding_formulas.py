@@ -9,9 +9,9 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
-from tyrefem import sliding
+from tyrefem.boundaries import friction_names as sliding
+from tyrefem.boundaries.friction_names import ICE, RUBBER, TEAK, Solid
 from tyrefem.errors import InputError
-from tyrefem.sliding import ICE, RUBBER, TEAK, Solid
 
 SIZE = st.floats(1e-3, 1e3)
 

@@ -11,10 +11,10 @@ import numpy as np
 import pytest
 
 import tyrefem as tf
-from tyrefem import sliding
+from tyrefem.boundaries import friction_names as sliding
+from tyrefem.boundaries.friction_names import ASPHALT, LockedWheel, Solid
 from tyrefem.cli import main
-from tyrefem.rolling import RollingTyre
-from tyrefem.sliding import ASPHALT, LockedWheel, Solid
+from tyrefem.simulation.rolling_tyre import RollingTyre
 
 NAME = "nasa-22x5.5-8pr"
 LOAD, SPEED = 2700 * 4.4482216152605, 20 * 0.44704

@@ -7,9 +7,9 @@ import math
 import pytest
 
 from tyrefem.boundaries import LawOf
-from tyrefem.drive import Drive
+from tyrefem.boundaries.slip import Slip
 from tyrefem.errors import InputError
-from tyrefem.slip import Slip
+from tyrefem.inputs.drive import Drive
 
 STEADY = {"speed": "36 km/h", "load": "12 kN", "pressure": "5 bar", "duration": "10 s"}
 

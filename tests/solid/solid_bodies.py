@@ -5,9 +5,9 @@ from __future__ import annotations
 import numpy as np
 import skfem
 
-from tyrefem.solid.body import Body
-from tyrefem.solid.compounds import Compound, neo_hookean
-from tyrefem.solid.parts import Part
+from tyrefem.mechanics.solid.body import Body
+from tyrefem.mechanics.solid.compounds import Compound, neo_hookean
+from tyrefem.mechanics.solid.parts import Part
 
 END = 1e-9
 

@@ -6,9 +6,9 @@ import numpy as np
 import pytest
 
 from tyrefem.errors import InputError
-from tyrefem.solid.compounds import Compound, mooney_rivlin, neo_hookean, yeoh
-from tyrefem.solid.cords import CordLayer, lifted_angle, lifted_ends
-from tyrefem.solid.voigt import SYMMETRIC_UNIT, UNIT
+from tyrefem.mechanics.solid.compounds import Compound, mooney_rivlin, neo_hookean, yeoh
+from tyrefem.mechanics.solid.cords import CordLayer, lifted_angle, lifted_ends
+from tyrefem.mechanics.solid.elements import SYMMETRIC_UNIT, UNIT
 
 LAWS = {"neo-hookean": neo_hookean(1e6), "mooney-rivlin": mooney_rivlin(3e5, 2e5), "yeoh": yeoh(5e5, -5e4, 2e4)}
 RANDOM = np.random.default_rng(3)

@@ -12,13 +12,13 @@ from solid_bodies import END, tube
 
 import tyrefem as tf
 from tyrefem.errors import InputError
-from tyrefem.meshing import build
-from tyrefem.solid.body import Body
-from tyrefem.solid.compounds import neo_hookean
-from tyrefem.solid.cylinder import CylinderChoice
-from tyrefem.solid.flattening import Flattened, bottoming, flatten
-from tyrefem.solid.inflation import Inflation, inflate
-from tyrefem.solid.newton import equilibrium
+from tyrefem.geometry.meshing import build
+from tyrefem.mechanics.solid.body import Body
+from tyrefem.mechanics.solid.compounds import neo_hookean
+from tyrefem.mechanics.solid.cylinder import CylinderChoice
+from tyrefem.mechanics.solid.flattening import Flattened, bottoming, flatten
+from tyrefem.mechanics.solid.inflation import Inflation, inflate
+from tyrefem.mechanics.solid.newton import equilibrium
 
 SHEAR, INNER, OUTER, HEIGHT = 1e6, 1.0, 2.0, 0.5
 

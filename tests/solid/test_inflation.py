@@ -10,9 +10,9 @@ import skfem
 
 from tyrefem import study
 from tyrefem.errors import InputError
-from tyrefem.meshing import build
-from tyrefem.solid.compounds import determinant
-from tyrefem.solid.inflation import Inflation, inflate
+from tyrefem.geometry.meshing import build
+from tyrefem.mechanics.solid.compounds import determinant
+from tyrefem.mechanics.solid.inflation import Inflation, inflate
 
 
 @functools.cache

@@ -11,12 +11,12 @@ from scipy.optimize import brentq
 from solid_bodies import skewed, torus, tube
 
 from tyrefem.errors import InputError
-from tyrefem.solid import newton
-from tyrefem.solid.body import Body
-from tyrefem.solid.compounds import mooney_rivlin, neo_hookean
-from tyrefem.solid.cords import CordLayer
-from tyrefem.solid.newton import NewtonChoice, equilibrium
-from tyrefem.solid.parts import Part
+from tyrefem.mechanics.solid import newton
+from tyrefem.mechanics.solid.body import Body
+from tyrefem.mechanics.solid.compounds import mooney_rivlin, neo_hookean
+from tyrefem.mechanics.solid.cords import CordLayer
+from tyrefem.mechanics.solid.newton import NewtonChoice, equilibrium
+from tyrefem.mechanics.solid.parts import Part
 
 
 def lame(body: Body, pressure: float, shear: float, bulk: float) -> tuple[np.ndarray, np.ndarray]:

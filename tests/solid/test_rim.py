@@ -11,16 +11,16 @@ import skfem
 from scipy.optimize import brentq
 
 from tyrefem import study
-from tyrefem.footprint.compliance import TreadCompliance
-from tyrefem.footprint.harmonics import Harmonics
-from tyrefem.meshing import build
-from tyrefem.solid.body import Body
-from tyrefem.solid.compounds import determinant, neo_hookean
-from tyrefem.solid.elements import Rings
-from tyrefem.solid.inflation import Inflation, inflate
-from tyrefem.solid.newton import NewtonChoice, equilibrium
-from tyrefem.solid.parts import Part
-from tyrefem.solid.rim import FLANGE, SEAT, Flange, on_rim
+from tyrefem.geometry.meshing import build
+from tyrefem.mechanics.footprint.compliance import TreadCompliance
+from tyrefem.mechanics.footprint.harmonics import Harmonics
+from tyrefem.mechanics.solid.body import Body
+from tyrefem.mechanics.solid.compounds import determinant, neo_hookean
+from tyrefem.mechanics.solid.elements import Rings
+from tyrefem.mechanics.solid.inflation import Inflation, inflate
+from tyrefem.mechanics.solid.newton import NewtonChoice, equilibrium
+from tyrefem.mechanics.solid.parts import Part
+from tyrefem.mechanics.solid.rim import FLANGE, SEAT, Flange, on_rim
 
 END = 1e-9
 
@@ -106,7 +106,7 @@ def test_newton_converges_quadratically_on_the_flange() -> None:
 
 def test_a_levelled_cord_follows_its_law() -> None:
     """W' = C x/(1 - C x/Y): half of Y where C |x| = Y, all of it for large strains."""
-    from tyrefem.solid.cords import CordLayer
+    from tyrefem.mechanics.solid.cords import CordLayer
 
     layer = CordLayer(np.array(0.0), np.array([0.0, 1.0]), np.array(1e9), 0.1, 1e4, limit=1e6)
     assert layer.stress_in_layer(np.diag([1, 1, 0.99])) == pytest.approx(-5e5)

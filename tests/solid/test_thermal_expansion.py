@@ -10,12 +10,12 @@ from solid_bodies import tube
 
 import tyrefem as tf
 from tyrefem.errors import InputError
-from tyrefem.solid.body import Body
-from tyrefem.solid.compounds import neo_hookean
-from tyrefem.solid.cords import CordLayer
-from tyrefem.solid.inflation import inflate
-from tyrefem.solid.parts import Part
-from tyrefem.solid.thermal import Expansion, expansions, relaxed, warm
+from tyrefem.mechanics.solid.body import Body
+from tyrefem.mechanics.solid.compounds import neo_hookean
+from tyrefem.mechanics.solid.cords import CordLayer
+from tyrefem.mechanics.solid.inflation import inflate
+from tyrefem.mechanics.solid.parts import Part
+from tyrefem.mechanics.solid.thermal import Expansion, expansions, relaxed, warm
 
 G, KAPPA = 1e6, 1e8
 E, NU = 9 * KAPPA * G / (3 * KAPPA + G), (3 * KAPPA - 2 * G) / (6 * KAPPA + 2 * G)

@@ -5,8 +5,8 @@ from __future__ import annotations
 from dataclasses import replace
 
 import tyrefem as tf
-from tyrefem.rolling import RollingTyre
-from tyrefem.strain.arcs import Arcs
+from tyrefem.mechanics.arcs import Arcs
+from tyrefem.simulation.rolling_tyre import RollingTyre
 
 INCH, PSI = 0.0254, 6894.757293168361
 NAMES = ("nasa-22x5.5-8pr", "nasa-22x5.5-12pr")

@@ -9,8 +9,8 @@ import pytest
 from arcs_of import NAMES, at, shipped
 
 from tyrefem.errors import InputError
-from tyrefem.section.line import TwoArcs
-from tyrefem.strain.deflected import deflected_sidewall, sidewall_arc
+from tyrefem.geometry.meridian import TwoArcs
+from tyrefem.mechanics.arc_geometry import deflected_sidewall, sidewall_arc
 
 
 @pytest.fixture(params=NAMES)

@@ -11,18 +11,18 @@ import skfem
 
 import tyrefem as tf
 from tyrefem.errors import InputError
-from tyrefem.loading import LoadCase
-from tyrefem.mechanics import cycle_schedule
-from tyrefem.solid.body import Body
-from tyrefem.solid.compounds import neo_hookean
-from tyrefem.solid.cords import CordLayer
-from tyrefem.solid.flattening import flatten
-from tyrefem.solid.inflation import Inflation
-from tyrefem.solid.newton import equilibrium
-from tyrefem.solid.parts import Part
-from tyrefem.strain import StrainCycle
-from tyrefem.strain.barrel import Barrel, provider
-from tyrefem.strain.gauss_points import GaussPoints
+from tyrefem.inputs.loading import LoadCase
+from tyrefem.mechanics.barrel import Barrel, provider
+from tyrefem.mechanics.cycle_schedule import cycle_schedule
+from tyrefem.mechanics.finite_elements import GaussPoints
+from tyrefem.mechanics.solid.body import Body
+from tyrefem.mechanics.solid.compounds import neo_hookean
+from tyrefem.mechanics.solid.cords import CordLayer
+from tyrefem.mechanics.solid.flattening import flatten
+from tyrefem.mechanics.solid.inflation import Inflation
+from tyrefem.mechanics.solid.newton import equilibrium
+from tyrefem.mechanics.solid.parts import Part
+from tyrefem.mechanics.strain_cycle import StrainCycle
 
 COARSE = {"mechanics.strain": "barrel", "mesh.size": "10 mm", "drive.duration": "60 s"}
 NAME = "nasa-22x5.5-8pr"

@@ -8,7 +8,7 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 
 from tyrefem.errors import InputError
-from tyrefem.strain.cord_rubber import BiasPlies
+from tyrefem.mechanics.arc_geometry import BiasPlies
 
 G = 2.31e6
 

@@ -9,12 +9,12 @@ import numpy as np
 import pytest
 
 import tyrefem as tf
-from tyrefem.footprint.cycle import StrainCycle
-from tyrefem.footprint.loss import RevolutionLoss
-from tyrefem.heating import CycleSchedule
-from tyrefem.rolling import RollingTyre
-from tyrefem.strain import ORDERS, by_order
-from tyrefem.strain.fem import FiniteElements
+from tyrefem.mechanics.cycle_schedule import CycleSchedule
+from tyrefem.mechanics.finite_elements import FiniteElements
+from tyrefem.mechanics.footprint.loss import RevolutionLoss
+from tyrefem.mechanics.footprint.strain_harmonics import StrainCycle
+from tyrefem.mechanics.strain_cycle import ORDERS, by_order
+from tyrefem.simulation.rolling_tyre import RollingTyre
 
 REGIONS = ("carcass", "tread", "sidewall", "bead")
 POWER = {"law": "power", "exponent": 0.25, "reference": "10 Hz", "source": "test"}

@@ -7,9 +7,9 @@ import pytest
 
 import tyrefem as tf
 from tyrefem.errors import InputError
-from tyrefem.meshing import build, write
-from tyrefem.solid.inflation import inflate
-from tyrefem.strain.pressed_tyre import mechanical_mesh
+from tyrefem.geometry.meshing import build, write
+from tyrefem.mechanics.footprint.pressed_tyre import mechanical_mesh
+from tyrefem.mechanics.solid.inflation import inflate
 
 STUDY = "nasa-22x5.5-8pr"
 pytestmark = pytest.mark.usefixtures("needs_gmsh")

@@ -6,10 +6,10 @@ import pytest
 
 import tyrefem as tf
 from tyrefem.errors import InputError
-from tyrefem.footprint.loss import RevolutionLoss
-from tyrefem.footprint.loss_tangent import OfTemperature
-from tyrefem.mechanics import cycle_schedule
-from tyrefem.strain.fem import FiniteElements
+from tyrefem.materials.loss_tangent import OfTemperature
+from tyrefem.mechanics.cycle_schedule import cycle_schedule
+from tyrefem.mechanics.finite_elements import FiniteElements
+from tyrefem.mechanics.footprint.loss import RevolutionLoss
 
 FEM = {"mechanics.strain": "fem", "mesh.size": "8 mm"}
 BRIEF = {"drive.duration": "60 s"}
@@ -24,7 +24,7 @@ def test_the_heat_of_a_run_is_the_loss_of_all_harmonics() -> None:
     schedule = cycle_schedule(study)
     cycle = schedule.cycles[0][0]
     assert isinstance(cycle, FiniteElements)
-    from tyrefem.footprint.cycle import StrainCycle
+    from tyrefem.mechanics.footprint.strain_harmonics import StrainCycle
 
     laws = {region: OfTemperature(study.materials[region].loss_tangent) for region in cycle.tyre.body.parts}
     initial, speed = study.card.drive.initial, study.card.drive.phases[0].speed.start

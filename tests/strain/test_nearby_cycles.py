@@ -11,9 +11,9 @@ import numpy as np
 import pytest
 
 import tyrefem as tf
-from tyrefem.mechanics import cycle_schedule
-from tyrefem.nearby_cycles import NearbyCycles, SolvedCycles
-from tyrefem.rolling import RollingTyre
+from tyrefem.mechanics.cycle_schedule import cycle_schedule
+from tyrefem.mechanics.nearby_cycles import NearbyCycles, SolvedCycles
+from tyrefem.simulation.rolling_tyre import RollingTyre
 
 SD = {
     "materials.tread.shear_modulus.value": 0.2,
@@ -103,7 +103,7 @@ def test_tyres_like_a_tyre_take_its_nearby_cycles(monkeypatch: pytest.MonkeyPatc
     def refuse(*_: Any) -> Any:
         raise AssertionError("a strain cycle was solved again")
 
-    monkeypatch.setattr("tyrefem.solid.inflation.inflate", refuse)
+    monkeypatch.setattr("tyrefem.mechanics.solid.inflation.inflate", refuse)
     first = RollingTyre(moved(tread=1.3, plies=0.8), base)
     second = RollingTyre(moved(tread=0.7, load=1.05), first)
     assert parts(first.schedule) != pytest.approx(parts(base.schedule), rel=0.01)
@@ -116,7 +116,9 @@ def test_other_processes_read_what_was_solved(tmp_path: Path, monkeypatch: pytes
     assert len(list(tmp_path.glob("*.npz"))) == 1
     second = NearbyCycles(study(), SolvedCycles(tmp_path))
     _ = second.schedule
-    monkeypatch.setattr("tyrefem.footprint.contact.Pressing.solve", lambda *_, **__: pytest.fail("solved again"))
+    monkeypatch.setattr(
+        "tyrefem.mechanics.footprint.contact.Pressing.solve", lambda *_, **__: pytest.fail("solved again")
+    )
     again = second.of(moved(tread=1.1))
     assert parts(again) == parts(told)
     assert again.cases == told.cases

@@ -10,13 +10,13 @@ import numpy as np
 import pytest
 
 import tyrefem as tf
-from tyrefem.footprint.press import Pressed, press
-from tyrefem.mechanics import cycle_schedule, rated_case
-from tyrefem.report.content import headline
-from tyrefem.road_contact import propagation_depth, triangular_film
-from tyrefem.rolling import RollingTyre
-from tyrefem.strain import pressed_tyre
-from tyrefem.sweep.answers import answers
+from tyrefem.boundaries.road_film import propagation_depth, triangular_film
+from tyrefem.mechanics.cycle_schedule import cycle_schedule, rated_case
+from tyrefem.mechanics.footprint import pressed_tyre
+from tyrefem.mechanics.footprint.press import Pressed, press
+from tyrefem.reports.run import headline
+from tyrefem.simulation.rolling_tyre import RollingTyre
+from tyrefem.variants.answers import answers
 
 COARSE = {
     "mechanics.strain": "fem",
@@ -119,7 +119,7 @@ def test_all_of_the_load_rubs_on_the_footprints_area() -> None:
 
 
 def test_a_run_with_the_same_tyre_solves_nothing_again(monkeypatch: pytest.MonkeyPatch) -> None:
-    from tyrefem.solid import inflation
+    from tyrefem.mechanics.solid import inflation
 
     solved: list[float] = []
     inflate = inflation.inflate

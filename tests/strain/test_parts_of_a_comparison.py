@@ -5,7 +5,7 @@ from __future__ import annotations
 import pytest
 
 import tyrefem as tf
-from tyrefem.strain.comparison import LawComparison
+from tyrefem.simulation.law_comparison import LawComparison
 
 
 @pytest.mark.parametrize(

@@ -6,7 +6,7 @@ import numpy as np
 import pytest
 from nasa_runs import end, run
 
-from tyrefem.sensors import lagged
+from tyrefem.simulation.sensors import lagged
 
 
 def test_1_the_gradient_reverses_between_sidewall_and_tread_at_full_pressure():

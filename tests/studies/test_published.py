@@ -7,8 +7,9 @@ import html
 import pytest
 
 import tyrefem as tf
-from tyrefem.published import Comparison, compared, of_run
-from tyrefem.report import render
+from tyrefem.inputs.published import Comparison, compared
+from tyrefem.reports.run import render
+from tyrefem.reports.run_files import of_run
 
 RADIALS = ("passenger-205-55r16", "truck-295-80r22.5", "aircraft-radial")
 

@@ -13,10 +13,10 @@ from hypothesis import strategies as st
 
 import tyrefem as tf
 from tyrefem import library
-from tyrefem.drive import Drive
-from tyrefem.materials import MaterialCard
-from tyrefem.section.builder import build
-from tyrefem.section.card import SectionCard
+from tyrefem.geometry.builder import build
+from tyrefem.geometry.card import SectionCard
+from tyrefem.inputs.drive import Drive
+from tyrefem.materials.card import MaterialCard
 
 FEW = settings(deadline=None, max_examples=60, suppress_health_check=[HealthCheck.too_slow])
 TEXTS = [

@@ -7,8 +7,8 @@ from pathlib import Path
 import pytest
 
 import tyrefem as tf
-from tyrefem import meshing
 from tyrefem.errors import InputError
+from tyrefem.geometry import meshing
 
 SHORT = {"drive.duration": "60 s", "mesh.size": "4 mm", "mesh.element": "P1"}
 

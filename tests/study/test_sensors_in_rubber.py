@@ -6,7 +6,7 @@ import numpy as np
 import pytest
 
 import tyrefem as tf
-from tyrefem.sensors import lagged
+from tyrefem.simulation.sensors import lagged
 
 QUICK = {"mesh.size": "4 mm", "mesh.element": "P1", "drive.duration": "60 s"}
 

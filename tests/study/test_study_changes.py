@@ -9,7 +9,7 @@ import pint
 import pytest
 
 import tyrefem as tf
-from tyrefem.sweep.plan import plan_of
+from tyrefem.variants.plan import plan_of
 
 QUICK = {"mesh.size": "4 mm", "mesh.element": "P1", "drive.duration": "60 s"}
 

@@ -9,11 +9,11 @@ import numpy as np
 import pytest
 
 import tyrefem as tf
-from tyrefem.mechanics import cycle_schedule
-from tyrefem.solid.tyre import tyre_body
-from tyrefem.strain.pressed_tyre import mechanical_mesh
-from tyrefem.strain.reads import READS, STIFFNESS
-from tyrefem.uncertain_numbers import UncertainNumber, left_out, stated_deviations, uncertain_number
+from tyrefem.inputs.uncertain_numbers import UncertainNumber, left_out, stated_deviations, uncertain_number
+from tyrefem.materials.reads import READS, STIFFNESS
+from tyrefem.mechanics.cycle_schedule import cycle_schedule
+from tyrefem.mechanics.footprint.pressed_tyre import mechanical_mesh
+from tyrefem.mechanics.solid.tyre_body import tyre_body
 
 RADIAL, BIAS = "passenger-205-55r16", "nasa-22x5.5-8pr"
 SHIPPED = (RADIAL, "truck-295-80r22.5", "aircraft-radial", BIAS, "example-validation")

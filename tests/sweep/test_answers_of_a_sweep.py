@@ -18,22 +18,21 @@ from tyrefem import study
 from tyrefem.api import Study
 from tyrefem.errors import InputError
 from tyrefem.reduced.surrogate import Certificate
-from tyrefem.sweep import answer_pictures  # noqa: F401  registers its pictures
-from tyrefem.sweep.answers import TIME_TO, answer_names
-from tyrefem.sweep.card import EnvelopeCard, LimitCard, OptimiseCard
-from tyrefem.sweep.envelope import Envelope, envelope
-from tyrefem.sweep.execution import Execution
-from tyrefem.sweep.indices import Indices, indices
-from tyrefem.sweep.operating_points import checked_pairs
+from tyrefem.reports import sweep_answer_figures as answer_pictures  # noqa: F401  registers its pictures
+from tyrefem.reports.sweep_figures import figures
+from tyrefem.sweep.envelope import Envelope, checked_pairs, envelope
 from tyrefem.sweep.optimum import Optimum, optimum
 from tyrefem.sweep.pareto import ParetoFront, front, undominated
-from tyrefem.sweep.pictures import figures
-from tyrefem.sweep.plan import Plan, plan_of
 from tyrefem.sweep.responses import Responses, main_effects
-from tyrefem.sweep.samples import drawn
+from tyrefem.sweep.sobol_indices import Indices, indices
 from tyrefem.sweep.sweep import Sweep, sweep
 from tyrefem.sweep.tornado import Tornado, tornado_plan
-from tyrefem.sweep.varied import Varied
+from tyrefem.variants.answers import TIME_TO, answer_names
+from tyrefem.variants.card import EnvelopeCard, LimitCard, OptimiseCard
+from tyrefem.variants.execution import Execution
+from tyrefem.variants.plan import Plan, plan_of
+from tyrefem.variants.samples import drawn
+from tyrefem.variants.varied import Varied
 
 SALTELLI = {"sample": "saltelli", "seed": 1}
 

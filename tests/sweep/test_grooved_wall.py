@@ -6,9 +6,9 @@ import numpy as np
 import pytest
 
 from tyrefem import study
-from tyrefem.sweep.plan import plan_of
+from tyrefem.geometry.wall import wall_of
 from tyrefem.sweep.sweep import sweep
-from tyrefem.wall import wall_of
+from tyrefem.variants.plan import plan_of
 
 
 @pytest.mark.parametrize("name", ["passenger-205-55r16", "truck-295-80r22.5"])

@@ -17,11 +17,11 @@ import psutil
 import pytest
 
 from tyrefem import study
-from tyrefem.sweep.cluster import Dask
-from tyrefem.sweep.plan import Plan, plan_of
-from tyrefem.sweep.schedulers import Outcome
-from tyrefem.sweep.store import NAME
 from tyrefem.sweep.sweep import Sweep, sweep
+from tyrefem.variants.dask_cluster import Dask
+from tyrefem.variants.plan import Plan, plan_of
+from tyrefem.variants.schedulers import Outcome
+from tyrefem.variants.store import NAME
 
 COARSE = {"mesh.size": "12 mm", "numerics.tolerance": "0.5 K", "drive.duration": "120 s"}
 SPEEDS = ("10 mph", "24 mph", 8)

@@ -7,10 +7,10 @@ from types import SimpleNamespace
 import pandas as pd
 
 import tyrefem as tf
-from tyrefem.sweep.answer_pictures import indices, tornado
-from tyrefem.sweep.pictures import curves
-from tyrefem.sweep.plan import plan_of
+from tyrefem.reports.sweep_answer_figures import indices, tornado
+from tyrefem.reports.sweep_figures import curves
 from tyrefem.sweep.sweep import sweep
+from tyrefem.variants.plan import plan_of
 
 LONG = "materials.shoulder-cushion-of-the-second-belt.conductivity.along"
 

@@ -12,10 +12,10 @@ import pytest
 
 from tyrefem import study
 from tyrefem.errors import InputError
-from tyrefem.sweep.cluster import Dask
-from tyrefem.sweep.plan import plan_of
-from tyrefem.sweep.schedulers import Here, Local
 from tyrefem.sweep.sweep import sweep
+from tyrefem.variants.dask_cluster import Dask
+from tyrefem.variants.plan import plan_of
+from tyrefem.variants.schedulers import Here, Local
 
 
 def squared(task: Any) -> dict[str, Any]:

@@ -7,7 +7,7 @@ from pathlib import Path
 import pytest
 
 from tyrefem.errors import InputError
-from tyrefem.sweep.store import NAME, Store
+from tyrefem.variants.store import NAME, Store
 
 
 def test_what_was_added_is_there_again(tmp_path: Path) -> None:

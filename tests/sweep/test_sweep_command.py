@@ -11,7 +11,7 @@ import pytest
 from tyrefem import study
 from tyrefem.cli import main
 from tyrefem.errors import InputError
-from tyrefem.sweep.questions import loaded
+from tyrefem.sweep.design import loaded
 
 TYRE = "nasa-22x5.5-8pr"
 COARSE = ["--set", "mesh.size=12 mm", "--set", "numerics.tolerance=0.5 K", "--set", "drive.duration=120 s"]

@@ -13,11 +13,11 @@ from tyrefem import study
 from tyrefem.api import Study
 from tyrefem.errors import InputError
 from tyrefem.quantity import parse
-from tyrefem.sweep import task
-from tyrefem.sweep.card import SweepCard
-from tyrefem.sweep.plan import plan_of, planned
-from tyrefem.sweep.task import perform
-from tyrefem.sweep.varied import Varied
+from tyrefem.variants import task
+from tyrefem.variants.card import SweepCard
+from tyrefem.variants.plan import plan_of, planned
+from tyrefem.variants.task import perform
+from tyrefem.variants.varied import Varied
 
 
 @pytest.fixture(scope="module")

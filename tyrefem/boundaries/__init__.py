@@ -1,6 +1,8 @@
 """What the tyre gives its heat to: road, outside air, contained air, rim. One class per law, found by existing.
 
 A law is a `Law` subclass in a module of this package; its ``law`` key in a study's ``[boundaries]`` picks it.
+
+Knows nothing of drives, effects and runs.
 """
 
 from __future__ import annotations

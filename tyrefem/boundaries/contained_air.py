@@ -7,7 +7,7 @@ from typing import Annotated, ClassVar, Literal
 
 from tyrefem.boundaries import CAL, Law
 from tyrefem.cards import FilmCoefficient, Temperature
-from tyrefem.plausible import AIR_FILM, GAS_HEAT
+from tyrefem.cards.plausible import AIR_FILM, GAS_HEAT
 from tyrefem.quantity import Unit
 
 #: Specific gas constant of dry air, J/kg/K (R / M = 8.314462618 / 0.0289652; M: CIPM-2007).

@@ -11,8 +11,8 @@ from pydantic import model_validator
 
 from tyrefem.boundaries import CAL, Law
 from tyrefem.cards import FilmCoefficient
+from tyrefem.cards.plausible import AIR_FILM
 from tyrefem.errors import InputError, InputWarning
-from tyrefem.plausible import AIR_FILM
 from tyrefem.quantity import Unit
 
 

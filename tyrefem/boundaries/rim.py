@@ -6,7 +6,7 @@ from typing import Annotated, ClassVar, Literal
 
 from tyrefem.boundaries import CAL, Law
 from tyrefem.cards import FilmCoefficient, Temperature
-from tyrefem.plausible import CONTACT_FILM, SPECIFIC_HEAT, WHEEL_MASS
+from tyrefem.cards.plausible import CONTACT_FILM, SPECIFIC_HEAT, WHEEL_MASS
 from tyrefem.quantity import Unit
 
 

@@ -6,10 +6,10 @@ from abc import abstractmethod
 from typing import Annotated, ClassVar, Literal
 
 from tyrefem.boundaries import CAL, Contact, Law
+from tyrefem.boundaries.road_film import effusivity, half_space_film, triangular_film
 from tyrefem.cards import FilmCoefficient, Temperature
-from tyrefem.plausible import CONDUCTIVITY, CONTACT_FILM, ROAD_CONDUCTIVITY, SOLID_CAPACITY
+from tyrefem.cards.plausible import CONDUCTIVITY, CONTACT_FILM, ROAD_CONDUCTIVITY, SOLID_CAPACITY
 from tyrefem.quantity import Unit
-from tyrefem.road_contact import effusivity, half_space_film, triangular_film
 
 
 class RoadLaw(Law):

@@ -7,11 +7,11 @@ from typing import Annotated, ClassVar, Literal
 
 from tyrefem.boundaries import Law
 from tyrefem.boundaries.road import HalfSpace, RoadLaw
+from tyrefem.boundaries.road_film import effusivity
+from tyrefem.boundaries.slip import Slip
 from tyrefem.cards import Temperature
-from tyrefem.plausible import ROAD_CONDUCTIVITY, SOLID_CAPACITY
+from tyrefem.cards.plausible import ROAD_CONDUCTIVITY, SOLID_CAPACITY
 from tyrefem.quantity import Unit
-from tyrefem.road_contact import effusivity
-from tyrefem.slip import Slip
 
 Friction = Annotated[float, Unit("1", ge=0, le=5)]
 

@@ -1,4 +1,7 @@
-"""The command line. Ctrl-C is taken care of before anything else is imported."""
+"""The command line. Ctrl-C is taken care of before anything else is imported.
+
+The only room that reads arguments; no other room knows it.
+"""
 
 from __future__ import annotations
 

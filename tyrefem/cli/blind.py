@@ -21,7 +21,7 @@ from tyrefem.cli.common import (
     warn,
 )
 from tyrefem.cli.progress import progress
-from tyrefem.results_folder import results_folder
+from tyrefem.output.folder import results_folder
 
 
 def blind(
@@ -41,10 +41,10 @@ def blind(
 
     Finished cases are kept: the same command goes on where an interrupted one was.
     """
-    from tyrefem.answer_store import PROGRESS
     from tyrefem.api import study as load
-    from tyrefem.diagnose.blind_picture import FILES, save
     from tyrefem.diagnose.blind_rates import NEEDS, run_blind
+    from tyrefem.reports.blind import FILES, save
+    from tyrefem.variants.answer_store import PROGRESS
 
     found = load(study, settings(changes), case)
     NEEDS.check(found)

@@ -45,8 +45,8 @@ def check(
 
 
 def _table(path: Path) -> str:
-    from tyrefem.cases import looks_like_cases, read_cases
     from tyrefem.measured import read_table
+    from tyrefem.measured.cases import looks_like_cases, read_cases
 
     if looks_like_cases(path):
         cases = read_cases(path)
@@ -73,13 +73,13 @@ def _card(path: Path) -> str:
         words = f"a laser rig, {len(rig.layers)} layer(s), {len(rig.sensors)} sensors, {len(rig.runs)} run(s)"
         return f"{words}, {_rig_tables(rig, path)}"
     if isinstance(data.get("study"), str):
-        from tyrefem.sweep.questions import loaded
+        from tyrefem.sweep.design import loaded
 
         sweep = loaded(str(path.resolve()))
         warn(sweep.study.warnings)
         return f"a sweep: {sweep.words}"
     if "layers" in data or "line" in data:
-        from tyrefem.section import load
+        from tyrefem.geometry import load
 
         section = load(str(path.resolve()))
         warn(warning.within(file=path) for warning in section.warnings)
@@ -87,13 +87,13 @@ def _card(path: Path) -> str:
             f"a section, {section.overall_width * 1e3:.1f} mm wide, {section.outer_diameter * 1e3:.1f} mm in diameter"
         )
     if "loss_tangent" in data or "conductivity" in data:
-        from tyrefem.materials import material
+        from tyrefem.materials.card import material
 
         card = material(str(path.resolve()))
         warn(warning.within(file=path) for warning in card.warnings())
         return f"a material card, {card.title}"
     from tyrefem.api import study
-    from tyrefem.study_check import check_study
+    from tyrefem.compare.study_check import check_study
 
     found = study(str(path.resolve()))
     if found.is_campaign:
@@ -115,7 +115,7 @@ def _card(path: Path) -> str:
 def _rig_tables(rig: RigCard, path: Path) -> str:
     """The tables beside a rig's card: none at all is a rig to simulate, one that is missing an error."""
     from tyrefem.rig import read
-    from tyrefem.rig.find import tables
+    from tyrefem.rig.card import tables
 
     if not any((path.parent / f"{run}.csv").is_file() for run in rig.runs):
         return "no table beside it"

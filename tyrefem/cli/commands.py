@@ -16,7 +16,7 @@ from typer.core import TyperGroup
 import tyrefem
 from tyrefem.cli.line import fail
 from tyrefem.errors import InputError
-from tyrefem.estimate import LongWorkWarning
+from tyrefem.estimates.work import LongWorkWarning
 from tyrefem.output import reading
 
 

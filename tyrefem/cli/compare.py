@@ -29,8 +29,8 @@ from tyrefem.cli.common import (
 )
 from tyrefem.cli.progress import progress
 from tyrefem.interruption import keeping
+from tyrefem.output.folder import results_folder
 from tyrefem.processes import processes
-from tyrefem.results_folder import results_folder
 
 
 def compare(
@@ -57,10 +57,10 @@ def compare(
 
     Interrupted, the same command goes on where it was.
     """
-    from tyrefem.answer_store import PROGRESS, AnswerStore
     from tyrefem.api import study as load
-    from tyrefem.compare.page import FILES
     from tyrefem.compare.validation import NEEDS
+    from tyrefem.reports.comparison import FILES
+    from tyrefem.variants.answer_store import PROGRESS, AnswerStore
 
     found = load(study, settings(changes), case)
     NEEDS.check(found, table)

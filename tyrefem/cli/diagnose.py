@@ -25,7 +25,7 @@ from tyrefem.cli.common import (
 )
 from tyrefem.cli.progress import stages
 from tyrefem.interruption import keeping
-from tyrefem.results_folder import results_folder
+from tyrefem.output.folder import results_folder
 
 #: More processes than this gain little: the fits wait for each other.
 MOST_WORKERS = 4
@@ -55,11 +55,11 @@ def diagnose(
 
     Interrupted, the same command goes on where it was.
     """
-    from tyrefem.answer_store import PROGRESS
     from tyrefem.api import study as load
-    from tyrefem.diagnose.page import FILES
-    from tyrefem.diagnose.progress_store import ProgressStore
+    from tyrefem.diagnose.evaluations import ProgressStore
     from tyrefem.diagnose.workflow import NEEDS
+    from tyrefem.reports.diagnosis import FILES
+    from tyrefem.variants.answer_store import PROGRESS
 
     found = load(study, settings(changes), case)
     NEEDS.check(found, table)

@@ -22,10 +22,10 @@ from tyrefem.cli.common import (
 )
 from tyrefem.cli.progress import stages
 from tyrefem.errors import InputError
-from tyrefem.results_file import results_file
+from tyrefem.output.file import results_file
 
 if TYPE_CHECKING:
-    from tyrefem.reduced.certify import Certificate
+    from tyrefem.realtime.certificate import Certificate
 
 
 def _range(text: str | None, name: str) -> dict[str, tuple[str, str]]:
@@ -74,13 +74,14 @@ def export(
 ) -> None:
     """Export a real-time model: inputs speed, load, pressure, ambient, road; outputs sensors, contained air.
 
-    It is trained on full runs of the study in the ranges, certified on fresh ones, and stepped by tyrefem/realtime.py
+    It is trained on full runs of the study in the ranges, certified on fresh ones, and stepped by
+    tyrefem/realtime/tyre.py
     with numpy alone.
     """
     from tyrefem.api import study as loaded
-    from tyrefem.reduced.certify import NEEDS
-    from tyrefem.reduced.certify import export as write
-    from tyrefem.sweep.schedulers import Here, Local
+    from tyrefem.realtime.certificate import NEEDS
+    from tyrefem.realtime.certificate import export as write
+    from tyrefem.variants.schedulers import Here, Local
 
     given: dict[str, tuple[str, str]] = {}
     inputs = {"speed": speed, "load": load, "pressure": pressure, "ambient": ambient}
@@ -110,7 +111,7 @@ def export(
                 progress=tick,
             )
         if fmu:
-            from tyrefem.fmu import write_fmu
+            from tyrefem.realtime.fmu import write_fmu
 
             write_fmu(path, files["fmu"])
     if as_json:

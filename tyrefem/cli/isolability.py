@@ -22,7 +22,7 @@ from tyrefem.cli.common import (
 )
 from tyrefem.cli.progress import progress
 from tyrefem.interruption import keeping
-from tyrefem.results_folder import results_folder
+from tyrefem.output.folder import results_folder
 
 #: Files that the command writes.
 FILES = ("isolability.csv", "isolability.json", "isolability.png")
@@ -39,13 +39,13 @@ def isolability(
     as_json: JsonOption = False,
 ) -> None:
     """Before any data: which effects the study's sensors and runs can tell apart, and how strong they must be."""
-    from tyrefem.answer_store import PROGRESS
     from tyrefem.api import study as load
+    from tyrefem.diagnose.evaluations import ProgressStore
     from tyrefem.diagnose.isolability import NEEDS
     from tyrefem.diagnose.isolability import isolability as found_by
-    from tyrefem.diagnose.isolability_picture import picture
-    from tyrefem.diagnose.progress_store import ProgressStore
     from tyrefem.output import atomic_folder, jsonable
+    from tyrefem.reports.isolability import picture
+    from tyrefem.variants.answer_store import PROGRESS
 
     found = load(study, settings(changes), case)
     NEEDS.check(found)

@@ -22,11 +22,11 @@ from tyrefem.cli.common import (
 )
 from tyrefem.cli.progress import progress
 from tyrefem.errors import InputError
-from tyrefem.results_folder import results_folder
+from tyrefem.output.folder import results_folder
 
 if TYPE_CHECKING:
     from tyrefem.api import Study
-    from tyrefem.footprint.press import Pressed
+    from tyrefem.mechanics.footprint.press import Pressed
 
 #: What may be given: option and unit.
 OPTIONS = {
@@ -62,10 +62,10 @@ def press(
 ) -> None:
     """Inflate the tyre by finite elements and press it on the road; by default as in the drive's first phase."""
     from tyrefem.api import study as load_study
-    from tyrefem.footprint.press import NEEDS
-    from tyrefem.footprint.press import press as pressed_by
-    from tyrefem.footprint.press_files import FILES, write_files
-    from tyrefem.footprint.press_places import cycle_places, read_place
+    from tyrefem.mechanics.footprint.press import NEEDS
+    from tyrefem.mechanics.footprint.press import press as pressed_by
+    from tyrefem.reports.press import FILES, write_files
+    from tyrefem.reports.press_places import cycle_places, read_place
 
     texts = {"pressure": pressure, "load": load, "deflection": deflection, "drum_diameter": drum, "camber": camber}
     given = {name: _read(name, text) for name, text in texts.items() if text is not None}

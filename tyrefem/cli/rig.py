@@ -11,7 +11,7 @@ from tyrefem.cli.common import ForceOption, JsonOption, QuietOption, print_json,
 from tyrefem.cli.progress import progress
 from tyrefem.errors import InputError, Interrupted
 from tyrefem.interruption import held_back
-from tyrefem.results_folder import results_folder
+from tyrefem.output.folder import results_folder
 
 group = typer.Typer(
     name="rig",
@@ -38,8 +38,8 @@ def simulate(
     """What the sensors would read in the card's tests: one table per run, pictures."""
     from tyrefem import rig as rigs
     from tyrefem.quantity import parse
-    from tyrefem.rig.files import simulation_files, write_simulation
-    from tyrefem.rig.find import beside
+    from tyrefem.reports.rig import simulation_files, write_simulation
+    from tyrefem.rig.card import beside
 
     card, file = rigs.load(rig)
     warn(warning.within(file=file) for warning in card.warnings())
@@ -88,8 +88,8 @@ def identify(
 ) -> None:
     """Conductivity and specific heat of every layer with 95 % intervals; what the tables cannot determine."""
     from tyrefem import rig as rigs
-    from tyrefem.rig.files import FILES, save
-    from tyrefem.rig.find import tables as tables_of
+    from tyrefem.reports.rig import FILES, save
+    from tyrefem.rig.card import tables as tables_of
     from tyrefem.rig.layer_cards import bases
     from tyrefem.rig.verdict import shown, spoken
 
@@ -140,8 +140,8 @@ def layers(
 ) -> None:
     """Fit one set of readings with 1, 2, 3 ... layers: what more layers improve."""
     from tyrefem import rig as rigs
-    from tyrefem.rig.files import LAYER_FILES, save_layer_table, save_layers
-    from tyrefem.rig.find import tables as tables_of
+    from tyrefem.reports.rig import LAYER_FILES, save_layer_table, save_layers
+    from tyrefem.rig.card import tables as tables_of
     from tyrefem.rig.layer_study import LayerStudy, fits
     from tyrefem.rig.readings import matched
 

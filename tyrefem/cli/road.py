@@ -11,8 +11,8 @@ import typer
 
 from tyrefem.cli.common import ForceOption
 from tyrefem.errors import InputError
-from tyrefem.results_file import PICTURES, results_file
-from tyrefem.results_folder import results_folder
+from tyrefem.output.file import PICTURES, results_file
+from tyrefem.output.folder import results_folder
 
 if TYPE_CHECKING:
     import pandas as pd
@@ -54,8 +54,8 @@ def _printed(number: int) -> pd.DataFrame:
 @road.command()
 def table() -> None:
     """Tables 1 and 2 of the paper: printed value, recomputed value and deviation."""
-    from tyrefem.plotting.road import PAPER
-    from tyrefem.road_contact import triangular_film
+    from tyrefem.boundaries.road_film import triangular_film
+    from tyrefem.reports.figures.road import PAPER
 
     typer.echo("Table 1: v m/s, FL m, literature, printed, recomputed H_c W/m2/K, recomputed - literature")
     for v, length, literature, printed in _printed(1).itertuples(index=False):
@@ -83,7 +83,7 @@ def film(
 ) -> None:
     """Film coefficient of one contact by every law, and how deep it reaches into the tread."""
     from tyrefem.boundaries import Contact, laws
-    from tyrefem.road_contact import half_space_film, propagation_depth
+    from tyrefem.boundaries.road_film import half_space_film, propagation_depth
 
     v, length = _positive(speed, "m/s", "--speed"), _positive(footprint, "m", "--footprint")
     k = _positive(conductivity, "W/m/K", "--conductivity")
@@ -121,10 +121,9 @@ def averaging(
     force: ForceOption = False,
 ) -> None:
     """Averaging the film over the revolution against every contact resolved, over speed and footprint length."""
-    from tyrefem.plotting.road import averaging_figure
+    from tyrefem.boundaries.averaging import TreadPoint, averaging_sweep
     from tyrefem.quantity import Unit
-    from tyrefem.revolution import averaging_sweep
-    from tyrefem.tread_point import TreadPoint
+    from tyrefem.reports.figures.road import averaging_figure
 
     try:
         inside = Unit("degC", le=HOTTEST)(inner_temperature)
@@ -146,7 +145,7 @@ def averaging(
 
 
 def _print_averaging(errors: Sequence[Any]) -> None:
-    from tyrefem.plotting.road import SMALL, holds_above
+    from tyrefem.reports.figures.road import SMALL, holds_above
 
     typer.echo("FL m, v km/h: mean surface resolved, averaged degC; averaged - resolved K; swing in one contact K")
     for found in errors:
@@ -166,7 +165,7 @@ def figures(
     out: Annotated[Path, typer.Option("--out", help="Folder for the pictures.")], force: ForceOption = False
 ) -> None:
     """Redraw figures 4 and 5 of the paper."""
-    from tyrefem.plotting.road import film_figure
+    from tyrefem.reports.figures.road import film_figure
 
     literature = _printed(1)
     points = list(zip(literature["speed_m_s"], literature["literature_Hc_W_m2K"], strict=True))
@@ -177,7 +176,7 @@ def figures(
 
 def _save(drawn: Any, path: Path) -> None:
     from tyrefem.output import atomic_path
-    from tyrefem.plotting.style import picture
+    from tyrefem.reports.figures.style import picture
 
     with atomic_path(path) as temporary:
         temporary.write_bytes(picture(drawn, path.suffix))

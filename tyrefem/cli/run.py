@@ -23,11 +23,11 @@ from tyrefem.cli.common import (
 from tyrefem.cli.progress import progress
 from tyrefem.errors import InputError, Interrupted
 from tyrefem.interruption import held_back, keeping
-from tyrefem.results_folder import results_folder
+from tyrefem.output.folder import results_folder
 
 if TYPE_CHECKING:
     from tyrefem.api import Result, Study
-    from tyrefem.campaign import Campaign
+    from tyrefem.sweep.campaign import Campaign
 
 
 def run(
@@ -47,8 +47,8 @@ def run(
     A study with a table of cases runs them all, or the one of --case, and writes one table.
     """
     from tyrefem.api import study as load
-    from tyrefem.campaign_report import campaign_files
-    from tyrefem.summary import run_files
+    from tyrefem.reports.campaign import campaign_files
+    from tyrefem.reports.run_files import run_files
 
     values = settings(changes)
     found = load(study, values, case)
@@ -93,8 +93,8 @@ def _single(study: Study, folder: Path, pictures: bool, vtk: bool, revolved: boo
 
 def _words(result: Result) -> str:
     peak, region = result.extremes.iloc[0], result.summary()["hottest"]["region"]
-    from tyrefem.published import of_run
-    from tyrefem.sliding.listing import phase_lines
+    from tyrefem.reports.run_files import of_run
+    from tyrefem.reports.words import phase_lines
 
     resistance, budget = result.rolling_resistance, result.heat_budget
     rubbed = "" if result.sliding is None else f"sliding {budget.total('sliding') / 1e3:.1f} kJ, "
@@ -121,7 +121,7 @@ def _words(result: Result) -> str:
 def _campaign(
     campaign: Campaign, folder: Path, pictures: bool, vtk: bool, revolved: bool, as_json: bool, quiet: bool
 ) -> None:
-    from tyrefem.campaign_report import run_campaign, write_campaign_report
+    from tyrefem.reports.campaign import run_campaign, write_campaign_report
 
     study = campaign.study
 

@@ -9,8 +9,8 @@ import typer
 
 from tyrefem.cli.common import CaseOption, ForceOption, SetOption, settings, warn
 from tyrefem.errors import InputError, nearest
+from tyrefem.output.file import PICTURES, results_file
 from tyrefem.requirements import Requirements
-from tyrefem.results_file import PICTURES, results_file
 
 if TYPE_CHECKING:
     from tyrefem.api import Study
@@ -73,7 +73,7 @@ def show(
         return
     path = out or Path(f"{kind}-{Path(name).stem if name.endswith('.toml') else Path(name).resolve().name}.png")
     from tyrefem.output import atomic_path
-    from tyrefem.plotting.style import picture
+    from tyrefem.reports.figures.style import picture
 
     with results_file(path, PICTURES + (MESHES if kind == "mesh" else ()), force=force):
         figure, facts = _SHOWN[kind](name, values, case)
@@ -94,9 +94,9 @@ def _shown(value: Any) -> str:
 
 
 def _section(name: str, values: dict[str, Any], _case: str | None) -> tuple[Any, dict[str, Any]]:
-    from tyrefem.dotted import changed
-    from tyrefem.plotting.section import section_figure
-    from tyrefem.section import load
+    from tyrefem.geometry import load
+    from tyrefem.inputs.changes import changed
+    from tyrefem.reports.figures.mesh import section_figure
 
     data: dict[str, Any] = {"section": name}
     for key, value in values.items():
@@ -117,14 +117,14 @@ def _single(name: str, values: dict[str, Any], case: str | None) -> Study:
 
 
 def _mesh(name: str, values: dict[str, Any], case: str | None) -> tuple[Any, dict[str, Any]]:
-    from tyrefem.plotting.mesh import mesh_figure
+    from tyrefem.reports.figures.mesh import mesh_figure
 
     tyre = _single(name, values, case).mesh()
     return mesh_figure(tyre), tyre.summary()
 
 
 def _write_mesh(name: str, values: dict[str, Any], case: str | None, path: Path) -> None:
-    from tyrefem import meshing
+    from tyrefem.geometry import meshing
     from tyrefem.output import atomic_path
 
     tyre = _single(name, values, case).mesh()
@@ -134,8 +134,8 @@ def _write_mesh(name: str, values: dict[str, Any], case: str | None, path: Path)
 
 
 def _strain(name: str, values: dict[str, Any], case: str | None) -> tuple[Any, dict[str, Any]]:
-    from tyrefem.plotting.strain import strain_figure
-    from tyrefem.rolling import RollingTyre
+    from tyrefem.reports.figures.strain import strain_figure
+    from tyrefem.simulation.rolling_tyre import RollingTyre
 
     found = _single(name, values, case)
     if found.card.mechanics.strain != "arcs":
@@ -179,8 +179,8 @@ def _print(kind: str, name: str, values: dict[str, Any], case: str | None) -> No
     from tyrefem import library
     from tyrefem.api import study
     from tyrefem.cards import read_toml
-    from tyrefem.dotted import changed
-    from tyrefem.materials import MaterialCard
+    from tyrefem.inputs.changes import changed
+    from tyrefem.materials.card import MaterialCard
 
     data: dict[str, Any]
     if kind == "study":
@@ -188,7 +188,7 @@ def _print(kind: str, name: str, values: dict[str, Any], case: str | None) -> No
         warn(found.warnings)
         data, path = dict(found.data), found.file
     elif kind == "sweep":
-        from tyrefem.sweep.questions import loaded
+        from tyrefem.sweep.design import loaded
 
         path = library.find("sweep", name)
         of_a_case = {} if case is None else {"case": case}

@@ -11,7 +11,7 @@ import typer
 
 from tyrefem.cli.common import ForceOption, JsonOption, print_json
 from tyrefem.errors import InputError
-from tyrefem.results_file import PICTURES, results_file
+from tyrefem.output.file import PICTURES, results_file
 
 group = typer.Typer(
     name="slide",
@@ -27,7 +27,7 @@ SPEEDS = (10, 20, 30, 40, 50, 60, 80, 100, 130)
 
 def complete_solids(incomplete: str) -> list[str]:
     """Solids for shell completion."""
-    from tyrefem.sliding import SOLIDS
+    from tyrefem.boundaries.friction_names import SOLIDS
 
     return [name for name in SOLIDS if name.startswith(incomplete)]
 
@@ -47,8 +47,8 @@ def rise(
     as_json: JsonOption = False,
 ) -> None:
     """Temperature rise of a track under a sliding pad (equations 1 to 5 and 9)."""
-    from tyrefem import sliding
-    from tyrefem.sliding.solid import not_negative, positive
+    from tyrefem.boundaries import friction_names as sliding
+    from tyrefem.boundaries.friction import not_negative, positive
 
     v, long, f = _read("--speed", speed, "m/s"), _read("--length", length, "m"), _read("--friction", friction, "1")
     p = _contact_pressure(pressure, load, breadth, long)
@@ -82,13 +82,13 @@ def tables(
     as_json: JsonOption = False,
 ) -> None:
     """Roberts' tables 2 (rubber on wood) and 3 (rubber on ice), measured beside predicted."""
-    from tyrefem import sliding
-    from tyrefem.sliding.listing import ice_lines, wood_lines
+    from tyrefem.boundaries import friction_names as sliding
+    from tyrefem.reports.words import ice_lines, wood_lines
 
     wood, ice = sliding.wood_rows(), sliding.ice_rows()
     distance, pressure = sliding.ice_distance(ice), ice[0].needed_pressure
     if out is not None:
-        from tyrefem.sliding.pictures import wood_figure
+        from tyrefem.reports.figures.friction import wood_figure
 
         _draw(wood_figure, wood, out, force)
     if as_json:
@@ -121,7 +121,7 @@ def locked_wheel(
     as_json: JsonOption = False,
 ) -> None:
     """Rise of a locked wheel's contact on asphalt and its friction, against speed (equations 12 and 13)."""
-    from tyrefem.sliding import LockedWheel
+    from tyrefem.boundaries.friction_names import LockedWheel
 
     given = {
         "friction": ("--friction", friction, "1"),
@@ -145,7 +145,7 @@ def locked_wheel(
     ]
     limit = 3.6 * car.decomposition_speed()
     if out is not None:
-        from tyrefem.sliding.pictures import locked_wheel_figure
+        from tyrefem.reports.figures.friction import locked_wheel_figure
 
         _draw(locked_wheel_figure, car, out, force)
     if as_json:
@@ -164,7 +164,7 @@ def locked_wheel(
 
 def _draw(picture: Callable[[Any], Any], shown: Any, out: Path, force: bool) -> None:
     from tyrefem.output import atomic_path
-    from tyrefem.plotting.style import picture as written
+    from tyrefem.reports.figures.style import picture as written
 
     with results_file(out, PICTURES, force=force), atomic_path(out) as temporary:
         temporary.write_bytes(written(picture(shown), out.suffix))
@@ -180,7 +180,7 @@ def _read(option: str, text: str, unit: str) -> float:
 
 
 def _solid(option: str, name: str) -> Any:
-    from tyrefem.sliding import solid
+    from tyrefem.boundaries.friction_names import solid
 
     try:
         return solid(name)
@@ -190,7 +190,7 @@ def _solid(option: str, name: str) -> Any:
 
 def _contact_pressure(pressure: str | None, load: str | None, breadth: str | None, length: float) -> float:
     """Pa, given as such or as a load on length and breadth."""
-    from tyrefem.sliding.solid import not_negative, positive
+    from tyrefem.boundaries.friction import not_negative, positive
 
     if (pressure is None) == (load is None):
         raise InputError("give one of --pressure and --load")

@@ -21,10 +21,10 @@ from tyrefem.cli.common import (
 )
 from tyrefem.cli.progress import progress
 from tyrefem.errors import InputError, nearest
-from tyrefem.results_folder import results_folder
+from tyrefem.output.folder import results_folder
 
 if TYPE_CHECKING:
-    from tyrefem.strain.comparison import LawComparison
+    from tyrefem.simulation.law_comparison import LawComparison
 
 #: Files that the command writes.
 FILES = ("strain.json", "strain.csv", "strain.png")
@@ -54,7 +54,7 @@ def strain(
     """Run a study by every strain law: strain energy by region and temperatures side by side."""
     from tyrefem.api import study as load_study
     from tyrefem.output import atomic_folder, write_json
-    from tyrefem.strain.comparison import LAWS, NEEDS, compare_laws
+    from tyrefem.simulation.law_comparison import LAWS, NEEDS, compare_laws
 
     wanted = tuple(dict.fromkeys(law or LAWS))
     for one in wanted:
@@ -83,8 +83,8 @@ def strain(
 
 
 def _picture(found: LawComparison) -> bytes:
-    from tyrefem.plotting.strain_laws import strain_laws_figure
-    from tyrefem.plotting.style import png
+    from tyrefem.reports.figures.strain_laws import strain_laws_figure
+    from tyrefem.reports.figures.style import png
 
     return png(strain_laws_figure(found))
 

@@ -22,7 +22,7 @@ from tyrefem.cli.common import (
 from tyrefem.cli.progress import stages
 from tyrefem.errors import InputError, Interrupted
 from tyrefem.interruption import keeping
-from tyrefem.results_folder import results_folder
+from tyrefem.output.folder import results_folder
 
 #: Groups of options in the help.
 VARIANTS, ANSWERS = "Variants", "Answers"
@@ -159,12 +159,10 @@ def sweep(
     Response curves and maps, Pareto front, Sobol indices, tornado, optimum, safe envelope. Finished variants are kept:
     the same command goes on where an interrupted or killed one was.
     """
-    from tyrefem.cli.sweep_flags import asked
-    from tyrefem.cli.sweep_questions import questions
-    from tyrefem.cli.sweep_workers import answered
+    from tyrefem.cli.sweep_flags import answered, asked, questions
     from tyrefem.quantity import parse
-    from tyrefem.sweep.execution import Execution
-    from tyrefem.sweep.output import FILES, KEPT, save
+    from tyrefem.reports.sweep_files import FILES, KEPT, save
+    from tyrefem.variants.execution import Execution
 
     said = asked(
         vary=vary, uncertain=uncertain, sample=sample, count=count, seed=seed, cases=cases, limit=limit,

@@ -1,12 +1,25 @@
-"""The flags of `tyrefem sweep` as the keys of a sweep file."""
+"""The flags of `tyrefem sweep` as the keys of a sweep file.
+
+What `tyrefem sweep` is asked: the questions of a sweep file, or of a study and flags.
+
+Where the variants of `tyrefem sweep` run: this process, several, or a cluster, ended when the sweep is.
+"""
 
 from __future__ import annotations
 
+import os
 import re
+from collections.abc import Iterator
+from contextlib import contextmanager
 from pathlib import Path
-from typing import Any
+from typing import TYPE_CHECKING, Any
 
-from tyrefem.errors import InputError
+from tyrefem.errors import InputError, nearest
+
+if TYPE_CHECKING:
+    from tyrefem.sweep.design import Design, Questions
+    from tyrefem.variants.execution import Execution
+    from tyrefem.variants.schedulers import Scheduler
 
 
 def asked(
@@ -182,3 +195,70 @@ def _envelope(text: str | None, loads: str | None, pressures: str | None, speeds
             raise InputError(f"'{speeds}' is not FROM:TO, e.g. '1 m/s:60 m/s'", field="--speeds")
         said |= {"slowest": slow.strip(), "fastest": fast.strip()}
     return said
+
+
+def questions(
+    name: str, said: dict[str, Any], changes: dict[str, Any], case: str | None = None
+) -> tuple[str, Questions]:
+    """The questions of a sweep file or a study by name or path, what flags say laid over, and a name for their folder.
+
+    ``case``: of a campaign, the case to take.
+
+    Raises
+    ------
+    InputError : nothing has that name; something asked makes no sense.
+    """
+    from tyrefem import library
+    from tyrefem.api import study as load
+    from tyrefem.cards import read_toml
+    from tyrefem.sweep import design as asked
+    from tyrefem.variants.card import SweepCard
+
+    path = Path(name)
+    is_file = path.suffix == ".toml" and path.is_file() and "study" in read_toml(path)
+    if is_file or (path / "sweep.toml").is_file() or name in library.names("sweep"):
+        found = library.find("sweep", name)
+        stem = found.parent.resolve().name if found.name == "sweep.toml" else found.stem
+        return stem, asked.loaded(name, changes, **said, **({} if case is None else {"case": case}))
+    if path.suffix != ".toml" and os.sep not in name and name not in library.names("study") and not path.is_dir():
+        known = [*library.names("study"), *library.names("sweep")]
+        raise InputError(f"no study or sweep named '{name}'{nearest(name, known)}")
+    study = load(name, changes, case)
+    return study.name, asked.questions(study, SweepCard.check({"study": name, **said}), Path())
+
+
+class _InterruptedError(Exception):
+    """Processes that are at work are ended, not waited for."""
+
+
+def answered(wanted: Questions, how: Execution, address: str | None, workers: int | None) -> Design:
+    """The answers, by a Dask cluster at an address or by so many processes; None: one per core."""
+    try:
+        with _scheduler(address, workers) as where:
+            found = wanted.answered(how, scheduler=where)
+            if found.interrupted:
+                raise _InterruptedError
+    except _InterruptedError:
+        pass
+    return found
+
+
+@contextmanager
+def _scheduler(address: str | None, workers: int | None) -> Iterator[Scheduler]:
+    """Kept for all questions of the command."""
+    from tyrefem.variants.dask_cluster import Dask
+    from tyrefem.variants.schedulers import Here, Local
+
+    if address is not None:
+        cluster = Dask(address)
+        try:
+            yield cluster
+        finally:
+            cluster.close()
+        return
+    count = workers or os.cpu_count() or 1
+    if count == 1:
+        yield Here()
+        return
+    with Local(count) as processes:
+        yield processes

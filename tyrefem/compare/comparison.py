@@ -10,13 +10,13 @@ from typing import TYPE_CHECKING, Any
 
 from tyrefem.brief import Brief
 from tyrefem.compare.history import ALL, History
-from tyrefem.compare.judgement import COLUMNS, row
+from tyrefem.compare.uncertainty import COLUMNS, row
 from tyrefem.output import jsonable
 
 if TYPE_CHECKING:
     import pandas as pd
 
-    from tyrefem.compare.neighbours import Certificate
+    from tyrefem.compare.reduced_inputs import Certificate
 
 
 #: Columns of `Comparison.inputs`.

@@ -10,8 +10,8 @@ from typing import Any
 from tyrefem.compare.interface import MeasuredEntry, StudyLike
 from tyrefem.errors import InputError, nearest, quoted
 from tyrefem.measured import MeasuredRun
+from tyrefem.measured.columns import parts
 from tyrefem.measured.frame import frame_table, is_frame
-from tyrefem.measured.heading import parts
 from tyrefem.measured.table import MeasuredTable, no_column, read
 
 #: Temperatures that are computed with the sensors and measured like them, but at no place in the rubber.

@@ -14,19 +14,19 @@ from typing import Any
 
 import numpy as np
 
-from tyrefem.answer_store import AnswerStore, digest, effects_source, plain
-from tyrefem.compare.computed import Computed, arrays_of, computed_from, computed_of
+from tyrefem.compare.interface import Computed, arrays_of, computed_from, computed_of
 from tyrefem.errors import InputError
-from tyrefem.heating import CycleSchedule
-from tyrefem.mechanics import BY_ELEMENTS, same_cycles
-from tyrefem.reduced.train import Snapshots, snapshots
-from tyrefem.result import Result
-from tyrefem.rolling import RollingTyre, run, simulate
-from tyrefem.studies import Study
-from tyrefem.summary import versions
-from tyrefem.sweep.bundle import Bundle, bundle
-from tyrefem.sweep.task import unpacked
-from tyrefem.uncertain_numbers import uncertain_number
+from tyrefem.inputs.study import Study
+from tyrefem.inputs.uncertain_numbers import uncertain_number
+from tyrefem.mechanics.cycle_schedule import BY_ELEMENTS, CycleSchedule, same_cycles
+from tyrefem.output import versions
+from tyrefem.reduced.training import Snapshots, snapshots
+from tyrefem.simulation.result import Result
+from tyrefem.simulation.rolling_tyre import RollingTyre
+from tyrefem.simulation.run import run
+from tyrefem.simulation.simulate import simulate
+from tyrefem.variants.answer_store import AnswerStore, digest, effects_source, plain
+from tyrefem.variants.task import Bundle, bundle, unpacked
 
 #: Drive and changed input; None: as the study has it.
 Key = tuple[str, str | None]

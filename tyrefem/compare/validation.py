@@ -9,21 +9,20 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
-from tyrefem.answer_store import AnswerStore
 from tyrefem.compare.comparison import Comparison, comparison_of
-from tyrefem.compare.computed import computed_of
 from tyrefem.compare.experiment import Experiment, Table, experiments
 from tyrefem.compare.history import histories
-from tyrefem.compare.interface import ResultLike, StudyLike
+from tyrefem.compare.interface import ResultLike, StudyLike, computed_of
 from tyrefem.errors import InputError
+from tyrefem.inputs.study import Study
+from tyrefem.inputs.uncertain_numbers import left_out
 from tyrefem.requirements import Requirements
-from tyrefem.result import Result
-from tyrefem.rolling import run
-from tyrefem.studies import Study
-from tyrefem.uncertain_numbers import left_out
+from tyrefem.simulation.result import Result
+from tyrefem.simulation.run import run
+from tyrefem.variants.answer_store import AnswerStore
 
 if TYPE_CHECKING:
-    from tyrefem.compare.neighbours import Certificate
+    from tyrefem.compare.reduced_inputs import Certificate
 
 #: What a comparison needs of a study.
 NEEDS = Requirements("a comparison", measured=True)
@@ -177,7 +176,7 @@ def _run(study: StudyLike) -> ResultLike:
 
 def _by_runs(studies: Mapping[Key, Study], known: Mapping[str, Result], keys: Mapping[str, float], how: _How) -> Solved:
     """The runs of studies, those with a changed input by a reduced model where it holds."""
-    from tyrefem.compare.neighbours import Certificate, Neighbours, followed, worth
+    from tyrefem.compare.reduced_inputs import Certificate, Neighbours, followed, worth
     from tyrefem.compare.runs import Runs, store_key
 
     model = how.reduced == "auto" and worth(followed(studies))

@@ -1,23 +1,98 @@
-"""The semi-discrete heat balance of one problem: M du/dt = -S u + G(t, u), reservoirs included."""
+"""The semi-discrete heat balance of one problem: M du/dt = -S u + G(t, u), reservoirs included.
+
+Heat capacity of a region and the heat it stores.
+
+Unknowns whose temperature is prescribed.
+"""
 
 from __future__ import annotations
 
-from typing import Any
+from typing import Any, cast
 
 import numpy as np
 from numpy.typing import NDArray
 
-from tyrefem.conduction.capacity import GAUSS, Capacity
-from tyrefem.conduction.conditions import Material, Reservoir
-from tyrefem.conduction.datum import Datum
-from tyrefem.conduction.fixed_nodes import FixedNodes
+from tyrefem.conduction.conditions import Datum, Material, Reservoir, is_number
 from tyrefem.conduction.loads import Linear, Load, SourceLoad, Sources, State, VariableConduction
 from tyrefem.conduction.operators import Operators, Surface
-from tyrefem.conduction.reservoir_loads import ExchangeLoad, PowerLoad
+from tyrefem.conduction.reservoirs import ExchangeLoad, PowerLoad
 from tyrefem.conduction.surface_loads import FilmLoad
 from tyrefem.errors import InputError
 
 Array = NDArray[Any]
+
+
+GAUSS = tuple(zip(*np.polynomial.legendre.leggauss(5), strict=True))
+
+
+class Capacity:
+    """Volumetric heat capacity of one region, constant or a function of temperature."""
+
+    def __init__(self, ops: Operators, name: str, material: Material) -> None:
+        self.name, self.dofs = name, ops.dofs(name)
+        self.constant = is_number(material.heat_capacity)
+        self.c = cast(Any, material.heat_capacity)
+        if self.constant:
+            self.data = ops.mass(name) * float(self.c)
+            self.row = ops.mass_row(name) * float(self.c)
+        else:
+            self.q = ops.quadrature(name, material.direction)
+
+    def values(self, T: Array) -> Array:
+        """c at quadrature temperatures."""
+        c = np.broadcast_to(np.asarray(self.c(T), dtype=float), T.shape)
+        if not np.min(c) > 0:
+            where = f"between {T.min():.6g} and {T.max():.6g} degC"
+            raise InputError(f"is not positive {where}", field=f"regions.{self.name}.heat_capacity")
+        return c
+
+    def mass(self, u: Array) -> Array:
+        """Operator values of the integral of c v u."""
+        return self.data if self.constant else self.q.mass @ self.values(self.q.value @ u)
+
+    def slope(self, u: Array, rate: Array, bump: float) -> Array:
+        """Operator values of d(M du/dt)/d(temperature) at a rate (n,), K/s, by differences of so many K either way."""
+        T = self.q.value @ u
+        rise = (self.values(T + bump) - self.values(T - bump)) / (2 * bump)
+        return np.asarray(self.q.mass @ (rise * (self.q.value @ rate)))
+
+    def stored(self, before: Array, after: Array) -> float:
+        """Heat taken up from one temperature field to another, J."""
+        if self.constant:
+            return float(self.row @ (after - before))
+        T0, T1 = self.q.value @ before, self.q.value @ after
+        mean = sum(w / 2 * self.values(T0 + (x + 1) / 2 * (T1 - T0)) for x, w in GAUSS)
+        return float(self.q.weight @ (mean * (T1 - T0)))
+
+    def rate(self, u: Array, slope: Array) -> float:
+        """Heat stored per second at temperature rate `slope`, W."""
+        if self.constant:
+            return float(self.row @ slope)
+        return float(self.q.weight @ (self.values(self.q.value @ u) * (self.q.value @ slope)))
+
+
+class FixedNodes:
+    """Prescribed unknowns: the first boundary that names a node owns it."""
+
+    def __init__(self, size: int, fixed: list[tuple[int, Surface, Datum]]) -> None:
+        owner = np.full(size, -1)
+        self._data: list[tuple[int, Datum, Array]] = []
+        for slot, surface, value in fixed:
+            mine = owner[surface.dofs] < 0
+            owner[surface.dofs[mine]] = slot
+            self._data.append((slot, value, mine))
+        parts = [surface.dofs[mine] for (_, surface, _), (_, _, mine) in zip(fixed, self._data, strict=True)]
+        self.dofs = np.concatenate(parts) if parts else np.zeros(0, np.int64)
+        self.free = np.flatnonzero(owner < 0)
+        ends = np.cumsum([0, *(part.size for part in parts)])
+        self.parts = [(slot, slice(a, b)) for (slot, _, _), a, b in zip(self._data, ends[:-1], ends[1:], strict=True)]
+        self.constant = all(value.constant for _, value, _ in self._data)
+
+    def __call__(self, t: float) -> Array:
+        """Prescribed temperatures at time t, in the order of `dofs`."""
+        if not self._data:
+            return np.zeros(0)
+        return np.concatenate([np.broadcast_to(value(t), mine.shape)[mine] for _, value, mine in self._data])
 
 
 class HeatBalance:

@@ -11,8 +11,8 @@ import numpy as np
 from numpy.typing import NDArray
 from scipy.sparse import csr_matrix, hstack
 
-from tyrefem.conduction.factor import Ordering
 from tyrefem.conduction.function_space import FunctionSpace
+from tyrefem.conduction.linear_solver import Ordering
 from tyrefem.conduction.quadrature import Quadrature, Surface
 
 Array = NDArray[Any]

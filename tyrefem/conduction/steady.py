@@ -9,9 +9,8 @@ from scipy.sparse import bmat, csr_matrix, diags
 from scipy.sparse.linalg import splu
 
 from tyrefem.conduction.balance import HeatBalance
-from tyrefem.conduction.convection_load import ConvectionLoad
 from tyrefem.conduction.errors import SolverError
-from tyrefem.conduction.loads import SourceLoad, State
+from tyrefem.conduction.loads import ConvectionLoad, SourceLoad, State
 from tyrefem.conduction.surface_loads import FilmLoad, FluxLoad, RadiationLoad
 from tyrefem.errors import InputError
 

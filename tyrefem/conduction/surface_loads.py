@@ -7,8 +7,7 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
-from tyrefem.conduction.conditions import Film, Flux, Radiation
-from tyrefem.conduction.datum import Datum, checked
+from tyrefem.conduction.conditions import Datum, Film, Flux, Radiation, checked
 from tyrefem.conduction.loads import STALE, Linear, Load, State
 from tyrefem.conduction.operators import Surface
 

@@ -12,10 +12,9 @@ from numpy.typing import NDArray
 from tyrefem.conduction.balance import HeatBalance
 from tyrefem.conduction.budget import Tally
 from tyrefem.conduction.errors import SolverError
-from tyrefem.conduction.history import Peak
+from tyrefem.conduction.field import Peak
 from tyrefem.conduction.loads import State
-from tyrefem.conduction.rosenbrock import Step
-from tyrefem.conduction.stage_matrix import StageMatrices
+from tyrefem.conduction.rosenbrock import StageMatrices, Step
 
 Array = NDArray[Any]
 

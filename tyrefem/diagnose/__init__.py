@@ -1,4 +1,7 @@
-"""The diagnosis: where data and study disagree, which effect is missing, and the study that has it."""
+"""The diagnosis: where data and study disagree, which effect is missing, and the study that has it.
+
+Knows nothing of pages and pictures.
+"""
 
 from __future__ import annotations
 

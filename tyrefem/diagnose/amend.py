@@ -9,10 +9,10 @@ from typing import Any
 
 import numpy as np
 
-from tyrefem.diagnose.gap import Gap
+from tyrefem.diagnose.linearised import Gap
 from tyrefem.diagnose.unknowns import Unknown, with_values
-from tyrefem.dotted import scaled, value_at
-from tyrefem.studies import Study
+from tyrefem.inputs.changes import scaled, value_at
+from tyrefem.inputs.study import Study
 
 #: A correction of a base number or a sensor that moves no block mean by this much is left out, K.
 NEGLIGIBLE = 0.2

@@ -11,28 +11,20 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
-from tyrefem.diagnose.bench import Bench, Response
 from tyrefem.diagnose.diagnosis import Diagnosis
+from tyrefem.diagnose.evaluations import laboratory
 from tyrefem.diagnose.evidence import Members
-from tyrefem.diagnose.gap import Gap
+from tyrefem.diagnose.forward_model import Bench, Response
 from tyrefem.diagnose.isolability import MARGIN, margins, planned, rivals_of
-from tyrefem.diagnose.laboratory import laboratory
-from tyrefem.diagnose.responses import gap_of
-from tyrefem.diagnose.sets import Prior
-from tyrefem.diagnose.strangers import HotRing, Lamp
-from tyrefem.diagnose.truth import Logger, own_mesh, record
-from tyrefem.diagnose.unknowns import (
-    Candidate,
-    Unknown,
-    base_unknowns,
-    candidates,
-    sensor_unknowns,
-    with_values,
-)
+from tyrefem.diagnose.linearised import Gap
+from tyrefem.diagnose.search import Prior
+from tyrefem.diagnose.sensitivities import gap_of
+from tyrefem.diagnose.synthetic import HotRing, Lamp, Logger, own_mesh, record
+from tyrefem.diagnose.unknowns import Candidate, Unknown, base_unknowns, candidates, sensor_unknowns, with_values
 from tyrefem.diagnose.workflow import diagnose
 from tyrefem.effects import Effect
+from tyrefem.inputs.study import Study
 from tyrefem.measured import MeasuredRun
-from tyrefem.studies import Study
 
 Array = NDArray[np.float64]
 #: Kinds of cases and their shares.

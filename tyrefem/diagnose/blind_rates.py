@@ -14,22 +14,21 @@ from pathlib import Path
 from typing import Any
 
 import tyrefem
-from tyrefem.answer_store import PROGRESS
-from tyrefem.diagnose.bench import Bench, Response
 from tyrefem.diagnose.blind import Outcome, cases, run_case
 from tyrefem.diagnose.effort import CASE, SENSITIVITIES, check_effort
+from tyrefem.diagnose.evaluations import ProgressStore, laboratory
+from tyrefem.diagnose.forward_model import Bench, Response
 from tyrefem.diagnose.isolability import candidates_of, layout_notes, planned
-from tyrefem.diagnose.laboratory import laboratory
-from tyrefem.diagnose.progress_store import ProgressStore
-from tyrefem.diagnose.responses import responses, unknowns_of
-from tyrefem.diagnose.truth import own_mesh
+from tyrefem.diagnose.sensitivities import responses, unknowns_of
+from tyrefem.diagnose.synthetic import own_mesh
 from tyrefem.errors import InputError
+from tyrefem.inputs.study import Study
 from tyrefem.interruption import held_back, keeping
 from tyrefem.output import atomic_path, jsonable
 from tyrefem.processes import processes
 from tyrefem.requirements import Requirements
-from tyrefem.result import GAS
-from tyrefem.studies import Study
+from tyrefem.simulation.surroundings import GAS
+from tyrefem.variants.answer_store import PROGRESS
 
 Row = dict[str, Any]
 #: What a blind test needs of a study.

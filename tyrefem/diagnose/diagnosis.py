@@ -11,19 +11,19 @@ import numpy as np
 
 from tyrefem.brief import Brief
 from tyrefem.diagnose.numbers import percent
-from tyrefem.diagnose.sets import Prior
-from tyrefem.diagnose.where import gap_table, rms
+from tyrefem.diagnose.residuals import gap_table, rms
+from tyrefem.diagnose.search import Prior
 
 if TYPE_CHECKING:
     import pandas as pd
 
     from tyrefem.diagnose.amend import Change
-    from tyrefem.diagnose.explained import Explained
-    from tyrefem.diagnose.gap import Gap
-    from tyrefem.diagnose.missing import MissingHeat
+    from tyrefem.diagnose.fitted import Explained
+    from tyrefem.diagnose.linearised import Gap
+    from tyrefem.diagnose.missing_heat import MissingHeat
     from tyrefem.diagnose.unknowns import Candidate
     from tyrefem.diagnose.verdict import Judgement
-    from tyrefem.studies import Study
+    from tyrefem.inputs.study import Study
 
 
 @dataclass(frozen=True, eq=False)

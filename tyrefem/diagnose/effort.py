@@ -2,9 +2,9 @@
 
 from __future__ import annotations
 
-from tyrefem import estimate
-from tyrefem.diagnose.bench import Bench
-from tyrefem.run_estimate import RunEstimate
+from tyrefem.diagnose.forward_model import Bench
+from tyrefem.estimates import work as estimate
+from tyrefem.simulation.estimate import RunEstimate
 
 #: Runs on the fit's mesh, on the study's own, and strain cycles by finite elements that a diagnosis costs per measured
 #: run (hidden-effect: 55 s of a processor for four runs; passenger-205-55r16 at 6 mm: 120 s for one).

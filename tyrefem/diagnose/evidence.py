@@ -1,4 +1,7 @@
-"""All trials stacked and whitened: evidence of any set of candidates, from Gram matrices alone."""
+"""All trials stacked and whitened: evidence of any set of candidates, from Gram matrices alone.
+
+The Gaussian fit under everything: posterior and evidence of a linear model with priors and bounds.
+"""
 
 from __future__ import annotations
 
@@ -8,11 +11,95 @@ from functools import cached_property
 
 import numpy as np
 from numpy.typing import NDArray
+from scipy.linalg import cho_factor, cho_solve
+from scipy.special import log_ndtr
 
-from tyrefem.diagnose.gauss import Fit, fit
+from tyrefem.brief import Brief
 from tyrefem.diagnose.unknowns import Candidate, Unknown
 
 Array = NDArray[np.float64]
+
+
+@dataclass(frozen=True, eq=False)
+class Fit(Brief):
+    """A fit: ``mean`` (k,) within the bounds, ``covariance`` (k, k), log evidence, and which are at a bound.
+
+    ``log_evidence`` leaves out -(1/2) |d|^2 and the constants that every model on the same data shares. ``beyond``
+    (k,): by how many standard deviations the data want a parameter beyond the bound that it is at; 0 elsewhere.
+    """
+
+    mean: Array
+    covariance: Array
+    log_evidence: float
+    at_bound: NDArray[np.bool_]
+    beyond: Array
+
+    @property
+    def sd(self) -> Array:
+        """(k,) standard deviations."""
+        return np.sqrt(np.diag(self.covariance))
+
+
+def fit(gram: Array, overlap: Array, sd: Array, low: Array, high: Array) -> Fit:
+    """Fit d = J x + e, e ~ N(0, 1), x ~ N(0, sd^2) cut to [low, high].
+
+    Evidence of the model without bounds, ln Z = b^T (G + S^-2)^-1 b / 2 - ln det(1 + S G S) / 2, times the posterior
+    mass of the bounds over their prior mass, each taken parameter by parameter.
+
+    Parameters
+    ----------
+    gram : G = J^T J (k, k); overlap : b = J^T d (k,); sd, low, high : (k,).
+
+    >>> one = fit(np.array([[4.0]]), np.array([8.0]), np.array([1.0]), np.array([-np.inf]), np.array([np.inf]))
+    >>> one.mean.round(3), round(one.log_evidence, 3)      # 8/5, 64/(2 x 5) - ln(5)/2
+    (array([1.6]), 5.595)
+    """
+    k = len(sd)
+    if k == 0:
+        return Fit(np.zeros(0), np.zeros((0, 0)), 0.0, np.zeros(0, dtype=bool), np.zeros(0))
+    scaled = gram * sd[:, None] * sd[None, :]
+    matrix = np.eye(k) + scaled
+    factor = cho_factor(matrix, lower=True)
+    right = sd * overlap
+    z = cho_solve(factor, right)
+    covariance_z = cho_solve(factor, np.eye(k))
+    log_evidence = float(right @ z / 2 - np.log(np.diag(factor[0])).sum())
+    low_z, high_z = low / sd, high / sd
+    spread = np.sqrt(np.diag(covariance_z))
+    for i in np.flatnonzero(np.isfinite(low) | np.isfinite(high)):
+        log_evidence += _log_mass((low_z[i] - z[i]) / spread[i], (high_z[i] - z[i]) / spread[i])
+        log_evidence -= _log_mass(low_z[i], high_z[i])
+    held = np.zeros(k, dtype=bool)
+    for _ in range(k):
+        beyond = (z < low_z - 1e-12) | (z > high_z + 1e-12)
+        if not beyond.any():
+            break
+        # Hold the one that is farthest out, in its own standard deviations, on its bound, and fit the rest again.
+        worst = int(np.argmax(np.maximum(low_z - z, z - high_z) / spread))
+        held[worst] = True
+        z = _held(matrix, right, np.clip(z, low_z, high_z), held)
+    # The slope of the misfit at a bound, over what it would be one standard deviation off the best place.
+    beyond = np.where(held, np.abs(right - matrix @ z) * spread, 0.0)
+    return Fit(z * sd, covariance_z * sd[:, None] * sd[None, :], log_evidence, held, beyond)
+
+
+def _held(matrix: Array, right: Array, z: Array, held: NDArray[np.bool_]) -> Array:
+    free = ~held
+    result = z.copy()
+    if free.any():
+        rest = right[free] - matrix[np.ix_(free, held)] @ z[held]
+        result[free] = np.linalg.solve(matrix[np.ix_(free, free)], rest)
+    return result
+
+
+def _log_mass(low: float, high: float) -> float:
+    """ln P(low < x < high) of a standard normal, stable in the tails."""
+    if low > 0:
+        low, high = -high, -low
+    upper, lower = log_ndtr(high), log_ndtr(low)
+    return float(upper + np.log1p(-np.exp(min(lower - upper, -1e-300)))) if lower > -np.inf else float(upper)
+
+
 Members = tuple[Candidate, ...]
 
 

@@ -13,19 +13,18 @@ import numpy as np
 from numpy.typing import NDArray
 
 from tyrefem.compare.experiment import OUTSIDE_THE_RUBBER
-from tyrefem.diagnose.bench import Bench
 from tyrefem.diagnose.effort import SENSITIVITIES, check_effort
+from tyrefem.diagnose.evaluations import ProgressStore, laboratory
 from tyrefem.diagnose.evidence import Linear, Members
-from tyrefem.diagnose.gap import Gap
-from tyrefem.diagnose.laboratory import laboratory
-from tyrefem.diagnose.progress_store import ProgressStore
-from tyrefem.diagnose.responses import gap_of
-from tyrefem.diagnose.sets import Prior
-from tyrefem.diagnose.trials import Series, Trial
+from tyrefem.diagnose.forward_model import Bench
+from tyrefem.diagnose.linearised import Gap
+from tyrefem.diagnose.runs import Series, Trial
+from tyrefem.diagnose.search import Prior
+from tyrefem.diagnose.sensitivities import gap_of
 from tyrefem.diagnose.unknowns import Candidate, candidates
 from tyrefem.errors import InputError
+from tyrefem.inputs.study import Study
 from tyrefem.requirements import Requirements
-from tyrefem.studies import Study
 
 if TYPE_CHECKING:
     import pandas as pd

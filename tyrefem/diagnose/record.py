@@ -4,11 +4,10 @@ from __future__ import annotations
 
 from typing import TYPE_CHECKING, Any
 
-from tyrefem.diagnose.rivals import candidate_rows, parameters, set_rows
+from tyrefem.diagnose.contenders import candidate_rows, parameters, set_rows
 from tyrefem.diagnose.verdict import CONFOUNDED, IDENTIFIED, NO_GAP, UNEXPLAINED
 from tyrefem.diagnose.words import look_folder, verdict_words
-from tyrefem.output import jsonable
-from tyrefem.summary import versions
+from tyrefem.output import jsonable, versions
 
 if TYPE_CHECKING:
     from tyrefem.diagnose.diagnosis import Diagnosis

@@ -8,11 +8,11 @@ from dataclasses import dataclass
 from typing import Any
 
 from tyrefem.brief import Brief
-from tyrefem.dotted import scaled, value_at
 from tyrefem.effects import catalogue
 from tyrefem.effects.effect import Effect, Parameter
+from tyrefem.inputs.changes import scaled, value_at
+from tyrefem.inputs.study import Study
 from tyrefem.quantity import parse
-from tyrefem.studies import Study
 
 Choice = tuple[tuple[str, str], ...]
 #: Effects that every sensor may have within what its card states: place, lag, offset.

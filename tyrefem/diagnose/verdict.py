@@ -8,7 +8,7 @@ from dataclasses import dataclass
 
 from tyrefem.brief import Brief
 from tyrefem.diagnose.evidence import Members
-from tyrefem.diagnose.explained import Explained
+from tyrefem.diagnose.fitted import Explained
 
 IDENTIFIED, CONFOUNDED, UNEXPLAINED, NO_GAP = "identified", "confounded", "unexplained", "no gap"
 #: A set is named when it is this probable; sets of joint probability up to the second are reported.

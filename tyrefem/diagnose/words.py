@@ -8,15 +8,15 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
+from tyrefem.diagnose.contenders import contenders, support
 from tyrefem.diagnose.numbers import percent
-from tyrefem.diagnose.rivals import contenders, support
 from tyrefem.diagnose.unknowns import Candidate, Unknown
 from tyrefem.diagnose.verdict import CONFOUNDED, IDENTIFIED, NO_GAP, SURE
-from tyrefem.report.words import place
+from tyrefem.geometry.place_names import place
 
 if TYPE_CHECKING:
     from tyrefem.diagnose.diagnosis import Diagnosis
-    from tyrefem.diagnose.explained import Explained
+    from tyrefem.diagnose.fitted import Explained
 
 #: Unit of a parameter, SI -> factor and unit in which a person reads it.
 READ = {

@@ -1,33 +1,109 @@
-"""The diagnosis: find the gap, name what is missing, judge, add it, show that the gap shrinks."""
+"""The diagnosis: find the gap, name what is missing, judge, add it, show that the gap shrinks.
+
+Which effects a gap is put down to: search, heat of unknown origin, judgement.
+"""
 
 from __future__ import annotations
 
+import functools
+import math
 import time
-from collections.abc import Iterable, Mapping, Sequence
+from collections.abc import Callable, Iterable, Mapping, Sequence
 from dataclasses import replace
 from typing import Any
 
 from tyrefem.compare.experiment import Table, experiments
 from tyrefem.diagnose.amend import Change, amended, changes
-from tyrefem.diagnose.bench import Bench, Response
 from tyrefem.diagnose.diagnosis import Diagnosis
 from tyrefem.diagnose.effort import check_effort
-from tyrefem.diagnose.explained import Explained
-from tyrefem.diagnose.gap import Gap
-from tyrefem.diagnose.laboratory import laboratory
-from tyrefem.diagnose.missing import MissingHeat, patches
-from tyrefem.diagnose.naming import Naming
-from tyrefem.diagnose.progress_store import ProgressStore
-from tyrefem.diagnose.responses import Tick, gap_of
-from tyrefem.diagnose.trials import trial
-from tyrefem.diagnose.unknowns import Unknown, candidates
-from tyrefem.diagnose.verdict import CONFOUNDED, IDENTIFIED, UNEXPLAINED, Judgement
+from tyrefem.diagnose.evaluations import ProgressStore, laboratory
+from tyrefem.diagnose.fit import refined
+from tyrefem.diagnose.fitted import Explained
+from tyrefem.diagnose.forward_model import Bench, Response
+from tyrefem.diagnose.linearised import Gap
+from tyrefem.diagnose.missing_heat import MissingHeat, missing_heat, missing_heat_fitted, patches
+from tyrefem.diagnose.runs import trial
+from tyrefem.diagnose.search import Prior, Scored, search
+from tyrefem.diagnose.sensitivities import Tick, gap_of
+from tyrefem.diagnose.unknowns import Candidate, Unknown, candidates
+from tyrefem.diagnose.verdict import (
+    CONFOUNDED,
+    IDENTIFIED,
+    IMPROBABLE,
+    OUTSIDE,
+    UNEXPLAINED,
+    Judgement,
+    judge,
+    standings,
+)
 from tyrefem.errors import InputError
+from tyrefem.inputs.study import Study
 from tyrefem.requirements import Requirements
-from tyrefem.studies import Study
+
+#: Heat of unknown origin that the linear model puts this far, or less, below the best set is fitted in the full model.
+NEAR = 10.0
+
+
+class Naming:
+    """What the search of one look comes to.
+
+    Attributes
+    ----------
+    judgement : verdict and sets with their probabilities. best, null : fits with the most probable set and with none.
+    missing : heat of unknown origin.
+    """
+
+    def __init__(
+        self, gap: Gap, study: Study, found: tuple[Candidate, ...], largest: int, count: Callable[[str], None]
+    ) -> None:
+        self.gap = gap
+        prior = Prior(found, study.card.diagnosis.effects_expected)
+        scored, self.missing = _searched(gap, study, found, prior, largest, count)
+        self.explained = {one.members: one for _, _, one in scored if one is not None}
+        self.null = self.explained[()]
+        self.judgement = judge(standings(scored, _outside(study) + self.missing.log_evidence), self.fitted)
+        ahead = self.judgement.best
+        self.best = ahead.explained or (self.null if ahead.unexplained else self.fitted(ahead.members))
+
+    def fitted(self, members: tuple[Candidate, ...]) -> Explained:
+        """The fit of a set, made if it has none."""
+        if members not in self.explained:
+            self.explained[members] = refined(self.gap, [members])[0]
+        return self.explained[members]
+
+
+def _outside(study: Study) -> float:
+    """ln of the prior probability that what is missing is not in the catalogue."""
+    return math.log(study.card.diagnosis.effects_expected * OUTSIDE)
+
+
+def _searched(
+    gap: Gap, study: Study, found: tuple[Candidate, ...], prior: Prior, largest: int, count: Callable[[str], None]
+) -> tuple[list[Scored], MissingHeat]:
+    """All sets with their scores, and heat of unknown origin: in the full model where it may matter."""
+    unknown, outside = patches(study), _outside(study)
+
+    @functools.cache
+    def linear(null: Explained) -> MissingHeat:
+        return missing_heat(gap, unknown, null)
+
+    def elsewhere(null: Explained) -> float:
+        return outside + linear(null).log_evidence
+
+    scored = search(gap, found, prior, largest=largest, tick=count, outside=elsewhere)
+    null = next(one for _, members, one in scored if one is not None and not members)
+    missing = linear(null)
+    score, _, ahead = scored[0]
+    doubtful = ahead is None or ahead.p_value < IMPROBABLE or ahead.held_out_p < IMPROBABLE
+    if doubtful or outside + missing.log_evidence > score - NEAR:
+        missing = missing_heat_fitted(gap, unknown, null, lambda: count("fitting heat of unknown origin"))
+    return scored, missing
+
 
 #: What a diagnosis needs of a study.
 NEEDS = Requirements("a diagnosis", measured=True, fitted=True)
+
+
 #: Diagnoses at most, each of what the one before it has left.
 LOOKS = 3
 
@@ -62,7 +138,7 @@ def diagnose(
     store : where finished simulations are kept, so that an interrupted diagnosis takes them up again.
     looks : diagnoses at most.
     reduced : "auto" lets reduced models of the drives predict for the fits, effect by effect where fresh simulations
-        bear them out (see `tyrefem.diagnose.predictions`); "never" simulates every point.
+        bear them out (see `tyrefem.diagnose.multifidelity`); "never" simulates every point.
 
     Raises
     ------
@@ -146,7 +222,7 @@ def _look(
         after = _after(gap, change if rerun else None, values)
         further: Mapping[str, Any] = {}
         if judgement.verdict == CONFOUNDED:
-            from tyrefem.diagnose.experiment import next_experiment
+            from tyrefem.diagnose.next_experiment import next_experiment
 
             tick("looking for the experiment that decides", 0, 0)
             further = next_experiment(gap, judgement, named.fitted)

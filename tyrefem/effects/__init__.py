@@ -2,6 +2,8 @@
 
 An effect is an `Effect` subclass in a module of this package, or in a Python file of a folder that the user names in
 ``TYREFEM_EFFECTS``.
+
+Knows nothing of studies and runs but what `effects.tyre` says.
 """
 
 from __future__ import annotations

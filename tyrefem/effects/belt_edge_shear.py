@@ -6,8 +6,8 @@ from typing import Annotated, ClassVar
 
 import numpy as np
 
+from tyrefem.effects._shared import deflection_ratio, no_carcass
 from tyrefem.effects.effect import Array, Effect, Factor, Prior
-from tyrefem.effects.shapes import deflection_ratio, no_carcass
 from tyrefem.effects.tyre import StudyOfTyre, Tyre
 
 

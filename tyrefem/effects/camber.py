@@ -7,8 +7,8 @@ from typing import Annotated, ClassVar
 
 import numpy as np
 
+from tyrefem.effects._shared import half_width, needs_full
 from tyrefem.effects.effect import Array, Effect, Factor, Prior
-from tyrefem.effects.sides import half_width, needs_full
 from tyrefem.effects.tyre import StudyOfTyre, Tyre
 
 

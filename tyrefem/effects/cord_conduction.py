@@ -4,8 +4,8 @@ from __future__ import annotations
 
 from typing import Annotated, ClassVar
 
+from tyrefem.effects._shared import no_carcass
 from tyrefem.effects.effect import Array, Effect, Factor, Prior
-from tyrefem.effects.shapes import no_carcass
 from tyrefem.effects.tyre import StudyOfTyre, Tyre
 
 

@@ -20,7 +20,7 @@ from tyrefem.quantity import Unit, convert
 
 if TYPE_CHECKING:
     from tyrefem.conduction import Radiation
-    from tyrefem.section import Section
+    from tyrefem.geometry import Section
 
 Array = NDArray[np.float64]
 Factor = float | Array

@@ -6,8 +6,8 @@ from typing import Annotated, ClassVar
 
 import numpy as np
 
+from tyrefem.effects._shared import above_25
 from tyrefem.effects.effect import Array, Effect, Factor, Prior
-from tyrefem.effects.shapes import above_25
 from tyrefem.effects.tyre import Tyre
 
 

@@ -4,10 +4,10 @@ from __future__ import annotations
 
 from typing import Annotated, ClassVar
 
+from tyrefem.cards.plausible import EMISSIVITY
 from tyrefem.conduction import Radiation
 from tyrefem.effects.effect import Effect, Prior
 from tyrefem.effects.tyre import Tyre
-from tyrefem.plausible import EMISSIVITY
 
 
 class RadiationToAmbient(Effect):

@@ -4,8 +4,8 @@ from __future__ import annotations
 
 from typing import Annotated, ClassVar
 
+from tyrefem.effects._shared import speed_ratio
 from tyrefem.effects.effect import Effect, Prior
-from tyrefem.effects.shapes import speed_ratio
 from tyrefem.effects.tyre import StudyOfTyre, Tyre
 
 

@@ -4,8 +4,8 @@ from __future__ import annotations
 
 from typing import Annotated, ClassVar
 
+from tyrefem.effects._shared import OfSensor
 from tyrefem.effects.effect import Prior
-from tyrefem.effects.of_sensor import OfSensor
 
 
 class SensorMisplaced(OfSensor):

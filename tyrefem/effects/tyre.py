@@ -1,7 +1,8 @@
 """What an effect may ask of the tyre that it acts on, and of the study that describes it. SI units, degC.
 
-Effects know these protocols only, not the modules that simulate a tyre or read a study: `tyrefem.surroundings` and
-`tyrefem.studies` satisfy them. Whoever writes an effect that needs more adds the member here, with its unit.
+Effects know these protocols only, not the modules that simulate a tyre or read a study:
+`tyrefem.simulation.surroundings` and
+`tyrefem.inputs.study` satisfy them. Whoever writes an effect that needs more adds the member here, with its unit.
 """
 
 from __future__ import annotations
@@ -17,8 +18,8 @@ if TYPE_CHECKING:
     from tyrefem.boundaries.outside_air import OutsideAirLaw
     from tyrefem.boundaries.rim import RimLaw
     from tyrefem.boundaries.road import RoadLaw
-    from tyrefem.section import Section
-    from tyrefem.section.layer import Rating
+    from tyrefem.geometry import Section
+    from tyrefem.geometry.layer import Rating
 
 Array = NDArray[np.float64]
 

@@ -4,8 +4,8 @@ from __future__ import annotations
 
 from typing import Annotated, ClassVar
 
+from tyrefem.effects._shared import beyond_shoulder, deflection_ratio
 from tyrefem.effects.effect import Array, Effect, Factor, Prior
-from tyrefem.effects.shapes import beyond_shoulder, deflection_ratio
 from tyrefem.effects.tyre import Tyre
 
 

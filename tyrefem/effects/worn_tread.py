@@ -8,7 +8,7 @@ from tyrefem.effects.effect import Effect, Prior
 from tyrefem.effects.tyre import StudyOfTyre
 
 if TYPE_CHECKING:
-    from tyrefem.section import Section
+    from tyrefem.geometry import Section
 
 
 class WornTread(Effect):

@@ -8,9 +8,8 @@ from typing import Annotated, ClassVar, Literal
 import numpy as np
 from pydantic import Field
 
+from tyrefem.effects._shared import half_width, needs_full, sliding_flux
 from tyrefem.effects.effect import Array, Effect, Factor, Prior
-from tyrefem.effects.friction import sliding_flux
-from tyrefem.effects.sides import half_width, needs_full
 from tyrefem.effects.tyre import StudyOfTyre, Tyre
 
 

@@ -1,4 +1,7 @@
-"""Measured temperature histories, read as loggers write them."""
+"""Measured temperature histories, read as loggers write them.
+
+Knows no tyre and no study.
+"""
 
 from tyrefem.measured.run import MeasuredRun
 from tyrefem.measured.table import read_table

@@ -9,7 +9,7 @@ from pathlib import Path
 from typing import TYPE_CHECKING
 
 from tyrefem.errors import InputError
-from tyrefem.measured.heading import is_time, parts
+from tyrefem.measured.columns import is_time, parts
 from tyrefem.measured.table import MeasuredTable, read
 
 if TYPE_CHECKING:

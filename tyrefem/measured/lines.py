@@ -9,8 +9,8 @@ from dataclasses import dataclass
 from pathlib import Path
 
 from tyrefem.errors import InputError
-from tyrefem.estimate import TEXT, check_memory
-from tyrefem.measured.heading import is_time, parts
+from tyrefem.estimates.work import TEXT, check_memory
+from tyrefem.measured.columns import is_time, parts
 from tyrefem.output import note_input
 
 #: Above this size a table is a mistake (a video, a raw waveform): 5 million rows of 10 sensors fit in.

@@ -10,8 +10,18 @@ import numpy as np
 from numpy.typing import NDArray
 
 from tyrefem.errors import InputError, nearest, quoted
-from tyrefem.measured.cells import numbers, one_decimal_mark, plausible
-from tyrefem.measured.heading import TIME_UNITS, Heading, is_channel, is_time, parts, temperature_unit, time_unit
+from tyrefem.measured.columns import (
+    TIME_UNITS,
+    Heading,
+    is_channel,
+    is_time,
+    numbers,
+    one_decimal_mark,
+    parts,
+    plausible,
+    temperature_unit,
+    time_unit,
+)
 from tyrefem.measured.lines import Lines, split
 from tyrefem.measured.run import MeasuredRun
 from tyrefem.measured.timestamps import are_timestamps, microseconds

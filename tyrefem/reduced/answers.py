@@ -6,16 +6,17 @@ from collections.abc import Iterator, Sequence
 from typing import Any
 
 from tyrefem.errors import InputError
+from tyrefem.inputs.study import Study
 from tyrefem.reduced.balance import ReducedBalance, reduced_balance
 from tyrefem.reduced.batch import Batch
+from tyrefem.reduced.exponential import Marched
 from tyrefem.reduced.march import march
-from tyrefem.reduced.marched import Marched
 from tyrefem.reduced.model import NotReducibleError, ReducedModel
 from tyrefem.reduced.readout import Readout
 from tyrefem.reduced.variant import Variant
-from tyrefem.rolling import RollingTyre, output_times
-from tyrefem.studies import Study
-from tyrefem.sweep.answers import answers
+from tyrefem.simulation.rolling_tyre import RollingTyre
+from tyrefem.simulation.simulate import output_times
+from tyrefem.variants.answers import answers
 
 #: Variants marched side by side.
 SIDE_BY_SIDE = 32

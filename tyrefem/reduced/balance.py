@@ -13,7 +13,7 @@ from tyrefem.conduction import Film, Material, Reservoir
 from tyrefem.conduction.conditions import is_number
 from tyrefem.reduced.exchanges import Layout
 from tyrefem.reduced.model import NotReducibleError, ReducedModel
-from tyrefem.rolling import RollingTyre
+from tyrefem.simulation.rolling_tyre import RollingTyre
 
 Array = NDArray[np.float64]
 

@@ -9,12 +9,12 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import NDArray
 
-from tyrefem.drive import Ramp
+from tyrefem.inputs.drive import Ramp
 from tyrefem.reduced.balance import ReducedBalance, matrices_of
 from tyrefem.reduced.boundary_data import BoundaryData
-from tyrefem.reduced.ledger import Ledger
+from tyrefem.reduced.budget import Ledger
 from tyrefem.reduced.model import ReducedModel
-from tyrefem.reduced.sampled import SampledHeat
+from tyrefem.reduced.sampled_source import SampledHeat
 
 Array = NDArray[np.float64]
 

@@ -12,8 +12,7 @@ from scipy.linalg.lapack import dsygvd
 from tyrefem.errors import InputError
 from tyrefem.reduced.batch import Batch, steady
 from tyrefem.reduced.boundary_data import BoundaryData
-from tyrefem.reduced.marched import NODES, TO_POWERS, Marched, Window
-from tyrefem.reduced.relaxing import responses
+from tyrefem.reduced.exponential import NODES, TO_POWERS, Marched, Window, responses
 
 Array = NDArray[np.float64]
 #: First windows of a phase as a share of it; how much a window may grow or shrink from one to the next.

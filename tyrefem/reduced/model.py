@@ -14,10 +14,10 @@ from tyrefem.brief import Brief
 from tyrefem.conduction.operators import Operators
 from tyrefem.conduction.points import located
 from tyrefem.errors import InputError
+from tyrefem.geometry.wall import wall_of
 from tyrefem.reduced.exchanges import Exchanges, Layout, exchanges
-from tyrefem.reduced.modes import CHOICE
-from tyrefem.rolling import RollingTyre
-from tyrefem.wall import wall_of
+from tyrefem.reduced.pod import CHOICE
+from tyrefem.simulation.rolling_tyre import RollingTyre
 
 Array = NDArray[np.float64]
 

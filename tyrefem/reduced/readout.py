@@ -12,11 +12,11 @@ import numpy as np
 from numpy.typing import NDArray
 
 from tyrefem.conduction.budget import Budget
-from tyrefem.conduction.history import Peak
-from tyrefem.heat_budget import HeatBudget, whole_tyre
-from tyrefem.reduced.ledger import end_budgets
-from tyrefem.reduced.marched import NODES, Marched
-from tyrefem.rolling_resistance import just_before
+from tyrefem.conduction.field import Peak
+from tyrefem.reduced.budget import end_budgets
+from tyrefem.reduced.exponential import NODES, Marched
+from tyrefem.simulation.heat_budget import HeatBudget, whole_tyre
+from tyrefem.simulation.rolling_resistance import just_before
 
 Array = NDArray[np.float64]
 #: K: far more than single precision is off by.

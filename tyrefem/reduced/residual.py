@@ -9,16 +9,15 @@ from numpy.typing import NDArray
 
 from tyrefem.conduction.balance import HeatBalance
 from tyrefem.conduction.loads import State
-from tyrefem.conduction.ros34pw2 import GAMMA
-from tyrefem.conduction.setup import balance_of
-from tyrefem.conduction.stage_matrix import StageMatrix
+from tyrefem.conduction.problem import balance_of
+from tyrefem.conduction.rosenbrock import GAMMA, StageMatrix
 from tyrefem.reduced.balance import reduced_balance
 from tyrefem.reduced.batch import Batch
+from tyrefem.reduced.exponential import Marched
 from tyrefem.reduced.march import march
-from tyrefem.reduced.marched import Marched
 from tyrefem.reduced.model import ReducedModel
-from tyrefem.reduced.train import Snapshots, sources_at
-from tyrefem.rolling import RollingTyre
+from tyrefem.reduced.training import Snapshots, sources_at
+from tyrefem.simulation.rolling_tyre import RollingTyre
 
 Array = NDArray[np.float64]
 #: Parts of a phase at which fields are corrected, and the one whose exchanges its matrix has.

@@ -10,18 +10,17 @@ import numpy as np
 from numpy.typing import NDArray
 
 from tyrefem.brief import Brief
-from tyrefem.dotted import all_changed, value_at
+from tyrefem.inputs.changes import all_changed, value_at
+from tyrefem.inputs.study import Study
 from tyrefem.reduced.answers import reduced_answers
 from tyrefem.reduced.model import NotReducibleError, ReducedModel
-from tyrefem.reduced.school import School, Tick
-from tyrefem.reduced.train import Fineness
-from tyrefem.reduced.work import Packed, pack
-from tyrefem.studies import Study
-from tyrefem.sweep.bundle import Bundle
-from tyrefem.sweep.plan import Plan
-from tyrefem.sweep.samples import changes_at
-from tyrefem.sweep.schedulers import Here, Scheduler
-from tyrefem.sweep.varied import Varied
+from tyrefem.reduced.training import Fineness
+from tyrefem.reduced.training_rounds import Packed, School, Tick, pack
+from tyrefem.variants.plan import Plan
+from tyrefem.variants.samples import changes_at
+from tyrefem.variants.schedulers import Here, Scheduler
+from tyrefem.variants.task import Bundle
+from tyrefem.variants.varied import Varied
 
 Array = NDArray[np.float64]
 #: Fresh full runs that a certificate is made of; how often it is tried.

@@ -9,15 +9,17 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 from numpy.typing import NDArray
 
-from tyrefem.conduction.history import Peak
-from tyrefem.heat_budget import HeatBudget
+from tyrefem.conduction.field import Peak
+from tyrefem.geometry.wall import inside
+from tyrefem.inputs.study import Study
 from tyrefem.reduced.readout import Readout
-from tyrefem.result import GAS, RIM, Result
-from tyrefem.rolling import RollingTyre, output_times
-from tyrefem.rolling_resistance import RollingResistance, rolling_resistance
-from tyrefem.sensors import recorded, true_places
-from tyrefem.studies import Study
-from tyrefem.wall import inside
+from tyrefem.simulation.heat_budget import HeatBudget
+from tyrefem.simulation.result import Result
+from tyrefem.simulation.rolling_resistance import RollingResistance, rolling_resistance
+from tyrefem.simulation.rolling_tyre import RollingTyre
+from tyrefem.simulation.sensors import recorded, true_places
+from tyrefem.simulation.simulate import output_times
+from tyrefem.simulation.surroundings import GAS, RIM
 
 if TYPE_CHECKING:
     import pandas as pd
@@ -27,7 +29,8 @@ Array = NDArray[np.float64]
 
 @dataclass(frozen=True, eq=False)
 class Variant:
-    """A `tyrefem.sweep.outcome.Outcome` whose numbers come from modes; all else of a `Result` is made when asked for.
+    """A `tyrefem.variants.answers.Outcome` whose numbers come from modes; all else of a `Result` is made when asked
+    for.
 
     Parameters
     ----------

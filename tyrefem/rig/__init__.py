@@ -1,14 +1,15 @@
-"""The laser rig (Allouis et al. 2016): simulate a heating test, find conductivity and specific heat of every layer."""
+"""The laser rig (Allouis et al. 2016): simulate a heating test, find conductivity and specific heat of every layer.
+
+Knows nothing of tyres, drives and studies.
+"""
 
 from __future__ import annotations
 
 import importlib
 from typing import Any
 
-from tyrefem.rig.air import air, natural_film, nusselt
-from tyrefem.rig.card import RigCard
-from tyrefem.rig.find import load
-from tyrefem.rig.patch import Layer, Patch, Property
+from tyrefem.rig.card import RigCard, load
+from tyrefem.rig.patch import Layer, Patch, Property, air, natural_film, nusselt
 from tyrefem.rig.readings import read
 from tyrefem.rig.simulation import Simulation, simulate
 

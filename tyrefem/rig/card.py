@@ -1,14 +1,26 @@
-"""The rig's description: layers with first guesses, laser, phases, surroundings, sensors, runs."""
+"""The rig's description: layers with first guesses, laser, phases, surroundings, sensors, runs.
+
+The times at which a test is computed, and the way from there to the times of a table.
+
+Find and read a rig card: a path, a folder, or the name of a shipped one.
+"""
 
 from __future__ import annotations
 
+from collections.abc import Iterable
+from dataclasses import dataclass
+from functools import cached_property
+from pathlib import Path
 from typing import Annotated, Any, ClassVar, Literal
 
+import numpy as np
+from numpy.typing import ArrayLike, NDArray
 from pydantic import Field, model_validator
 
-from tyrefem.cards import Card, PositiveLength, Temperature, Text
-from tyrefem.errors import InputError, InputWarning
-from tyrefem.plausible import CONDUCTIVITY, DENSITY, EMISSIVITY, SPECIFIC_HEAT, Plausible
+from tyrefem import library
+from tyrefem.cards import Card, PositiveLength, Temperature, Text, read_toml
+from tyrefem.cards.plausible import CONDUCTIVITY, DENSITY, EMISSIVITY, SPECIFIC_HEAT, Plausible
+from tyrefem.errors import InputError, InputWarning, nearest
 from tyrefem.quantity import Unit
 
 Share = Annotated[float, Unit("1", gt=0, le=1)]
@@ -232,3 +244,142 @@ class RigCard(Card):
         if reach >= self.patch.radius:
             words = f"{1e3 * reach:g} mm from the mark is outside the patch of {1e3 * self.patch.radius:g} mm radius"
             raise InputError(words, field=f"{field}.aside")
+
+
+Array = NDArray[Any]
+
+
+#: First scale of time after the laser is switched, s, and steps in all of a phase's logarithmic time.
+SCALE, STEP = 0.5, 0.16
+
+
+def since_switch(duration: float) -> Array:
+    """Times from 0 to `duration`, close together after the switch: even steps in ln(1 + t/0.5 s).
+
+    >>> since_switch(1050.0).size
+    49
+    """
+    span = np.log1p(duration / SCALE)
+    return np.asarray(SCALE * np.expm1(np.linspace(0.0, span, max(5, int(np.ceil(span / STEP)) + 1))))
+
+
+@dataclass(frozen=True)
+class Clock:
+    """Computed times of one test up to `end`; index 0 is the moment the laser is switched on.
+
+    Attributes
+    ----------
+    heating, cooling : times since the switch, s; cooling is empty where the test ends before.
+    """
+
+    phases: Phases
+    end: float
+
+    @cached_property
+    def heating(self) -> Array:
+        """s since the laser was switched on."""
+        return since_switch(min(self.phases.heating, max(self.end - self.phases.idle, 1.0)))
+
+    @cached_property
+    def cooling(self) -> Array:
+        """s since the laser was switched off, without 0."""
+        left = self.end - self.phases.idle - self.phases.heating
+        return since_switch(left)[1:] if left > 0 else np.zeros(0)
+
+    @cached_property
+    def times(self) -> Array:
+        """All computed times, s of the test."""
+        on = self.phases.idle + self.heating
+        return np.concatenate([on, self.phases.idle + self.phases.heating + self.cooling])
+
+    def matrix(self, times: ArrayLike) -> Array:
+        """Matrix (times, computed times): cubic splines in the logarithmic time of each phase; start before it."""
+        from scipy.interpolate import CubicSpline
+
+        t = np.asarray(times, dtype=float) - self.phases.idle
+        on = self.heating
+        found = np.zeros((t.size, on.size + self.cooling.size))
+        early, late = t <= 0, t > on[-1]
+        found[early, 0] = 1.0
+        spline = CubicSpline(np.log1p(on / SCALE), np.eye(on.size))
+        found[~early & ~late, : on.size] = spline(np.log1p(t[~early & ~late] / SCALE))
+        if self.cooling.size:
+            off = np.concatenate([[0.0], self.cooling])
+            spline = CubicSpline(np.log1p(off / SCALE), np.eye(off.size))
+            after = np.clip(t[late] - on[-1], 0.0, off[-1])
+            found[np.ix_(late, range(on.size - 1, found.shape[1]))] = spline(np.log1p(after / SCALE))
+        else:
+            found[late, -1] = 1.0
+        return found
+
+    def lagged(self, values: Array, lag: float) -> Array:
+        """First-order lag, exact for readings that are straight between computed times; (n_times, ...)."""
+        if lag <= 0:
+            return values
+        out = np.array(values, dtype=float)
+        for i, dt in enumerate(np.diff(self.times), 1):
+            keep = np.exp(-dt / lag)
+            mean = (1.0 - keep) * lag / dt
+            out[i] = keep * out[i - 1] + (mean - keep) * values[i - 1] + (1.0 - mean) * values[i]
+        return out
+
+
+def find(name: str | Path) -> Path:
+    """The file of a rig: a path, a folder with a ``rig.toml``, or the name of a shipped one.
+
+    >>> find("trtlab").name
+    'rig.toml'
+    """
+    path = Path(name)
+    for option in (path, path / "rig.toml"):
+        if option.is_file():
+            return option
+    known: dict[str, Path] = {}
+    for root in library.roots():
+        for file in sorted((root / library.FOLDERS["study"]).glob("*/rig.toml")):
+            known.setdefault(file.parent.name.removeprefix("rig-"), file)
+    if str(name).removeprefix("rig-") in known:
+        return known[str(name).removeprefix("rig-")]
+    raise InputError(f"no rig file and no rig named '{name}'{nearest(str(name), known)}")
+
+
+def load(name: str | Path) -> tuple[RigCard, Path]:
+    """A rig card and its file.
+
+    Raises InputError with file and field for anything that is not a possible rig.
+
+    >>> card, file = load("trtlab")
+    >>> [layer.name for layer in card.layers]
+    ['tread', 'carcass']
+    """
+    file = find(name)
+    return RigCard.check(read_toml(file), file), file
+
+
+def beside(card: RigCard, file: Path) -> list[Path]:
+    """Where the runs' tables lie if none are named: beside the card; they need not be there."""
+    return [file.parent / f"{run}.csv" for run in card.runs]
+
+
+def tables(card: RigCard, file: Path, given: Iterable[str | Path] = ()) -> list[Path]:
+    """Files of measured tables: as given (here, else beside the card); without any, each run's ``RUN.csv`` there.
+
+    Raises InputError where nothing is given and a run's table does not lie beside the card.
+
+    >>> card, file = load("trtlab")
+    >>> [table.name for table in tables(card, file)]
+    ['low.csv', 'high.csv']
+    """
+    folder = file.parent
+    named = [Path(table) for table in given]
+    if named:
+        return [folder / one if not one.exists() and (folder / one).is_file() else one for one in named]
+    files = beside(card, file)
+    missing = [table.name for table in files if not table.is_file()]
+    if len(missing) == len(files):
+        raise InputError(f"no table is given and none of {', '.join(missing)} lies beside the card", file=file)
+    if missing:
+        there = " ".join(table.name for table in files if table.is_file())
+        words = f"the card has runs without a table beside it: {', '.join(missing)}; to do without them, name {there}"
+        raise InputError(words, field="runs", file=file)
+    return files

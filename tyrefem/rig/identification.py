@@ -13,16 +13,14 @@ from numpy.typing import NDArray
 from threadpoolctl import threadpool_limits
 
 from tyrefem.brief import Brief
-from tyrefem.rig.card import RigCard
-from tyrefem.rig.estimate import Estimate, estimate_of
-from tyrefem.rig.find import load
-from tyrefem.rig.find import tables as beside
+from tyrefem.rig.card import RigCard, load
+from tyrefem.rig.card import tables as beside
 from tyrefem.rig.fit import Fit, Fitter
 from tyrefem.rig.grid import USUAL, Fineness
 from tyrefem.rig.noise import Noise, estimated, normal
 from tyrefem.rig.parameters import PROPERTY, RIG, SLOPE, Parameters, parameters_of
 from tyrefem.rig.readings import HeatingTest, read
-from tyrefem.rig.selection import Selection, select
+from tyrefem.rig.selection import Estimate, Selection, estimate_of, select
 from tyrefem.rig.twin import Twin
 
 if TYPE_CHECKING:

@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING, Any
 from tyrefem import library
 from tyrefem.cards import merged
 from tyrefem.errors import InputError, nearest
-from tyrefem.materials import MaterialCard, material
+from tyrefem.materials.card import MaterialCard, material
 from tyrefem.rig.verdict import sentences
 
 if TYPE_CHECKING:

@@ -30,7 +30,7 @@ def merged(card: RigCard, count: int) -> RigCard:
     Thicknesses add up; the guess of the conductivity is that of layers in series, density and specific heat keep
     mass and heat capacity. Raises InputError for a count that the card does not have.
 
-    >>> from tyrefem.rig.find import load
+    >>> from tyrefem.rig.card import load
     >>> one = merged(load("trtlab")[0], 1).layers[0]
     >>> one.name, round(one.thickness, 4), round(one.conductivity.value, 3)
     ('tread+carcass', 0.015, 0.271)

@@ -17,9 +17,8 @@ from numpy.typing import NDArray
 from scipy.sparse import diags
 from scipy.sparse.linalg import splu
 
-from tyrefem.rig.air import natural_film
 from tyrefem.rig.grid import Grid
-from tyrefem.rig.patch import Layer, Patch
+from tyrefem.rig.patch import Layer, Patch, natural_film
 
 Array = NDArray[Any]
 

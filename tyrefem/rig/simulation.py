@@ -12,11 +12,9 @@ from numpy.typing import NDArray
 from threadpoolctl import threadpool_limits
 
 from tyrefem.errors import InputError
-from tyrefem.estimate import check_readings
+from tyrefem.estimates.work import check_readings
 from tyrefem.measured import MeasuredRun
-from tyrefem.rig.card import RigCard
-from tyrefem.rig.clock import Clock
-from tyrefem.rig.find import load
+from tyrefem.rig.card import Clock, RigCard, load
 from tyrefem.rig.grid import USUAL, Fineness
 from tyrefem.rig.parameters import parameters_of
 from tyrefem.rig.twin import Twin

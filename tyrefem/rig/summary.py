@@ -6,10 +6,10 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
-from tyrefem.rig.estimate import COVERAGE
+from tyrefem.output import versions
 from tyrefem.rig.parameters import PROPERTY
+from tyrefem.rig.selection import COVERAGE
 from tyrefem.rig.verdict import sentences
-from tyrefem.summary import versions
 
 if TYPE_CHECKING:
     from tyrefem.rig.identification import Identification

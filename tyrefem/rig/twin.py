@@ -9,13 +9,12 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
-from tyrefem.rig.card import RigCard, RunCard
-from tyrefem.rig.clock import Clock
+from tyrefem.rig.card import Clock, RigCard, RunCard
 from tyrefem.rig.grid import USUAL, Fineness, Grid
 from tyrefem.rig.parameters import Parameter, Parameters, at
 from tyrefem.rig.patch import Layer, Patch, Property
+from tyrefem.rig.readings import view
 from tyrefem.rig.sensitivity import Sensitivity
-from tyrefem.rig.views import view
 
 Array = NDArray[Any]
 #: Error in time that a solve aims at, K: with the tests' computed times it stays far below the cameras' noise.

@@ -7,8 +7,8 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from tyrefem.rig.estimate import POOR, Estimate
 from tyrefem.rig.parameters import PROPERTY, RIG, SLOPE
+from tyrefem.rig.selection import POOR, Estimate
 
 if TYPE_CHECKING:
     from tyrefem.rig.identification import Identification

@@ -1,1 +1,4 @@
-"""Design studies: many variants of one study, answers in a table, and what they say to a designer."""
+"""Design studies: many variants of one study, answers in a table, and what they say to a designer.
+
+Knows nothing of diagnoses, pages and pictures.
+"""

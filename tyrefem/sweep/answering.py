@@ -1,27 +1,39 @@
-"""Variants answered and kept: by a certified reduced model where there is one, by full runs otherwise."""
+"""Variants answered and kept: by a certified reduced model where there is one, by full runs otherwise.
+
+Variants that are asked for one round after the other, as a search needs them: each is answered once and kept.
+"""
 
 from __future__ import annotations
 
+import dataclasses
+import hashlib
+import json
 from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import asdict
 from typing import TYPE_CHECKING, Any, Self
 
-from tyrefem import estimate
-from tyrefem.run_estimate import RunEstimate
-from tyrefem.sweep.execution import Execution
-from tyrefem.sweep.plan import Plan
-from tyrefem.sweep.schedulers import Here, Local, Scheduler
-from tyrefem.sweep.store import Name, Store
-from tyrefem.sweep.task import Task, perform, perform_all
+from tyrefem.estimates import work as estimate
+from tyrefem.simulation.estimate import RunEstimate
+from tyrefem.variants.execution import Execution
+from tyrefem.variants.plan import Plan
+from tyrefem.variants.schedulers import Here, Local, Scheduler
+from tyrefem.variants.store import Name, Store
+from tyrefem.variants.task import Task, perform, perform_all
 
 if TYPE_CHECKING:
     from tyrefem.reduced.surrogate import Certificate, Surrogate
 
 Outcome = dict[str, Any]
+
+
 #: Fewer variants than this per number that varies are run in full: training would cost as much.
 WORTH_TRAINING = 12
+
+
 #: Variants of one piece of work at most; so many variants are run one by one.
 PIECE, SINGLE = 64, 2000
+
+
 #: Under this name a sweep's folder keeps the certificate of the reduced model.
 CERTIFICATE = "certificate"
 
@@ -177,7 +189,7 @@ def by_model(
     trained: Surrogate, plan: Plan, variants: Sequence[Mapping[str, Any]], scheduler: Scheduler
 ) -> Iterator[dict[int, Outcome]]:
     """Outcomes of variants, by place, as pieces are finished; what could not be reduced is left out, for full runs."""
-    from tyrefem.reduced.work import ReducedTask, perform_reduced
+    from tyrefem.reduced.training_rounds import ReducedTask, perform_reduced
 
     packed = trained.packed(plan.packed)
     firsts = range(0, len(variants), PIECE)
@@ -195,3 +207,56 @@ def _certificate(noted: Mapping[str, Any] | None) -> Certificate | None:
     from tyrefem.reduced.surrogate import Certificate
 
     return None if noted is None else Certificate(**noted)
+
+
+class Asked(Answering):
+    """Answers of variants of one study, by what they change.
+
+    Parameters
+    ----------
+    plan : the study, what varies (the box of a reduced model) and the time to a temperature; it needs no variants.
+    how : see `Execution`. A search that asks for something else within the same box takes up what the folder has.
+    """
+
+    #: What was asked for, in its order.
+    variants: list[Mapping[str, Any]]
+    at_most = "up to "
+
+    def __init__(self, plan: Plan, how: Execution) -> None:
+        boxes = [dataclasses.asdict(one) for one in plan.varied]
+        text = json.dumps([plan.packed.digest, boxes, plan.time_to], sort_keys=True, default=str)
+        super().__init__(plan, how, [], hashlib.sha256(text.encode()).hexdigest()[:16])
+        self._number: dict[str, int] = {}
+        self._names: list[str] = []
+
+    def name(self, number: int) -> str:
+        """What the variant changes, and whether a full run was asked for where there is a model."""
+        return self._names[number]
+
+    def __call__(self, variants: Sequence[Mapping[str, Any]], *, full: bool = False) -> list[Outcome]:
+        """Outcomes of some variants, in their order; ``full``: none by the reduced model."""
+        numbers = [self._numbered(one, full) for one in variants]
+        missing = [n for n in dict.fromkeys(numbers) if n not in self.outcomes]
+        for _ in self.answer(missing, full=full):
+            pass
+        return [self.outcomes[n] for n in numbers]
+
+    def _numbered(self, changes: Mapping[str, Any], full: bool) -> int:
+        name = json.dumps(dict(changes), sort_keys=True, default=str) + (" full" if full and self.reduced else "")
+        if name not in self._number:
+            number = self._number[name] = len(self.variants)
+            self.variants.append(dict(changes))
+            self._names.append(name)
+            self.take_up(number)
+        return self._number[name]
+
+    @property
+    def margins(self) -> Mapping[str, float]:
+        """Answer -> largest error of the reduced model in fresh full runs; empty without one."""
+        return {} if self.certificate is None else self.certificate.errors
+
+    @property
+    def table_plan(self) -> Plan:
+        """A plan of what was asked for, in its order: what a table of it needs."""
+        names = tuple(str(n + 1) for n in range(len(self.variants)))
+        return dataclasses.replace(self.plan, variants=tuple(self.variants), names=names)

@@ -1,4 +1,9 @@
-"""The safe operating envelope: over load and pressure, the largest speed that keeps the tyre below a limit."""
+"""The safe operating envelope: over load and pressure, the largest speed that keeps the tyre below a limit.
+
+Loads, pressures and speeds at which a tyre may be driven: what an envelope looks at.
+
+The speed at which one answer reaches its limit: false position kept within bisection.
+"""
 
 from __future__ import annotations
 
@@ -7,24 +12,149 @@ from collections.abc import Mapping
 from dataclasses import dataclass
 from typing import TYPE_CHECKING, Any, Unpack
 
+from tyrefem.errors import InputError
+from tyrefem.inputs.changes import scaled, value_at
+from tyrefem.inputs.study import Study
 from tyrefem.quantity import parse
-from tyrefem.studies import Study
-from tyrefem.sweep.answer_words import name_of, shown
-from tyrefem.sweep.asked import Asked
-from tyrefem.sweep.card import EnvelopeCard
-from tyrefem.sweep.execution import Execution, Said
-from tyrefem.sweep.operating_points import checked_pairs, operating, speed_range
-from tyrefem.sweep.plan import Plan
-from tyrefem.sweep.speed_search import SpeedSearch
-from tyrefem.sweep.varied import Varied
+from tyrefem.sweep.answering import Asked
+from tyrefem.variants.answer_units import name_of, shown
+from tyrefem.variants.answers import check_answer
+from tyrefem.variants.card import EnvelopeCard
+from tyrefem.variants.execution import Execution, Said
+from tyrefem.variants.plan import Plan, sensible
+from tyrefem.variants.varied import Varied
 
 if TYPE_CHECKING:
     import pandas as pd
 
     from tyrefem.reduced.surrogate import Certificate
 
+#: Loads where none are given: shares of the study's own.
+SHARES = (0.5, 0.75, 1.0, 1.25)
+
+
+def checked_pairs(study: Study, card: EnvelopeCard) -> list[tuple[str, str]]:
+    """Loads and pressures of an envelope, as written; every one of them is something that the study takes.
+
+    Raises
+    ------
+    InputError : as of `envelope`.
+    """
+    try:
+        check_answer(card.answer, study)
+    except InputError as error:
+        raise error.within(field="envelope.answer") from None
+    speed_range(card)
+    loads = card.loads or tuple(_shares(study))
+    pressures = card.pressures or (str(_given(study, "pressure")),)
+    for field, unit, values in (("loads", "N", loads), ("pressures", "Pa", pressures)):
+        if len({_parsed(value, unit, field) for value in values}) < len(values):
+            raise InputError("one of them is given twice", field=f"envelope.{field}")
+    pairs = [(load, pressure) for load in loads for pressure in pressures]
+    sensible(study, [("", operating(pair, card.fastest)) for pair in pairs])
+    return pairs
+
+
+def speed_range(card: EnvelopeCard) -> tuple[float, float]:
+    """Slowest and fastest speed searched, m/s."""
+    low, high = (_parsed(text, "m/s", name) for name, text in (("slowest", card.slowest), ("fastest", card.fastest)))
+    if not 0 < low < high:
+        raise InputError(f"'{card.slowest}' to '{card.fastest}' is no range of speeds", field="envelope.slowest")
+    return low, high
+
+
+def _given(study: Study, name: str) -> Any:
+    try:
+        return value_at(study.data, f"drive.{name}", study.folder)
+    except InputError as error:
+        raise InputError(f"the study gives no one {name}: name them", field=f"envelope.{name}s") from error
+
+
+def _shares(study: Study) -> list[str]:
+    load = _given(study, "load")
+    try:
+        return [scaled(load, share, significant=4) for share in SHARES]
+    except InputError as error:
+        raise InputError(f"the study gives no one load: {error.message}; name them", field="envelope.loads") from None
+
+
+def _parsed(text: str, unit: str, field: str) -> float:
+    try:
+        return parse(text, unit)
+    except InputError as error:
+        raise error.within(field=f"envelope.{field}") from None
+
+
+def operating(pair: tuple[str, str], speed: str) -> dict[str, str]:
+    """What a study changes to be driven at a load, a pressure and a speed."""
+    return {"drive.load": pair[0], "drive.pressure": pair[1], "drive.speed": speed}
+
+
+#: The speed is found to this share of the range searched, or the answer to this share of the limit.
+FINE = 1e-3
+
+
+class SpeedSearch:
+    """The speed at which one answer reaches the limit."""
+
+    def __init__(self, low: float, high: float, limit: float) -> None:
+        self.low, self.high, self.limit, self.fine = low, high, limit, FINE * (high - low)
+        self.at_low = self.at_high = math.nan
+        self.failure, self.value, self._speed = "", math.nan, math.nan
+        self.settled = self.bracketed = False
+        self._kept = 0
+
+    @property
+    def next(self) -> float:
+        """Speed to try."""
+        if math.isnan(self.at_low):
+            return self.low
+        if math.isnan(self.at_high):
+            return self.high
+        a, b = self.at_low - self.limit, self.at_high - self.limit
+        middle = self.low - a * (self.high - self.low) / (b - a)
+        margin = 0.02 * (self.high - self.low)
+        return min(max(middle, self.low + margin), self.high - margin)
+
+    @property
+    def speed(self) -> float:
+        """Speed found; NaN: none."""
+        return self._speed
+
+    def take(self, outcome: Mapping[str, Any], answer: str) -> None:
+        """An outcome at `next`."""
+        speed = self.next
+        if "failure" in outcome:
+            self.failure, self.settled, self._speed = outcome["failure"], True, math.nan
+            return
+        value = float(outcome["answers"][answer])
+        if math.isnan(self.at_low):
+            self.at_low = value
+            if value >= self.limit:
+                self.settled, self.value = True, value
+        elif math.isnan(self.at_high):
+            self.at_high = value
+            if value < self.limit:
+                self.settled, self.value, self._speed = True, value, self.high
+        elif value < self.limit:
+            self.low, self.at_low, self.value, self._speed = speed, value, value, speed
+            # Illinois: an end that stays twice counts half, so that the other one moves.
+            self.at_high = self.limit + (self.at_high - self.limit) / 2 if self._kept > 0 else self.at_high
+            self._kept = max(self._kept, 0) + 1
+        else:
+            self.high, self.at_high = speed, value
+            self.at_low = self.limit + (self.at_low - self.limit) / 2 if self._kept < 0 else self.at_low
+            self._kept = min(self._kept, 0) - 1
+        if not self.settled and not math.isnan(self.at_high):
+            self.bracketed = True
+            close = self.high - self.low < self.fine or abs(self.value - self.limit) < FINE * abs(self.limit)
+            self.settled = close and not math.isnan(self._speed)
+
+
 #: Rounds of bisection and interpolation at most.
 ROUNDS = 14
+
+
 #: Runs per load and pressure that are expected, to judge whether training pays.
 EXPECTED = 7
 

@@ -10,7 +10,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from tyrefem.errors import InputError, nearest
-from tyrefem.sweep.answers import NEVER
+from tyrefem.variants.answers import NEVER
 
 if TYPE_CHECKING:
     import pandas as pd
@@ -92,8 +92,8 @@ class ParetoFront:
     @property
     def words(self) -> list[str]:
         """The answer in sentences."""
-        from tyrefem.sweep.answer_words import name_of, shown
         from tyrefem.sweep.responses import extreme, named
+        from tyrefem.variants.answer_units import name_of, shown
 
         table, aims = self.table, self.chosen
         if len(aims) < 2 or table.empty:

@@ -8,9 +8,9 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
-from tyrefem.sweep.answer_words import difference_unit, name_of, shown
-from tyrefem.sweep.answers import NEVER, TIME_TO
 from tyrefem.sweep.sweep import Sweep
+from tyrefem.variants.answer_units import difference_unit, name_of, shown
+from tyrefem.variants.answers import NEVER, TIME_TO
 
 if TYPE_CHECKING:
     import pandas as pd

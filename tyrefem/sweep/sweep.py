@@ -13,9 +13,9 @@ import numpy as np
 from tyrefem.brief import Brief
 from tyrefem.errors import InputError, nearest
 from tyrefem.sweep.answering import Answering
-from tyrefem.sweep.cluster import ClusterLostError
-from tyrefem.sweep.execution import Execution, Said
-from tyrefem.sweep.plan import Plan
+from tyrefem.variants.dask_cluster import ClusterLostError
+from tyrefem.variants.execution import Execution, Said
+from tyrefem.variants.plan import Plan
 
 if TYPE_CHECKING:
     import pandas as pd

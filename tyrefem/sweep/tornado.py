@@ -9,12 +9,12 @@ from dataclasses import dataclass
 from typing import TYPE_CHECKING, Any
 
 from tyrefem.errors import InputError
-from tyrefem.studies import Study
-from tyrefem.sweep.answer_words import difference_unit, name_of, shown
-from tyrefem.sweep.plan import Plan, sensible
+from tyrefem.inputs.study import Study
+from tyrefem.inputs.uncertain_numbers import UncertainNumber, left_out, uncertain_number
 from tyrefem.sweep.sweep import Sweep
-from tyrefem.sweep.varied import DIGITS
-from tyrefem.uncertain_numbers import UncertainNumber, left_out, uncertain_number
+from tyrefem.variants.answer_units import difference_unit, name_of, shown
+from tyrefem.variants.plan import Plan, sensible
+from tyrefem.variants.varied import DIGITS
 
 if TYPE_CHECKING:
     import pandas as pd

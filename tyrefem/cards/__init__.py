@@ -1,0 +1,219 @@
+"""The base of every file a person writes: validated, immutable, with errors that name file and field.
+
+Knows files and units, and no tyre.
+"""
+
+from __future__ import annotations
+
+import copy
+import functools
+import tomllib
+from collections.abc import Iterator, Mapping
+from pathlib import Path
+from typing import Annotated, Any, ClassVar, Self, get_args
+
+from pydantic import BaseModel, ConfigDict, Field, ValidationError, model_validator
+
+from tyrefem.brief import Brief, short
+from tyrefem.cards.plausible import Plausible
+from tyrefem.errors import InputError, InputWarning, nearest
+from tyrefem.output import note_input
+from tyrefem.quantity import Unit
+
+Text = Annotated[str, Field(min_length=1)]
+#: The largest tyre made is 4 m in diameter; far beyond it, coordinates lose the digits that elements need.
+PositiveLength = Annotated[float, Unit("m", gt=0, le=20)]
+Temperature = Annotated[float, Unit("degC", le=2000)]
+FilmCoefficient = Annotated[float, Unit("W/m**2/K", ge=0)]
+
+
+class Card(Brief, BaseModel):
+    """A table of a TOML file. Unknown keys are refused with the nearest spelling."""
+
+    model_config = ConfigDict(frozen=True, extra="forbid", arbitrary_types_allowed=True)
+    kind: ClassVar[str] = "card"
+
+    def _title(self) -> str:
+        return str(getattr(self, "name", None) or getattr(self, "title", None) or "")
+
+    def _facts(self) -> Mapping[str, Any]:
+        """What is set, with its SI unit, in the order of the fields; where it is from at last."""
+        names = sorted(type(self).model_fields, key=lambda name: name in ("source", "notes"))
+        values = {name: getattr(self, name) for name in names if name not in ("name", "title")}
+        units = _units(type(self))
+        return {
+            name: f"{short(value)} {units[name]}" if name in units and isinstance(value, float) else value
+            for name, value in values.items()
+            if value not in (None, "", (), [], {})
+        }
+
+    @model_validator(mode="before")
+    @classmethod
+    def _known_keys(cls, data: Any) -> Any:
+        if isinstance(data, cls):
+            return data
+        if not isinstance(data, Mapping):
+            raise InputError(f"must be a table of keys, not {data!r:.60}")
+        allowed = _allowed(cls)
+        for key in data:
+            if key not in allowed:
+                raise InputError(f"unknown key '{key}'{nearest(str(key), allowed)}")
+        return data
+
+    @classmethod
+    def check(cls, data: Any, file: str | Path | None = None) -> Self:
+        """Validate plain data; the first thing wrong becomes one `InputError`."""
+        try:
+            return cls.model_validate(data)
+        except ValidationError as error:
+            raise _one_error(error, file) from None
+
+    def warnings(self) -> tuple[InputWarning, ...]:
+        """What is possible but unlikely in this table and in the tables within it; field names as in the file.
+
+        Every field annotated with `Plausible` is held against its range. A subclass whose numbers are more than
+        fields adds to these.
+        """
+        found = [
+            range_.warning(getattr(self, name), key)
+            for name, key, range_ in _plausible(type(self))
+            if getattr(self, name) is not None
+        ]
+        below = [
+            warning.within(field=key)
+            for name, field in type(self).model_fields.items()
+            for key, card in _cards(field.alias or name, getattr(self, name))
+            for warning in card.warnings()
+        ]
+        return (*filter(None, found), *below)
+
+    def checked(self, own: Mapping[str, Any], data: Mapping[str, Any], file: str | Path | None = None) -> Self:
+        """`check` of data, where this card was made of ``own``: tables that the two share are not read again."""
+        kept: dict[str, Any] = dict(data)
+        for key in type(self).model_fields:
+            if key in own and key in data and own[key] is data[key]:
+                value = getattr(self, key)
+                cards = list(value.values()) if isinstance(value, dict) else [value]
+                if cards and all(isinstance(one, Card) for one in cards):
+                    kept[key] = value
+        return type(self).check(kept, file)
+
+
+@functools.cache
+def _plausible(card: type[Card]) -> tuple[tuple[str, str, Plausible], ...]:
+    """Name, key in the file and range of the fields that have one."""
+    found = []
+    for name, field in card.model_fields.items():
+        # "Annotated[...] | None" keeps its annotations within the union.
+        metadata = [*field.metadata, *(item for part in get_args(field.annotation) for item in get_args(part)[1:])]
+        found += [(name, field.alias or name, item) for item in metadata if isinstance(item, Plausible)]
+    return tuple(found)
+
+
+def _cards(key: str, value: Any) -> Iterator[tuple[str, Card]]:
+    """The tables in a field's value, with their dotted names."""
+    if isinstance(value, Card):
+        yield key, value
+    elif isinstance(value, Mapping):
+        for name, entry in value.items():
+            yield from _cards(f"{key}.{name}", entry)
+    elif isinstance(value, tuple | list):
+        for number, entry in enumerate(value):
+            yield from _cards(f"{key}.{number}", entry)
+
+
+@functools.cache
+def _allowed(card: type[Card]) -> frozenset[str]:
+    return frozenset(field.alias or name for name, field in card.model_fields.items())
+
+
+@functools.cache
+def _units(card: type[Card]) -> dict[str, str]:
+    """Field -> unit that its number is in; none for pure numbers."""
+    units = {}
+    for name, field in card.model_fields.items():
+        marks = [*field.metadata, *(mark for kind in get_args(field.annotation) for mark in get_args(kind)[1:])]
+        unit = next((mark.unit for mark in marks if isinstance(mark, Unit)), "1")
+        if unit != "1":
+            units[name] = "K" if unit == "delta_degC" else unit
+    return units
+
+
+def _one_error(error: ValidationError, file: str | Path | None) -> InputError:
+    first = error.errors(include_url=False)[0]
+    field = ".".join(str(part) for part in first["loc"])
+    cause = first.get("ctx", {}).get("error")
+    if isinstance(cause, InputError):
+        return cause.within(field=field or None, file=file)
+    message = str(cause) if cause is not None else first["msg"]
+    if first["type"] == "missing":
+        message = "missing; this field is required"
+    elif first["type"] == "string_type":
+        message = f"must be text, not {first['input']!r:.60}"
+    elif first["type"] == "union_tag_invalid":
+        tags = [tag.strip().strip("'") for tag in first["ctx"]["expected_tags"].split(",")]
+        message = f"unknown law '{first['ctx']['tag']}'{nearest(str(first['ctx']['tag']), tags)}"
+        field = f"{field}.law"
+    elif first["type"] == "union_tag_not_found":
+        message = "missing key 'law'"
+    elif first["type"] == "literal_error":
+        message = f"{first['input']!r:.60} is not allowed; allowed: {first['ctx']['expected']}"
+    return InputError(message, field=field or None, file=file)
+
+
+def read_toml(path: str | Path) -> dict[str, Any]:
+    """A TOML file as plain data; a file that is not TOML is an `InputError` with the line."""
+    path = Path(path)
+    note_input(path)
+    try:
+        stat = path.stat()
+        return copy.deepcopy(_parsed(path.absolute(), stat.st_mtime_ns, stat.st_size, stat.st_ino))
+    except tomllib.TOMLDecodeError as error:
+        raise InputError(f"not valid TOML: {error}", file=path) from None
+    except UnicodeDecodeError:
+        raise InputError("not a text file in UTF-8", file=path) from None
+    except OSError as error:
+        raise InputError(f"cannot be read: {error.strerror or error}", file=path) from None
+
+
+@functools.lru_cache(maxsize=64)
+def _parsed(path: Path, *_state: int) -> dict[str, Any]:
+    """A file as it was in this state: time of change, size, number."""
+    return tomllib.loads(path.read_text(encoding="utf-8-sig"))
+
+
+#: Ways of giving one property: a table that is laid over another in one of them drops the other ways.
+FORMS = ({"value"}, {"along", "across"}, {"table"}, {"shear_modulus"}, {"c10", "c01", "c20", "c30"})
+
+
+def merged(base: Mapping[str, Any], changes: Mapping[str, Any]) -> dict[str, Any]:
+    """``base`` with ``changes`` laid over it, tables merged key by key, everything else replaced.
+
+    >>> merged({"k": {"value": "1 W/m/K", "source": "a"}}, {"k": {"along": "2 W/m/K", "across": "1 W/m/K"}})
+    {'k': {'source': 'a', 'along': '2 W/m/K', 'across': '1 W/m/K'}}
+    >>> merged({"layers": [{"name": "liner"}, {"name": "ply"}]}, {"layers": {"1": {"name": "plies"}}})
+    {'layers': [{'name': 'liner'}, {'name': 'plies'}]}
+    """
+    given = [form for form in FORMS if form & set(changes)]
+    dropped = set().union(*FORMS) - set().union(*given) if given else set()
+    result = {key: value for key, value in base.items() if key not in dropped}
+    for key, value in changes.items():
+        below = result.get(key)
+        if isinstance(below, Mapping) and isinstance(value, Mapping):
+            value = merged(below, value)
+        elif isinstance(below, list) and isinstance(value, Mapping):
+            value = _entries(below, value, str(key))
+        result[key] = value
+    return result
+
+
+def _entries(base: list[Any], changes: Mapping[str, Any], field: str) -> list[Any]:
+    """A list with changes laid over the entries that they number from 0: ``layers.2.regions.0.to``."""
+    result = list(base)
+    for number, value in changes.items():
+        if not (number.isdigit() and int(number) < len(base)):
+            raise InputError(f"no entry '{number}'; allowed: 0 to {len(base) - 1}", field=field)
+        below = result[int(number)]
+        both = isinstance(below, Mapping) and isinstance(value, Mapping)
+        result[int(number)] = merged(below, value) if both else value
+    return result

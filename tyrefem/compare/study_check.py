@@ -1,0 +1,41 @@
+"""What a study file names and only its users look up: uncertain numbers, drives, runs and columns of tables."""
+
+from __future__ import annotations
+
+from tyrefem.compare.experiment import experiments
+from tyrefem.errors import InputError
+from tyrefem.inputs.study import Study
+from tyrefem.mechanics.cycle_schedule import check_cases
+
+
+def check_study(study: Study) -> int:
+    """Follow every name of a study to its end without running it; the number of its measured runs.
+
+    Raises
+    ------
+    InputError : a load that the section cannot take, an uncertain number that is not there, a drive of a measured
+        table that is wrong, a table, run or column that is not there.
+    """
+    check_cases(study)
+    _ = study.uncertainty
+    for key, sd in study.card.uncertainty.items():
+        try:
+            study.scaled(key, 1 + sd)
+        except InputError as error:
+            raise InputError(
+                f"one standard deviation more: {error}", field=f"uncertainty.{key}", file=study.file
+            ) from None
+    for number, entry in enumerate(study.card.measured):
+        if entry.drive:
+            _check_drive(study, number)
+    return len(experiments(study)) if study.measured else 0
+
+
+def _check_drive(study: Study, number: int) -> None:
+    entry = study.card.measured[number]
+    try:
+        check_cases(study.with_drive(entry.drive))
+    except InputError as error:
+        if error.file not in (None, study.file):
+            raise
+        raise InputError(error.message, field=f"measured.{number}.{error.field or 'drive'}", file=study.file) from None

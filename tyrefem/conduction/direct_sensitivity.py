@@ -1,0 +1,193 @@
+"""What parameters of a problem change in its heat balance directly, at given temperatures: all of them at once."""
+
+from __future__ import annotations
+
+import functools
+from collections.abc import Sequence
+from dataclasses import dataclass
+from typing import Any
+
+import numpy as np
+from numpy.typing import NDArray
+
+from tyrefem.conduction.balance import Capacity, HeatBalance
+from tyrefem.conduction.loads import Load, SourceLoad, State
+from tyrefem.conduction.surface_loads import FilmLoad
+
+Array = NDArray[Any]
+
+
+class DirectHeat:
+    """dF/dp - (dM/dp) du/dt for every parameter p, u and t held; F: heat into every unknown, M du/dt = F.
+
+    Only loads that differ from the base problem's are evaluated. Those of one place are put together first and then
+    spread over the unknowns in one product. All problems are frozen at one state: what they have in common drops out.
+
+    Parameters
+    ----------
+    base, others : balances on the same operators, others[i] with parameter i larger by steps[i]; frozen here at t, y.
+    """
+
+    def __init__(
+        self, base: HeatBalance, others: Sequence[HeatBalance], steps: Sequence[float], t: float, y: State
+    ) -> None:
+        for one in (base, *others):
+            one.freeze(t, y)
+        self.base, self.others, self.steps = base, others, np.asarray(steps)
+        shares, places = self._shares(), dict[Any, list[Load]]()
+        for load in shares:
+            places.setdefault(_place(load), []).append(load)
+        together = [(loads, np.array([shares[load] for load in loads])) for loads in places.values()]
+        # Of each place: the loads, and (n_loads, n_parameters) how much of each comes with a unit of a parameter.
+        self._sources: list[tuple[Any, Array]] = [one for one in together if isinstance(one[0][0], SourceLoad)]
+        self._films: list[tuple[Any, Array]] = [one for one in together if isinstance(one[0][0], FilmLoad)]
+        self._single = [one for one in together if not isinstance(one[0][0], SourceLoad | FilmLoad)]
+        self._operators = [_Change.between(base, other, step) for other, step in zip(others, steps, strict=True)]
+        variable = any(one.variable_reservoirs for one in (base, *others))
+        self._constant_gas = None if variable else self._gas_capacity(y.g)
+
+    def _shares(self) -> dict[Load, Array]:
+        """Load -> (n_parameters,): 1/step where a parameter brings it, -1/step where it replaces it."""
+        found: dict[Load, Array] = {}
+        for column, (other, step) in enumerate(zip(self.others, self.steps, strict=True)):
+            for sign, mine, theirs in ((1, other, self.base), (-1, self.base, other)):
+                known = {_identity(theirs, load) for load in theirs.acting}
+                for load in mine.acting:
+                    if _identity(mine, load) not in known:
+                        found.setdefault(load, np.zeros(len(self.others)))[column] = sign / step
+        return found
+
+    def __call__(self, t: float, y: State) -> Array:
+        """(n + m, n_parameters) W per unit of each parameter; m: reservoirs."""
+        n = y.u.size
+        found = np.zeros((len(self.others), n + y.g.size))
+        body, gas = found[:, :n], found[:, n:]
+        if self._sources:
+            body += self._heat_of_sources(t, y).T
+        for films, shares in self._films:
+            heat = _heat_of_films(films, shares, t, y)
+            body[:, films[0].s.dofs] += heat
+            if films[0].reservoir is not None:
+                gas[:, films[0].reservoir] -= heat.sum(axis=1)
+        for loads, shares in self._single:
+            each = np.zeros((len(loads), n + y.g.size))
+            for load, heat in zip(loads, each, strict=True):
+                load.remainder(t, y, heat[:n], heat[n:])
+            found += shares.T @ each
+        own = heat_of(self.base, t, y)
+        rate = self._rate(y, own[:n])
+        for change, to_body, to_gas in zip(self._operators, body, gas, strict=True):
+            change.add(y, rate, to_body, to_gas)
+        capacity = self.base.reservoir_capacity(y.g)
+        more = self._gas_capacity(y.g) if self._constant_gas is None else self._constant_gas
+        gas -= more * (own[n:] / np.where(capacity > 0, capacity, 1.0))
+        return np.ascontiguousarray(found.T)
+
+    def _heat_of_sources(self, t: float, y: State) -> Array:
+        """(n, n_parameters)."""
+        heat = [np.column_stack([one.at_nodes(t, y.u) for one in loads]) @ shares for loads, shares in self._sources]
+        return np.asarray(self.base.ops.source(*(loads[0].name for loads, _ in self._sources)) @ np.concatenate(heat))
+
+    def _gas_capacity(self, g: Array) -> Array:
+        """(n_parameters, m): change of the reservoirs' heat capacities, J/K per unit of each parameter."""
+        own = self.base.reservoir_capacity(g)
+        change = [other.reservoir_capacity(g) - own for other in self.others]
+        return np.reshape(change, (len(change), g.size)) / self.steps[:, None]
+
+    def rate(self, t: float, y: State) -> Array:
+        """(n,) du/dt of the base problem, K/s."""
+        return self._rate(y, heat_of(self.base, t, y)[: y.u.size])
+
+    def _rate(self, y: State, heat: Array) -> Array:
+        factor = self._factor(self.base.mass(y.u)) if self.base.variable_capacity else self._constant_mass
+        return np.asarray(factor.solve(heat.copy()))
+
+    @functools.cached_property
+    def _constant_mass(self) -> Any:
+        return self._factor(self.base.M_data)
+
+    def _factor(self, data: Array) -> Any:
+        return self.base.ops.ordering(np.arange(self.base.ops.size)).factor(data)
+
+
+@dataclass(frozen=True)
+class _Change:
+    """What one parameter changes in the operators, per unit of it; None: nothing.
+
+    ``capacities``: pairs of the base problem's and its own, where they differ and one varies with temperature.
+    """
+
+    base: HeatBalance
+    step: float
+    S: Any
+    M: Any
+    B: Any
+    D: Any
+    capacities: list[tuple[Capacity, Capacity]]
+
+    @classmethod
+    def between(cls, base: HeatBalance, other: HeatBalance, step: float) -> _Change:
+        """The change from one balance to another."""
+
+        def change(ours: Array, theirs: Array) -> Array | None:
+            return None if np.array_equal(ours, theirs) else (theirs - ours) / step
+
+        differ = [(ours, other.capacities[name]) for name, ours in base.capacities.items()]
+        differ = [(ours, theirs) for ours, theirs in differ if ours.c != theirs.c]
+        variable = [pair for pair in differ if not (pair[0].constant and pair[1].constant)]
+        M = sum((theirs.data - ours.data) / step for ours, theirs in differ if ours.constant and theirs.constant)
+        S = change(base.S_data, other.S_data)
+        return cls(
+            base,
+            step,
+            None if S is None else base.ops.matrix(S),
+            base.ops.matrix(M) if isinstance(M, np.ndarray) else None,
+            change(base.B, other.B),
+            change(base.D, other.D),
+            variable,
+        )
+
+    def add(self, y: State, rate: Array, body: Array, gas: Array) -> None:
+        """Add the heat of the changed operators; rate: du/dt."""
+        if self.S is not None:
+            body -= self.S @ y.u
+        if self.M is not None:
+            body -= self.M @ rate
+        if self.capacities:
+            more = np.sum([theirs.mass(y.u) - ours.mass(y.u) for ours, theirs in self.capacities], axis=0)
+            body -= self.base.ops.matrix(more / self.step) @ rate
+        if self.B is not None:
+            body += self.B @ y.g
+            gas += self.B.T @ y.u
+        if self.D is not None:
+            gas -= self.D @ y.g
+
+
+def _place(load: Load) -> Any:
+    """Loads of one place differ by a source at its nodes, or by a film and a flux at its quadrature points."""
+    if isinstance(load, SourceLoad):
+        return load.name
+    return (load.s, load.reservoir) if isinstance(load, FilmLoad) else None
+
+
+def _identity(balance: HeatBalance, load: Load) -> tuple[Any, ...]:
+    """The same for loads of two balances that act alike: of one cause, at one place. Without a cause none is."""
+    place = balance.entries[load.slot][:2] if load.slot >= 0 else getattr(load, "name", None)
+    return place, id(load if load.cause is None else load.cause)
+
+
+def _heat_of_films(films: list[FilmLoad], shares: Array, t: float, y: State) -> Array:
+    """(n_parameters, n_dofs): what films of one surface and sink leave out, with such shares of each."""
+    s = films[0].s
+    flux, more = np.empty((2, len(films), s.weight.size))
+    for number, film in enumerate(films):
+        flux[number], more[number] = film.beyond(t, y)
+    q = shares.T @ flux - (shares.T @ more) * (s.trace @ y.u[s.dofs])
+    return np.asarray((s.trace_t @ (q * s.weight).T).T)
+
+
+def heat_of(balance: HeatBalance, t: float, y: State) -> Array:
+    """(n + m,) heat into every unknown, W; exact wherever the linear part was frozen."""
+    G, Gg, _ = balance.remainder(t, y)
+    body = G - balance.S @ y.u + balance.B @ y.g
+    return np.concatenate([body, Gg + balance.B.T @ y.u - balance.D @ y.g])

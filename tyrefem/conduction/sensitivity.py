@@ -1,0 +1,179 @@
+"""How a transient solution changes with parameters of the problem: tangents from the assembled operators."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import dataclass
+from itertools import pairwise
+from typing import TYPE_CHECKING, Any
+
+import numpy as np
+from numpy.typing import NDArray
+from scipy.sparse import csr_matrix
+
+from tyrefem.conduction.balance import HeatBalance
+from tyrefem.conduction.direct_sensitivity import DirectHeat
+from tyrefem.conduction.fixed_steps import GAMMA, StageSolver
+from tyrefem.conduction.linear_solver import one_thread
+from tyrefem.conduction.loads import SourceLoad, State
+from tyrefem.conduction.operators import Operators
+from tyrefem.conduction.points import located
+from tyrefem.errors import InputError
+
+if TYPE_CHECKING:
+    from tyrefem.conduction.problem import Conduction
+
+Array = NDArray[Any]
+
+#: Half the difference of temperature over which slopes of sources and heat capacities are taken, K.
+_BUMP = 0.1
+
+
+@dataclass(frozen=True)
+class Perturbed:
+    """A problem that differs from the base one by a small ``step`` of a parameter; ``initial``: its start, degC."""
+
+    problem: Conduction
+    step: float
+    initial: float | None = None
+
+
+@dataclass(frozen=True)
+class Tangents:
+    """d(temperature)/d(parameter).
+
+    Attributes
+    ----------
+    times : (n_times,) s; values : (n_parameters, n_times, n) per unit of parameter at the unknowns.
+    reservoirs : (n_parameters, n_times, n_reservoirs).
+    """
+
+    operators: Operators
+    times: Array
+    values: Array
+    reservoirs: Array
+
+    def at(self, points: Any) -> Array:
+        """Tangents at points (n_points, 2): (n_parameters, n_times, n_points)."""
+        value = located(self.operators, points).value()
+        parameters, times, size = self.values.shape
+        return (value @ self.values.reshape(-1, size).T).T.reshape(parameters, times, -1)
+
+
+def stage_times(breaks: Sequence[float], first: float = 3.0, growth: float = 1.7, longest: float = 80.0) -> Array:
+    """Times at which `tangents` wants the base solution: every step's start, first stage and end.
+
+    Steps grow from ``first`` (s) by ``growth`` to ``longest`` after every break, where data jump; breaks include the
+    first and the last time.
+
+    >>> stage_times([0.0, 10.0], first=4.0, growth=1.5).round(2)
+    array([ 0.  ,  1.17,  4.  ,  5.76, 10.  ])
+    """
+    times = [float(breaks[0])]
+    for start, end in pairwise(breaks):
+        sizes: list[float] = []
+        while sum(sizes) < end - start:
+            sizes.append(min(first * growth ** len(sizes), longest))
+        scale = (end - start) / sum(sizes)
+        if len(sizes) > 1 and scale < 0.75:  # the last step would overshoot by far: spread what is left
+            sizes = sizes[:-1]
+            scale = (end - start) / sum(sizes)
+        t = start
+        for number, size in enumerate(sizes):
+            step = size * scale
+            last = end if number == len(sizes) - 1 else t + step
+            times += [t + GAMMA * (last - t), last]
+            t = last
+    return np.array(times)
+
+
+def tangents(
+    base: Conduction, times: Array, values: Array, reservoirs: Array, perturbed: Sequence[Perturbed]
+) -> Tangents:
+    """Tangents along a known solution of ``base``.
+
+    M ds/dt = -(dF/du) s + [F(y; p + step) - F(y; p)]/step - (dM/dp) du/dt, linear in s, so that all parameters share
+    one factorisation per step. dF/du holds conduction, films and the slopes of sources and heat capacities with
+    temperature.
+
+    Parameters
+    ----------
+    base : the problem; its boundaries may not be `Fixed`.
+    times : (n_times,) s as `stage_times` gives them; values (n_times, n), reservoirs (n_times, m): the solution there.
+    perturbed : the same problem on the same mesh object with one parameter changed each.
+
+    Raises
+    ------
+    InputError : another mesh or element, or a fixed boundary.
+    """
+    ops = base.operators
+    for one in perturbed:
+        if one.problem.operators is not ops:
+            raise InputError("a perturbed problem must be on the base problem's own mesh", field="perturbed")
+    with one_thread():
+        return _march(base, times, values, reservoirs, perturbed)
+
+
+def _march(
+    base: Conduction, times: Array, values: Array, reservoirs: Array, perturbed: Sequence[Perturbed]
+) -> Tangents:
+    ops, n, m, count = base.operators, base.operators.size, reservoirs.shape[1], len(perturbed)
+    balance = base._balance()
+    if balance.fixed.dofs.size:
+        raise InputError("tangents need a problem without Fixed boundaries", field="boundaries")
+    direct = DirectHeat(
+        base._balance(),
+        [one.problem._balance() for one in perturbed],
+        [one.step for one in perturbed],
+        float(times[0]),
+        State(values[0], reservoirs[0]),
+    )
+    heat = balance.reservoir_capacity(reservoirs[0])
+    ordering = ops.ordering(np.arange(n))
+    s = np.zeros((n + m, count))
+    for column, one in enumerate(perturbed):
+        if one.initial is not None:
+            s[:, column] = (one.initial - values[0, 0]) / one.step
+    found = np.zeros((len(times), n + m, count))
+    found[0] = s
+    for first in range(0, len(times) - 1, 2):
+        h = times[first + 2] - times[first]
+        # Data are seen from inside the step: a jump at its end belongs to the next one.
+        inside = [times[first + 1], times[first + 2] - 1e-9 * max(1.0, times[first + 2])]
+        slopes: list[Array] = []
+        for stage, t in enumerate(inside):
+            y = State(values[first + 1 + stage], reservoirs[first + 1 + stage])
+            if stage == 0:
+                balance.freeze(t, y)
+                solve = StageSolver(ordering, balance, GAMMA * h, heat)
+            slope = _slope(balance, t, y, direct.rate(t, y) if balance.variable_capacity else None)
+            start = s + (1 - GAMMA) * h * slopes[0] if stage else s
+            right = direct(t, y) - _linear(balance, start)
+            guess = slopes[0] if stage else solve(right)
+            # The slope of sources and capacities is small against the rest: one correction of a guess takes it in.
+            for _ in range(2):
+                hot = right.copy()
+                hot[:n] += slope @ (start[:n] + GAMMA * h * guess[:n])
+                guess = solve(hot)
+            slopes.append(guess)
+            found[first + 1 + stage] = start + GAMMA * h * guess
+        s = found[first + 2]
+    return Tangents(ops, np.asarray(times), found[:, :n].transpose(2, 0, 1), found[:, n:].transpose(2, 0, 1))
+
+
+def _linear(balance: HeatBalance, s: Array) -> Array:
+    n = balance.ops.size
+    body, gas = s[:n], s[n:]
+    return np.vstack([balance.S @ body - balance.B @ gas, balance.D @ gas - balance.B.T @ body])
+
+
+def _slope(balance: HeatBalance, t: float, y: State, rate: Array | None) -> csr_matrix:
+    """d(heat of the sources - M du/dt)/d(temperature), (n, n); rate: du/dt where M varies."""
+    data = np.zeros(balance.ops.nnz)
+    for load in balance.loads:
+        if isinstance(load, SourceLoad) and not load.static:
+            data += load.slope(t, y.u, _BUMP)
+    for capacity in balance.capacities.values():
+        if not capacity.constant and rate is not None:
+            data -= capacity.slope(y.u, rate, _BUMP)
+    return balance.ops.matrix(data)

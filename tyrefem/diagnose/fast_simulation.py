@@ -1,0 +1,181 @@
+"""The lean simulation of the fit: fixed steps, no heat budget, only what the sensors read.
+
+What unknowns change about a simulated drive: from tangents, or by simulating or measuring again.
+"""
+
+from __future__ import annotations
+
+import dataclasses
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass
+from functools import cached_property
+from itertools import pairwise
+
+import numpy as np
+from numpy.typing import NDArray
+from scipy.interpolate import CubicSpline
+
+from tyrefem.conduction.fixed_steps import quick
+from tyrefem.conduction.points import located
+from tyrefem.conduction.sensitivity import Tangents, stage_times
+from tyrefem.diagnose.unknowns import Unknown
+from tyrefem.geometry.wall import inside
+from tyrefem.inputs.study import Study
+from tyrefem.mechanics.nearby_cycles import NearbyCycles
+from tyrefem.simulation.rolling_tyre import RollingTyre
+from tyrefem.simulation.sensors import recorded, recorded_change, true_places
+from tyrefem.simulation.surroundings import GAS, RIM
+
+Array = NDArray[np.float64]
+
+
+#: Readings are computed this often, s.
+EVERY = 5.0
+
+
+@dataclass(frozen=True, eq=False)
+class Lean:
+    """A study simulated on fixed steps.
+
+    Parameters
+    ----------
+    study : what the sensors and the logger are; may differ from the tyre's study in effects of measurement.
+    times : (n_times,) s, every step's start, stage and end; values (n_times, n), reservoirs (n_times, m): degC.
+    """
+
+    study: Study
+    tyre: RollingTyre
+    times: Array
+    values: Array
+    reservoirs: Array
+
+    def as_measured_by(self, study: Study) -> Lean:
+        """The same temperatures, measured by another study's sensors."""
+        return dataclasses.replace(self, study=study)
+
+    @cached_property
+    def grid(self) -> Array:
+        """Times of the readings, s."""
+        return time_grid(self.times)
+
+    def dense(self, history: Array) -> Array:
+        """A history at ``times`` (n_times, ...) on `grid`: cubic between the ends of steps, phase by phase."""
+        return on_grid(self.times, history, self.study.card.drive.starts, self.grid)
+
+    def at(self, s: Array, depth: Array) -> Array:
+        """(n_grid, n_places) degC at stations and depths (n_places,), m."""
+        points = inside(self.tyre.study.section, self.tyre.mesh.size, s, depth)
+        return self.dense((located(self.tyre.problem.operators, points).value() @ self.values.T).T)
+
+    @cached_property
+    def sensor_points(self) -> Array:
+        """(n_sensors, 2) m: places of the sensors, kept within the straight-sided elements."""
+        return sensor_points(self.study, self.tyre)
+
+    @cached_property
+    def readings(self) -> dict[str, Array]:
+        """Sensor -> degC on `grid`; contained air and rim too."""
+        at_sensors = None
+        if self.study.sensors:
+            operator = located(self.tyre.problem.operators, self.sensor_points).value()
+            history = (operator @ self.values[::2].T).T
+            at_sensors = on_grid(self.times[::2], history, self.study.card.drive.starts, self.grid, ends_only=True)
+        names = list(self.tyre.problem.reservoirs)
+        lumped = {name: self.dense(self.reservoirs[:, names.index(name)]) for name in (GAS, RIM) if name in names}
+        return read(self.study, self.grid, at_sensors, lumped)
+
+
+def sensor_points(study: Study, tyre: RollingTyre) -> Array:
+    """(n_sensors, 2) m: places of a study's sensors in a tyre's mesh, kept within the straight-sided elements."""
+    places = true_places(study)
+    section = tyre.study.section
+    s, depth = section.locate(np.array(list(places.values())).reshape(-1, 2))
+    return inside(section, tyre.mesh.size, s, depth)
+
+
+def read(study: Study, grid: Array, at_sensors: Array | None, lumped: dict[str, Array]) -> dict[str, Array]:
+    """Sensor -> degC on ``grid`` as the study's logger records it; contained air and rim too.
+
+    Parameters
+    ----------
+    at_sensors : (n_grid, n_sensors) degC; None without sensors. lumped : contained air and rim where they are bodies.
+    """
+    found = dict(lumped) if at_sensors is None else recorded(study, grid, at_sensors) | lumped
+    if GAS not in found:
+        held = study.card.boundaries.contained_air.temperature  # type: ignore[attr-defined]
+        found[GAS] = np.full(len(grid), held)
+    return found
+
+
+def lean(study: Study, like: RollingTyre | None = None, near: NearbyCycles | None = None) -> Lean:
+    """Simulate a study's drive on fixed steps; ``like``, ``near``: see `RollingTyre`."""
+    tyre = RollingTyre(study, like, near=near)
+    times = stage_times([*tyre.drive.starts, tyre.drive.end])
+    return Lean(study, tyre, times, *quick(tyre.problem, times, tyre.drive.initial))
+
+
+def time_grid(times: Array) -> Array:
+    """Evenly spaced times over the whole drive, s."""
+    return np.linspace(times[0], times[-1], max(int(np.ceil((times[-1] - times[0]) / EVERY)), 2) + 1)
+
+
+def on_grid(times: Array, history: Array, starts: tuple[float, ...], grid: Array, *, ends_only: bool = False) -> Array:
+    """A history at stage times (or at ends of steps only) on a grid: cubic splines within each phase."""
+    if not ends_only:
+        times, history = times[::2], history[::2]
+    found = np.empty((len(grid), *history.shape[1:]))
+    edges = [*starts, times[-1]]
+    for start, end in pairwise(edges):
+        own = (times >= start - 1e-9) & (times <= end + 1e-9)
+        inside = (grid >= start - 1e-9) & (grid <= end + 1e-9)
+        if inside.any():
+            found[inside] = CubicSpline(times[own], history[own], axis=0)(grid[inside])
+    return found
+
+
+@dataclass(frozen=True, eq=False)
+class Varied:
+    """What unknowns change about a solution.
+
+    Parameters
+    ----------
+    again : number of an unknown -> simulated again, or measured again, with the unknown a step further.
+    columns : the numbers of all others; tangents : theirs, in this order.
+    """
+
+    base: Lean
+    unknowns: tuple[Unknown, ...]
+    again: Mapping[int, Lean]
+    columns: Sequence[int]
+    tangents: Tangents | None
+
+    @property
+    def moved(self) -> list[Unknown]:
+        """The unknowns of the tangents."""
+        return [self.unknowns[column] for column in self.columns]
+
+    def slopes(self, sensors: Sequence[str]) -> dict[str, Array]:
+        """Sensor -> (n_grid, n_unknowns) d(reading)/dx."""
+        base = self.base
+        found = {one: np.zeros((len(base.grid), len(self.unknowns))) for one in sensors}
+        for column, other in self.again.items():
+            for sensor in sensors:
+                change = other.readings[sensor] - base.readings[sensor]
+                found[sensor][:, column] = change / self.unknowns[column].step
+        if self.tangents is not None:
+            for sensor, slopes in self._from_tangents(self.tangents, sensors).items():
+                found[sensor][:, self.columns] = slopes
+        return found
+
+    def _from_tangents(self, found: Tangents, sensors: Sequence[str]) -> dict[str, Array]:
+        base, gas, slopes = self.base, list(self.base.tyre.problem.reservoirs), {}
+        for sensor in sensors:
+            if sensor in (GAS, RIM):
+                known = sensor in gas
+                column = found.reservoirs[:, :, gas.index(sensor)] if known else np.zeros(found.values.shape[:2])
+                slopes[sensor] = base.dense(column.T)
+        if len(slopes) < len(sensors):
+            at_sensors = base.dense(np.moveaxis(found.at(base.sensor_points), 0, -1))
+            each = [recorded_change(base.study, base.grid, at_sensors[:, :, k]) for k in range(len(self.columns))]
+            slopes |= {name: np.column_stack([one[name] for one in each]) for name in sensors if name not in slopes}
+        return slopes

@@ -1,0 +1,177 @@
+"""Who says what the sensors read at a point of a fit: a drive's reduced model where it is certified, or else the lean
+simulation."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Mapping, Sequence
+from dataclasses import dataclass, field
+from typing import Any
+
+import numpy as np
+from numpy.typing import NDArray
+
+from tyrefem.brief import Brief
+from tyrefem.diagnose.evaluations import Laboratory
+from tyrefem.diagnose.evidence import Members
+from tyrefem.diagnose.forward_model import FOLLOWED, NOT_FOLLOWED
+from tyrefem.diagnose.reduced_forward import Modes
+from tyrefem.diagnose.unknowns import Unknown
+
+Array = NDArray[np.float64]
+Values = Mapping[Unknown, float]
+Tick = Callable[[], None] | None
+#: Model and lean simulation may be apart by this much, in the whitened norm of a drive's readings, as a fit's linear
+#: model may be: ln of the evidence changes by about as much times a normal number.
+ALLOWED = 1.0
+
+
+@dataclass(frozen=True)
+class Certificate:
+    """What lean simulations say of a drive's reduced model with a set of effects, at points it had not learnt.
+
+    Parameters
+    ----------
+    members, number : which effects, which trial. apart : largest whitened norm of what is between the two; infinite
+        where the model cannot follow. error : largest difference of a block mean, K. cases : points.
+    """
+
+    members: Members
+    number: int
+    apart: float = 0.0
+    error: float = 0.0
+    cases: int = 0
+
+    @property
+    def good(self) -> bool:
+        """May the model speak for these effects at this drive?"""
+        return self.apart <= ALLOWED
+
+    def with_case(self, apart: float, error: float) -> Certificate:
+        """After one more point."""
+        worst = max(apart, self.apart), max(error, self.error)
+        return Certificate(self.members, self.number, *worst, self.cases + 1)
+
+
+@dataclass(eq=False)
+class Predictions(Brief):
+    """Predictions and tangents for a laboratory's trials, each by whoever may say.
+
+    The first point of every set of effects at every drive is simulated lean as well: that is the certificate. Where a
+    model cannot follow a set's effects, or is off by more than `ALLOWED`, the set stays with the lean simulation.
+
+    Parameters
+    ----------
+    modes : of every trial's drive; none: lean simulations only.
+    certificates : set and trial -> what is known. reduced, lean : how many points were asked of either.
+    given_up : the models were off at the best fit, which was then found without them.
+    """
+
+    lab: Laboratory
+    modes: Sequence[Modes] = ()
+    certificates: dict[tuple[Members, int], Certificate] = field(default_factory=dict)
+    reduced: int = 0
+    lean: int = 0
+    given_up: bool = False
+
+    def predict(
+        self, asking: Sequence[tuple[Members, Values]], numbers: Sequence[int], tick: Tick = None
+    ) -> list[list[Array]]:
+        """Lean block means of some trials for every set and its point; NaN where no tyre can be so."""
+        found = self._by_model(asking, numbers, tick)
+        fresh = {
+            (place, i) for (place, i), one in found.items()
+            if (asking[place][0], i) not in self.certificates and np.isfinite(one).all()
+        }  # fmt: skip
+        left = [(k, i) for k in range(len(asking)) for i in numbers if (k, i) not in found or (k, i) in fresh]
+        answers = self.lab.ask("predict", [(i, asking[k][1]) for k, i in left], tick)
+        self.lean += len(left)
+        for (k, i), answer in zip(left, answers, strict=True):
+            if (k, i) in fresh and self._tried(asking[k][0], i, found[k, i], answer).good:
+                continue
+            found[k, i] = answer
+        return [[found[k, i] for i in numbers] for k in range(len(asking))]
+
+    def jacobians(
+        self, asking: Sequence[tuple[Members, tuple[Unknown, ...], Values]], numbers: Sequence[int], tick: Tick = None
+    ) -> list[list[Array]]:
+        """(n_blocks, n_unknowns) of some trials for every set, its unknowns and its point."""
+        wanted = [(k, i) for k in range(len(asking)) for i in numbers]
+        modal = [(k, i) for k, i in wanted if self.modes and self._known_good(asking[k][0], i)]
+        answers = self.lab.ask("reduced_jacobian", [(i, self.modes[i], *asking[k][1:]) for k, i in modal], tick)
+        found = {one: jacobian for one, (status, jacobian) in zip(modal, answers, strict=True) if status[0] == FOLLOWED}
+        left = [one for one in wanted if one not in found]
+        found |= zip(left, self.lab.ask("jacobian", [(i, *asking[k][1:]) for k, i in left], tick), strict=True)
+        return [[found[k, i] for i in numbers] for k in range(len(asking))]
+
+    def confirmed(self, members: Members, values: Values) -> bool:
+        """Is a point that matters what the lean simulation says, at every drive where the model spoke for it?"""
+        numbers = [i for i in range(len(self.lab.bench.trials)) if self.modes and self._known_good(members, i)]
+        found = self._by_model([(members, values)], numbers, None)
+        answers = self.lab.ask("predict", [(i, values) for i in numbers])
+        self.lean += len(numbers)
+        pairs = [(i, found.get((0, i)), answer) for i, answer in zip(numbers, answers, strict=True)]
+        return all(one is not None and self._tried(members, i, one, answer).good for i, one, answer in pairs)
+
+    def to_dict(self) -> dict[str, Any]:
+        """For `verdict.json`."""
+        good = [one for one in self.certificates.values() if one.good]
+        names = [one.name for one in self.lab.bench.trials]
+        return {
+            "used": bool(good) and not self.given_up,
+            "modes": {name: one.V.shape[1] for name, one in zip(names, self.modes, strict=False)},
+            "points_by_reduced_models": self.reduced,
+            "points_by_lean_simulations": self.lean,
+            "allowed_whitened": ALLOWED,
+            "worst_whitened": max((one.apart for one in good), default=None),
+            "worst_K": max((one.error for one in good), default=None),
+            "certificates": [
+                {
+                    "effects": [member.key for member in one.members],
+                    "run": names[one.number],
+                    "used": one.good,
+                    "points": one.cases,
+                    "whitened": one.apart if one.cases else None,
+                    "worst_K": one.error if one.cases else None,
+                }
+                for one in self.certificates.values()
+            ],
+        }
+
+    def _by_model(
+        self, asking: Sequence[tuple[Members, Values]], numbers: Sequence[int], tick: Tick
+    ) -> dict[tuple[int, int], Array]:
+        """(place, trial) -> block means by the models, of what they may be asked and can follow."""
+        places = {i: [k for k, (members, _) in enumerate(asking) if self._may(members, i)] for i in numbers}
+        places = {i: own for i, own in places.items() if own}
+        questions = [(i, self.modes[i], tuple(asking[k][1] for k in own)) for i, own in places.items()]
+        found: dict[tuple[int, int], Array] = {}
+        for (i, own), (status, blocks) in zip(places.items(), self.lab.ask("reduced", questions, tick), strict=True):
+            for k, one, row in zip(own, status, blocks, strict=True):
+                if one == NOT_FOLLOWED:
+                    members = asking[k][0]
+                    self.certificates[members, i] = Certificate(members, i, apart=np.inf, error=np.inf)
+                elif one == FOLLOWED:
+                    found[k, i] = row
+        self.reduced += len(found)
+        return found
+
+    def _may(self, members: Members, number: int) -> bool:
+        """May the model be asked: is it there, and has nothing been said against it?"""
+        if not self.modes or not self.modes[number].V.shape[1]:
+            return False
+        known = self.certificates.get((members, number))
+        return known is None or known.good
+
+    def _known_good(self, members: Members, number: int) -> bool:
+        known = self.certificates.get((members, number))
+        return known is not None and known.good
+
+    def _tried(self, members: Members, number: int, modal: Array, lean: Array) -> Certificate:
+        """The certificate after one more point."""
+        known = self.certificates.get((members, number)) or Certificate(members, number)
+        apart = float(np.linalg.norm(self.lab.bench.trials[number].whitened(modal - lean)))
+        error = float(np.abs(modal - lean).max(initial=0.0))
+        finite = np.isfinite(apart)
+        found = known.with_case(apart if finite else np.inf, error if finite else np.inf)
+        self.certificates[members, number] = found
+        return found

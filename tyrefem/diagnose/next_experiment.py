@@ -1,0 +1,148 @@
+"""The next experiment: which sensor or drive would tell two explanations apart best."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Mapping
+from typing import Any
+
+import numpy as np
+from numpy.typing import NDArray
+
+from tyrefem.diagnose.evidence import Members
+from tyrefem.diagnose.fast_simulation import Lean
+from tyrefem.diagnose.fitted import Explained
+from tyrefem.diagnose.forward_model import Bench
+from tyrefem.diagnose.linearised import Gap
+from tyrefem.diagnose.runs import Series, Trial
+from tyrefem.diagnose.verdict import Judgement, Standing
+from tyrefem.errors import InputError
+from tyrefem.inputs.study import Study
+from tyrefem.simulation.surroundings import GAS
+
+Array = NDArray[np.float64]
+#: Feasible drives: factors on what the study's own drive says.
+DRIVES = {
+    "half the speed": {"speed": 0.5},
+    "1.5 times the speed": {"speed": 1.5},
+    "twice the speed": {"speed": 2.0},
+    "three quarters of the load": {"load": 0.75},
+    "1.25 times the load": {"load": 1.25},
+    "four fifths of the pressure": {"pressure": 0.8},
+}
+STATIONS = 9
+#: Standard deviation of a reading that no sensor's card states, K: a new sensor's, or the contained air's.
+NOISE = 0.5
+#: A thermocouple is set no closer to a surface than this, m.
+SKIN = 1e-3
+
+
+def next_experiment(gap: Gap, judgement: Judgement, fitted: Callable[[Members], Explained | None]) -> dict[str, Any]:
+    """The sensor place and the drive that separate the two most probable sets best.
+
+    The expected gain of a further history is ln of the odds that it adds to the true one of the two sets,
+    delta^T (C + position and offset of a new sensor)^-1 delta / 2, with delta the difference of their predictions, both
+    as fitted. Base numbers are not fitted again to the new history, so that the gain is an upper estimate.
+
+    Returns
+    -------
+    ``between`` (two sets), ``sensors`` and ``drives`` in order of gain; empty if only one set is left.
+    """
+    sets = _rivals(judgement)
+    if len(sets) < 2:
+        return {}
+    fits = [one.explained or fitted(one.members) for one in sets]
+    first, second = (one.values for one in fits if one is not None)
+    bench = gap.lab.bench
+    sensors: dict[str, dict[str, Any]] = {}
+    for number in range(len(bench.trials)):
+        pair = [bench.simulate(number, values) for values in (first, second)]
+        for name, place, delta, spread, times in _places(bench.study, pair):
+            gain = _gain(times, delta, spread, bench.study)
+            row = sensors.setdefault(name, {"place": name, **place, "gain": 0.0, "largest_K": 0.0, "run": ""})
+            row["gain"] += gain
+            if np.abs(delta).max() > row["largest_K"]:
+                row["largest_K"], row["run"] = float(np.abs(delta).max()), bench.trials[number].name
+    drives = [drive_gain(bench, name, factors, first, second) for name, factors in DRIVES.items()]
+    return {
+        "between": [sets[0].key, sets[1].key],
+        "sensors": sorted(sensors.values(), key=lambda one: -one["gain"])[:5],
+        "drives": sorted((one for one in drives if one), key=lambda one: -one["gain"]),
+    }
+
+
+def _rivals(judgement: Judgement) -> list[Standing]:
+    """The best set and the next one that is not the same with something idle added, or left out."""
+    sets = [one for one in judgement.credible if not one.unexplained]
+    for other in sets[1:]:
+        ours, theirs = set(sets[0].members), set(other.members)
+        if not ours <= theirs and (not theirs or not theirs <= ours):
+            return [sets[0], other]
+    return sets[:2]
+
+
+def _places(study: Study, pair: list[Lean]) -> list[tuple[str, dict[str, float], Array, Array, Array]]:
+    """(name, place, difference (n,), sd of a new sensor's place (n,) K, times) at every feasible place."""
+    section = study.section
+    s = np.repeat(np.linspace(0.0, section.line.length * 0.98, STATIONS), 3)
+    total = np.asarray(section.rubber_thickness(s))
+    depth = np.where(np.arange(len(s)) % 3 == 0, SKIN, np.where(np.arange(len(s)) % 3 == 1, total / 2, total - SKIN))
+    values = [one.at(s, depth) for one in pair]
+    gradient = np.zeros_like(values[0])
+    for along, deeper in ((SKIN / 2, 0.0), (0.0, SKIN / 2)):
+        moved = pair[0].at(*section.clamp(s + along, depth + deeper, SKIN / 4))
+        gradient = gradient + ((moved - values[0]) / (SKIN / 2)) ** 2
+    spread = np.sqrt(gradient) * 1e-3
+    level = ("inside", "middle", "outside")
+    found = [
+        (
+            f"s = {s[i] * 1e3:.0f} mm, {level[i % 3]}",
+            {"s_m": float(s[i]), "depth_m": float(depth[i])},
+            values[0][:, i] - values[1][:, i],
+            spread[:, i],
+            pair[0].grid,
+        )
+        for i in range(len(s))
+    ]
+    gas = pair[0].readings[GAS] - pair[1].readings[GAS]
+    if GAS not in study.sensors:
+        found.append(("contained air", {}, gas, np.zeros_like(gas), pair[0].grid))
+    return found
+
+
+def _gain(
+    times: Array, delta: Array, spread: Array, study: Study, noise: float = NOISE, accuracy: float = 1.0
+) -> float:
+    choice = study.card.diagnosis
+    thinned = slice(None, None, max(len(times) // 60, 1))
+    t, d, g = times[thinned], delta[thinned], spread[thinned]
+    apart = np.abs(t[:, None] - t[None, :])
+    covariance = noise**2 * np.eye(len(t)) + choice.discrepancy**2 * np.exp(-apart / choice.correlation_time)
+    covariance += accuracy**2 + np.outer(g, g)
+    return float(d @ np.linalg.solve(covariance, d) / 2)
+
+
+def drive_gain(bench: Bench, name: str, factors: Mapping[str, float], *values: Any) -> dict[str, Any] | None:
+    """A drive's gain with the study's sensors, or the contained air if it has none; None: the tyre cannot take it."""
+    from tyrefem.inputs.changes import scaled
+
+    drive = bench.study.data["drive"]
+    try:
+        changed = {key: scaled(drive[key], factor) for key, factor in factors.items() if key in drive}
+        if not changed:
+            return None
+        study = bench.study.with_drive(changed)
+        times = np.arange(0.0, study.card.drive.end + 1e-9, 10.0)
+        noises = {name: sensor.noise for name, sensor in study.sensors.items()} or {GAS: NOISE}
+        series = tuple(Series(name, times, np.zeros_like(times), sd, 0.1, 100.0) for name, sd in noises.items())
+        pair = [Bench(bench.study, (Trial(name, changed, True, series),)).simulate(0, one) for one in values]
+    except InputError:
+        return None
+    gain, largest, where = 0.0, 0.0, ""
+    for sensor, sd in noises.items():
+        a, b = (one.readings for one in pair)
+        delta = a[sensor] - b[sensor]
+        # The sensors are the old ones: what their place and offset can do was used up by the fit.
+        gain += _gain(pair[0].grid, delta, np.zeros_like(delta), study, sd, 0.1)
+        if np.abs(delta).max() > largest:
+            largest, where = float(np.abs(delta).max()), sensor
+    return {"drive": name, "changes": changed, "gain": gain, "largest_K": largest, "sensor": where}

@@ -1,0 +1,169 @@
+"""A made-up truth for blind tests: made otherwise than the diagnosis analyses, and read by imperfect sensors.
+
+Effects that are in no catalogue, for blind tests of the verdict "unexplained".
+"""
+
+from __future__ import annotations
+
+import functools
+from dataclasses import dataclass
+from itertools import pairwise
+from typing import Annotated, Any, ClassVar
+
+import numpy as np
+import pandas as pd
+from numpy.typing import NDArray
+from scipy.sparse.linalg import splu
+
+from tyrefem.boundaries.contained_air import ContainedAirLaw
+from tyrefem.conduction import Conduction
+from tyrefem.conduction.loads import State
+from tyrefem.conduction.points import located
+from tyrefem.effects import Effect
+from tyrefem.effects.combined import Acting
+from tyrefem.effects.effect import Factor, Prior
+from tyrefem.effects.tyre import Tyre
+from tyrefem.geometry.meshing.gmsh import gmsh_works
+from tyrefem.inputs.study import Study
+from tyrefem.measured import MeasuredRun
+from tyrefem.quantity import Unit
+from tyrefem.simulation.rolling_tyre import RollingTyre
+from tyrefem.simulation.sensors import recorded, true_places
+from tyrefem.simulation.surroundings import GAS
+
+Array = NDArray[np.float64]
+
+
+#: Step of the truth's own time integration, s.
+STEP = 4.0
+
+
+@functools.cache
+def own_mesh() -> dict[str, str]:
+    """The truth's own mesh, finer than the diagnosis uses: unstructured quadratic triangles by gmsh.
+
+    Without gmsh the mapped mesher's triangles.
+    """
+    mesher = "gmsh" if gmsh_works() else "mapped"
+    return {"mesh.mesher": mesher, "mesh.cell": "tri", "mesh.element": "P2", "mesh.size": "2.5 mm"}
+
+
+@dataclass(frozen=True)
+class Logger:
+    """How a run is recorded: readings about ``every`` s, jittered; each sensor misses stretches; Gaussian noise."""
+
+    every: float = 10.0
+    noise: float = 0.5
+    gap: float = 0.6
+
+
+def backward(problem: Conduction, times: Array, initial: float) -> tuple[Array, Array]:
+    """March with BDF2 on even steps (the first one backward Euler), the remainder extrapolated: (values, reservoirs).
+
+    Another method than the solver's own, for data that are not made as they are analysed.
+    """
+    balance = problem._balance()
+    state = problem._initial(balance, initial, float(times[0]), None)
+    u, g = [state.u], [state.g]
+    rest: list[tuple[Array, Array]] = []
+    heat = balance.reservoir_capacity(state.g)
+    key: tuple[int, float] | None = None
+    for i, (before, after) in enumerate(pairwise(times)):
+        h, t = after - before, after - 1e-9 * after
+        now = State(u[-1], g[-1])
+        jump = i == 0 or balance.stale(t, now)
+        if jump:
+            balance.freeze(t, now)
+        G, Gg, _ = balance.remainder(t, now)
+        even = not jump and i > 0 and abs((times[i] - times[i - 1]) - h) < 1e-9 * h
+        if even and rest:
+            first, firstg = 2 * G - rest[-1][0], 2 * Gg - rest[-1][1]
+        else:
+            first, firstg = G, Gg
+        rest.append((G, Gg))
+        c, past, pastg = (1.5, 2 * u[-1] - 0.5 * u[-2], 2 * g[-1] - 0.5 * g[-2]) if even else (1.0, u[-1], g[-1])
+        if key != (balance.version, c / h):
+            factor = splu(problem.operators.matrix(c / h * balance.M_data + balance.S_data).tocsc())
+            through = factor.solve(balance.B.copy())
+            small = np.diag(c / h * heat) + balance.D - balance.B.T @ through
+            key = balance.version, c / h
+        body = factor.solve(balance.M @ past / h + first)
+        gas = np.linalg.solve(small, heat * pastg / h + firstg + balance.B.T @ body)
+        u.append(body + through @ gas)
+        g.append(gas)
+    return np.array(u), np.array(g)
+
+
+def record(
+    study: Study, name: str, logger: Logger, rng: np.random.Generator, extra: tuple[Effect, ...] = ()
+) -> MeasuredRun:
+    """A run as a logger records it. ``study``: the truth, at this run's drive; ``extra``: effects of no catalogue."""
+    tyre = RollingTyre(study)
+    if extra:
+        tyre.__dict__["acting"] = Acting(tyre, (*study.effects, *extra))
+    edges = [*tyre.drive.starts, tyre.drive.end]
+    times = np.unique(np.concatenate([np.linspace(a, b, round((b - a) / STEP) + 1) for a, b in pairwise(edges)]))
+    values, reservoirs = backward(tyre.problem, times, tyre.drive.initial)
+    section, places = study.section, list(true_places(study).values())
+    at = np.zeros((len(times), 0))
+    if places:
+        s, depth = section.locate(np.array(places))
+        points = section.place(*section.clamp(s, depth, tyre.mesh.size**2 / 0.1))
+        at = (located(tyre.problem.operators, points).value() @ values.T).T
+    clean: dict[str, Any] = dict(recorded(study, times, at))
+    law: ContainedAirLaw = study.card.boundaries.contained_air
+    names = list(tyre.problem.reservoirs)
+    clean[GAS] = reservoirs[:, names.index(GAS)] if GAS in names else np.full(len(times), law.temperature)  # type: ignore[attr-defined]
+    count = int(times[-1] / logger.every)
+    clock = np.sort(rng.uniform(0.0, times[-1], count))
+    clock = clock[np.diff(clock, prepend=-1.0) > 0.05]
+    columns = {}
+    for sensor, history in clean.items():
+        readings = np.interp(clock, times, history) + rng.normal(0.0, logger.noise, len(clock))
+        if rng.random() < logger.gap:
+            start = rng.uniform(0.0, 0.9) * times[-1]
+            readings[(clock > start) & (clock < start + rng.uniform(0.03, 0.12) * times[-1])] = np.nan
+        columns[sensor] = readings
+    return MeasuredRun(name, clock, pd.DataFrame(columns))
+
+
+class HotRing(Effect):
+    """A ring of the wall heats itself between two stations, as with a delamination that rubs: q += heat (v/v_0)^n."""
+
+    name: ClassVar[str] = "stranger-hot-ring"
+    family: ClassVar[str] = "heat"
+    sentence: ClassVar[str] = "A delaminated ring rubs and heats itself."
+    source: ClassVar[str] = "estimate: made up for blind tests"
+
+    start: Annotated[float, Unit("m", ge=0)]
+    end: Annotated[float, Unit("m", gt=0)]
+    outer: bool
+    exponent: float
+    heat: Annotated[float, Prior("W/m**3", "heat at 10 m/s", 1e5, 0.0, 1e7)] = 0.0
+
+    def heat_addend(self, tyre: Tyre, zone: str, x: Array, t: float, T: Array) -> Factor:
+        """W/m3 in one half of the thickness, between the stations."""
+        s, depth = tyre.places(x)
+        middle = np.asarray(tyre.study.section.total_thickness(s)) / 2
+        inside = (s > self.start) & (s < self.end) & ((depth > middle) == self.outer)
+        return np.asarray(self.heat * (tyre.speed(t) / 10.0) ** self.exponent * inside)
+
+
+class Lamp(Effect):
+    """Something hot stands beside the tyre for a while and shines on a stretch of the outer wall."""
+
+    name: ClassVar[str] = "stranger-lamp"
+    family: ClassVar[str] = "boundary"
+    sentence: ClassVar[str] = "A hot body beside the tyre, an exhaust say, shines on a stretch of the wall."
+    source: ClassVar[str] = "estimate: made up for blind tests"
+    surfaces: ClassVar[tuple[str, ...]] = ("road", "outside_air")
+
+    start: Annotated[float, Unit("m", ge=0)]
+    end: Annotated[float, Unit("m", gt=0)]
+    until: Annotated[float, Unit("s", gt=0)]
+    shine: Annotated[float, Prior("W/m**2", "flux", 500.0, 0.0, 1e5)] = 0.0
+
+    def flux(self, tyre: Tyre, surface: str, x: Array, t: float) -> Factor:
+        """W/m2 between the stations, until it goes."""
+        s, _ = tyre.places(x.reshape(2, -1))
+        return np.asarray(self.shine * ((s > self.start) & (s < self.end)) * (t < self.until))

@@ -1,0 +1,237 @@
+"""How much memory and time work will take, said before it begins: refused if it does not fit, warned of if it is long.
+
+Every constant was measured with this code: processor time of one core (Xeon, 2.1 GHz class), one thread, peaks of
+resident memory. Estimates are good to a factor of two to three; docs/performance.md has them beside measured runs.
+"""
+
+from __future__ import annotations
+
+import math
+import sys
+import warnings
+from collections.abc import Callable
+from dataclasses import dataclass
+from typing import NoReturn
+
+from tyrefem.errors import InputError
+from tyrefem.estimates import memory
+
+GIB = 2.0**30
+#: s; work that takes longer is warned of.
+LONG = 600.0
+#: Bytes that are not worth a look at the machine.
+SMALL = 64 * 2**20
+#: Readings of a run at most: a table of more rows is opened by no spreadsheet.
+MOST_READINGS = 1_000_000
+
+# Conduction: 22x5.5 8PR at mesh sizes 12 to 0.35 mm (767 to 248 000 unknowns), P2: 4.1 to 4.6 kB an unknown for the
+# operators; six factors of 1.1 kB (banded, or sparse below 30 000 unknowns), growing by 0.2 kB with every doubling.
+OPERATORS, FACTORS, FACTOR, GROWTH, WIDE = 4.4e3, 6, 1.1e3, 0.2e3, 2**15
+#: Copies of the history that are held at once: list, array, and what readings are taken of (measured 2.8).
+COPIES = 3
+# s: per step and unknown (1.4e-6 for the report's tyres, 4e-6 with tan delta over frequency), per factorisation and
+# unknown^1.5, per reading and per reading and unknown (8 and 3 mm, 0.02 to 5 s), per written field and unknown.
+STEP, FACTORISATION, READING, READ_UNKNOWN, FIELD = 2e-6, 3e-8, 3.5e-4, 8e-8, 1.5e-6
+#: Steps of a phase at 0.01 K (41 to 138 in the shipped studies; cube root of the tolerance: ROS34PW2 is of order 3
+#: with an error estimate of order 2, measured from 1 to 1e-7 K), and factorisations of a phase.
+STEPS, STEPS_AT, FACTORISATIONS = 60.0, 0.01, 12.0
+# Mechanics per node of nine-node elements: inflation and footprint of the radials (1500 to 9800 nodes): 38 to 45 kB,
+# 1 ms (the truck, inflated in 13 load steps: 6 ms), a further load 0.2 ms; in large motion (passenger) 0.47 MB, 90 ms.
+BODY, INFLATE, LOAD, LARGE_BODY, LARGE = 45e3, 2e-3, 2e-4, 0.47e6, 0.09
+#: Bytes per node that an inflated tyre keeps (nine pressures of the passenger), and how many of them are kept.
+KEPT, REMEMBERED = 25e3, 16
+#: A mesh's own bytes per vertex (31 000 to 62 000 vertices).
+VERTEX = 650.0
+# Sweeps of 50 000 and 200 000 variants of one to four numbers: bytes of a variant and of each number that it changes,
+# with all its 43 answers and the table of them.
+VARIANT, CHANGE = 6.5e3, 200.0
+#: s, a variant of a reduced model; full runs that training and certification cost.
+REDUCED, TRAINING = 3e-3, 30
+#: Bytes per byte of a table that is read (200 000 rows: 17 of temperatures, 40 of cases).
+TEXT = 20.0
+#: Roundings of a run in a row: 2e5 steps lose sqrt(2e5) units in the last place (measured: 75 after 6000 steps).
+ROUNDINGS = 450.0
+
+
+class LongWorkWarning(UserWarning):
+    """What is about to begin takes long."""
+
+
+@dataclass(frozen=True)
+class Estimate:
+    """What work will take: ``memory``, bytes at its peak, and ``time``, s on one core.
+
+    >>> (Estimate(2 * GIB, 60.0) + Estimate(1 * GIB, 840.0)).words
+    'about 3.0 GiB and 15 minutes'
+    """
+
+    memory: float = 0.0
+    time: float = 0.0
+
+    def __add__(self, other: Estimate) -> Estimate:
+        return Estimate(self.memory + other.memory, self.time + other.time)
+
+    @property
+    def words(self) -> str:
+        """For people."""
+        return f"about {gib(self.memory)} and {duration(self.time)}"
+
+
+def gib(size: float) -> str:
+    """Bytes for people.
+
+    >>> gib(3.2e9), gib(1.5e14), gib(1e6)
+    ('3.0 GiB', '140,000 GiB', '0.001 GiB')
+    """
+    value = size / GIB
+    if value >= 1000:
+        return f"{float(f'{min(value, 1e300):.2g}'):,.0f} GiB" if value < 1e15 else f"{value:.1g} GiB"
+    return f"{value:.2g} GiB" if value < 1 else f"{value:.1f} GiB"
+
+
+def duration(seconds: float) -> str:
+    """A time for people, to two digits.
+
+    >>> duration(25), duration(1500), duration(7e4), duration(1e7)
+    ('25 s', '25 minutes', '19 hours', '120 days')
+    """
+    for limit, size, unit in ((120.0, 1.0, "s"), (7200.0, 60.0, "minutes"), (172800.0, 3600.0, "hours")):
+        if seconds < limit:
+            return f"{float(f'{seconds / size:.2g}'):g} {unit}"
+    return f"{float(f'{min(seconds, 1e300) / 86400:.2g}'):,.0f} days"
+
+
+# -- what is done about it -------------------------------------------------------------------------------------------
+
+
+def check_memory(needed: float, what: str, fits: Callable[[float], str] | str = "") -> None:
+    """Refuse work that does not fit in the free memory.
+
+    Parameters
+    ----------
+    needed : bytes. what : the number and what it makes, e.g. ``"0.3 mm makes 330,000 unknowns"``.
+    fits : what would fit, in words, or a function of the free bytes that says it.
+
+    Raises
+    ------
+    InputError : more than `tyrefem.estimates.memory.free_memory`.
+    """
+    if needed < SMALL:
+        return
+    free = memory.free_memory()
+    if needed > free:
+        refuse(needed, free, what, fits(free) if callable(fits) else fits)
+
+
+def check_readings(span: float, every: float, field: str, most: int = MOST_READINGS) -> None:
+    """Raise `InputError` for more readings of so many s than a table may have.
+
+    >>> check_readings(600.0, 5.0, "output.every")
+    """
+    if every > 0 and span / every <= most:
+        return
+    allowed = f"allowed: {_rounded_up(span / most):g} s or more, at most {most:,} readings of {span:g} s"
+    made = f"{every:g} s makes {span / every:.3g} readings" if every > 0 else f"must be more than 0 s, not {every:g} s"
+    raise InputError(f"{made}; {allowed}", field=field)
+
+
+def refuse(needed: float, free: float, what: str, fits: str = "", workers: int = 1) -> NoReturn:
+    """Raise the `InputError` of `check_memory`; ``free``: for each of so many workers."""
+    each = "" if workers == 1 else f" for each of {workers} workers"
+    remedies = [fits] if fits else []
+    remedies += ["fewer workers have more each"] if workers > 1 else []
+    room = "".join(f"; {one}" for one in remedies)
+    raise InputError(f"{what}; that takes about {gib(needed)} of memory, and {gib(free)} are free{each}{room}")
+
+
+def warn_of(seconds: float, what: str, more: str = "") -> None:
+    """Warn of work that takes longer than `LONG`; on the command line it is a line on stderr."""
+    if seconds > LONG:
+        warnings.warn(f"{what} will take about {duration(seconds)}{more}", LongWorkWarning, stacklevel=3)
+
+
+def smallest(fits: Callable[[float], bool], low: float, high: float, digits: int = 2) -> float | None:
+    """The smallest number between low and high that fits, rounded up to some digits; None: not even the largest does.
+
+    >>> smallest(lambda size: 1 / size**2 < 100, 0.01, 1.0)
+    0.11
+    """
+    if not fits(high):
+        return None
+    for _ in range(12):
+        middle = math.sqrt(low) * math.sqrt(high)
+        low, high = (low, middle) if fits(middle) else (middle, high)
+    return _rounded_up(high, digits)
+
+
+def rounded_down(value: float, digits: int = 2) -> float:
+    """A positive number to so many digits, not above it.
+
+    >>> rounded_down(1234567.0)
+    1200000.0
+    """
+    if not value > 0:
+        return 0.0
+    unit = 10.0 ** (math.floor(math.log10(value)) - digits + 1)
+    return float(f"{math.floor(value / unit + 1e-9) * unit:.{digits}g}")
+
+
+def _rounded_up(value: float, digits: int = 2) -> float:
+    unit = 10.0 ** (math.floor(math.log10(value)) - digits + 1)
+    return float(f"{math.ceil(value / unit - 1e-9) * unit:.{digits}g}")
+
+
+# -- what it takes ---------------------------------------------------------------------------------------------------
+
+
+def matrices(unknowns: float) -> float:
+    """Bytes of operators and factors of a conduction problem."""
+    doublings = max(math.log2(max(unknowns, 1.0) / WIDE), 0.0)
+    return unknowns * (OPERATORS + FACTORS * (FACTOR + GROWTH * doublings))
+
+
+def history(unknowns: float, times: float) -> float:
+    """Bytes of the temperatures of a run at the times that it keeps."""
+    return COPIES * 8.0 * unknowns * times
+
+
+def steps(phases: int, tolerance: float) -> float:
+    """Time steps of a drive of so many phases to a tolerance, K."""
+    return STEPS * phases * (STEPS_AT / tolerance) ** (1 / 3)
+
+
+def march(unknowns: float, times: float, phases: int, tolerance: float, fields: int = 0) -> Estimate:
+    """A transient run of a conduction problem: matrices, steps, readings, and fields that are written out."""
+    time = steps(phases, tolerance) * unknowns * STEP + FACTORISATIONS * phases * FACTORISATION * unknowns**1.5
+    time += times * (READING + READ_UNKNOWN * unknowns) + fields * FIELD * unknowns
+    return Estimate(matrices(unknowns) + history(unknowns, times), time)
+
+
+def mechanics(nodes: float, inflations: int = 1, loads: int = 1, *, large: bool = False) -> Estimate:
+    """Inflation and footprint by finite elements of so many nodes; ``large``: in large motion."""
+    kept = min(inflations, REMEMBERED) - 1
+    body, load = (LARGE_BODY, LARGE) if large else (BODY, LOAD)
+    return Estimate(nodes * (body + kept * KEPT), nodes * (inflations * INFLATE + loads * load))
+
+
+def contact(nodes: float, harmonics: float, angles: float, components: int = 2) -> float:
+    """Bytes of a footprint's compliance: of tread nodes in every harmonic, and of all points that may touch."""
+    loaded = components * nodes
+    return 8.0 * (2 * (harmonics + 1) * loaded**2 + 3 * (loaded * angles) ** 2)
+
+
+def variants(count: int, numbers: int) -> float:
+    """Bytes of the variants of a sweep with their answers."""
+    return min(count, 10**15) * (VARIANT + CHANGE * numbers)
+
+
+def smallest_tolerance(hottest: float) -> float:
+    """K: no time integration of temperatures up to ``hottest``, degC, keeps a smaller error in double precision.
+
+    Every step rounds; the roundings of N steps add up to sqrt(N) units in the last place. At 1e-11 K a drive takes
+    some 1e5 steps.
+
+    >>> f"{smallest_tolerance(100.0):.0e}"
+    '1e-11'
+    """
+    return ROUNDINGS * sys.float_info.epsilon * max(abs(hottest), 100.0)

@@ -1,0 +1,101 @@
+"""Can these layers be laid along this line? Folding, crossing and missing places are refused with the reason."""
+
+from __future__ import annotations
+
+import numpy as np
+from numpy.typing import NDArray
+
+from tyrefem.errors import InputError
+from tyrefem.geometry.layer import Layered
+from tyrefem.geometry.outlines import face, stations
+
+Array = NDArray[np.float64]
+
+
+def check_possible(section: Layered) -> None:
+    """Raise `InputError` with field and reason unless the layers can be laid along the meridian."""
+    _ends(section)
+    length = section.line.length
+    s = stations(section, 0.0, length, length / 120)
+    _no_folding(section, np.concatenate([s, _both_sides(section.breaks)]))
+    _apart(section, s)
+    _belts(section, s)
+
+
+def _both_sides(breaks: tuple[float, ...]) -> Array:
+    """Just before and just behind every kink, where the curvature may jump."""
+    inner = np.asarray(breaks[1:-1])
+    return np.concatenate([inner * (1 - 1e-12), inner * (1 + 1e-12)])
+
+
+def _ends(section: Layered) -> None:
+    length = section.line.length
+    for layer in section.layers:
+        if abs(layer.regions.ends[-1] - length) > 1e-9:
+            raise InputError(
+                f"regions of '{layer.name}' must end where the section ends, at {length:g} m", field="layers"
+            )
+    if abs(section.outer.ends[-1] - length) > 1e-9:
+        raise InputError(f"must end where the section ends, at {length:g} m", field="boundaries")
+    taken = {"contained_air", "symmetry"} & set(section.outer.names)
+    if taken:
+        raise InputError(f"'{taken.pop()}' is the name of another boundary", field="boundaries")
+
+
+def _no_folding(section: Layered, s: Array) -> None:
+    faces = section.interfaces(s)
+    stretch = 1 + section.line.curvature(s) * faces
+    if (stretch <= 1e-3).any():
+        which, where = np.unravel_index(int(np.argmin(stretch)), stretch.shape)
+        side = "inner" if faces[which, where] < 0 else "outer"
+        raise InputError(
+            f"the {side} surface folds at s = {s[where]:.4g} m: it lies {abs(faces[which, where]):.3g} m from a"
+            f" meridian whose radius of curvature is {1 / abs(section.line.curvature(s)[where]):.3g} m",
+            field="layers",
+        )
+
+
+def _belts(section: Layered, s: Array) -> None:
+    """Regions with 'belt' in their name end before the section turns inwards again."""
+    widest = float(s[int(np.argmax(section.line.position(s)[:, 1]))])
+    for index, layer in enumerate(section.layers):
+        for name, _, end in layer.regions.parts():
+            if "belt" in name and end > widest:
+                raise InputError(
+                    f"belt '{name}' is wider than the section: it ends {end:.4g} m from the crown, and the section"
+                    f" turns inwards {widest:.4g} m from it",
+                    field=f"layers.{index}.regions",
+                )
+
+
+def _apart(section: Layered, s: Array) -> None:
+    """The half outline must stay above the axis, on its own side of the mid plane, and not cross itself."""
+    inner, outer = face(section, 0, s), face(section, len(section.layers), s)
+    both = np.concatenate([inner, outer])
+    if both[:, 0].min() <= 0:
+        raise InputError(
+            f"the section reaches the wheel's axis: r = {both[:, 0].min():.3g} m", field="parameters.outer_diameter"
+        )
+    for which, points in (("inner", inner), ("outer", outer)):
+        if points[1:, 1].min() <= 0:
+            at = s[1 + int(np.argmax(points[1:, 1] <= 0))]
+            raise InputError(
+                f"the {which} surface crosses the mid plane at s = {at:.4g} m and would meet the other side",
+                field="parameters",
+            )
+    if _crosses_itself(np.concatenate([inner, outer[::-1]])):
+        raise InputError("the outline crosses itself: the layers overlap", field="parameters")
+
+
+def _crosses_itself(polygon: Array) -> bool:
+    """Whether two edges of a closed polygon that are not neighbours cross."""
+    a, b = polygon, np.roll(polygon, -1, axis=0)
+
+    def turn(p: Array, q: Array, x: Array) -> Array:
+        """Sign of the side of p -> q (n, 1, 2) on which x (1, n, 2) lies."""
+        along, to = (q - p)[:, None], x[None] - p[:, None]
+        return np.sign(along[..., 0] * to[..., 1] - along[..., 1] * to[..., 0])
+
+    ends_a, ends_b = turn(a, b, a), turn(a, b, b)
+    split = ends_a * ends_b < 0
+    return bool((split & split.T).any())

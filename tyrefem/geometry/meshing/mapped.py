@@ -1,0 +1,226 @@
+"""The structured grid on a section: stations along the meridian, rows through the layers.
+
+Node spacing along a line: stations whose gaps follow a wanted size.
+
+The structured mesher: quadrilaterals laid along the layers, everywhere available.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from dataclasses import dataclass
+from itertools import pairwise
+from typing import Any
+
+import numpy as np
+from numpy.typing import NDArray
+
+from tyrefem.geometry.meshing.groups import bare_edges, mirrored, named_mesh
+from tyrefem.geometry.outlines import stations
+from tyrefem.geometry.section import GROOVE, Section
+
+Array = NDArray[np.float64]
+
+
+#: A kink of the geometry nearer than this share of the size to another grid line gets none of its own.
+KINK_SHARE = 0.25
+
+
+def knots(section: Section, size: float) -> Array:
+    """Stations that need a line of the mesh of ``size`` [m]: all marks, and the kinks not too near to another one."""
+    kept = [0.0, *section.marks, section.line.length]
+    for s in section.breaks:
+        if min(abs(s - other) for other in kept) > KINK_SHARE * size:
+            kept.append(s)
+    return np.unique(kept)
+
+
+def graded(start: float, end: float, size: Callable[[Array], Array], least: int = 1) -> Array:
+    """Stations from start to end, both included, with local gaps near ``size(s)`` or smaller.
+
+    The number of gaps is the integral of ds/size(s), rounded up; each gap holds an equal share of it.
+
+    >>> graded(0.0, 1.0, lambda s: np.full_like(s, 0.3)).round(9).tolist()
+    [0.0, 0.25, 0.5, 0.75, 1.0]
+    """
+    s = np.linspace(start, end, 400)
+    density = 1 / size(s)
+    count = np.concatenate([[0.0], np.cumsum((density[1:] + density[:-1]) / 2 * np.diff(s))])
+    gaps = max(least, int(np.ceil(count[-1] - 1e-6)))
+    stations = np.interp(np.linspace(0.0, count[-1], gaps + 1), count, s)
+    stations[0], stations[-1] = start, end
+    return stations
+
+
+def rows_needed(thickness: float, first: float, largest: float) -> int:
+    """Fewest rows through ``thickness`` that begin at ``first`` and grow geometrically to ``largest`` at most."""
+    for rows in range(1, 1000):
+        if np.diff(row_fractions(thickness, first, rows)).max() * thickness <= largest * (1 + 1e-9):
+            return rows
+    return 1000
+
+
+def row_fractions(thickness: float, first: float, rows: int) -> Array:
+    """Row borders, 0 to 1 from the coarse to the fine side, the last row ``first`` thick, the others growing.
+
+    Where ``thickness`` has room for less than ``rows`` rows of ``first``, all rows are equal.
+
+    >>> row_fractions(3.0, 1.0, 3).round(9).tolist()
+    [0.0, 0.333333333, 0.666666667, 1.0]
+    """
+    sizes = _ratio(thickness, first, rows) ** np.arange(rows)[::-1]
+    return np.concatenate([[0.0], np.cumsum(sizes) / sizes.sum()])
+
+
+def _ratio(thickness: float, first: float, rows: int) -> float:
+    """Growth q with first (q^rows - 1)/(q - 1) = thickness, at least 1; by bisection."""
+    if rows == 1 or thickness <= first * rows:
+        return 1.0
+    low, high, powers = 1.0, 1.0 + thickness / first, np.arange(rows)
+    with np.errstate(over="ignore"):
+        for _ in range(80):
+            middle = (low + high) / 2
+            low, high = (middle, high) if first * (middle**powers).sum() < thickness else (low, middle)
+    return (low + high) / 2
+
+
+#: Rows next to the road and the rim are this share of the size: a strong film cools them within millimetres.
+SURFACE_SHARE = 0.25
+
+
+#: Thickest row away from the surface over the size: heat sources jump where layers meet.
+CORE_SHARE = 1.0
+
+
+#: Longest edge along the meridian over the thinnest row.
+ASPECT = 10.0
+
+
+#: Growth of the gaps away from a place where one boundary gives way to another.
+GROWTH = 0.3
+
+
+@dataclass(frozen=True)
+class Grid:
+    """Stations (n_columns + 1,), and heights of the nodes above the meridian (n_rows + 1, n_columns + 1) [m].
+
+    ``layer`` is the layer of each row.
+    """
+
+    s: Array
+    y: Array
+    layer: NDArray[np.int64]
+
+
+def make_grid(section: Section, size: float, through: int) -> Grid:
+    """Rows and stations for a size [m]: conforming to every layer, region and boundary."""
+    rows = [_rows(section, index, size, through) for index in range(len(section.layers))]
+    s = _stations(section, size, rows)
+    faces = section.interfaces(s)
+    heights = []
+    for index, count in enumerate(rows):
+        thickness = faces[index + 1] - faces[index]
+        share = np.stack([_fractions(section, index, t, size, count) for t in thickness], axis=1)
+        level = faces[index] + share * thickness
+        heights.append(level if index == 0 else level[1:])
+    return Grid(s, np.concatenate(heights), np.repeat(np.arange(len(rows)), rows))
+
+
+def grid_lines(section: Section, size: float, through: int) -> tuple[int, int]:
+    """How many lines `make_grid` lays across the meridian and along it."""
+    rows = [_rows(section, index, size, through) for index in range(len(section.layers))]
+    return len(_stations(section, size, rows)), sum(rows) + 1
+
+
+def _outermost(section: Section, index: int) -> bool:
+    return index == len(section.layers) - 1
+
+
+def _rows(section: Section, index: int, size: float, through: int) -> int:
+    s = stations(section, 0.0, section.line.length, size)
+    thickest = float(section.built_layers[index].thickness(s).max())
+    first = size * SURFACE_SHARE if _outermost(section, index) else size * CORE_SHARE
+    return max(through, rows_needed(thickest, first, size * CORE_SHARE))
+
+
+def _fractions(section: Section, index: int, thickness: float, size: float, rows: int) -> Array:
+    if _outermost(section, index):
+        return row_fractions(thickness, size * SURFACE_SHARE, rows)
+    return np.linspace(0.0, 1.0, rows + 1)
+
+
+def _stations(section: Section, size: float, rows: list[int]) -> Array:
+    """Stations at most ``size`` apart, closer at the rim's end face, at changes of boundary and in thin layers."""
+    length = section.line.length
+    changes = np.array([end for _, _, end in section.outer.parts()])
+
+    def wanted(s: Array) -> Array:
+        rise = SURFACE_SHARE * size + GROWTH * np.abs(s[:, None] - changes).min(axis=1)
+        thin = np.full_like(s, size)
+        for index, (layer, count) in enumerate(zip(section.built_layers, rows, strict=True)):
+            thickness = layer.thickness(s)
+            row = thickness / count
+            if _outermost(section, index):
+                row = np.minimum(row, SURFACE_SHARE * size)
+            thin = np.minimum(thin, ASPECT * row)
+        return np.minimum(np.minimum(size, rise), thin)
+
+    runs = [graded(a, b, wanted)[:-1] for a, b in pairwise(knots(section, size))]
+    return np.concatenate([*runs, [length]])
+
+
+Indices = NDArray[np.int64]
+
+
+def mapped_mesh(section: Section, size: float, cell: str, through: int) -> Any:
+    """scikit-fem mesh of a section, grid lines on every border of layers, regions and boundaries."""
+    half = section.as_half()
+    grid = make_grid(half, size, through)
+    columns, rows = len(grid.s), len(grid.y)
+    points = half.line.position(grid.s) + grid.y[..., None] * half.line.normal(grid.s)
+    points = points.reshape(-1, 2)
+    node = np.arange(rows * columns).reshape(rows, columns)
+    points[node[:, 0], 1] = 0.0
+    quads = np.stack([node[:-1, :-1], node[1:, :-1], node[1:, 1:], node[:-1, 1:]], axis=-1).reshape(-1, 4)
+    names = _region_names(half, grid)
+    if cell == "tri":
+        elements, names = _triangles(points, quads), np.repeat(names, 2)
+    else:
+        elements = quads
+    edges = _edges(half, grid, node)
+    if half.grooves:
+        elements, names = elements[names != GROOVE], names[names != GROOVE]
+        walls = bare_edges(elements, edges.values())
+        edges[half.groove_boundary] = np.concatenate([edges[half.groove_boundary], walls])
+    regions = {name: np.flatnonzero(names == name) for name in half.regions}
+    mesh = named_mesh(points, elements, regions, edges)
+    return mesh if section.half else mirrored(mesh)
+
+
+def _region_names(section: Section, grid: Grid) -> NDArray[np.str_]:
+    middle = (grid.s[:-1] + grid.s[1:]) / 2
+    return np.concatenate([section.layers[index].regions.at(middle) for index in grid.layer])
+
+
+def _edges(section: Section, grid: Grid, node: Indices) -> dict[str, Indices]:
+    """Node pairs of each boundary."""
+
+    def along(line: Indices) -> Indices:
+        return np.stack([line[:-1], line[1:]], axis=1)
+
+    outer, middle = along(node[-1]), (grid.s[:-1] + grid.s[1:]) / 2
+    names, rubber = section.outer.at(middle), ~section.in_groove(middle)
+    edges = {name: outer[(names == name) & rubber] for name in dict.fromkeys(section.outer.names)}
+    last = section.outer.names[-1]
+    edges[last] = np.concatenate([edges[last], along(node[:, -1])])
+    cut = grid.layer == len(section.layers) - 1 if section.in_groove(middle[0]) else np.zeros(len(grid.layer), bool)
+    return {"contained_air": along(node[0]), **edges, "symmetry": along(node[:, 0])[~cut]}
+
+
+def _triangles(points: NDArray[np.float64], quads: Indices) -> Indices:
+    """Two triangles per quadrilateral, cut along its shorter diagonal; shape (2 n, 3)."""
+    a, b, c, d = points[quads].transpose(1, 0, 2)
+    first = (np.linalg.norm(c - a, axis=1) <= np.linalg.norm(d - b, axis=1))[:, None, None]
+    by_ac = np.stack([quads[:, [0, 1, 2]], quads[:, [0, 2, 3]]], axis=1)
+    by_bd = np.stack([quads[:, [0, 1, 3]], quads[:, [1, 2, 3]]], axis=1)
+    return np.asarray(np.where(first, by_ac, by_bd).reshape(-1, 3))

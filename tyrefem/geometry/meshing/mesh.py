@@ -1,0 +1,256 @@
+"""A mesh of a section: a scikit-fem mesh with names, and what it was made from.
+
+One way in: a section and a size give a mesh, whichever mesher makes it.
+"""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Mapping
+from dataclasses import dataclass, replace
+from functools import cached_property
+from typing import Any
+
+import numpy as np
+from numpy.typing import NDArray
+
+from tyrefem.brief import Brief, Stated
+from tyrefem.errors import InputError, nearest
+from tyrefem.estimates.work import check_memory, matrices, smallest
+from tyrefem.geometry.meshing.expected import expected_nodes
+from tyrefem.geometry.section import Section
+
+Array = NDArray[np.float64]
+
+
+@dataclass(frozen=True, eq=False)
+class PlyDirection:
+    """Unit vector along the meridian at points (2, n): the direction of the plies, which turn in the section's region
+    `wrap`."""
+
+    section: Section
+
+    def __call__(self, x: Array) -> Array:
+        return np.ascontiguousarray(np.moveaxis(self.section.ply_direction(np.asarray(x).T), -1, 0))
+
+
+@dataclass(frozen=True)
+class TyreMesh(Brief, Stated):
+    """A mesh of a section in (r, z) [m].
+
+    Parameters
+    ----------
+    mesh : scikit-fem ``MeshQuad`` or ``MeshTri``; ``mesh.subdomains`` are the section's regions,
+        ``mesh.boundaries`` its boundaries.
+    section : what was meshed.
+    mesher : ``"mapped"``, ``"gmsh"`` or ``"file"``.
+    size : largest edge along the meridian that was asked for [m].
+    cell : ``"quad"`` or ``"tri"``.
+    """
+
+    mesh: Any
+    section: Section
+    mesher: str
+    size: float
+    cell: str
+
+    def _title(self) -> str:
+        return f"of {self.section.name}"
+
+    def _facts(self) -> Mapping[str, Any]:
+        kind = {"quad": "quadrilaterals", "tri": "triangles"}.get(self.cell, self.cell)
+        return {
+            "made by": f"{self.mesher}, edges of {self.size * 1e3:.3g} mm at most along the meridian",
+            "size": f"{self.n_nodes} nodes, {self.n_elements} {kind}",
+            "part": f"{'half' if self.section.half else 'whole'} section",
+            "regions": self.mesh.subdomains or {},
+            "boundaries": self.mesh.boundaries or {},
+            **self.quality,
+        }
+
+    @property
+    def n_nodes(self) -> int:
+        """Number of nodes."""
+        return int(self.mesh.p.shape[1])
+
+    @property
+    def n_elements(self) -> int:
+        """Number of elements."""
+        return int(self.mesh.t.shape[1])
+
+    @cached_property
+    def _corners(self) -> Array:
+        """Corner points of the elements, (n_corners, n_elements, 2)."""
+        return np.asarray(self.mesh.p.T[self.mesh.t])
+
+    @cached_property
+    def element_areas(self) -> Array:
+        """Signed area of every element [m2]."""
+        return polygon_areas(self._corners)
+
+    @cached_property
+    def _stations(self) -> Array:
+        """|s| of the elements' corners, (n_corners, n_elements) [m]."""
+        return np.asarray(np.abs(self.section.locate(self.mesh.p.T)[0])[self.mesh.t])
+
+    def area(self, region: str) -> float:
+        """Area of a region of the mesh [m2]."""
+        return float(self.element_areas[self.mesh.subdomains[region]].sum())
+
+    def volume(self, region: str) -> float:
+        """Volume of the ring of a region of the mesh, exact for its straight-sided elements [m3]."""
+        corners = self._corners[:, self.mesh.subdomains[region]]
+        total = 0.0
+        for k in range(1, len(corners) - 1):
+            triangle = corners[[0, k, k + 1]]
+            total += float((polygon_areas(triangle) * triangle[..., 0].mean(axis=0)).sum())
+        return 2 * np.pi * total
+
+    def elements_between(self, start: float, end: float, region: str | None = None) -> NDArray[np.int64]:
+        """Elements between two stations ``start < |s| < end`` of the meridian, of one region or of all.
+
+        Raises
+        ------
+        InputError : a station cuts through elements; stations of ``section.breaks`` never do.
+        """
+        s = self._stations
+        middle = (s.mean(axis=0) > start) & (s.mean(axis=0) < end)
+        inside = (s > start - 1e-6) & (s < end + 1e-6)
+        outside = (s < start + 1e-6) | (s > end - 1e-6)
+        if not np.where(middle, inside, outside).all():
+            raise InputError(f"the mesh has no line at s = {start:g} m or {end:g} m; elements would be cut")
+        chosen = np.flatnonzero(middle)
+        return chosen if region is None else np.intersect1d(chosen, self.mesh.subdomains[region])
+
+    def with_zones(self, zones: Mapping[str, tuple[str, float, float]]) -> TyreMesh:
+        """The same mesh with further subdomains: name -> (region, start, end) along the meridian.
+
+        >>> from tyrefem.geometry import load
+        >>> from tyrefem.geometry.meshing import build
+        >>> tyre = build(load("nasa-22x5.5-8pr"), size=4e-3)
+        >>> shoulder = tyre.section.line.shoulder_s
+        >>> zoned = tyre.with_zones({"under the tread": ("carcass", 0.0, shoulder)})
+        >>> len(zoned.mesh.subdomains["under the tread"]) < len(zoned.mesh.subdomains["carcass"])
+        True
+        """
+        found = {name: self.elements_between(start, end, region) for name, (region, start, end) in zones.items()}
+        return replace(self, mesh=self.mesh.with_subdomains(found))
+
+    @cached_property
+    def along_meridian(self) -> PlyDirection:
+        """The direction of the plies; the same function every time."""
+        return PlyDirection(self.section)
+
+    @cached_property
+    def quality(self) -> dict[str, float]:
+        """Smallest scaled Jacobian (1: right angles) and largest edge ratio over the elements."""
+        corners = self._corners
+        edges = np.roll(corners, -1, axis=0) - corners
+        lengths = np.linalg.norm(edges, axis=-1)
+        before = np.roll(edges, 1, axis=0)
+        sines = before[..., 0] * edges[..., 1] - before[..., 1] * edges[..., 0]
+        sines = sines / (lengths * np.roll(lengths, 1, axis=0))
+        return {
+            "scaled_jacobian": float((sines * np.sign(self.element_areas)).min()),
+            "edge_ratio": float((lengths.max(axis=0) / lengths.min(axis=0)).max()),
+        }
+
+    def summary(self) -> dict[str, Any]:
+        """Counts, sizes and quality, for reports."""
+        return {
+            "mesher": self.mesher,
+            "cell": self.cell,
+            "size_m": self.size,
+            "nodes": self.n_nodes,
+            "elements": self.n_elements,
+            "half": self.section.half,
+            **self.quality,
+        }
+
+
+def polygon_areas(corners: Array) -> Array:
+    """Signed areas of polygons with corners (n_corners, n, 2), anticlockwise positive."""
+    after = np.roll(corners, -1, axis=0)
+    cross = corners[..., 0] * after[..., 1] - corners[..., 1] * after[..., 0]
+    return np.asarray(cross.sum(axis=0) / 2)
+
+
+MESHERS = ("mapped", "gmsh")
+CELLS = {"mapped": ("quad", "tri"), "gmsh": ("tri", "quad")}
+
+
+def build(
+    section: Section,
+    *,
+    mesher: str = "mapped",
+    size: float = 2e-3,
+    cell: str | None = None,
+    through: int = 3,
+) -> TyreMesh:
+    """Mesh of a section with named regions and boundaries.
+
+    Parameters
+    ----------
+    section : half or full; the mesh of a full section is its half and the mirror image.
+    mesher : ``"mapped"`` (structured) or ``"gmsh"`` (unstructured, needs the ``gmsh`` extra).
+    size : largest edge along the meridian [m]; every other size of the mesh is in proportion.
+    cell : ``"quad"`` or ``"tri"``; by default quadrilaterals when mapped, triangles from gmsh.
+    through : fewest elements through every layer.
+
+    Raises
+    ------
+    InputError : unknown mesher or cell, a size out of range or too coarse for the section; more nodes than linear
+        elements on them have memory for.
+    MissingLibraryError : gmsh is asked for and cannot be loaded.
+
+    >>> from tyrefem.geometry import load
+    >>> tyre = build(load("nasa-22x5.5-8pr"), size=4e-3)
+    >>> sorted(tyre.mesh.subdomains), tyre.cell
+    (['bead', 'carcass', 'sidewall', 'tread'], 'quad')
+    >>> bool(abs(tyre.area("tread") / tyre.section.area("tread") - 1) < 1e-2)
+    True
+    """
+    if mesher not in MESHERS:
+        raise InputError(f"no mesher '{mesher}'{nearest(mesher, MESHERS)}", field="mesher")
+    cell = cell or CELLS[mesher][0]
+    if cell not in CELLS[mesher]:
+        raise InputError(f"no cell '{cell}'{nearest(cell, CELLS[mesher])}", field="cell")
+    if not (math.isfinite(size) and size > 0):
+        raise InputError(f"must be a positive length, not {size!r}", field="size")
+    if through < 1 or through != int(through):
+        raise InputError(f"must be a whole number, 1 or more, not {through!r}", field="through")
+    if size > section.line.length / 4:
+        raise InputError(
+            f"{size:g} m is too coarse: at most a quarter of the meridian, {section.line.length / 4:.3g} m",
+            field="size",
+        )
+    _check_memory(section, mesher, size, int(through))
+    if mesher == "mapped":
+        from tyrefem.geometry.meshing.mapped import mapped_mesh
+
+        mesh = mapped_mesh(section, size, cell, int(through))
+    else:
+        from tyrefem.geometry.meshing.gmsh import gmsh_mesh
+
+        mesh = gmsh_mesh(section, size, cell, int(through))
+    tyre = TyreMesh(mesh, section, mesher, size, cell)
+    if not tyre.quality["scaled_jacobian"] > 0:
+        raise InputError(f"elements of {size:g} m fold over in this section; choose a smaller size", field="size")
+    return tyre
+
+
+def _check_memory(section: Section, mesher: str, size: float, through: int) -> None:
+    """A size in the wrong unit is found before it fills the memory."""
+
+    def needed(size: float) -> float:
+        return matrices(expected_nodes(section, size, mesher=mesher, through=through))
+
+    def fits(free: float) -> str:
+        coarser = smallest(lambda one: needed(one) <= free, size, section.line.length / 4)
+        return f"{coarser * 1e3:g} mm or more would fit" if coarser else "fewer elements through every layer would fit"
+
+    nodes = expected_nodes(section, size, mesher=mesher, through=through)
+    try:
+        check_memory(matrices(nodes), f"{size * 1e3:g} mm makes {nodes:,.0f} nodes", fits)
+    except InputError as error:
+        raise error.within(field="size") from None

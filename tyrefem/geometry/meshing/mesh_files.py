@@ -1,0 +1,185 @@
+"""Meshes from and to files, in any format of meshio, with their named regions and boundaries."""
+
+from __future__ import annotations
+
+import contextlib
+import io
+from collections.abc import Iterable, Mapping
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+
+from tyrefem.errors import InputError, nearest
+from tyrefem.geometry.meshing.groups import named_from
+from tyrefem.geometry.meshing.mesh import TyreMesh
+from tyrefem.geometry.section import Section
+from tyrefem.output import note_input
+from tyrefem.output.file import MARK
+from tyrefem.quantity import parse
+
+#: Which coordinates of the file are the radius and the axial position (or x and y of a planar mesh).
+AXES = {"rz": (0, 1), "zr": (1, 0), "xy": (0, 1), "yz": (1, 2), "zy": (2, 1), "xz": (0, 2), "zx": (2, 0)}
+#: A mesh and its section may differ by this share of a region's area before it is taken for a mistake.
+AREA_TOLERANCE = 0.1
+#: Formats in which `write` keeps names, with what meshio needs to know.
+WRITTEN: dict[str, dict[str, Any]] = {
+    # Format 2.2 is the one that every reader of gmsh files knows.
+    ".msh": {"file_format": "gmsh22"},
+    ".vtu": {},
+    ".vtk": {},
+}
+
+
+def read(
+    path: str | Path,
+    *,
+    names: Mapping[str, str] | None = None,
+    axes: str = "rz",
+    unit: str = "m",
+    regions: Iterable[str] = (),
+    boundaries: Iterable[str] = (),
+) -> Any:
+    """scikit-fem mesh from a file, named groups as ``subdomains`` and ``boundaries``.
+
+    Parameters
+    ----------
+    path : any format that meshio reads; groups may be gmsh physical names, cell sets, MED families, point sets
+        (boundaries), or cell data ``region:NAME`` and ``boundary:NAME`` that are 1 in the group.
+    names : names in the file -> names wanted.
+    axes : which coordinates are (r, z): ``"rz"`` and ``"xy"`` the first two, ``"zr"`` the second and the first.
+    unit : unit of the coordinates, e.g. ``"mm"``.
+    regions, boundaries : names that must be there; every element and every facet of the surface must be named.
+
+    Raises
+    ------
+    InputError : unreadable file, unknown unit, a name missing, parts without a name; says what was found.
+    """
+    path = Path(path)
+    if axes not in AXES:
+        raise InputError(f"no axes '{axes}'{nearest(axes, AXES)}", field="axes")
+    try:
+        scale = parse(f"1 {unit}", "m")
+    except InputError as error:
+        raise error.within(field="unit") from None
+    found = _meshio_mesh(path)
+    columns = list(AXES[axes])
+    points = np.asarray(found.points, dtype=float)
+    if points.shape[1] <= max(columns):
+        raise InputError(f"its points have {points.shape[1]} coordinates, too few for axes '{axes}'", file=path)
+    points = points[:, columns] * scale
+    if not np.isfinite(points).all():
+        raise InputError("a coordinate is not a finite number", file=path)
+    try:
+        return named_from(found, points=points, names=names, regions=regions, boundaries=boundaries)
+    except InputError as error:
+        raise error.within(file=path) from None
+
+
+def read_for(
+    section: Section,
+    path: str | Path,
+    *,
+    names: Mapping[str, str] | None = None,
+    axes: str = "rz",
+    unit: str = "m",
+) -> TyreMesh:
+    """A mesh from a file for a section: has the section's names, and about its areas.
+
+    Raises
+    ------
+    InputError : as `read`; a region's area differs by more than a tenth, as with a wrong unit; r is negative.
+    """
+    mesh = read(path, names=names, axes=axes, unit=unit, regions=section.regions, boundaries=section.boundaries)
+    if mesh.p[0].min() < 0:
+        raise InputError(f"r is negative, down to {mesh.p[0].min():.4g} m; are the axes '{axes}'?", file=path)
+    edges = mesh.p[:, mesh.facets[0]] - mesh.p[:, mesh.facets[1]]
+    cell = "tri" if mesh.t.shape[0] == 3 else "quad"
+    tyre = TyreMesh(mesh, section, "file", float(np.hypot(*edges).max()), cell)
+    for region in section.regions:
+        ratio = tyre.area(region) / section.area(region)
+        if abs(ratio - 1) > AREA_TOLERANCE:
+            raise InputError(
+                f"region '{region}' has {ratio:.4g} times the area it has in section '{section.name}':"
+                f" wrong unit ('{unit}'), a half for a full section, or another tyre",
+                file=path,
+            )
+    return tyre
+
+
+def write(mesh: Any, path: str | Path) -> Path:
+    """Write a mesh with its names; `read` gives it back.
+
+    gmsh files (``.msh``) hold physical names; VTK files (``.vtu``, ``.vtk``) cell data
+    ``region:NAME`` and ``boundary:NAME``.
+
+    Parameters
+    ----------
+    mesh : scikit-fem mesh with named subdomains and boundaries, or a `TyreMesh`.
+
+    Raises
+    ------
+    InputError : a format that does not keep names, or the file cannot be written.
+    """
+    import meshio
+
+    path = Path(path)
+    if path.suffix not in WRITTEN:
+        raise InputError(f"names cannot be kept in a '{path.suffix}' file{nearest(path.suffix, WRITTEN)}", file=path)
+    mesh = getattr(mesh, "mesh", mesh)
+    cell = "triangle" if mesh.t.shape[0] == 3 else "quad"
+    points = np.column_stack([mesh.p.T, np.zeros(mesh.p.shape[1])])
+    regions, boundaries = mesh.subdomains or {}, mesh.boundaries or {}
+    if sum(map(len, regions.values())) > len(np.unique(np.concatenate([[], *regions.values()]))):
+        raise InputError("its regions overlap; write the mesh without zones", file=path)
+    facets = np.unique(np.concatenate([np.zeros(0, dtype=np.int64), *boundaries.values()]))
+    cells = [(cell, mesh.t.T), ("line", mesh.facets[:, facets].T)]
+    members = {("region", name): (found, 0) for name, found in regions.items()}
+    members |= {("boundary", name): (np.searchsorted(facets, found), 1) for name, found in boundaries.items()}
+    marks = {}
+    for what, (found, block) in members.items():
+        marks[what] = [np.zeros(mesh.t.shape[1], dtype=np.int32), np.zeros(len(facets), dtype=np.int32)]
+        marks[what][block][found] = 1
+    data: dict[str, Any] = {":".join(what): values for what, values in marks.items()}
+    field_data = {}
+    if path.suffix == ".msh":
+        tags = [np.zeros(mesh.t.shape[1], dtype=np.int32), np.zeros(len(facets), dtype=np.int32)]
+        for tag, (what, (found, block)) in enumerate(members.items(), start=1):
+            tags[block][found] = tag
+            field_data[what[1]] = np.array([tag, 2 - block])
+        data = {"gmsh:physical": tags, "gmsh:geometrical": tags}
+    try:
+        with contextlib.redirect_stdout(io.StringIO()):
+            meshio.write(
+                path, meshio.Mesh(points, cells, cell_data=data, field_data=field_data), **WRITTEN[path.suffix]
+            )
+    except (Exception, SystemExit) as error:  # each format has its own kinds
+        raise InputError(f"cannot be written: {error}", file=path) from error
+    _mark(path)
+    return path
+
+
+def _mark(path: Path) -> None:
+    """Say in a comment of the format who wrote the file."""
+    if path.suffix == ".vtk":
+        path.write_bytes(path.read_bytes().replace(b"written by meshio", MARK + b", by meshio", 1))
+        return
+    comment = b"$Comments\n%s\n$EndComments\n" if path.suffix == ".msh" else b"\n<!-- %s -->\n"
+    with path.open("ab") as stream:
+        stream.write(comment % MARK)
+
+
+def _meshio_mesh(path: Path) -> Any:
+    import meshio
+
+    if not path.is_file():
+        raise InputError("no such mesh file", file=path)
+    note_input(path)
+    said = io.StringIO()
+    try:
+        # meshio prints what is wrong and ends the process where other libraries raise.
+        with contextlib.redirect_stdout(said), contextlib.redirect_stderr(said):
+            return meshio.read(path)
+    except (Exception, SystemExit) as error:
+        reason = said.getvalue().strip() or str(error)
+        raise InputError(f"cannot be read as a mesh: {reason:.200}", file=path) from error

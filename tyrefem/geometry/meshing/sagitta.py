@@ -1,0 +1,73 @@
+"""Points between a section's curved outline and the straight edges that a mesh has in its place."""
+
+from __future__ import annotations
+
+import numpy as np
+from numpy.typing import ArrayLike, NDArray
+
+from tyrefem.errors import InputError
+from tyrefem.geometry.meshing.mesh import TyreMesh
+
+Array = NDArray[np.float64]
+#: m. Coordinates that a person types are rounded; and what rounding leaves of a sagitta.
+ROUNDED = 1e-6
+#: Places of an edge where the outline is looked at.
+ALONG = np.linspace(0.0, 1.0, 65)
+#: Points that are looked at together.
+TOGETHER = 2000
+
+
+def snapped(tyre: TyreMesh, points: ArrayLike) -> Array:
+    """Points (n, 2) outside a mesh, moved to the nearest point of its edge.
+
+    A point counts as one of the mesh if it lies within the section's outline and is no further from the nearest edge
+    than that edge's sagitta, about h^2/(8 R) for an edge of length h on an outline of radius R.
+
+    Raises
+    ------
+    InputError : a point is further outside; names it, its distance, and what the edge there leaves of the section.
+
+    >>> from tyrefem.geometry import load
+    >>> from tyrefem.geometry.meshing import build
+    >>> tyre = build(load("nasa-22x5.5-8pr"), size=8e-3)
+    >>> on_outline = tyre.section.place([0.004], tyre.section.rubber_thickness([0.004]))
+    >>> bool(np.linalg.norm(snapped(tyre, on_outline) - on_outline) < 1e-4)
+    True
+    """
+    places = np.asarray(points, dtype=float).reshape(-1, 2)
+    return np.concatenate(
+        [_moved(tyre, places[first : first + TOGETHER]) for first in range(0, len(places), TOGETHER)] or [places]
+    )
+
+
+def _moved(tyre: TyreMesh, points: Array) -> Array:
+    ends = np.asarray(tyre.mesh.p.T[tyre.mesh.facets[:, tyre.mesh.boundary_facets()].T])
+    start, along = ends[:, 0], ends[:, 1] - ends[:, 0]
+    part = np.clip(((points[:, None] - start) * along).sum(axis=2) / (along**2).sum(axis=1), 0.0, 1.0)
+    nearest = start + part[..., None] * along
+    distances = np.linalg.norm(points[:, None] - nearest, axis=2)
+    edge = distances.argmin(axis=1)
+    each = np.arange(len(points))
+    allowed = np.where(tyre.section.contains(points, ROUNDED), sagitta(tyre, ends[edge]), 0.0)
+    wrong = np.flatnonzero(distances[each, edge] > allowed + ROUNDED)
+    if wrong.size:
+        worst = wrong[0]
+        (r, z), away, left = points[worst], distances[worst, edge[worst]], allowed[worst]
+        outline = f", and the straight edge there leaves out {left:.2g} m of the section" if left else ""
+        raise InputError(f"point ({r:.6g}, {z:.6g}) m lies {away:.3g} m outside the mesh{outline}", field="points")
+    return np.asarray(nearest[each, edge])
+
+
+def sagitta(tyre: TyreMesh, ends: Array) -> Array:
+    """(n,) largest distance of the section's outline from straight edges with these ends (n, 2, 2), m."""
+    section = tyre.section
+    s, depth = section.locate(ends)
+    share = depth / section.rubber_thickness(s)
+    stations = s[:, :1] + (s[:, 1:] - s[:, :1]) * ALONG
+    depths = (share[:, :1] + (share[:, 1:] - share[:, :1]) * ALONG) * section.rubber_thickness(stations)
+    outline = section.place(stations, depths)
+    first, chord = outline[:, :1], outline[:, -1:] - outline[:, :1]
+    away = outline - first
+    across = away[..., 0] * chord[..., 1] - away[..., 1] * chord[..., 0]
+    lengths = np.linalg.norm(chord[:, 0], axis=1)
+    return np.asarray(np.abs(across).max(axis=1) / np.where(lengths > 0, lengths, 1.0))

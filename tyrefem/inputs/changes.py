@@ -1,0 +1,164 @@
+"""Change one value of a study by its dotted name: ``drive.speed``, ``section.crown_radius``, ``sensors.crown.s``."""
+
+from __future__ import annotations
+
+import re
+from collections.abc import Mapping
+from typing import Any
+
+from tyrefem import library
+from tyrefem.errors import InputError, nearest
+from tyrefem.inputs.drive import RIVALS
+from tyrefem.quantity import written
+
+#: Tables whose text value is a reference to a card: changing something below it lays the change over the card.
+_REFERENCES = {"section": "section", "materials.*": "material"}
+_AMOUNT = re.compile(r"^\s*([-+]?(?:\d+\.?\d*|\.\d+)(?:[eE][-+]?\d+)?)(.*)$", re.DOTALL)
+
+
+def changed(data: Mapping[str, Any], key: str, value: Any) -> dict[str, Any]:
+    """Plain data with the value at a dotted name replaced (the original is left alone).
+
+    >>> changed({"section": "nasa"}, "section.crown_radius", "3 in")
+    {'section': {'base': 'nasa', 'parameters': {'crown_radius': '3 in'}}}
+    """
+    return all_changed(data, {key: value})
+
+
+def all_changed(data: Mapping[str, Any], changes: Mapping[str, Any]) -> dict[str, Any]:
+    """Plain data with the values at dotted names replaced, one after the other; other tables are shared, not copied.
+
+    >>> all_changed({"mesh": {}}, {"mesh.size": "3 mm", "mesh.element": "P1"})
+    {'mesh': {'size': '3 mm', 'element': 'P1'}}
+    """
+    result: dict[str, Any] = dict(data)
+    own: set[str] = set()
+    for key, value in changes.items():
+        table = key.split(".")[0].strip().replace("-", "_")
+        if table in result and table not in own:
+            result[table] = written(result[table])
+            own.add(table)
+        _change(result, key, written(value))
+    return result
+
+
+def _change(data: dict[str, Any], key: str, value: Any) -> None:
+    parts = _parts(data, key)
+    _refuse_overridden(data, parts)
+    place: Any = data
+    for depth, part in enumerate(parts[:-1]):
+        place = _step(place, part, ".".join(parts[: depth + 1]), parts[: depth + 1])
+    last = parts[-1]
+    if isinstance(place, list):
+        place[_index(place, last, key)] = value
+    else:
+        place[last] = value
+        _drop_rivals(parts, place)
+
+
+def _parts(data: Mapping[str, Any], key: str) -> list[str]:
+    parts = [part.strip().replace("-", "_") if i == 0 else part.strip() for i, part in enumerate(key.split("."))]
+    if not all(parts):
+        raise InputError(f"'{key}' is not a dotted name such as drive.speed")
+    if parts[0] == "section" and len(parts) >= 2 and parts[1] != "base":
+        return [*_section_parts(parts[1]), *parts[2:]]
+    return parts
+
+
+def _section_parts(name: str) -> list[str]:
+    """``section.crown_radius`` means the section's parameter of that name, ``section.cord_angle`` its rating."""
+    from tyrefem.geometry.card import RatingCard, SectionCard
+
+    if name in SectionCard.model_fields:
+        return ["section", name]
+    return ["section", "rating" if name in RatingCard.model_fields else "parameters", name]
+
+
+def _step(place: Any, part: str, so_far: str, path: list[str]) -> Any:
+    if isinstance(place, list):
+        return place[_index(place, part, so_far)]
+    below = place.get(part)
+    reference = so_far in _REFERENCES or (path[0] == "materials" and len(path) == 2)
+    if reference and isinstance(below, str):
+        below = place[part] = {"base": below}
+    elif below is None:
+        below = place[part] = {}
+    elif not isinstance(below, dict | list):
+        raise InputError(f"'{so_far}' is a value, not a table: nothing below it can be set", field=so_far)
+    return below
+
+
+def _index(entries: list[Any], part: str, so_far: str) -> int:
+    names = [str(entry.get("name", "")) if isinstance(entry, dict) else "" for entry in entries]
+    if part in names:
+        return names.index(part)
+    if part.isdigit() and int(part) < len(entries):
+        return int(part)
+    allowed = [name or str(number) for number, name in enumerate(names)]
+    raise InputError(f"no entry '{part}'{nearest(part, allowed)}", field=so_far)
+
+
+def _refuse_overridden(data: Mapping[str, Any], parts: list[str]) -> None:
+    drive = data.get("drive")
+    if parts[0] != "drive" or len(parts) < 2 or not isinstance(drive, Mapping):
+        return
+    phases = drive.get("phases")
+    same = {parts[1], *RIVALS.get(parts[1], ())}
+    if isinstance(phases, list) and phases and all(isinstance(p, Mapping) and same & set(p) for p in phases):
+        names = [str(p.get("name", number)) for number, p in enumerate(phases)]
+        raise InputError(
+            f"every phase sets its own '{' or '.join(sorted(same))}': name the phase, "
+            f"e.g. drive.phases.{names[0]}.{parts[1]} (phases: {', '.join(names)})",
+            field=".".join(parts),
+        )
+
+
+def _drop_rivals(parts: list[str], place: dict[str, Any]) -> None:
+    """Load and deflection say the same thing: setting one drops the other; so do a sensor's two ways of placing."""
+    rivals = RIVALS if parts[0] == "drive" else {}
+    if parts[0] == "sensors":
+        rivals = {"at": ["s", "depth"], "s": ["at"], "depth": ["at"]}
+    for rival in rivals.get(parts[-1], []):
+        place.pop(rival, None)
+
+
+def value_at(data: Mapping[str, Any], key: str, near: Any = None) -> Any:
+    """The value at a dotted name, looked up through the cards that the study refers to."""
+    place: Any = data
+    parts = _parts(data, key)
+    for depth, part in enumerate(parts):
+        reference = (depth == 1 and parts[0] == "section") or (depth == 2 and parts[0] == "materials")
+        if reference:
+            place, _, _ = library.load("section" if depth == 1 else "material", place, near)
+        if isinstance(place, list):
+            place = place[_index(place, part, key)]
+        elif isinstance(place, Mapping) and part in place:
+            place = place[part]
+        else:
+            allowed = list(place) if isinstance(place, Mapping) else []
+            raise InputError(f"not set in the study or its cards{nearest(part, allowed)}", field=key)
+    return place
+
+
+def scaled(value: Any, factor: float, significant: int | None = None) -> Any:
+    """A quantity as written, its number times a factor; rounded to so many significant digits, if asked.
+
+    Of a table's rows the first column stays: temperatures, frequencies, places.
+
+    >>> scaled("20 mph", 1.5), scaled("20 mph", 1.23456, significant=3), scaled(0.1, 1.23456, significant=3)
+    ('30 mph', '24.7 mph', 0.123)
+    >>> scaled([["20 degC", "0.2 W/m/K"], ["80 degC", "0.3 W/m/K"]], 2.0)
+    [['20 degC', '0.4 W/m/K'], ['80 degC', '0.6 W/m/K']]
+    """
+    if isinstance(value, bool):
+        raise InputError(f"{value!r} is not a number that can be scaled")
+    if isinstance(value, int | float):
+        return value * factor if significant is None else float(f"{value * factor:.{significant}g}")
+    if isinstance(value, list):
+        if value and all(isinstance(row, list) and row for row in value):
+            return [[row[0], *scaled(row[1:], factor, significant)] for row in value]
+        return [scaled(entry, factor, significant) for entry in value]
+    match = _AMOUNT.match(value) if isinstance(value, str) else None
+    if match is None:
+        raise InputError(f"{value!r} is not a number that can be scaled")
+    return f"{float(match[1]) * factor:.{significant or 12}g}{match[2]}"

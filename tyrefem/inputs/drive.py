@@ -1,0 +1,296 @@
+"""The drive: phases of speed, load, pressure and surroundings, each constant or a ramp."""
+
+from __future__ import annotations
+
+import functools
+import math
+from bisect import bisect_right
+from collections.abc import Mapping
+from dataclasses import dataclass
+from typing import Annotated, Any, ClassVar
+
+from pydantic import GetCoreSchemaHandler, model_validator
+from pydantic_core import CoreSchema, core_schema
+
+from tyrefem.boundaries.slip import Slip
+from tyrefem.cards import Card, Temperature, Text
+from tyrefem.errors import InputError, nearest
+from tyrefem.quantity import Unit
+
+
+@dataclass(frozen=True)
+class Ramp:
+    """A quantity during a phase: from ``start`` to ``end``, linear in time. SI.
+
+    >>> Ramp(0.0, 10.0).at(0.25)
+    2.5
+    """
+
+    start: float
+    end: float
+
+    @property
+    def constant(self) -> bool:
+        """Does it stay the same?"""
+        return self.start == self.end
+
+    def at(self, fraction: float) -> float:
+        """The value at a fraction of the phase."""
+        return self.start + (self.end - self.start) * fraction
+
+
+@dataclass(frozen=True)
+class RampOf:
+    """Annotation of a drive quantity: ``"20 mph"``, or ``{ from = "0 mph", to = "150 mph" }``."""
+
+    unit: Unit
+
+    def __call__(self, value: Any) -> Ramp:
+        if not isinstance(value, Mapping):
+            number = self.unit(value)
+            return Ramp(number, number)
+        for key in value:
+            if key not in ("from", "to"):
+                raise InputError(f"unknown key '{key}'{nearest(str(key), ['from', 'to'])}")
+        if set(value) != {"from", "to"}:
+            raise InputError("a ramp needs both 'from' and 'to'")
+        ends = []
+        for key in ("from", "to"):
+            try:
+                ends.append(self.unit(value[key]))
+            except InputError as error:
+                raise error.within(field=key) from None
+        return Ramp(*ends)
+
+    def __get_pydantic_core_schema__(self, source: Any, handler: GetCoreSchemaHandler) -> CoreSchema:
+        return core_schema.no_info_plain_validator_function(self)
+
+
+#: Fastest wheel speed accepted, m/s: the land-speed record is 341 m/s.
+FASTEST = 400.0
+
+
+#: Keys that say the same thing: a phase's own takes the place of the drive's other.
+RIVALS = {
+    "load": ["deflection"],
+    "deflection": ["load"],
+    "slip_ratio": ["slip_speed"],
+    "slip_speed": ["slip_ratio"],
+}
+
+
+class Phase(Card):
+    """A stretch of the drive. Keys left out come from the study's ``[drive]`` table."""
+
+    name: Text = "rolling"
+    duration: Annotated[float, Unit("s", gt=0, le=1e7)]
+    speed: Annotated[Ramp, RampOf(Unit("m/s", ge=0, le=FASTEST))]
+    load: Annotated[Ramp, RampOf(Unit("N", ge=0))] | None = None
+    deflection: Annotated[Ramp, RampOf(Unit("m", ge=0))] | None = None
+    pressure: Annotated[Ramp, RampOf(Unit("Pa", ge=0, le=1e7))]
+    ambient: Annotated[Ramp, RampOf(Unit("degC", le=2000))] = Ramp(25.0, 25.0)
+    road_temperature: Annotated[Ramp, RampOf(Unit("degC", le=2000))] | None = None
+    rim_temperature: Annotated[Ramp, RampOf(Unit("degC", le=2000))] | None = None
+    drum_diameter: Annotated[float, Unit("m", gt=0)] = math.inf
+    #: Braking positive, 1 a locked wheel; driving down to -1, where the wheel turns twice as fast as it rolls.
+    slip_ratio: Annotated[Ramp, RampOf(Unit("1", ge=-1, le=1))] | None = None
+    #: The same as a speed: forward speed less the tread's.
+    slip_speed: Annotated[Ramp, RampOf(Unit("m/s", ge=-FASTEST, le=FASTEST))] | None = None
+    #: Yaw of the wheel against its way; either sign.
+    slip_angle: Annotated[Ramp, RampOf(Unit("rad"))] | None = None
+
+    @model_validator(mode="after")
+    def _one_of_load_and_deflection(self) -> Phase:
+        if (self.load is None) == (self.deflection is None):
+            raise InputError("give exactly one of 'load' and 'deflection'")
+        return self
+
+    @model_validator(mode="after")
+    def _possible_slip(self) -> Phase:
+        check_slip(self)
+        return self
+
+    @property
+    def slides(self) -> bool:
+        """Does the tread slide on the road?"""
+        return slides(self)
+
+    @property
+    def changes_load(self) -> bool:
+        """Does the strain cycle change during the phase?"""
+        ramps = [self.load, self.deflection, self.pressure]
+        return any(ramp is not None and not ramp.constant for ramp in ramps)
+
+
+class Drive(Card):
+    """The whole drive: ``phases`` in their order, starting at ``initial`` temperature."""
+
+    kind: ClassVar[str] = "drive"
+    # Before `initial`, which may be taken from an ambient temperature: what is wrong there is said of the phase.
+    phases: tuple[Phase, ...]
+    initial: Temperature
+
+    @model_validator(mode="before")
+    @classmethod
+    def _spread_defaults(cls, data: Any) -> Any:
+        if not isinstance(data, Mapping):
+            return data
+        defaults = {key: value for key, value in data.items() if key not in ("phases", "initial")}
+        for key in defaults:
+            if key not in Phase.model_fields:
+                raise InputError(f"unknown key '{key}'{nearest(str(key), {*Phase.model_fields, *cls.model_fields})}")
+        phases = data.get("phases", [{}])
+        if not isinstance(phases, list) or not phases:
+            raise InputError("must be a list of at least one phase", field="phases")
+        filled = [cls._filled(defaults, phase, number, len(phases)) for number, phase in enumerate(phases)]
+        initial = data.get("initial", _start_of(filled[0].get("ambient", "25 degC")))
+        return {"initial": initial, "phases": filled}
+
+    @staticmethod
+    def _filled(defaults: Mapping[str, Any], phase: Any, number: int, count: int) -> dict[str, Any]:
+        if not isinstance(phase, Mapping):
+            raise InputError("must be a table of keys", field=f"phases.{number}")
+        drop = {rival for key, rivals in RIVALS.items() if key in phase for rival in rivals}
+        own = {"name": f"phase {number + 1}" if count > 1 else "rolling"}
+        return own | {key: value for key, value in defaults.items() if key not in drop} | dict(phase)
+
+    @model_validator(mode="after")
+    def _distinct_names(self) -> Drive:
+        names = [phase.name for phase in self.phases]
+        repeated = {name for name in names if names.count(name) > 1}
+        if repeated:
+            raise InputError(f"two phases are named '{repeated.pop()}'", field="phases")
+        return self
+
+    @functools.cached_property
+    def starts(self) -> tuple[float, ...]:
+        """Start of each phase, s."""
+        total, result = 0.0, []
+        for phase in self.phases:
+            result.append(total)
+            total += phase.duration
+        return tuple(result)
+
+    @functools.cached_property
+    def end(self) -> float:
+        """End of the drive, s."""
+        return sum(phase.duration for phase in self.phases)
+
+    def locate(self, time: float) -> tuple[int, float]:
+        """Number of the phase at a time, and the fraction of it that has passed."""
+        starts = self.starts
+        number = max(bisect_right(starts, time) - 1, 0)
+        fraction = (time - starts[number]) / self.phases[number].duration
+        return number, min(max(fraction, 0.0), 1.0)
+
+    def value(self, quantity: str, time: float) -> float | None:
+        """A phase's quantity (``speed``, ``ambient``...) at a time, SI; None where the drive does not say."""
+        number, fraction = self.locate(time)
+        ramp = getattr(self.phases[number], quantity)
+        return None if ramp is None else ramp.at(fraction)
+
+    def slip(self, time: float) -> Slip:
+        """The wheel's motion at a time."""
+        number, fraction = self.locate(time)
+        return slip_of(self.phases[number], fraction)
+
+    @functools.cached_property
+    def _locked(self) -> tuple[bool, ...]:
+        return tuple(is_locked(phase) for phase in self.phases)
+
+    def locked_since(self, time: float) -> float | None:
+        """When the wheel locked that is locked at a time, s; None for one that turns or stands with the vehicle."""
+        number, _ = self.locate(time)
+        if not self._locked[number]:
+            return None
+        while number > 0 and self._locked[number - 1]:
+            number -= 1
+        return self.starts[number]
+
+
+def as_written(drive: Mapping[str, Any], field: str) -> str:
+    """The field of a study file that a phase's field comes from: ``[drive]`` itself gives what no phase says.
+
+    >>> as_written({"ambient": "25 lbf"}, "drive.phases.0.ambient")
+    'drive.ambient'
+    >>> drive = {"ambient": "25 degC", "phases": [{"name": "taxi", "speed": "20 mph"}, {"ambient": "5 lbf"}]}
+    >>> as_written(drive, "drive.phases.taxi.ambient.from"), as_written(drive, "drive.phases.1.ambient")
+    ('drive.ambient.from', 'drive.phases.1.ambient')
+    """
+    listed = drive.get("phases")
+    phases = listed if isinstance(listed, list) and listed else [{"name": drive.get("name", "rolling")}]
+    for number, phase in enumerate(phases):
+        given = phase if isinstance(phase, Mapping) else {}
+        for which in (str(number), str(given.get("name", f"phase {number + 1}"))):
+            if f"{field}.".startswith(f"drive.phases.{which}."):
+                rest = field.removeprefix(f"drive.phases.{which}").removeprefix(".")
+                key = rest.partition(".")[0]
+                from_drive = listed is None or (key in drive and key not in given)
+                return f"drive.{rest}".removesuffix(".") if from_drive else field
+    return field
+
+
+def _start_of(value: Any) -> Any:
+    return value.get("from") if isinstance(value, Mapping) else value
+
+
+#: Largest slip angle: beyond it a wheel skids sideways rather than rolls (a judgement).
+STEEPEST = math.radians(45.0)
+
+
+#: Fractions of a phase where its slip is checked.
+LOOKS = tuple(i / 50 for i in range(51))
+
+
+#: A wheel that turns slower than this share of its free speed is locked: what rounding leaves.
+ROUNDING = 1e-12
+
+
+def slip_of(phase: Phase, fraction: float) -> Slip:
+    """The slip at a fraction of a phase."""
+    speed = phase.speed.at(fraction)
+    angle = 0.0 if phase.slip_angle is None else phase.slip_angle.at(fraction)
+    if phase.slip_speed is not None:
+        return Slip(speed, phase.slip_speed.at(fraction), angle)
+    ratio = 0.0 if phase.slip_ratio is None else phase.slip_ratio.at(fraction)
+    return Slip(speed, ratio * Slip(speed, angle=angle).forward, angle)
+
+
+def slides(phase: Phase) -> bool:
+    """Does the phase have any slip?"""
+    ramps = (phase.slip_ratio, phase.slip_speed, phase.slip_angle)
+    return any(ramp is not None and (ramp.start != 0 or ramp.end != 0) for ramp in ramps)
+
+
+def is_locked(phase: Phase) -> bool:
+    """Does the wheel stand still in its axle all the time while the vehicle moves?
+
+    A phase that only ends locked, by a ramp, still turns.
+    """
+    if not slides(phase) or phase.speed.start == phase.speed.end == 0:
+        return False
+    looks = (slip_of(phase, fraction) for fraction in (0.0, 0.5, 1.0))
+    return all(slip.rolling_speed <= ROUNDING * slip.speed for slip in looks)
+
+
+def check_slip(phase: Phase) -> None:
+    """Refuse slip that cannot be; InputError names the key."""
+    if phase.slip_ratio is not None and phase.slip_speed is not None:
+        raise InputError("give 'slip_ratio' or 'slip_speed', not both", field="slip_speed")
+    if phase.slip_angle is not None:
+        for angle in (phase.slip_angle.start, phase.slip_angle.end):
+            if abs(angle) > STEEPEST * (1 + 1e-9):
+                raise InputError(f"{math.degrees(angle):.4g} deg is out of range: -45 to 45 deg", field="slip_angle")
+    if not slides(phase):
+        return
+    if phase.speed.start == phase.speed.end == 0:
+        keys = ("slip_ratio", "slip_speed", "slip_angle")
+        key = next(key for key in keys if (ramp := getattr(phase, key)) is not None and (ramp.start or ramp.end))
+        raise InputError("needs a speed, and the wheel stands still: leave it out or make it 0 here", field=key)
+    for slip in (slip_of(phase, fraction) for fraction in LOOKS if phase.slip_speed is not None):
+        if abs(slip.longitudinal) > slip.forward * (1 + 1e-9):
+            raise InputError(
+                f"{slip.longitudinal:.4g} m/s is more than the wheel's forward speed, {slip.forward:.4g} m/s, with "
+                "which it would be locked",
+                field="slip_speed",
+            )

@@ -1,0 +1,225 @@
+"""Load and pressure to deflection, footprint and the fraction of a revolution on the road.
+
+Length of the footprint from the deflection: one class per law of ``[mechanics] footprint``.
+
+The footprint: its length by law, and its mechanics by Fourier harmonics about the inflated tyre.
+
+`length` holds the laws of a study's ``[mechanics] footprint``. The mechanics are imported from their own modules, as
+they load scikit-fem: `harmonics`, `contact`, `cycle`, `loss`.
+"""
+
+from __future__ import annotations
+
+import math
+from dataclasses import dataclass
+from typing import Annotated, ClassVar, Literal, Protocol
+
+from tyrefem.boundaries.road_film import hedekel_length
+from tyrefem.cards import Card, Text
+from tyrefem.errors import InputError
+from tyrefem.quantity import Unit
+
+
+class TrR64Footprint(Card):
+    """NASA TR R-64: 1.7 d sqrt(D/d - (D/d)^2), quoted from memory of the report."""
+
+    law: Literal["tr-r-64"] = "tr-r-64"
+    #: Whether a drum shortens what the law gives.
+    shorter_on_drum: ClassVar[bool] = True
+
+    def on_flat_road(self, deflection: float, outer_radius: float) -> float:
+        """Length, m, from metres."""
+        d = 2 * outer_radius
+        x = deflection / d
+        return 1.7 * d * math.sqrt(max(x - x * x, 0.0))
+
+
+class HedekelFootprint(Card):
+    """The chord c 2 sqrt(D (2 r_0 - D)) (Cattani et al. 2023, eq 13); ``correction`` c is a measured factor."""
+
+    law: Literal["hedekel"]
+    correction: Annotated[float, Unit("1", gt=0, le=2)] = 1.0
+    shorter_on_drum: ClassVar[bool] = True
+
+    def on_flat_road(self, deflection: float, outer_radius: float) -> float:
+        """Length, m, from metres."""
+        return hedekel_length(deflection, outer_radius, self.correction)
+
+
+class GivenFootprint(Card):
+    """A measured length, at every load and on any drum; none where the tyre does not touch the road."""
+
+    law: Literal["given"]
+    length: Annotated[float, Unit("m", gt=0, le=4)]
+    shorter_on_drum: ClassVar[bool] = False
+
+    def on_flat_road(self, deflection: float, outer_radius: float) -> float:
+        """Length, m, from metres."""
+        return self.length if deflection > 0 else 0.0
+
+
+FootprintLaw = TrR64Footprint | HedekelFootprint | GivenFootprint
+TR_R_64 = TrR64Footprint()
+
+
+#: TR R-64, type VII tyres, static: C_z.
+TYPE_VII = 0.02
+
+
+class TrR64(Card):
+    """Load-deflection of NASA TR R-64 (Smiley & Horne 1958), quoted from memory of the report.
+
+    F / ((p + 0.08 p_rated) w sqrt(w d)) = 0.96 u + 0.216 u^2 / C_z    for u = D/w <= 10 C_z / 3,
+                                         = 2.4 (u - C_z)               beyond.
+    """
+
+    law: Literal["tr-r-64"] = "tr-r-64"
+    shape_factor: Annotated[float, Unit("1", gt=0, lt=0.2)] = TYPE_VII
+    source: Text = "NASA TR R-64, static, type VII, C_z = 0.02 (quoted from memory)"
+
+    def _scale(self, pressure: float, tyre: Rating) -> float:
+        return (pressure + 0.08 * tyre.pressure) * tyre.width * math.sqrt(tyre.width * tyre.diameter)
+
+    def load(self, deflection: float, pressure: float, tyre: Rating) -> float:
+        """Vertical load, N."""
+        u, c = deflection / tyre.width, self.shape_factor
+        shape = 0.96 * u + 0.216 * u * u / c if u <= 10 * c / 3 else 2.4 * (u - c)
+        return shape * self._scale(pressure, tyre)
+
+    def deflection(self, load: float, pressure: float, tyre: Rating) -> float:
+        """Deflection, m: the closed-form inverse of the two branches."""
+        f, c = load / self._scale(pressure, tyre), self.shape_factor
+        if f <= 2.4 * (10 * c / 3 - c):
+            a = 0.216 / c
+            return tyre.width * (-0.96 + math.sqrt(0.96**2 + 4 * a * f)) / (2 * a)
+        return tyre.width * (f / 2.4 + c)
+
+
+class VerticalStiffness(Card):
+    """A measured vertical stiffness: D = F / k."""
+
+    law: Literal["vertical-stiffness"]
+    stiffness: Annotated[float, Unit("N/m", gt=0)]
+    source: Text
+
+    def load(self, deflection: float, pressure: float, tyre: Rating) -> float:
+        """Vertical load, N."""
+        return self.stiffness * deflection
+
+    def deflection(self, load: float, pressure: float, tyre: Rating) -> float:
+        """Deflection, m."""
+        return load / self.stiffness
+
+
+class Rating(Protocol):
+    """What a load-deflection law needs of the tyre: nominal width and diameter (m), rated pressure (Pa)."""
+
+    @property
+    def width(self) -> float:
+        """w, m."""
+
+    @property
+    def diameter(self) -> float:
+        """d, m."""
+
+    @property
+    def pressure(self) -> float:
+        """p_rated, Pa."""
+
+
+@dataclass(frozen=True)
+class PressedContact:
+    """What a strain law that presses the tyre on its road knows of the contact: lengths in m, area in m2."""
+
+    length: float
+    area: float
+    rolling_radius: float
+
+
+@dataclass(frozen=True)
+class LoadCase:
+    """One load on the tyre: everything the strain cycle depends on. SI units.
+
+    Parameters
+    ----------
+    drum_diameter : ``inf`` on a flat road.
+    by_deflection : the drive gives the deflection, and the load follows; else the other way round.
+    contact : of a strain law that presses the tyre itself; load and deflection are its own then. None: those and the
+        contact are by the study's laws.
+    """
+
+    load: float
+    deflection: float
+    pressure: float
+    outer_radius: float
+    drum_diameter: float = math.inf
+    footprint: FootprintLaw = TR_R_64
+    by_deflection: bool = False
+    contact: PressedContact | None = None
+
+    @property
+    def rolling_radius(self) -> float:
+        """r_r = r_0 - D/3 (Clark & Dodge 1980, eq 26), or the contact's own."""
+        return self.outer_radius - self.deflection / 3 if self.contact is None else self.contact.rolling_radius
+
+    @property
+    def footprint_area(self) -> float | None:
+        """Area of rubber in contact, m2; None where no contact was solved."""
+        return None if self.contact is None else self.contact.area
+
+    @property
+    def footprint_length(self) -> float:
+        """The contact's own length, m; or the footprint law's, shortened by sqrt(1/(1 + d/d_drum)) on a drum unless it
+        was measured.
+
+        The drum's factor is the Hertz contact of two cylinders at equal deflection: an estimate.
+        """
+        if self.contact is not None:
+            return self.contact.length
+        length = self.footprint.on_flat_road(self.deflection, self.outer_radius)
+        if not self.footprint.shorter_on_drum:
+            return length
+        return length / math.sqrt(1 + 2 * self.outer_radius / self.drum_diameter)
+
+    @property
+    def road_fraction(self) -> float:
+        """Fraction of a revolution that a tread point spends on the road: L / (2 pi r_r)."""
+        return self.footprint_length / (2 * math.pi * self.rolling_radius)
+
+    def contact_time(self, speed: float) -> float:
+        """Seconds that a tread point stays on the road at a speed in m/s."""
+        return self.footprint_length / speed if speed > 0 else math.inf
+
+
+def load_case(
+    law: TrR64 | VerticalStiffness | None,
+    rating: Rating,
+    *,
+    outer_radius: float,
+    pressure: float,
+    load: float | None = None,
+    deflection: float | None = None,
+    drum_diameter: float = math.inf,
+    footprint: FootprintLaw = TR_R_64,
+) -> LoadCase:
+    """A load case from a load or from a deflection, the other found by the law.
+
+    Without a law the other is 0: a strain law that presses the tyre itself will find it.
+
+    Raises
+    ------
+    InputError : the deflection exceeds half the outer radius, which no tyre survives.
+    """
+    by_deflection = deflection is not None
+    if deflection is None:
+        load = load or 0.0
+        deflection = law.deflection(load, pressure, rating) if law is not None and load > 0 else 0.0
+    else:
+        load = 0.0 if law is None else law.load(deflection, pressure, rating)
+    if not 0 <= deflection < outer_radius / 2:
+        raise InputError(
+            f"{load:.4g} N at {pressure / 1e3:.4g} kPa deflects the tyre by {deflection * 1e3:.4g} mm; "
+            f"allowed: 0 to {outer_radius * 500:.4g} mm (half its outer radius)",
+            field="deflection" if by_deflection else "load",
+        )
+    return LoadCase(load, deflection, pressure, outer_radius, drum_diameter, footprint, by_deflection)

@@ -1,0 +1,296 @@
+"""The study file: what `tyrefem.study` validates. Every key can be changed by its dotted name."""
+
+from __future__ import annotations
+
+from itertools import pairwise
+from typing import TYPE_CHECKING, Annotated, Any, ClassVar, Literal
+
+from pydantic import BeforeValidator, Field, model_validator
+
+from tyrefem.boundaries import LawOf
+from tyrefem.boundaries.contained_air import ContainedAirLaw
+from tyrefem.boundaries.outside_air import OutsideAirLaw
+from tyrefem.boundaries.rim import RimLaw
+from tyrefem.boundaries.road import RoadLaw
+from tyrefem.boundaries.sliding import SlidingLaw
+from tyrefem.cards import Card, Temperature, Text
+from tyrefem.effects import Effect, EffectOf
+from tyrefem.errors import InputError, InputWarning, nearest
+from tyrefem.estimates.work import check_readings, smallest_tolerance
+from tyrefem.inputs.drive import Drive
+from tyrefem.inputs.loading import TR_R_64, FootprintLaw, TrR64, VerticalStiffness
+from tyrefem.inputs.published import Published
+from tyrefem.quantity import Unit
+
+if TYPE_CHECKING:
+    from tyrefem.geometry import Section
+
+Rows = tuple[tuple[float, float], ...]
+
+
+def _rows(value: Any) -> Rows:
+    """``"12 kJ/m**3"``, or rows ``[["0 mm", "12 kJ/m**3"], ...]`` along the meridian, s rising."""
+    if not isinstance(value, list | tuple):
+        return ((0.0, Unit("J/m**3", ge=0)(value)),)
+    if not value or not all(isinstance(row, list | tuple) and len(row) == 2 for row in value):
+        raise InputError("must be like '12 kJ/m**3' or rows [['0 mm', '12 kJ/m**3'], ['70 mm', '20 kJ/m**3']]")
+    rows = tuple((Unit("m", ge=0)(s), Unit("J/m**3", ge=0)(energy)) for s, energy in value)
+    if any(after <= before for (before, _), (after, _) in pairwise(rows)):
+        raise InputError("the distances from the crown must rise from row to row")
+    return rows
+
+
+class GivenEnergy(Card):
+    """Strain energy per cycle U, J/m3, of every region at one load and pressure.
+
+    ``regions``: a number, or rows of distance from the crown and energy, linear between them and constant beyond.
+    ``temperature``: at which the energies hold, degC; where it is given they follow the modulus (with
+    ``mechanics.feedback``).
+    """
+
+    load: Annotated[float, Unit("N", gt=0)]
+    pressure: Annotated[float, Unit("Pa", gt=0)]
+    temperature: Temperature | None = None
+    regions: dict[str, Annotated[Rows, BeforeValidator(_rows)]] = Field(min_length=1)
+    source: Text
+
+    def check_regions(self, section: Section) -> None:
+        """Raise `InputError` unless exactly the section's regions are given."""
+        for region in self.regions:
+            if region not in section.regions:
+                message = f"section '{section.name}' has no region '{region}'{nearest(region, section.regions)}"
+                raise InputError(message, field="regions")
+        for region in section.regions:
+            if region not in self.regions:
+                raise InputError(f"no strain energy for region '{region}' (it may be '0 J/m**3')", field="regions")
+
+    def without_effect(self, section: Section) -> tuple[InputWarning, ...]:
+        """Rows that lie so far outside of their region that no point of it is told by them."""
+        warnings = []
+        for region, rows in self.regions.items():
+            pieces = [piece for piece in section.pieces if piece.region == region]
+            if len(rows) < 2 or not pieces:
+                continue
+            start, end = min(piece.start for piece in pieces), max(piece.end for piece in pieces)
+            idle = [s for s, following in pairwise([s for s, _ in rows]) if following <= start + 1e-9]
+            idle += [s for before, s in pairwise([s for s, _ in rows]) if before >= end - 1e-9]
+            if idle:
+                places = ", ".join(f"{s * 1e3:.4g}" for s in idle)
+                words = f"rows at {places} mm have no effect: it runs from {start * 1e3:.4g} to {end * 1e3:.4g} mm"
+                warnings.append(InputWarning(words, field=f"regions.{region}"))
+        return tuple(warnings)
+
+
+class MeshChoice(Card):
+    """How the section is meshed.
+
+    ``through`` is the least number of elements through every layer: 1 will do for the thin plies of a radial.
+    ``cell`` is quadrilaterals for the mapped mesher and triangles for gmsh where not given. ``file`` takes a user's
+    own mesh with named groups in place of a mesher: ``names`` maps the file's names to the section's, ``axes`` says
+    which coordinates are (r, z), ``unit`` their unit.
+    """
+
+    mesher: Literal["mapped", "gmsh"] = "mapped"
+    size: Annotated[float, Unit("m", gt=1e-4, lt=0.5)] = 3e-3
+    cell: Literal["quad", "tri"] | None = None
+    element: Literal["P1", "P2"] = "P2"
+    through: Annotated[int, Field(ge=1, le=50)] = 3
+    section: Literal["half", "full"] = "half"
+    file: str | None = None
+    names: dict[str, str] = Field(default_factory=dict)
+    axes: str = "rz"
+    unit: str = "m"
+
+
+class Feedback(Card):
+    """How temperatures act back on the strain cycle: `tyrefem.simulation.feedback`.
+
+    ``pressure``: the gauge pressure follows the contained air's temperature, so that the deflection at given load
+    falls as it warms. ``modulus``: moduli follow the ``softening`` of the cards at each region's mean temperature.
+    ``knots``: strain cycles over every phase of constant load. ``tolerance``: temperatures of the strain cycles and
+    of the run they give differ by less; ``iterations``: runs at most.
+    """
+
+    pressure: bool = True
+    modulus: bool = True
+    knots: Annotated[int, Field(ge=2, le=200)] = 9
+    tolerance: Annotated[float, Unit("delta_degC", gt=0, le=20)] = 0.1
+    iterations: Annotated[int, Field(ge=1, le=200)] = 20
+
+
+class Mechanics(Card):
+    """How the strain cycle is found.
+
+    ``loss_convention``: ``nasa``, W = pi U tan d (eq 25, where U stands for E' e0^2), or ``sinusoid``,
+    W = 2 pi U tan d with U = E' e0^2 / 2. ``poisson_term`` is c_a = 1 - nu_pt nu_tp (eq 7a), 0.75 an estimate.
+    ``strain``: ``arcs``, the NASA report's bias tyre; ``barrel``, its deformation by finite elements; ``fem``, the
+    footprint by finite elements; or ``given``, the energies of the table ``energy`` (which only this law reads).
+    ``motion``: of ``fem``, the footprint linear about the inflated tyre, or in ``large`` motion (`footprint.balance`).
+    ``revolution``: of ``fem``, all harmonics each at its own frequency, or one cycle as in the report. ``feedback``:
+    temperatures act back on the strain cycle; without this table they do not.
+    """
+
+    strain: Literal["arcs", "barrel", "fem", "given"] = "arcs"
+    energy: GivenEnergy | None = None
+    load_law: Annotated[TrR64 | VerticalStiffness, Field(discriminator="law")] = TrR64()
+    footprint: Annotated[FootprintLaw, Field(discriminator="law")] = TR_R_64
+    loss_convention: Literal["nasa", "sinusoid"] = "nasa"
+    poisson_term: Annotated[float, Unit("1", ge=0, le=1)] = 0.75
+    membrane_shear: bool = True
+    motion: Literal["linear", "large"] = "linear"
+    revolution: Literal["harmonics", "one-cycle"] = "harmonics"
+    feedback: Feedback | None = None
+
+    @model_validator(mode="after")
+    def _energy_where_given(self) -> Mechanics:
+        if self.strain == "given" and self.energy is None:
+            raise InputError('strain = "given" needs the table [mechanics.energy]', field="strain")
+        return self
+
+
+class Boundaries(Card):
+    """Where the heat goes, and what sliding adds in phases with slip: one law per side."""
+
+    road: Annotated[RoadLaw, LawOf("road", "constant")] = Field(default_factory=lambda: LawOf("road", "constant")({}))
+    outside_air: Annotated[OutsideAirLaw, LawOf("outside_air", "nasa")] = Field(
+        default_factory=lambda: LawOf("outside_air", "nasa")({})
+    )
+    contained_air: Annotated[ContainedAirLaw, LawOf("contained_air", "gas")] = Field(
+        default_factory=lambda: LawOf("contained_air", "gas")({})
+    )
+    rim: Annotated[RimLaw, LawOf("rim", "fixed")] = Field(default_factory=lambda: LawOf("rim", "fixed")({}))
+    sliding: Annotated[SlidingLaw, LawOf("sliding", "constant")] = Field(
+        default_factory=lambda: LawOf("sliding", "constant")({})
+    )
+
+
+class Sensor(Card):
+    """A thermocouple: ``s`` along the meridian from the crown and ``depth`` from the inner surface, or ``at = [r, z]``.
+
+    ``lag`` is its first-order time constant, ``noise`` the standard deviation of a reading, ``accuracy`` that of its
+    calibration, ``position_sd`` that of its place, ``lag_sd`` that of its lag (defaults: estimates for a hand-drilled
+    thermocouple).
+    """
+
+    s: Annotated[float, Unit("m")] | None = None
+    depth: Annotated[float, Unit("m", ge=0)] | None = None
+    at: tuple[Annotated[float, Unit("m", gt=0)], Annotated[float, Unit("m")]] | None = None
+    position_sd: Annotated[float, Unit("m", ge=0)] = 1e-3
+    lag: Annotated[float, Unit("s", ge=0)] = 0.0
+    noise: Annotated[float, Unit("delta_degC", ge=0)] = 0.5
+    accuracy: Annotated[float, Unit("delta_degC", ge=0)] = 1.0
+    lag_sd: Annotated[float, Unit("s", ge=0)] = 2.0
+
+    @model_validator(mode="after")
+    def _one_place(self) -> Sensor:
+        along = self.s is not None or self.depth is not None
+        if along == (self.at is not None) or (along and (self.s is None or self.depth is None)):
+            raise InputError("give either 's' and 'depth', or 'at = [r, z]'")
+        return self
+
+
+class Output(Card):
+    """What is kept: readings ``every`` so often, and ``fields`` full temperature fields spread over the drive."""
+
+    every: Annotated[float, Unit("s", gt=0)] = 5.0
+    fields: Annotated[int, Field(ge=2, le=10_000)] = 13
+
+
+class Numerics(Card):
+    """``tolerance``: time-integration error aimed at; ``mesh_sd``: standard deviation left by the mesh (estimate)."""
+
+    tolerance: Annotated[float, Unit("delta_degC", gt=0, le=10)] = 0.01
+    mesh_sd: Annotated[float, Unit("delta_degC", ge=0)] = 0.05
+
+
+class DiagnosisChoice(Card):
+    """What the diagnosis assumes; every default is an estimate.
+
+    ``film_sd``: relative standard deviation of the film coefficients. ``discrepancy``: standard deviation of what the
+    model misses even when it is right (mesh, time steps, the shape of the strain energy), K, correlated over
+    ``correlation_time``. ``effects_expected``: prior probability that anything is missing. ``exclude``: effects known
+    not to be there.
+    """
+
+    film_sd: Annotated[float, Unit("1", gt=0, lt=1)] = 0.2
+    discrepancy: Annotated[float, Unit("delta_degC", gt=0)] = 0.1
+    correlation_time: Annotated[float, Unit("s", gt=0)] = 120.0
+    effects_expected: Annotated[float, Unit("1", gt=0, lt=1)] = 0.5
+    exclude: tuple[Text, ...] = ()
+
+
+class MeasuredEntry(Card):
+    """A measured table: the file, which run of it, the drive of that run, and whether it is held out of any fit.
+
+    ``rename``: column -> sensor, for columns that the study calls otherwise. ``ignore``: columns to leave out.
+    """
+
+    table: Text
+    run: Text | None = None
+    drive: dict[str, Any] = Field(default_factory=dict)
+    hold_out: bool = False
+    noise: Annotated[float, Unit("delta_degC", gt=0)] | None = None
+    time_offset: Annotated[float, Unit("s")] = 0.0
+    rename: dict[Text, Text] = Field(default_factory=dict)
+    ignore: tuple[Text, ...] = ()
+
+
+class StudyCard(Card):
+    """A study.toml, its references to other cards not yet followed.
+
+    ``made_for``: the section that load law, footprint, given energies and published ranges are of; with another one
+    the study warns.
+    """
+
+    kind: ClassVar[str] = "study"
+    title: Text
+    section: Any
+    made_for: Text | None = None
+    materials: dict[str, Any]
+    drive: Drive
+    mesh: MeshChoice = MeshChoice()
+    mechanics: Mechanics = Mechanics()
+    boundaries: Boundaries = Field(default_factory=Boundaries)
+    sensors: dict[str, Sensor] = Field(default_factory=dict)
+    output: Output = Output()
+    numerics: Numerics = Numerics()
+    uncertainty: dict[str, Annotated[float, Unit("1", gt=0, lt=1)]] = Field(default_factory=dict)
+    measured: tuple[MeasuredEntry, ...] = ()
+    cases: Text | None = None
+    effects: tuple[Annotated[Effect, EffectOf()], ...] = ()
+    diagnosis: DiagnosisChoice = DiagnosisChoice()
+    published: Published = Published()
+
+    @property
+    def of_one_tyre(self) -> tuple[str, ...]:
+        """Dotted names of what is one tyre's and no other's: measured or estimated, it does not follow the section."""
+        mechanics = self.mechanics
+        names = {
+            "mechanics.load_law": isinstance(mechanics.load_law, VerticalStiffness),
+            "mechanics.footprint": mechanics.footprint.law != TR_R_64.law,
+            "mechanics.energy": mechanics.energy is not None,
+        }
+        names["published"] = any(found is not None for _, found in self.published)
+        return tuple(name for name, there in names.items() if there)
+
+    @model_validator(mode="after")
+    def _sensor_names(self) -> StudyCard:
+        for name in self.sensors:
+            if name in ("time_s", "contained-air", "rim") or not name.strip():
+                raise InputError(f"'{name}' is a name that readings already use", field="sensors")
+        return self
+
+    @model_validator(mode="after")
+    def _resolved(self) -> StudyCard:
+        """No more readings than a table may have; no tolerance below the rounding of the drive's temperatures."""
+        check_readings(self.drive.end, self.output.every, "output.every")
+        given = [self.drive.initial, *(end for p in self.drive.phases for end in (p.ambient.start, p.ambient.end))]
+        least = smallest_tolerance(max(map(abs, given)))
+        tolerances = {"numerics.tolerance": self.numerics.tolerance}
+        if self.mechanics.feedback is not None:
+            tolerances["mechanics.feedback.tolerance"] = self.mechanics.feedback.tolerance
+        for field, tolerance in tolerances.items():
+            if tolerance < least:
+                message = f"{tolerance:g} K is lost in the rounding of temperatures: must be at least {least:.0e} K"
+                raise InputError(message, field=field)
+        return self

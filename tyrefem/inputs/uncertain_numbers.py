@@ -1,0 +1,249 @@
+"""The uncertain numbers of a study: those its cards state a standard deviation for, and those it states itself."""
+
+from __future__ import annotations
+
+from collections.abc import Iterable, Iterator, Mapping
+from dataclasses import dataclass, replace
+from pathlib import Path
+from typing import TYPE_CHECKING, Any, Protocol
+
+from tyrefem.cards import Card
+from tyrefem.errors import InputError
+from tyrefem.inputs.changes import scaled, value_at
+from tyrefem.materials.reads import READS, STIFFNESS
+
+if TYPE_CHECKING:
+    from tyrefem.inputs.study_card import StudyCard
+    from tyrefem.materials.card import MaterialCard
+
+#: Names that a sentence lists before it counts.
+NAMED = 3
+
+
+@dataclass(frozen=True)
+class UncertainNumber:
+    """One number with a relative standard deviation: one random variable, wherever it is used.
+
+    A number of a card is one in all regions that take it from that card.
+
+    Parameters
+    ----------
+    key : its name, the first of ``keys``. keys : all dotted names that hold it: one factor moves them together.
+    written : what stands there, as the study or its cards write it.
+    sd : relative standard deviation.
+    card : name of the card that it is on; empty: the study's own. regions : that take it from there.
+    idle : why it cannot change a run of this study; empty: it can.
+    """
+
+    key: str
+    keys: tuple[str, ...]
+    written: tuple[Any, ...]
+    sd: float
+    card: str = ""
+    regions: tuple[str, ...] = ()
+    idle: str = ""
+
+    def changes(self, factor: float, significant: int | None = None) -> dict[str, Any]:
+        """Dotted name -> value times a factor, as a study writes it: for `Study.replace`.
+
+        >>> UncertainNumber("drive.load", ("drive.load",), ("2 kN",), 0.05).changes(1.5)
+        {'drive.load': '3 kN'}
+        """
+        return {key: scaled(value, factor, significant) for key, value in zip(self.keys, self.written, strict=True)}
+
+    @property
+    def tables(self) -> tuple[str, ...]:
+        """Dotted names of the tables that hold it."""
+        return tuple(dict.fromkeys(key.rpartition(".")[0] for key in self.keys)) or (self.key,)
+
+    @property
+    def label(self) -> str:
+        """Its name, and the other regions of its card.
+
+        >>> cord = "cords.modulus"
+        >>> UncertainNumber(f"materials.ply.{cord}", (), (), 0.1, "nylon", ("ply", "turn-up")).label
+        'materials.ply.cords.modulus (also turn-up)'
+        """
+        return f"{self.key} (also {', '.join(self.regions[1:])})" if len(self.regions) > 1 else self.key
+
+
+class StudyOfCards(Protocol):
+    """What is asked of a study: its numbers as written, and its cards with the data and file of each region."""
+
+    @property
+    def card(self) -> StudyCard: ...
+    @property
+    def data(self) -> Mapping[str, Any]: ...
+    @property
+    def file(self) -> Path | None: ...
+    @property
+    def folder(self) -> Path | None: ...
+    @property
+    def materials(self) -> Mapping[str, MaterialCard]: ...
+    @property
+    def material_data(self) -> Mapping[str, tuple[Mapping[str, Any], Path]]: ...
+    @property
+    def uncertain_numbers(self) -> tuple[UncertainNumber, ...]: ...
+
+
+def uncertain_numbers(study: StudyOfCards) -> tuple[UncertainNumber, ...]:
+    """All of them, also those that cannot matter, which say why.
+
+    In the order of the regions; what only a strain law reads comes after the rest, then the study's own table.
+
+    Raises
+    ------
+    InputError : a name in ``[uncertainty]`` that the study has not, or one number there under two names.
+    """
+    numbers = sorted(_of_cards(study), key=lambda number: _table(number.key) in STIFFNESS)
+    places = {key: place for place, number in enumerate(numbers) for key in number.keys}
+    stated: dict[int, str] = {}
+    for key, sd in study.card.uncertainty.items():
+        try:
+            number = _named(study, key, sd)
+            number.changes(1.0)
+        except InputError as error:
+            raise InputError(error.message, field=f"uncertainty.{key}", file=study.file) from None
+        place = places.get(key)
+        if place is None:
+            place = len(numbers)
+            numbers.append(number)
+            places |= dict.fromkeys(number.keys, place)
+        elif place in stated and numbers[place].sd != sd:
+            message = f"is one number with '{stated[place]}', as both regions take it from '{number.card}': state one"
+            raise InputError(message, field=f"uncertainty.{key}", file=study.file)
+        else:
+            numbers[place] = replace(numbers[place], sd=sd)
+        stated.setdefault(place, key)
+    return tuple(numbers)
+
+
+def uncertain_number(study: StudyOfCards, key: str, sd: float = 0.0) -> UncertainNumber:
+    """The number at a dotted name, with a relative standard deviation given here.
+
+    Raises
+    ------
+    InputError : nothing of that name is set; says the nearest.
+    """
+    together = next((number for number in study.uncertain_numbers if key in number.keys), None)
+    if together is None:
+        return _named(study, key, sd)
+    first = key.split(".")[1]
+    regions = tuple(sorted(together.regions, key=lambda region: region != first))
+    return replace(together, key=key, sd=sd, regions=regions)
+
+
+def _named(study: StudyOfCards, key: str, sd: float) -> UncertainNumber:
+    """The number at a dotted name, with the other regions that take it from the same card."""
+    value = value_at(study.data, key, study.folder)
+    parts = key.split(".")
+    if parts[0] != "materials" or len(parts) < 4:
+        return UncertainNumber(key, (key,), (value,), sd)
+    region, within = parts[1], ".".join(parts[2:])
+    data, path = study.material_data[region]
+    regions = [
+        other
+        for other, (its, file) in study.material_data.items()
+        if file == path and _at(its, within) == _at(data, within)
+    ]
+    regions.sort(key=lambda one: one != region)
+    keys = tuple(f"materials.{one}.{within}" for one in regions)
+    return UncertainNumber(
+        key, keys, (value,) * len(keys), sd, path.stem, tuple(regions), _idle(study, regions, within)
+    )
+
+
+def written_at(study: StudyOfCards, key: str) -> Any:
+    """What stands at a dotted name of a study or its cards."""
+    parts = key.split(".")
+    if parts[0] == "materials" and len(parts) > 2 and parts[1] in study.material_data:
+        return _at(study.material_data[parts[1]][0], ".".join(parts[2:]))
+    return value_at(study.data, key, study.folder)
+
+
+def left_out(numbers: Iterable[UncertainNumber]) -> list[str]:
+    """A sentence for every reason why numbers cannot matter in their study.
+
+    >>> left_out([UncertainNumber("materials.tread.shear_modulus.value", (), (), 0.2, idle="nobody reads them")])
+    ['left out, as nobody reads them: materials.tread.shear_modulus.value']
+    """
+    reasons: dict[str, list[str]] = {}
+    for number in numbers:
+        if number.idle:
+            reasons.setdefault(number.idle, []).append(number.label)
+    return [f"left out, as {reason}: {_listed(names)}" for reason, names in reasons.items()]
+
+
+def _listed(names: list[str]) -> str:
+    more = len(names) - NAMED
+    return "; ".join(names) if more <= 1 else f"{'; '.join(names[:NAMED])}; and {more} more"
+
+
+def _of_cards(study: StudyOfCards) -> list[UncertainNumber]:
+    """Those of the material cards, a card's number in several regions once."""
+    together: dict[tuple[Any, ...], list[str]] = {}
+    written: dict[tuple[Any, ...], tuple[Any, ...]] = {}
+    for region, card in study.materials.items():
+        data, path = study.material_data[region]
+        for where, entry in stated_deviations(card):
+            groups = [
+                tuple(name for field in group if _at(data, name := f"{where}.{field}") is not None)
+                for group in entry.uncertain_fields
+            ]
+            for fields in [group for group in groups if group] or [()]:
+                values = tuple(_at(data, field) for field in fields)
+                key = path, where, fields, repr(values), entry.relative_sd
+                together.setdefault(key, []).append(region)
+                written[key] = values
+    return [_number(study, key, regions, written[key]) for key, regions in together.items()]
+
+
+def _number(study: StudyOfCards, key: tuple[Any, ...], regions: list[str], values: tuple[Any, ...]) -> UncertainNumber:
+    path, where, fields, _, sd = key
+    keys = tuple(f"materials.{region}.{field}" for region in regions for field in fields)
+    idle = _idle(study, regions, where) if fields else "they have no one number that a factor could move"
+    first = keys[0] if keys else f"materials.{regions[0]}.{where}"
+    return UncertainNumber(first, keys, values * len(regions), sd, Path(path).stem, tuple(regions), idle)
+
+
+def stated_deviations(card: Card, where: str = "") -> Iterator[tuple[str, Any]]:
+    """Every table of a card that states a standard deviation, with its dotted name."""
+    for name in type(card).model_fields:
+        value = getattr(card, name)
+        if isinstance(value, Card):
+            path = f"{where}.{name}" if where else name
+            if getattr(value, "relative_sd", None):
+                yield path, value
+            yield from stated_deviations(value, path)
+
+
+def _idle(study: StudyOfCards, regions: list[str], within: str) -> str:
+    """Why a number of a card cannot change a run; empty: it can."""
+    mechanics, table = study.card.mechanics, within.split(".")[0]
+    law, feedback = mechanics.strain, mechanics.feedback
+    if table == "expansion":
+        return "a run takes no thermal expansion"
+    softens = "softening" in within.split(".")
+    if softens and (feedback is None or not feedback.modulus):
+        return "only mechanics.feedback follows the softening"
+    if softens and law == "given":
+        energy = mechanics.energy
+        return "" if energy is not None and energy.temperature is not None else "mechanics.energy has no temperature"
+    reads = READS[law](study.materials)
+    stiff = set(STIFFNESS) if table == "softening" else {table} & set(STIFFNESS)
+    if stiff and not any(stiff & set(reads.get(region, ())) for region in regions):
+        return f"the strain law '{law}' does not read them"
+    return ""
+
+
+def _table(key: str) -> str:
+    parts = key.split(".")
+    return parts[2] if parts[0] == "materials" and len(parts) > 2 else ""
+
+
+def _at(data: Mapping[str, Any], path: str) -> Any:
+    """The value at a dotted name of a card's plain data; None: there is none."""
+    place: Any = data
+    for part in path.split("."):
+        place = place.get(part) if isinstance(place, Mapping) else None
+    return place

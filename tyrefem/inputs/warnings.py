@@ -1,0 +1,51 @@
+"""The warnings of a study: its own, its section's, its material cards', and what belongs to another tyre."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator, Mapping
+from pathlib import Path
+
+from tyrefem.errors import InputWarning
+from tyrefem.geometry import Section
+from tyrefem.inputs.study_card import StudyCard
+from tyrefem.materials.card import MaterialCard
+
+
+def study_warnings(
+    card: StudyCard, section: Section, materials: Mapping[str, MaterialCard], file: Path | None
+) -> tuple[InputWarning, ...]:
+    """What can be run but is perhaps not meant, each with the study's file and the dotted name of the field.
+
+    >>> from tyrefem.inputs.study import study
+    >>> light = study("nasa-22x5.5-8pr", {"materials.tread.density.value": "1.18 kg/m**3"})
+    >>> [warning.field for warning in light.warnings]
+    ['materials.tread.density.value']
+    """
+    found = [*card.warnings(), *_of_another_tyre(card, section)]
+    found += [warning.within(field="section") for warning in section.warnings]
+    found += _of_materials(materials)
+    if card.mechanics.energy is not None:
+        rows = card.mechanics.energy.without_effect(section)
+        found += [warning.within(field="mechanics.energy") for warning in rows]
+    return tuple(warning.within(file=file) for warning in found)
+
+
+def _of_materials(materials: Mapping[str, MaterialCard]) -> Iterator[InputWarning]:
+    """One warning for all regions of a card."""
+    regions: dict[InputWarning, list[str]] = {}
+    for region, material in materials.items():
+        for warning in material.warnings():
+            regions.setdefault(warning, []).append(region)
+    for warning, named in regions.items():
+        also = f" (so in {', '.join(named[1:])})" if len(named) > 1 else ""
+        yield InputWarning(f"{warning.message}{also}", warning.field).within(field=f"materials.{named[0]}")
+
+
+def _of_another_tyre(card: StudyCard, section: Section) -> Iterator[InputWarning]:
+    names = card.of_one_tyre
+    if card.made_for is not None and names and section.name != card.made_for:
+        yield InputWarning(
+            f"{', '.join(names)}: these are of section '{card.made_for}', but the section is '{section.name}'; "
+            "give those of this tyre or remove them, then change made_for",
+            field="made_for",
+        )

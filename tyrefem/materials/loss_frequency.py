@@ -1,0 +1,120 @@
+"""``[loss_tangent.frequency]`` of a material card: tan delta over frequency, by power law, table or Prony series."""
+
+from __future__ import annotations
+
+import functools
+from typing import Annotated, Any, Literal
+
+from pydantic import Field, model_validator
+
+from tyrefem.cards import Card, Temperature, Text
+from tyrefem.errors import InputError
+from tyrefem.materials.loss_tangent import FrequencyTable, Loss, OfTemperature, PowerLaw, Prony, Relative, Shift
+from tyrefem.materials.properties import columns
+from tyrefem.quantity import Unit
+
+Frequency = Annotated[float, Unit("Hz", gt=0, le=1e12)]
+
+
+class ShiftCard(Card):
+    """Williams, Landel and Ferry: log10 a_T = -c1 (T - reference) / (c2 + T - reference)."""
+
+    c1: Annotated[float, Unit("1", gt=0, le=100)]
+    c2: Annotated[float, Unit("delta_degC", gt=0, le=1000)]
+    reference: Temperature
+
+    def law(self) -> Shift:
+        """a_T of temperatures in degC."""
+        return Shift(self.c1, self.c2, self.reference)
+
+
+class OfFrequency(Card):
+    """What every law carries: the ``reference`` frequency at which the card's law of temperature holds; a source."""
+
+    reference: Frequency = 10.0
+    source: Text
+
+    def alone(self) -> Loss | None:
+        """tan delta without the card's law of temperature; None for a law that only scales."""
+        return None
+
+    def over(self, law: Any) -> Loss:
+        """tan delta = law(T) m(f, T) / m(reference, T)."""
+        master = self.alone()
+        assert master is not None
+        return Relative(law, master, self.reference)
+
+
+class Power(OfFrequency):
+    """m = (f / reference)^exponent."""
+
+    law: Literal["power"]
+    exponent: Annotated[float, Unit("1", ge=-0.9, le=1)]
+
+    def over(self, law: Any) -> Loss:
+        """tan delta = law(T) (f / reference)^exponent."""
+        return PowerLaw(law, self.exponent, self.reference)
+
+
+class Table(OfFrequency):
+    """m tabulated: rows ``[f, tan delta]``, linear in log f and constant beyond; ``shift`` multiplies f by a_T."""
+
+    law: Literal["table"]
+    table: list[list[Any]]
+    shift: ShiftCard | None = None
+
+    @model_validator(mode="after")
+    def _rising(self) -> Table:
+        _ = self._tabulated
+        return self
+
+    @functools.cached_property
+    def _tabulated(self) -> FrequencyTable:
+        frequencies, values = columns(self.table, ("Hz", "1"))
+        return FrequencyTable(frequencies, values, self.shift.law() if self.shift else None)
+
+    def alone(self) -> Loss:
+        """The table."""
+        return self._tabulated
+
+
+class PronySeries(OfFrequency):
+    """A generalised Maxwell solid: ``equilibrium`` modulus and rows ``[modulus, relaxation time]``."""
+
+    law: Literal["prony"]
+    equilibrium: Annotated[float, Unit("Pa", gt=0)]
+    series: list[list[Any]] = Field(min_length=1)
+    shift: ShiftCard | None = None
+
+    @model_validator(mode="after")
+    def _pairs(self) -> PronySeries:
+        _ = self._prony
+        return self
+
+    @functools.cached_property
+    def _prony(self) -> Prony:
+        pairs = []
+        for number, row in enumerate(self.series):
+            if not isinstance(row, list | tuple) or len(row) != 2:
+                raise InputError("row must be [modulus, time], e.g. ['0.4 MPa', '1 ms']", field=f"series.{number}")
+            try:
+                pairs.append((Unit("Pa", gt=0)(row[0]), Unit("s", gt=0)(row[1])))
+            except InputError as error:
+                raise error.within(field=f"series.{number}") from None
+        moduli, times = zip(*pairs, strict=True)
+        return Prony(self.equilibrium, moduli, times, self.shift.law() if self.shift else None)
+
+    def alone(self) -> Loss:
+        """The series."""
+        return self._prony
+
+
+LossFrequency = Annotated[Power | Table | PronySeries, Field(discriminator="law")]
+
+
+def loss_over_frequency(law: Any, frequency: OfFrequency | None, *, master: bool) -> Loss:
+    """tan delta(f, T) of a card whose law of temperature is ``law``; ``master``: the frequency law says it all."""
+    if frequency is None:
+        return OfTemperature(law)
+    alone = frequency.alone() if master else None
+    return frequency.over(law) if alone is None else alone

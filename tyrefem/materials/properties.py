@@ -1,0 +1,130 @@
+"""A property of a card: its source, and its table over temperature or frequency.
+
+How a modulus falls as a material warms.
+"""
+
+from __future__ import annotations
+
+import functools
+from dataclasses import dataclass
+from typing import Annotated, Any, Literal
+
+import numpy as np
+from numpy.typing import NDArray
+from pydantic import model_validator
+
+from tyrefem.cards import Card, Temperature, Text
+from tyrefem.cards.plausible import Plausible
+from tyrefem.errors import InputError, InputWarning
+from tyrefem.quantity import Unit
+
+Array = NDArray[np.float64]
+
+
+class Sourced(Card):
+    """A property: every one names its source; a guess says ``estimate: ...``."""
+
+    source: Text
+    #: Relative standard deviation of the number, where the source or an estimate gives one.
+    relative_sd: Annotated[float, Unit("1", ge=0, lt=1)] | None = None
+
+    @property
+    def uncertain_fields(self) -> tuple[tuple[str, ...], ...]:
+        """Fields that ``relative_sd`` speaks of: those of one group have one factor, every group its own."""
+        return ("value",), ("table",)
+
+
+@dataclass(frozen=True)
+class PropertyTable:
+    """A property tabulated over temperature: linear between rows, constant beyond the ends.
+
+    >>> k = PropertyTable((20.0, 100.0), (0.20, 0.24))
+    >>> float(k(60.0)), float(k(500.0))
+    (0.22, 0.24)
+    """
+
+    temperatures: tuple[float, ...]
+    values: tuple[float, ...]
+
+    def __call__(self, temperature: Array | float) -> Array:
+        return np.asarray(np.interp(temperature, self.temperatures, self.values))
+
+    def unlikely(self, likely: Plausible) -> tuple[InputWarning, ...]:
+        """The first row whose value is unlikely."""
+        rows = (likely.warning(value, f"table.{number}") for number, value in enumerate(self.values))
+        return tuple(filter(None, rows))[:1]
+
+
+#: What the first column of a table holds, by its unit.
+FIRST = {"degC": "temperatures", "Hz": "frequencies"}
+
+
+def columns(rows: list[list[Any]], units: tuple[str, ...]) -> list[tuple[float, ...]]:
+    """Columns of a table of quantities whose first column, temperature (degC) or frequency (Hz), must rise."""
+    if len(rows) < 2:
+        raise InputError("needs at least two rows", field="table")
+    parsed = []
+    for number, row in enumerate(rows):
+        if not isinstance(row, list | tuple) or len(row) != len(units):
+            message = f"row must have {len(units)} entries in {', '.join(units)}"
+            raise InputError(message, field=f"table.{number}")
+        try:
+            pairs = zip(row, units, strict=True)
+            parsed.append([Unit(unit, gt=None if unit == "degC" else 0)(cell) for cell, unit in pairs])
+        except InputError as error:
+            raise error.within(field=f"table.{number}") from None
+    found = list(zip(*parsed, strict=True))
+    if any(later <= earlier for earlier, later in zip(found[0], found[0][1:], strict=False)):
+        raise InputError(f"{FIRST[units[0]]} must rise from row to row, without duplicates", field="table")
+    return found
+
+
+#: Range in which an exponential law is used, degC; held beyond.
+_COLDEST, _HOTTEST = -50.0, 250.0
+
+
+class Softening(Sourced):
+    """Modulus at a temperature over the modulus that the card gives.
+
+    ``exponential``: m = exp(-rate (T - at)), so that the card's modulus is that at the temperature ``at``;
+    ``table``: rows ``[T, m]``, linear between them and constant beyond.
+
+    Raises
+    ------
+    InputError : a law without its numbers, a table whose temperatures do not rise.
+
+    >>> law = Softening.check({"rate": "0.004 1/delta_degC", "source": "estimate: example"})
+    >>> law(25.0), round(law(75.0), 4)
+    (1.0, 0.8187)
+    """
+
+    law: Literal["exponential", "table"] = "exponential"
+    rate: Annotated[float, Unit("1/delta_degC", ge=-0.05, le=0.1)] | None = None
+    at: Temperature = 25.0
+    table: list[list[Any]] | None = None
+
+    @model_validator(mode="after")
+    def _complete(self) -> Softening:
+        if self.law == "table":
+            if self.table is None:
+                raise InputError("the law 'table' needs 'table'")
+            _ = self._tabulated
+        elif self.rate is None:
+            raise InputError("the law 'exponential' needs 'rate', e.g. '0.004 1/delta_degC'")
+        return self
+
+    @property
+    def uncertain_fields(self) -> tuple[tuple[str, ...], ...]:
+        """The rate: a table is relative, and has no one number."""
+        return (("rate",),)
+
+    @functools.cached_property
+    def _tabulated(self) -> PropertyTable:
+        return PropertyTable(*columns(self.table or [], ("degC", "1")))
+
+    def __call__(self, temperature: float) -> float:
+        """m at a temperature, degC."""
+        if self.law == "table":
+            return float(self._tabulated(temperature))
+        bounded = min(max(temperature, _COLDEST), _HOTTEST)
+        return float(np.exp(-(self.rate or 0.0) * (bounded - self.at)))

@@ -1,0 +1,70 @@
+"""What every strain law reads of the material cards: only that can change its strain cycles."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Mapping
+from typing import TYPE_CHECKING, Any
+
+if TYPE_CHECKING:
+    from tyrefem.materials.card import MaterialCard
+
+    Cards = Mapping[str, MaterialCard]
+
+#: Tables of a card that only a strain law can read.
+STIFFNESS = ("shear_modulus", "youngs_modulus", "cord", "elasticity", "cords")
+#: Tables of the cards that the arcs read, by region.
+ARCS = {
+    "carcass": ("shear_modulus", "cord"),
+    "tread": ("shear_modulus",),
+    "sidewall": ("shear_modulus",),
+    "bead": ("youngs_modulus",),
+}
+
+
+def of_arcs(cards: Cards) -> dict[str, tuple[str, ...]]:
+    """The plies and rubber of the report's five zones."""
+    return {region: tables for region, tables in ARCS.items() if region in cards}
+
+
+def of_elements(cards: Cards) -> dict[str, tuple[str, ...]]:
+    """Compound and cords of every region, as `tyrefem.mechanics.solid.tyre_body` takes them; tan delta where cords
+    lose heat too.
+    """
+    found: dict[str, list[str]] = {region: [] for region in cards}
+    for region, card in cards.items():
+        if card.elasticity is not None:
+            found[region].append("elasticity")
+        elif card.shear_modulus is not None:
+            found[region].append("shear_modulus")
+        elif "carcass" in found:
+            found["carcass"].append("shear_modulus")
+        if card.cords is not None:
+            found[region].append("cords")
+            if card.cords.loss_tangent:
+                found[region].append("loss_tangent")
+        elif card.cord is not None and card.cord.ply_shear_modulus is not None:
+            found[region].append("cord")
+        elif region == "bead" and card.youngs_modulus is not None:
+            found[region].append("youngs_modulus")
+    return {region: tuple(dict.fromkeys(tables)) for region, tables in found.items()}
+
+
+def of_given(cards: Cards) -> dict[str, tuple[str, ...]]:
+    """Nothing: the study gives the energies."""
+    return {}
+
+
+#: Strain law -> region -> tables that it reads.
+READS: dict[str, Callable[[Cards], dict[str, tuple[str, ...]]]] = {
+    "arcs": of_arcs,
+    "barrel": of_elements,
+    "fem": of_elements,
+    "given": of_given,
+}
+
+
+def values_read(law: str, cards: Cards) -> dict[str, tuple[Any, ...]]:
+    """Region -> what a strain law reads of its card: two studies with the same have the same strain cycles."""
+    return {
+        region: tuple(getattr(cards[region], table) for table in tables) for region, tables in READS[law](cards).items()
+    }

@@ -1,0 +1,102 @@
+"""A table of cases: CSV whose columns are dotted names of a study's values, one row per case."""
+
+from __future__ import annotations
+
+import csv
+import re
+from dataclasses import dataclass
+from pathlib import Path
+from typing import Any
+
+from tyrefem.errors import InputError
+from tyrefem.measured.columns import is_time
+from tyrefem.measured.lines import decode
+
+_HEADING = re.compile(r"^\s*([^\[\]]+?)\s*(?:\[([^\[\]]*)\])?\s*$")
+#: Columns that are for people, not values of the study.
+LABELS = ("name", "note")
+
+
+@dataclass(frozen=True)
+class Case:
+    """One row: its name, its note, and the values it lays over the study."""
+
+    name: str
+    note: str
+    changes: dict[str, Any]
+    line: int
+
+
+def read_cases(path: Path) -> tuple[Case, ...]:
+    """The cases of a CSV file.
+
+    The heading names each column: ``name``, optionally ``note``, and dotted names such as ``drive.load [lbf]``, whose
+    unit is put behind every number. Lines that begin with ``#`` are comments; an empty cell leaves the study's value.
+
+    Raises
+    ------
+    InputError : unreadable, no ``name`` column, a row of another length, a name missing or given twice.
+
+    >>> import tempfile
+    >>> file = Path(tempfile.mkdtemp()) / "cases.csv"
+    >>> _ = file.write_text("name,drive.speed [mph],note\\nslow,20,as measured\\nfast,35,\\n")
+    >>> [case.changes for case in read_cases(file)]
+    [{'drive.speed': '20 mph'}, {'drive.speed': '35 mph'}]
+    """
+    lines = _content(path)
+    if len(lines) < 2:
+        raise InputError("needs a heading and at least one case", file=path)
+    rows = [(number, _cells(line, number, path)) for number, line in lines]
+    columns = [_heading(cell, path) for cell in rows[0][1]]
+    names = [name for name, _ in columns]
+    if "name" not in names:
+        raise InputError(f"line {rows[0][0]}: the heading has no column 'name'", file=path)
+    twice = next((name for name in names if names.count(name) > 1), None)
+    if twice is not None:
+        raise InputError(f"line {rows[0][0]}: the heading has column '{twice}' twice", file=path)
+    cases = [_case(number, cells, columns, path) for number, cells in rows[1:]]
+    seen: dict[str, int] = {}
+    for case in cases:
+        if case.name in seen:
+            raise InputError(f"case '{case.name}' stands in lines {seen[case.name]} and {case.line}", file=path)
+        seen[case.name] = case.line
+    return tuple(cases)
+
+
+def looks_like_cases(path: Path) -> bool:
+    """Is the first row of a CSV file the heading of a table of cases, not that of thermocouple histories?"""
+    lines = _content(path)
+    cells = [cell.strip() for cell in lines[0][1].split(",")] if lines else []
+    return "name" in cells and not any(is_time(cell) for cell in cells)
+
+
+def _content(path: Path) -> list[tuple[int, str]]:
+    """The lines that are neither blank nor comments, with their numbers in the file."""
+    lines = enumerate(re.split("\r\n|\r|\n", decode(path)), 1)
+    return [(number, line) for number, line in lines if line.strip() and not line.lstrip().startswith("#")]
+
+
+def _cells(line: str, number: int, path: Path) -> list[str]:
+    try:
+        return next(csv.reader([line], skipinitialspace=True, strict=True))
+    except csv.Error as error:
+        raise InputError(f"line {number}: quotes do not match ({error})", file=path) from None
+
+
+def _heading(cell: str, path: Path) -> tuple[str, str]:
+    match = _HEADING.match(cell)
+    if match is None:
+        raise InputError(f"'{cell}' is not a column heading such as 'drive.load [lbf]'", file=path)
+    return match[1], (match[2] or "").strip()
+
+
+def _case(number: int, cells: list[str], columns: list[tuple[str, str]], path: Path) -> Case:
+    if len(cells) != len(columns):
+        raise InputError(f"line {number} has {len(cells)} cells, the heading {len(columns)}", file=path)
+    values = {name: (cell.strip(), unit) for (name, unit), cell in zip(columns, cells, strict=True)}
+    name = values["name"][0]
+    if not re.fullmatch(r"\w[\w.+-]{0,99}", name):
+        allowed = "allowed: a letter or digit, then letters, digits, . + - _, 100 at most"
+        raise InputError(f"line {number}: '{name}' is no name; {allowed}", file=path)
+    changes = {key: f"{cell} {unit}".strip() for key, (cell, unit) in values.items() if key not in LABELS and cell}
+    return Case(name, values.get("note", ("", ""))[0], changes, number)

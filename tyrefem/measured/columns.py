@@ -1,0 +1,243 @@
+"""Cells as numbers: empty is no reading, decimal comma or point, all else an error with its line.
+
+What a column's heading says: ``shoulder inner [degF]`` is the sensor "shoulder inner", in degF.
+"""
+
+from __future__ import annotations
+
+import functools
+import re
+from collections.abc import Sequence
+from dataclasses import dataclass
+from pathlib import Path
+
+import numpy as np
+from numpy.typing import NDArray
+
+from tyrefem.errors import InputError, nearest
+from tyrefem.quantity import parse
+
+TIME_UNITS = {"s": 1.0, "ms": 1e-3, "min": 60.0, "h": 3600.0}
+TEMPERATURE_UNITS = ("degC", "degF", "K")
+_SPELLINGS = {
+    **dict.fromkeys(("s", "sec", "secs", "second", "seconds"), "s"),
+    **dict.fromkeys(("ms", "msec", "millisecond", "milliseconds"), "ms"),
+    **dict.fromkeys(("min", "mins", "minute", "minutes"), "min"),
+    **dict.fromkeys(("h", "hr", "hrs", "hour", "hours"), "h"),
+}
+_LETTERS = {"c": "degC", "celsius": "degC", "f": "degF", "fahrenheit": "degF", "k": "K", "kelvin": "K"}
+_HEADING = re.compile(r"^(?P<name>.*?)\s*(?:\[(?P<square>[^][]*)\]|\((?P<round>[^()]*)\))$", re.DOTALL)
+_TIME = re.compile(r"^(?:(?:elapsed[ _]?)?(?:time|t)|time[ _]?stamp|date[ _/]?time)$", re.IGNORECASE)
+
+
+#: Quantities that loggers write beside temperatures, by their SI unit. No angle: "deg" may stand for degC.
+_CHANNELS = ("Pa", "m/s", "N", "m", "kg", "s", "Hz", "W", "J", "m/s**2")
+
+
+# The degree sign in its look-alikes, and as it arrives after a wrong decoding.
+_TEMPERATURE = re.compile(r"^(?:deg(?:rees?|\.)?[\s_]*|[°º˚Â�'*]*\s*)(\w+)$", re.IGNORECASE)
+
+
+@dataclass(frozen=True)
+class Heading:
+    """A column: its name, its unit, and its place in the row."""
+
+    name: str
+    unit: str
+    column: int
+
+    def to_degC(self, values: NDArray[np.float64]) -> NDArray[np.float64]:
+        """degC of readings in this column's unit.
+
+        >>> Heading("crown", "degF", 1).to_degC(np.array([212.0])).tolist()
+        [100.0]
+        """
+        if self.unit == "degF":
+            return (values - 32.0) / 1.8
+        return values - 273.15 if self.unit == "K" else values
+
+
+def parts(text: str) -> tuple[str, str | None]:
+    """Name and unit (None if there are no brackets) of a heading.
+
+    >>> parts("crown [°C]"), parts("crown")
+    (('crown', '°C'), ('crown', None))
+    """
+    match = _HEADING.match(text.strip())
+    if match is None:
+        return text.strip(), None
+    unit = match["square"] if match["square"] is not None else match["round"]
+    return match["name"].strip(), unit.strip()
+
+
+@functools.lru_cache(maxsize=256)
+def is_channel(text: str) -> bool:
+    """Whether a heading's unit is that of a pressure, speed, force, length, power...: no sensor of temperature.
+
+    >>> [is_channel(text) for text in ("air [kPa]", "speed [km/h]", "load (lbf)", "crown [degC]", "crown [mV]")]
+    [True, True, True, False, False]
+    """
+    unit = parts(text)[1]
+    if not unit or _temperature(unit) is not None:
+        return False
+    if unit == "%":
+        return True
+    for quantity in _CHANNELS:
+        try:
+            parse(f"1 {unit}", quantity)
+        except InputError:
+            continue
+        return True
+    return False
+
+
+def is_time(text: str) -> bool:
+    """Whether a heading is the time column: ``time [s]``, ``Time (min)``, ``t [h]``, but not ``T [degC]``."""
+    name, unit = parts(text)
+    return bool(_TIME.match(name)) and _temperature(unit or "") is None
+
+
+def _temperature(unit: str) -> str | None:
+    """degC, degF or K, if that is what a unit says."""
+    match = _TEMPERATURE.match(unit)
+    return _LETTERS.get(match[1].lower()) if match else None
+
+
+def time_unit(text: str) -> str:
+    """The unit of the time column.
+
+    Raises
+    ------
+    InputError : no unit, or one that is not a time.
+    """
+    unit = parts(text)[1]
+    if not unit:
+        raise InputError(
+            f"'{text}' has no unit; write 'time [s]' (or [min], [h], [ms]), or timestamps like 2024-05-01T12:30:01"
+        )
+    known = _SPELLINGS.get(unit.lower())
+    if known is None:
+        raise InputError(f"unknown time unit '{unit[:30]}'{nearest(unit, TIME_UNITS)}")
+    return known
+
+
+def temperature_unit(text: str) -> str:
+    """degC, degF or K, in any common spelling.
+
+    Raises
+    ------
+    InputError : no unit, or one that is not a temperature.
+
+    >>> [temperature_unit(f"crown [{unit}]") for unit in ("°C", "C", "deg F", "k", "Celsius")]
+    ['degC', 'degC', 'degF', 'K', 'degC']
+    """
+    name, unit = parts(text)
+    if not unit:
+        raise InputError(f"'{text[:60]}' has no unit; write '{name[:40]} [degC]' (or [degF], [K])")
+    known = _temperature(unit)
+    if known is None:
+        hint = nearest(unit, TEMPERATURE_UNITS)
+        raise InputError(f"unknown temperature unit '{unit[:30]}'{hint} (column '{text[:60]}')")
+    return known
+
+
+#: What loggers and spreadsheets write for "no reading", in small letters.
+NO_READING = frozenset(("", "nan", "na", "n/a", "#n/a", "null", "none", "-", "--", "---"))
+
+
+#: degC; above it stands the code of an open thermocouple, not a tyre.
+HOTTEST = 2000.0
+_NUMBER = re.compile(r"[-+]?(?:\d+[.,]?\d*|[.,]\d+)(?:[eE][-+]?\d+)?", re.ASCII)
+_PLAIN = re.compile(r"[0-9.eE+\-\n]*")
+
+
+def numbers(cells: Sequence[str], lines: Sequence[int], column: str, file: Path, *, gaps: bool) -> NDArray[np.float64]:
+    """(n,) floats of one column; NaN where there is no reading.
+
+    Raises
+    ------
+    InputError : text, an infinite number, or (without ``gaps``) an empty cell; says line and column.
+    """
+    quick = _plain_numbers(cells, gaps)
+    if quick is not None:
+        return quick
+    values = np.full(len(cells), np.nan)
+    for index, cell in enumerate(cells):
+        if gaps and cell.lower() in NO_READING:
+            continue
+        if _NUMBER.fullmatch(cell) is None:
+            raise InputError(f"{_place(lines[index], column)}: {_wrong(cell, gaps)}", file=file)
+        values[index] = float(cell.replace(",", "."))
+        if not np.isfinite(values[index]):
+            raise InputError(f"{_place(lines[index], column)}: {cell[:30]!r} is not finite", file=file)
+    return values
+
+
+def _plain_numbers(cells: Sequence[str], gaps: bool) -> NDArray[np.float64] | None:
+    """The column at once where it has only plain numbers (ten times faster); None where a closer look is needed."""
+    if _PLAIN.fullmatch("\n".join(cells)) is None or (not gaps and "" in cells):
+        return None
+    try:
+        values = np.array([cell or "nan" for cell in cells], dtype=float)
+    except ValueError:
+        return None
+    return None if np.isinf(values).any() else values
+
+
+def _wrong(cell: str, gaps: bool) -> str:
+    if cell.lower().lstrip("+-") in ("inf", "infinity"):
+        return f"{cell!r} is not finite; leave the cell empty where there is no reading"
+    if cell.lower() in NO_READING:
+        return "the cell is empty; every row needs its time"
+    if gaps:
+        return f"{cell[:30]!r} is not a number; allowed: a number, or empty, NaN, - for no reading"
+    return (
+        f"{cell[:30]!r} is not a number; allowed: the time elapsed since the start, as a number, "
+        "or timestamps like 2024-05-01T12:30:01 in every row"
+    )
+
+
+def _place(line: int, column: str) -> str:
+    return f"line {line}, column '{column[:60]}'"
+
+
+def one_decimal_mark(rows: Sequence[Sequence[str]], lines: Sequence[int], columns: Sequence[int], file: Path) -> None:
+    """Refuse a table that mixes decimal points and decimal commas: one of them is a thousands mark.
+
+    Raises
+    ------
+    InputError : says the first line of either kind.
+    """
+    marks = "".join(cell for row in rows for cell in row)
+    if "," not in marks:
+        return
+    point = comma = 0
+    for row, line in zip(rows, lines, strict=True):
+        for column in columns:
+            cell = row[column]
+            if not point and "." in cell and _NUMBER.fullmatch(cell.replace(",", "")):
+                point = line
+            if not comma and "," in cell and _NUMBER.fullmatch(cell.replace(".", "")):
+                comma = line
+        if point and comma:
+            raise InputError(
+                f"mixes decimal points (line {point}) and decimal commas (line {comma}); use one of them",
+                file=file,
+            )
+
+
+def plausible(heading: Heading, degC: NDArray[np.float64], lines: Sequence[int], file: Path) -> None:
+    """Refuse what no thermocouple in a tyre can have read.
+
+    Raises
+    ------
+    InputError : below absolute zero, or above 2000 degC; says line and column.
+    """
+    for index in np.flatnonzero((degC < -273.15 - 1e-9) | (degC > HOTTEST))[:1]:
+        cold = degC[index] < 0.0
+        wrong = "is below absolute zero" if cold else f"is above {HOTTEST:g} degC (an open thermocouple?)"
+        place = _place(lines[index], f"{heading.name} [{heading.unit}]")
+        raise InputError(
+            f"{place}: {degC[index]:g} degC {wrong}; leave the cell empty where there is no reading",
+            file=file,
+        )

@@ -1,0 +1,101 @@
+"""The strain cycle of the report's barrel by finite elements: inflation, then the whole tyre in a rigid cylinder."""
+
+from __future__ import annotations
+
+import functools
+from collections.abc import Callable
+from dataclasses import dataclass
+from typing import TYPE_CHECKING
+
+import numpy as np
+from numpy.typing import NDArray
+
+from tyrefem.errors import InputError
+from tyrefem.mechanics.finite_elements import GaussPoints, PointEnergies
+from tyrefem.mechanics.footprint.pressed_tyre import pressed_tyre
+from tyrefem.mechanics.strain_cycle import StrainCycle, Zone
+
+if TYPE_CHECKING:
+    from tyrefem.inputs.loading import LoadCase
+    from tyrefem.inputs.study import Study
+    from tyrefem.mechanics.solid.flattening import Flattened
+    from tyrefem.mechanics.solid.inflation import Inflation
+
+Array = NDArray[np.float64]
+
+
+@dataclass(frozen=True, eq=False)
+class Barrel:
+    """Strain cycle of one load case: U = J/2 (E : C' : E), J/m3, as the report's arcs count it.
+
+    E is Green's strain from the inflated section to that in the cylinder of radius R - D, D the load case's deflection
+    and R the inflated radius; C' the part of the inflated tangent that dissipates (the rubber; cords only where their
+    card gives them a loss); J the inflated volume of a unit of the undeformed one. The loss convention applies to this
+    U as to the arcs'. A drum is not bent in: the cylinder is the same.
+
+    Parameters
+    ----------
+    tyre : the inflated tyre. flat : the tyre in the cylinder; None: no deflection, no strain cycle.
+    case : the load case.
+    """
+
+    tyre: Inflation
+    flat: Flattened | None
+    case: LoadCase
+
+    @property
+    def zones(self) -> tuple[Zone, ...]:
+        """The regions."""
+        return tuple(Zone(region, region, region) for region in self.tyre.body.parts)
+
+    @functools.cached_property
+    def density(self) -> Array:
+        """(n_elements, n_points) U, J/m3, at the Gauss points of the mechanical mesh."""
+        if self.flat is None:
+            return np.zeros(self.tyre.body.rings.weights.shape)
+        from tyrefem.mechanics.solid.compounds import determinant
+
+        strain = np.moveaxis(self.flat.strain, 0, -1)[..., None]
+        storage = np.moveaxis(self.tyre.state.storage, (0, 1), (-2, -1))
+        return np.asarray(((storage @ strain) * strain).sum(axis=(-2, -1)) * determinant(self.tyre.deformation) / 2)
+
+    @functools.cached_property
+    def energies(self) -> PointEnergies:
+        """The energies alone, without the tyre that they are of."""
+        return PointEnergies(self.zones, GaussPoints(self.tyre.body.rings), self.density[None])
+
+    def energy_density(self, zone: str, points: Array) -> Array:
+        """U, J/m3, at points (2, n) in (r, z) of a region of the undeformed section."""
+        return self.energies.energy_density(zone, points)
+
+
+def provider(study: Study) -> Callable[[LoadCase], StrainCycle]:
+    """From a load case to its strain cycle: what ``mechanics.strain = "barrel"`` chooses.
+
+    The tyre is inflated once for every pressure; each deflection starts from the next smaller one already solved.
+
+    Raises
+    ------
+    InputError : when called: no equilibrium, or a deflection that is impossible.
+    """
+    from tyrefem.mechanics.solid.flattening import flatten
+
+    solved: dict[float, list[Flattened]] = {}
+    inflated = pressed_tyre(study).inflated
+
+    def flattened(pressure: float, deflection: float) -> Flattened | None:
+        if deflection <= 0:
+            return None
+        tyre, known = inflated(pressure), solved.setdefault(pressure, [])
+        less = [one for one in known if one.deflection <= deflection]
+        known.append(flatten(tyre, deflection, max(less, key=lambda one: one.deflection, default=None)))
+        return known[-1]
+
+    def cycle(case: LoadCase) -> StrainCycle:
+        try:
+            return Barrel(inflated(case.pressure), flattened(case.pressure, case.deflection), case)
+        except InputError as error:
+            words = f"{case.load:.4g} N at {case.pressure / 1e3:.4g} kPa: {error.message}"
+            raise InputError(words, field=error.field, file=error.file) from None
+
+    return cycle

@@ -1,0 +1,335 @@
+"""From a study's cards to its strain cycles: stiffness of the parts, load cases of the drive."""
+
+from __future__ import annotations
+
+import functools
+import math
+from collections.abc import Callable, Sequence
+from dataclasses import dataclass
+from typing import Any
+
+import numpy as np
+
+from tyrefem.boundaries.contained_air import ATMOSPHERE
+from tyrefem.brief import Brief, Stated
+from tyrefem.errors import InputError
+from tyrefem.inputs.drive import Drive
+from tyrefem.inputs.loading import GivenFootprint, LoadCase, load_case
+from tyrefem.inputs.study import Study
+from tyrefem.materials.reads import ARCS, values_read
+from tyrefem.mechanics.arc_geometry import BiasPlies
+from tyrefem.mechanics.arcs import Arcs, Stiffness
+from tyrefem.mechanics.given import Given
+from tyrefem.mechanics.strain_cycle import StrainCycle, settled
+
+#: Times of which a schedule keeps what it has worked out.
+REMEMBERED = 512
+
+
+@dataclass(frozen=True, eq=False)
+class CycleSchedule(Brief, Stated):
+    """The strain cycles of a drive: for each phase the load cases at ``knots`` fractions of it.
+
+    Between knots the strain energy is interpolated linearly in time.
+    """
+
+    drive: Drive
+    knots: tuple[tuple[float, ...], ...]
+    cases: tuple[tuple[LoadCase, ...], ...]
+    cycles: tuple[tuple[StrainCycle, ...], ...]
+
+    def weights(self, time: float) -> list[tuple[int, int, float]]:
+        """(phase, knot, weight) of the load cases that make up a time."""
+        return self._moment(time)[0]
+
+    def _moment(self, time: float) -> tuple[list[tuple[int, int, float]], float]:
+        """Weights and revolutions per second of a time; remembered, as every zone and film asks for the same times."""
+        if time not in self._moments:
+            if len(self._moments) >= REMEMBERED:
+                self._moments.clear()
+            weights = self._weights(time)
+            radius = sum(weight * self.cases[phase][knot].rolling_radius for phase, knot, weight in weights)
+            self._moments[time] = weights, self.drive.slip(time).rolling_speed / (2 * math.pi * radius)
+        return self._moments[time]
+
+    @functools.cached_property
+    def _moments(self) -> dict[float, tuple[list[tuple[int, int, float]], float]]:
+        return {}
+
+    def _weights(self, time: float) -> list[tuple[int, int, float]]:
+        phase, fraction = self.drive.locate(time)
+        knots = self.knots[phase]
+        if len(knots) == 1:
+            return [(phase, 0, 1.0)]
+        right = int(np.clip(np.searchsorted(knots, fraction), 1, len(knots) - 1))
+        share = (fraction - knots[right - 1]) / (knots[right] - knots[right - 1])
+        return [(phase, right - 1, 1 - share), (phase, right, share)]
+
+    def mean(self, quantity: Callable[[LoadCase], float], time: float) -> float:
+        """A quantity of the load case at a time, e.g. its deflection."""
+        return sum(weight * quantity(self.cases[phase][knot]) for phase, knot, weight in self.weights(time))
+
+    @property
+    def zones(self) -> tuple[Any, ...]:
+        """The strain provider's zones."""
+        return self.cycles[0][0].zones
+
+    def revolutions_per_second(self, time: float) -> float:
+        """v / (2 pi r_r), 1/s, v the speed of the tread on the rolling radius: the vehicle's less slip."""
+        return self._moment(time)[1]
+
+
+def warming_knots(count: int) -> Sequence[float]:
+    """Fractions of a phase at which strain cycles follow the temperature: closer at its start, where it rises fast.
+
+    >>> warming_knots(5)
+    (0.0, 0.0625, 0.25, 0.5625, 1.0)
+    """
+    return tuple(float(x) for x in np.linspace(0.0, 1.0, count) ** 2)
+
+
+def ramp_knots(changes: bool, count: int = 9) -> Sequence[float]:
+    """Fractions of a phase at which load cases are solved: one, or ``count`` where the load changes.
+
+    Nine leave less than 0.2 % of the heat of a ramp between no load and the rated one (five: 1.3 %).
+    """
+    return tuple(np.linspace(0.0, 1.0, count)) if changes else (0.0,)
+
+
+#: Regions of the sections that the report's arcs are made for.
+ARC_REGIONS = tuple(ARCS)
+
+
+#: Strain laws that take seconds for every load case.
+BY_ELEMENTS = ("barrel", "fem")
+
+
+#: Those of them that press the tyre on its road: load, deflection and footprint are their own, not the study's laws'.
+PRESSES = ("fem",)
+
+
+def stiffness(study: Study) -> Stiffness:
+    """What the strain energy of the arcs needs of the cards, SI.
+
+    Raises
+    ------
+    InputError : a card lacks a modulus or an angle that the law needs.
+    """
+    section = study.section
+    for region in ARC_REGIONS:
+        if region not in section.regions:
+            message = (
+                f"the strain law 'arcs' needs the region '{region}', which section '{section.name}' does not have;"
+                ' other constructions take strain = "given"'
+            )
+            raise InputError(message, field="mechanics.strain", file=study.file)
+    cord = study.materials["carcass"].cord
+    mechanics, rating = study.card.mechanics, section.rating
+    if rating is None:
+        raise InputError("the strain law 'arcs' needs the section's [rating]", field="section.rating")
+    if cord is None or cord.ply_shear_modulus is None:
+        raise InputError("the carcass card needs 'cord.ply_shear_modulus'", field="materials.carcass.cord")
+    angle = rating.cord_angle or cord.crown_angle
+    if not angle:
+        raise InputError("neither the section nor the carcass card gives the crown cord angle", field="section")
+    # Once per section: variants of a study share it.
+    crown_radius = section.__dict__.get("_crown_radius")
+    if crown_radius is None:
+        crown_radius = section.__dict__["_crown_radius"] = float(section.line.position(np.zeros(1))[0, 0])
+    return Stiffness(
+        BiasPlies(_modulus(study, "carcass", "shear_modulus"), angle, crown_radius, mechanics.poisson_term),
+        cord.ply_shear_modulus if mechanics.membrane_shear else np.inf,
+        _modulus(study, "tread", "shear_modulus"),
+        _modulus(study, "sidewall", "shear_modulus"),
+        _modulus(study, "bead", "youngs_modulus"),
+        rating.bead_area,
+    )
+
+
+def _modulus(study: Study, region: str, name: str) -> float:
+    modulus = getattr(study.materials[region], name)
+    if modulus is None:
+        raise InputError(f"the card of region '{region}' needs '{name}'", field=f"materials.{region}.{name}")
+    return float(modulus.value)
+
+
+def cycle_schedule(study: Study) -> CycleSchedule:
+    """Load cases and strain cycles of every phase of the drive.
+
+    Raises
+    ------
+    InputError : a load or deflection that the section cannot take; names the phase.
+    """
+    solver = KnotSolver(study)
+    knots, cases, cycles = [], [], []
+    for number, phase in enumerate(study.card.drive.phases):
+        fractions = tuple(ramp_knots(phase.changes_load))
+        found = [solver.solve(number, fraction) for fraction in fractions]
+        knots.append(fractions)
+        cases.append(tuple(case for case, _ in found))
+        cycles.append(tuple(cycle for _, cycle in found))
+    return CycleSchedule(study.card.drive, tuple(knots), tuple(cases), tuple(cycles))
+
+
+def check_cases(study: Study) -> None:
+    """Refuse loads and deflections that the section cannot take, as far as that is known without finite elements.
+
+    Raises
+    ------
+    InputError : names the phase.
+    """
+    solver, cheap = KnotSolver(study), study.card.mechanics.strain not in BY_ELEMENTS
+    for number, phase in enumerate(study.card.drive.phases):
+        for fraction in ramp_knots(phase.changes_load):
+            case = solver.case(number, fraction)
+            if cheap:
+                solver.cycle(number, case)
+
+
+def same_cycles(study: Study, other: Study) -> bool:
+    """Do two studies have the same strain cycles? Section, drive, mechanics, what the law reads of the cards, mesh."""
+    if study.section is not other.section:
+        return False
+    if any(study.data.get(table) != other.data.get(table) for table in ("drive", "mechanics")):
+        return False
+    law = study.card.mechanics.strain
+    if law in BY_ELEMENTS and study.card.mesh != other.card.mesh:
+        return False
+    return values_read(law, study.materials) == values_read(law, other.materials)
+
+
+def rated_case(study: Study) -> LoadCase:
+    """The load case of the section's rated load and pressure on a flat road, as the strain law has it.
+
+    Raises
+    ------
+    InputError : no rating; a rated load that the tyre cannot carry.
+    """
+    rating, mechanics = study.section.rating, study.card.mechanics
+    if rating is None:
+        raise InputError("the rated deflection needs the section's [rating]", field="section.rating", file=study.file)
+    radius, footprint = study.section.outer_diameter / 2, mechanics.footprint
+    law = None if mechanics.strain in PRESSES else mechanics.load_law
+    case = load_case(law, rating, outer_radius=radius, pressure=rating.pressure, load=rating.load, footprint=footprint)
+    if law is not None:
+        return case
+    try:
+        return settled(_provider(study)(case), case)
+    except InputError as error:
+        raise error.within(field="section.rating", file=study.file) from None
+
+
+class KnotSolver:
+    """Load case and strain cycle of a moment of a study's drive."""
+
+    def __init__(self, study: Study) -> None:
+        _check_footprint(study)
+        self.study = study
+        if study.card.mechanics.strain not in BY_ELEMENTS:
+            _ = self._cycle
+
+    @functools.cached_property
+    def _cycle(self) -> Callable[[LoadCase], StrainCycle]:
+        return _provider(self.study)
+
+    def case(self, number: int, fraction: float, pressure_ratio: float = 1.0) -> LoadCase:
+        """The load case at a fraction of a phase as driven; ``pressure_ratio``: absolute pressure over the drive's.
+
+        Raises
+        ------
+        InputError : a load or deflection that the section cannot take; names the phase.
+        """
+        try:
+            return _load_case(self.study, number, fraction, pressure_ratio)
+        except InputError as error:
+            raise self._placed(error, number) from None
+
+    def cycle(self, number: int, case: LoadCase) -> StrainCycle:
+        """The strain cycle of a load case of a phase; raises as `case`."""
+        try:
+            return self._cycle(case)
+        except InputError as error:
+            raise self._placed(error, number) from None
+
+    def solve(self, number: int, fraction: float) -> tuple[LoadCase, StrainCycle]:
+        """Both, at the drive's own pressure, the load case with the contact that the strain law has found."""
+        case = self.case(number, fraction)
+        cycle = self.cycle(number, case)
+        return settled(cycle, case), cycle
+
+    def _placed(self, error: InputError, number: int) -> InputError:
+        name = self.study.card.drive.phases[number].name
+        return self.study.as_written(error.within(field=f"drive.phases.{name}", file=self.study.file))
+
+
+def _provider(study: Study) -> Callable[[LoadCase], StrainCycle]:
+    """The study's strain law: from a load case to its strain cycle."""
+    if study.card.mechanics.strain == "given":
+        return _given(study)
+    if study.card.mechanics.strain == "fem":
+        from tyrefem.mechanics import finite_elements as fem
+
+        return fem.provider(study)
+    if study.card.mechanics.strain == "barrel":
+        from tyrefem.mechanics import barrel
+
+        return barrel.provider(study)
+    moduli = stiffness(study)
+    return lambda case: _cycle(study, moduli, case)
+
+
+def _given(study: Study) -> Callable[[LoadCase], StrainCycle]:
+    section, energy = study.section, study.card.mechanics.energy
+    assert energy is not None
+    if section.rating is None:
+        raise InputError("the strain law 'given' needs the section's [rating]", field="section.rating")
+    deflection = study.card.mechanics.load_law.deflection(energy.load, energy.pressure, section.rating)
+    softened = _softened(study, energy.temperature)
+    return lambda case: Given(section, energy.regions, deflection, case, softened)
+
+
+def _softened(study: Study, given: float | None) -> dict[str, float]:
+    """Region -> modulus of its compound over that at the temperature where its energy was given."""
+    warm = study.temperatures
+    if warm is None or given is None:
+        return {}
+    laws = {region: card.softening for region, card in study.materials.items()}
+    return {region: law(warm[region]) / law(given) for region, law in laws.items() if law is not None}
+
+
+def _check_footprint(study: Study) -> None:
+    law, diameter = study.card.mechanics.footprint, study.section.outer_diameter
+    if isinstance(law, GivenFootprint) and law.length >= diameter:
+        message = (
+            f"{law.length * 1e3:.4g} mm is too long; must be less than the tyre's diameter, {diameter * 1e3:.4g} mm"
+        )
+        raise InputError(message, field="mechanics.footprint.length", file=study.file)
+
+
+def _cycle(study: Study, moduli: Stiffness, case: LoadCase) -> Arcs:
+    cycle = Arcs(study.section, moduli, case)
+    try:
+        _ = cycle.deflected if case.deflection > 0 else None
+    except InputError as error:
+        given = f"{case.load:.4g} N at {case.pressure / 1e3:.4g} kPa: {error.message}"
+        raise InputError(given, field=error.field) from None
+    return cycle
+
+
+def _load_case(study: Study, number: int, fraction: float, pressure_ratio: float = 1.0) -> LoadCase:
+    phase, section = study.card.drive.phases[number], study.section
+    assert section.rating is not None
+    pressure = phase.pressure.at(fraction)
+    # Written so that a ratio of 1 leaves the pressure as it is, to the bit.
+    pressure = pressure + (pressure + ATMOSPHERE) * (pressure_ratio - 1)
+    mechanics = study.card.mechanics
+    return load_case(
+        None if mechanics.strain in PRESSES else mechanics.load_law,
+        section.rating,
+        outer_radius=section.outer_diameter / 2,
+        pressure=pressure,
+        load=None if phase.load is None else phase.load.at(fraction),
+        deflection=None if phase.deflection is None else phase.deflection.at(fraction),
+        drum_diameter=phase.drum_diameter,
+        footprint=mechanics.footprint,
+    )

@@ -1,0 +1,194 @@
+"""The strain cycle by finite elements: inflation, footprint by Fourier harmonics, loss of every harmonic.
+
+From the Gauss points of a mechanical mesh to any points of the section.
+"""
+
+from __future__ import annotations
+
+import functools
+from collections.abc import Callable, Sequence
+from dataclasses import dataclass, field, replace
+from typing import TYPE_CHECKING, Any
+
+import numpy as np
+from numpy.typing import NDArray
+
+from tyrefem.inputs.loading import PressedContact
+from tyrefem.mechanics.footprint.pressed_tyre import pressed_tyre
+from tyrefem.mechanics.strain_cycle import LOSS_FACTOR, Zone, by_order
+
+if TYPE_CHECKING:
+    from tyrefem.inputs.loading import LoadCase
+    from tyrefem.inputs.study import Study
+    from tyrefem.mechanics.footprint.footprint import Footprint
+    from tyrefem.mechanics.solid.elements import Rings
+    from tyrefem.mechanics.solid.inflation import Inflation
+
+Array = NDArray[np.float64]
+
+
+#: So many Gauss points make a value; their weights stay finite where a point meets one.
+NEAREST, SMALLEST = 4, 1e-12
+
+
+@dataclass(frozen=True, eq=False)
+class GaussPoints:
+    """Gauss points of a mesh, region by region: no value crosses the border between two compounds.
+
+    >>> import skfem
+    >>> from tyrefem.mechanics.solid.elements import Rings
+    >>> mesh = skfem.MeshQuad.init_tensor([1.0, 1.1, 1.2], [0.0, 0.1]).with_subdomains({"rubber": np.arange(2)})
+    >>> points = GaussPoints(Rings(mesh))
+    >>> points.interpolate(np.full((2, 9), 3.0), "rubber", np.array([[1.05], [0.02]])).round(9).tolist()
+    [3.0]
+    """
+
+    rings: Rings
+    _trees: dict[str, Any] = field(default_factory=dict, init=False, repr=False)
+
+    def interpolate(self, values: Array, region: str, points: Array) -> Array:
+        """(..., n) values (..., n_elements, n_points) at points (2, n) in (r, z) of the undeformed section: the mean of
+        the four nearest Gauss points of the region, weighted with 1 / distance^2."""
+        members = self.rings.mesh.subdomains[region]
+        here = values[..., members, :].reshape(*values.shape[:-2], -1)
+        count = min(NEAREST, here.shape[-1])
+        distance, nearest = self._tree(region).query(np.asarray(points, dtype=float).T, k=count)
+        weights = 1 / (distance.reshape(-1, count) ** 2 + SMALLEST)
+        return np.asarray((weights * here[..., nearest.reshape(-1, count)]).sum(axis=-1) / weights.sum(axis=-1))
+
+    def _tree(self, region: str) -> Any:
+        if region not in self._trees:
+            from scipy.spatial import cKDTree
+
+            members = self.rings.mesh.subdomains[region]
+            self._trees[region] = cKDTree(self.rings.points[:, members].reshape(2, -1).T)
+        return self._trees[region]
+
+
+@dataclass(frozen=True, eq=False)
+class PointEnergies:
+    """A strain cycle as energies at Gauss points: ``densities`` (orders, n_elements, n_points) U, J/m3, by
+    `strain.ORDERS`, of ``zones`` that are whole regions."""
+
+    zones: tuple[Zone, ...]
+    points: GaussPoints
+    densities: Array
+
+    @functools.cached_property
+    def density(self) -> Array:
+        """(n_elements, n_points) U, J/m3."""
+        return np.asarray(self.densities.sum(axis=0))
+
+    def energy_density(self, zone: str, points: Array) -> Array:
+        """U, J/m3, at points (2, n) in (r, z) of a region of the undeformed section."""
+        return self.points.interpolate(self.density, zone, points)
+
+    def spectrum(self, zone: str, points: Array) -> Array:
+        """(orders, n) the same by `strain.ORDERS`."""
+        return self.points.interpolate(self.densities, zone, points)
+
+    def moved(self, others: Sequence[tuple[PointEnergies, float]]) -> PointEnergies:
+        """U + sum_i w_i (U_i - U) with shares w_i of the way to other cycles at the same points; nowhere below 0."""
+        size = max(len(one.densities) for one in (self, *(other for other, _ in others)))
+        found = _padded(self.densities, size)
+        for other, share in others:
+            found = found + share * (_padded(other.densities, size) - _padded(self.densities, size))
+        return PointEnergies(self.zones, self.points, np.maximum(found, 0.0))
+
+
+def _padded(densities: Array, size: int) -> Array:
+    return np.pad(densities, ((0, size - len(densities)), (0, 0), (0, 0)))
+
+
+@dataclass(frozen=True, eq=False)
+class FiniteElements:
+    """Strain cycle of one load case: U = (sum_n n e_n : C' : e_n) / f, J/m3.
+
+    A harmonic n runs n cycles per revolution, each of which loses pi tan d e_n : C' : e_n, so that the heat
+    f U tan d v / (2 R) of `heating` is the loss of all harmonics per revolution of 2 pi R, whatever the loss
+    convention's factor f; R is the footprint's own rolling radius, as in `settled`. `spectrum` keeps the harmonics
+    apart, for a tan d that depends on frequency. ``one_cycle``: U is the energy of the largest change of strain, as if
+    the revolution were one cycle; then f counts.
+
+    Parameters
+    ----------
+    tyre : the inflated tyre. footprint : the tyre pressed on the road; None: no load, no strain cycle.
+    case : the load case as driven. factor : f, `heating.LOSS_FACTOR` of the study's convention.
+    """
+
+    tyre: Inflation
+    footprint: Footprint | None
+    case: LoadCase
+    factor: float = 1.0
+    one_cycle: bool = False
+
+    @property
+    def zones(self) -> tuple[Zone, ...]:
+        """The regions."""
+        return tuple(Zone(region, region, region) for region in self.tyre.body.parts)
+
+    @functools.cached_property
+    def settled(self) -> LoadCase:
+        """The load case with the footprint's own load, deflection, length, area and rolling radius."""
+        found, case = self.footprint, self.case
+        if found is None:
+            free = PressedContact(0.0, 0.0, float(self.tyre.places[0].max()))
+            return replace(case, load=0.0, deflection=0.0, contact=free)
+        # A load that was given stays to the last digit.
+        load = found.load if case.by_deflection else case.load
+        contact = PressedContact(found.length, found.area, found.rolling_radius)
+        return replace(case, load=load, deflection=found.deflection, contact=contact)
+
+    @functools.cached_property
+    def densities(self) -> Array:
+        """(orders, n_elements, n_points) U, J/m3, at the Gauss points of the mechanical mesh, by `strain.ORDERS`."""
+        if self.footprint is None:
+            return np.zeros((1, *self.tyre.body.rings.weights.shape))
+        from tyrefem.mechanics.footprint.strain_harmonics import StrainCycle as Harmonics
+
+        cycle = Harmonics(self.footprint)
+        if self.one_cycle:
+            return np.asarray(cycle.largest_energy()[None])
+        products = cycle.storage_products
+        orders = np.arange(len(products))[:, None, None]
+        return np.asarray(by_order(orders * products) / self.factor)
+
+    @property
+    def density(self) -> Array:
+        """(n_elements, n_points) U, J/m3, at the Gauss points of the mechanical mesh."""
+        return self.energies.density
+
+    @functools.cached_property
+    def energies(self) -> PointEnergies:
+        """The energies alone, without the tyre that they are of."""
+        return PointEnergies(self.zones, GaussPoints(self.tyre.body.rings), self.densities)
+
+    def energy_density(self, zone: str, points: Array) -> Array:
+        """U, J/m3, at points (2, n) in (r, z) of a region of the undeformed section."""
+        return self.energies.energy_density(zone, points)
+
+    def spectrum(self, zone: str, points: Array) -> Array:
+        """(orders, n) the same by `strain.ORDERS`."""
+        return self.energies.spectrum(zone, points)
+
+
+def provider(study: Study) -> Callable[[LoadCase], FiniteElements]:
+    """From a load case to its strain cycle: what ``mechanics.strain = "fem"`` chooses.
+
+    The tyre is inflated once for every pressure, and every load, pressure and drum is solved once, also for other
+    studies of this process with the same tyre (`pressed_tyre`). What the drive gives decides, load or deflection; the
+    study's load law and footprint law are not read.
+
+    Raises
+    ------
+    InputError : when called: no equilibrium, or a load that the tyre cannot carry.
+    """
+    mechanics = study.card.mechanics
+    factor, one_cycle = LOSS_FACTOR[mechanics.loss_convention], mechanics.revolution == "one-cycle"
+    tyre = pressed_tyre(study)
+
+    def cycle(case: LoadCase) -> FiniteElements:
+        footprint = tyre.footprint(case, large=mechanics.motion == "large")
+        return FiniteElements(tyre.inflated(case.pressure), footprint, case, factor, one_cycle)
+
+    return cycle

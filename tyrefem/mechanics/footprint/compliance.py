@@ -1,0 +1,148 @@
+"""How far the tread gives under unit loads, harmonic by harmonic."""
+
+from __future__ import annotations
+
+import functools
+from dataclasses import dataclass, field
+
+import numpy as np
+from numpy.typing import NDArray
+
+from tyrefem.brief import Brief
+from tyrefem.errors import InputError, nearest
+from tyrefem.mechanics.footprint.elements import COMPONENTS
+from tyrefem.mechanics.footprint.harmonics import Harmonics
+
+Array = NDArray[np.float64]
+Indices = NDArray[np.int64]
+#: Every harmonic up to this one is solved; above it, solved ones grow by a factor and those between are interpolated.
+ALL_UP_TO = 24
+GROWTH = 1.12
+
+
+@functools.lru_cache(maxsize=64)
+def solved_harmonics(highest: int) -> tuple[int, ...]:
+    """Harmonics that are solved so that all up to ``highest`` follow.
+
+    >>> solved_harmonics(40)[-8:]
+    (22, 23, 24, 27, 30, 34, 38, 43)
+    """
+    found = list(range(min(highest, ALL_UP_TO) + 1))
+    while found[-1] < highest:
+        found.append(max(found[-1] + 1, round(found[-1] * GROWTH)))
+    return tuple(found)
+
+
+def interpolation(highest: int) -> Array:
+    """(highest + 1, number solved) weights of the solved harmonics: cubic in log(1 + n) between them."""
+    solved = np.array(solved_harmonics(highest), dtype=float)
+    weights = np.zeros((highest + 1, len(solved)))
+    x, order = np.log1p(solved), min(4, len(solved))
+    for n in range(highest + 1):
+        first = int(np.clip(np.searchsorted(solved, n) - order // 2, 0, len(solved) - order))
+        if n in solved:
+            weights[n, int(np.searchsorted(solved, n))] = 1.0
+            continue
+        near = np.arange(first, first + order)
+        for k in near:
+            others = near[near != k]
+            weights[n, k] = np.prod((np.log1p(n) - x[others]) / (x[k] - x[others]))
+    return weights
+
+
+@dataclass(frozen=True, eq=False)
+class TreadCompliance(Brief):
+    """Displacements of the tread's nodes per unit load, G_n = T K_n^-1 T', m per N per radian.
+
+    Loads act at the tread's nodes along r, t and, on a full section, z. One factorisation per solved harmonic;
+    between solved ones G_n is interpolated, as above the first two dozen it is smooth in n.
+
+    Raises
+    ------
+    InputError : the mesh has no tread boundary.
+    """
+
+    harmonics: Harmonics
+    _solved: dict[int, Array] = field(default_factory=dict, init=False, repr=False)
+
+    def __post_init__(self) -> None:
+        state = self.harmonics.state
+        if state.tread not in (state.mesh.boundaries or {}):
+            raise InputError(f"the mesh has no boundary '{state.tread}'{nearest(state.tread, state.mesh.boundaries)}")
+
+    @property
+    def half(self) -> bool:
+        """Does the mesh hold one half of a symmetric tyre?"""
+        state = self.harmonics.state
+        return state.symmetric in state.mesh.boundaries
+
+    @property
+    def components(self) -> tuple[int, ...]:
+        """Components of (r, z, t) that are loaded."""
+        return (0, 2) if self.half else (0, 2, 1)
+
+    @functools.cached_property
+    def nodes(self) -> Indices:
+        """Node numbers of the tread, from small to large z."""
+        elements = self.harmonics.elements
+        found = elements.boundary_nodes(self.harmonics.state.tread)
+        return found[np.argsort(elements.nodes[1, found], kind="stable")]
+
+    @functools.cached_property
+    def places(self) -> Array:
+        """(2, m) tread nodes in (r, z), m."""
+        return np.asarray(self.harmonics.elements.nodes[:, self.nodes])
+
+    @functools.cached_property
+    def widths(self) -> tuple[Array, Array]:
+        """Length of the outline and of its axial projection that belong to each node, (m,), m."""
+        facets = self.harmonics.elements.facet_basis(self.harmonics.state.tread)
+        values = np.stack([np.broadcast_to(np.asarray(f[0]), facets.dx.shape) for f in facets.basis], axis=0)
+        length, axial = np.zeros((2, self.harmonics.elements.nodes.shape[1]))
+        across = np.abs(np.asarray(facets.normals)[0])
+        np.add.at(length, facets.element_dofs, np.einsum("afq,fq->af", values, facets.dx))
+        np.add.at(axial, facets.element_dofs, np.einsum("afq,fq->af", values, facets.dx * across))
+        return length[self.nodes], axial[self.nodes]
+
+    @functools.cached_property
+    def grooves(self) -> Array:
+        """(n, 2) axial stretches that the tread leaves out, m: between its facets, and at the mid plane of a half."""
+        mesh, tread = self.harmonics.state.mesh, self.harmonics.state.tread
+        ends = np.sort(mesh.p[1, mesh.facets[:, mesh.boundaries[tread]]], axis=0)
+        low, high = ends[:, np.argsort(ends[0])]
+        reached = np.maximum.accumulate(high)
+        starts = np.concatenate([[0.0 if self.half else low[0]], reached[:-1]])
+        open_ = low - starts > 1e-6
+        return np.stack([starts[open_], low[open_]], axis=1)
+
+    @functools.cached_property
+    def dofs(self) -> Indices:
+        """(components, m) degrees of freedom that are loaded."""
+        return np.stack([COMPONENTS * self.nodes + c for c in self.components])
+
+    def solved(self, n: int) -> Array:
+        """(c, m, c, m) compliance of a solved harmonic; remembered."""
+        if n not in self._solved:
+            matrix = self.harmonics.compliance(n, self.dofs.ravel())
+            self._solved[n] = matrix.reshape(*self.dofs.shape, *self.dofs.shape)
+        return self._solved[n]
+
+    def up_to(self, highest: int) -> Array:
+        """(highest + 1, c, m, c, m) compliance of all harmonics."""
+        known = np.stack([self.solved(n) for n in solved_harmonics(highest)])
+        return np.asarray(np.tensordot(interpolation(highest), known, axes=1))
+
+    def fields(self, loads: Array) -> Array:
+        """(n_harmonics, n_dofs) amplitudes, m, under loads (n_harmonics, c, m), N per radian, at the tread."""
+        everywhere = np.zeros((len(loads), self.harmonics.elements.n_dofs))
+        everywhere[:, self.dofs.ravel()] = loads.reshape(len(loads), -1)
+        return self.responses(everywhere)
+
+    def responses(self, loads: Array) -> Array:
+        """(n_harmonics, n_dofs) amplitudes, m, under loads (n_harmonics, n_dofs), N per radian, anywhere."""
+        highest = len(loads) - 1
+        weights, found = interpolation(highest), np.zeros_like(loads)
+        for column, n in enumerate(solved_harmonics(highest)):
+            served = np.flatnonzero(weights[:, column])
+            found[served] += weights[served, column, None] * self.harmonics.solve(n, loads[served].T).T
+        return found

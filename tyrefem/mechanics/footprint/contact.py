@@ -1,0 +1,198 @@
+"""The footprint: frictionless contact of the tread with a road, at a given deflection or load."""
+
+from __future__ import annotations
+
+import math
+from dataclasses import dataclass, field
+from typing import Any
+
+import numpy as np
+from numpy.typing import NDArray
+
+from tyrefem.errors import InputError
+from tyrefem.estimates import work as estimate
+from tyrefem.mechanics.footprint.complementarity import contact_forces
+from tyrefem.mechanics.footprint.footprint import Footprint
+from tyrefem.mechanics.footprint.grid import ContactGrid
+from tyrefem.mechanics.footprint.road import Road
+from tyrefem.mechanics.footprint.tyre_on_road import FLAT, TyreOnRoad
+from tyrefem.mechanics.solid.body import Prestressed
+
+Array = NDArray[np.float64]
+#: Harmonics tried in turn until the error measure is met.
+LADDER = (24, 36, 54, 80, 120, 180, 270)
+
+
+@dataclass(frozen=True, eq=False)
+class Pressing(TyreOnRoad):
+    """A tyre that can be pressed on its road; compliances are remembered between loads and numbers of harmonics."""
+
+    _grids: dict[int, ContactGrid] = field(default_factory=dict, init=False, repr=False)
+
+    def grid(self, harmonics: int, deflection: float) -> ContactGrid:
+        """Angles that may touch: the part of the free tyre below the road and a third beyond.
+
+        Raises
+        ------
+        InputError : no number of harmonics, or more than there is memory for.
+        """
+        radius = self.reach
+        round_drum = 1.0 / (1.0 + 2 * radius / self.road.drum_diameter)
+        half_angle = math.acos(max(1 - deflection * round_drum / radius, -0.5))
+        share = 1.35 * half_angle / np.pi
+        self.check_harmonics(harmonics, share)
+        needed = min(math.ceil(share * harmonics) + 3, harmonics)
+        if harmonics not in self._grids or self._grids[harmonics].n_angles < needed:
+            self._grids[harmonics] = ContactGrid(self.tread, harmonics, min(needed + 2, harmonics))
+        return self._grids[harmonics]
+
+    def check_harmonics(self, harmonics: int, share: float = 0.0) -> None:
+        """Raises `InputError` for what is no number of harmonics, or needs more memory than is free; ``share`` of the
+        angles may touch."""
+        if not (isinstance(harmonics, int | np.integer) and harmonics >= 1):
+            raise InputError(f"must be a whole number, 1 or more, not {harmonics!r}", field="harmonics")
+        nodes, components = len(self.tread.nodes), len(self.tread.components)
+
+        def needed(count: float) -> float:
+            return estimate.contact(nodes, min(count, 10**12), share * min(count, 10**12) + 3, components)
+
+        def fits(free: float) -> str:
+            most = min(harmonics, 10**12)
+            while most > 1 and needed(most) > free:
+                most //= 2
+            return f"{most:,} would fit"
+
+        try:
+            estimate.check_memory(
+                needed(harmonics), f"{min(harmonics, 10**12):,} harmonics of {nodes} tread nodes", fits
+            )
+        except InputError as error:
+            raise error.within(field="harmonics") from None
+
+    def check(self, deflection: float) -> None:
+        """Raises `InputError` for a deflection that is negative or would press the crown on the rim."""
+        if not 0 <= deflection < self.bottoming:
+            raise InputError(
+                f"a deflection of {deflection * 1e3:.4g} mm is impossible; it must be at least 0 and less than "
+                f"{self.bottoming * 1e3:.4g} mm, where the crown meets the rim",
+                field="deflection",
+            )
+
+    def at_deflection(self, deflection: float, harmonics: int, start: Footprint | None = None) -> Footprint:
+        """The footprint at a deflection, m, with harmonics up to a number.
+
+        On a flat road the gap is linear in the displacement, (r + u_r) cos t - u_t sin t, and the first solution is
+        final; on a drum its direction is renewed until forces settle to 1e-6. ``start``: a footprint near by, whose
+        contacts are tried first.
+
+        Raises
+        ------
+        InputError : the deflection is negative or would press the crown on the rim.
+        """
+        self.check(deflection)
+        grid = self.grid(harmonics, deflection)
+        distance = self.reach - deflection
+        size = len(grid.areas)
+        moved, closed = np.zeros((len(self.tread.components), size)), np.zeros(size, dtype=bool)
+        if start is not None and start.grid is grid:
+            closed = start.forces > 0
+        forces, direction = np.zeros(size), np.zeros_like(moved)
+        for _ in range(30):
+            gaps, normals = self.gaps(grid, moved, distance)
+            turned = grid.along(normals)
+            compliance = np.einsum("ak,akbl,bl->kl", turned, grid.blocks, turned, optimize=True)
+            before, free = forces, gaps + np.einsum("ck,ck->k", turned, moved)
+            forces, closed = contact_forces(compliance, free, closed if closed.any() else None)
+            direction = turned
+            moved = -np.einsum("akbl,bl->ak", grid.blocks, turned * forces, optimize=True)
+            if math.isinf(self.road.drum_diameter) or np.abs(forces - before).max() <= 1e-6 * forces.max(initial=0.0):
+                break
+        leads = self.road.normal @ normals
+        index = np.flatnonzero(closed)
+        stiffness = 0.0
+        if len(index):
+            stiffness = float(leads[index] @ np.linalg.solve(compliance[np.ix_(index, index)], leads[index]))
+        both = 2.0 if self.tread.half else 1.0
+        left = free + compliance @ forces
+        load = float(both * leads @ forces)
+        return Footprint(self, grid, deflection, load, both * stiffness, forces, direction, moved, left)
+
+    def gaps(self, grid: ContactGrid, moved: Array, distance: float) -> tuple[Array, Array]:
+        """Gaps and normals in the middle of the hats; the free tyre's gap averaged with the hat by two points."""
+        aside, free = grid.step / math.sqrt(6), np.zeros_like(moved)
+        ahead, here, behind = (self.road.gaps(grid.places(free, shift), distance)[0] for shift in (aside, 0.0, -aside))
+        gaps, normals = self.road.gaps(grid.places(moved, 0.0), distance)
+        return gaps + (ahead + behind) / 2 - here, normals
+
+    def at_load(self, load: float, harmonics: int, start: Footprint | None = None) -> Footprint:
+        """The footprint under a load, N, both sides of the tyre: Newton on the deflection.
+
+        Raises
+        ------
+        InputError : the load is not positive, or more than the tyre can carry before the crown meets the rim.
+        """
+        if not load > 0:
+            raise InputError(f"the load must be positive, not {load:g} N", field="load")
+        low, high = 0.0, self.bottoming
+        deflection = start.deflection if start is not None else 0.02 * high
+        found = self.at_deflection(deflection, harmonics)
+        for _ in range(40):
+            if abs(found.load - load) <= 1e-8 * load:
+                return found
+            low, high = (deflection, high) if found.load < load else (low, deflection)
+            step = (load - found.load) / found.stiffness if found.stiffness else high
+            deflection = deflection + step
+            if not low < deflection < high:
+                deflection = (low + high) / 2
+            if high - low < 1e-9 * self.bottoming and high == self.bottoming:
+                break
+            found = self.at_deflection(deflection, harmonics, found)
+        most = self.at_deflection(self.bottoming * (1 - 1e-9), harmonics).load
+        raise InputError(
+            f"the tyre cannot carry {load:.5g} N: the crown meets the rim at {most:.5g} N "
+            f"({self.bottoming * 1e3:.4g} mm)",
+            field="load",
+        )
+
+    def solve(
+        self, *, deflection: float | None = None, load: float | None = None, tolerance: float = 0.01
+    ) -> Footprint:
+        """The footprint with as many harmonics as the error measure asks for.
+
+        The number grows until load, deflection and elastic work change by less than ``tolerance``, and the area in
+        contact by less than five times that; the last change is reported as ``error``.
+
+        Raises
+        ------
+        InputError : not exactly one of deflection and load; what `at_deflection` and `at_load` raise; no convergence.
+        """
+        if (deflection is None) == (load is None):
+            raise InputError("give exactly one of 'deflection' and 'load'")
+        before: Footprint | None = None
+        for count in LADDER:
+            if deflection is not None:
+                found = self.at_deflection(deflection, count)
+            else:
+                assert load is not None
+                found = self.at_load(load, count, before)
+            if before is not None:
+                found = found.compared(before)
+                if found.error <= tolerance:
+                    return found
+            before = found
+        assert before is not None
+        raise InputError(
+            f"{LADDER[-1]} harmonics leave an error of {before.error:.2g}, more than the tolerance {tolerance:g}",
+            field="tolerance",
+        )
+
+
+def footprint(state: Prestressed, road: Road = FLAT, **wanted: Any) -> Footprint:
+    """The footprint of a tyre: `Pressing.solve` in one call.
+
+    >>> from tyrefem.mechanics.footprint.example_tyre import PlainTyre
+    >>> found = footprint(PlainTyre().state(along=10), load=2000.0, tolerance=0.05)
+    >>> round(found.load), found.harmonics
+    (2000, 54)
+    """
+    return Pressing(state, road).solve(**wanted)

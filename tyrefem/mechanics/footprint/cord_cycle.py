@@ -1,0 +1,78 @@
+"""What the cords of every layer carry round the wheel."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from typing import TYPE_CHECKING
+
+import numpy as np
+from numpy.typing import NDArray
+
+if TYPE_CHECKING:
+    from tyrefem.mechanics.footprint.strain_harmonics import StrainCycle
+    from tyrefem.mechanics.solid.cords import CordLayer
+    from tyrefem.mechanics.solid.inflation import Inflation
+
+Array = NDArray[np.float64]
+
+
+@dataclass(frozen=True, eq=False)
+class CordCycle:
+    """Tension of a layer's cords round the wheel, where it is greatest.
+
+    Parameters
+    ----------
+    region : the layer. place : (r, z) there before inflation, m.
+    angles : (n,) from the middle of the footprint, rad.
+    plus, minus : (n,) tension of the cords at +angle and -angle; each the other's mirror image.
+    inflated : before the tyre touches the road.
+    unit : ``"N"``, of one cord; ``"Pa"``, v_c E (lambda - 1) of the layer, where no cord's own stiffness is known.
+    """
+
+    region: str
+    place: tuple[float, float]
+    angles: Array
+    plus: Array
+    minus: Array
+    inflated: float
+    unit: str
+
+
+def cord_cycles(tyre: Inflation, cycle: StrainCycle, count: int = 181) -> tuple[CordCycle, ...]:
+    """The cords of every region: inflated tension + E A lambda a . e a, a the cords' present direction.
+
+    E A is less where the inflated cord is compressed, as in the tangent from which the footprint is computed. In large
+    motion the cords' own law at the stretch lambda sqrt(1 + 2 a . E a), E Green's strain.
+
+    Parameters
+    ----------
+    tyre : the inflated tyre. cycle : strains round the wheel of the same tyre. count : angles from -pi to pi.
+    """
+    return tuple(
+        _greatest(tyre, cycle, region, layer, np.linspace(-np.pi, np.pi, count))
+        for region, part in tyre.body.parts.items()
+        for layer in part.cords
+    )
+
+
+def _greatest(tyre: Inflation, cycle: StrainCycle, region: str, layer: CordLayer, angles: Array) -> CordCycle:
+    members = np.asarray(tyre.body.mesh.subdomains[region])
+    here = tyre.deformation[:, :, members]
+    known = layer.cord_stiffness is not None
+    stretch = layer.stretch(here)
+    inflated = layer.tension(here) if known else layer.stress_in_layer(here)
+    stiffness = np.asarray(layer.cord_stiffness if known else layer.stiffness)
+    carried = (np.einsum("ij...,j...->i...", here, one) / stretch for one in layer.directions)
+    strains = [cycle.along(one, angles, members) for one in carried]
+    if cycle.footprint.balanced is None:
+        slope = (stiffness * np.where(stretch >= 1, 1.0, layer.compression) * stretch)[..., None]
+        halves = [inflated[..., None] + slope * strain for strain in strains]
+    else:
+        per_stress = np.asarray(stiffness / layer.stiffness)[..., None]
+        halves = [per_stress * layer.slope(stretch[..., None] * np.sqrt(1 + 2 * strain)) for strain in strains]
+    most = np.maximum(halves[0].max(axis=-1), halves[1].max(axis=-1))
+    element, point = (int(i) for i in np.unravel_index(int(most.argmax()), most.shape))
+    r, z = tyre.body.rings.points[:, members[element], point]
+    plus, minus = (half[element, point] for half in halves)
+    unit = "N" if known else "Pa"
+    return CordCycle(region, (float(r), float(z)), angles, plus, minus, float(inflated[element, point]), unit)

@@ -1,0 +1,197 @@
+"""A motion's values and gradients at angles round the wheel, and forces back to harmonics.
+
+Nine-node rings in a Fourier harmonic: strains and projected dilatation.
+"""
+
+from __future__ import annotations
+
+import functools
+from dataclasses import dataclass
+from typing import Any
+
+import numpy as np
+from numpy.typing import NDArray
+
+from tyrefem.mechanics.solid.elements import Rings
+
+Array = NDArray[np.float64]
+Indices = NDArray[np.int64]
+
+
+#: Nodes of an element, displacement components (r, z, t) of a node.
+NODES, COMPONENTS = 9, 3
+
+
+@dataclass(frozen=True, eq=False)
+class SectionElements(Rings):
+    """Nine-node rings, and their strains in the harmonic
+
+    u = (u_r cos n t, u_z cos n t, u_t sin n t):  e_n = e_0 + n e_1,
+
+    e_rr = u_r,r; e_zz = u_z,z; e_tt = (u_r + n u_t)/r; g_rz = u_r,z + u_z,r (all cos n t);
+    g_rt = u_t,r - u_t/r - n u_r/r; g_zt = u_t,z - n u_z/r (both sin n t).
+
+    Degree of freedom 3 i + c is component c of (r, z, t) at node i.
+
+    >>> import skfem
+    >>> elements = SectionElements(skfem.MeshQuad.init_tensor([1.0, 1.1], [0.0, 0.1]))
+    >>> elements.n_dofs, elements.radii.shape
+    (27, (1, 9))
+    """
+
+    @property
+    def n_dofs(self) -> int:
+        """Degrees of freedom of a harmonic."""
+        return COMPONENTS * self.n_nodes
+
+    @functools.cached_property
+    def dofs(self) -> Indices:
+        """(n_elements, 27) degrees of freedom of an element, in the order 3 a + c."""
+        nodes = self.element_nodes
+        return (COMPONENTS * nodes[:, :, None] + np.arange(COMPONENTS)).reshape(len(nodes), -1)
+
+    @functools.cached_property
+    def strains(self) -> tuple[Array, Array]:
+        """(e_0, e_1), each (n_elements, n_points, 6, 27): order rr, zz, tt, rz, rt, zt."""
+        by_r, by_z = self.gradients
+        over_r = self.values / self.radii[..., None]
+        constant, linear = np.zeros((2, *self.radii.shape, 6, NODES, COMPONENTS))
+        constant[..., 0, :, 0] = by_r
+        constant[..., 1, :, 1] = by_z
+        constant[..., 2, :, 0] = over_r
+        constant[..., 3, :, 0], constant[..., 3, :, 1] = by_z, by_r
+        constant[..., 4, :, 2] = by_r - over_r
+        constant[..., 5, :, 2] = by_z
+        linear[..., 2, :, 2] = over_r
+        linear[..., 4, :, 0] = -over_r
+        linear[..., 5, :, 1] = -over_r
+        shape = (*self.radii.shape, 6, NODES * COMPONENTS)
+        return constant.reshape(shape), linear.reshape(shape)
+
+    @functools.cached_property
+    def dilatations(self) -> tuple[Array, Array]:
+        """(d_0, d_1), each (n_elements, n_points, 27): div u projected on (1, xi, eta), d_n = d_0 + n d_1."""
+        functions = self.linear_functions
+
+        def projected(strain: Array) -> Array:
+            trace = strain[..., :3, :].sum(axis=-2)
+            moments = (functions * self.weights[..., None]).transpose(0, 2, 1) @ trace
+            return np.asarray(functions @ moments)
+
+        constant, linear = self.strains
+        return projected(constant), projected(linear)
+
+    def strain(self, n: float, displacement: Array) -> Array:
+        """(6, n_elements, n_points) strain amplitudes of harmonic ``n`` for amplitudes (n_dofs,) in m."""
+        constant, linear = self.strains
+        local = np.asarray(displacement)[self.dofs]
+        shape = (*self.radii.shape, 6)
+        flat = (len(local), -1, local.shape[1])
+        found = constant.reshape(flat) @ local[:, :, None] + n * (linear.reshape(flat) @ local[:, :, None])
+        return np.moveaxis(found.reshape(shape), -1, 0)
+
+    def projected_dilatation(self, n: float, displacement: Array) -> Array:
+        """(n_elements, n_points) projected dilatation of harmonic ``n``."""
+        constant, linear = self.dilatations
+        local = np.asarray(displacement)[self.dofs][:, :, None]
+        return np.asarray((constant @ local + n * (linear @ local))[..., 0])
+
+
+#: Steps of the angle from 0 to pi per harmonic.
+PER_HARMONIC = 1.5
+
+
+@dataclass(frozen=True, eq=False)
+class WheelAngles:
+    """Angles from 0 to pi for harmonics (u_r cos n t, u_z cos n t, u_t sin n t) up to ``highest``.
+
+    3/2 ``highest`` + 1 of them: products of two harmonics do not fold back on those that are kept.
+    """
+
+    elements: SectionElements
+    highest: int
+
+    @functools.cached_property
+    def angles(self) -> Array:
+        """(m,) rad."""
+        return np.linspace(0, np.pi, int(np.ceil(PER_HARMONIC * max(self.highest, 1))) + 1)
+
+    @functools.cached_property
+    def waves(self) -> tuple[Array, Array]:
+        """(3, m, highest + 1) of r, z, t, and their derivatives by the angle."""
+        n = np.arange(self.highest + 1)
+        phase = np.multiply.outer(self.angles, n)
+        cos, sin = np.cos(phase), np.sin(phase)
+        return np.stack([cos, cos, sin]), np.stack([-n * sin, -n * sin, n * cos])
+
+    @functools.cached_property
+    def shares(self) -> Array:
+        """(m, highest + 1) weights with which a wave's amplitude is taken from values at the angles."""
+        weights = np.full(len(self.angles), 1 / (len(self.angles) - 1))
+        weights[[0, -1]] /= 2
+        shares = np.tile(2 * weights[:, None], (1, self.highest + 1))
+        shares[:, 0] /= 2
+        return shares
+
+    @functools.cached_property
+    def _back(self) -> tuple[Array, Array]:
+        value, slope = self.waves
+        return value * self.shares, slope * self.shares
+
+    def at_nodes(self, amplitudes: Array) -> tuple[Array, Array]:
+        """(n_nodes, m, 3) displacement and its derivative by the angle, of amplitudes (highest + 1, n_dofs)."""
+        u = np.asarray(amplitudes).reshape(self.highest + 1, -1, COMPONENTS)
+        found = []
+        for waves in self.waves:
+            here = np.empty((u.shape[1], len(self.angles), COMPONENTS))
+            for c in range(COMPONENTS):
+                here[..., c] = u[..., c].T @ waves[c].T
+            found.append(here)
+        return found[0], found[1]
+
+    def from_nodes(self, value: Array, slope: Array) -> Array:
+        """(highest + 1, n_dofs) forces against the amplitudes, of forces against `at_nodes`; adjoint to it."""
+        found = np.empty((self.highest + 1, len(value), COMPONENTS))
+        for c in range(COMPONENTS):
+            found[..., c] = (value[..., c] @ self._back[0][c] + slope[..., c] @ self._back[1][c]).T
+        return found.reshape(self.highest + 1, -1)
+
+    @functools.cached_property
+    def _by(self) -> tuple[Array, Array]:
+        """Values by r, z and over r: (e, 3 q, 9), and over r alone (e, q, 9)."""
+        over_r = self.elements.values / self.elements.radii[..., None]
+        return np.concatenate([*self.elements.gradients, over_r], axis=1), over_r
+
+    @functools.cached_property
+    def _sums(self) -> Any:
+        """Sparse (n_nodes, 9 e): sum over the elements at a node."""
+        import scipy.sparse as sp
+
+        nodes = self.elements.element_nodes.ravel()
+        place = (nodes, np.arange(len(nodes)))
+        return sp.csr_matrix((np.ones(len(nodes)), place), shape=(self.elements.n_nodes, len(nodes)))
+
+    def gradient(self, amplitudes: Array) -> Array:
+        """(e, q, m, 9) displacement gradient H, component 3 k + i of (r, z, t)."""
+        value, slope = self.at_nodes(amplitudes)
+        nodes, (by, over_r) = self.elements.element_nodes, self._by
+        e, m = len(nodes), len(self.angles)
+        parts = (by @ value[nodes].reshape(e, 9, -1)).reshape(e, 3, -1, m, 3)
+        turned = (over_r @ slope[nodes].reshape(e, 9, -1)).reshape(e, -1, m, 3)
+        found = np.empty((*turned.shape, 3))
+        found[..., 0], found[..., 1], found[..., 2] = parts[:, 0], parts[:, 1], turned
+        found[..., 0, 2] -= parts[:, 2, ..., 2]
+        found[..., 2, 2] += parts[:, 2, ..., 0]
+        return found.reshape(*turned.shape[:3], 9)
+
+    def forces(self, stress: Array) -> Array:
+        """(highest + 1, n_dofs) forces, N per radian, of a stress (e, q, m, 9) times r dA; adjoint to `gradient`."""
+        e, q, m, _ = stress.shape
+        p, (by, over_r) = stress.reshape(e, q, m, 3, 3), self._by
+        parts = np.zeros((e, 3, q, m, 3))
+        parts[:, 0], parts[:, 1] = p[..., 0], p[..., 1]
+        parts[:, 2, ..., 0], parts[:, 2, ..., 2] = p[..., 2, 2], -p[..., 0, 2]
+        value = by.transpose(0, 2, 1) @ parts.reshape(e, 3 * q, -1)
+        slope = over_r.transpose(0, 2, 1) @ np.ascontiguousarray(p[..., 2]).reshape(e, q, -1)
+        value, slope = (self._sums @ part.reshape(9 * e, -1) for part in (value, slope))
+        return self.from_nodes(value.reshape(-1, m, 3), slope.reshape(-1, m, 3))

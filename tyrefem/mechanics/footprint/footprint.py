@@ -1,0 +1,204 @@
+"""A pressed tyre: load, stiffness, shape and pressure of its footprint."""
+
+from __future__ import annotations
+
+import functools
+from collections.abc import Mapping
+from dataclasses import dataclass, replace
+from typing import Any
+
+import numpy as np
+from numpy.typing import NDArray
+
+from tyrefem.brief import Brief
+from tyrefem.mechanics.footprint.grid import ContactGrid
+from tyrefem.mechanics.footprint.tyre_on_road import TyreOnRoad
+
+Array = NDArray[np.float64]
+
+
+@dataclass(frozen=True, eq=False)
+class Footprint(Brief):
+    """A tyre in contact with a road. Made by `footprint.contact.Pressing`.
+
+    Parameters
+    ----------
+    pressing : the inflated tyre and its road. grid : angles and tread nodes that may touch.
+    deflection : how far the free tyre would reach into the road, m.
+    load : force along the road's normal, N, of the whole tyre.
+    stiffness : d load / d deflection at this deflection, N/m.
+    forces : (k,) contact force at each point (angle, node) of the grid, both sides of the wheel together, N.
+    direction : (c, k) into the road.
+    moved : (c, k) displacement of the tread, m.
+    balanced : (harmonics + 1, n_dofs) displacement amplitudes of a balanced footprint, m; None: linear in the forces.
+    gaps : (k,) left between tread and road, m.
+    error : largest relative change of load, deflection, work and a fifth of the area against fewer harmonics; nan: not
+        compared.
+    """
+
+    pressing: TyreOnRoad
+    grid: ContactGrid
+    deflection: float
+    load: float
+    stiffness: float
+    forces: Array
+    direction: Array
+    moved: Array
+    gaps: Array
+    error: float = float("nan")
+    balanced: Array | None = None
+
+    def _facts(self) -> Mapping[str, Any]:
+        error = "" if np.isnan(self.error) else f", {100 * self.error:.2g} % from fewer"
+        return {
+            "load": f"{self.load:.6g} N",
+            "deflection": f"{self.deflection * 1e3:.2f} mm",
+            "stiffness": f"{self.stiffness / 1e3:.4g} N/mm",
+            "length, width": f"{self.length * 1e3:.1f} mm, {self.width * 1e3:.1f} mm",
+            "pressure": f"{self.mean_pressure / 1e3:.4g} kPa on average, {self.pressure.max() / 1e3:.4g} kPa at most",
+            "harmonics": f"{self.harmonics}{error}",
+            "motion": "linear about the inflated tyre" if self.balanced is None else "large",
+            "unstable": self.unstable,
+        }
+
+    @property
+    def harmonics(self) -> int:
+        """Highest harmonic."""
+        return self.grid.harmonics
+
+    @property
+    def unstable(self) -> tuple[int, ...]:
+        """Harmonics in which some motion of the state has negative stiffness: there the linearisation is in doubt."""
+        return tuple(n for n, count in sorted(self.pressing.harmonics.negative_pivots.items()) if count)
+
+    @property
+    def unstable_place(self) -> str | None:
+        """Where the lowest of `unstable` has such a motion: region and place; None: there is none."""
+        for n, (r, z) in self.pressing.harmonics.buckling_place.items():
+            elements = self.pressing.harmonics.elements
+            distance = np.hypot(elements.points[0] - r, elements.points[1] - z).min(axis=1)
+            element = int(distance.argmin())
+            names = [name for name, members in (elements.mesh.subdomains or {}).items() if element in members]
+            region = f"region '{names[0]}' at " if names else ""
+            return f"harmonic {n}: {region}(r, z) = ({r * 1e3:.1f}, {z * 1e3:.1f}) mm"
+        return None
+
+    @property
+    def work(self) -> float:
+        """Elastic work of the contact, J: half of force times displacement."""
+        both = 2.0 if self.pressing.tread.half else 1.0
+        return float(-0.5 * both * np.sum(self.direction * self.moved * self.forces))
+
+    def compared(self, before: Footprint) -> Footprint:
+        """This one with the relative change against one with fewer harmonics as its ``error``."""
+
+        def change(now: float, then: float) -> float:
+            return abs(now - then) / max(abs(now), 1e-300) if now != then else 0.0
+
+        changes = [change(getattr(self, name), getattr(before, name)) for name in ("load", "deflection", "work")]
+        return replace(self, error=max(*changes, change(self.area, before.area) / 5))
+
+    @functools.cached_property
+    def pressure(self) -> Array:
+        """(n_angles, m) contact pressure at angles >= 0 and tread nodes, Pa; linear in the angle."""
+        share = np.repeat(self.grid.sides, len(self.grid.tread.nodes))
+        return np.asarray(self.forces / (share * self.grid.areas)).reshape(self.grid.n_angles, -1)
+
+    @property
+    def pressure_integral(self) -> float:
+        """Integral of the pressure map over the tread along the road's normal, N; equals the load."""
+        both = 2.0 if self.pressing.tread.half else 1.0
+        angles, r = self.grid.angles, self.grid.tread.places[0]
+        lengths, _ = self.grid.tread.widths
+        into = np.repeat(self.grid.sides, len(r)) * self._leads
+        per_angle = (self.pressure.ravel() * into).reshape(len(angles), -1) @ (lengths * r)
+        return float(both * per_angle.sum() * self.grid.step)
+
+    @property
+    def _leads(self) -> Array:
+        """(k,) share of each force along the road's normal."""
+        road, grid = self.pressing.road, self.grid
+        normals = np.repeat(road.normal[:, None], grid.n_angles * len(grid.tread.nodes), axis=1)
+        return np.asarray((grid.along(normals) * self.direction).sum(axis=0))
+
+    @functools.cached_property
+    def half_lengths(self) -> Array:
+        """(m,) distance from the footprint's middle to its end at each tread node, m; ends are extrapolated."""
+        ends = np.array([_end(column) for column in self.pressure.T])
+        return ends * self.grid.step * self.grid.tread.places[0]
+
+    @property
+    def length(self) -> float:
+        """Greatest length, m."""
+        return float(2 * self.half_lengths.max(initial=0.0))
+
+    @property
+    def width(self) -> float:
+        """Axial extent of the contact, m: the nodes that touch anywhere, each with its share of the tread, and the
+        grooves between them."""
+        _, axial = self.grid.tread.widths
+        both = 2.0 if self.pressing.tread.half else 1.0
+        touching = np.flatnonzero(self.pressure.max(axis=0) > 0)
+        if not len(touching):
+            return 0.0
+        reached = axial[touching.min() : touching.max() + 1].sum()
+        z, grooves = self.grid.tread.places[1], self.grid.tread.grooves
+        least = 0.0 if self.pressing.tread.half else z[touching.min()]
+        within = (grooves[:, 0] > least - 1e-6) & (grooves[:, 1] < z[touching.max()] + 1e-6)
+        return float(both * (reached + np.diff(grooves[within], axis=1).sum()))
+
+    @property
+    def area(self) -> float:
+        """Area in contact, m2, without that of grooves."""
+        _, axial = self.grid.tread.widths
+        both = 2.0 if self.pressing.tread.half else 1.0
+        return float(both * 2 * (self.half_lengths * axial).sum())
+
+    @property
+    def mean_pressure(self) -> float:
+        """Load over area, Pa; zero without contact."""
+        return self.load / self.area if self.area > 0 else 0.0
+
+    @functools.cached_property
+    def load_harmonics(self) -> Array:
+        """(harmonics + 1, c, m) load amplitudes on the tread, N per radian."""
+        return self.grid.load_harmonics(-self.direction * self.forces)
+
+    @functools.cached_property
+    def amplitudes(self) -> Array:
+        """(harmonics + 1, n_dofs) displacement amplitudes of the whole section, m."""
+        return self.grid.tread.fields(self.load_harmonics) if self.balanced is None else self.balanced
+
+    @property
+    def loaded_radius(self) -> float:
+        """Distance of the wheel's centre from the road, m."""
+        return self.pressing.reach - self.deflection
+
+    @property
+    def rolling_radius(self) -> float:
+        """Distance rolled per radian, m, if the tread does not slip on average: mean of dx/dt over the contact.
+
+        dx/dt = (r + u_r + du_t/dt) cos t + (du_r/dt - u_t) sin t, weighted with the contact force.
+        """
+        if not self.load:
+            return self.pressing.reach
+        dofs = self.grid.tread.dofs
+        n = np.arange(self.harmonics + 1)[:, None, None]
+        u_r, u_t = self.amplitudes[:, dofs[0]], self.amplitudes[:, dofs[1]]
+        angle = self.grid.angles[None, :, None]
+        cos, sin = np.cos(n * angle), np.sin(n * angle)
+        along = self.grid.tread.places[0] + ((u_r[:, None] + n * u_t[:, None]) * cos).sum(axis=0)
+        across = -((n * u_r[:, None] + u_t[:, None]) * sin).sum(axis=0)
+        rate = along * np.cos(angle[0]) + across * np.sin(angle[0])
+        return float(np.average(rate.ravel(), weights=self.forces))
+
+
+def _end(pressure: Array) -> float:
+    """Where a pressure (n,) from the middle outwards ends, in steps of the angle."""
+    touching = np.flatnonzero(pressure > 0)
+    if not len(touching):
+        return 0.0
+    last = int(touching[-1])
+    if last == 0 or pressure[last - 1] <= pressure[last]:
+        return last + 0.5
+    return last + float(min(pressure[last] / (pressure[last - 1] - pressure[last]), 1.0))

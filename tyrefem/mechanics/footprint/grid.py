@@ -1,0 +1,109 @@
+"""The tread as seen by the road: nodes times angles, and how each gives when another is loaded."""
+
+from __future__ import annotations
+
+import functools
+from dataclasses import dataclass
+
+import numpy as np
+from numpy.typing import NDArray
+
+from tyrefem.brief import Brief
+from tyrefem.mechanics.footprint.compliance import TreadCompliance
+
+Array = NDArray[np.float64]
+
+
+@dataclass(frozen=True, eq=False)
+class ContactGrid(Brief):
+    """Tread nodes at angles j D, j = 0 .. n_angles - 1, D = pi / harmonics; the wheel's other side is its mirror image.
+
+    Pressure is linear between angles: a force at j is a hat of half width D, whose amplitude in harmonic n is
+    sinc^2(n D/2) cos(n j D); displacements and gaps are averages with the same hat, so that the compliance is
+    symmetric and positive definite for any number of angles up to ``harmonics`` + 1.
+    """
+
+    tread: TreadCompliance
+    harmonics: int
+    n_angles: int
+
+    @property
+    def step(self) -> float:
+        """D, rad."""
+        return float(np.pi / self.harmonics)
+
+    @functools.cached_property
+    def angles(self) -> Array:
+        """(n_angles,), rad."""
+        return np.asarray(self.step * np.arange(self.n_angles), dtype=float)
+
+    @functools.cached_property
+    def sides(self) -> Array:
+        """(n_angles,) how many times an angle occurs round the wheel: once at 0, twice elsewhere."""
+        sides: Array = np.full(self.n_angles, 2.0)
+        sides[0] = 1.0
+        return sides
+
+    @functools.cached_property
+    def shapes(self) -> Array:
+        """(c, harmonics + 1, n_angles) amplitude of a hat in each harmonic: cosine for r and z, sine for t."""
+        n = np.arange(self.harmonics + 1)[:, None]
+        smooth = np.sinc(n * self.step / (2 * np.pi)) ** 2
+        even, odd = smooth * np.cos(n * self.angles), smooth * np.sin(n * self.angles)
+        return np.stack([odd if c == 2 else even for c in self.tread.components])
+
+    @functools.cached_property
+    def shares(self) -> Array:
+        """(harmonics + 1,) 1/pi, half of it for n = 0: unit work round the wheel."""
+        shares = np.full(self.harmonics + 1, 1 / np.pi)
+        shares[0] /= 2
+        return shares
+
+    @functools.cached_property
+    def blocks(self) -> Array:
+        """(c, k, c, k) displacement along c of point k = (angle, node) per force at another; both sides."""
+        compliance = self.tread.up_to(self.harmonics)
+        _, c, m, _, _ = compliance.shape
+        found = np.zeros((c, self.n_angles * m, c, self.n_angles * m))
+        for to in range(c):
+            for of in range(c):
+                loaded = (compliance[:, to, :, of] * self.shares[:, None, None]).reshape(self.harmonics + 1, -1)
+                for j, shape in enumerate(self.shapes[of].T):
+                    sums = (self.shapes[to].T * shape) @ loaded
+                    found[to, :, of, j * m : (j + 1) * m] = sums.reshape(self.n_angles * m, m)
+        return found
+
+    def load_harmonics(self, forces: Array) -> Array:
+        """(harmonics + 1, c, m) load amplitudes, N per radian, of forces (c, k) on the tread."""
+        at = np.asarray(forces).reshape(len(forces), self.n_angles, -1)
+        return np.asarray(np.einsum("cnj,cjm->ncm", self.shapes, at) * self.shares[:, None, None])
+
+    def displacements(self, amplitudes: Array) -> Array:
+        """(c, k) displacements, m, averaged with the hats, of amplitudes (harmonics + 1, n_dofs)."""
+        at = np.asarray(amplitudes)[:, self.tread.dofs]
+        return np.einsum("cnj,ncm->cjm", self.shapes, at).reshape(len(self.shapes), -1)
+
+    def places(self, displacement: Array, shift: float) -> Array:
+        """(3, k) points (x, y, z), m, at the angles plus ``shift``, moved by displacements (c, k)."""
+        r, z = self.tread.places
+        angle = np.repeat(self.angles + shift, len(r))
+        moved = np.zeros((3, len(angle)))
+        moved[list(self.tread.components)] = displacement
+        radius = np.tile(r, self.n_angles) + moved[0]
+        sin, cos = np.sin(angle), np.cos(angle)
+        axial = np.tile(z, self.n_angles) + moved[1]
+        return np.stack([radius * sin + moved[2] * cos, radius * cos - moved[2] * sin, axial])
+
+    def along(self, normals: Array) -> Array:
+        """(c, k) components along (r, t, z) of directions (3, k) in (x, y, z)."""
+        x, y, z = normals
+        angle = np.repeat(self.angles, len(self.tread.nodes))
+        sin, cos = np.sin(angle), np.cos(angle)
+        turned = {0: x * sin + y * cos, 2: x * cos - y * sin, 1: z}
+        return np.stack([turned[c] for c in self.tread.components])
+
+    @functools.cached_property
+    def areas(self) -> Array:
+        """(k,) tread area that belongs to a point, on one side, m2."""
+        lengths, _ = self.tread.widths
+        return np.tile(lengths * self.tread.places[0] * self.step, self.n_angles)

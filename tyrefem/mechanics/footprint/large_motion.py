@@ -1,0 +1,191 @@
+"""A pressed tyre in large motion: balance at one deflection or load, begun from a balance near by."""
+
+from __future__ import annotations
+
+import functools
+from dataclasses import dataclass, field, replace
+
+import numpy as np
+from numpy.typing import NDArray
+
+from tyrefem.mechanics.footprint.contact import Pressing
+from tyrefem.mechanics.footprint.footprint import Footprint
+from tyrefem.mechanics.footprint.grid import ContactGrid
+from tyrefem.mechanics.footprint.newton import LinearFactors, Step, Touching, newton_step
+from tyrefem.mechanics.footprint.nonlinear import NonlinearForces, Tangent
+from tyrefem.mechanics.solid.finite_law import FiniteLaw
+
+Array = NDArray[np.float64]
+Flags = NDArray[np.bool_]
+#: Largest change of a displacement gradient in the first Newton step and in those that correct it; a hopeless one.
+AHEAD, CORRECTION, HOPELESS = 0.25, 0.5, 30.0
+#: After a change this small the stiffness before it serves again.
+ALIKE = 0.02
+#: Newton steps, and how many may find negative stiffness before the balance is given up.
+STEPS, UNSTABLE = 12, 2
+#: Last change from which on the points in contact need not be settled.
+LOOSE = 5e-3
+#: What conjugate gradients leave of a residual: of a Newton step, for a change of deflection, and for the stiffness.
+INNER, BORDER, STIFFNESS = 0.05, 0.02, 0.001
+#: Angles that may touch are those of this many deflections; deflections end this near the rim.
+WIDER, BEFORE_RIM = 1.6, 0.999
+
+
+@dataclass(frozen=True, eq=False)
+class Moment:
+    """Amplitudes ``motion`` (harmonics + 1, n_dofs), m, and contact forces (k,) on a grid, N, at a deflection, m; the
+    load of the whole tyre, N."""
+
+    deflection: float
+    motion: Array
+    grid: ContactGrid
+    forces: Array
+    load: float = 0.0
+
+    @property
+    def harmonics(self) -> int:
+        """Highest harmonic."""
+        return len(self.motion) - 1
+
+
+@dataclass(frozen=True, eq=False)
+class LargeMotion:
+    """Newton steps on all harmonics at once until inner and contact forces balance; contact is found anew in each.
+
+    Parameters
+    ----------
+    pressing : the tyre and its road.
+    law : stress; by default that of the state.
+    """
+
+    pressing: Pressing
+    law: FiniteLaw | None = None
+    _forces: dict[int, NonlinearForces] = field(default_factory=dict, init=False, repr=False)
+
+    @functools.cached_property
+    def factors(self) -> LinearFactors:
+        """The tyre in small motions."""
+        return LinearFactors(self.pressing)
+
+    @property
+    def _both(self) -> float:
+        """Sides of the tyre over those of the mesh."""
+        return 2.0 if self.pressing.tread.half else 1.0
+
+    @property
+    def deepest(self) -> float:
+        """Greatest deflection that is tried, m: just before the crown meets the rim."""
+        return BEFORE_RIM * self.pressing.bottoming
+
+    def nonlinear(self, harmonics: int) -> NonlinearForces:
+        """Inner forces with so many harmonics; the last asked for is remembered."""
+        if harmonics not in self._forces:
+            self._forces.clear()
+            self._forces[harmonics] = NonlinearForces(self.pressing.harmonics, harmonics, self.law)
+        return self._forces[harmonics]
+
+    def _grid(self, harmonics: int, deflection: float) -> ContactGrid:
+        return self.pressing.grid(harmonics, min(WIDER * deflection, self.deepest))
+
+    def free(self, harmonics: int, deflection: float) -> Moment:
+        """The tyre off the road, on a grid that serves up to a deflection, m."""
+        grid = self._grid(harmonics, deflection)
+        motion = np.zeros((harmonics + 1, self.pressing.harmonics.elements.n_dofs))
+        return Moment(0.0, motion, grid, np.zeros(len(grid.areas)))
+
+    def refined(self, moment: Moment, harmonics: int) -> Moment:
+        """The same motion and pressure with another number of harmonics."""
+        if moment.harmonics == harmonics:
+            return moment
+        motion = np.zeros((harmonics + 1, moment.motion.shape[1]))
+        count = min(len(motion), len(moment.motion))
+        motion[:count] = moment.motion[:count]
+        old, grid = moment.grid, self._grid(harmonics, moment.deflection)
+        per_area = (moment.forces / (np.repeat(old.sides, len(old.tread.nodes)) * old.areas)).reshape(old.n_angles, -1)
+        pressure = np.stack([np.interp(grid.angles, old.angles, one, right=0.0) for one in per_area.T], axis=1)
+        forces = pressure.ravel() * np.repeat(grid.sides, len(grid.tread.nodes)) * grid.areas
+        return replace(moment, motion=motion, grid=grid, forces=forces)
+
+    def settled(self, start: Moment, deflection: float, tolerance: float, load: float | None = None) -> Moment | None:
+        """The balance at a deflection, m, or from there on under a load, N; None where it does not settle.
+
+        Where the first step would move the tyre too far, it goes ahead to a smaller deflection, and that is balanced.
+
+        Parameters
+        ----------
+        start : a balance near by. tolerance : last change of the motion, and of the load, relative.
+        """
+        outside = self.nonlinear(start.harmonics)
+        u, forces = start.motion, start.forces
+        closed: Flags | None = None
+        rate: Step | None = None
+        tangent: Tangent | None = None
+        unstable, change = 0, np.inf
+        for count in range(STEPS):
+            tangent = replace(tangent, forces=outside.forces(u)) if tangent and change <= ALIKE else outside.at(u)
+            gaps, leads, touching = self._road(replace(start, motion=u, deflection=deflection))
+            enough = tolerance**2 * self.factors.work(tangent.forces, u)
+            if closed is None:
+                closed = touching.closed(gaps, forces, forces > 0)
+            step = newton_step(touching, closed, tangent, gaps, INNER, enough)
+            change = self._turned(outside, step)
+            if count == 0 and change > AHEAD:
+                ahead = AHEAD / change * (deflection - start.deflection)
+                gaps = gaps + leads * (deflection - start.deflection - ahead)
+                deflection = start.deflection + ahead
+                closed = touching.closed(gaps, forces, forces > 0)
+                step = newton_step(touching, closed, tangent, gaps, INNER, enough)
+                change = self._turned(outside, step)
+            unstable += not step.stable
+            if not change < HOPELESS or unstable > UNSTABLE:
+                return None
+            share = min(1.0, CORRECTION / max(change, 1e-300))
+            u, forces = u + share * step.motion, forces + share * (step.forces - forces)
+            before, closed = closed, touching.closed(gaps - touching.into(step.motion), step.forces, closed)
+            now = self._both * float(leads @ forces)
+            last = share * float(np.abs(step.motion).max()) / max(float(np.abs(u).max()), 1e-300)
+            done = last <= tolerance and share == 1 and step.stable
+            done &= tolerance > LOOSE or bool((closed == before).all())
+            if load is not None:
+                rate = rate or self._rate(touching, before, tangent, leads, BORDER)
+                slope = self._both * float(leads @ rate.forces)
+                if not slope > 0:
+                    return None
+                done &= abs(load - now) <= tolerance * load
+                more, now = (load - now) / slope, load
+                deflection, u, forces = deflection + more, u + more * rate.motion, forces + more * rate.forces
+            if done:
+                return replace(start, deflection=deflection, motion=u, forces=np.maximum(forces, 0.0), load=now)
+        return None
+
+    @staticmethod
+    def _turned(outside: NonlinearForces, step: Step) -> float:
+        """Largest change of a displacement gradient."""
+        return float(np.abs(outside.round.gradient(step.motion)).max())
+
+    def _road(self, moment: Moment) -> tuple[Array, Array, Touching]:
+        """Gaps, m, how much each closes per metre of deflection, and the points that may touch."""
+        pressing, grid = self.pressing, moment.grid
+        moved = grid.displacements(moment.motion)
+        gaps, normals = pressing.gaps(grid, moved, pressing.reach - moment.deflection)
+        return gaps, pressing.road.normal @ normals, Touching(self.factors, grid, grid.along(normals))
+
+    @staticmethod
+    def _rate(touching: Touching, closed: Flags, tangent: Tangent, leads: Array, accuracy: float) -> Step:
+        """Motion and forces per metre of deflection, while the same points touch."""
+        return newton_step(touching, closed, replace(tangent, forces=np.zeros_like(tangent.forces)), -leads, accuracy)
+
+    def footprint(self, moment: Moment) -> Footprint:
+        """The footprint of a balance; its stiffness is left to `stiffness`."""
+        gaps, _, touching = self._road(moment)
+        return Footprint(
+            self.pressing, moment.grid, moment.deflection, moment.load, 0.0, moment.forces, touching.direction,
+            moment.grid.displacements(moment.motion), gaps, balanced=moment.motion,
+        )  # fmt: skip
+
+    def stiffness(self, moment: Moment) -> float:
+        """d load / d deflection of a balance, N/m, while the same points touch."""
+        _, leads, touching = self._road(moment)
+        tangent = self.nonlinear(moment.harmonics).at(moment.motion)
+        rate = self._rate(touching, moment.forces > 0, tangent, leads, STIFFNESS)
+        return self._both * float(leads @ rate.forces)

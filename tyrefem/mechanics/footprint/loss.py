@@ -1,0 +1,141 @@
+"""Energy lost per revolution: every harmonic of the strain at its own frequency."""
+
+from __future__ import annotations
+
+import functools
+from collections.abc import Mapping
+from dataclasses import dataclass
+
+import numpy as np
+from numpy.typing import NDArray
+
+from tyrefem.brief import Brief
+from tyrefem.errors import InputError, nearest
+from tyrefem.materials.loss_tangent import Loss
+from tyrefem.mechanics.footprint.strain_harmonics import StrainCycle
+
+Array = NDArray[np.float64]
+#: Energy lost per cycle over U tan d: pi for the report's U (Clark & Dodge 1980, eq 25), 2 pi for U = E' e0^2 / 2.
+ONE_CYCLE = {"nasa": np.pi, "sinusoid": 2 * np.pi}
+
+
+@dataclass(frozen=True, eq=False)
+class RevolutionLoss(Brief):
+    """What a revolution dissipates: w = sum_n n pi tan d(n f, T) e_n : C' : e_n, J/m3, f = v / (2 pi R_r).
+
+    A point runs through n cycles of amplitude e_n per revolution, each of which loses pi E'' e_n^2; harmonics are
+    orthogonal over the revolution, so that their losses add.
+
+    Parameters
+    ----------
+    cycle : strains round the wheel.
+    tangents : region -> tan delta; regions without one lose nothing.
+    speed : m/s.
+    temperature : degC, one number or (n_elements, n_points).
+
+    Raises
+    ------
+    InputError : a region that the mesh does not have; a speed that is not positive.
+    """
+
+    cycle: StrainCycle
+    tangents: Mapping[str, Loss]
+    speed: float
+    temperature: float | Array = 25.0
+
+    def __post_init__(self) -> None:
+        regions = self.cycle.elements.mesh.subdomains or {}
+        for region in self.tangents:
+            if region not in regions:
+                raise InputError(f"the mesh has no region '{region}'{nearest(region, regions)}")
+        if not self.speed > 0:
+            raise InputError(f"the speed must be positive, not {self.speed:g} m/s", field="speed")
+
+    @functools.cached_property
+    def frequency(self) -> float:
+        """Revolutions per second."""
+        return self.speed / (2 * np.pi * self.cycle.footprint.rolling_radius)
+
+    def tangent(self, frequency: float) -> Array:
+        """(n_elements, n_points) tan delta at a frequency, Hz."""
+        elements = self.cycle.elements
+        temperature = np.broadcast_to(np.asarray(self.temperature, dtype=float), elements.radii.shape)
+        found = np.zeros(elements.radii.shape)
+        for region, law in self.tangents.items():
+            members = np.asarray(elements.mesh.subdomains[region])
+            found[members] = law(frequency, temperature[members])
+        return found
+
+    @functools.cached_property
+    def densities(self) -> Array:
+        """(harmonics + 1, n_elements, n_points) energy lost per revolution by each harmonic, J/m3."""
+        products = self.cycle.storage_products
+        found = np.zeros_like(products)
+        for n in range(1, len(products)):
+            found[n] = n * np.pi * self.tangent(n * self.frequency) * products[n]
+        return found
+
+    @property
+    def density(self) -> Array:
+        """(n_elements, n_points) energy lost per revolution, J/m3."""
+        return np.asarray(self.densities.sum(axis=0))
+
+    def one_cycle_density(self, convention: str = "nasa", count: int = 180) -> Array:
+        """(n_elements, n_points) J/m3 if the revolution were one cycle, as in the NASA report: pi U tan d(f).
+
+        U is `StrainCycle.largest_energy`; ``sinusoid`` takes 2 pi, exact for one sinusoid of that amplitude.
+        """
+        if convention not in ONE_CYCLE:
+            raise InputError(f"no convention '{convention}'{nearest(convention, ONE_CYCLE)}")
+        largest = self.cycle.largest_energy(count)
+        return np.asarray(ONE_CYCLE[convention] * self.tangent(self.frequency) * largest)
+
+    def total(self, density: Array) -> float:
+        """Integral of a density over the whole tyre, e.g. J from J/m3."""
+        both = 2.0 if self.cycle.footprint.pressing.tread.half else 1.0
+        return float(both * 2 * np.pi * (density * self.cycle.elements.weights).sum())
+
+    @functools.cached_property
+    def by_harmonic(self) -> Array:
+        """(harmonics + 1,) energy lost per revolution by each harmonic, J."""
+        return np.array([self.total(density) for density in self.densities])
+
+    @functools.cached_property
+    def stored_by_harmonic(self) -> Array:
+        """(harmonics + 1,) elastic energy of each harmonic's strain in what loses energy, mean over the wheel, J."""
+        stored = np.array([self.total(products) / 4 for products in self.cycle.storage_products])
+        stored[0] *= 2
+        return stored
+
+    @functools.cached_property
+    def by_region(self) -> dict[str, float]:
+        """Region -> energy lost per revolution, J."""
+        density, found = self.density, {}
+        for region in self.tangents:
+            inside = np.zeros_like(density)
+            members = np.asarray(self.cycle.elements.mesh.subdomains[region])
+            inside[members] = density[members]
+            found[region] = self.total(inside)
+        return found
+
+    @property
+    def energy(self) -> float:
+        """Energy lost per revolution, J."""
+        return float(self.by_harmonic.sum())
+
+    @property
+    def heat_source(self) -> Array:
+        """(n_elements,) mean heat source of each element, W/m3."""
+        weights = self.cycle.elements.weights
+        return np.asarray(self.frequency * (self.density * weights).sum(axis=1) / weights.sum(axis=1))
+
+    @property
+    def rolling_resistance(self) -> float:
+        """Force, N: energy lost per metre rolled."""
+        return self.energy / (2 * np.pi * self.cycle.footprint.rolling_radius)
+
+    @property
+    def coefficient(self) -> float:
+        """Rolling resistance over load; zero without load."""
+        load = self.cycle.footprint.load
+        return self.rolling_resistance / load if load > 0 else 0.0

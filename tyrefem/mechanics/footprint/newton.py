@@ -1,0 +1,206 @@
+"""One Newton step of a tyre in large motion against the road: conjugate gradients on all harmonics at once."""
+
+from __future__ import annotations
+
+import functools
+from dataclasses import dataclass, field
+from typing import Any
+
+import numpy as np
+from numpy.typing import NDArray
+
+from tyrefem.errors import InputError
+from tyrefem.mechanics.footprint.complementarity import contact_forces
+from tyrefem.mechanics.footprint.contact import Pressing
+from tyrefem.mechanics.footprint.grid import ContactGrid
+from tyrefem.mechanics.footprint.harmonics import SYMMETRIC
+from tyrefem.mechanics.footprint.nonlinear import Tangent
+
+Array = NDArray[np.float64]
+Indices = NDArray[np.int64]
+Flags = NDArray[np.bool_]
+#: Conjugate gradients at most in a step.
+ITERATIONS = 400
+
+
+@dataclass(frozen=True, eq=False)
+class LinearFactors:
+    """K_n of every harmonic, factorised once: what the tyre does in small motions."""
+
+    pressing: Pressing
+    _factors: dict[int, Any] = field(default_factory=dict, init=False, repr=False)
+    _under: dict[int, Array] = field(default_factory=dict, init=False, repr=False)
+
+    @functools.cached_property
+    def free(self) -> Indices:
+        """Degrees of freedom that are not held."""
+        return self.pressing.harmonics.free
+
+    @functools.cached_property
+    def tread(self) -> Indices:
+        """(c m,) degrees of freedom that the road may load."""
+        return self.pressing.tread.dofs.ravel()
+
+    def factor(self, n: int) -> Any:
+        """SuperLU factors of a harmonic's free degrees of freedom; remembered."""
+        from scipy.sparse.linalg import splu
+
+        if n not in self._factors:
+            matrix = self.pressing.harmonics.stiffness(n)[self.free][:, self.free].tocsc()
+            try:
+                self._factors[n] = splu(matrix, permc_spec="MMD_AT_PLUS_A", **SYMMETRIC)
+            except RuntimeError:
+                raise InputError(f"harmonic {n:g} has no stiffness: nothing holds the body") from None
+        return self._factors[n]
+
+    def under_tread(self, n: int) -> Array:
+        """(n_free, c m) displacements of a harmonic under unit loads on the tread, m per N per radian; remembered."""
+        if n not in self._under:
+            places = np.searchsorted(self.free, self.tread)
+            loads = np.zeros((len(self.free), len(places)))
+            loads[places, np.arange(len(places))] = 1.0
+            self._under[n] = self.factor(n).solve(loads)
+        return self._under[n]
+
+    def compliance(self, count: int) -> Array:
+        """(count, c m, c m) of the tread, of the first harmonics."""
+        places = np.searchsorted(self.free, self.tread)
+        return np.stack([self.under_tread(n)[places] for n in range(count)])
+
+    def solve(self, loads: Array) -> Array:
+        """(n, n_dofs) displacements, m, under loads (n, n_dofs), N per radian, of the first n harmonics."""
+        found = np.zeros_like(loads)
+        for n, load in enumerate(loads):
+            found[n, self.free] = self.factor(n).solve(load[self.free])
+        return found
+
+    @staticmethod
+    def work(forces: Array, motion: Array) -> float:
+        """Work round the wheel over pi, J: twice as much for n = 0."""
+        each = np.einsum("nd,nd->n", forces, motion)
+        return float(each.sum() + each[0])
+
+
+@dataclass(frozen=True, eq=False)
+class Touching:
+    """The points of a grid that may touch, along their directions into the road.
+
+    Parameters
+    ----------
+    factors : the tyre in small motions. grid : the points. direction : (c, k) into the road.
+    """
+
+    factors: LinearFactors
+    grid: ContactGrid
+    direction: Array
+
+    @functools.cached_property
+    def rows(self) -> Array:
+        """(k, (highest + 1) c m): how far amplitudes of the tread bring a point into the road."""
+        c, k = self.direction.shape
+        m, highest = len(self.grid.tread.nodes), self.grid.harmonics
+        angle, node, found = np.arange(k) // m, np.arange(k) % m, np.zeros((k, highest + 1, c, m))
+        for of in range(c):
+            found[np.arange(k), :, of, node] = (self.direction[of] * self.grid.shapes[of][:, angle]).T
+        return found.reshape(k, -1)
+
+    @functools.cached_property
+    def compliance(self) -> Array:
+        """(k, k) how far a point moves per force at another, in small motions, m/N."""
+        k, size = len(self.rows), len(self.factors.tread)
+        per_force = self.rows.reshape(k, -1, size) * self.grid.shares[:, None]
+        moved = per_force.transpose(1, 0, 2) @ self.factors.compliance(per_force.shape[1])
+        return np.asarray(moved.transpose(1, 0, 2).reshape(k, -1) @ self.rows.T)
+
+    def into(self, motion: Array, points: Any = slice(None)) -> Array:
+        """How far amplitudes (highest + 1, n_dofs) bring points into the road, m."""
+        return np.asarray(self.rows[points] @ motion[:, self.factors.tread].ravel())
+
+    def closed(self, gaps: Array, forces: Array, start: Flags) -> Flags:
+        """(k,) which points will touch: gaps, m, under forces, N, if the tyre gives as in small motions."""
+        free = gaps - self.compliance @ forces
+        return contact_forces(self.compliance, free, start if start.any() else None)[1]
+
+    def _loads(self, forces: Array, points: Any) -> Array:
+        flat = forces @ self.rows[points]
+        return np.asarray(flat.reshape(-1, len(self.factors.tread)) * self.grid.shares[:, None])
+
+    def loads(self, forces: Array, points: Any = slice(None)) -> Array:
+        """(highest + 1, n_dofs) N per radian of unit forces into the road."""
+        found = np.zeros((self.grid.harmonics + 1, self.factors.pressing.harmonics.elements.n_dofs))
+        found[:, self.factors.tread] = self._loads(forces, points)
+        return found
+
+    def moved(self, forces: Array, points: Any = slice(None)) -> Array:
+        """(highest + 1, n_dofs) displacements under `loads` in small motions, m."""
+        found = np.zeros((self.grid.harmonics + 1, self.factors.pressing.harmonics.elements.n_dofs))
+        for n, load in enumerate(self._loads(forces, points)):
+            found[n, self.factors.free] = self.factors.under_tread(n) @ load
+        return found
+
+
+@dataclass(frozen=True, eq=False)
+class Step:
+    """A step (highest + 1, n_dofs), m; contact forces (k,), N, with it; iterations; ``stable``: the stiffness was
+    positive in every direction that was tried."""
+
+    motion: Array
+    forces: Array
+    iterations: int
+    stable: bool
+
+
+def newton_step(
+    touching: Touching,
+    touched: Flags,
+    tangent: Tangent,
+    distance: Array,
+    accuracy: float,
+    least: float = 0.0,
+) -> Step:
+    """J x + B' f = -g with B x = w on the closed points: conjugate gradients on the motions that B leaves.
+
+    The linear tyre, held at the same points, is the preconditioner: K^-1 - K^-1 B' (B K^-1 B')^-1 B K^-1.
+
+    Parameters
+    ----------
+    touching : points and linear tyre. touched : which of them (k,) touch.
+    tangent : g, inner forces, and J, their derivative. distance : w, gaps (k,) that are to close, m.
+    accuracy : what is left of the residual in the preconditioner's norm, relative. least : or of its work, J.
+    """
+    from scipy.linalg import cho_factor, cho_solve
+
+    closed = np.flatnonzero(touched)
+    factors, held = touching.factors, touching.factors.pressing.harmonics.held
+    factor = cho_factor(touching.compliance[np.ix_(closed, closed)]) if len(closed) else None
+    total = np.zeros(len(closed))
+
+    def solve(right: Array) -> Array:
+        return right if factor is None else np.asarray(cho_solve(factor, right))
+
+    def free(forces: Array) -> Array:
+        forces[:, held] = 0.0
+        return forces
+
+    def preconditioned(residual: Array) -> tuple[Array, Array]:
+        motion = factors.solve(residual)
+        forces = solve(touching.into(motion, closed))
+        total[:] += forces
+        return residual - touching.loads(forces, closed), motion - touching.moved(forces, closed)
+
+    x = touching.moved(solve(distance[closed]), closed)
+    residual, change = preconditioned(free(-tangent.forces - tangent.product(x)))
+    size = first = factors.work(residual, change)
+    along, stable, count = change, True, 0
+    while stable and count < ITERATIONS and size > max(accuracy**2 * first, least):
+        bent = free(tangent.product(along))
+        energy = factors.work(along, bent)
+        stable, count = energy > 0, count + 1
+        if stable:
+            x = x + size / energy * along
+            residual, change = preconditioned(residual - size / energy * bent)
+            size, before = factors.work(residual, change), size
+            along = change + size / before * along
+    forces = np.zeros(len(touching.rows))
+    forces[closed] = total
+    return Step(x, forces, count, stable)

@@ -1,0 +1,167 @@
+"""Forces of a large motion about the inflated state, harmonic by harmonic, and their derivative."""
+
+from __future__ import annotations
+
+import functools
+from dataclasses import dataclass
+from typing import Any
+
+import numpy as np
+from numpy.typing import NDArray
+
+from tyrefem.mechanics.footprint.elements import COMPONENTS, WheelAngles
+from tyrefem.mechanics.footprint.harmonics import Harmonics, along_wall
+from tyrefem.mechanics.solid.finite_law import FiniteLaw, GreenLaw, Response
+
+Array = NDArray[np.float64]
+
+
+@dataclass(frozen=True, eq=False)
+class Tangent:
+    """Forces at a motion and their derivative there. Made by `NonlinearForces.at`."""
+
+    outside: NonlinearForces
+    forces: Array
+    response: Response
+    wall: tuple[Array, Array]
+
+    def product(self, change: Array) -> Array:
+        """(highest + 1, n_dofs) change of the forces for a change (highest + 1, n_dofs) of the motion."""
+        round_wheel = self.outside.round
+        found = round_wheel.forces(self.response.product(round_wheel.gradient(change)))
+        return found + self.outside.of_support(change) + self.outside.of_wall(change, self.wall)
+
+
+@dataclass(frozen=True, eq=False)
+class NonlinearForces:
+    """Internal forces beyond those of the inflated state: int P : dH r dA, the pressure p (x_s x x_t) on the wall.
+
+    Parameters
+    ----------
+    harmonics : the linear problem about the state.
+    highest : harmonics of the motion.
+    law : stress; by default the state's own, or linear in Green's strain where it has none.
+    """
+
+    harmonics: Harmonics
+    highest: int
+    law: FiniteLaw | None = None
+
+    @functools.cached_property
+    def round(self) -> WheelAngles:
+        """Angles at which stress and pressure are evaluated."""
+        return WheelAngles(self.harmonics.elements, self.highest)
+
+    @functools.cached_property
+    def _law(self) -> FiniteLaw:
+        state = self.harmonics.state
+        return self.law or state.law or GreenLaw(self.harmonics.elements, state.stress, state.tangent, state.bulk)
+
+    @functools.cached_property
+    def _at_rest(self) -> Array:
+        """Forces of the state itself: what bears the rim's reaction."""
+        rest = NonlinearForces(self.harmonics, 0, self.law)
+        found = np.zeros((self.highest + 1, self.harmonics.elements.n_dofs))
+        found[0] = rest._total(found[:1], False)[0][0]
+        return found
+
+    def at(self, amplitudes: Array) -> Tangent:
+        """Forces of displacement amplitudes (highest + 1, n_dofs), N per radian, and their derivative."""
+        forces, response, wall = self._total(amplitudes, True)
+        return Tangent(self, forces - self._at_rest, response, wall)
+
+    def forces(self, amplitudes: Array) -> Array:
+        """(highest + 1, n_dofs) forces alone, N per radian."""
+        return np.asarray(self._total(amplitudes, False)[0] - self._at_rest)
+
+    def __call__(self, amplitudes: Array) -> Array:
+        """(highest + 1, n_dofs) forces, N per radian, less the linear ones of `Harmonics`."""
+        linear = np.stack([self.harmonics.stiffness(n) @ part for n, part in enumerate(amplitudes)])
+        found = self.forces(amplitudes) - linear
+        found[:, self.harmonics.held] = 0.0
+        return np.asarray(found)
+
+    def _total(self, amplitudes: Array, tangent: bool) -> tuple[Array, Response, tuple[Array, Array]]:
+        response = self._law.response(self.round.gradient(amplitudes), tangent)
+        wall = self._vectors(amplitudes)
+        if self.harmonics.state.pressure:
+            _, _, _, (n_r, n_z), radii, _, _ = self._wall
+            wall[0][..., 0] += n_z[..., None]
+            wall[0][..., 1] -= n_r[..., None]
+            wall[1][..., 2] += radii[..., None]
+        forces = self.round.forces(response.stress) + self.of_support(amplitudes)
+        return forces + self._on_wall(_cross(*wall)), response, wall
+
+    def of_support(self, change: Array) -> Array:
+        """Forces of what the body lies on."""
+        support = self.harmonics.state.support
+        return np.zeros(()) if support is None else np.asarray((support @ np.asarray(change).T).T)
+
+    def of_wall(self, change: Array, wall: tuple[Array, Array]) -> Array:
+        """Change of the pressure's forces: p (u_s x x_t + x_s x u_t)."""
+        along, around = self._vectors(change)
+        return self._on_wall(_cross(along, wall[1]) + _cross(wall[0], around))
+
+    @functools.cached_property
+    def _wall(self) -> tuple[NDArray[np.int64], Array, Array, Array, Array, Array, Any]:
+        """Nodes (f, 9), values and slopes (f, q, 9), normals (2, f, q), radii and weights (f, q), sparse sums
+        (n_nodes, 9 f)."""
+        import scipy.sparse as sp
+
+        elements = self.harmonics.elements
+        dofs, values, along, normals, radii, weights = along_wall(
+            elements.facet_basis(self.harmonics.state.pressurised)
+        )
+        nodes = dofs[:, ::COMPONENTS] // COMPONENTS
+        place = (nodes.ravel(), np.arange(nodes.size))
+        sums = sp.csr_matrix((np.ones(nodes.size), place), shape=(elements.n_nodes, nodes.size))
+        return nodes, values, along, normals, radii, weights, sums
+
+    def _vectors(self, amplitudes: Array) -> tuple[Array, Array]:
+        """(f, q, m, 3) u_s along the wall, and u_t round the wheel."""
+        if not self.harmonics.state.pressure:
+            return np.zeros((0, 0, 0, 3)), np.zeros((0, 0, 0, 3))
+        nodes, values, along, *_ = self._wall
+        used, inverse = np.unique(nodes, return_inverse=True)
+        cut = np.asarray(amplitudes).reshape(self.highest + 1, -1, COMPONENTS)[:, used]
+        value, slope = self.round.at_nodes(cut)
+        inverse = inverse.reshape(nodes.shape)
+        shape = (*values.shape[:2], -1, 3)
+        flat = value[inverse].reshape(len(nodes), 9, -1)
+        s, here = (along @ flat).reshape(shape), (values @ flat).reshape(shape)
+        v = (values @ slope[inverse].reshape(len(nodes), 9, -1)).reshape(shape)
+        v[..., 0] -= here[..., 2]
+        v[..., 2] += here[..., 0]
+        return s, v
+
+    def _on_wall(self, vectors: Array) -> Array:
+        """Forces of vectors (f, q, m, 3) per area of the parameters."""
+        if not self.harmonics.state.pressure:
+            return np.zeros(())
+        _, values, _, _, _, weights, sums = self._wall
+        f, q, m, _ = vectors.shape
+        weighted = (self.harmonics.state.pressure * weights)[..., None, None] * vectors
+        local = values.transpose(0, 2, 1) @ weighted.reshape(f, q, -1)
+        value = (sums @ local.reshape(9 * f, -1)).reshape(-1, m, 3)
+        return self.round.from_nodes(value, np.zeros_like(value))
+
+    def second_strains(self, amplitudes: Array) -> Array:
+        """(highest + 1, 6, e, q) amplitudes of H'H/2, what Green's strain adds to the linear one; shears doubled."""
+        h = self.round.gradient(amplitudes)
+        h = h.reshape(*h.shape[:3], 3, 3)
+        (cos, _, sin), _ = self.round.waves
+        rows = []
+        for i, j in ((0, 0), (1, 1), (2, 2), (0, 1), (0, 2), (1, 2)):
+            part = (1 if i == j else 2) * (h[..., i] * h[..., j]).sum(axis=-1) / 2
+            odd = (i == 2) != (j == 2)
+            rows.append(np.moveaxis(part @ (self.round.shares * (sin if odd else cos)), -1, 0))
+        return np.stack(rows, axis=1)
+
+
+def _cross(s: Array, v: Array) -> Array:
+    """s x v in (r, z, t), which is left-handed: e_r x e_z = -e_t."""
+    return np.stack([
+        s[..., 2] * v[..., 1] - s[..., 1] * v[..., 2],
+        s[..., 0] * v[..., 2] - s[..., 2] * v[..., 0],
+        s[..., 1] * v[..., 0] - s[..., 0] * v[..., 1],
+    ], axis=-1)  # fmt: skip

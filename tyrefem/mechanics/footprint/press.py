@@ -1,0 +1,263 @@
+"""A study's tyre, inflated and pressed on the road: what the command `tyrefem press` tells."""
+
+from __future__ import annotations
+
+import functools
+from collections.abc import Mapping
+from dataclasses import dataclass
+from typing import TYPE_CHECKING, Any
+
+import numpy as np
+from numpy.typing import NDArray
+
+from tyrefem.brief import Brief
+from tyrefem.errors import InputError
+from tyrefem.estimates import work as estimate
+from tyrefem.geometry.meshing.expected import QUADRATIC
+from tyrefem.mechanics.footprint.pressed_tyre import TOLERANCE, mechanical_mesh
+from tyrefem.mechanics.footprint.road import Road
+from tyrefem.requirements import Requirements
+
+if TYPE_CHECKING:
+    from tyrefem.geometry.meshing.mesh import TyreMesh
+    from tyrefem.inputs.published import Comparison
+    from tyrefem.inputs.study import Study
+    from tyrefem.mechanics.footprint.contact import Pressing
+    from tyrefem.mechanics.footprint.footprint import Footprint
+    from tyrefem.mechanics.footprint.loss import RevolutionLoss
+    from tyrefem.mechanics.footprint.strain_harmonics import StrainCycle
+    from tyrefem.mechanics.solid.inflation import Inflation
+
+Array = NDArray[np.float64]
+#: What a footprint needs of a study.
+NEEDS = Requirements("a footprint")
+#: The curve of load over deflection goes this much further than the footprint, or to just before the rim.
+BEYOND = 1.25
+BEFORE_RIM = 0.98
+#: A narrower drum, over the tyre's diameter, is an obstacle, which these harmonics and linear contact do not resolve.
+SMALLEST_DRUM = 0.1
+
+
+@dataclass(frozen=True, eq=False)
+class Pressed(Brief):
+    """A study's tyre under one pressure and one load. Made by `press`.
+
+    Parameters
+    ----------
+    study : the study. mesh : the mechanical mesh. tyre : the inflated tyre.
+    pressing : what presses it on its road. footprint : the tyre on the road.
+    tolerance : change with the number of harmonics that was allowed.
+    path : (deflection, load), m and N, on the way to a footprint in large motion; empty: linear about the inflation.
+    """
+
+    study: Study
+    mesh: TyreMesh
+    tyre: Inflation
+    pressing: Pressing
+    footprint: Footprint
+    tolerance: float = TOLERANCE
+    path: tuple[tuple[float, float], ...] = ()
+
+    def _title(self) -> str:
+        return f"tyre of {self.study.name}"
+
+    def _facts(self) -> Mapping[str, Any]:
+        return self.footprint._facts()
+
+    @property
+    def balanced(self) -> bool:
+        """Is the footprint in large motion?"""
+        return self.footprint.balanced is not None
+
+    @property
+    def bead_tension(self) -> float | None:
+        """Hoop force of one bead, N; None: the section has no bead wires."""
+        try:
+            return self.tyre.bead_tension
+        except InputError:
+            return None
+
+    @property
+    def secant_stiffness(self) -> float:
+        """Load over deflection, N/m."""
+        return self.footprint.load / self.footprint.deflection
+
+    @property
+    def peak_pressure(self) -> float:
+        """Greatest contact pressure, Pa: at a tread's sharp edge it depends on the mesh."""
+        return float(self.footprint.pressure.max())
+
+    @property
+    def speed(self) -> float:
+        """Speed of the drive's first phase, m/s: where it starts, or where it ends if it starts at rest."""
+        ramp = self.study.card.drive.phases[0].speed
+        return float(ramp.start or ramp.end)
+
+    @functools.cached_property
+    def cycle(self) -> StrainCycle:
+        """Strains round the wheel."""
+        from tyrefem.mechanics.footprint.strain_harmonics import StrainCycle
+
+        return StrainCycle(self.footprint)
+
+    @functools.cached_property
+    def left_out(self) -> tuple[float, float, str]:
+        """What linearised strains leave out of Green's, over themselves (`StrainCycle.coarseness`): root mean square by
+        volume, the greatest of an element, and its region."""
+        coarse = self.cycle.coarseness()
+        worst = int(np.argmax(coarse))
+        volumes = self.cycle.elements.weights.sum(axis=1)
+        mean = float(np.sqrt((coarse**2 * volumes).sum() / volumes.sum()))
+        return mean, float(coarse[worst]), self.tyre.body.rings.region_of(worst)
+
+    @functools.cached_property
+    def loss(self) -> RevolutionLoss | None:
+        """Loss per revolution at `speed` and the drive's initial temperature; None: the wheel stands."""
+        from tyrefem.mechanics.footprint.loss import RevolutionLoss
+
+        if not self.speed:
+            return None
+        laws = {region: self.study.materials[region].loss_tangent.over_frequency for region in self.tyre.body.parts}
+        return RevolutionLoss(self.cycle, laws, self.speed, self.study.card.drive.initial)
+
+    @property
+    def published(self) -> tuple[Comparison, ...]:
+        """The results beside the study's published ranges."""
+        from tyrefem.inputs.published import compared, of_footprint
+
+        values = of_footprint(self.footprint)
+        if self.loss is not None:
+            values["rolling_resistance_coefficient"] = self.loss.coefficient
+        return compared(self.study.card.published, values)
+
+    def curve(self, count: int = 10) -> Array:
+        """(n, 2) deflection, m, and load, N, from the free tyre on, with as many harmonics as the footprint; in large
+        motion those balanced on the way, and the footprint."""
+        if self.balanced:
+            before = [one for one in self.path if one[0] < 0.99 * self.footprint.deflection]
+            return np.array([*before, (self.footprint.deflection, self.footprint.load)])
+        last = min(BEYOND * self.footprint.deflection, BEFORE_RIM * self.pressing.bottoming)
+        deflections = np.linspace(0.0, last, count + 1)
+        # The largest first: its grid of angles serves the others.
+        loads = [self.pressing.at_deflection(float(one), self.footprint.harmonics).load for one in deflections[:0:-1]]
+        return np.column_stack([deflections, [0.0, *loads[::-1]]])
+
+    def summary(self) -> dict[str, Any]:
+        """Everything in SI, as the keys say; versions, mesh and tolerance."""
+        from tyrefem.output import versions
+
+        found, loss = self.footprint, self.loss
+        cords = {
+            region: {"strain": layer.strain, "stress_Pa": layer.stress, "tension_N": layer.tension}
+            for region, layer in self.tyre.cord_tensions.items()
+        }
+        return {
+            "study": self.study.name,
+            "title": self.study.title,
+            "pressure_Pa": self.tyre.pressure,
+            "drum_diameter_m": self.pressing.road.drum_diameter,
+            "camber_rad": self.pressing.road.camber,
+            "radius_growth_m": self.tyre.radius_growth,
+            "width_growth_m": self.tyre.width_growth,
+            "cords_least_mean_greatest": cords,
+            "bead_tension_N": self.bead_tension,
+            "load_N": found.load,
+            "deflection_m": found.deflection,
+            "bottoming_deflection_m": self.pressing.bottoming,
+            "secant_stiffness_N_m": self.secant_stiffness,
+            "tangent_stiffness_N_m": found.stiffness,
+            "footprint_length_m": found.length,
+            "footprint_width_m": found.width,
+            "footprint_area_m2": found.area,
+            "mean_contact_pressure_Pa": found.mean_pressure,
+            "peak_contact_pressure_Pa": self.peak_pressure,
+            "loaded_radius_m": found.loaded_radius,
+            "rolling_radius_m": found.rolling_radius,
+            "speed_m_s": self.speed,
+            "temperature_degC": self.study.card.drive.initial,
+            "loss_per_revolution_J": loss.energy if loss else None,
+            "rolling_resistance_N": loss.rolling_resistance if loss else None,
+            "rolling_resistance_coefficient": loss.coefficient if loss else None,
+            "published": [one.to_dict() for one in self.published],
+            "harmonics": found.harmonics,
+            "error": found.error,
+            "balanced": self.balanced,
+            "left_out_by_linear_strains": dict(zip(("mean", "greatest", "region"), self.left_out, strict=True)),
+            "tolerance": self.tolerance,
+            "unstable_harmonics": list(found.unstable),
+            "mesh": {**self.mesh.summary(), "nodes_of_nine_node_elements": self.tyre.body.rings.n_nodes},
+            "versions": versions(),
+        }
+
+
+def press(
+    study: Study,
+    *,
+    pressure: float | None = None,
+    load: float | None = None,
+    deflection: float | None = None,
+    drum_diameter: float | None = None,
+    camber: float = 0.0,
+    tolerance: float = TOLERANCE,
+    balanced: bool = False,
+) -> Pressed:
+    """Inflate a study's tyre and press it on the road; what is not given is that of the drive's first phase's start.
+
+    Parameters
+    ----------
+    study : the study.
+    pressure : Pa above the ambient, positive.
+    load, deflection : N or m, positive; at most one of them.
+    drum_diameter : m; infinite for a flat road.
+    camber : rad; positive: the side z > 0 comes down. A half section is made whole by its mirror image.
+    tolerance : change with the number of harmonics that the footprint may keep.
+    balanced : in large motion (`footprint.balance`) instead of linear about the inflated state: slower.
+
+    Raises
+    ------
+    InputError : a campaign; a value that is not positive; both load and deflection; no equilibrium; more than the
+        tyre can carry.
+
+    >>> from tyrefem import study
+    >>> found = press(study("nasa-22x5.5-8pr", {"mesh.size": "12 mm"}), deflection=0.015)
+    >>> found.footprint.deflection, 3e5 < found.secant_stiffness < 6e5
+    (0.015, True)
+    """
+    from tyrefem.mechanics.footprint.contact import Pressing
+    from tyrefem.mechanics.solid.inflation import inflate
+
+    NEEDS.check(study)
+    phase = study.card.drive.phases[0]
+    if load is not None and deflection is not None:
+        raise InputError("give a load or a deflection, not both", field="load")
+    if load is None and deflection is None:
+        load = None if phase.load is None else phase.load.start
+        deflection = None if phase.deflection is None else phase.deflection.start
+    pressure = phase.pressure.start if pressure is None else pressure
+    wanted = {"pressure": (pressure, "Pa"), "load": (load, "N"), "deflection": (deflection, "m")}
+    for name, (value, unit) in wanted.items():
+        if value is not None and not value > 0:
+            raise InputError(f"must be more than 0 {unit}, not {value:g} {unit}", field=name)
+    smallest = SMALLEST_DRUM * study.section.outer_diameter
+    drum = phase.drum_diameter if drum_diameter is None else drum_diameter
+    if 0 < drum < smallest:
+        raise InputError(
+            f"a drum of {drum * 1e3:.4g} mm is too small: at least a tenth of the tyre, {smallest * 1e3:.0f} mm",
+            field="drum_diameter",
+        )
+    road = Road(drum, camber)
+    if camber and study.section.half:
+        study = study.replace({"mesh.section": "full"})
+    mesh = mechanical_mesh(study, large=balanced)
+    nodes = QUADRATIC * mesh.n_nodes
+    estimate.warn_of(estimate.mechanics(nodes, large=balanced).time, f"the footprint of {nodes:,} nodes")
+    tyre = inflate(study, pressure, mesh)
+    pressing = Pressing(tyre.state, road)
+    if not balanced:
+        found = pressing.solve(load=load, deflection=deflection, tolerance=tolerance)
+        return Pressed(study, mesh, tyre, pressing, found, tolerance)
+    from tyrefem.mechanics.footprint.harmonic_balance import Balance
+
+    balance = Balance(pressing)
+    found = balance.solve(load=load, deflection=deflection, tolerance=tolerance)
+    return Pressed(study, mesh, tyre, pressing, found, tolerance, tuple(balance.path))

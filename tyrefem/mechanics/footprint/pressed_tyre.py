@@ -1,0 +1,201 @@
+"""A study's tyre inflated and pressed on its road by finite elements: each pressure, road and load once."""
+
+from __future__ import annotations
+
+import functools
+import hashlib
+from collections import OrderedDict
+from collections.abc import Callable, Hashable
+from dataclasses import dataclass, field
+from pathlib import Path
+from threading import Lock
+from typing import TYPE_CHECKING, Any
+
+from tyrefem.errors import InputError
+from tyrefem.estimates import work as estimate
+from tyrefem.geometry import meshing
+from tyrefem.geometry.meshing.expected import QUADRATIC, expected_nodes
+from tyrefem.materials.reads import values_read
+
+if TYPE_CHECKING:
+    from tyrefem.geometry.meshing.mesh import TyreMesh
+    from tyrefem.inputs.loading import LoadCase
+    from tyrefem.inputs.study import Study
+    from tyrefem.mechanics.footprint.contact import Pressing
+    from tyrefem.mechanics.footprint.footprint import Footprint
+    from tyrefem.mechanics.solid.inflation import Inflation
+
+#: Change with the number of harmonics that the footprint may keep.
+TOLERANCE = 0.02
+#: Nine-node elements are this much larger than those of the study's mesh.
+COARSER = 2.0
+#: Pressures with roads, and loads on them, that a tyre remembers: a ramp has nine. About 40 MB each.
+REMEMBERED = 10
+#: Tyres that a process remembers: the study as it is, and the last one with another stiffness.
+TYRES = 2
+
+
+def mechanical_mesh(study: Study, *, large: bool | None = None) -> TyreMesh:
+    """The study's own mesh file; gmsh's quadrilaterals where the study asks for these; otherwise a mapped mesh of
+    nine-node elements twice as large as the study asks for, also beside gmsh's triangles (nine-node elements need
+    quadrilaterals; energies go over by region and place). ``large``: for large motion; None: as the study says.
+
+    Raises
+    ------
+    InputError : a size too coarse or too fine for the section, or for the memory that is free.
+    """
+    choice = study.card.mesh
+    if choice.file is not None:
+        return study.mesh()
+    own = choice.mesher == "gmsh" and choice.cell == "quad"
+    mesher, size = ("gmsh", choice.size) if own else ("mapped", COARSER * choice.size)
+    mechanics = study.card.mechanics
+    in_large = mechanics.strain == "fem" and mechanics.motion == "large" if large is None else large
+    _check_memory(study, mesher, size, in_large)
+    try:
+        return meshing.build(study.section, mesher=mesher, size=size, cell="quad", through=1)
+    except InputError as error:
+        if own:
+            raise error.within(field="mesh", file=study.file) from None
+        message = f"the mesh of the mechanics, {COARSER:g} times as coarse: {error.message}"
+        raise InputError(message, field=f"mesh.{error.field}", file=study.file) from None
+
+
+def _check_memory(study: Study, mesher: str, size: float, large: bool) -> None:
+    """Refuse a mesh on which the footprint has no room."""
+
+    def nodes(size: float) -> float:
+        return QUADRATIC * expected_nodes(study.section, size, mesher=mesher)
+
+    def fits(free: float) -> str:
+        length = study.section.line.length
+        coarser = estimate.smallest(
+            lambda one: estimate.mechanics(nodes(one), large=large).memory <= free, size, length / 4
+        )
+        return f"{coarser / (size / study.card.mesh.size) * 1e3:g} mm or more would fit" if coarser else ""
+
+    what = f"{study.card.mesh.size * 1e3:g} mm makes {nodes(size):,.0f} nodes of the footprint's finite elements"
+    try:
+        estimate.check_memory(estimate.mechanics(nodes(size), large=large).memory, what, fits)
+    except InputError as error:
+        raise error.within(field="mesh.size", file=study.file) from None
+
+
+@dataclass(frozen=True, eq=False)
+class PressedTyre:
+    """A study's tyre; every pressure, road and load is solved once. Made by `pressed_tyre`."""
+
+    study: Study
+
+    def inflated(self, pressure: float) -> Inflation:
+        """The tyre under a gauge pressure, Pa.
+
+        Raises
+        ------
+        InputError : no pressure; no equilibrium.
+        """
+        if pressure <= 0:
+            raise InputError("the strain laws 'fem' and 'barrel' need an inflated tyre", field="pressure")
+        return self._inflated(pressure)
+
+    def footprint(self, case: LoadCase, *, large: bool) -> Footprint | None:
+        """The tyre on the road of a load case, at its load or its deflection; None: it carries nothing.
+
+        Raises
+        ------
+        InputError : as `inflated`; a load that the tyre cannot carry, a deflection that is impossible.
+        """
+        given = case.deflection if case.by_deflection else case.load
+        if given <= 0:
+            return None
+        name = "deflection" if case.by_deflection else "load"
+        return self._pressed(name, given, case.pressure, case.drum_diameter, large)
+
+    @functools.cached_property
+    def _inflated(self) -> Callable[[float], Inflation]:
+        from tyrefem.mechanics.solid.inflation import inflate
+
+        @functools.lru_cache(REMEMBERED)
+        def inflated(pressure: float) -> Inflation:
+            return inflate(self.study, pressure, mechanical_mesh(self.study))
+
+        return inflated
+
+    @functools.cached_property
+    def _pressed(self) -> Callable[[str, float, float, float, bool], Footprint]:
+        from tyrefem.mechanics.footprint.contact import Pressing
+        from tyrefem.mechanics.footprint.harmonic_balance import Balance
+        from tyrefem.mechanics.footprint.road import Road
+
+        @functools.lru_cache(REMEMBERED)
+        def pressing(pressure: float, drum: float) -> Pressing:
+            return Pressing(self.inflated(pressure).state, Road(drum_diameter=drum))
+
+        @functools.lru_cache(REMEMBERED)
+        def pressed(name: str, given: float, pressure: float, drum: float, large: bool) -> Footprint:
+            tyre = pressing(pressure, drum)
+            wanted: Any = {name: given, "tolerance": TOLERANCE}
+            return Balance(tyre).solve(**wanted) if large else tyre.solve(**wanted)
+
+        return pressed
+
+
+@dataclass
+class Remembered:
+    """The last `TYRES` tyres of this process, keyed by value: all that their finite elements depend on.
+
+    A run whose study differs in other numbers (conductivity, films, sensors) finds its tyre here, solved.
+    """
+
+    tyres: OrderedDict[Hashable, PressedTyre] = field(default_factory=OrderedDict)
+    lock: Lock = field(default_factory=Lock)
+
+    def of(self, study: Study) -> PressedTyre:
+        """The tyre of a study, made if it is not among them."""
+        key = inputs(study)
+        with self.lock:
+            tyre = self.tyres.pop(key, None) or PressedTyre(study)
+            self.tyres[key] = tyre
+            while len(self.tyres) > TYRES:
+                self.tyres.popitem(last=False)
+        return tyre
+
+    def clear(self) -> None:
+        """Forget all of them."""
+        with self.lock:
+            self.tyres.clear()
+
+
+REMEMBERED_TYRES = Remembered()
+
+
+def pressed_tyre(study: Study) -> PressedTyre:
+    """The tyre of a study: a remembered one, if all that its finite elements depend on is the same."""
+    return REMEMBERED_TYRES.of(study)
+
+
+@dataclass(frozen=True)
+class _Same:
+    """Equal to itself alone; kept alive, so that its place is not another's."""
+
+    thing: Any
+
+    def __eq__(self, other: object) -> bool:
+        return isinstance(other, _Same) and self.thing is other.thing
+
+    def __hash__(self) -> int:
+        return id(self.thing)
+
+
+def inputs(study: Study) -> Hashable:
+    """All that a study's finite elements depend on, apart from load, pressure and road: equal for equal tyres.
+
+    The section, the choice of mesh with its file's content, and of every card what `strain.reads` names.
+    """
+    choice = study.card.mesh
+    content = ""
+    if choice.file is not None:
+        path = (study.folder or Path()) / choice.file
+        content = hashlib.sha256(path.read_bytes()).hexdigest() if path.is_file() else ""
+    read = values_read("fem", study.materials)
+    return _Same(study.section), repr(choice), content, repr(read)

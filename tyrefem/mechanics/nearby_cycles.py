@@ -1,0 +1,205 @@
+"""Strain cycles of studies that are a little off one: from one solution for every number that moves them."""
+
+from __future__ import annotations
+
+import functools
+import hashlib
+import math
+import re
+from collections.abc import Callable
+from dataclasses import astuple, dataclass, field, replace
+from pathlib import Path
+from typing import TYPE_CHECKING, Any
+
+import numpy as np
+
+from tyrefem.inputs.loading import LoadCase, PressedContact
+from tyrefem.inputs.uncertain_numbers import UncertainNumber, written_at
+from tyrefem.mechanics.cycle_schedule import CycleSchedule, KnotSolver, cycle_schedule, same_cycles
+from tyrefem.mechanics.finite_elements import PointEnergies
+from tyrefem.mechanics.strain_cycle import settled
+from tyrefem.output import atomic_path
+
+if TYPE_CHECKING:
+    from tyrefem.inputs.study import Study
+
+_AMOUNT = re.compile(r"^\s*([-+]?(?:\d+\.?\d*|\.\d+)(?:[eE][-+]?\d+)?)\s*(.*?)\s*$", re.DOTALL)
+Solved = tuple[LoadCase, PointEnergies]
+
+
+@dataclass(frozen=True, eq=False)
+class SolvedCycles:
+    """Load cases as solved and their energies, by name: in memory, and in a folder that several processes share."""
+
+    folder: Path | None = None
+    known: dict[str, Solved] = field(default_factory=dict)
+
+    def of(self, name: str, like: PointEnergies, solve: Callable[[], Solved]) -> Solved:
+        """What is known by a name, or solved now; ``like``: energies at the same points."""
+        if name not in self.known:
+            self.known[name] = self._read(name, like) or self._kept(name, solve())
+        return self.known[name]
+
+    def _file(self, name: str) -> Path | None:
+        return None if self.folder is None else self.folder / f"{hashlib.sha256(name.encode()).hexdigest()[:24]}.npz"
+
+    def _read(self, name: str, like: PointEnergies) -> Solved | None:
+        file = self._file(name)
+        if file is None or not file.exists():
+            return None
+        with np.load(file, allow_pickle=False) as kept:
+            (load, deflection, pressure, radius, drum), contact = kept["case"], kept["contact"]
+            case = LoadCase(float(load), float(deflection), float(pressure), float(radius), float(drum))
+            contact = PressedContact(*map(float, contact)) if len(contact) else None
+            return replace(case, contact=contact), replace(like, densities=kept["densities"])
+
+    def _kept(self, name: str, solved: Solved) -> Solved:
+        file = self._file(name)
+        if file is not None:
+            case, energies = solved
+            numbers = (case.load, case.deflection, case.pressure, case.outer_radius, case.drum_diameter)
+            contact = () if case.contact is None else astuple(case.contact)
+            with atomic_path(file) as temporary, temporary.open("wb") as stream:
+                np.savez(stream, case=numbers, contact=contact, densities=energies.densities)
+        return solved
+
+
+@dataclass(frozen=True, eq=False)
+class NearbyCycles:
+    """Strain cycles by finite elements, linear in the logarithms of the numbers that they depend on.
+
+    U(x) = U_0 + sum_i x_i / s_i (U_i - U_0), x_i = ln of a number's factor, U_i solved at the factor 1 + sd, s_i its
+    ln; deflection, footprint and rolling radius alike. Each number costs one solution for every load case, when it is
+    first moved.
+
+    Parameters
+    ----------
+    study : with a strain law by finite elements. solved : may be shared by studies that differ in their drives.
+    """
+
+    study: Study
+    solved: SolvedCycles = field(default_factory=SolvedCycles)
+
+    @functools.cached_property
+    def schedule(self) -> CycleSchedule:
+        """The study's own."""
+        return cycle_schedule(self.study)
+
+    @functools.cached_property
+    def numbers(self) -> tuple[UncertainNumber, ...]:
+        """The study's uncertain numbers that its strain cycles depend on."""
+        return tuple(
+            number
+            for number in self.study.uncertain_numbers
+            if not number.idle and not same_cycles(self._up(number), self.study)
+        )
+
+    def of(self, study: Study) -> CycleSchedule | None:
+        """The strain cycles of another study; None where it differs in more than `numbers`.
+
+        Raises
+        ------
+        InputError : a load, deflection or number that the tyre cannot take.
+        """
+        moved: list[tuple[str, float]] = []
+        back: dict[str, Any] = {}
+        for number in self.numbers:
+            if (factor := _factor(study, number)) != 1.0:
+                moved.append((number.key, math.log(factor) / math.log1p(number.sd)))
+                back |= dict(zip(number.keys, number.written, strict=True))
+        if not same_cycles(study.replace(back, self.study), self.study):
+            return None
+        own, driven = self.schedule, KnotSolver(study)
+        ways = [(self._ways[key], share) for key, share in moved]
+        cases: list[tuple[LoadCase, ...]] = []
+        cycles: list[tuple[PointEnergies, ...]] = []
+        for phase, fractions in enumerate(own.knots):
+            there = [[(way[phase][knot], share) for way, share in ways] for knot in range(len(fractions))]
+            cases.append(
+                tuple(
+                    _between(driven.case(phase, fraction), case, [(one[0], share) for one, share in at])
+                    for fraction, case, at in zip(fractions, own.cases[phase], there, strict=True)
+                )
+            )
+            cycles.append(
+                tuple(
+                    _energies(cycle).moved([(one[1], share) for one, share in at])
+                    for cycle, at in zip(own.cycles[phase], there, strict=True)
+                )
+            )
+        return CycleSchedule(study.card.drive, own.knots, tuple(cases), tuple(cycles))
+
+    def _up(self, number: UncertainNumber) -> Study:
+        return self.study.replace(number.changes(1.0 + number.sd))
+
+    @functools.cached_property
+    def _ways(self) -> _Ways:
+        return _Ways(self)
+
+
+class _Ways(dict[str, list[list[Solved]]]):
+    """Key of a number -> (phase, knot) what is solved with it a standard deviation up; when first asked for."""
+
+    def __init__(self, near: NearbyCycles) -> None:
+        super().__init__()
+        self.near = near
+
+    def __missing__(self, key: str) -> list[list[Solved]]:
+        near = self.near
+        number = next(one for one in near.numbers if one.key == key)
+        solver, own = KnotSolver(near._up(number)), near.schedule
+
+        def solved(phase: int, knot: int) -> Solved:
+            case, like = solver.case(phase, own.knots[phase][knot]), _energies(own.cycles[phase][knot])
+
+            def solve() -> Solved:
+                cycle = solver.cycle(phase, case)
+                # At the same points: the mesh of every other cycle need not be kept.
+                return settled(cycle, case), replace(like, densities=_energies(cycle).densities)
+
+            return near.solved.of(f"{key} {case!r}", like, solve)
+
+        self[key] = [[solved(phase, knot) for knot in range(len(knots))] for phase, knots in enumerate(own.knots)]
+        return self[key]
+
+
+def _energies(cycle: Any) -> PointEnergies:
+    """The energies at Gauss points of a cycle by finite elements."""
+    energies: PointEnergies = cycle.energies
+    return energies
+
+
+def _factor(study: Study, number: UncertainNumber) -> float:
+    """What a study's number is over that of another; 1: as it was, or not to be compared."""
+    now, before = written_at(study, number.keys[0]), number.written[0]
+    if now == before:
+        return 1.0
+    (now, unit), (before, other) = _amount(now), _amount(before)
+    return now / before if unit == other and now > 0 and before > 0 else 1.0
+
+
+def _amount(value: Any) -> tuple[float, str]:
+    if isinstance(value, list):
+        # A table's numbers move together: the last cell stands for them.
+        return _amount(value[-1])
+    if isinstance(value, str):
+        match = _AMOUNT.match(value)
+        return (float(match[1]), match[2]) if match else (0.0, value)
+    return float(value), ""
+
+
+def _between(driven: LoadCase, case: LoadCase, others: list[tuple[LoadCase, float]]) -> LoadCase:
+    """A load case as driven, with what a strain law finds itself as far towards others as each share says."""
+    if case.contact is None:
+        return driven
+
+    def mean(value: Callable[[LoadCase], float]) -> float:
+        return value(case) + sum(share * (value(one) - value(case)) for one, share in others)
+
+    contact = PressedContact(
+        mean(lambda one: one.footprint_length), mean(lambda one: one.footprint_area or 0.0),
+        mean(lambda one: one.rolling_radius),
+    )  # fmt: skip
+    if driven.by_deflection:
+        return replace(driven, load=mean(lambda one: one.load), contact=contact)
+    return replace(driven, deflection=mean(lambda one: one.deflection), contact=contact)

@@ -1,0 +1,113 @@
+"""Equilibrium of a body inside a rigid frictionless cylinder: Newton with an active set, no penalty."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+import numpy as np
+from numpy.typing import NDArray
+
+from tyrefem.mechanics.solid.body import Body
+from tyrefem.mechanics.solid.compounds import determinant
+from tyrefem.mechanics.solid.elements import Indices
+from tyrefem.mechanics.solid.newton import ROUND_OFF
+
+Array = NDArray[np.float64]
+#: A contact is closed when the gap is below this share of the cylinder's radius.
+CLOSED = 1e-12
+
+
+@dataclass(frozen=True)
+class CylinderChoice:
+    """How equilibrium is sought: ``tolerance``, force out of balance over that of pressure and contact; ``iterations``,
+    most per step; ``first_step``, ``smallest_step`` of the deflection, over the radius; ``halvings`` of a Newton step
+    that folds."""
+
+    tolerance: float = 1e-9
+    iterations: int = 25
+    first_step: float = 0.015
+    smallest_step: float = 1e-4
+    halvings: int = 3
+
+
+class StuckError(Exception):
+    """A step that did not converge: where it is worst."""
+
+
+def equilibrium_inside(
+    body: Body, pressure: float, nodes: Indices, start: Array, forces: Array, radius: float, choice: CylinderChoice
+) -> tuple[Array, Array, tuple[float, ...]]:
+    """The body inside one cylinder: displacement, contact forces, history of the force out of balance.
+
+    u_r <= radius - r and inward force >= 0 at every node that may touch, never both: a node is closed where
+    force - stiffness * gap > 0 (primal-dual active set; Hintermuller, Ito & Kunisch 2003), and a Newton step closes it.
+
+    Parameters
+    ----------
+    pressure : of the gas, Pa, constant. nodes : that may touch. radius : of the cylinder, m.
+    start, forces : displacement (2, n_nodes), m, and inward forces (n_contact_nodes,), N per radian, to start from.
+
+    Raises
+    ------
+    StuckError : no balance, or the mesh folds.
+    """
+    from scipy.sparse.linalg import splu
+
+    now, history = start, []
+    closed, moved = np.zeros(len(nodes), dtype=bool), np.inf
+    for _ in range(choice.iterations + 1):
+        if (at := _folded(body, now)) is not None:
+            raise StuckError(at)
+        residual = body.residual(now, pressure)
+        matrix = body.stiffness(now, pressure)
+        gaps = radius - body.rings.nodes[0, nodes] - now[0, nodes]
+        before = closed
+        # Any positive stiffness decides alike once gaps or forces vanish; the matrix's own keeps the units right.
+        closed = forces - matrix.diagonal()[2 * nodes] * gaps > 0
+        held = 2 * nodes[closed]
+        free = np.setdiff1d(body.free, held)
+        size = pressure * np.linalg.norm(body.load(now)[body.free]) + np.linalg.norm(residual[held])
+        history.append(float(np.linalg.norm(residual[free]) / size) if size else 0.0)
+        shut = np.abs(gaps[closed]).max(initial=0.0) <= CLOSED * radius
+        settled = history[-1] <= choice.tolerance or moved <= ROUND_OFF * radius
+        if settled and shut and np.isfinite(moved) and (closed == before).all():
+            return now, np.where(closed, -residual[2 * nodes], 0.0), tuple(history)
+        if not np.isfinite(history[-1]):
+            break
+        change = np.zeros(residual.shape)
+        change[held] = gaps[closed]
+        try:
+            change[free] = -splu(matrix[free][:, free].tocsc()).solve((residual + matrix @ change)[free])
+        except RuntimeError:
+            raise StuckError("nothing holds the body: its stiffness is singular") from None
+        share = 1.0
+        for _ in range(choice.halvings):
+            if _folded(body, now + share * change.reshape(-1, 2).T) is None:
+                break
+            share /= 2
+        now, moved = now + share * change.reshape(-1, 2).T, float(np.abs(change).max())
+        forces = np.where(closed, -(residual + matrix @ change)[2 * nodes], 0.0)
+    raise StuckError(_worst(body, residual, free))
+
+
+def _folded(body: Body, displacement: Array) -> str | None:
+    """Where an element is turned over; None: nowhere."""
+    f = body.deformation(displacement)
+    volume = np.minimum(determinant(f), f[2, 2])
+    if (volume > 0).all():
+        return None
+    element = int(np.unravel_index(int(volume.argmin()), volume.shape)[0])
+    return f"the mesh folds {_place(body, body.rings.points[:, element].mean(axis=-1), element)}"
+
+
+def _worst(body: Body, residual: Array, free: Indices) -> str:
+    size = np.zeros(len(residual))
+    size[free] = residual[free]
+    node = int(np.hypot(*size.reshape(-1, 2).T).argmax())
+    element = int(np.flatnonzero((body.rings.element_nodes == node).any(axis=1))[0])
+    return f"the forces stay out of balance, most {_place(body, body.rings.nodes[:, node], element)}"
+
+
+def _place(body: Body, place: Array, element: int) -> str:
+    r, z = place * 1e3
+    return f"at (r, z) = ({r:.1f}, {z:.1f}) mm, region '{body.rings.region_of(element)}'"

@@ -1,0 +1,224 @@
+"""Nine-node rings: shape functions, Gauss points, projected dilatation, boundaries, edges under pressure.
+
+Large displacements take them as they are; harmonics (`tyrefem.mechanics.footprint.elements`) build their strains on
+them.
+
+Symmetric tensors as six components rr, zz, tt, rz, rt, zt; any shape of points after the first axes.
+"""
+
+from __future__ import annotations
+
+import functools
+from dataclasses import dataclass
+from typing import Any
+
+import numpy as np
+from numpy.typing import NDArray
+
+from tyrefem.errors import InputError, nearest
+
+Array = NDArray[np.float64]
+Indices = NDArray[np.int64]
+
+
+#: 3 x 3 Gauss points on quadrilaterals, three on an edge.
+INTORDER = 5
+
+
+@dataclass(frozen=True, eq=False)
+class Rings:
+    """Biquadratic elements of a quadrilateral mesh in (r, z), m. Degree of freedom 2 i + c is component c of node i.
+
+    >>> import skfem
+    >>> rings = Rings(skfem.MeshQuad.init_tensor([1.0, 1.1, 1.2], [0.0, 0.1]))
+    >>> rings.n_nodes, rings.weights.shape, round(float(rings.weights.sum()), 6)
+    (15, (2, 9), 0.022)
+    """
+
+    mesh: Any
+
+    def __post_init__(self) -> None:
+        import skfem
+
+        if not isinstance(self.mesh, skfem.MeshQuad):
+            raise InputError("finite-element mechanics needs quadrilaterals: mesh.cell = 'quad'", field="mesh.cell")
+
+    @functools.cached_property
+    def basis(self) -> Any:
+        """scikit-fem basis of the scalar biquadratic element."""
+        import skfem
+
+        return skfem.Basis(self.mesh, skfem.ElementQuad2(), intorder=INTORDER)
+
+    @property
+    def n_nodes(self) -> int:
+        """Vertices, edge middles and element middles."""
+        return int(self.basis.N)
+
+    @functools.cached_property
+    def nodes(self) -> Array:
+        """(2, n_nodes) places of the nodes, m."""
+        return np.asarray(self.basis.doflocs)
+
+    @functools.cached_property
+    def element_nodes(self) -> Indices:
+        """(n_elements, 9)."""
+        return np.asarray(self.basis.element_dofs, dtype=np.int64).T
+
+    @functools.cached_property
+    def points(self) -> Array:
+        """(2, n_elements, n_points) Gauss points, m."""
+        return np.asarray(self.basis.global_coordinates())
+
+    @property
+    def radii(self) -> Array:
+        """(n_elements, n_points) radius of the Gauss points, m."""
+        return np.asarray(self.points[0])
+
+    @functools.cached_property
+    def weights(self) -> Array:
+        """(n_elements, n_points) r dA, m3 per radian."""
+        return np.asarray(self.basis.dx) * self.radii
+
+    @functools.cached_property
+    def values(self) -> Array:
+        """(n_points, 9) shape functions."""
+        return np.stack([np.asarray(f[0])[0] for f in self.basis.basis], axis=-1)
+
+    @functools.cached_property
+    def gradients(self) -> Array:
+        """(2, n_elements, n_points, 9) derivatives by r and z, 1/m."""
+        return np.stack([np.asarray(f[0].grad) for f in self.basis.basis], axis=-1)
+
+    @functools.cached_property
+    def linear_functions(self) -> Array:
+        """(n_elements, n_points, 3): 1, xi, eta of every element, orthonormal with weight r dA."""
+        xi, eta = 2 * np.asarray(self.basis.X) - 1
+        functions = np.stack([np.ones_like(xi), xi, eta], axis=-1)
+        mass = np.einsum("eq,qa,qb->eab", self.weights, functions, functions)
+        inverse = np.linalg.inv(np.linalg.cholesky(mass))
+        return np.asarray(np.einsum("eab,qb->eqa", inverse, functions))
+
+    def boundary(self, name: str) -> Indices:
+        """Facets of a named boundary.
+
+        Raises
+        ------
+        InputError : the mesh has no such boundary.
+        """
+        boundaries = self.mesh.boundaries or {}
+        if name not in boundaries:
+            raise InputError(f"the mesh has no boundary '{name}'{nearest(name, boundaries)}")
+        return np.asarray(boundaries[name], dtype=np.int64)
+
+    def boundary_nodes(self, name: str) -> Indices:
+        """Sorted nodes of a named boundary."""
+        return np.unique(self.basis.get_dofs(facets=self.boundary(name)).flatten()).astype(np.int64)
+
+    def edge_nodes(self, facets: Indices) -> Indices:
+        """(n_facets, 3) nodes of facets: end, end, middle; their functions are `edge_functions`."""
+        ends = np.asarray(self.basis.nodal_dofs)[0][np.asarray(self.mesh.facets)[:, facets]]
+        return np.vstack([ends, np.asarray(self.basis.facet_dofs)[0][facets]]).T.astype(np.int64)
+
+    def facet_basis(self, name: str) -> Any:
+        """scikit-fem basis on the facets of a named boundary."""
+        import skfem
+
+        return skfem.FacetBasis(self.mesh, skfem.ElementQuad2(), facets=self.boundary(name), intorder=INTORDER)
+
+    def region_of(self, element: int) -> str:
+        """Name of the region that holds an element."""
+        found = [name for name, members in (self.mesh.subdomains or {}).items() if element in members]
+        return found[0] if found else "no region"
+
+
+def edge_functions(count: int) -> tuple[Array, Array, Array]:
+    """Values and derivatives (count, 3 nodes) at Gauss points of [-1, 1], and weights (count,); end, end, middle."""
+    x, weights = np.polynomial.legendre.leggauss(count)
+    values = np.stack([x * (x - 1) / 2, x * (x + 1) / 2, 1 - x * x], axis=-1)
+    return values, np.stack([x - 0.5, x + 0.5, -2 * x], axis=-1), weights
+
+
+@dataclass(frozen=True, eq=False)
+class PressedWall:
+    """Edges of a boundary under a pressure that follows them; force on the body per radian
+
+    f = -p int N n r ds,  n r ds = +-(r dz, -r dr) outwards  [N].
+    """
+
+    rings: Rings
+    boundary: str
+
+    @functools.cached_property
+    def nodes(self) -> Indices:
+        """(n_edges, 3): end, end, middle."""
+        return self.rings.edge_nodes(self.rings.boundary(self.boundary))
+
+    @functools.cached_property
+    def outwards(self) -> Array:
+        """(n_edges,) +1 where (dz, -dr) along the edge's nodes points out of the body."""
+        mesh, facets = self.rings.mesh, self.rings.boundary(self.boundary)
+        start, end = np.moveaxis(self.rings.nodes[:, self.nodes[:, :2]], -1, 0)
+        centre = mesh.p[:, mesh.t[:, mesh.f2t[0, facets]]].mean(axis=1)
+        out, along = (start + end) / 2 - centre, end - start
+        return np.sign(out[0] * along[1] - out[1] * along[0])
+
+    def force(self, places: Array) -> Array:
+        """(n_edges, 3, 2) force of unit pressure at nodes (2, n_nodes), m2 per radian."""
+        (r, dr, dz), values, _, weights = self._along(places)
+        signed = -self.outwards[:, None] * weights * r
+        return np.stack([np.einsum("fq,qa->fa", signed * part, values) for part in (dz, -dr)], axis=-1)
+
+    def stiffness(self, places: Array) -> Array:
+        """(n_edges, 3, 2, 3, 2) derivative of `force` by the places of the nodes, m per radian."""
+        (r, dr, dz), values, slopes, weights = self._along(places)
+        signed = -self.outwards[:, None] * weights
+        found = np.zeros((len(r), 3, 2, 3, 2))
+
+        def integral(factor: Array, other: Array) -> Array:
+            return np.einsum("fq,qa,qb->fab", signed * factor, values, other)
+
+        found[:, :, 0, :, 0] = integral(dz, values)
+        found[:, :, 0, :, 1] = integral(r, slopes)
+        found[:, :, 1, :, 0] = -integral(dr, values) - integral(r, slopes)
+        return found
+
+    def _along(self, places: Array) -> tuple[tuple[Array, Array, Array], Array, Array, Array]:
+        values, slopes, weights = edge_functions(3)
+        r, z = places[:, self.nodes]
+        return (r @ values.T, r @ slopes.T, z @ slopes.T), values, slopes, weights
+
+
+#: Tensor indices of the six components; r, z, theta are 0, 1, 2.
+FIRST = np.array([0, 1, 2, 0, 0, 1])
+SECOND = np.array([0, 1, 2, 1, 2, 2])
+
+
+#: The unit tensor, and the symmetric unit of fourth order for engineering shears.
+UNIT = np.array([1.0, 1.0, 1.0, 0.0, 0.0, 0.0])
+SYMMETRIC_UNIT = np.diag([1.0, 1.0, 1.0, 0.5, 0.5, 0.5])
+
+
+def components(tensor: Array) -> Array:
+    """(6, ...) components of symmetric tensors (3, 3, ...)."""
+    return np.asarray(tensor[FIRST, SECOND])
+
+
+def outer(one: Array, other: Array) -> Array:
+    """(6, 6, ...) dyad of two tensors (6, ...)."""
+    return np.asarray(one[:, None] * other[None])
+
+
+def box(b: Array) -> Array:
+    """(6, 6, ...) of (b_ik b_jl + b_il b_jk) / 2 for symmetric b (3, 3, ...): the unit of fourth order if b = 1.
+
+    >>> bool(np.allclose(box(np.eye(3)), SYMMETRIC_UNIT))
+    True
+    """
+    i, j, k, m = FIRST[:, None], SECOND[:, None], FIRST[None], SECOND[None]
+    return np.asarray((b[i, k] * b[j, m] + b[i, m] * b[j, k]) / 2)
+
+
+def over(values: Array, shape: tuple[int, ...]) -> Array:
+    """A constant tensor at every point: further axes of size one."""
+    return np.asarray(values).reshape(values.shape + (1,) * len(shape))

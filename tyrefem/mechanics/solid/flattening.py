@@ -1,0 +1,193 @@
+"""An inflated body pressed inside a rigid cylinder: every meridian deflected alike ("barrel", Clark & Dodge 1980)."""
+
+from __future__ import annotations
+
+import functools
+import math
+from dataclasses import dataclass, field
+
+import numpy as np
+from numpy.typing import NDArray
+
+from tyrefem.errors import InputError
+from tyrefem.mechanics.solid.cylinder import CylinderChoice, StuckError, equilibrium_inside
+from tyrefem.mechanics.solid.elements import Indices
+from tyrefem.mechanics.solid.inflation import Inflation
+
+Array = NDArray[np.float64]
+
+
+@dataclass(frozen=True, eq=False)
+class Flattened:
+    """An inflated body in equilibrium inside a frictionless cylinder of radius R - D. Made by `flatten`.
+
+    Parameters
+    ----------
+    tyre : the inflated body; R is the largest radius of its boundary ``touching``.
+    deflection : D, m.
+    displacement : (2, n_nodes) from the undeformed place, m.
+    forces : (n_contact_nodes,) inward force of the cylinder on the nodes of ``touching``, N per radian.
+    steps : deflections passed on the way, m; residuals : force out of balance at every iteration of every step.
+    """
+
+    tyre: Inflation
+    deflection: float
+    displacement: Array
+    forces: Array
+    touching: str = "road"
+    steps: tuple[float, ...] = ()
+    residuals: tuple[tuple[float, ...], ...] = field(default=(), repr=False)
+
+    @functools.cached_property
+    def nodes(self) -> Indices:
+        """Nodes that may touch."""
+        return self.tyre.body.rings.boundary_nodes(self.touching)
+
+    @property
+    def radius(self) -> float:
+        """Radius of the cylinder, m."""
+        return reach(self.tyre, self.touching) - self.deflection
+
+    @property
+    def places(self) -> Array:
+        """(2, n_nodes) present places, m."""
+        return self.tyre.body.rings.nodes + self.displacement
+
+    @property
+    def gaps(self) -> Array:
+        """(n_contact_nodes,) distance to the cylinder, m."""
+        return np.asarray(self.radius - self.places[0, self.nodes])
+
+    @property
+    def width(self) -> float:
+        """Axial width in contact, m; 0 where nothing touches."""
+        touched = self.places[1, self.nodes[self.forces > 0]]
+        if not touched.size:
+            return 0.0
+        return float(2 * touched.max() if self.tyre.half else np.ptp(touched))
+
+    @property
+    def force(self) -> float:
+        """Force of the cylinder all round and on both halves, N: the derivative of the potential by the deflection."""
+        return float(self._whole * self.forces.sum())
+
+    @functools.cached_property
+    def stiffness(self) -> float:
+        """dF/dD, N/m, of the nodes in contact as they are."""
+        from scipy.sparse.linalg import splu
+
+        body = self.tyre.body
+        held = 2 * self.nodes[self.forces > 0]
+        if not held.size:
+            return 0.0
+        matrix = body.stiffness(self.displacement, self.tyre.pressure)
+        free = np.setdiff1d(body.free, held)
+        change = np.zeros(matrix.shape[0])
+        change[held] = -1.0
+        change[free] = -splu(matrix[free][:, free].tocsc()).solve((matrix @ change)[free])
+        return float(-self._whole * (matrix @ change)[held].sum())
+
+    @property
+    def _whole(self) -> float:
+        return 2 * math.pi * (2 if self.tyre.half else 1)
+
+    @functools.cached_property
+    def strain(self) -> Array:
+        """(6, n_elements, n_points) Green's strain from the inflated place, (f'f - 1)/2 with engineering shears."""
+        before, after = self.tyre.deformation, self.tyre.body.deformation(self.displacement)
+        first, last = (np.moveaxis(one, (0, 1), (-2, -1)) for one in (before, after))
+        f = last @ np.linalg.inv(first)
+        e = (np.swapaxes(f, -1, -2) @ f - np.eye(3)) / 2
+        found = [e[..., 0, 0], e[..., 1, 1], e[..., 2, 2], 2 * e[..., 0, 1], 2 * e[..., 0, 2], 2 * e[..., 1, 2]]
+        return np.stack(found)
+
+
+def reach(tyre: Inflation, touching: str = "road") -> float:
+    """Largest radius of a boundary of the inflated body, m."""
+    return float(tyre.places[0, tyre.body.rings.boundary_nodes(touching)].max())
+
+
+def bottoming(tyre: Inflation) -> float:
+    """Deflection at which the crown's inner surface would meet the rim: its top, or the highest point held, m.
+
+    Without either: R.
+    """
+    rings, body = tyre.body.rings, tyre.body
+    stops = [rings.nodes[0, rings.boundary_nodes(name)].max() for name, axes in body.held.items() if "r" in axes]
+    stops += [tyre.state.rim_top] if tyre.state.rim_top else []
+    if not stops:
+        return reach(tyre)
+    return float(tyre.places[0, body.wall.nodes].max() - max(stops))
+
+
+def flatten(
+    tyre: Inflation,
+    deflection: float,
+    start: Flattened | None = None,
+    choice: CylinderChoice | None = None,
+    touching: str = "road",
+) -> Flattened:
+    """Press an inflated body inside a rigid frictionless cylinder; the gas keeps its pressure.
+
+    u_r <= R - D - r at every node of the boundary, inward force >= 0, never both: a bound on single degrees of freedom,
+    so Newton with an active set (primal-dual; Hintermuller, Ito & Kunisch 2003) meets it exactly, without a penalty.
+
+    Parameters
+    ----------
+    deflection : D, m, from the inflated free tyre. start : the same tyre at a smaller deflection.
+
+    Raises
+    ------
+    InputError : a deflection that is negative, that brings the crown to the rim, or beyond which nothing is in balance.
+
+    >>> from tyrefem import study
+    >>> from tyrefem.geometry.meshing import build
+    >>> from tyrefem.mechanics.solid.inflation import inflate
+    >>> tyre = study("nasa-22x5.5-8pr")
+    >>> flat = flatten(inflate(tyre, 5e5, build(tyre.section, size=12e-3, through=1)), 0.01)
+    >>> bool((flat.forces * flat.gaps < 1e-9 * flat.force).all()), flat.force > 0
+    (True, True)
+    """
+    choice = choice or CylinderChoice()
+    most = bottoming(tyre)
+    if not 0 <= deflection < most:
+        raise InputError(
+            f"a deflection of {deflection * 1e3:.4g} mm is impossible; it must be at least 0 and less than "
+            f"{most * 1e3:.4g} mm, where the crown meets the rim",
+            field="deflection",
+        )
+    nodes = tyre.body.rings.boundary_nodes(touching)
+    now = start or Flattened(tyre, 0.0, tyre.displacement, np.zeros(len(nodes)), touching)
+    before, free = now, reach(tyre, touching)
+    step = choice.first_step * free
+    steps, residuals = list(now.steps), list(now.residuals)
+    while now.deflection < deflection:
+        aim = min(deflection, now.deflection + step)
+        past = now.deflection - before.deflection
+        share = (aim - now.deflection) / past if past > 0 else 0.0
+        guess = now.displacement + share * (now.displacement - before.displacement)
+        try:
+            try:
+                found, forces, history = equilibrium_inside(
+                    tyre.body, tyre.pressure, nodes, guess, now.forces, free - aim, choice
+                )
+            except StuckError:
+                if not share:
+                    raise
+                found, forces, history = equilibrium_inside(
+                    tyre.body, tyre.pressure, nodes, now.displacement, now.forces, free - aim, choice
+                )
+        except StuckError as stuck:
+            step = (aim - now.deflection) / 2
+            if step < choice.smallest_step * free:
+                raise InputError(
+                    f"a deflection of {deflection * 1e3:.4g} mm is impossible: no equilibrium beyond "
+                    f"{now.deflection * 1e3:.4g} mm; {stuck}",
+                    field="deflection",
+                ) from None
+            continue
+        steps.append(aim)
+        residuals.append(history)
+        before, now = now, Flattened(tyre, aim, found, forces, touching, tuple(steps), tuple(residuals))
+        step *= 1.5 if len(history) <= 8 else 1.0
+    return now

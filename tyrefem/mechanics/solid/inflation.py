@@ -1,0 +1,179 @@
+"""The inflated tyre: growth, cord tensions, bead tension, and the state that a footprint starts from."""
+
+from __future__ import annotations
+
+import functools
+from dataclasses import dataclass
+from typing import TYPE_CHECKING, Any
+
+import numpy as np
+from numpy.typing import NDArray
+
+from tyrefem.brief import Brief
+from tyrefem.errors import InputError
+from tyrefem.mechanics.solid.body import Body, Prestressed
+from tyrefem.mechanics.solid.newton import Equilibrium, NewtonChoice, equilibrium
+
+if TYPE_CHECKING:
+    from tyrefem.geometry.meshing.mesh import TyreMesh
+    from tyrefem.inputs.study import Study
+
+Array = NDArray[np.float64]
+
+
+@dataclass(frozen=True)
+class LayerTension:
+    """Cords of a region: least, mean and greatest of stretch - 1; of the stress v_c E (lambda - 1) along the cords per
+    undeformed section of the layer, Pa; of the tension of one cord, N (None: its diameter is not known)."""
+
+    region: str
+    strain: tuple[float, float, float]
+    stress: tuple[float, float, float]
+    tension: tuple[float, float, float] | None
+
+
+@dataclass(frozen=True, eq=False)
+class Inflation(Brief):
+    """A body in equilibrium under inflation pressure. Made by `inflate`.
+
+    ``half``: the body is the half z >= 0 of a symmetric tyre; lengths and volumes below are the whole tyre's.
+    """
+
+    body: Body
+    found: Equilibrium
+    half: bool = True
+
+    @property
+    def pressure(self) -> float:
+        """Gauge pressure, Pa."""
+        return self.found.pressure
+
+    @property
+    def displacement(self) -> Array:
+        """(2, n_nodes) u_r, u_z of all nodes, m."""
+        return self.found.displacement
+
+    @property
+    def places(self) -> Array:
+        """(2, n_nodes) inflated places of the nodes, m."""
+        return self.body.rings.nodes + self.displacement
+
+    @functools.cached_property
+    def deformation(self) -> Array:
+        """F (3, 3, n_elements, n_points)."""
+        return self.body.deformation(self.displacement)
+
+    @functools.cached_property
+    def state(self) -> Prestressed:
+        """What a small further motion sees."""
+        return self.body.state(self.displacement, self.pressure)
+
+    @property
+    def mesh(self) -> Any:
+        """The inflated mesh, skfem ``MeshQuad2``."""
+        return self.state.mesh
+
+    @property
+    def radius_growth(self) -> float:
+        """Growth of the largest radius, m."""
+        return float(self.places[0].max() - self.body.rings.nodes[0].max())
+
+    @property
+    def width_growth(self) -> float:
+        """Growth of the overall width, m."""
+        if self.half:
+            return float(2 * (self.places[1].max() - self.body.rings.nodes[1].max()))
+        return float(np.ptp(self.places[1]) - np.ptp(self.body.rings.nodes[1]))
+
+    @functools.cached_property
+    def cord_tensions(self) -> dict[str, LayerTension]:
+        """Region -> stretch and tension of its cords."""
+        found = {}
+        for region, part in self.body.parts.items():
+            members = self.body.mesh.subdomains[region]
+            here, weights = self.deformation[:, :, members], self.body.rings.weights[members]
+            for layer in part.cords:
+                tension = None if layer.cord_stiffness is None else _spread(layer.tension(here), weights)
+                strain, stress = _spread(layer.stretch(here) - 1, weights), layer.stress_in_layer(here)
+                found[region] = LayerTension(region, strain, _spread(stress, weights), tension)
+        return found
+
+    @property
+    def bead_tension(self) -> float:
+        """Hoop force of the cords of region ``bead`` on one side, N: int sigma_tt dA of the cords.
+
+        Raises
+        ------
+        InputError : no region ``bead``, or one without hoop cords.
+        """
+        part = self.body.parts.get("bead")
+        if part is None or not part.cords:
+            raise InputError("the body has no region 'bead' with wires")
+        members = self.body.mesh.subdomains["bead"]
+        here = self.deformation[:, :, members]
+        weights = self.body.rings.weights[members] / self.body.rings.points[0][members]
+        # First Piola stress times undeformed area: tau_tt / F_tt.
+        stress = sum(layer.stress(here)[2] for layer in part.cords) / here[2, 2]
+        return float((stress * weights).sum()) / (1 if self.half else 2)
+
+    def summary(self) -> dict[str, float]:
+        """Growth, m; bead tension, N; Newton steps."""
+        found = {
+            "pressure_Pa": self.pressure,
+            "radius_growth_m": self.radius_growth,
+            "width_growth_m": self.width_growth,
+            "load_steps": float(len(self.found.steps)),
+            "newton_iterations": float(sum(len(history) - 1 for history in self.found.residuals)),
+        }
+        bead = self.body.parts.get("bead")
+        return {**found, "bead_tension_N": self.bead_tension} if bead and bead.cords else found
+
+
+def _spread(values: Array, weights: Array) -> tuple[float, float, float]:
+    return float(values.min()), float((values * weights).sum() / weights.sum()), float(values.max())
+
+
+def inflate(
+    study: Study,
+    pressure: float | None = None,
+    mesh: TyreMesh | None = None,
+    choice: NewtonChoice | None = None,
+    temperature: Any = None,
+) -> Inflation:
+    """Inflate a study's tyre.
+
+    Parameters
+    ----------
+    study : the study.
+    pressure : Pa above the ambient; by default that of the drive's first phase.
+    mesh : a mesh of the study's section in quadrilaterals; by default the study's own.
+    temperature : degC, as `tyrefem.mechanics.solid.thermal.warm` takes it; by default nothing expands.
+
+    Raises
+    ------
+    InputError : a card that lacks a modulus, or no equilibrium: at which share of the pressure, and where.
+
+    >>> from tyrefem import study
+    >>> from tyrefem.geometry.meshing import build
+    >>> tyre = study("nasa-22x5.5-8pr")
+    >>> inflated = inflate(tyre, 5e5, build(tyre.section, size=10e-3, through=1))
+    >>> 0 < inflated.radius_growth < 0.02
+    True
+    """
+    from tyrefem.mechanics.solid.tyre_body import tyre_body
+
+    if pressure is None:
+        pressure = float(study.card.drive.phases[0].pressure.start)
+    if not (np.isfinite(pressure) and pressure >= 0):
+        raise InputError(f"must be a pressure of 0 Pa or more, not {pressure:g}", field="pressure")
+    body = tyre_body(study, mesh)
+    try:
+        if temperature is None:
+            return Inflation(body, equilibrium(body, pressure, choice), study.section.half)
+        from tyrefem.mechanics.solid import thermal
+
+        warmed = thermal.warm(body, temperature, thermal.expansions(study))
+        found = thermal.relaxed(warmed, equilibrium(body, pressure, choice))
+    except InputError as error:
+        raise error if error.file else InputError(error.message, field=error.field, file=study.file) from None
+    return Inflation(warmed, found, study.section.half)

@@ -1,0 +1,165 @@
+"""Equilibrium of a body under a rising pressure: Newton with line search, load steps that adapt."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass, field
+
+import numpy as np
+from numpy.typing import NDArray
+
+from tyrefem.brief import Brief
+from tyrefem.errors import InputError
+from tyrefem.mechanics.solid.body import Body
+from tyrefem.mechanics.solid.compounds import determinant
+
+Array = NDArray[np.float64]
+#: A Newton step of this share of the largest coordinate alters nothing that can be computed.
+ROUND_OFF = 1e-13
+#: A load step of at most so many evaluations is followed by one twice as large.
+EASY = 12
+
+
+@dataclass(frozen=True)
+class NewtonChoice:
+    """How equilibrium is sought.
+
+    ``tolerance`` : force out of balance over that of the pressure; ``iterations`` : most per load step; ``first_step``,
+    ``smallest_step`` : of the load, over the whole; ``line_search`` : most halvings of a Newton step.
+    """
+
+    tolerance: float = 1e-8
+    iterations: int = 25
+    first_step: float = 0.5
+    smallest_step: float = 1e-3
+    line_search: int = 3
+
+
+@dataclass(frozen=True, eq=False)
+class Equilibrium(Brief):
+    """Displacement (2, n_nodes), m, that balances a pressure, Pa, and how it was found.
+
+    ``residuals`` holds the force out of balance, over that of the pressure, at every iteration of every load step.
+    """
+
+    displacement: Array
+    pressure: float
+    steps: tuple[float, ...]
+    residuals: tuple[tuple[float, ...], ...] = field(repr=False)
+
+
+class _StuckError(Exception):
+    """A load step that did not converge: where it is worst."""
+
+
+def equilibrium(body: Body, pressure: float, choice: NewtonChoice | None = None) -> Equilibrium:
+    """The state of a body under a pressure, raised in steps from the undeformed state.
+
+    Raises
+    ------
+    InputError : no equilibrium was found; says at which share of the load, where (r, z), and in which region.
+    """
+    choice = choice or NewtonChoice()
+    if not np.isfinite(pressure):
+        raise InputError(f"the pressure must be a finite number, not {pressure:g} Pa", field="pressure")
+    before = now = np.zeros((2, body.rings.n_nodes))
+    reached, last, step = 0.0, 0.0, choice.first_step
+    steps: list[float] = []
+    residuals: list[tuple[float, ...]] = []
+    while pressure and reached < 1:
+        aim = min(1.0, reached + step)
+        guess = now + (now - before) * (aim - reached) / last if last else now
+        try:
+            try:
+                found, history = _newton(body, guess, aim * pressure, choice)
+            except _StuckError:
+                if not last:
+                    raise
+                found, history = _newton(body, now, aim * pressure, choice)
+        except _StuckError as stuck:
+            step = (aim - reached) / 2
+            if step < choice.smallest_step:
+                raise InputError(
+                    f"no equilibrium beyond {reached:.1%} of {pressure / 1e3:.4g} kPa (load step {len(steps) + 1}): "
+                    f"{stuck}",
+                    field="pressure",
+                ) from None
+            continue
+        before, now, last, reached = now, found, aim - reached, aim
+        steps.append(aim)
+        residuals.append(history)
+        step *= 2.0 if len(history) <= EASY else 1.0
+    return Equilibrium(now, pressure, tuple(steps), tuple(residuals))
+
+
+def _newton(body: Body, start: Array, pressure: float, choice: NewtonChoice) -> tuple[Array, tuple[float, ...]]:
+    from scipy.sparse.linalg import splu
+
+    free, now = body.free, start
+    if not _possible(body, now):
+        raise _StuckError(_folded(body, now))
+    size = abs(pressure) * float(np.linalg.norm(body.load(now)[free]))
+    residual = body.residual(now, pressure)
+    history = [float(np.linalg.norm(residual[free])) / size]
+    while history[-1] > choice.tolerance:
+        if len(history) > choice.iterations or not np.isfinite(history[-1]):
+            raise _StuckError(_worst(body, now, residual))
+        matrix = body.stiffness(now, pressure)[free][:, free]
+        change = np.zeros(now.shape)
+        try:
+            change.T.flat[free] = -splu(matrix.tocsc()).solve(residual[free])
+        except RuntimeError:
+            raise _StuckError("nothing holds the body: its stiffness is singular") from None
+        now, residual = _searched(body, now, change, residual, pressure, choice)
+        history.append(float(np.linalg.norm(residual[free])) / size)
+        if np.abs(change).max() <= ROUND_OFF * np.abs(body.rings.nodes).max():
+            break
+    return now, tuple(history)
+
+
+def _searched(
+    body: Body, now: Array, change: Array, residual: Array, pressure: float, choice: NewtonChoice
+) -> tuple[Array, Array]:
+    """The step along ``change``, halved while it turns elements over or the work along it grows."""
+    free = body.free
+    along = change.T.ravel()[free]
+    work, size = abs(along @ residual[free]), np.linalg.norm(residual[free])
+    share, best = 1.0, None
+    for _ in range(choice.line_search + 1):
+        tried = now + share * change
+        if _possible(body, tried):
+            left = body.residual(tried, pressure)
+            better = abs(along @ left[free])
+            if better <= 0.9 * work or np.linalg.norm(left[free]) <= 0.9 * size:
+                return tried, left
+            if best is None or better < best[0]:
+                best = (better, tried, left)
+        share /= 2
+    if best is None:
+        raise _StuckError(_folded(body, now + share * change))
+    return best[1], best[2]
+
+
+def _possible(body: Body, displacement: Array) -> bool:
+    f = body.deformation(displacement)
+    return bool((determinant(f) > 0).all() and (f[2, 2] > 0).all())
+
+
+def _folded(body: Body, displacement: Array) -> str:
+    volume = determinant(body.deformation(displacement))
+    element, point = np.unravel_index(int(volume.argmin()), volume.shape)
+    r, z = body.rings.points[:, element, point]
+    return (
+        f"the mesh folds at (r, z) = ({r * 1e3:.1f}, {z * 1e3:.1f}) mm, region '{body.rings.region_of(int(element))}'"
+    )
+
+
+def _worst(body: Body, displacement: Array, residual: Array) -> str:
+    size = np.zeros(len(residual))
+    size[body.free] = residual[body.free]
+    node = int(np.hypot(*size.reshape(-1, 2).T).argmax())
+    r, z = body.rings.nodes[:, node]
+    element = int(np.flatnonzero((body.rings.element_nodes == node).any(axis=1))[0])
+    return (
+        f"the forces stay out of balance, most at (r, z) = ({r * 1e3:.1f}, {z * 1e3:.1f}) mm, "
+        f"region '{body.rings.region_of(element)}'"
+    )

@@ -1,0 +1,20 @@
+"""What the regions of a body are made of."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+from tyrefem.mechanics.solid.compounds import Compound
+from tyrefem.mechanics.solid.cords import CordLayer
+
+
+@dataclass(frozen=True, eq=False)
+class Part:
+    """What a region is made of: a compound and layers of cords at the points of the region's elements.
+
+    ``cord_loss`` is the cords' tan delta over the compound's: 0 where the cords lose nothing.
+    """
+
+    compound: Compound
+    cords: tuple[CordLayer, ...] = ()
+    cord_loss: float = 0.0

@@ -1,0 +1,167 @@
+"""From a study's cards to the body that is inflated: compounds, cords, held boundaries."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass, replace
+from typing import TYPE_CHECKING, Any
+
+import numpy as np
+from numpy.typing import NDArray
+
+from tyrefem.errors import InputError
+from tyrefem.estimates import work as estimate
+from tyrefem.geometry.meshing.expected import QUADRATIC
+from tyrefem.mechanics.solid.body import Body
+from tyrefem.mechanics.solid.compounds import Compound, neo_hookean
+from tyrefem.mechanics.solid.cords import CordLayer, lifted_angle, lifted_ends
+from tyrefem.mechanics.solid.elements import Rings
+from tyrefem.mechanics.solid.parts import Part
+from tyrefem.mechanics.solid.rim import FLANGE_RADIUS, SEAT, on_rim
+
+if TYPE_CHECKING:
+    from tyrefem.geometry.meshing.mesh import TyreMesh
+    from tyrefem.inputs.study import Study
+    from tyrefem.materials.card import MaterialCard
+
+Array = NDArray[np.float64]
+#: Temperature, degC, at which the losses of cords and rubber are compared.
+LOSS_TEMPERATURE = 60.0
+#: A layer carries so much of its rubber's shear modulus in compression along the cords. Estimate: wavy cords buckle
+#: below the limit of straight ones, which is 1.
+BUCKLING = 0.5
+#: Crown angles, deg, of plies whose cords' stiffness follows from the ply shear modulus.
+BIAS_ANGLES = (10.0, 80.0)
+
+
+def tyre_body(study: Study, mesh: TyreMesh | None = None) -> Body:
+    """The body of a study's tyre on its mesh: held on the rim's seat, lying on its flanges; u_z = 0 on the mid plane
+    of a half section.
+
+    A region's compound is its card's ``[elasticity]``, or neo-Hookean with its ``shear_modulus`` (that of the carcass
+    where it has none). Its cords are the card's ``[cords]``; or bias plies with v_c E = 4 G_p / sin^2(2 a), from
+    the ``[cord]`` table's ply shear modulus G_p and crown angle a; or, in the bead, the rating's wire along the hoop.
+
+    Raises
+    ------
+    InputError : triangles; a region without a modulus; cords that the lift law cannot place.
+    """
+    meshed = study.mesh() if mesh is None else mesh
+    nodes = QUADRATIC * meshed.n_nodes
+    try:
+        estimate.check_memory(estimate.mechanics(nodes).memory, f"{nodes:,} nodes of nine-node elements")
+    except InputError as error:
+        raise error.within(field="mesh", file=study.file) from None
+    reader = _Reader(study, meshed, Rings(meshed.mesh))
+    parts = {}
+    for region in study.section.regions:
+        try:
+            parts[region] = reader.part(region)
+        except InputError as error:
+            raise error if error.file else error.within(field=f"materials.{region}", file=study.file) from None
+    named, flanges = on_rim(meshed.mesh, study.section.flange_radius or FLANGE_RADIUS)
+    held = {SEAT: "rz", **({"symmetry": "z"} if study.section.half else {})}
+    return Body(named, parts, held, flanges=flanges)
+
+
+@dataclass(frozen=True, eq=False)
+class _Reader:
+    study: Study
+    mesh: TyreMesh
+    rings: Rings
+
+    def part(self, region: str) -> Part:
+        card = self.study.materials[region]
+        cords = getattr(card, "cords", None)
+        compound = self.compound(card)
+        if cords is not None:
+            own = getattr(cords, "loss_tangent", None) or 0.0
+            ratio = own / max(float(card.loss_tangent(LOSS_TEMPERATURE)), 1e-12)
+            return Part(compound, (self._limited(self.layer(region, cords), compound),), ratio)
+        layer = self.bias_plies(region, card) or self.bead_wire(region, card)
+        return Part(compound, (self._limited(layer, compound),) if layer else ())
+
+    @staticmethod
+    def _limited(layer: CordLayer, compound: Compound) -> CordLayer:
+        return replace(layer, limit=BUCKLING * compound.shear_modulus)
+
+    def compound(self, card: MaterialCard) -> Compound:
+        law = getattr(card, "elasticity", None)
+        if law is not None:
+            if law.law == "neo-hookean":
+                return neo_hookean(law.shear_modulus, law.bulk)
+            c01, c20, c30 = (float(getattr(law, name, 0.0)) for name in ("c01", "c20", "c30"))
+            return Compound(law.c10, c01, c20, c30, law.bulk)
+        carcass = self.study.materials.get("carcass")
+        modulus = card.shear_modulus or (carcass.shear_modulus if carcass else None)
+        if modulus is None:
+            raise InputError("the card needs 'shear_modulus' or '[elasticity]' for large displacements")
+        return neo_hookean(float(modulus.value))
+
+    def layer(self, region: str, cords: Any) -> CordLayer:
+        points, meridian, s = self._places(region)
+        if cords.lift:
+            angle = lifted_angle(cords.angle, cords.angle_radius, points[0])
+            ends = cords.ends * lifted_ends(cords.angle, cords.angle_radius, points[0])
+        else:
+            angle, ends = np.full(s.shape, cords.angle), np.full(s.shape, cords.ends)
+        area = np.pi * cords.diameter**2 / 4
+        share = ends * area / self._thickness(region, s)
+        if share.max() > 1:
+            raise InputError(
+                f"the cords fill {share.max():.0%} of the region at its narrowest place", field="cords.ends"
+            )
+        weaker = cords.modulus if cords.compression_modulus is None else cords.compression_modulus
+        return CordLayer(angle, meridian, share * cords.modulus, weaker / cords.modulus, cords.modulus * area)
+
+    def bias_plies(self, region: str, card: MaterialCard) -> CordLayer | None:
+        if card.cord is None or card.cord.ply_shear_modulus is None:
+            return None
+        rating = self.study.section.rating
+        angle = (rating.cord_angle if rating else None) or card.cord.crown_angle
+        if not angle:
+            raise InputError("neither the section nor the card gives the crown cord angle", field="cord.crown_angle")
+        if not BIAS_ANGLES[0] <= np.degrees(angle) <= BIAS_ANGLES[1]:
+            # v_c E = 4 G_p / sin^2(2 a) has no bound at 0 and 90 deg.
+            raise InputError(
+                f"a ply shear modulus tells the cords' stiffness for crown angles of {BIAS_ANGLES[0]:g} to "
+                f"{BIAS_ANGLES[1]:g} deg, not {np.degrees(angle):.4g} deg; give the card [cords]",
+                field="cord.crown_angle",
+            )
+        points, meridian, _ = self._places(region)
+        crown = float(self.study.section.line.position(np.zeros(1))[0, 0])
+        # Beyond the crown's midline the plies' outer half would pass the lift law's radius: the midline's angle holds.
+        angles = lifted_angle(angle, crown, np.minimum(points[0], crown))
+        stiffness = 4 * card.cord.ply_shear_modulus / np.sin(2 * angle) ** 2
+        return CordLayer(angles, meridian, np.full(angles.shape, stiffness))
+
+    def bead_wire(self, region: str, card: MaterialCard) -> CordLayer | None:
+        rating = self.study.section.rating
+        if region != "bead" or rating is None or card.youngs_modulus is None:
+            return None
+        points, meridian, _ = self._places(region)
+        sides = 1 if self.study.section.half else 2
+        share = rating.bead_area * sides / self.study.section.area(region)
+        stiffness = np.full(points.shape[1:], share * float(card.youngs_modulus.value))
+        return CordLayer(np.zeros(points.shape[1:]), meridian, stiffness)
+
+    def _places(self, region: str) -> tuple[Array, Array, Array]:
+        """Gauss points (2, n, q), unit vectors along the meridian and stations |s| of a region."""
+        points = self.rings.points[:, self.mesh.mesh.subdomains[region]]
+        flat = points.reshape(2, -1)
+        s, _ = self.study.section.locate(flat.T)
+        return points, self.mesh.along_meridian(flat).reshape(points.shape), np.abs(s).reshape(points.shape[1:])
+
+    def _thickness(self, region: str, s: Array) -> Array:
+        section = self.study.section
+        if section.wrapping is not None and region == section.wrap:
+            return np.full(s.shape, section.wrapping.thickness)
+        pieces = [piece for piece in section.pieces if piece.region == region]
+        total = np.zeros(s.shape)
+        for piece in pieces:
+            inside = np.clip(s, piece.start, piece.end)
+            thickness = section.layers[piece.layer].thickness(inside)
+            # A curved layer's Gauss point may project just beyond the piece's end.
+            total += np.where(np.abs(inside - s) < 2e-3, thickness, 0.0)
+        if (total <= 0).any():
+            raise InputError(f"region '{region}' has no thickness at s = {float(s[total <= 0][0]) * 1e3:.1f} mm")
+        return total

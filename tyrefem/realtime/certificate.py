@@ -1,0 +1,298 @@
+"""A real-time model trained on full runs of drives in its box, and certified on fresh ones.
+
+Full runs that a real-time model learns from and is examined by.
+"""
+
+from __future__ import annotations
+
+import tempfile
+import threading
+from collections.abc import Callable, Mapping, Sequence
+from dataclasses import dataclass
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+from numpy.typing import NDArray
+
+from tyrefem.errors import InputError
+from tyrefem.estimates import work as estimate
+from tyrefem.inputs.study import Study
+from tyrefem.output import versions
+from tyrefem.realtime.export import arrays_of, outputs_of, write
+from tyrefem.realtime.inputs import NAMES, Box, Course, box_of, random_course, steady
+from tyrefem.realtime.tables import Probe
+from tyrefem.realtime.tyre import STANDSTILL, RealTimeTyre
+from tyrefem.reduced.balance import reduced_balance
+from tyrefem.reduced.model import NotReducibleError
+from tyrefem.reduced.training import Fineness, Snapshots, snapshots, trained
+from tyrefem.requirements import Requirements
+from tyrefem.simulation.estimate import RunEstimate
+from tyrefem.simulation.rolling_tyre import RollingTyre
+from tyrefem.simulation.run import run
+from tyrefem.variants.schedulers import Here, Local, Scheduler
+from tyrefem.variants.task import Bundle, bundle, unpacked
+
+
+@dataclass(frozen=True, eq=False)
+class Exam:
+    """A drive to be run in full: what it teaches, and what a real-time model has to answer."""
+
+    packed: Bundle
+    course: Course
+    every: float
+    fields: int
+
+
+@dataclass(frozen=True, eq=False)
+class Certificate:
+    """Largest differences between the real-time model, stepped by 1 s, and full runs that it had not learnt from.
+
+    Parameters
+    ----------
+    steady, driven : output -> K, or N, under steady inputs and under drives of steps and ramps. worst : of all
+    temperatures, K. tolerance : what was asked for, K. cases : fresh runs of either kind. trained_on : full runs.
+    duration : of every drive, s. tables : largest error of a film and of a heat source between the tables' points,
+    over the largest there.
+    """
+
+    steady: Mapping[str, float]
+    driven: Mapping[str, float]
+    worst: float
+    tolerance: float
+    cases: tuple[int, int]
+    trained_on: int
+    duration: float
+    tables: Mapping[str, float]
+
+
+_last = threading.local()
+
+
+def sit(exam: Exam) -> dict[str, Any]:
+    """Done in a worker: ``{"snapshots", "hot", "times", "answers"}`` or ``{"failure"}``."""
+    from tyrefem.conduction import SolverError
+
+    try:
+        study = exam.course.study(unpacked(exam.packed), exam.every)
+        result = run(study, like=getattr(_last, "tyre", None))
+    except (InputError, SolverError) as error:
+        return {"failure": str(error)}
+    _last.tyre = result.tyre
+    readings, values = result.readings, np.asarray(result.history.values)
+    columns = {name: readings[name].to_numpy() for name in readings.columns if name != "time_s"}
+    speed = np.array([study.card.drive.value("speed", t) for t in result.times])
+    power = result.heat_budget.power("generated")
+    # A ramp to rest may end at a speed of rounding.
+    resistance = np.divide(power, speed, out=np.zeros_like(power), where=speed >= STANDSTILL)
+    return {
+        "snapshots": snapshots(result, exam.fields),
+        "hot": np.unique(values.argmax(axis=1)),
+        "times": result.times,
+        "answers": columns | {"hottest": values.max(axis=1), "rolling_resistance": resistance},
+    }
+
+
+def differences(tyre: RealTimeTyre, course: Course, full: Mapping[str, Any], step: float = 1.0) -> dict[str, float]:
+    """Output -> largest difference to a full run, at its readings on whole steps, K or N."""
+    tyre.reset(course.initial)
+    times, answers = full["times"], full["answers"]
+    due = {round(float(t) / step): i for i, t in enumerate(times) if abs(t / step - round(t / step)) < 1e-6 and t > 0}
+    worst = dict.fromkeys(answers, 0.0)
+    for number in range(1, max(due) + 1):
+        found = tyre.step(step, *course.inputs((number - 1) * step, number * step))
+        if number not in due:
+            continue
+        i = due[number]
+        for name, value in zip(tyre.names, found, strict=True):
+            # At a jump the heat of the full run is that before it, its speed that after it.
+            if name in answers and (name != "rolling_resistance" or not course.jumps(number * step)):
+                worst[name] = max(worst[name], abs(float(value) - float(answers[name][i])))
+    return worst
+
+
+def certificate(
+    errors: Sequence[Mapping[str, float]], tolerance: float, trained: int, duration: float, tables: dict[str, float]
+) -> Certificate:
+    """Of errors of steady drives, the first half, and of changing ones."""
+    half = len(errors) // 2
+    kinds = [{name: max(one[name] for one in part) for name in part[0]} for part in (errors[:half], errors[half:])]
+    worst = max(error for kind in kinds for name, error in kind.items() if name != "rolling_resistance")
+    return Certificate(kinds[0], kinds[1], worst, tolerance, (half, len(errors) - half), trained, duration, tables)
+
+
+Array = NDArray[np.float64]
+
+
+#: Random drives to learn from, fresh steady and random ones to certify with, and rounds of both.
+LEARN, FRESH, ROUNDS = 6, 4, 4
+
+
+#: What a real-time model needs of a study.
+NEEDS = Requirements("a real-time model")
+
+
+#: Few modes: a step costs their square, and its matrix their cube.
+FINENESS = Fineness(modes_tolerance=2e-4, source_tolerance=2e-6, most_modes=60, most_sources=60, fields=40)
+
+
+#: What it costs: full runs of drives of several phases in runs of one, strain cycles by finite elements for the tables,
+#: s of stepping per s of a drive (8PR at 12 and 3 mm, drives of 60 to 20 000 s: 0.8 to 1.2 times what was measured).
+RUNS, CYCLES, STEPPING = 25.0, 10.0, 2e-3
+
+
+#: Readings of a full run at most: the longer the drive, the rarer.
+READINGS = 900
+
+
+def export(
+    study: Study,
+    path: str | Path,
+    *,
+    ranges: Mapping[str, tuple[Any, Any]] | None = None,
+    tolerance: float = 0.2,
+    duration: float | None = None,
+    scheduler: Scheduler | None = None,
+    choice: Fineness | None = None,
+    seed: int = 11,
+    progress: Callable[[str, int, int], None] | None = None,
+) -> Certificate:
+    """Train a real-time model of a study, certify it, and write it to one file.
+
+    Parameters
+    ----------
+    path : ``.npz`` file. ranges : input -> (from, to), see `box_of`. tolerance : K, of every temperature of fresh full
+    runs. duration : of the drives it learns from and is certified with, s; that of the study's drive.
+
+    Raises
+    ------
+    InputError : a campaign; the box holds loads that the tyre cannot carry; a study that a reduced model cannot follow;
+        the tolerance was not reached, or is less than the study's own; more than there is memory for.
+    """
+    NEEDS.check(study)
+    if study.card.mechanics.feedback is not None:
+        raise InputError("a real-time model has no feedback of temperature on the strain cycle", field="mechanics")
+    tick = progress or (lambda what, done, total: None)
+    scheduler, choice = scheduler or Here(), choice or FINENESS
+    if tolerance < study.tolerance:
+        raise InputError(
+            f"{tolerance:g} K is less than the time error of the full runs themselves: must be at least "
+            f"numerics.tolerance, {study.tolerance:g} K",
+            field="tolerance",
+        )
+    box, horizon = box_of(study, ranges), float(duration or study.card.drive.end)
+    tick("tables", 0, 1)
+    tool = _Tool(study, box, horizon, choice, tick, scheduler)
+    tick("tables", 1, 1)
+    cube = np.random.default_rng(seed).random((ROUNDS * FRESH, 5))
+    courses = [steady(box, place, horizon) for place in _corners()]
+    courses += [random_course(box, horizon, 1000 * seed + k) for k in range(LEARN)]
+    learnt, between = tool.full(courses, "training"), tool.tables.errors(tool.probe)
+    for number in range(ROUNDS):
+        arrays = tool.model(learnt)
+        fresh = [steady(box, place, horizon) for place in cube[number * FRESH : (number + 1) * FRESH]]
+        fresh += [random_course(box, horizon, 2000 * seed + number * FRESH + k) for k in range(FRESH)]
+        full = tool.full(fresh, "certifying")
+        about = tool.about()
+        with tempfile.TemporaryDirectory() as folder:
+            tyre = RealTimeTyre(write(Path(folder) / "tyre.npz", arrays, about))
+        errors = [differences(tyre, course, one) for course, one in zip(fresh, full, strict=True)]
+        found = certificate(errors, tolerance, len(learnt), horizon, between)
+        if found.worst <= tolerance:
+            write(path, arrays, {**about, "certificate": vars(found)})
+            return found
+        learnt += full
+    name, error = max(((n, e) for one in errors for n, e in one.items() if n != "rolling_resistance"), key=_second)
+    raise NotReducibleError(
+        f"after {found.trained_on} full runs fresh ones still differ by {error:.3g} K at '{name}'; allowed: "
+        f"{tolerance:g} K: a smaller box or a larger tolerance"
+    )
+
+
+def _second(pair: tuple[str, float]) -> float:
+    return pair[1]
+
+
+def _corners() -> list[Array]:
+    """The middle; all that warms together, and all that cools."""
+    warm = np.array([name != "pressure" for name in NAMES], dtype=float)
+    return [np.full(5, 0.5), warm, 1 - warm]
+
+
+@dataclass(eq=False)
+class _Tool:
+    study: Study
+    box: Box
+    horizon: float
+    choice: Fineness
+    tick: Callable[[str, int, int], None]
+    scheduler: Scheduler
+
+    def __post_init__(self) -> None:
+        self.every = max(1.0, float(np.ceil(self.horizon / READINGS)))
+        middle = steady(self.box, np.full(5, 0.5), self.horizon).study(self.study, self.every)
+        self._expect(middle)
+        self.base = RollingTyre(middle)
+        self.probe = Probe(self.study, self.box, self.base)
+        self.tables = self.probe.tables()
+        self.packed = bundle(self.study)
+
+    def _expect(self, study: Study) -> None:
+        """Refuse full runs that do not fit side by side in memory; warn of long work."""
+        run, workers = RunEstimate.of(study), getattr(self.scheduler, "workers", 1)
+        if isinstance(self.scheduler, Here | Local):
+            run.check(workers)
+        seconds = RUNS * run.march.time / workers + CYCLES * run.mechanics.time + STEPPING * self.horizon
+        estimate.warn_of(seconds, f"training and certifying a real-time model of {self.study.name}")
+
+    def full(self, courses: Sequence[Course], what: str) -> list[dict[str, Any]]:
+        """Full runs of drives."""
+        exams = [Exam(self.packed, course, self.every, self.choice.fields) for course in courses]
+        outcomes: dict[int, dict[str, Any]] = {}
+        for place, outcome in self.scheduler.outcomes(sit, exams):
+            if "failure" in outcome:
+                raise InputError(f"a full run failed: {outcome['failure']}")
+            outcomes[place] = outcome
+            self.tick(what, len(outcomes), len(exams))
+        return [outcomes[place] for place in range(len(exams))]
+
+    def model(self, learnt: Sequence[Mapping[str, Any]]) -> dict[str, Any]:
+        """Arrays of a model of what was learnt."""
+        taught: list[Snapshots] = [one["snapshots"] for one in learnt]
+        none = np.zeros((0, taught[0].fields.shape[1]))
+        self.reduced = trained(self.base, [*taught, Snapshots(none, self._sources(taught))], choice=self.choice)
+        hot = np.unique(np.concatenate([one["hot"] for one in learnt]))
+        return arrays_of(self.reduced, self.probe, self.tables, hot)
+
+    def _sources(self, taught: Sequence[Snapshots]) -> Array:
+        """Heat sources at all loads and pressures of the tables, at a cold, a middling and a hot field."""
+        ends = np.array([one.fields[-1] for one in taught])
+        order = np.argsort(ends.max(axis=1))
+        ops, found = self.base.problem.operators, []
+        for field in ends[[order[0], order[len(order) // 2], order[-1]]]:
+            laws = [source.loss_tangent(field[ops.dofs(zone)]) for zone, source in self.base.hysteresis.items()]
+            found.append(self.tables.heat.reshape(-1, self.tables.heat.shape[-1]) * np.concatenate(laws))
+        return np.vstack(found)
+
+    def _start(self) -> dict[str, float]:
+        """The study's inputs at its start, within the box."""
+        phase, found = self.study.card.drive.phases[0], {}
+        for name in NAMES:
+            low, high = self.box.ranges[name]
+            ramp = getattr(phase, name) or (phase.ambient if name == "road_temperature" else None)
+            found[name] = min(max((low + high) / 2 if ramp is None else ramp.start, low), high)
+        return found
+
+    def about(self) -> dict[str, Any]:
+        """What the file says of itself."""
+        balance = reduced_balance(self.reduced, self.base)
+        return {
+            "study": self.study.name,
+            "title": self.study.title,
+            "box": {name: list(self.box.ranges[name]) for name in NAMES},
+            "outputs": outputs_of(self.study, balance),
+            "initial": self.study.card.drive.initial,
+            "start": self._start(),
+            "modes": self.reduced.size,
+            "versions": versions(),
+        }

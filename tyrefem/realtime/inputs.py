@@ -1,0 +1,215 @@
+"""Drives in a box of inputs: steady ones, ones of steps and ramps; as a study writes them and a clock sees them."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass
+from typing import Any
+
+import numpy as np
+from numpy.typing import NDArray
+
+from tyrefem.errors import InputError
+from tyrefem.inputs.study import Study
+from tyrefem.quantity import parse
+from tyrefem.realtime.tyre import INPUTS, Inputs
+
+Array = NDArray[np.float64]
+NAMES = tuple(INPUTS)
+#: Ranges where none are given: factors on the study's largest value (the lower one on its smallest), and kelvin.
+FACTORS = {"speed": (0.0, 1.5), "load": (0.5, 1.25), "pressure": (0.8, 1.2)}
+AROUND = {"ambient": (-20.0, 20.0), "road_temperature": (-20.0, 40.0)}
+#: Keys of a study's drive that every drive in the box keeps.
+KEPT = ("drum_diameter", "rim_temperature")
+#: Parts of a random drive, and the shortest, s.
+PARTS, SHORTEST = 6, 20.0
+#: Phases of a study by which a ramp of load or pressure is written: strain cycles are linear between nine points of
+#: each, and that should cost nothing here.
+SPLIT = 3
+
+
+@dataclass(frozen=True)
+class Box:
+    """Ranges of the inputs, SI: name -> (low, high) in the order of `NAMES`; equal ends: the input is fixed."""
+
+    ranges: Mapping[str, tuple[float, float]]
+
+    @property
+    def low(self) -> Array:
+        """(5,) lower ends."""
+        return np.array([self.ranges[name][0] for name in NAMES])
+
+    @property
+    def high(self) -> Array:
+        """(5,) upper ends."""
+        return np.array([self.ranges[name][1] for name in NAMES])
+
+    def at(self, places: Array) -> Array:
+        """Values at places (..., 5) of the unit cube."""
+        return self.low + (self.high - self.low) * np.asarray(places)
+
+
+def box_of(study: Study, given: Mapping[str, tuple[Any, Any]] | None = None) -> Box:
+    """The box round a study's drive: `FACTORS` and `AROUND`, and what is given in their place.
+
+    Parameters
+    ----------
+    given : input -> (from, to), as a study writes them or in SI.
+
+    Raises
+    ------
+    InputError : an unknown input, a range the wrong way round, a number that no tyre has.
+
+    >>> import tyrefem
+    >>> box_of(tyrefem.study("nasa-22x5.5-8pr"), {"load": ("10 kN", "14 kN")}).ranges["load"]
+    (10000.0, 14000.0)
+    """
+    from tyrefem.errors import nearest
+
+    found: dict[str, tuple[float, float]] = {}
+    for name in given or {}:
+        if name not in NAMES:
+            raise InputError(f"unknown input '{name}'{nearest(name, NAMES)}")
+    for name in NAMES:
+        if given and name in given:
+            try:
+                low, high = (
+                    parse(one, INPUTS[name]) if isinstance(one, str) else float(one) for one in _pair(name, given[name])
+                )
+            except InputError as error:
+                raise error if error.field else error.within(field=name) from None
+        else:
+            low, high = _around(study, name)
+        if not (np.isfinite(low) and np.isfinite(high) and low <= high):
+            raise InputError(f"must be from a lower to a higher value, not {low:g} to {high:g}", field=name)
+        if name in FACTORS and (low < 0 or (high <= 0 and name != "pressure")):
+            raise InputError(f"must be positive, not {low:g} to {high:g} {INPUTS[name]}", field=name)
+        found[name] = low, high
+    return Box(found)
+
+
+def _pair(name: str, given: Any) -> tuple[Any, Any]:
+    if isinstance(given, str | int | float) or len(given) not in (1, 2):
+        raise InputError(f"a range is (from, to), not {given!r:.40}", field=name)
+    return given[0], given[-1]
+
+
+def _around(study: Study, name: str) -> tuple[float, float]:
+    drive = study.card.drive
+    if name == "load" and any(phase.load is None for phase in drive.phases):
+        raise InputError("the study's drive gives a deflection: give a range of loads", field="load")
+    ramps = [getattr(phase, name) or phase.ambient for phase in drive.phases]
+    ends = [value for ramp in ramps for value in (ramp.start, ramp.end)]
+    if name == "road_temperature" and study.card.boundaries.road.temperature is not None:
+        ends.append(study.card.boundaries.road.temperature)
+    if name in AROUND:
+        below, above = AROUND[name]
+        return min(ends) + below, max(ends) + above
+    least, most = FACTORS[name]
+    return min(ends) * least, max(ends) * most
+
+
+@dataclass(frozen=True, eq=False)
+class Course:
+    """A drive in the box.
+
+    Parameters
+    ----------
+    ends : (n + 1,) s, of its parts. first, last : (n, 5) inputs at the start and the end of each part, between which
+        they are linear in time. initial : degC.
+    """
+
+    ends: Array
+    first: Array
+    last: Array
+    initial: float
+
+    @property
+    def steady(self) -> bool:
+        """Do the inputs stay what they are?"""
+        return len(self.first) == 1 and bool((self.first == self.last).all())
+
+    def inputs(self, begin: float, end: float) -> tuple[Inputs, Inputs]:
+        """Inputs at the start and the end of a step, as they are within it."""
+        part = min(int(np.searchsorted(self.ends, (begin + end) / 2, side="right")) - 1, len(self.first) - 1)
+        length, change = self.ends[part + 1] - self.ends[part], self.last[part] - self.first[part]
+        both = (self.first[part] + change * float(np.clip((t - self.ends[part]) / length, 0, 1)) for t in (begin, end))
+        first, last = (Inputs(*one.tolist()) for one in both)
+        return first, last
+
+    def jumps(self, t: float) -> bool:
+        """Does a part begin at a time?"""
+        return bool(np.abs(self.ends[:-1] - t).min() < 1e-6)
+
+    def study(self, study: Study, every: float = 1.0) -> Study:
+        """The study with this drive, read every so many seconds."""
+        phases = []
+        for k, (a, b) in enumerate(zip(self.first, self.last, strict=True)):
+            length = self.ends[k + 1] - self.ends[k]
+            count = SPLIT if (a[1:3] != b[1:3]).any() else 1
+            for i in range(count):
+                first, last = a + (b - a) * (i / count), a + (b - a) * ((i + 1) / count)
+                name = f"part {k + 1}" + (f".{i + 1}" if count > 1 else "")
+                phases.append({"name": name, "duration": f"{length / count:.12g} s", **_written(first, last)})
+        return study.replace(
+            {
+                "drive": {**_kept(study), "initial": f"{self.initial:.12g} degC", "phases": phases},
+                "output.every": f"{every:.12g} s",
+            }
+        )
+
+
+def _written(first: Sequence[float], last: Sequence[float]) -> dict[str, Any]:
+    found: dict[str, Any] = {}
+    for name, a, b in zip(NAMES, first, last, strict=True):
+        start, end = (f"{value:.12g} {INPUTS[name]}" for value in (a, b))
+        found[name] = start if start == end else {"from": start, "to": end}
+    return found
+
+
+def _kept(study: Study) -> dict[str, Any]:
+    drive = study.data["drive"]
+    phases = drive.get("phases", [{}])
+    if any("slip" in key for one in (drive, *phases) for key in one):
+        raise InputError("a real-time model knows no slip", field="drive")
+    kept = {**{key: drive[key] for key in KEPT if key in drive}}
+    for phase in phases:
+        for key in KEPT:
+            if key in phase and kept.setdefault(key, phase[key]) != phase[key]:
+                raise InputError(f"'{key}' must be the same in every phase", field="drive.phases")
+    if isinstance(kept.get("rim_temperature"), Mapping):
+        raise InputError("must not change: it is no input of a real-time model", field="drive.rim_temperature")
+    return kept
+
+
+def steady(box: Box, place: Array, duration: float) -> Course:
+    """Steady inputs at a place of the unit cube, from the ambient temperature on."""
+    values = box.at(place)[None]
+    return Course(np.array([0.0, duration]), values, values, float(values[0, NAMES.index("ambient")]))
+
+
+def random_course(box: Box, duration: float, seed: int) -> Course:
+    """Parts of random length; at the start of each about half of the inputs jump or begin to ramp to new values.
+
+    A quarter of new values are ends of their range: the worst is there.
+    """
+    rng = np.random.default_rng(seed)
+    count = max(min(PARTS, int(duration / SHORTEST)), 1)
+    spare = duration - count * SHORTEST
+    cuts = np.sort(rng.random(count - 1)) * spare if spare > 0 else np.zeros(count - 1)
+    ends = np.concatenate([[0.0], np.round(cuts) + SHORTEST * np.arange(1, count), [duration]])
+
+    def fresh() -> Array:
+        places = rng.random(5)
+        extreme = rng.random(5) < 0.25
+        return box.at(np.where(extreme, np.round(places), places))
+
+    now, first, last = fresh(), [], []
+    for number in range(count):
+        target = np.where(rng.random(5) < 0.6, fresh(), now)
+        ramp = number > 0 and rng.random() < 0.5
+        first.append(now if ramp else target)
+        last.append(target)
+        now = target
+    ambient = NAMES.index("ambient")
+    return Course(ends, np.array(first), np.array(last), float(first[0][ambient]))

@@ -1,0 +1,221 @@
+"""What the inputs do to a tyre, as tables: films over speed, load, pressure; strain energy over load, pressure."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import dataclass
+from typing import Any
+
+import numpy as np
+from numpy.typing import NDArray
+
+from tyrefem.errors import InputError
+from tyrefem.inputs.study import Study
+from tyrefem.realtime.inputs import NAMES, Box, Course
+from tyrefem.realtime.tyre import STANDSTILL, Table
+from tyrefem.reduced.balance import ReducedBalance, reduced_balance
+from tyrefem.reduced.model import ReducedModel
+from tyrefem.simulation.heat_source import HeatSource
+from tyrefem.simulation.rolling_tyre import RollingTyre
+
+Array = NDArray[np.float64]
+#: Points over the root of speed, the root of the deflection, and pressure; fewer deflections and pressures where a
+#: strain cycle takes seconds.
+POINTS, COSTLY = {"speed": 25, "bend": 81, "pressure": 4}, {"speed": 25, "bend": 7, "pressure": 3}
+#: Points over the root of load, and pressure, of the deflection: it costs nothing.
+BENDS = 61, 13
+#: degC: tan delta between these, every so many kelvin.
+COLD, HOT, FINE = -60.0, 300.0, 0.5
+
+
+@dataclass(frozen=True, eq=False)
+class Tables:
+    """Even in the root of speed, the root of the load law's deflection, and pressure; one point where nothing varies.
+
+    Over the deflection, not the load: where the strain law has a kink, it is at a deflection whatever the pressure.
+
+    Parameters
+    ----------
+    axes : name -> (n,) sqrt(m/s), sqrt(m), Pa. films : (n_speed, n_bend, n_pressure, n_exchanges) W/m2/K or W/K.
+    standing : (n_exchanges,) of a wheel that stands. heat : (n_bend, n_pressure, nodes of all zones) W/m3 per m/s and
+    unit of tan delta. sinks : (n_exchanges, 4): c + a ambient + b road temperature + d initial temperature.
+    bends : (n_load, n_pressure, 1) sqrt(m), the root of the deflection over ``bend_axes``: the root of load, and Pa.
+    """
+
+    axes: dict[str, Array]
+    films: Array
+    standing: Array
+    heat: Array
+    sinks: Array
+    bends: Array
+    bend_axes: tuple[Array, Array]
+
+    @property
+    def _ends(self) -> Array:
+        return _ends(*self.axes.values())
+
+    def arrays(self, nodes: Array | slice = slice(None)) -> dict[str, Array]:
+        """As the file holds them, the heat at some of the nodes."""
+        return {
+            "film_table": self.films,
+            "film_axes": self._ends,
+            "film_standing": self.standing,
+            "heat_table": np.ascontiguousarray(self.heat[:, :, nodes]),
+            "heat_axes": self._ends[1:],
+            "sink": self.sinks,
+            "bend_table": self.bends,
+            "bend_axes": _ends(*self.bend_axes),
+        }
+
+    def errors(self, probe: Probe, count: int = 24, seed: int = 5) -> dict[str, float]:
+        """Largest error of a film and of a heat source between the points, over the largest there."""
+        places = probe.box.at(np.random.default_rng(seed).random((count, 5)))
+        speeds = np.maximum(places[:, 0], 1e-3)
+        films, heats = probe.at(speeds, places[:, 1:3])
+        arrays = self.arrays()
+        film, heat, bend = (Table(arrays[f"{name}_table"], arrays[f"{name}_axes"]) for name in ("film", "heat", "bend"))
+        off = np.zeros((count, 2))
+        for k, (load, pressure) in enumerate(places[:, 1:3]):
+            where = float(bend(float(np.sqrt(load)), float(pressure))[0]), float(pressure)
+            off[k, 0] = np.abs(film(float(np.sqrt(speeds[k])), *where) - films[k, k]).max() / np.abs(films[k, k]).max()
+            off[k, 1] = np.abs(heat(*where) - heats[k]).max() / np.abs(heats[k]).max()
+        return {"films": float(off[:, 0].max()), "heat": float(off[:, 1].max())}
+
+
+@dataclass(frozen=True, eq=False)
+class Probe:
+    """Asks a study's tyre what its films, sinks and strain energies are.
+
+    Parameters
+    ----------
+    base : a tyre of the study, whose mesh is taken.
+    """
+
+    study: Study
+    box: Box
+    base: RollingTyre
+
+    def balance(self, course: Course) -> ReducedBalance:
+        """The tyre on a drive, with one even mode: what acts on it is all that is asked for."""
+        even = ReducedModel(self.base, np.ones((self.base.problem.operators.size, 1)), {}, np.zeros((0, 0)))
+        return reduced_balance(even, RollingTyre(course.study(self.study), self.base))
+
+    def middle(self, initial: float | None = None, **inputs: float) -> ReducedBalance:
+        """The tyre with the inputs in the middle of the box but for some."""
+        values = self.box.at(np.full(5, 0.5))
+        for name, value in inputs.items():
+            values[NAMES.index(name)] = value
+        start = self.study.card.drive.initial if initial is None else initial
+        return self.balance(Course(np.array([0.0, 1.0]), values[None], values[None], start))
+
+    def at(self, speeds: Array, pairs: Array) -> tuple[Array, Array]:
+        """(n_pairs, n_speeds, n_exchanges) films and (n_pairs, n_nodes) heat at (load, pressure) and speeds.
+
+        One drive does it: a part of a second for every pair, through which the speed rises.
+        """
+        top = max(self.box.ranges["speed"][1], STANDSTILL)
+        first = np.tile(self.box.at(np.full(5, 0.5)), (len(pairs) + 1, 1))
+        # The first pair comes again at the end: what acts must not depend on the time.
+        first[:, [NAMES.index("load"), NAMES.index("pressure")]] = np.vstack([pairs, pairs[:1]])
+        last = first.copy()
+        first[:, 0], last[:, 0] = 0.0, top
+        balance = self.balance(Course(np.arange(len(first) + 1.0), first, last, float(first[0, 3])))
+        _plain(balance)
+        # A speed of nothing is that of a wheel that just turns, unless it is asked for alone: standing is apart.
+        least = 0.0 if len(speeds) == 1 and speeds[0] == 0 else 1e-9
+        shares = np.clip(speeds / top, least, 1 - 1e-9)
+        films = np.array([[balance.coefficients(k + share)[0] for share in shares] for k in range(len(first))])
+        if not np.allclose(films[0], films[-1], rtol=1e-6):
+            raise InputError("films change with time: a real-time model knows its inputs only", field="effects")
+        return films[:-1], np.array([_per_metre(balance.tyre, k + 0.5) for k in range(len(pairs))])
+
+    def sinks(self) -> Array:
+        """(n_exchanges, 4): every sink is c + a ambient + b road temperature + d initial temperature."""
+
+        def sinks(ambient: float, road: float, initial: float) -> Array:
+            return self.middle(initial, ambient=ambient, road_temperature=road).coefficients(0.5)[1]
+
+        still = sinks(20.0, 20.0, 20.0)
+        slopes = [(sinks(*(20.0 + 10.0 * np.eye(3)[k])) - still) / 10.0 for k in range(3)]
+        return np.column_stack([still - 20.0 * sum(slopes), *slopes])
+
+    def tables(self) -> Tables:
+        """The tables of the box.
+
+        Raises
+        ------
+        InputError : a load that the tyre cannot carry at a pressure of the box; films that change with time.
+        """
+        costly = self.study.card.mechanics.strain in ("fem", "barrel")
+        points = COSTLY if costly else POINTS
+        low, high = self.box.ranges["load"]
+        least, most = self.box.ranges["pressure"]
+        law, rating = self.study.card.mechanics.load_law, self.study.section.rating
+        if rating is None:
+            raise InputError("a real-time model needs the section's [rating]", field="section.rating")
+
+        def bend(load: float, pressure: float) -> float:
+            return float(np.sqrt(law.deflection(load, pressure, rating))) if load > 0 else 0.0
+
+        # The box's corners are asked first: a load that the tyre cannot carry is said as such.
+        self.at(np.ones(1), np.array([(load, pressure) for load in (low, high) for pressure in (least, most)]))
+        axes = {
+            "speed": _axis(*(float(np.sqrt(one)) for one in self.box.ranges["speed"]), count=points["speed"]),
+            "bend": _axis(bend(low, most), bend(high, least), count=points["bend"]),
+            "pressure": _axis(least, most, count=points["pressure"]),
+        }
+        pairs = np.array([(law.load(x**2, p, rating), p) for x in axes["bend"] for p in axes["pressure"]])
+        films, heats = self.at(axes["speed"] ** 2, pairs)
+        counts = [len(axis) for axis in axes.values()]
+        films = np.moveaxis(films.reshape(counts[1], counts[2], counts[0], -1), 2, 0)
+        standing, _ = self.at(np.zeros(1), pairs[:1])
+        roots, pressures = _axis(np.sqrt(low), np.sqrt(high), count=BENDS[0]), _axis(least, most, count=BENDS[1])
+        bends = np.array([[[bend(x**2, p)] for p in pressures] for x in roots])
+        heat = heats.reshape(*counts[1:], -1)
+        return Tables(axes, films, standing[0, 0], heat, self.sinks(), bends, (roots, pressures))
+
+
+def _axis(low: float, high: float, *, count: int) -> Array:
+    return np.linspace(low, high, count if high > low else 1)
+
+
+def _ends(*axes: Array) -> Array:
+    return np.array([(axis[0], axis[-1], len(axis)) for axis in axes])
+
+
+def _per_metre(tyre: RollingTyre, t: float) -> Array:
+    """(nodes of all zones,) energy lost per revolution, per unit of tan delta, x revolutions per metre: J/m3/m."""
+    parts = []
+    for zone, source in tyre.hysteresis.items():
+        rate = source.lost_per_revolution * source.schedule.revolutions_per_second(t) / tyre.speed(t)
+        parts.append(rate * source.energy_density(tyre.problem.points(zone), t))
+    return np.concatenate(parts)
+
+
+def _plain(balance: ReducedBalance) -> None:
+    for zone, source in balance.tyre.sources.items():
+        if type(source) is not HeatSource:
+            raise InputError("effects act on the heat: a real-time model knows the strain cycle's", field="effects")
+        if source.over_frequency is not None:
+            raise InputError(
+                f"tan delta of '{zone}' depends on frequency: a real-time model knows that on temperature only",
+                field="materials",
+            )
+    if any(balance.powers(0.0)):
+        raise InputError("effects heat the rim or the air: a real-time model knows its inputs only", field="effects")
+
+
+def loss_tables(tyre: RollingTyre, samples: Sequence[tuple[str, int]]) -> tuple[Array, Array]:
+    """(n_laws, n_temperatures) tan delta every `FINE` kelvin, and the law of every sample, from (zone, samples)."""
+    grid = np.arange(COLD, HOT + FINE / 2, FINE)
+    laws: dict[bytes, int] = {}
+    rows: list[Array] = []
+    of_sample: list[int] = []
+    for zone, count in samples:
+        source: Any = tyre.sources[zone]
+        row = np.asarray(source.loss_tangent(grid), dtype=float)
+        if row.tobytes() not in laws:
+            laws[row.tobytes()] = len(rows)
+            rows.append(row)
+        of_sample += [laws[row.tobytes()]] * count
+    return np.array(rows), np.array(of_sample)

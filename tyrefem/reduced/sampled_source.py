@@ -1,0 +1,138 @@
+"""Heat sources of many variants at the sample nodes: strain energy x revolutions x a table of tan delta."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+
+import numpy as np
+from numpy.typing import NDArray
+
+from tyrefem.reduced.balance import ReducedBalance
+from tyrefem.simulation.heat_source import HeatSource
+
+Array = NDArray[np.float64]
+#: Temperatures, degC, between which tan delta is tabulated, every 0.25 K.
+COLD, HOT, FINE = -60.0, 400.0, 0.25
+
+
+def is_plain(balance: ReducedBalance) -> bool:
+    """Is every source the strain cycle's alone, with a tan delta that knows no frequency?"""
+    return all(type(one) is HeatSource and one.over_frequency is None for one in balance.tyre.sources.values())
+
+
+class SampledHeat:
+    """(B, n_samples) W/m3 of variants whose drives have the same phases and knots in time.
+
+    Where effects act on the heat, or tan delta depends on frequency, it is asked for variant by variant.
+    """
+
+    def __init__(self, balances: Sequence[ReducedBalance]) -> None:
+        self.balances = balances
+        self.rows = [row for row, one in enumerate(balances) if is_plain(one)]
+        self.others = [row for row in range(len(balances)) if row not in self.rows]
+        self.tabled = TabledHeat([balances[row] for row in self.rows]) if self.rows else None
+
+    def __call__(self, times: Sequence[float], a: Array) -> Array:
+        """(B, n_samples, k) sources of modes a (B, m, k) at times of one phase, seen from inside it."""
+        if self.tabled is not None and not self.others:
+            return self.tabled(times, a)
+        found = np.empty((len(a), len(self.balances[0].model.at_samples), a.shape[2]))
+        if self.tabled is not None:
+            found[self.rows] = self.tabled(times, a[self.rows])
+        for row in self.others:
+            for column, t in enumerate(times):
+                found[row, :, column] = self.balances[row].source(t, a[row, :, column])
+        return found
+
+
+class TabledHeat:
+    """The same where every source is the strain cycle's alone: strain energies once, tan delta from a table."""
+
+    def __init__(self, balances: Sequence[ReducedBalance]) -> None:
+        self.balances, self.model = balances, balances[0].model
+        grid = np.arange(COLD, HOT + FINE / 2, FINE)
+        self.width = len(grid)
+        zones = self.model.zones
+        tables = np.zeros((len(balances), len(zones), self.width))
+        kept: dict[int, Array] = {}
+        for table, each in zip(tables, balances, strict=True):
+            for row, zone in zip(table, zones, strict=True):
+                law = each.tyre.hysteresis[zone].loss_tangent
+                if id(law) not in kept:
+                    kept[id(law)] = law(grid)
+                row[:] = kept[id(law)]
+        self.table = tables.reshape(-1)
+        sizes = [part.stop - part.start for part in self.model.sample_slices.values()]
+        zone_of = np.repeat(np.arange(len(sizes)), sizes)
+        #: Where the table of a variant and a sample's zone begins.
+        self.first = ((np.arange(len(balances))[:, None] * len(sizes) + zone_of) * self.width).astype(np.int32)
+        self._phase = -1
+
+    def __call__(self, times: Sequence[float], a: Array) -> Array:
+        """(B, n_samples, k) sources of modes a (B, m, k) at times of one phase, seen from inside it."""
+        losses = self._losses(times)
+        if losses is None:
+            return np.zeros((len(a), len(self.model.at_samples), a.shape[2]))
+        place = self.model.at_samples @ a
+        place -= COLD
+        place /= FINE
+        np.clip(place, 0.0, self.width - 1.000001, out=place)
+        left = place.astype(np.int32)
+        place -= left
+        left += self.first[:, :, None]
+        below = self.table.take(left)
+        left += 1
+        place *= self.table.take(left) - below
+        place += below
+        place *= losses
+        return place
+
+    def _losses(self, times: Sequence[float]) -> Array | None:
+        """Energy lost per revolution x revolutions per second, (B, n_samples, 1 or k) W/m3 per unit of tan delta.
+
+        None: all stand still.
+        """
+        drive, schedule = self.balances[0].tyre.drive, self.balances[0].tyre.schedule
+        phase, _ = drive.locate(times[0])
+        if self._phase != phase:
+            self._phase = phase
+            self._energies = np.array([_energies(one, phase) for one in self.balances])
+            same = all(_same_speed(one, phase) for one in self.balances)
+            self._steady = same and self._energies.shape[1] == 1
+            self._known: dict[tuple[float, ...], Array] = {}
+        if self._steady:
+            times = times[:1]
+        key = () if self._steady else tuple(times)
+        if key not in self._known:
+            if len(self._known) > 4:
+                self._known.clear()
+            rates = np.array([[one.tyre.schedule.revolutions_per_second(t) for t in times] for one in self.balances])
+            shares = np.zeros((self._energies.shape[1], len(times)))
+            for column, t in enumerate(times):
+                for _, knot, weight in schedule.weights(t):
+                    shares[knot, column] = weight
+            self._known[key] = rates[:, None, :] * np.tensordot(self._energies, shares, axes=(1, 0))
+        found = self._known[key]
+        return found if found.any() else None
+
+
+def _same_speed(balance: ReducedBalance, phase: int) -> bool:
+    one = balance.tyre.drive.phases[phase]
+    return one.speed.constant and not one.slides
+
+
+def _energies(balance: ReducedBalance, phase: int) -> Array:
+    """(n_knots, n_samples) J/m3 lost per revolution, per unit of tan delta."""
+    tyre, model = balance.tyre, balance.model
+    found = np.zeros((len(tyre.schedule.knots[phase]), model.at_samples.shape[0]))
+    speed = tyre.drive.phases[phase].speed
+    if not speed.start and not speed.end:
+        return found
+    for row, cycle in zip(found, tyre.schedule.cycles[phase], strict=True):
+        for zone, part in model.sample_slices.items():
+            if part.start == part.stop:
+                continue
+            row[part] = tyre.hysteresis[zone].lost_per_revolution * cycle.energy_density(
+                zone, model.sample_points[zone]
+            )
+    return found

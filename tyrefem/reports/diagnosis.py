@@ -1,0 +1,242 @@
+"""A diagnosis in a folder: record, amended study, tables, pictures, and one self-contained page, verdict first."""
+
+from __future__ import annotations
+
+import base64
+import math
+from collections.abc import Mapping
+from pathlib import Path
+from typing import TYPE_CHECKING, Any
+
+import tyrefem
+from tyrefem.diagnose import words
+from tyrefem.diagnose.amend import Change, difference
+from tyrefem.diagnose.contenders import candidate_rows, finite, history_table, set_rows, where_table
+from tyrefem.diagnose.numbers import percent
+from tyrefem.diagnose.record import AMENDED, record, where
+from tyrefem.diagnose.unknowns import Unknown
+from tyrefem.diagnose.verdict import CONFOUNDED, IDENTIFIED, NO_GAP, UNEXPLAINED
+from tyrefem.inputs.changes import value_at
+from tyrefem.inputs.uncertain_numbers import left_out
+from tyrefem.mechanics.cycle_schedule import BY_ELEMENTS
+from tyrefem.mechanics.nearby_cycles import NearbyCycles
+from tyrefem.output import atomic_folder, write_json
+from tyrefem.reports.diagnosis_figures import pictures
+
+if TYPE_CHECKING:
+    from tyrefem.diagnose.diagnosis import Diagnosis
+
+PAGE = "diagnosis.html"
+_FILES = ("verdict.json", AMENDED, "difference.txt", "where.csv", "histories.csv", PAGE, "rms.png", "residual-map*.png",
+          "probabilities.png", "histories-*.png", "missing-heat*.png")  # fmt: skip
+#: Looks at the same data at most.
+MOST_LOOKS = 9
+#: Files that `save` may write.
+FILES = tuple(f"{words.AGAIN}/" * look + name for look in range(MOST_LOOKS) for name in _FILES)
+#: Rows that are shown before the rest is folded away.
+SHOWN = 12
+#: Gain, ln of odds, that is worth a row.
+TELLS = 0.1
+
+
+def save(d: Diagnosis, folder: str | Path) -> Path:
+    """Write everything into a folder, each file complete or not there; returns the page.
+
+    ``verdict.json``, ``amended.toml``, ``difference.txt``, ``where.csv``, ``histories.csv``, the pictures, and
+    ``diagnosis.html``. A further look at the data has a folder ``again``, unless it left no gap.
+
+    Raises
+    ------
+    InputError : the folder cannot be written.
+    """
+    folder, drawn = Path(folder), pictures(d)
+    with atomic_folder(folder) as temporary:
+        write_json(record(d), temporary / "verdict.json")
+        d.study.save(temporary / AMENDED)
+        lines = difference(d.original, d.study)
+        (temporary / "difference.txt").write_text("\n".join([*lines, ""]) if lines else "", encoding="utf-8")
+        where_table(d).to_csv(temporary / "where.csv", index=False, lineterminator="\n")
+        history_table(d).to_csv(temporary / "histories.csv", index=False, lineterminator="\n")
+        for name, picture in drawn.items():
+            (temporary / name).write_bytes(picture)
+        (temporary / PAGE).write_text(page(d, drawn, version=tyrefem.__version__), encoding="utf-8")
+    if d.again is not None and d.again.verdict != NO_GAP:
+        save(d.again, folder / words.AGAIN)
+    return folder / PAGE
+
+
+def page(d: Diagnosis, images: Mapping[str, bytes], *, version: str) -> str:
+    """The page's HTML; ``images`` maps file name -> PNG, as `tyrefem.reports.diagnosis_figures.pictures` returns."""
+    from jinja2 import Environment, PackageLoader, StrictUndefined
+
+    environment = Environment(
+        loader=PackageLoader("tyrefem.reports", "."), autoescape=True, undefined=StrictUndefined, trim_blocks=True,
+        lstrip_blocks=True,
+    )  # fmt: skip
+    embedded = {name: base64.b64encode(png).decode("ascii") for name, png in images.items()}
+    return environment.get_template("diagnosis.html").render(
+        d=d,
+        version=version,
+        sentences=words.verdict_words(d),
+        place=where(d),
+        numbers=_numbers(d),
+        named=_named(d),
+        candidates=[_candidate(row) for row in candidate_rows(d)],
+        sets=[_set(row) for row in set_rows(d)],
+        where=_where(d),
+        corrections=_corrections(d),
+        difference=difference(d.original, d.study),
+        reasons=[words.shortened(one) for one in d.judgement.reasons],
+        further=words.next_words(d),
+        offered_sensors=_offers(d, "sensors", "place", "run"),
+        offered_drives=_offers(d, "drives", "drive", "sensor"),
+        assumed=_assumed(d),
+        pictures=embedded,
+        shown=SHOWN,
+        unexplained=d.verdict == UNEXPLAINED,
+        confounded=d.verdict == CONFOUNDED,
+    )
+
+
+def _numbers(d: Diagnosis) -> list[dict[str, str]]:
+    """Root mean squares before and after, fitted and held out."""
+    found = []
+    for held_out, name in ((False, "fitted runs"), (True, "held-out runs")):
+        before, after = (d.rms(after=after, held_out=held_out) for after in (False, True))
+        if math.isfinite(before):
+            value = f"{before:.2f} → {after:.2f} K"
+            found.append({"label": f"rms on {name}", "value": value, "note": "original → amended"})
+    note = "what no model can go below"
+    return [*found, {"label": "noise of the readings", "value": f"{d.noise:.2f} K", "note": note}]
+
+
+def _named(d: Diagnosis) -> list[dict[str, Any]]:
+    """The effects that the amended study has beyond the original, as a person reads them."""
+    if d.verdict not in (IDENTIFIED, CONFOUNDED, UNEXPLAINED):
+        return []
+    return [
+        {
+            "key": one.key,
+            "probability": percent(d.judgement.named.get(one.key, 0.0)),
+            "sentence": one.effect.sentence,
+            "source": one.effect.source,
+            "amounts": words.effect_amounts(one, d.best),
+        }
+        for one in d.best.members
+    ]
+
+
+def _candidate(row: Mapping[str, Any]) -> dict[str, str]:
+    shown = ", ".join(row["variant"].values())
+    return {
+        "name": f"{row['name']} ({shown})" if shown else row["name"],
+        "probability": percent(row["probability"]),
+        "gain": f"{row['log_evidence_gain']:+z,.{1 if abs(row['log_evidence_gain']) < 1000 else 0}f}",
+        "parameters": "; ".join(
+            words.amount(entry["value"], entry["sd"], entry["unit"]) for entry in row["parameters"].values()
+        ),
+        "confounded": words.shortened("; ".join(row["confounded_with"])),
+        **_fitness(row),
+    }
+
+
+def _set(row: Mapping[str, Any]) -> dict[str, Any]:
+    return {
+        "name": " + ".join(row["effects"]) or "no effect",
+        "probability": percent(row["probability"]),
+        "below": f"{-row['log_score_below_best']:z.1f}",
+        "credible": row["credible"],
+        **_fitness(row),
+    }
+
+
+def _fitness(row: Mapping[str, Any]) -> dict[str, str]:
+    """How well a set does, or nothing where the full model was not fitted."""
+    shown = {"at_bound": "at a bound" if row.get("at_bound") else ""}
+    for keys, form in ((("rms_K", "held_out_rms_K"), ".2f"), (("p_value", "held_out_p"), ".2g")):
+        for key in keys:
+            value = finite(row, key)
+            shown[key] = "" if value is None else format(value, form)
+    return shown
+
+
+def _where(d: Diagnosis) -> list[dict[Any, Any]]:
+    return where_table(d).to_dict(orient="records")
+
+
+def _corrections(d: Diagnosis) -> list[dict[str, str]]:
+    """Base numbers and sensors that the amended study corrects: original -> amended, with standard deviation."""
+    return [_correction(d, one) for one in d.changes if not one.missing]
+
+
+def _correction(d: Diagnosis, one: Change) -> dict[str, str]:
+    unknown = one.unknown
+    if unknown.effect is None:
+        new = value_at(d.study.data, unknown.key, d.study.folder)
+        relative = unknown.value(one.x) - 1
+        return {
+            "what": unknown.label,
+            "original": str(value_at(d.original.data, unknown.key, d.original.folder)),
+            "amended": str(new),
+            "change": f"{100 * relative:+z.1f} ± {100 * one.sd:.1f} %",
+            "prior": f"± {100 * unknown.sd:.0f} %",
+        }
+    if unknown.effect == "film-scale":
+        film = dict(unknown.choice)["film"].replace("_", " ")
+        # The parameter is ln of a factor: a person reads the factor.
+        return {
+            "what": f"film coefficient, {film}",
+            "original": "as its law says",
+            "amended": f"times {math.exp(one.x):.3g}",
+            "change": f"{100 * (math.exp(one.x) - 1):+z.1f} ± {100 * one.sd:.1f} %",
+            "prior": f"± {100 * unknown.sd:.0f} %",
+        }
+    return {
+        "what": f"{', '.join(value for _, value in unknown.choice)}: {words.parameter_name(unknown)}",
+        "original": "as stated",
+        "amended": "",
+        "change": words.amount(unknown.value(one.x), one.sd, unknown.unit),
+        "prior": _prior(unknown),
+    }
+
+
+def _prior(unknown: Unknown) -> str:
+    return "± " + words.amount(0.0, unknown.sd, unknown.unit).split("± ")[1]
+
+
+def _offers(d: Diagnosis, kind: str, what: str, at: str) -> list[dict[str, Any]]:
+    """Sensors or drives that would tell something, with what they change."""
+    found = []
+    for one in d.next_experiment.get(kind, ()):
+        changes = ", ".join(f"{key} = {value}" for key, value in one.get("changes", {}).items())
+        name = f"{one[what]} ({changes})" if changes else one[what]
+        found.append({"what": name, "gain": one["gain"], "largest_K": one["largest_K"], "at": one[at]})
+    return [one for one in found if one["gain"] > TELLS]
+
+
+def _linear(d: Diagnosis) -> list[str]:
+    """What the fits take for the strain cycles of finite elements."""
+    if d.original.card.mechanics.strain not in BY_ELEMENTS:
+        return []
+    count = len(NearbyCycles(d.original).numbers)
+    return [
+        f"In the fits, strain cycles by finite elements are linear in {count} numbers: one solution for each at every "
+        "load. The study itself, before and after, is solved in full."
+    ]
+
+
+def _assumed(d: Diagnosis) -> list[str]:
+    choice = d.original.card.diagnosis
+    return [
+        f"Probability beforehand that anything is missing: {percent(choice.effects_expected)}, shared by "
+        f"{len({one.name for one in d.candidates})} effects ({len(d.candidates)} with their variants) and their sets.",
+        f"Film coefficients are known to {100 * choice.film_sd:.0f} %; base numbers as the cards and the study's "
+        "[uncertainty] table state; each sensor's place, lag and offset as its entry states.",
+        *(f"Base numbers {line}." for line in left_out(d.original.uncertain_numbers)),
+        *_linear(d),
+        f"Even a right model misses by {choice.discrepancy:g} K, correlated over {choice.correlation_time:g} s; the "
+        "noise of readings is independent.",
+        *([f"Excluded by the study: {', '.join(choice.exclude)}."] if choice.exclude else []),
+        "About every fit the model is taken as linear within its uncertainty (Laplace); parameters have Gaussian "
+        "priors cut at the bounds that physics sets.",
+    ]

@@ -1,0 +1,74 @@
+"""Pictures of a run, of a section, of a mesh and of a strain cycle. matplotlib is imported when one is drawn."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from pathlib import Path
+from typing import TYPE_CHECKING, Any
+from weakref import WeakKeyDictionary
+
+from tyrefem.output import atomic_path
+
+if TYPE_CHECKING:
+    from tyrefem.simulation.result import Result
+
+#: Files of the standard pictures.
+PICTURES = (
+    "temperature.png", "temperature-hottest.png", "histories.png", "sliding.png", "heat-budget.png", "heat-source.png",
+    "strain-cycle.png", "mesh.png",
+)  # fmt: skip
+_DRAWN: WeakKeyDictionary[Any, dict[str, bytes]] = WeakKeyDictionary()
+
+
+def _figures(result: Result) -> dict[str, Callable[[], Any]]:
+    """File name -> what draws it, in the order of a report."""
+    from tyrefem.reports.figures.budget import budget_figure
+    from tyrefem.reports.figures.heat_source import heat_source_figure
+    from tyrefem.reports.figures.histories import histories_figure
+    from tyrefem.reports.figures.mesh import mesh_figure
+    from tyrefem.reports.figures.road import sliding_figure
+    from tyrefem.reports.figures.strain import cycle_figure
+    from tyrefem.reports.figures.temperature import temperature_figure
+
+    found: dict[str, Callable[[], Any]] = {"temperature.png": lambda: temperature_figure(result)}
+    hottest, sliding = result.history.maximum, result.sliding
+    if hottest.time < result.times[-1] and hottest.temperature > float(result.history.values[-1].max()) + 0.1:
+        found["temperature-hottest.png"] = lambda: temperature_figure(result, hottest.time)
+    found |= {
+        "histories.png": lambda: histories_figure(result),
+        **({"sliding.png": lambda: sliding_figure(sliding)} if sliding is not None else {}),
+        "heat-budget.png": lambda: budget_figure(result),
+        "heat-source.png": lambda: heat_source_figure(result),
+    }
+    if hasattr(result.tyre.schedule.cycles[0][0], "inflated"):
+        found["strain-cycle.png"] = lambda: cycle_figure(result.study, result.tyre.schedule)
+    return found | {"mesh.png": lambda: mesh_figure(result.tyre.mesh)}
+
+
+def pictures(result: Result) -> dict[str, bytes]:
+    """File name -> PNG of the standard pictures of a run; drawn once per result.
+
+    ``temperature`` at the end, and at the hottest moment where that is earlier; ``histories``; ``heat-budget``;
+    ``heat-source``; ``strain-cycle``; ``mesh``; with slip ``sliding``.
+    """
+    from tyrefem.reports.figures.style import png
+
+    if result not in _DRAWN:
+        _DRAWN[result] = {name: png(draw()) for name, draw in _figures(result).items()}
+    return _DRAWN[result]
+
+
+def write_pictures(result: Result, folder: Path) -> list[Path]:
+    """Write the standard pictures as PNG files; each is complete or not there.
+
+    Raises
+    ------
+    InputError : the folder cannot be written.
+    """
+    paths = []
+    for name, content in pictures(result).items():
+        path = Path(folder) / name
+        with atomic_path(path) as temporary:
+            temporary.write_bytes(content)
+        paths.append(path)
+    return paths

@@ -1,0 +1,145 @@
+"""Where the heat comes from: strain energy per cycle and heat source on the section, zone by zone."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from typing import TYPE_CHECKING, Any
+
+import numpy as np
+from numpy.typing import NDArray
+
+from tyrefem.reports.figures.canvas import Canvas, canvas, draw_outlines
+from tyrefem.reports.figures.cells import triangles
+from tyrefem.reports.figures.style import ENERGY_MAP, Label, digits, millimetres, si, temperature_map, time_unit, title
+
+if TYPE_CHECKING:
+    from matplotlib.figure import Figure
+
+    from tyrefem.simulation.result import Result
+
+Array = NDArray[np.float64]
+#: Share of the section's area that a colour scale spans; what is above has the last colour.
+SPANNED = 0.99
+
+
+@dataclass(frozen=True)
+class ZoneHeat:
+    """A strain zone's triangles on its own nodes, and its values there: U in J/m3, q in W/m3; W of the whole tyre."""
+
+    name: str
+    title: str
+    points: Array
+    corners: NDArray[Any]
+    energy: Array
+    source: Array
+    power: float
+
+
+def zone_heat(result: Result, i: int) -> list[ZoneHeat]:
+    """Every zone with its own values, so that the steps between zones stay sharp."""
+    operators = result.tyre.problem.operators
+    t = float(result.times[i]) * (1 - 1e-12)
+    sources = result.heat_source(i)
+    powers = result.heat_budget.powers
+    found = []
+    for zone in result.tyre.schedule.zones:
+        corners, _ = triangles(operators, operators.elements(zone.name))
+        numbers = np.full(operators.size, -1)
+        numbers[operators.dofs(zone.name)] = np.arange(len(operators.dofs(zone.name)))
+        nodes, source = sources[zone.name]
+        energy = result.tyre.hysteresis[zone.name].energy_density(nodes, t)
+        power = float(powers["generated", zone.title][i])
+        found.append(ZoneHeat(zone.name, zone.title, nodes, numbers[corners], energy, source, power))
+    return found
+
+
+def heat_source_figure(result: Result) -> Figure:
+    """Left half: strain energy per cycle, J/m3; right half: heat source, W/m3, in the phase with most heat."""
+    i = result.rolling_reading
+    zones = zone_heat(result, len(result.times) - 1 if i is None else i)
+    total = sum(zone.power for zone in zones)
+    energies, sources = [zone.energy for zone in zones], [zone.source for zone in zones]
+    top_u, top_q = scale_top(zones, energies), scale_top(zones, sources)
+    factor_u, unit_u = si(top_u, "J/m³")
+    factor_q, unit_q = si(top_q, "W/m³")
+    rows = [_row(zone, total) for zone in zones]
+    names = [zone.title if zone.name == zone.title else f"{zone.name}: {zone.title}" for zone in zones]
+    drawn = canvas(result.study.section, names, rows, bars=2)
+    left = right = None
+    for zone in zones:
+        left = _half(drawn, zone, zone.energy / factor_u, -1.0, ENERGY_MAP, top_u / factor_u or 1.0)
+        right = _half(drawn, zone, zone.source / factor_q, 1.0, temperature_map(), top_q / factor_q or 1.0)
+    draw_outlines(drawn.axes, result.study.section, color="#505050", width=0.7)
+    drawn.axes.plot([0, 0], [drawn.section.place(0.0, 0.0)[0] * 1e3, drawn.high], color="white", lw=2.5, zorder=4)
+    _bar(drawn, left, "strain energy per cycle U", unit_u, max(float(u.max()) for u in energies) / factor_u, -1.0)
+    _bar(drawn, right, "heat source q", unit_q, max(float(q.max()) for q in sources) / factor_q, 1.0)
+    anchors = [_anchor(drawn, zone) for zone in zones]
+    order = sorted(range(len(zones)), key=lambda n: -anchors[n][1])
+    drawn.beside([Label(names[n], -anchors[n][0], anchors[n][1]) for n in order], -1.0)
+    drawn.beside([Label(rows[n], anchors[n][0], anchors[n][1]) for n in order], 1.0)
+    title(drawn.figure, result.study.title, _subtitle(result, i, total))
+    return drawn.figure
+
+
+def scale_top(zones: list[ZoneHeat], values: list[Array]) -> float:
+    """The value that 99 % of the section's area does not exceed: one peak must not darken the whole picture."""
+    areas, means = [], []
+    for zone, value in zip(zones, values, strict=True):
+        r, z = zone.points[:, zone.corners.T]
+        areas.append(np.abs((r[1] - r[0]) * (z[2] - z[0]) - (r[2] - r[0]) * (z[1] - z[0])) / 2)
+        means.append(value[zone.corners].mean(axis=1))
+    area, mean = np.concatenate(areas), np.concatenate(means)
+    order = np.argsort(mean)
+    below = np.cumsum(area[order])
+    place = min(int(np.searchsorted(below, SPANNED * below[-1])), len(order) - 1)
+    # Heat in less than a hundredth of the area: its own peak is the scale.
+    return float(mean[order[place]]) or max(float(value.max()) for value in values)
+
+
+def _bar(drawn: Canvas, image: Any, label: str, unit: str, peak: float, side: float) -> None:
+    """A colour bar; an arrow at its end, and the peak in its label, where values go beyond it."""
+    beyond = peak > 1.001 * image.norm.vmax
+    text = f"{label} [{unit}]" + (f", peak {peak:{digits(peak)}}" if beyond else "")
+    drawn.color_bar(image, text, side=side, extend="max" if beyond else "neither")
+
+
+def _row(zone: ZoneHeat, total: float) -> str:
+    factor, unit = si(total, "W")
+    share = f" ({100 * zone.power / total:.1f} %)" if total > 0 else ""
+    return f"{zone.power / factor:{digits(total / factor)}} {unit}{share}"
+
+
+def _subtitle(result: Result, i: int | None, total: float) -> str:
+    if i is None:
+        return "the tyre never rolls under load and makes no heat; left: strain energy of a cycle, if it rolled"
+    divisor, unit = time_unit(float(result.times[-1]))
+    force = total / result.tyre.speed(float(result.times[i]) * (1 - 1e-12))
+    return (
+        f"left: strain energy per cycle; right: heat source after {result.times[i] / divisor:.4g} {unit}; "
+        f"the whole tyre makes {total:.4g} W = {force:.3g} N of drag times its speed"
+    )
+
+
+def _half(drawn: Canvas, zone: ZoneHeat, values: Array, sign: float, colours: Any, top: float) -> Any:
+    """One half of the picture; of a full section only the elements on that side."""
+    x, y = millimetres(zone.points.T)
+    corners = zone.corners
+    if drawn.section.half:
+        x = sign * x
+    else:
+        corners = corners[sign * x[corners].mean(axis=1) > 0]
+    return drawn.axes.tripcolor(
+        x, y, corners, values, shading="gouraud", cmap=colours, vmin=0.0, vmax=top, rasterized=True, zorder=1
+    )
+
+
+def _anchor(drawn: Canvas, zone: ZoneHeat) -> tuple[float, float]:
+    """The node with z >= 0 nearest to the middle of the zone's side there, mm."""
+    x, y = millimetres(zone.points.T)
+    here = np.flatnonzero(x >= 0)
+    s, depth = drawn.section.locate(zone.points.T[here])
+    off = np.abs(s - (s.min() + s.max()) / 2)
+    # On a coarse mesh no node may be near the middle.
+    away = off + np.abs(depth - np.median(depth[off < max(3e-3, 1.01 * float(off.min()))]))
+    node = here[int(np.argmin(away))]
+    return float(x[node]), float(y[node])

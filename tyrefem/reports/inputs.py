@@ -1,0 +1,359 @@
+"""What went into a run: materials with their sources, boundary laws, mechanics, assumptions, the study file.
+
+What the model leaves out or takes on trust, as far as it concerns a study.
+"""
+
+from __future__ import annotations
+
+import math
+import tomllib
+import typing
+from collections.abc import Iterator, Mapping
+from typing import TYPE_CHECKING, Any
+
+from tyrefem.inputs.uncertain_numbers import stated_deviations
+from tyrefem.mechanics.cycle_schedule import PRESSES
+from tyrefem.quantity import Unit
+from tyrefem.reports.words import number
+
+if TYPE_CHECKING:
+    from tyrefem.cards import Card
+    from tyrefem.inputs.study import Study
+    from tyrefem.inputs.study_card import Feedback, Mechanics
+    from tyrefem.materials.card import LossTangent, MaterialCard
+    from tyrefem.materials.elasticity import Cords
+    from tyrefem.materials.properties import Softening
+
+
+def material_rows(study: Study) -> tuple[list[dict[str, Any]], list[str]]:
+    """One row per number: region, card, property, value, uncertainty, source, estimate or not; and the estimates."""
+    rows, estimates = [], []
+    idle = {table for number in study.uncertain_numbers if number.idle for table in number.tables}
+    names = {id(entry): where for card in study.materials.values() for where, entry in stated_deviations(card)}
+    for region, card in study.materials.items():
+        for row, (label, entry, value) in enumerate(_properties(card)):
+            guess = "estimate" in entry.source.lower()
+            if guess:
+                estimates.append(f"{region}: {label}")
+            heads = ["", ""] if row else [region, card.title]
+            sd = "–" if entry.relative_sd is None else f"± {100 * entry.relative_sd:.0f} %"
+            if f"materials.{region}.{names.get(id(entry), '')}" in idle:
+                sd += ", cannot matter here"
+            rows.append({"cells": [*heads, label, value, sd, entry.source], "estimate": guess, "first": not row})
+    return rows, estimates
+
+
+def _properties(card: MaterialCard) -> Iterator[tuple[str, Any, str]]:
+    k, loss = card.conductivity, card.loss_tangent
+    if k.along is not None and k.across is not None:
+        yield "conductivity", k, f"{number(k.along)} along, {number(k.across)} across the plies W/m/K"
+    else:
+        yield "conductivity", k, _law(k.law(), "W/m/K")
+    yield "density", card.density, _law(card.density.law(), "kg/m³")
+    yield "specific heat", card.specific_heat, _law(card.specific_heat.law(), "J/kg/K")
+    yield "tan δ", loss, _loss(loss)
+    for label, entry in (("softening", card.softening), ("softening of the cords", _cord_softening(card))):
+        if entry is not None:
+            yield label, entry, _softening(entry)
+    for label, modulus in (("shear modulus", card.shear_modulus), ("Young's modulus", card.youngs_modulus)):
+        if modulus is not None:
+            yield label, modulus, f"{number(modulus.value / 1e6)} MPa"
+    if card.cord is not None:
+        angle, shear = card.cord.crown_angle, card.cord.ply_shear_modulus
+        texts = [] if angle is None else [f"crown angle {number(math.degrees(angle))}°"]
+        texts += [] if shear is None else [f"ply shear modulus {number(shear / 1e6)} MPa"]
+        yield "cords", card.cord, ", ".join(texts)
+    if card.elasticity is not None:
+        moduli = f"G {number(card.elasticity.initial_shear_modulus / 1e6)} MPa"
+        yield "elasticity", card.elasticity, f"{card.elasticity.law}, {moduli}"
+    if card.expansion is not None:
+        yield "thermal expansion", card.expansion, f"{number(card.expansion.coefficient * 1e6)} 1e-6/K"
+    if card.cords is not None:
+        yield "cords", card.cords, _cords(card.cords)
+
+
+def _loss(loss: LossTangent) -> str:
+    if loss.law == "exponential":
+        law = f"{number(loss.value or 0)} exp(−{number(loss.rate or 0)} (T − {number(loss.at)} °C))"
+    else:
+        law = number(loss.value or 0) if loss.law == "constant" else f"table of {len(loss.table or [])} rows"
+    over = loss.frequency
+    if over is None:
+        return law
+    if loss.law == "frequency":
+        return f"{over.law} over frequency"
+    shape = f"(f / {number(over.reference)} Hz)^{number(over.exponent)}" if over.law == "power" else f"{over.law}"
+    return f"{law}, over frequency {shape}"
+
+
+def _cord_softening(card: MaterialCard) -> Softening | None:
+    return next((one.softening for one in (card.cord, card.cords) if one is not None and one.softening), None)
+
+
+def _softening(law: Softening) -> str:
+    if law.law == "table":
+        return f"table of {len(law.table or [])} rows"
+    return f"modulus times exp(−{number(law.rate or 0)} (T − {number(law.at)} °C))"
+
+
+def _cords(cords: Cords) -> str:
+    texts = [
+        f"{number(cords.modulus / 1e9)} GPa",
+        f"diameter {number(cords.diameter * 1e3)} mm",
+        f"{number(cords.ends)} ends/m in {cords.plies} {'ply' if cords.plies == 1 else 'plies'}",
+        f"at {number(math.degrees(cords.angle))}°",
+    ]
+    return ", ".join(texts)
+
+
+def _law(law: Any, unit: str) -> str:
+    """A number, or the ends of a table in temperature."""
+    if not callable(law):
+        return f"{number(law)} {unit}"
+    temperatures = getattr(law, "temperatures", None)
+    if temperatures is None:
+        return f"depends on temperature, {unit}"
+    low, high = temperatures[0], temperatures[-1]
+    ends = f"{number(float(law(low)))} to {number(float(law(high)))}"
+    return f"{ends} {unit} from {number(low)} to {number(high)} °C"
+
+
+def boundary_rows(study: Study) -> list[list[str]]:
+    """Side, law, what it says, and its numbers in SI."""
+    laws = study.card.boundaries
+    rows = []
+    rubs = any(phase.slides for phase in study.card.drive.phases)
+    for side in ("road", "outside_air", "contained_air", "rim", *(["sliding"] if rubs else [])):
+        law = getattr(laws, side)
+        words = (type(law).__doc__ or "").strip().partition("\n")[0]
+        rows.append([side.replace("_", " "), str(law.law), words, "; ".join(_numbers(law))])
+    return rows
+
+
+def mechanics_rows(study: Study) -> list[list[str]]:
+    """Name and value of every choice about strain and load."""
+    mechanics = study.card.mechanics
+    law, energy = mechanics.load_law, mechanics.energy if mechanics.strain == "given" else None
+    rows = [
+        ["strain cycle", mechanics.strain],
+        _load(study)
+        if mechanics.strain in PRESSES
+        else ["load and deflection", "; ".join([str(law.law), *_numbers(law)])],
+        ["loss convention", mechanics.loss_convention],
+        *_feedback(mechanics),
+    ]
+    if energy is not None:
+        load = f"{number(energy.load)} N, {number(energy.pressure / 1e3)} kPa"
+        rows.append(["strain energy given for", f"{load}; {energy.source}"])
+        for region, table in energy.regions.items():
+            places = (f"{number(u / 1e3)} at s = {number(s * 1e3)} mm" for s, u in table)
+            rows.append([f"U of {region} [kJ/m³]", number(table[0][1] / 1e3) if len(table) == 1 else ", ".join(places)])
+        return rows
+    if mechanics.strain != "arcs":
+        return rows
+    return [
+        *rows,
+        ["Poisson term c_a", number(mechanics.poisson_term)],
+        ["membrane shear", "counted" if mechanics.membrane_shear else "left out"],
+    ]
+
+
+def _load(study: Study) -> list[str]:
+    """What a strain law that presses the tyre itself makes of the study's laws of load and footprint."""
+    words = "by finite elements, footprint and rolling radius too; the study's load law and footprint law are not read"
+    if any(effect.name in ("pressure-rise", "pressure-loss") for effect in study.effects):
+        words += ", but for how much effects on the pressure change the deflection"
+    return ["load and deflection", words]
+
+
+def _feedback(mechanics: Mechanics) -> list[list[str]]:
+    choice = mechanics.feedback
+    if choice is None:
+        return []
+    acting = [text for on, text in ((choice.pressure, "pressure"), (choice.modulus, "modulus")) if on]
+    return [["feedback of temperature", f"{' and '.join(acting) or 'nothing'}, within {number(choice.tolerance)} K"]]
+
+
+def effect_rows(study: Study) -> list[list[str]]:
+    """Name, sentence, values with their standard deviations, and where they come from, of every effect at work."""
+    rows = []
+    for effect in study.effects:
+        values = [f"{name} {text}" for name, text in effect.choice.items()]
+        for one in effect.parameters():
+            sd = f" ± {effect.sd[one.name]}" if one.name in effect.sd else ""
+            values.append(f"{one.name.replace('_', ' ')} {one.prior.text(getattr(effect, one.name))}{sd}")
+        rows.append([effect.name, effect.sentence, "; ".join(values), effect.provenance or "the study"])
+    return rows
+
+
+def _numbers(card: Card) -> list[str]:
+    """Every field with its unit; those the study leaves at their defaults say so."""
+    found = []
+    for name, info in type(card).model_fields.items():
+        value = getattr(card, name)
+        if name == "law" or value is None:
+            continue
+        unit = _unit([*info.metadata, info.annotation])
+        if isinstance(value, float):
+            text = f"{number(value)} {unit.replace('**', '')}".strip()
+        else:
+            text = f"table of {len(value)} rows" if isinstance(value, list) else str(value)
+        default = "" if name in card.model_fields_set else " (default)"
+        found.append(f"{name.replace('_', ' ')} {text}{default}")
+    return found
+
+
+def _unit(parts: list[Any]) -> str:
+    """The unit in a field's annotation, however deep; empty where there is none."""
+    for part in parts:
+        if isinstance(part, Unit):
+            return "" if part.unit == "1" else part.unit.replace("delta_degC", "K").replace("degC", "°C")
+        found = _unit(list(typing.get_args(part)))
+        if found:
+            return found
+    return ""
+
+
+def section_sources(study: Study) -> list[list[str]]:
+    """Table of the section's card -> the source it names."""
+    from tyrefem import library
+
+    data, _, _ = library.load("section", study.data["section"], study.folder)
+    return [[where, source] for where, source in _sources(data, "")]
+
+
+def _sources(data: Any, where: str) -> Iterator[tuple[str, str]]:
+    if isinstance(data, Mapping):
+        label = f"{where} {data['name']}" if isinstance(data.get("name"), str) and where else where
+        for key, value in data.items():
+            if key == "source":
+                yield label or "section", str(value)
+            else:
+                yield from _sources(value, f"{label}, {key}" if label else key.replace("_", " "))
+    elif isinstance(data, list):
+        for entry in data:
+            yield from _sources(entry, where)
+
+
+def study_text(study: Study) -> tuple[str, bool]:
+    """The study's file, and whether it is the file as written; if values were changed, the study as it was run."""
+    if study.file is not None and study.file.is_file():
+        text = study.file.read_text(encoding="utf-8-sig")
+        try:
+            if tomllib.loads(text) == dict(study.data):
+                return text, True
+        except tomllib.TOMLDecodeError:
+            pass  # edited since the run: show what was run
+    import tomli_w
+
+    return tomli_w.dumps(dict(study.data)), False
+
+
+ALWAYS = {
+    "Axisymmetric deformation": "A material point passes once per revolution from the inflated section to the section "
+    "under the footprint's centre, as if the whole tyre were pressed in a barrel; what happens at the footprint's "
+    "edges and along the circumference is not resolved.",
+    "Films averaged over the revolution": "The tread sees road and air for their shares of a revolution; flash "
+    "temperatures during contact, and any change around the circumference, are averaged out. At standstill the road "
+    "takes no heat.",
+    "Contained air of one temperature": "The strain cycle uses the drive's pressure; the pressure that rises with the "
+    "air's temperature is reported but does not change the deflection.",
+}
+
+
+#: Effects that are exceptions to free, straight rolling of a new tyre.
+BESIDE = ("tread-slip", "yaw", "camber", "worn-tread", "brake-heat", "brake-power")
+FREE = {
+    "Free, straight rolling": "No slip, steering, camber, braking or wear: no heat from sliding in the footprint.",
+}
+FEM = (
+    "A small deflection about the inflated tyre",
+    "The section is inflated in large displacement and pressed on the road by Fourier harmonics of small motion about "
+    "that state: without friction, and with too much load at a large deflection. Nothing of it is compared with a "
+    "measured tyre.",
+)
+BARREL = (
+    "Every meridian deflected alike, by finite elements",
+    "The section is inflated in large displacement and the whole tyre pressed inside a rigid cylinder, as the report "
+    "assumes: each hoop is shortened, none is bent flat. Nothing of it is compared with a measured tyre.",
+)
+BY_ELEMENTS = {"fem": FEM, "barrel": BARREL}
+SLIDING = {
+    "Friction even over the footprint": "All of the footprint slides at one speed under one pressure. Its heat divides "
+    "between tread and road as they conduct; wear, water, tread gaps, camber and the strain of braking and cornering "
+    "are left out.",
+}
+GIVEN = (
+    "The study gives every region's strain energy, in proportion to the deflection squared: temperatures and rolling "
+    "resistance are as good as these numbers."
+)
+LOCKED = {
+    "A locked wheel's section stands for its patch": "The section modelled is the one on the road, and conduction "
+    "along the circumference is neglected: afterwards the tyre is as hot all round as at that patch, and the heat "
+    "budget counts a ring of such sections.",
+}
+
+
+def assumptions(study: Study, estimates: list[str]) -> list[tuple[str, str]]:
+    """(what, why it matters); ``estimates`` are the material entries that are marked as estimates."""
+    mechanics = study.card.mechanics
+    drive = study.card.drive
+    slip = SLIDING if any(phase.slides for phase in drive.phases) else FREE
+    locked = LOCKED if any(drive.locked_since(start) is not None for start in drive.starts) else {}
+    always = [*ALWAYS.items()]
+    given = mechanics.energy if mechanics.strain == "given" else None
+    if given is not None:
+        always[0] = ("Strain energy given, not computed", f"{GIVEN} Their source: {given.source}.")
+    if mechanics.strain in BY_ELEMENTS:
+        always[0] = BY_ELEMENTS[mechanics.strain]
+    if mechanics.feedback is not None:
+        always[-1] = ("Feedback of temperature on the strain cycle", _feedback_assumptions(mechanics.feedback))
+    if slip is FREE and any(effect.name in BESIDE for effect in study.effects):
+        slip = {name: f"{text} What the study's effects add stands beside this." for name, text in FREE.items()}
+    found = [always[0], *slip.items(), *locked.items(), *always[1:]]
+    over_frequency = [region for region, card in study.materials.items() if card.loss_tangent.frequency is not None]
+    laws = "depends on temperature, not on frequency"
+    if over_frequency:
+        laws = f"depends on temperature, and on frequency in: {', '.join(over_frequency)}"
+    cycle = (
+        "The strain energy times tan δ is lost once per revolution (convention "
+        f"{mechanics.loss_convention}); higher harmonics are neglected. tan δ {laws}."
+    )
+    every = f"Every harmonic of the strain round the wheel loses π tan δ of its energy per cycle; tan δ {laws}."
+    harmonics = ("Loss of every harmonic", every)
+    by_harmonic = mechanics.strain == "fem" and mechanics.revolution == "harmonics"
+    found.insert(1, harmonics if by_harmonic else ("One loss cycle per revolution", cycle))
+    if study.effects:
+        added = "; ".join(dict.fromkeys(f"{one.name}: {one.sentence.rstrip('.')}" for one in study.effects))
+        found.append(("Effects beside the base model", f"{added}. Each says in the study where its values come from."))
+    presses = mechanics.strain in PRESSES
+    if mechanics.load_law.law == "tr-r-64" and not presses:
+        memory = "The load-deflection formula is quoted from memory of NASA TR R-64; a measured stiffness is better."
+        found.append(("Load and deflection from memory", memory))
+    if mechanics.footprint.law == "tr-r-64" and not presses:
+        found.append(("Footprint from memory", "The footprint's length is that of NASA TR R-64, quoted from memory."))
+    if estimates:
+        found.append(("Estimated material numbers", f"Marked in the table of materials: {'; '.join(estimates)}."))
+    measured = (
+        "This study names measured tables; the comparison with them is a report of its own."
+        if study.measured
+        else "No measured temperatures belong to this study."
+    )
+    if mechanics.strain in BY_ELEMENTS:
+        return [*found, ("Validation", f"The strain cycle by finite elements is verified, not validated. {measured}")]
+    if given is not None:
+        return [*found, ("Validation", f"The strain energy is given, so nothing of it is validated. {measured}")]
+    scan = (
+        "The model follows Clark & Dodge (1980), whose measured temperature curves are illegible in the scan, so it "
+        f"has not been validated against them. {measured}"
+    )
+    return [*found, ("Validation", scan)]
+
+
+def _feedback_assumptions(choice: Feedback) -> str:
+    acting = [text for on, text in ((choice.pressure, "its pressure"), (choice.modulus, "every modulus")) if on]
+    return (
+        "The contained air has one temperature and a constant volume. What follows the temperature: "
+        f"{' and '.join(acting) or 'nothing'}. A modulus is taken at its region's mean temperature, where the card "
+        "gives a softening."
+    )

@@ -1,0 +1,187 @@
+"""What a rig's simulation, identification or layer study leaves in a folder: tables first, pictures after them.
+
+An identification as one self-contained HTML page.
+"""
+
+from __future__ import annotations
+
+import base64
+import json
+from collections.abc import Mapping, Sequence
+from glob import escape
+from pathlib import Path
+from typing import TYPE_CHECKING, Any
+
+from tyrefem.interruption import keeping
+from tyrefem.output import atomic_folder, jsonable, versions
+from tyrefem.reports.figures.style import png
+from tyrefem.reports.rig_figures import heated_patch, histories, layers_figure, pictures, references
+from tyrefem.rig.layer_cards import bases, layer_cards
+from tyrefem.rig.selection import COVERAGE
+from tyrefem.rig.summary import diffusivities, ranked, summary
+from tyrefem.rig.verdict import sentences, spoken
+
+if TYPE_CHECKING:
+    from tyrefem.rig.card import RigCard
+    from tyrefem.rig.identification import Identification
+    from tyrefem.rig.layer_study import LayerStudy
+    from tyrefem.rig.simulation import Simulation
+
+
+def page(found: Identification, pictures: Mapping[str, bytes], cards: Mapping[str, Any]) -> str:
+    """The page's HTML; ``pictures`` maps file name -> PNG, ``cards`` layer -> material card data."""
+    from jinja2 import Environment, FileSystemLoader, StrictUndefined
+
+    environment = Environment(
+        loader=FileSystemLoader(Path(__file__).parent), autoescape=True, undefined=StrictUndefined,
+        trim_blocks=True, lstrip_blocks=True,
+    )  # fmt: skip
+    return environment.get_template("rig.html").render(
+        found=found,
+        sentences=sentences(found),
+        coverage=COVERAGE,
+        references=references(found.card),
+        spoken=spoken,
+        pictures={name: base64.b64encode(png).decode("ascii") for name, png in pictures.items()},
+        cards=cards,
+        diffusivities=diffusivities(found),
+        ranked=[(", ".join(map(spoken, key)) or "all constant", value) for key, value in ranked(found, 6)],
+        complaint=any(one.verdict != "determined" for one in found.properties),
+    )
+
+
+#: Files that `save` may write.
+FILES = ("report.html", "rig.json", "estimates.csv", "residuals.csv", "residuals-*.png", "intervals.png",
+         "correlation.png", "histories*.png", "materials/*.toml")  # fmt: skip
+
+
+#: Files that `save_layers` writes.
+LAYER_FILES = ("layers.csv", "layers.png")
+
+
+def save(found: Identification, folder: str | Path, base: str | Sequence[str] | None = None) -> Path:
+    """Write an identification: ``report.html``, ``rig.json``, ``summary.json``, CSV tables, PNGs, material cards.
+
+    ``base``: the card, or ``LAYER=CARD`` entries, that give what the rig cannot know; without it no card is written.
+    """
+    import tomli_w
+
+    folder = Path(folder)
+    given = [base] if isinstance(base, str) else list(base or [])
+    cards = layer_cards(found, bases(found.card, given))
+    data = summary(found)
+    data["materials"] = {layer: f"materials/{layer}.toml" for layer in cards}
+    with atomic_folder(folder) as place:
+        put_json(place / "rig.json", data)
+        short = (
+            "rig",
+            "determined",
+            "not_determined",
+            "poorly_determined",
+            "words",
+            "estimates",
+            "materials",
+            "versions",
+        )
+        put_json(place / "summary.json", {key: data[key] for key in short})
+        found.table.to_csv(place / "estimates.csv", index=False)
+        _residuals(found).to_csv(place / "residuals.csv", index=False)
+        if cards:
+            (place / "materials").mkdir()
+        for layer, card in cards.items():
+            (place / "materials" / f"{layer}.toml").write_text(tomli_w.dumps(card), encoding="utf-8")
+    with keeping(f"the tables and cards are in {folder}, the page is not"), atomic_folder(folder) as place:
+        drawn = pictures(found)
+        for name, content in drawn.items():
+            (place / name).write_bytes(content)
+        (place / "report.html").write_text(page(found, drawn, cards), encoding="utf-8")
+    return folder
+
+
+def _residuals(found: Identification) -> Any:
+    import pandas as pd
+
+    parts = [
+        pd.DataFrame(
+            {
+                "run": block.series.test,
+                "sensor": block.series.sensor,
+                "time_s": block.series.times,
+                "measured_degC": block.series.readings,
+                "computed_degC": block.computed,
+                "residual_K": block.residual,
+                "readings": block.series.counts,
+            }
+        )
+        for block in found.fit.blocks
+    ]
+    return pd.concat(parts, ignore_index=True)
+
+
+def simulation_files(card: RigCard) -> list[str]:
+    """The files that `write_simulation` writes: a table per run, pictures."""
+    return [*(f"{escape(name)}.csv" for name in card.runs), "readings.png", "patch.png"]
+
+
+def write_simulation(done: Simulation, folder: Path) -> Path:
+    """Write simulated tables (``RUN.csv``, which `identify` reads), ``summary.json`` and pictures."""
+    sensors = list(done.card.sensors)
+    runs = {name: (run.times, run.temperatures.to_numpy()) for name, run in done.runs.items()}
+    powers = {name: run.power for name, run in done.card.runs.items()}
+    on = done.clock.heating.size - 1
+    strongest = max(powers, key=lambda name: powers[name])
+    borders = [done.values[f"{layer.name}.thickness"] for layer in done.card.layers]
+    layers = " | ".join(layer.name for layer in done.card.layers)
+    words = f"{powers[strongest]:g} W, laser from above; layers: {layers}"
+    record = {
+        "rig": done.card.title,
+        "file": done.file,
+        "values": dict(done.values),
+        "runs": {
+            name: {
+                "power_W": powers[name],
+                "hottest_degC": float(done.fields[name].max()),
+                "end_of_heating_degC": dict(zip(sensors, _at_switch(done, name), strict=True)),
+            }
+            for name in done.runs
+        },
+        "words": list(done.words),
+        "versions": versions(),
+    }
+    with atomic_folder(folder) as place:
+        for name, run in done.runs.items():
+            run.write(place / f"{name}.csv")
+        put_json(place / "summary.json", record)
+    with keeping(f"the tables are in {folder}, the pictures are not"), atomic_folder(folder) as place:
+        patch = heated_patch(done.twin.grid(done.values), done.fields[strongest][on], borders, words)
+        (place / "readings.png").write_bytes(png(histories(done.card.phases, runs, sensors, powers)))
+        (place / "patch.png").write_bytes(png(patch))
+    return folder
+
+
+def _at_switch(done: Simulation, name: str) -> list[float]:
+    seen = done.twin.seen(done.values, done.clock, done.fields[name])
+    return [float(value) for value in seen[done.clock.heating.size - 1]]
+
+
+def save_layers(done: LayerStudy, folder: Path) -> Path:
+    """Write ``layers.csv``, ``layers.png`` and ``summary.json``."""
+    save_layer_table(done, folder)
+    with keeping(f"the table is in {folder}, its picture is not"), atomic_folder(folder) as place:
+        (place / "layers.png").write_bytes(png(layers_figure(done)))
+    return folder
+
+
+def save_layer_table(done: LayerStudy, folder: Path, *, complete: bool = True) -> Path:
+    """Write ``layers.csv`` and ``summary.json``, which says whether all fits are in it."""
+    table = done.table()
+    with atomic_folder(folder) as place:
+        table.to_csv(place / "layers.csv", index=False)
+        rows = {"complete": complete, "rows": table.to_dict("records"), "versions": versions()}
+        put_json(place / "summary.json", rows)
+    return folder
+
+
+def put_json(path: Path, data: dict[str, Any]) -> None:
+    """Write JSON; the folder it goes to is moved into place as a whole."""
+    path.write_text(json.dumps(jsonable(data), indent=1) + "\n", encoding="utf-8")

@@ -1,0 +1,367 @@
+"""What a report says: the numbers that decide first, then the tables.
+
+Sliding in a report: the headline and one row per phase with slip.
+
+The report of a run: one HTML file with everything in it, pictures included; no script, no links.
+"""
+
+from __future__ import annotations
+
+import base64
+import datetime
+import tempfile
+from dataclasses import replace
+from pathlib import Path
+from typing import TYPE_CHECKING, Any
+
+import numpy as np
+
+from tyrefem.geometry.place_names import place
+from tyrefem.output import atomic_path, versions
+from tyrefem.reports.inputs import (
+    assumptions,
+    boundary_rows,
+    effect_rows,
+    material_rows,
+    mechanics_rows,
+    section_sources,
+    study_text,
+)
+from tyrefem.reports.run_files import of_run, summary
+from tyrefem.reports.words import number, seconds
+
+if TYPE_CHECKING:
+    from tyrefem.simulation.phases import PhaseState
+    from tyrefem.simulation.result import Result
+
+
+def sliding_card(result: Result) -> list[dict[str, str]]:
+    """The hottest contact; nothing for a run without slip."""
+    if result.sliding is None:
+        return []
+    phase = result.sliding.hottest
+    limited = f", limited to {number(phase.friction_lowest, 2)} by decomposition" if phase.capped else ""
+    return [
+        {
+            "label": "Sliding contact, exit edge",
+            "value": f"{phase.exit_edge_highest:.1f} °C",
+            "note": f"mean tread {phase.mean_highest:.1f} °C; phase {phase.name}, friction "
+            f"{number(phase.friction, 2)}{limited}",
+        }
+    ]
+
+
+def sliding_rows(result: Result) -> list[list[str]]:
+    """One row per phase with slip, as the template's heads say."""
+    if result.sliding is None:
+        return []
+    found = result.sliding.phases
+    beside = {p.name: "–" if p.half_space_highest is None else f"{p.half_space_highest:.1f}" for p in found}
+    return [
+        [
+            phase.name + (" (locked)" if phase.locked else ""), f"{phase.sliding_speed:.2f}",
+            number(phase.pressure / 1e3), number(phase.friction, 3),
+            f"{number(phase.friction_lowest, 3)}, decomposition" if phase.capped else "not limited",
+            number(phase.friction_work / 1e3), number(phase.tread_heat / 1e3), f"{phase.tread_start:.1f}",
+            f"{phase.tread_highest:.1f}", beside[phase.name], f"{phase.exit_edge_highest:.1f}",
+        ]
+        for phase in found
+    ]  # fmt: skip
+
+
+Rows = list[list[str]]
+
+
+def content(result: Result) -> dict[str, Any]:
+    """Everything the template needs, as text."""
+    study = result.study
+    materials, estimates = material_rows(study)
+    text, as_written = study_text(study)
+    return {
+        "title": study.title,
+        "name": study.name,
+        "written": datetime.datetime.now().astimezone().strftime("%Y-%m-%d %H:%M"),
+        "interrupted": _interrupted(result),
+        "warnings": result.warnings,
+        "sliding": sliding_rows(result),
+        "headline": headline(result),
+        "published": [one.cells for one in of_run(result)],
+        "sensors": _sensors(result),
+        "extremes": _extremes(result),
+        "phases": [_phase(result, phase) for phase in result.phases],
+        "budget": _budget(result),
+        "imbalance": f"{result.heat_budget.imbalance:.1e}",
+        "materials": materials,
+        "estimates": estimates,
+        "boundaries": boundary_rows(study),
+        "effects": effect_rows(study),
+        "mechanics": mechanics_rows(study),
+        "sources": section_sources(study),
+        "numerics": _numerics(result),
+        "assumptions": assumptions(study, estimates),
+        "study_text": text,
+        "as_written": as_written,
+    }
+
+
+def _interrupted(result: Result) -> str:
+    if not result.history.interrupted:
+        return ""
+    return f"{seconds(result.times[-1])} of {seconds(result.study.card.drive.end)}"
+
+
+def headline(result: Result) -> list[dict[str, str]]:
+    """The numbers that decide: label, value and what belongs to it."""
+    found = summary(result)
+    hot, resistance, air = found["hottest"], found["rolling_resistance"], found["contained_air"]
+    budget = result.heat_budget
+    cards = [
+        {
+            "label": "Hottest point",
+            "value": f"{hot['temperature_degC']:.1f} °C",
+            "note": f"{hot['region']}, {place(result.study.section, hot['s_m'], hot['depth_m'], hot['region'])}; "
+            f"after {seconds(hot['time_s'])}",
+        }
+    ]
+    if resistance["force_N"] > 0:
+        cards.append(
+            {
+                "label": "Rolling resistance",
+                "value": f"{number(resistance['force_N'], 3)} N",
+                "note": f"coefficient {number(resistance['coefficient'], 3)}; cold "
+                f"{number(resistance['cold_force_N'], 3)} N, {number(resistance['cold_coefficient'], 3)}"
+                f"{_at_end_of(result)}",
+            }
+        )
+    cards.append(
+        {
+            "label": "Contained air at the end",
+            "value": f"{air['temperature_degC']:.1f} °C",
+            "note": f"{number(air['gauge_pressure_Pa'] / 1e3)} kPa gauge, "
+            f"{number(result.gas_pressure[0] / 1e3)} kPa at the start",
+        }
+    )
+    cards.append(
+        {
+            "label": "Heat generated",
+            "value": f"{number(budget.total('generated') / 1e3)} kJ",
+            "note": f"{_rubbed(result)}stored {number(budget.total('stored') / 1e3)} kJ, "
+            f"lost {number(budget.total('lost') / 1e3)} kJ; "
+            f"{'' if budget.empty else 'the budget '}{budget.closing.replace('-', '−')}",
+        }
+    )
+    cards += sliding_card(result)
+    loaded = max((p for p in result.phases if p.start < result.times[-1]), key=lambda p: p.deflection, default=None)
+    if loaded is not None and loaded.deflection > 0:
+        several = f"; phase {loaded.name}" if len(result.phases) > 1 else ""
+        cards.append(
+            {
+                "label": "Deflection",
+                "value": f"{loaded.deflection * 1e3:.1f} mm",
+                "note": f"{_warming(result)}footprint {loaded.footprint_length * 1e3:.0f} mm, {_area(loaded)}"
+                f"{100 * loaded.road_fraction:.1f} % of a "
+                f"revolution on the road{several}",
+            }
+        )
+    return cards
+
+
+def _area(phase: PhaseState) -> str:
+    return "" if phase.footprint_area is None else f"{phase.footprint_area * 1e4:.0f} cm² in contact, "
+
+
+def _warming(result: Result) -> str:
+    """What the feedback of temperature did to the deflection; nothing where there is none."""
+    return "" if result.feedback is None else f"{result.feedback.words}; "
+
+
+def _rubbed(result: Result) -> str:
+    return "" if result.sliding is None else f"sliding {number(result.heat_budget.total('sliding') / 1e3)} kJ more; "
+
+
+def _at_end_of(result: Result) -> str:
+    """Which phase the rolling resistance belongs to, where there are several."""
+    i = result.rolling_reading
+    if i is None or len(result.phases) < 2:
+        return ""
+    name = next(phase.name for phase in result.phases if result.times[i] <= phase.end + 1e-6)
+    return f"; after {seconds(result.times[i])}, phase {name}"
+
+
+def _drag(result: Result, phase: PhaseState) -> str:
+    """Rolling resistance at the end of a phase, N."""
+    end = min(phase.end, float(result.times[-1]))
+    if phase.speed <= 0 or phase.start >= result.times[-1]:
+        return "–"
+    i = int(np.searchsorted(result.times, end - 1e-6))
+    speed = result.tyre.speed(end * (1 - 1e-12))
+    return number(float(result.heat_budget.power("generated")[i]) / speed, 3) if speed > 0 else "–"
+
+
+def _sensors(result: Result) -> Rows:
+    section, readings = result.study.section, result.readings
+    gradients = result.gradient_at_sensors
+    times, rows = result.times, []
+    for name, (r, z) in result.sensor_places.items():
+        s, depth = (float(np.ravel(v)[0]) for v in section.locate(np.array([[r, z]])))
+        values = readings[name].to_numpy()
+        hottest = int(np.argmax(values))
+        rows.append(
+            [
+                name, str(section.region_at(s, depth)), place(section, s, depth),
+                f"{s * 1e3:.1f}", f"{depth * 1e3:.1f}",
+                f"{values[-1]:.1f}", f"{values[hottest]:.1f}", number(times[hottest]),
+                f"{gradients[name].iloc[-1] / 1e3:.2f}",
+            ]
+        )  # fmt: skip
+    for name in [column for column in readings.columns if column not in ("time_s", *result.sensor_places)]:
+        values = readings[name].to_numpy()
+        hottest = int(np.argmax(values))
+        rows.append([name.replace("-", " "), "–", "lumped: one temperature", "–", "–", f"{values[-1]:.1f}",
+                     f"{values[hottest]:.1f}", number(times[hottest]), "–"])  # fmt: skip
+    return rows
+
+
+def _extremes(result: Result) -> Rows:
+    return [
+        [
+            "whole tyre" if row["region"] == "tyre" else str(row["region"]),
+            place(result.study.section, row["s_m"], row["depth_m"], "" if row["region"] == "tyre" else row["region"]),
+            f"{row['temperature_degC']:.1f}", number(row["time_s"]), f"{row['r_m'] * 1e3:.1f}",
+            f"{row['z_m'] * 1e3:.1f}",
+        ]
+        for row in result.extremes.to_dict("records")
+    ]  # fmt: skip
+
+
+def _phase(result: Result, phase: PhaseState) -> list[str]:
+    reached = result.times[-1]
+    state = "" if reached >= phase.end - 1e-6 else " (not reached)" if phase.start >= reached else " (cut short)"
+    return [
+        phase.name + state, f"{number(phase.start)} – {number(phase.end)}",
+        f"{phase.speed:.2f}", number(phase.load / 1e3), number(phase.pressure / 1e3),
+        f"{phase.deflection * 1e3:.1f}", f"{phase.footprint_length * 1e3:.0f}", f"{100 * phase.road_fraction:.1f}",
+        number(phase.road_film), f"{phase.air_film:.1f}", _drag(result, phase),
+    ]  # fmt: skip
+
+
+def _budget(result: Result) -> list[dict[str, Any]]:
+    budget, rows = result.heat_budget, []
+    made = budget.made
+
+    def share(energy: float) -> str:
+        return f"{100 * energy / made:z.1f}" if made > 0 else "–"
+
+    words = {
+        "generated": "generated in",
+        "sliding": "from",
+        "stored": "stored in",
+        "lost": "lost to",
+        "lumped": "of that",
+    }
+    for kind, word in words.items():
+        entries = [(name, series) for (k, name), series in budget.energies.items() if k == kind]
+        for name, series in entries:
+            power = budget.powers.get((kind, name))
+            cells = [
+                f"{word} {name}",
+                number(series[-1] / 1e3),
+                "–" if power is None else number(power[-1]),
+                share(series[-1]),
+            ]
+            rows.append({"total": False, "cells": cells})
+        if entries and kind != "lumped":
+            cells = [
+                f"{kind} in all",
+                number(budget.total(kind) / 1e3),
+                number(budget.power(kind)[-1]),
+                share(budget.total(kind)),
+            ]
+            rows.append({"total": True, "cells": cells})
+    return rows
+
+
+def _numerics(result: Result) -> Rows:
+    study, steps, mesh = result.study, result.history.steps, result.tyre.mesh.summary()
+    rows = [
+        ["mesh", f"{mesh['mesher']}: {mesh['nodes']} nodes, {mesh['elements']} {mesh['cell']}s of "
+         f"{mesh['size_m'] * 1e3:.3g} mm, {study.card.mesh.element} with "
+         f"{result.tyre.problem.operators.size} unknowns, {'half' if mesh['half'] else 'full'} section"],
+        ["mesh quality", f"scaled Jacobian at least {mesh['scaled_jacobian']:.2f}, edge ratio at most "
+         f"{mesh['edge_ratio']:.1f}"],
+        ["time integration", f"adaptive steps, error aimed at {study.tolerance:g} K; {steps.accepted} steps accepted, "
+         f"{steps.rejected} rejected, {steps.factorisations} factorisations"],
+        ["mesh error", f"{study.numerical_sd:g} K (standard deviation assumed by the study)"],
+        ["wall time", f"{result.wall_time:.2f} s"],
+        ["versions", ", ".join(f"{name} {version}" for name, version in versions().items())],
+    ]  # fmt: skip
+    if not study.section.half:
+        return rows
+    return [*rows, ["symmetry", "half section; heat, powers and forces are those of the whole tyre"]]
+
+
+#: Picture -> what it shows.
+CAPTIONS = {
+    "temperature.png": "Temperature on the section at the end of the run, with the thermocouples' readings.",
+    "temperature-hottest.png": "The same at the moment when the tyre was hottest.",
+    "histories.png": "Readings over time.",
+    "sliding.png": "The contact in every phase with slip; the exit edge is the hottest a tread point gets.",
+    "heat-budget.png": "Left: the heat that was generated (rising) equals what was stored and lost (falling). "
+    "Right: the powers over time.",
+    "heat-source.png": "Strain energy per revolution, and the heat it becomes, by zone, at the end of the last "
+    "phase that rolls under load.",
+    "strain-cycle.png": "The section before and under the largest load, and the strain cycle along the meridian.",
+    "mesh.png": "The mesh, as modelled.",
+    "3d": "Surface temperature, a quarter of the tyre cut away.",
+}
+
+
+def write_report(result: Result, path: Path, *, three_d: bool = False) -> Path:
+    """Write the report; the pictures already drawn for this result are used again.
+
+    Parameters
+    ----------
+    three_d : also a 3D picture, where the machine can render one.
+
+    Raises
+    ------
+    InputError : the file cannot be written.
+    """
+    path = Path(path)
+    page = render(result, three_d=three_d)
+    with atomic_path(path) as temporary:
+        temporary.write_text(page, encoding="utf-8")
+    return path
+
+
+def render(result: Result, *, three_d: bool = False) -> str:
+    """The report's HTML."""
+    from jinja2 import Environment, PackageLoader, StrictUndefined
+
+    from tyrefem.reports.figures import pictures
+
+    drawn = dict(pictures(result))
+    picture = _three_d(result) if three_d else None
+    if picture is not None:
+        drawn["3d"] = picture
+    embedded = [
+        {"data": base64.b64encode(png).decode("ascii"), "caption": CAPTIONS.get(name, ""), "name": name}
+        for name, png in drawn.items()
+    ]
+    environment = Environment(
+        loader=PackageLoader("tyrefem.reports", "."), autoescape=True, undefined=StrictUndefined, trim_blocks=True,
+        lstrip_blocks=True,
+    )  # fmt: skip
+    return environment.get_template("run.html.j2").render(pictures=embedded, **content(result))
+
+
+def _three_d(result: Result) -> bytes | None:
+    from tyrefem.reports.view3d import screenshot
+    from tyrefem.reports.vtk import write_series
+
+    with tempfile.TemporaryDirectory() as folder:
+        last = replace(result, field_times=result.times[-1:])
+        collection = write_series(last, Path(folder), revolved=True)
+        ring = collection.with_name(f"{collection.stem}-revolved.pvd")
+        drawn = screenshot(ring, Path(folder) / "3d.png")
+        return drawn.read_bytes() if drawn else None

@@ -1,0 +1,120 @@
+"""`summary.json` and the tables of a run: everything needed to read it, check it and run it again."""
+
+from __future__ import annotations
+
+from dataclasses import asdict
+from pathlib import Path
+from typing import TYPE_CHECKING, Any
+
+from tyrefem.inputs.published import Comparison, compared, of_footprint
+from tyrefem.output import atomic_path, versions, write_json
+
+if TYPE_CHECKING:
+    from tyrefem.inputs.study import Study
+    from tyrefem.simulation.result import Result
+
+
+def of_run(result: Result) -> tuple[Comparison, ...]:
+    """A run beside its study's published ranges: rolling resistance at its end, and what its strain cycle knows of
+    the footprint under the last load of the first phase that carries one (``mechanics.strain = "fem"``)."""
+    from tyrefem.mechanics.finite_elements import FiniteElements
+
+    values = {"rolling_resistance_coefficient": result.rolling_resistance.coefficient}
+    for cycle in (cycles[-1] for cycles in result.tyre.schedule.cycles):
+        if isinstance(cycle, FiniteElements) and cycle.footprint is not None:
+            values |= of_footprint(cycle.footprint)
+            break
+    return compared(result.study.card.published, values)
+
+
+#: Tables of a run, as CSV files.
+TABLES = ("readings.csv", "extremes.csv", "heat_budget.csv", "heat_power.csv", "sliding.csv")
+
+
+def summary(result: Result) -> dict[str, Any]:
+    """The run in numbers. SI units and degC, as the keys say."""
+    study, history = result.study, result.history
+    readings, peak = result.readings, result.extremes.iloc[0]
+    resistance = result.rolling_resistance
+    return {
+        "study": study.name,
+        "title": study.title,
+        "complete": not history.interrupted,
+        "hottest": {
+            "temperature_degC": peak.temperature_degC,
+            "time_s": peak.time_s,
+            "region": _hottest_region(result),
+            "r_m": peak.r_m,
+            "z_m": peak.z_m,
+            "s_m": peak.s_m,
+            "depth_m": peak.depth_m,
+        },
+        "rolling_resistance": {
+            "phase": resistance.phase,
+            "force_N": resistance.force,
+            "coefficient": resistance.coefficient,
+            "cold_force_N": resistance.cold_force,
+            "cold_coefficient": resistance.cold_coefficient,
+        },
+        "published": [one.to_dict() for one in of_run(result)],
+        "contained_air": {
+            "temperature_degC": float(result.gas_temperature[-1]),
+            "gauge_pressure_Pa": float(result.gas_pressure[-1]),
+        },
+        "sensors": {
+            name: {"end_degC": float(readings[name].iloc[-1]), "max_degC": float(readings[name].max())}
+            for name in study.sensors
+        },
+        "extremes": result.extremes.to_dict("records"),
+        "heat_budget": result.heat_budget.to_dict(),
+        **({} if result.sliding is None else {"sliding": result.sliding.to_dict()}),
+        **({} if result.feedback is None else {"feedback": result.feedback.to_dict()}),
+        "warnings": list(result.warnings),
+        "phases": [asdict(phase) for phase in result.phases],
+        "mesh": result.tyre.mesh.summary() | {"element": study.card.mesh.element},
+        "numerics": {"tolerance_K": study.tolerance, **asdict(history.steps)},
+        "section": study.section.summary(),
+        "wall_time_s": result.wall_time,
+        "versions": versions(),
+        "random_seed": None,
+        "input": dict(study.data),
+    }
+
+
+def _hottest_region(result: Result) -> str:
+    peaks = result.history.region_maximum
+    return max(peaks, key=lambda region: peaks[region].temperature)
+
+
+def run_files(study: Study) -> list[str]:
+    """The files that a run of ``study`` may write, relative to its folder."""
+    from tyrefem.reports.figures import PICTURES
+    from tyrefem.reports.vtk import file_names
+
+    return [*TABLES, "study.toml", "report.html", *(f"pictures/{name}" for name in PICTURES),
+            *(f"vtk/{name}" for name in file_names(study.name))]  # fmt: skip
+
+
+def write_tables(result: Result, folder: Path) -> Path:
+    """``readings.csv``, ``extremes.csv``, ``heat_budget.csv``, ``heat_power.csv``, ``study.toml``, ``summary.json``.
+
+    With slip also ``sliding.csv``: the contact over time.
+    """
+    folder.mkdir(parents=True, exist_ok=True)
+    readings = result.readings.rename(columns=lambda name: "time [s]" if name == "time_s" else f"{name} [degC]")
+    readings["contained-air pressure [kPa]"] = result.gas_pressure / 1e3
+    # Six digits do for a temperature, not for the time of a long drive: no two rows may have the same.
+    readings["time [s]"] = [f"{time:.12g}" for time in readings["time [s]"]]
+    tables = {
+        "readings.csv": readings,
+        "extremes.csv": result.extremes,
+        "heat_budget.csv": result.heat_budget.table,
+        "heat_power.csv": result.heat_budget.series,
+    }
+    if result.sliding is not None:
+        tables["sliding.csv"] = result.sliding.series
+    for name, table in tables.items():
+        with atomic_path(folder / name) as temporary:
+            table.to_csv(temporary, index=False, float_format="%.6g")
+    result.study.save(folder / "study.toml")
+    return write_json(summary(result), folder / "summary.json")

@@ -1,0 +1,240 @@
+"""A design study as one self-contained HTML page: the answers in words first, then each with its picture and table.
+
+What an earlier question left in a sweep's folder: files of ours go, a user's own and finished variants stay.
+"""
+
+from __future__ import annotations
+
+import base64
+import json
+import re
+from collections.abc import Mapping, Sequence
+from contextlib import suppress
+from pathlib import Path
+from typing import TYPE_CHECKING, Any
+
+from tyrefem.output import atomic_path, jsonable
+from tyrefem.output.folder import BOOKKEEPING
+from tyrefem.reports.figures.style import png
+from tyrefem.reports.sweep_figures import figures
+from tyrefem.sweep.sweep import Sweep
+from tyrefem.variants.answer_units import difference_unit, name_of, shown
+
+if TYPE_CHECKING:
+    import pandas as pd
+
+    from tyrefem.sweep.design import Design
+    from tyrefem.sweep.part import Part
+
+#: File of the page.
+PAGE = "sweep.html"
+
+
+#: Rows of the page's tables; all are in the files.
+ROWS, ROWS_OF_VARIANTS = 60, 500
+
+
+#: Answers in the page's table of variants.
+COLUMNS = (
+    "hottest_degC", "hottest_region", "contained-air_degC", "rolling_resistance_coefficient", "gradient_K_m", "mass_kg",
+    "time_to_limit_s",
+)  # fmt: skip
+
+
+def write_page(found: Design, summary: Mapping[str, Any], folder: Path) -> list[str]:
+    """Write ``sweep.html``, and the pictures as PNG files in ``pictures``; names of these files."""
+    from jinja2 import Environment, PackageLoader, StrictUndefined
+
+    environment = Environment(
+        loader=PackageLoader("tyrefem.reports", "."), autoescape=True, undefined=StrictUndefined, trim_blocks=True,
+        lstrip_blocks=True,
+    )  # fmt: skip
+    swept = found.swept or (found.optimum.swept if found.optimum is not None else None)
+    parts = [_part(part, folder) for part in found.parts]
+    page = environment.get_template("sweep.html").render(
+        title=summary["title"],
+        study=found.study,
+        how="" if found.swept is None else summary["words"][1].strip(),
+        interrupted=found.interrupted,
+        numbers=_numbers(found),
+        parts=parts,
+        variants=None if swept is None else _variants(found, swept),
+        failed=found.failed,
+        assumed=_assumed(found),
+        versions=summary["versions"],
+    )
+    with atomic_path(folder / PAGE) as temporary:
+        temporary.write_text(page, encoding="utf-8")
+    return [PAGE, *(picture["file"] for part in parts for picture in part["pictures"])]
+
+
+def _part(part: Part, folder: Path) -> dict[str, Any]:
+    """Heading, words, pictures and table of an answer."""
+    drawn = []
+    for name, caption, picture in figures(part):
+        content = png(picture)
+        file = f"pictures/{name}.png"
+        with atomic_path(folder / file) as temporary:
+            temporary.write_bytes(content)
+        drawn.append({"file": file, "caption": caption, "data": base64.b64encode(content).decode("ascii")})
+    # The variants have a table of their own at the end.
+    table = None if part.name in ("sweep", "optimum", "pareto") else _cells(part.table)
+    return {"name": part.name, "heading": part.heading, "words": part.words, "pictures": drawn, "table": table}
+
+
+def _cells(table: pd.DataFrame) -> dict[str, Any]:
+    table = table.drop(columns=[name for name in ("failure",) if name in table and not table[name].any()])
+    rows = [[cell(value) for value in row] for row in table.head(ROWS).itertuples(index=False)]
+    return {"columns": list(table.columns), "rows": rows, "total": len(table)}
+
+
+def cell(value: Any, digits: int = 5) -> str:
+    """A table's cell: numbers short, nothing for NaN."""
+    if isinstance(value, bool):
+        return "yes" if value else "no"
+    if isinstance(value, int | float):
+        return "" if value != value else f"{value:.{digits}g}"
+    return "" if value is None else str(value)
+
+
+def _variants(found: Design, swept: Sweep) -> dict[str, Any]:
+    table, certificate = found.table, swept.certificate
+    errors = {} if certificate is None else dict(certificate.errors)
+    wanted = dict.fromkeys((*found.card.answers, *found.card.limits, *COLUMNS))
+    columns = [name for name in wanted if name in table]
+    headings = [one.heading for one in swept.plan.varied] or [key for key in swept.plan.keys if key in table]
+    best = set(found.pareto["variant"]) if found.swept is not None and "hottest_degC" in table else set()
+    if found.swept is None and found.optimum is not None and found.optimum.best is not None:
+        best = {swept.plan.names[found.optimum.best]}
+    rows = []
+    for row in table.head(ROWS_OF_VARIANTS).to_dict("records"):
+        cells = [row["variant"], *(cell(row[name]) for name in headings)]
+        for name in columns:
+            error = errors.get(name) if row["by"] == "reduced" else None
+            stated = f" ± {error:.1g}" if error is not None else ""
+            cells.append(cell(row[name]) + stated if cell(row[name]) else "")
+        kind = "front" if row["variant"] in best else "" if row["feasible"] else "out"
+        rows.append({"cells": [*cells, row["by"] or "failed"], "kind": kind})
+    return {
+        "columns": ["variant", *headings, *columns, "by"],
+        "rows": rows,
+        "total": len(table),
+        "certificate": certificate,
+        "file": "sweep" if found.swept is not None else "optimum",
+    }
+
+
+def _numbers(found: Design) -> list[dict[str, str]]:
+    """The few numbers to see first."""
+    cards: list[dict[str, str]] = []
+    if found.optimum is not None and found.optimum.best is not None:
+        answer = found.optimum.answer
+        label = f"{'smallest' if found.optimum.card.minimise else 'largest'} {name_of(answer)}"
+        value = shown(answer, found.optimum.full[answer])
+        cards.append({"label": label, "value": value, "note": found.optimum.where})
+    if found.swept is not None and found.swept.outcomes:
+        from tyrefem.sweep.responses import extreme, finished, judged
+
+        table = finished(found.swept)
+        for answer in judged(found.swept, found.card.answers)[:3]:
+            low, high = (float(extreme(table, answer, least=least)[answer]) for least in (True, False))
+            certificate = found.swept.certificate
+            error = None if certificate is None else certificate.errors.get(answer)
+            note = f"over {len(table)} variants" + ("" if error is None else f"; each ± {shown(answer, error, 1)}")
+            first = f"{low:.4g}" if high == high else shown(answer, low)
+            cards.append({"label": name_of(answer), "value": f"{first} – {shown(answer, high)}", "note": note})
+    if found.tornado is not None:
+        for answer in found.tornado.answers[:2]:
+            rows = found.tornado.of(answer).dropna(subset=["range"])
+            if len(rows):
+                value = f"± {rows.iloc[0]['range'] / 2:.2g} {difference_unit(answer)}".strip()
+                cards.append(
+                    {"label": f"{name_of(answer)}: widest tolerance", "value": value, "note": rows.iloc[0]["number"]}
+                )
+    if found.envelope is not None:
+        rated = found.envelope.rating.dropna(subset=["tkph"]).head(2).to_dict("records")
+        cards += [
+            {
+                "label": "safe load × speed",
+                "value": f"{row['tkph']:.0f} t km/h",
+                "note": f"at {row['pressure']}, every load tried",
+            }
+            for row in rated
+        ]
+    return cards
+
+
+def _assumed(found: Design) -> list[str]:
+    """What every reader has to know."""
+    told = [
+        "Every variant is the whole study with some values changed: what its cards and laws assume holds here too.",
+        f"Time integration to {found.study.tolerance:g} K; mesh of {found.study.card.mesh.size * 1e3:g} mm.",
+    ]
+    if found.indices is not None:
+        told.append("Sobol indices: numbers uniform in their ranges and independent of each other.")
+    if found.tornado is not None:
+        told.append(
+            "Tornado: one standard deviation each unless given; together: independent, the answer linear in them."
+        )
+    if found.envelope is not None:
+        told.append(
+            "Envelope: the answer must rise with speed. Load times speed in t km/h is what earth-mover tyres are"
+            " rated by, here of this model, ambient temperature and length of drive: no maker's rating."
+        )
+    if found.optimum is not None and not found.optimum.exhaustive:
+        told.append("Optimum: a search with a seed, no proof that there is none better.")
+    return told
+
+
+#: `summary.json` lists the other files under this name; nothing that is not like one of ours is ever removed.
+FILES = "files"
+LIKE_OURS = re.compile(r"(pictures/)?[^/\\]+\.(csv|parquet|png|html)")
+
+
+#: What is the folder's, or words, and no result.
+NOT_RESULTS = (*BOOKKEEPING, "words")
+
+
+#: What makes a question another one.
+QUESTION = ("study", "asked", "input", "versions")
+
+
+def earlier(folder: Path) -> dict[str, Any]:
+    """The summary that a folder has; empty: none, or not of a sweep."""
+    try:
+        found = json.loads((folder / "summary.json").read_text(encoding="utf-8"))
+    except (OSError, ValueError):
+        return {}
+    return found if isinstance(found, dict) and isinstance(found.get(FILES), list) else {}
+
+
+def clear(folder: Path, before: Mapping[str, Any], summary: Mapping[str, Any], written: Sequence[str]) -> list[str]:
+    """Remove what ``before`` lists and is neither written again nor still true; the names of ours that are there.
+
+    Of the same question everything stays while it is not finished, and page and pictures where they are not drawn
+    again and nothing has changed.
+    """
+    listed = [name for name in before.get(FILES, []) if isinstance(name, str) and LIKE_OURS.fullmatch(name)]
+    left = [name for name in listed if name not in written and (folder / name).is_file()]
+    now = json.loads(json.dumps(jsonable(summary)))
+    same = all(before.get(key) == now[key] for key in QUESTION)
+    kept = [
+        name
+        for name in left
+        if same and (not now["complete"] or (name.endswith((".png", ".html")) and _results(before) == _results(now)))
+    ]
+    for name in left:
+        if name not in kept:
+            # A file that may not be removed, or a folder that is not empty, stays.
+            with suppress(OSError):
+                (folder / name).unlink()
+                if "/" in name:
+                    (folder / name).parent.rmdir()
+    return [*written, *kept]
+
+
+def _results(summary: Mapping[str, Any]) -> dict[str, Any]:
+    """A summary without what differs each time that the same is written."""
+    found = {key: value for key, value in summary.items() if key not in NOT_RESULTS}
+    sample = {key: value for key, value in found.pop("sample", {}).items() if key not in ("seconds", "taken_up")}
+    return found | {"sample": sample}

@@ -1,0 +1,247 @@
+"""Pictures of a sweep's variants: response curves, maps, the Pareto front; and which answer has which pictures."""
+
+from __future__ import annotations
+
+import functools
+import itertools
+from collections.abc import Iterator
+from typing import TYPE_CHECKING, Any
+
+import numpy as np
+
+from tyrefem.reports.figures.style import (  # fmt: skip
+    ENERGY_MAP,
+    FONT,
+    PALETTE,
+    QUIET,
+    TITLE,
+    add_axes,
+    figure,
+    line_style,
+    plain,
+    temperature_map,
+    tidy,
+    title,
+)
+from tyrefem.sweep.pareto import ParetoFront
+from tyrefem.sweep.responses import Responses, finished, judged, main_effects, numeric, short
+from tyrefem.variants.answer_units import name_of, unit_of
+
+if TYPE_CHECKING:
+    import pandas as pd
+    from matplotlib.figure import Figure
+
+    from tyrefem.sweep.sweep import Sweep
+
+BROKEN = "#D55E00"
+#: Lines of one picture; more are drawn as points with their mean.
+MOST_LINES = 8
+#: Maps and curves of an answer, at most.
+MOST_MAPS, MOST_CURVES = 3, 4
+
+
+@functools.singledispatch
+def figures(answer: object) -> Iterator[tuple[str, str, Figure]]:
+    """Pictures of an answer: file name without ending, caption, picture.
+
+    A new kind of answer registers its function here, beside the code that draws it.
+
+    Raises
+    ------
+    TypeError : no function is registered for this kind of answer.
+    """
+    raise TypeError(f"no pictures are registered for {type(answer).__name__}")
+
+
+@figures.register(Responses)
+def _responses(answer: Responses) -> Iterator[tuple[str, str, Figure]]:
+    """Maps over the two or three numbers that move the answer most, and curves over every number."""
+    swept = answer.swept
+    if len(finished(swept)) < 2:
+        return
+    axes = numeric(swept)
+    averaged = swept.plan.how.get("sample") == "grid" and len(swept.plan.varied) > 2
+    mean = "; mean over the other numbers" if averaged else ""
+    for name in judged(swept, answer.wanted):
+        order = [number for number in main_effects(swept, name)["number"] if number in axes]
+        for x, y in itertools.combinations(order[:MOST_MAPS], 2):
+            yield _file("map", name, x, y), f"{name_of(name)} over {x} and {y}{mean}", response_map(swept, x, y, name)
+        for x in order[:MOST_CURVES]:
+            yield _file("curves", name, x), f"{name_of(name)} over {x}", curves(swept, x, name)
+        cards = [varied.heading for varied in swept.plan.varied if varied.heading not in axes]
+        for card in cards if not axes else []:
+            yield _file("bars", name, card), f"{name_of(name)} by {card}", curves(swept, card, name)
+
+
+@figures.register(ParetoFront)
+def _pareto(answer: ParetoFront) -> Iterator[tuple[str, str, Figure]]:
+    """The front in every pair of aims."""
+    aims = [name for name in answer.chosen if name in answer.swept.table]
+    for y, x in itertools.combinations(aims, 2):
+        if len(answer.table):
+            caption = f"{name_of(y)} against {name_of(x)}; the front is of all aims together"
+            yield f"pareto-{y}-{x}", caption, pareto(answer.swept, answer.table, x, y)
+
+
+def _file(*parts: str) -> str:
+    return "-".join(short(part).replace(".", "-").replace(" ", "-") for part in parts)
+
+
+def label(answer: str) -> str:
+    """An axis for an answer."""
+    unit = unit_of(answer)
+    return f"{name_of(answer)} [{unit}]" if unit else name_of(answer)
+
+
+def axis(heading: str) -> str:
+    """An axis for a varied number: its unit as people write it."""
+    return plain(
+        heading.replace("[x]", "[×]").replace("[degC]", "[°C]").replace("[deg]", "[°]").replace("delta_degC", "K")
+    )
+
+
+def curves(found: Sweep, x: str, answer: str) -> Figure:
+    """An answer over one number: a line per combination of the others where they are few, else points and means."""
+    table = finished(found)
+    others = [one.heading for one in found.plan.varied if one.heading != x and table[one.heading].nunique() > 1]
+    groups = list(table.groupby(others, sort=False)) if others else [((), table)]
+    lines = len(groups) <= MOST_LINES and all(len(group) > 1 for _, group in groups)
+    beside = lines and bool(others)
+    drawn = figure(8.9 if beside else 6.6, 4.2 + TITLE)
+    axes = add_axes(drawn, 0.95, 0.62, 5.1, 3.4)
+    if lines:
+        for number, (values, group) in enumerate(groups):
+            ordered = group.sort_values(x)
+            words = ", ".join(map(_value, values))
+            # There is nothing between two cards: a line would say so.
+            style = line_style(number) | ({} if table[x].dtype.kind in "if" else {"ls": "none"})
+            axes.plot(ordered[x], ordered[answer], marker="o", ms=3.5, label=plain(words) or None, **style)
+        if others:
+            axes.legend(
+                fontsize=FONT - 1.5, frameon=False, loc="upper left", bbox_to_anchor=(1.02, 1.02), alignment="left",
+                title=", ".join(axis(other.split(".", 1)[-1]) for other in others), title_fontsize=FONT - 1.5,
+            )  # fmt: skip
+    else:
+        _points(axes, table, x, answer)
+    _limits(axes, found, answer)
+    axes.set_xlabel(axis(x), fontsize=FONT)
+    axes.set_ylabel(label(answer), fontsize=FONT)
+    tidy(axes)
+    title(drawn, f"{name_of(answer).capitalize()} over {short(x)}", found.plan.study.name)
+    return drawn
+
+
+def _points(axes: Any, table: pd.DataFrame, x: str, answer: str) -> None:
+    """Every variant, and the mean at each value (in ten classes where there are many)."""
+    axes.plot(table[x], table[answer], "o", ms=3, alpha=0.45, mew=0, color=PALETTE[0], label="variants")
+    numbers = table[x]
+    if numbers.dtype.kind in "if" and numbers.nunique() > 12:
+        values = numbers.to_numpy(dtype=float)
+        classes = np.minimum((10 * (values - values.min()) / np.ptp(values)).astype(int), 9)
+        middle = table.groupby(classes)[[x, answer]].mean()
+        axes.plot(middle[x], middle[answer], "-", lw=1.8, color=PALETTE[1], label="mean of classes")
+    else:
+        means = table.groupby(x)[answer].mean()
+        line = "D-" if numbers.dtype.kind in "if" else "D"
+        axes.plot(means.index, means, line, ms=5, lw=1.8, color=PALETTE[1], label="mean over the others")
+    axes.legend(fontsize=FONT - 1, frameon=False)
+
+
+def response_map(found: Sweep, x: str, y: str, answer: str) -> Figure:
+    """An answer over two numbers, mean over the others: contours of a grid, coloured points of any other sample."""
+    table = finished(found)
+    drawn = figure(6.9, 4.6 + TITLE)
+    axes = add_axes(drawn, 0.95, 0.62, 4.5, 3.8)
+    bar = add_axes(drawn, 5.65, 0.62, 0.16, 3.8)
+    colours = temperature_map() if answer.endswith("_degC") else ENERGY_MAP
+    grid = table.pivot_table(index=y, columns=x, values=answer, aggfunc="mean")
+    regular = bool(grid.notna().to_numpy().all()) and min(grid.shape) > 1
+    if regular:
+        shown: Any = axes.contourf(grid.columns, grid.index, grid.to_numpy(), levels=16, cmap=colours)
+        axes.contour(grid.columns, grid.index, grid.to_numpy(), levels=16, colors="white", linewidths=0.35, alpha=0.7)
+        _boundary(axes, found, grid, answer)
+        axes.margins(0)
+    else:
+        shown = axes.scatter(table[x], table[y], c=table[answer], s=16, cmap=colours)
+        outside = table[~table["feasible"]]
+        if found.plan.limits and len(outside):
+            axes.plot(outside[x], outside[y], "x", ms=4, color=QUIET, label="breaks a limit")
+            axes.legend(fontsize=FONT - 1, frameon=True, loc="lower left", bbox_to_anchor=(0.0, 1.0))
+    colorbar = drawn.colorbar(shown, cax=bar)
+    colorbar.set_label(label(answer), fontsize=FONT)
+    bar.tick_params(labelsize=FONT - 1)
+    axes.set_xlabel(axis(x), fontsize=FONT)
+    axes.set_ylabel(axis(y), fontsize=FONT)
+    tidy(axes, grid=False)
+    fixed = len([one for one in found.plan.varied if one.heading in table and table[one.heading].nunique() > 1]) <= 2
+    title(
+        drawn,
+        name_of(answer).capitalize(),
+        found.plan.study.name + ("" if fixed else ", mean over the other numbers" if regular else ""),
+    )
+    return drawn
+
+
+def _boundary(axes: Any, found: Sweep, grid: pd.DataFrame, answer: str) -> None:
+    """Where the answer meets its limit."""
+    limit = found.plan.limits.get(answer)
+    for value in () if limit is None else (limit.below, limit.above):
+        if value is not None and grid.to_numpy().min() < value < grid.to_numpy().max():
+            line = axes.contour(
+                grid.columns, grid.index, grid.to_numpy(), levels=[value], colors="white", linewidths=2.0
+            )
+            axes.clabel(line, fmt=f"limit {value:g}", fontsize=FONT - 1)
+
+
+def pareto(found: Sweep, best: pd.DataFrame, x: str, y: str) -> Figure:
+    """All variants in two answers, those on the front filled."""
+    table = finished(found)
+    drawn = figure(6.9, 4.4 + TITLE)
+    axes = add_axes(drawn, 1.0, 0.62, 5.5, 3.5)
+    feasible = table[table["feasible"]]
+    rest = table[~table["feasible"]]
+    axes.plot(feasible[x], feasible[y], "o", ms=3.5, mfc="none", mec=QUIET, label="variants")
+    if len(rest):
+        axes.plot(rest[x], rest[y], "x", ms=3.5, color="#b0b0b0", label="break a limit")
+    # A time that was never reached has no place.
+    ordered = best.dropna(subset=[x, y]).sort_values(x)
+    axes.plot(ordered[x], ordered[y], "o", ms=5.5, color=PALETTE[1], label="Pareto front")
+    if len(ordered) <= 12:
+        for number, (name, a, b) in enumerate(zip(ordered["variant"], ordered[x], ordered[y], strict=True)):
+            axes.annotate(
+                plain(str(name)), (a, b), xytext=(5, 5 if number % 2 else -10), textcoords="offset points",
+                fontsize=FONT - 1.5, color=PALETTE[1],
+            )  # fmt: skip
+    _limits(axes, found, y)
+    axes.set_xlabel(label(x), fontsize=FONT)
+    axes.set_ylabel(label(y), fontsize=FONT)
+    axes.legend(fontsize=FONT - 1, frameon=False)
+    tidy(axes)
+    title(
+        drawn,
+        f"{name_of(y).capitalize()} against {name_of(x)}",
+        f"{len(best)} of {len(feasible)} variants are beaten by none",
+    )
+    return drawn
+
+
+def _limits(axes: Any, found: Sweep, answer: str) -> None:
+    """Lines; a limit that is far from all variants would press them together, and is only named at that end."""
+    limit = found.plan.limits.get(answer)
+    low, high = axes.dataLim.intervaly
+    words: dict[str, Any] = {"fontsize": FONT - 1.5, "color": BROKEN}
+    for value in () if limit is None else (limit.below, limit.above):
+        if value is None:
+            continue
+        if value > 2 * high - low:
+            axes.annotate(f"limit {value:g} ↑", (1.0, 1.01), xycoords="axes fraction", ha="right", **words)
+        elif value < 2 * low - high:
+            axes.annotate(f"limit {value:g} ↓", (0.99, 0.02), xycoords="axes fraction", ha="right", **words)
+        else:
+            axes.axhline(value, color=BROKEN, lw=0.9, ls="--")
+            place = {"xycoords": ("axes fraction", "data"), "ha": "left", "va": "center"}
+            axes.annotate(f"limit\n{value:g}", (1.005, value), **place, **words)
+
+
+def _value(value: Any) -> str:
+    return f"{value:.4g}" if isinstance(value, float) else str(value)

@@ -1,0 +1,144 @@
+"""A design study's folder: every table as CSV and Parquet, pictures, summary, page."""
+
+from __future__ import annotations
+
+import importlib.metadata
+from pathlib import Path
+from typing import TYPE_CHECKING, Any
+
+from tyrefem.output import atomic_path, versions, write_json
+from tyrefem.reports.sweep import FILES as LIST
+from tyrefem.reports.sweep import clear, earlier, write_page
+from tyrefem.sweep.sweep import Sweep
+from tyrefem.variants.store import NAME as VARIANTS
+
+if TYPE_CHECKING:
+    import pandas as pd
+
+    from tyrefem.sweep.design import Design
+
+PAGE = "sweep.html"
+#: Answers that have tables, and the files that `save` may write.
+PARTS = ("sweep", "pareto", "indices", "tornado", "optimum", "envelope")
+PICTURES = ("map-*.png", "curves-*.png", "bars-*.png", "pareto*.png", "indices-*.png", "tornado-*.png", "optimum.png",
+            "envelope.png")  # fmt: skip
+FILES = (
+    *(f"{name}.{kind}" for name in PARTS for kind in ("csv", "parquet")),
+    "errors.csv",
+    PAGE,
+    *(f"pictures/{name}" for name in PICTURES),
+)
+#: Files of finished variants.
+KEPT = (VARIANTS, *(f"{name}/{VARIANTS}" for name in PARTS))
+
+
+def save(found: Design, folder: Path, *, pictures: bool = True) -> dict[str, Any]:
+    """Write ``NAME.csv`` and ``.parquet`` of every part, ``summary.json`` and the page; returns the summary.
+
+    ``errors.csv`` is there where a reduced model answered: the largest error of every answer in fresh full runs.
+    What was written here before for another question is removed, by the list in its summary.
+    """
+    before, written = earlier(folder), []
+    for part in found.parts:
+        written += write_table(part.table, folder, part.name)
+    if found.swept is not None and found.swept.certificate is not None:
+        written += write_errors(found.swept, folder)
+    summary = summarised(found)
+    if pictures:
+        written += write_page(found, summary, folder)
+    summary[LIST] = clear(folder, before, summary, written)
+    write_json(summary, folder / "summary.json")
+    return summary
+
+
+def write_table(table: pd.DataFrame, folder: Path, name: str) -> list[str]:
+    """A table as CSV and as Parquet; names of the files."""
+    with atomic_path(folder / f"{name}.csv") as temporary:
+        table.to_csv(temporary, index=False, float_format="%.9g")
+    with atomic_path(folder / f"{name}.parquet") as temporary:
+        table.to_parquet(temporary, index=False)
+    return [f"{name}.csv", f"{name}.parquet"]
+
+
+def write_errors(found: Sweep, folder: Path) -> list[str]:
+    """What the reduced model's answers may be wrong by, as found on fresh full runs; name of the file."""
+    import pandas as pd
+
+    assert found.certificate is not None
+    errors = pd.DataFrame({"answer": list(found.certificate.errors), "error": list(found.certificate.errors.values())})
+    with atomic_path(folder / "errors.csv") as temporary:
+        errors.to_csv(temporary, index=False, float_format="%.3g")
+    return ["errors.csv"]
+
+
+def summarised(found: Design) -> dict[str, Any]:
+    """What `summary.json` holds: how the variants were chosen and answered, every answer, versions, words."""
+    study, card = found.study, found.card
+    return {
+        "study": study.name,
+        "title": card.title or study.title,
+        "complete": not found.interrupted and (found.swept is None or found.swept.complete),
+        "asked": card.model_dump(exclude_none=True, by_alias=True),
+        **({} if found.swept is None else {"sample": of_sample(found.swept)}),
+        **{part.name: part.to_dict() for part in found.parts},
+        "failures": found.failed,
+        "tolerance_K": study.tolerance,
+        "mesh": study.card.mesh.model_dump(),
+        "versions": versions() | {"SALib": importlib.metadata.version("SALib")},
+        "random_seed": card.seed,
+        "input": dict(study.data),
+        "words": spoken(found),
+    }
+
+
+def of_sample(found: Sweep) -> dict[str, Any]:
+    """The variants of the sample and who answered them."""
+    by = [one.get("by", "failed") for one in found.outcomes.values()]
+    certificate = found.certificate
+    return {
+        **found.plan.how,
+        "variants": len(found.plan.variants),
+        "finished": {how: by.count(how) for how in ("full", "reduced", "failed")},
+        "reduced_model": None
+        if certificate is None
+        else {
+            "largest_error_K": certificate.worst,
+            "tolerance_K": certificate.tolerance,
+            "fresh_cases": certificate.cases,
+            "training_runs": certificate.trained_on - certificate.amended,
+            "corrections": certificate.amended,
+            "largest_errors": dict(certificate.errors),
+        },
+        "why_full_runs": found.why_full,
+        "seconds": found.seconds,
+        "taken_up": found.taken_up,
+    }
+
+
+def spoken(found: Design) -> list[str]:
+    """A few lines for people: title, how the variants were answered, every answer under its heading."""
+    lines = [found.card.title or found.study.title]
+    if found.swept is not None:
+        lines.append(f"  {how_answered(found.swept)}")
+    for part in found.parts:
+        if part.words:
+            lines.append(f"{part.heading}:")
+            lines += [f"  {line}" for line in part.words]
+    return lines
+
+
+def how_answered(found: Sweep) -> str:
+    """How many variants, in which time, by what."""
+    certificate = found.certificate
+    told = f"{len(found.outcomes)} of {len(found.plan.variants)} variants in {found.seconds:.1f} s"
+    told += f", {found.taken_up} of them taken up" if found.taken_up else ""
+    if certificate is not None:
+        reduced = sum(one.get("by") == "reduced" for one in found.outcomes.values())
+        told += (
+            f"; {reduced} by a reduced model from {certificate.trained_on - certificate.amended} runs"
+            f" and {certificate.amended} corrections, within {certificate.worst:.2g} K of"
+            f" {certificate.cases} fresh full runs"
+        )
+    elif found.outcomes:
+        told += "; all by full runs" + (f" ({found.why_full})" if found.why_full else "")
+    return told

@@ -1,0 +1,153 @@
+"""What running a study will take: memory and time, before its mesh, its mechanics or its readings are made."""
+
+from __future__ import annotations
+
+import functools
+from dataclasses import dataclass, replace
+from typing import TYPE_CHECKING
+
+from tyrefem.errors import InputError
+from tyrefem.estimates import memory
+from tyrefem.estimates import work as estimate
+from tyrefem.estimates.work import Estimate
+from tyrefem.geometry.meshing.expected import QUADRATIC, expected_nodes
+from tyrefem.mechanics.cycle_schedule import ramp_knots
+from tyrefem.mechanics.footprint.pressed_tyre import COARSER
+
+if TYPE_CHECKING:
+    from tyrefem.inputs.study import Study
+    from tyrefem.inputs.study_card import MeshChoice
+
+#: Runs that a feedback usually takes (2 to 7 in docs/two-way.md).
+USUAL_RUNS = 5
+#: Readings that a phase with slip has beside those asked for, at most.
+SLIP_READINGS = 24
+#: Strain laws that inflate the tyre by finite elements.
+INFLATED = ("fem", "barrel")
+
+
+@dataclass(frozen=True, eq=False)
+class RunEstimate:
+    """Of one run of a study; ``mesh``: in place of the study's own choice."""
+
+    study: Study
+    mesh: MeshChoice
+
+    @classmethod
+    def of(cls, study: Study) -> RunEstimate:
+        """Of a study as it is."""
+        return cls(study, study.card.mesh)
+
+    @functools.cached_property
+    def unknowns(self) -> float:
+        """Of the heat conduction; 0 where the mesh is a file's, which nobody knows before it is read."""
+        choice = self.mesh
+        if choice.file is not None:
+            return 0.0
+        nodes = expected_nodes(self.study.section, choice.size, mesher=choice.mesher, through=choice.through)
+        return nodes * (QUADRATIC if choice.element == "P2" else 1)
+
+    @property
+    def readings(self) -> float:
+        """Times at which temperatures are kept."""
+        drive, output = self.study.card.drive, self.study.card.output
+        slides = sum(phase.slides for phase in drive.phases)
+        return drive.end / output.every + len(drive.phases) + SLIP_READINGS * slides + output.fields
+
+    @functools.cached_property
+    def mechanics(self) -> Estimate:
+        """Of the strain cycles."""
+        card = self.study.card
+        if card.mechanics.strain not in INFLATED or self.mesh.file is not None:
+            return Estimate()
+        loads, pressures = set(), set()
+        for phase in card.drive.phases:
+            carried = phase.load or phase.deflection
+            assert carried is not None
+            for fraction in ramp_knots(phase.changes_load):
+                pressures.add(phase.pressure.at(fraction))
+                loads.add((phase.pressure.at(fraction), carried.at(fraction), phase.drum_diameter))
+        feedback = card.mechanics.feedback
+        again = 1 if feedback is None else self._runs * feedback.knots
+        nodes = QUADRATIC * expected_nodes(self.study.section, COARSER * self.mesh.size, through=1)
+        return estimate.mechanics(
+            nodes, len(pressures) * again, len(loads) * again, large=card.mechanics.motion == "large"
+        )
+
+    @property
+    def _runs(self) -> int:
+        feedback = self.study.card.mechanics.feedback
+        return 1 if feedback is None else min(USUAL_RUNS, feedback.iterations)
+
+    @property
+    def march(self) -> Estimate:
+        """Of the temperatures, in one run."""
+        card = self.study.card
+        return estimate.march(
+            self.unknowns, self.readings, len(card.drive.phases), card.numerics.tolerance, card.output.fields
+        )
+
+    @property
+    def total(self) -> Estimate:
+        """Of all."""
+        march = self.march
+        return self.mechanics + Estimate(march.memory, march.time * self._runs)
+
+    def check(self, workers: int = 1) -> None:
+        """Refuse a study of which so many runs side by side do not fit in the free memory.
+
+        Raises
+        ------
+        InputError : names the mesh's or the output's number that is to blame, and what would fit.
+        """
+        needed = self.total.memory
+        if needed < estimate.SMALL:
+            return
+        free = memory.free_memory() / workers
+        if needed <= free:
+            return
+        kept = estimate.history(self.unknowns, self.readings)
+        blamed = self._output(free) if kept > needed / 2 else None
+        field, what, fits = blamed if blamed and blamed[2] else self._meshed(free)
+        try:
+            estimate.refuse(needed, free, what, fits, workers)
+        except InputError as error:
+            raise error.within(field=field, file=self.study.file) from None
+
+    def announce(self) -> None:
+        """Refuse what does not fit, as `check`; warn of a long run."""
+        self.check()
+        card = self.study.card
+        many = estimate.steps(len(card.drive.phases), card.numerics.tolerance)
+        parts = [f"{self.unknowns:,.0f} unknowns", f"{many:,.0f} time steps", f"{self.readings:,.0f} readings"]
+        if self.mechanics.time > self.total.time / 2:
+            parts.append("most of it strain cycles by finite elements")
+        estimate.warn_of(self.total.time, f"a run of {self.study.name} ({', '.join(parts)})")
+
+    def _output(self, free: float) -> tuple[str, str, str]:
+        """Field, what it makes, what would fit: too many readings."""
+        output, end = self.study.card.output, self.study.card.drive.end
+        left = free - (self.total.memory - estimate.history(self.unknowns, self.readings))
+        room = left / estimate.history(self.unknowns, 1)
+        if output.fields > end / output.every:
+            most = int(room - end / output.every)
+            fits = f"{most} or fewer would fit" if most >= 2 else ""
+            return "output.fields", f"{output.fields:,} fields of {self.unknowns:,.0f} unknowns", fits
+        others = self.readings - end / output.every
+        every = estimate.smallest(lambda every: end / every + others <= room, output.every, max(end, output.every))
+        fits = f"{every:g} s or more would fit" if every else ""
+        return "output.every", f"{output.every:g} s makes {self.readings:,.0f} readings", fits
+
+    def _meshed(self, free: float) -> tuple[str, str, str]:
+        """Field, what it makes, what would fit: too fine a mesh."""
+        mesh = self.mesh
+
+        def needed(**changes: float) -> float:
+            return replace(self, mesh=mesh.model_copy(update=changes)).total.memory
+
+        if needed(through=1) <= min(free, self.total.memory / 2):
+            most = max((n for n in range(1, mesh.through) if needed(through=n) <= free), default=1)
+            return "mesh.through", f"{mesh.through} makes {self.unknowns:,.0f} unknowns", f"{most} would fit"
+        size = estimate.smallest(lambda one: needed(size=one) <= free, mesh.size, self.study.section.line.length / 4)
+        fits = f"{size * 1e3:g} mm or more would fit" if size else ""
+        return "mesh.size", f"{mesh.size * 1e3:g} mm makes {self.unknowns:,.0f} unknowns", fits

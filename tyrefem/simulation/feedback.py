@@ -1,0 +1,85 @@
+"""Two ways: temperatures change pressure and moduli, these the strain cycles and so the heat, until both agree."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Callable
+from dataclasses import replace
+from typing import TYPE_CHECKING
+
+from tyrefem.simulation.feedback_outcome import Contact, FeedbackOutcome
+from tyrefem.simulation.warm_cycles import WarmCycles, Warmth
+
+if TYPE_CHECKING:
+    from tyrefem.inputs.loading import LoadCase
+    from tyrefem.inputs.study import Study
+    from tyrefem.mechanics.cycle_schedule import CycleSchedule
+    from tyrefem.simulation.result import Result
+    from tyrefem.simulation.rolling_tyre import RollingTyre
+
+#: A run that leaves more than this share of the last one's disagreement makes the next one go half as far.
+SLOW, LEAST = 0.7, 1 / 16
+
+
+def run(
+    study: Study,
+    progress: Callable[[float], None] | None = None,
+    like: RollingTyre | None = None,
+    start: Warmth | None = None,
+    *,
+    partial: bool = False,
+) -> Result:
+    """Simulate a study's drive again and again until its temperatures are those of its strain cycles.
+
+    Every run takes its strain cycles at the temperatures of the one before (the first: ``start``, by default the
+    drive's initial ones): T_(k+1) = run(cycles(T_k)). Where that converges slowly or not, steps are halved. What has
+    not converged after the iterations allowed is returned all the same, and warns. ``partial``: as of
+    `tyrefem.simulation.run.run`; the part is one of the latest run.
+
+    Raises
+    ------
+    InputError : a pressure or modulus at which the section cannot take its load; names the phase.
+    """
+    from tyrefem.simulation.rolling_tyre import RollingTyre
+    from tyrefem.simulation.simulate import simulate
+
+    choice = study.card.mechanics.feedback
+    assert choice is not None
+    cycles = WarmCycles(study, choice, Warmth.even(study) if start is None else start)
+    changes: list[float] = []
+    share, first, wall_time = 1.0, like, 0.0
+    while True:
+        tyre = RollingTyre(study, first, cycles.schedule())
+        result = simulate(tyre, progress, partial=partial)
+        first, wall_time = first or tyre, wall_time + result.wall_time
+        found = Warmth.of(result)
+        changes.append(math.inf if result.history.interrupted else cycles.change(found))
+        done = changes[-1] <= choice.tolerance or len(changes) == choice.iterations
+        if done or result.history.interrupted:
+            break
+        if len(changes) > 1 and changes[-1] > SLOW * changes[-2]:
+            share = max(share / 2, LEAST)
+        cycles.update(found, share)
+    end = float(result.times[-1])
+    last = found.at(end)
+    softened = {
+        region: law(last.regions[region])
+        for region in cycles.softening
+        if (law := study.materials[region].softening) is not None
+    }
+    before, after = (_contact(tyre.schedule, t) for t in (0.0, end * (1 - 1e-12)))
+    outcome = FeedbackOutcome(choice.tolerance, tuple(changes), before, after, softened)
+    return replace(result, feedback=outcome, wall_time=wall_time)
+
+
+def _contact(schedule: CycleSchedule, time: float) -> Contact:
+    pressure, deflection = (schedule.mean(quantity, time) for quantity in (_pressure, _deflection))
+    return Contact(time, pressure, deflection)
+
+
+def _pressure(case: LoadCase) -> float:
+    return case.pressure
+
+
+def _deflection(case: LoadCase) -> float:
+    return case.deflection

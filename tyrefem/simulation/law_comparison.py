@@ -1,0 +1,268 @@
+"""One study by every strain law: strain energy by region and the temperatures that it makes."""
+
+from __future__ import annotations
+
+import functools
+from dataclasses import dataclass
+from typing import TYPE_CHECKING, Any
+
+import numpy as np
+from numpy.typing import NDArray
+
+from tyrefem.errors import InputError
+from tyrefem.mechanics.finite_elements import GaussPoints
+from tyrefem.mechanics.strain_cycle import StrainCycle, Zone
+from tyrefem.requirements import Requirements
+from tyrefem.simulation.run import run
+
+if TYPE_CHECKING:
+    import pandas as pd
+
+    from tyrefem.geometry.meshing.mesh import TyreMesh
+    from tyrefem.inputs.loading import LoadCase
+    from tyrefem.inputs.study import Study
+    from tyrefem.simulation.result import Result
+
+Array = NDArray[np.float64]
+#: The laws that find a tyre's strain cycle, in the order of the columns.
+LAWS = ("arcs", "barrel", "fem")
+TOTAL = "whole tyre"
+#: What a comparison of strain laws needs of a study.
+NEEDS = Requirements("a comparison of strain laws")
+
+
+@dataclass(frozen=True, eq=False)
+class LawOutcome:
+    """What one strain law says of a study.
+
+    Parameters
+    ----------
+    law : its name. result : the study run with it. phase, knot : the load case with the largest deflection.
+    """
+
+    law: str
+    result: Result
+    phase: int
+    knot: int
+
+    @property
+    def cycle(self) -> StrainCycle:
+        """The strain cycle of the load case."""
+        return self.result.tyre.schedule.cycles[self.phase][self.knot]
+
+    @property
+    def deflection(self) -> float:
+        """Of the tyre in the load case, m: the load law's, or the footprint's own."""
+        return self.result.tyre.schedule.cases[self.phase][self.knot].deflection
+
+    def heating_density(self, part: Zone, points: Array) -> Array:
+        """U that makes the heat, J/m3, at points (2, n) of a part: for ``fem`` that of all harmonics together."""
+        own = {zone.name for zone in self.cycle.zones}
+        return np.asarray(self.cycle.energy_density(part.name if part.name in own else part.region, points))
+
+    def energy_density(self, part: Zone, points: Array) -> Array:
+        """Strain energy of the largest change within a revolution, J/m3, at points (2, n) of a part."""
+        if getattr(self.cycle, "footprint", None) is None:
+            return self.heating_density(part, points)
+        gauss, largest = self._largest
+        return gauss.interpolate(largest, part.region, points)
+
+    @functools.cached_property
+    def _largest(self) -> tuple[GaussPoints, Array]:
+        from tyrefem.mechanics.footprint.strain_harmonics import StrainCycle as Harmonics
+
+        cycle: Any = self.cycle
+        return GaussPoints(cycle.tyre.body.rings), Harmonics(cycle.footprint).largest_energy()
+
+    @property
+    def temperatures(self) -> dict[str, float]:
+        """Hottest point ever, sensors and contained air at the end of the run, degC."""
+        last = self.result.readings.iloc[-1].drop("time_s")
+        hottest = float(self.result.extremes.iloc[0]["temperature_degC"])
+        return {"hottest": hottest, **{str(name): float(value) for name, value in last.items()}}
+
+
+@dataclass(frozen=True, eq=False)
+class LawComparison:
+    """A study by several strain laws. Made by `compare_laws`; ``refused``: law -> why it has no answer."""
+
+    study: Study
+    outcomes: tuple[LawOutcome, ...]
+    refused: dict[str, str]
+
+    @property
+    def parts(self) -> tuple[Zone, ...]:
+        """What energies are given for: the report's regions I to V where the section has arcs, else the regions."""
+        section = self.study.section
+        if _has_arcs(self.study):
+            from tyrefem.mechanics.arcs import report_zones
+
+            return report_zones(section.line.shoulder_s)
+        return tuple(Zone(region, region, region) for region in section.regions)
+
+    @property
+    def case(self) -> LoadCase:
+        """The drive's load case with the largest deflection."""
+        first = self.outcomes[0]
+        return first.result.tyre.schedule.cases[first.phase][first.knot]
+
+    @property
+    def load_law_deflection(self) -> float:
+        """What the study's load law makes of the load case, m: finite elements find their own."""
+        case, rating = self.case, self.study.section.rating
+        if case.contact is None or rating is None:
+            return case.deflection
+        return self.study.card.mechanics.load_law.deflection(case.load, case.pressure, rating)
+
+    @functools.cached_property
+    def mesh(self) -> TyreMesh:
+        """The study's mesh with the parts as subdomains."""
+        return self.study.mesh().with_zones({part.name: (part.region, part.start, part.end) for part in self.parts})
+
+    @functools.cached_property
+    def volumes(self) -> dict[str, float]:
+        """Part -> volume of the whole tyre, m3."""
+        return {part.name: float(self._quadrature(part)[1].sum()) for part in self.parts}
+
+    @functools.cached_property
+    def energies(self) -> dict[str, dict[str, float]]:
+        """Law -> part -> strain energy of the largest change, J of the whole tyre; ``whole tyre``: their sum."""
+        return self._integrals("energy_density")
+
+    @functools.cached_property
+    def heating(self) -> dict[str, dict[str, float]]:
+        """As `energies`, of the U that makes the heat: U tan d is lost once per revolution (times pi)."""
+        return self._integrals("heating_density")
+
+    def _integrals(self, density: str) -> dict[str, dict[str, float]]:
+        found = {}
+        for outcome in self.outcomes:
+            own = {}
+            for part in self.parts:
+                points, weights = self._quadrature(part)
+                own[part.name] = float(getattr(outcome, density)(part, points) @ weights)
+            found[outcome.law] = own | {TOTAL: sum(own.values())}
+        return found
+
+    def _quadrature(self, part: Zone) -> tuple[Array, Array]:
+        """Points (2, n) and weights (n,), m3 of the whole tyre."""
+        import skfem
+
+        mesh = self.mesh.mesh
+        element = skfem.ElementQuad1() if isinstance(mesh, skfem.MeshQuad) else skfem.ElementTriP1()
+        basis = skfem.Basis(mesh, element, elements=mesh.subdomains[part.name], intorder=3)
+        points = np.asarray(basis.global_coordinates()).reshape(2, -1)
+        sides = 2 if self.study.section.half else 1
+        return points, np.asarray(basis.dx).ravel() * points[0] * 2 * np.pi * sides
+
+    def table(self) -> pd.DataFrame:
+        """``kind``, ``name``, ``unit`` and a column per law: deflection, energies, coefficients, temperatures."""
+        import pandas as pd
+
+        rows: list[dict[str, Any]] = []
+
+        def add(kind: str, name: str, unit: str, values: list[float]) -> None:
+            laws = [outcome.law for outcome in self.outcomes]
+            rows.append({"kind": kind, "name": name, "unit": unit, **dict(zip(laws, values, strict=True))})
+
+        add("deflection", "deflection", "m", [one.deflection for one in self.outcomes])
+        volume = self.volumes | {TOTAL: sum(self.volumes.values())}
+        for name in volume:
+            add("energy", name, "J", [self.energies[one.law][name] for one in self.outcomes])
+        for name in volume:
+            add("density", name, "J/m3", [self.energies[one.law][name] / volume[name] for one in self.outcomes])
+        for name in volume:
+            add("heating", name, "J", [self.heating[one.law][name] for one in self.outcomes])
+        resistances = [one.result.rolling_resistance for one in self.outcomes]
+        add("coefficient", "cold", "1", [one.cold_coefficient for one in resistances])
+        add("coefficient", "at the end", "1", [one.coefficient for one in resistances])
+        temperatures = [one.temperatures for one in self.outcomes]
+        for name in temperatures[0]:
+            add("temperature", name, "degC", [one[name] for one in temperatures])
+        return pd.DataFrame(rows)
+
+    def summary(self) -> dict[str, Any]:
+        """Everything in SI, temperatures in degC."""
+        from tyrefem.output import versions
+
+        first, case, laws = self.outcomes[0], self.case, {}
+        for one in self.outcomes:
+            own, heating = self.energies[one.law], self.heating[one.law]
+            place = one.result.extremes.iloc[0]
+            laws[one.law] = {
+                "deflection_m": one.deflection,
+                "energy_J": own,
+                "mean_energy_J_m3": {name: own[name] / volume for name, volume in self.volumes.items()},
+                "heating_energy_J": heating,
+                "cold_coefficient": one.result.rolling_resistance.cold_coefficient,
+                "coefficient": one.result.rolling_resistance.coefficient,
+                "temperatures_degC": one.temperatures,
+                "hottest": {name: float(place[name]) for name in ("time_s", "r_m", "z_m", "s_m", "depth_m")},
+            }
+        return {
+            "study": self.study.name,
+            "title": self.study.title,
+            "phase": self.study.card.drive.phases[first.phase].name,
+            "load_N": case.load,
+            "pressure_Pa": case.pressure,
+            "load_law_deflection_m": self.load_law_deflection,
+            "loss_convention": self.study.card.mechanics.loss_convention,
+            "parts": {part.name: {"region": part.region, "title": part.title} for part in self.parts},
+            "volume_m3": self.volumes,
+            "laws": laws,
+            "refused": self.refused,
+            "mesh": self.mesh.summary(),
+            "versions": versions(),
+        }
+
+
+def compare_laws(study: Study | str, laws: tuple[str, ...] = LAWS) -> LawComparison:
+    """Run a study by several strain laws, everything else alike, tan delta included.
+
+    The arcs are left out beside others where the section has none. A law that has no answer is kept in ``refused``
+    with the reason.
+
+    Raises
+    ------
+    InputError : a campaign; a study that never rolls under load; no law has an answer.
+
+    >>> brief = {"drive.duration": "60 s", "mesh.size": "12 mm", "numerics.tolerance": "0.5 delta_degC"}
+    >>> from tyrefem import study
+    >>> found = compare_laws(study("nasa-22x5.5-8pr", brief), laws=("arcs",))
+    >>> sorted(found.energies["arcs"])
+    ['I', 'II', 'III', 'IV', 'V', 'whole tyre']
+    """
+    from tyrefem.inputs.study import study as load_study
+
+    chosen = load_study(study) if isinstance(study, str) else study
+    NEEDS.check(chosen)
+    outcomes, refused = [], {}
+    last: InputError | None = None
+    for law in laws:
+        if law == "arcs" and len(laws) > 1 and not _has_arcs(chosen):
+            continue
+        try:
+            outcomes.append(_outcome(chosen, law))
+        except InputError as error:
+            refused[law], last = str(error.message), error
+    if not outcomes:
+        assert last is not None
+        raise last
+    return LawComparison(chosen, tuple(outcomes), refused)
+
+
+def _outcome(study: Study, law: str) -> LawOutcome:
+    result = run(study.replace({"mechanics.strain": law}))
+    cases = result.tyre.schedule.cases
+    deflections = {(i, k): case.deflection for i, phase in enumerate(cases) for k, case in enumerate(phase)}
+    phase, knot = max(deflections, key=lambda place: deflections[place])
+    if not deflections[phase, knot] > 0:
+        raise InputError("the tyre is never under load: no strain cycle to compare", field="drive.load")
+    return LawOutcome(law, result, phase, knot)
+
+
+def _has_arcs(study: Study) -> bool:
+    from tyrefem.mechanics.cycle_schedule import ARC_REGIONS
+
+    section = study.section
+    return hasattr(section.line, "sidewall_radius") and set(ARC_REGIONS) <= set(section.regions)

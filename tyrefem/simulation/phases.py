@@ -1,0 +1,87 @@
+"""The phases of a drive as they were simulated.
+
+Where a run left the range of its own assumptions.
+"""
+
+from __future__ import annotations
+
+import functools
+from collections.abc import Iterable
+from dataclasses import dataclass
+from typing import TYPE_CHECKING
+
+if TYPE_CHECKING:
+    from tyrefem.geometry import Section
+    from tyrefem.simulation.rolling_tyre import RollingTyre
+
+
+@dataclass(frozen=True)
+class PhaseState:
+    """A phase of the drive as it was simulated; mechanical quantities at its end. SI units, degC."""
+
+    name: str
+    start: float
+    end: float
+    speed: float
+    load: float
+    pressure: float
+    deflection: float
+    rolling_radius: float
+    footprint_length: float
+    #: Area of rubber in contact, m2; None where the strain law does not press the tyre on its road.
+    footprint_area: float | None
+    road_fraction: float
+    road_film: float
+    air_film: float
+    #: Depth to which one contact cools the tread (Cattani et al. 2023, eq 8).
+    propagation_depth: float
+    #: Speed of the tread over the road; 0 without slip.
+    sliding_speed: float
+    #: Whether the wheel is locked all the time.
+    locked: bool
+
+
+def phase_states(tyre: RollingTyre) -> tuple[PhaseState, ...]:
+    """Every phase of a tyre's drive."""
+    drive, found = tyre.drive, []
+    for start, phase in zip(drive.starts, drive.phases, strict=True):
+        end = start + phase.duration
+        t = end * (1 - 1e-12)
+        mean = functools.partial(tyre.schedule.mean, time=t)
+        found.append(
+            PhaseState(
+                phase.name,
+                start,
+                end,
+                tyre.speed(t),
+                mean(lambda case: case.load),
+                mean(lambda case: case.pressure),
+                mean(lambda case: case.deflection),
+                mean(lambda case: case.rolling_radius),
+                mean(lambda case: case.footprint_length),
+                tyre.footprint_area(t),
+                tyre.road_fraction(t),
+                tyre.road_film(t) + tyre.sliding.skid_film(t),
+                tyre.air_film(t),
+                tyre.propagation_depth(t),
+                drive.slip(t).sliding_speed,
+                drive.locked_since(t) is not None,
+            )
+        )
+    return tuple(found)
+
+
+#: Largest part of the tread at the crown that one contact may reach before the result warns (a judgement).
+SHALLOW = 0.2
+
+
+def deep_contacts(section: Section, phases: Iterable[PhaseState]) -> tuple[str, ...]:
+    """One line for every phase in which one contact cools more of the tread than an averaged film stands for."""
+    tread = float(section.thickness("tread", 0.0))
+    return tuple(
+        f"phase '{state.name}': one contact cools the tread {state.propagation_depth * 1e3:.2g} mm deep, "
+        f"{100 * state.propagation_depth / tread:.0f} % of its thickness at the crown; a film averaged over "
+        f"the revolution holds below {100 * SHALLOW:.0f} %"
+        for state in phases
+        if state.propagation_depth > SHALLOW * tread
+    )

@@ -1,0 +1,346 @@
+"""What a run found: readings, extremes, heat budget, rolling resistance; and how to write and show it."""
+
+from __future__ import annotations
+
+import functools
+from collections.abc import Callable, Mapping
+from dataclasses import dataclass
+from typing import TYPE_CHECKING, Any
+
+import numpy as np
+from numpy.typing import ArrayLike, NDArray
+
+from tyrefem.boundaries.contained_air import ATMOSPHERE, KELVIN
+from tyrefem.brief import SHOWN, Brief
+from tyrefem.conduction.field import History
+from tyrefem.conduction.points import OutsideMeshError, as_points
+from tyrefem.geometry.meshing.sagitta import snapped
+from tyrefem.geometry.wall import inside, wall_of
+from tyrefem.simulation.heat_budget import HeatBudget, whole_tyre
+from tyrefem.simulation.phases import PhaseState, deep_contacts, phase_states
+from tyrefem.simulation.rolling_resistance import RollingResistance, just_before, rolling_reading, rolling_resistance
+from tyrefem.simulation.sensors import recorded, true_places
+from tyrefem.simulation.sliding_outcome import SlidingOutcome, sliding_outcome
+from tyrefem.simulation.surroundings import GAS, RIM
+
+if TYPE_CHECKING:
+    import pandas as pd
+
+    from tyrefem.conduction.field import Peak
+    from tyrefem.inputs.study import Study
+    from tyrefem.simulation.feedback_outcome import FeedbackOutcome
+    from tyrefem.simulation.rolling_tyre import RollingTyre
+
+Array = NDArray[np.float64]
+
+
+#: Warning of a run that is asked of a campaign as a whole.
+CASES_LEFT_OUT = "the study is a campaign: this is its own drive; study.campaign() and 'tyrefem run' take its cases"
+
+
+#: Of a history, what is stored; operators and materials are the problem's.
+KEPT = (
+    "times", "values", "reservoirs", "budget", "maximum", "region_maximum", "steps", "interrupted",
+)  # fmt: skip
+
+
+@dataclass(frozen=True, eq=False)
+class Result(Brief):
+    """A finished (or interrupted) run of a study.
+
+    It can be pickled: study, mesh, strain cycles and temperatures are kept, everything else is worked out again.
+    """
+
+    study: Study
+    tyre: RollingTyre
+    history: History
+    #: Times of the temperature fields that are written out, s.
+    field_times: Array
+    #: Wall time of the run, s.
+    wall_time: float
+    #: How the feedback of temperature on the strain cycle went; None for a study without it.
+    feedback: FeedbackOutcome | None = None
+
+    def __reduce__(self) -> tuple[Any, ...]:
+        """Functions of time and temperature do not travel: they are made again from the study."""
+        history = {name: getattr(self.history, name) for name in KEPT}
+        return _again, (type(self), self.study, self.tyre, history, self.field_times, self.wall_time, self.feedback)
+
+    def _title(self) -> str:
+        return f"of {self.study.name}"
+
+    def _facts(self) -> Mapping[str, Any]:
+        hottest, end = self.peaks["tyre"], float(self.times[-1])
+        s, depth = self.place_of(hottest)
+        hot = max((region for region in self.peaks if region != "tyre"), key=lambda name: self.peaks[name].temperature)
+        resistance = self.rolling_resistance
+        return {
+            "title": self.study.title,
+            "time": f"0 to {end:g} s, {len(self.times)} readings{', interrupted' if self.history.interrupted else ''}",
+            "hottest": f"{hottest.temperature:.1f} degC in the {hot} at {hottest.time:g} s, "
+            f"s = {s * 1e3:.1f} mm, depth = {depth * 1e3:.1f} mm",
+            "sensors": ", ".join(f"{name} {T[-1]:.1f}" for name, T in list(self.recorded.items())[:SHOWN])
+            + (" degC at the end" if self.recorded else "none")
+            + (f", and {len(self.recorded) - SHOWN} more" if len(self.recorded) > SHOWN else ""),
+            "contained air": f"{self.gas_temperature[-1]:.1f} degC at the end",
+            "rolling resistance": f"{resistance.force:.1f} N, coefficient {resistance.coefficient:.5f}"
+            if resistance.phase
+            else "it never rolls",
+            "heat generated": f"{self.generated(-1)[0] / 1e3:.4g} kJ",
+            "mesh": f"{self.tyre.mesh.n_nodes} nodes, {self.study.card.mesh.element}",
+            "warnings": f"{len(self.warnings)}",
+        }
+
+    # -- temperatures ------------------------------------------------------------------------------------------------
+
+    @property
+    def times(self) -> Array:
+        """Times of the readings, (n,) s."""
+        return np.asarray(self.history.times)
+
+    def at(self, points: ArrayLike) -> Array:
+        """Temperatures at points (n_points, 2) in (r, z), m: (n_times, n_points), degC.
+
+        Points between the section's curved outline and the mesh's straight edges are read at the nearest point of the
+        mesh (`tyrefem.geometry.meshing.sagitta`).
+
+        Raises
+        ------
+        InputError : a point is further outside; names it and its distance.
+        """
+        try:
+            return np.asarray(self.history.at(points))
+        except OutsideMeshError as error:
+            places = as_points(points).copy()
+            places[error.numbers] = snapped(self.tyre.mesh, places[error.numbers])
+            return np.asarray(self.history.at(places))
+
+    def temperature_field(self, i: int = -1) -> Callable[[Array], Array]:
+        """T(x), degC, at ``times[i]`` of places (2, n) in (r, z), m: what `tyrefem.mechanics.solid.inflation.inflate`
+        takes.
+        """
+        return lambda x: self.history.field(i).at(self._inside(np.asarray(x).T))
+
+    @functools.cached_property
+    def sensor_places(self) -> dict[str, tuple[float, float]]:
+        """(r, z) of every sensor, m."""
+        return true_places(self.study)
+
+    def _inside(self, points: ArrayLike) -> Array:
+        """Points moved by the sag of straight-sided elements at most, so that a surface point is in the mesh."""
+        section = self.study.section
+        return inside(section, self.tyre.mesh.size, *section.locate(np.asarray(points, dtype=float).reshape(-1, 2)))
+
+    @property
+    def sensor_points(self) -> Array:
+        """(n_sensors, 2) in (r, z), m: where in the mesh the sensors are read."""
+        return self._inside(list(self.sensor_places.values()))
+
+    @functools.cached_property
+    def readings(self) -> pd.DataFrame:
+        """``time_s``, one column per sensor (lag applied), the contained air, and a lumped rim; degC."""
+        import pandas as pd
+
+        lumped = {GAS: self.gas_temperature}
+        if self.rim_temperature is not None:
+            lumped[RIM] = self.rim_temperature
+        return pd.DataFrame({"time_s": self.times, **self.recorded, **lumped})
+
+    @functools.cached_property
+    def recorded(self) -> dict[str, Array]:
+        """Sensor -> what the logger recorded, (n_times,) degC."""
+        if not self.sensor_places:
+            return {}
+        return recorded(self.study, self.times, self.at(self.sensor_points))
+
+    @property
+    def rim_temperature(self) -> Array | None:
+        """A lumped rim, (n_times,) degC; None where the rim's temperature is given."""
+        return np.asarray(self.history.reservoirs[RIM]) if RIM in self.history.reservoirs else None
+
+    @functools.cached_property
+    def gas_temperature(self) -> Array:
+        """Contained-air temperature, (n_times,) degC."""
+        if GAS in self.history.reservoirs:
+            return np.asarray(self.history.reservoirs[GAS])
+        return np.full(len(self.times), self.study.card.boundaries.contained_air.temperature)  # type: ignore[attr-defined]
+
+    @functools.cached_property
+    def gas_pressure(self) -> Array:
+        """Contained-air gauge pressure following its temperature at constant volume, (n_times,) Pa.
+
+        p + p_atm = (p_phase + p_atm) T / T_start, p_phase being the drive's (cold) pressure.
+        """
+        return np.array([self.pressure_at(i) for i in range(len(self.times))])
+
+    def pressure_at(self, i: int) -> float:
+        """The same at ``times[i]``, Pa."""
+        cold = self.study.card.drive.value("pressure", float(self.times[i])) or 0.0
+        start, now = self.gas_temperature[0] + KELVIN, self.gas_temperature[i] + KELVIN
+        return float((cold + ATMOSPHERE) * now / start - ATMOSPHERE)
+
+    @functools.cached_property
+    def wall_gradient(self) -> tuple[Array, Array]:
+        """s (k,) m along the meridian, and |T inner - T outer| / thickness there at the end, K/m."""
+        wall = wall_of(self.study.section, self.tyre.mesh.size)
+        field = self.history.field(len(self.times) - 1)
+        inner, outer = (np.asarray(field.at(points)) for points in (wall.inner, wall.outer))
+        return wall.s, np.abs(inner - outer) / wall.thickness
+
+    @functools.cached_property
+    def gradient_at_sensors(self) -> pd.DataFrame:
+        """|grad T| at every sensor, K/m, shaped as `readings`; 0 for lumped temperatures.
+
+        Central differences over +-0.5 mm along the meridian and the depth, kept inside the rubber.
+        """
+        import pandas as pd
+
+        table = self.readings * 0.0
+        table["time_s"] = self.times
+        if not self.sensor_places:
+            return table
+        section, step = self.study.section, 5e-4
+        s, depth = section.locate(np.array(list(self.sensor_places.values())))
+        squares = np.zeros((len(self.times), len(s)))
+        for ds, dd in ((step, 0.0), (0.0, step)):
+            ends = [self._inside(section.place(s + sign * ds, depth + sign * dd)) for sign in (1, -1)]
+            apart = np.linalg.norm(ends[0] - ends[1], axis=1)
+            # At the crown of a half section both ends are the same point: the slope along it is zero there.
+            squares += ((self.at(ends[0]) - self.at(ends[1])) / np.where(apart > 0, apart, np.inf)) ** 2
+        gradients = pd.DataFrame(np.sqrt(squares), columns=list(self.sensor_places))
+        table[list(self.sensor_places)] = gradients
+        return table
+
+    @functools.cached_property
+    def extremes(self) -> pd.DataFrame:
+        """Highest temperature of every region over the whole run, with place and time."""
+        import pandas as pd
+
+        rows = []
+        for region, peak in self.peaks.items():
+            s, depth = self.place_of(peak)
+            rows.append(
+                {
+                    "region": region,
+                    "temperature_degC": peak.temperature,
+                    "time_s": peak.time,
+                    "r_m": peak.point[0],
+                    "z_m": peak.point[1],
+                    "s_m": s,
+                    "depth_m": depth,
+                }
+            )
+        return pd.DataFrame(rows)
+
+    @property
+    def peaks(self) -> dict[str, Peak]:
+        """Highest temperature of the ``tyre`` and of every region over the whole run."""
+        return {"tyre": self.history.maximum} | dict(self.history.region_maximum)
+
+    def place_of(self, peak: Peak) -> tuple[float, float]:
+        """(s, depth) of a peak, m."""
+        s, depth = self.study.section.locate(np.array([peak.point]))
+        return float(s[0]), float(depth[0])
+
+    @property
+    def highest(self) -> Array:
+        """Hottest node over time, (n_times,) degC."""
+        return np.asarray(self.history.values).max(axis=1)
+
+    # -- heat --------------------------------------------------------------------------------------------------------
+
+    @functools.cached_property
+    def heat_budget(self) -> HeatBudget:
+        """W and J per region and boundary of the whole tyre; generated = stored + lost."""
+        titles = {zone.name: zone.title for zone in self.tyre.schedule.zones}
+        return whole_tyre(self.history.budget, titles, self.study.section.half, self.tyre.condition_names)
+
+    @property
+    def end_budget(self) -> HeatBudget:
+        """The heat budget; what is asked of it is its end."""
+        return self.heat_budget
+
+    @functools.cached_property
+    def _generated(self) -> tuple[Array, Array]:
+        energies, powers = self.heat_budget.energies, self.heat_budget.powers
+        rows = [[series[key] for key in energies if key[0] == "generated"] for series in (energies, powers)]
+        energy, power = (np.sum(each, axis=0) + np.zeros(len(self.times)) for each in rows)
+        return energy, power
+
+    def generated(self, i: int) -> tuple[float, float]:
+        """Heat of hysteresis in the whole tyre until ``times[i]``, J, and then, W."""
+        energy, power = self._generated
+        return float(energy[i]), float(power[i])
+
+    def cold_power(self, t: float) -> float:
+        """Power of hysteresis in the whole tyre with every point at the drive's initial temperature, W."""
+        problem, initial = self.tyre.problem, self.study.card.drive.initial
+        total = 0.0
+        for zone, source in self.tyre.sources.items():
+            nodes = problem.points(zone)
+            q = source(nodes, t, np.full(nodes.shape[1], initial))
+            total += float((problem.operators.source(zone) @ q).sum())
+        return total * (2.0 if self.study.section.half else 1.0)
+
+    def heat_source(self, i: int) -> dict[str, tuple[Array, Array]]:
+        """Zone -> (nodes (2, n), q (n,) W/m3) at ``times[i]``, from the zone's side of its borders."""
+        field = self.history.field(i)
+        return {
+            zone: (
+                nodes := self.tyre.problem.points(zone),
+                source(nodes, self.just_before(i), self._nodal(field, zone)),
+            )
+            for zone, source in self.tyre.sources.items()
+        }
+
+    def just_before(self, i: int) -> float:
+        """The time ``times[i]``, seen from before: at the end of a phase, that phase still counts."""
+        return just_before(self.times, i)
+
+    def _nodal(self, field: Any, zone: str) -> Array:
+        return np.asarray(field.values[self.tyre.problem.operators.dofs(zone)])
+
+    @functools.cached_property
+    def rolling_reading(self) -> int | None:
+        """Number of the last reading of the rolling phase that made the most heat; None for a tyre that never rolls."""
+        return rolling_reading(self)
+
+    @functools.cached_property
+    def rolling_resistance(self) -> RollingResistance:
+        """Force, N, and coefficient; of hysteresis only."""
+        return rolling_resistance(self)
+
+    @functools.cached_property
+    def phases(self) -> tuple[PhaseState, ...]:
+        """The drive's phases as simulated."""
+        return phase_states(self.tyre)
+
+    @functools.cached_property
+    def sliding(self) -> SlidingOutcome | None:
+        """Friction heat, mean tread and exit-edge temperatures of the phases with slip; None where none was reached."""
+        return sliding_outcome(self)
+
+    @functools.cached_property
+    def warnings(self) -> tuple[str, ...]:
+        """What of the input is perhaps not meant, and where the run left its own assumptions; one line each."""
+        return (
+            *map(str, self.study.warnings),
+            *((CASES_LEFT_OUT,) if self.study.is_campaign else ()),
+            *(() if self.feedback is None else self.feedback.warnings),
+            *deep_contacts(self.study.section, self.phases),
+            *(() if self.sliding is None else self.sliding.warnings),
+        )
+
+
+def _again(
+    kind: type[Result],
+    study: Study,
+    tyre: RollingTyre,
+    history: dict[str, Any],
+    times: Array,
+    wall_time: float,
+    feedback: Any,
+) -> Result:
+    """A result out of what is stored of it."""
+    problem = tyre.problem
+    return kind(study, tyre, History(problem.operators, problem.regions, **history), times, wall_time, feedback)

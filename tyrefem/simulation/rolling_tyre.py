@@ -1,0 +1,232 @@
+"""The rolling tyre as a conduction problem: heat sources by zone, films by side, gas and rim as lumped bodies."""
+
+from __future__ import annotations
+
+import functools
+from collections.abc import Callable
+from dataclasses import dataclass
+from typing import Any
+
+import numpy as np
+from numpy.typing import NDArray
+
+from tyrefem.boundaries.rim import Lumped
+from tyrefem.conduction import Conduction, Film, Material, Reservoir
+from tyrefem.effects.combined import Source
+from tyrefem.errors import InputError
+from tyrefem.geometry.meshing import TyreMesh
+from tyrefem.mechanics.cycle_schedule import REMEMBERED, CycleSchedule, same_cycles
+from tyrefem.mechanics.nearby_cycles import NearbyCycles
+from tyrefem.mechanics.strain_cycle import LOSS_FACTOR
+from tyrefem.simulation.heat_budget import FRICTION
+from tyrefem.simulation.heat_source import HeatSource
+from tyrefem.simulation.sliding_tread import SlidingTread
+from tyrefem.simulation.surroundings import GAS, RIM, Surroundings
+
+Array = NDArray[np.float64]
+
+
+@dataclass(frozen=True, eq=False)
+class RollingTyre(Surroundings):
+    """A study made into a conduction problem. Everything is built once, on demand.
+
+    ``like``: another tyre, whose mesh (and so the operators assembled on it) is taken if the section is the same.
+    ``cycles``: strain cycles in place of those at the drive's own pressure and the cards' moduli.
+    ``near``: takes strain cycles of studies near this one from few solutions, also for tyres that are ``like`` this.
+    """
+
+    like: RollingTyre | None = None
+    cycles: CycleSchedule | None = None
+    near: NearbyCycles | None = None
+
+    def __getstate__(self) -> dict[str, Any]:
+        """What cannot be found again in no time: the mesh and the strain cycles. The rest is made again on demand."""
+        known: dict[str, Any] = {name: self.__dict__[name] for name in ("mesh", "schedule") if name in self.__dict__}
+        return {"study": self.study, "like": None, "cycles": self.cycles, **known}
+
+    def __repr__(self) -> str:
+        return f"RollingTyre {self.study.name}"
+
+    def _as_in_like(self, tables: tuple[str, ...], ports: tuple[str, ...]) -> bool:
+        """Are these tables of the study, the section, and the effects at these ports those of ``like``?"""
+        if self.like is None:
+            return False
+        own, other = self.study, self.like.study
+        if "mechanics" in tables and self.cycles is not self.like.cycles:
+            return False
+        return (
+            own.section is other.section
+            and all(own.data.get(table) == other.data.get(table) for table in tables)
+            and self.acting.at(*ports) == self.like.acting.at(*ports)
+        )
+
+    @functools.cached_property
+    def schedule(self) -> CycleSchedule:
+        """Load cases and strain cycles of every phase."""
+        if self.cycles is not None:
+            return self.cycles
+        if self.near is not None:
+            return self.near.schedule
+        if self.like is not None and self.like.cycles is None and same_cycles(self.study, self.like.study):
+            return self.like.schedule
+        nearby = None if self._nearby is None else self._nearby.of(self.study)
+        return super().schedule if nearby is None else nearby
+
+    @property
+    def _nearby(self) -> NearbyCycles | None:
+        """Its own, or that of the tyres it is like."""
+        return self.near if self.near is not None or self.like is None else self.like._nearby
+
+    @functools.cached_property
+    def mesh(self) -> TyreMesh:
+        """The mesh, with the strain zones added as named subdomains."""
+        zones = self.schedule.zones
+        if self.like is not None:
+            study, other = self.study, self.like.study
+            if (
+                study.section is other.section
+                and study.card.mesh == other.card.mesh
+                and zones == self.like.schedule.zones
+            ):
+                return self.like.mesh
+        return self.study.mesh().with_zones({zone.name: (zone.region, zone.start, zone.end) for zone in zones})
+
+    @functools.cached_property
+    def bodies(self) -> dict[str, Material]:
+        """Region -> what conducts and stores heat there, effects included."""
+        like, found = self.like, {}
+        same = like is not None and self._as_in_like((), ("conductivity_factor", "capacity_factor"))
+        for region, card in self.study.materials.items():
+            if like is not None and same and self.mesh is like.mesh and card is like.study.materials[region]:
+                found[region] = like.bodies[region]
+                continue
+            orthotropic = card.conductivity.orthotropic
+            found[region] = Material(
+                self.acting.conductivity(region, card.conductivity.law()),
+                self.acting.capacity(region, card.heat_capacity()),
+                self.mesh.along_meridian if orthotropic or self.acting.at("conductivity_factor") else None,
+            )
+        return found
+
+    @functools.cached_property
+    def boundaries(self) -> dict[str, list[Any]]:
+        """Side -> its films, then the fluxes and radiation that effects add."""
+        ports = ("film_factor", "film_addend", "film_resistance", "sink_addend", "flux", "radiation")
+        if self._as_in_like(("boundaries", "drive", "mechanics"), ports):
+            assert self.like is not None
+            if self.tread == self.like.tread:
+                return self.like.boundaries
+        added = {side: [condition for _, condition in self.acting.conditions(side)] for side in self._films}
+        return {side: films + added[side] for side, films in self._films.items()}
+
+    @property
+    def condition_names(self) -> dict[tuple[str, int], str]:
+        """(boundary, number of the condition) -> name in the heat budget, of those that slip and effects add."""
+        plain = len(self._films["road"]) - len(self.sliding.conditions)
+        rubbing = {("road", number): FRICTION for number in range(plain, len(self._films["road"]))}
+        return rubbing | {
+            (side, number): name
+            for side, films in self._films.items()
+            for number, (name, _) in enumerate(self.acting.conditions(side), len(films))
+        }
+
+    @functools.cached_property
+    def _films(self) -> dict[str, list[Any]]:
+        """Side -> its films, and what slip adds."""
+        laws = self.study.card.boundaries
+        gas = GAS if self._gas_capacity is not None else laws.contained_air.temperature  # type: ignore[attr-defined]
+
+        rim = RIM if isinstance(laws.rim, Lumped) else _of_time(self.rim_temperature)
+        air = _of_time(self.ambient)
+        driven = self.acting.changes_films
+        return {
+            "road": [
+                Film(_of_time(lambda t: self.road_fraction(t) * self.road_film(t)), _of_time(self.road_temperature)),
+                Film(_of_time(lambda t: (1 - self.road_fraction(t)) * self.tread_air_film(t)), air),
+                *self.sliding.conditions,
+            ],
+            "outside_air": [Film(_of_time(self.air_film), air)],
+            "contained_air": [Film(_of_time(self.gas_film) if driven else laws.contained_air.film, gas)],
+            "rim": [Film(_of_time(self.rim_film) if driven else laws.rim.total_film, rim)],
+        }
+
+    @functools.cached_property
+    def _gas_capacity(self) -> float | None:
+        law = self.study.card.boundaries.contained_air
+        pressure = self.drive.phases[0].pressure.start
+        capacity = law.heat_capacity(self.study.section.gas_volume(), pressure, law.start(self.drive.initial))
+        return None if capacity is None else self.acting.gas_capacity(capacity)
+
+    def _reservoirs(self) -> dict[str, Reservoir]:
+        found: dict[str, Reservoir] = {}
+        rim, share = self.study.card.boundaries.rim, 0.5 if self.study.section.half else 1.0
+        if self._gas_capacity is not None:
+            start = self.study.card.boundaries.contained_air.start(self.drive.initial)
+            found[GAS] = Reservoir(self._gas_capacity, start)
+        if isinstance(rim, Lumped):
+            exchanges: list[tuple[float, Any]] = [(rim.cooling * share, self.ambient)]
+            if self._gas_capacity is not None and rim.air > 0:
+                exchanges.append((rim.air * share, GAS))
+            power = (lambda t: share * self.acting.rim_power(t)) if self.acting.at("rim_power") else 0.0
+            found[RIM] = Reservoir(rim.heat_capacity * share, self.rim_temperature(0.0), tuple(exchanges), power)
+        return found
+
+    @functools.cached_property
+    def hysteresis(self) -> dict[str, HeatSource]:
+        """Zone -> heat of its strain cycle."""
+        factor, found = LOSS_FACTOR[self.study.card.mechanics.loss_convention], {}
+        for zone in self.schedule.zones:
+            law = self.study.materials[zone.region].loss_tangent
+            over_frequency = None if law.frequency is None else law.over_frequency
+            found[zone.name] = HeatSource(zone.name, self.schedule, law, factor, over_frequency)
+        return found
+
+    @functools.cached_property
+    def sources(self) -> dict[str, Source]:
+        """Zone -> heat source: the strain cycle's, and what the study's effects make of it."""
+        like, found = self.like, {}
+        same = like is not None and self._as_in_like(("drive",), ("heat_factor", "heat_addend"))
+        for zone in self.schedule.zones:
+            if like is not None and same and self.schedule is like.schedule:
+                cards = [study.materials[zone.region].loss_tangent for study in (self.study, like.study)]
+                if cards[0] == cards[1]:
+                    found[zone.name] = like.sources[zone.name]
+                    continue
+            found[zone.name] = self.acting.source(zone.name, self.hysteresis[zone.name])
+        return found
+
+    @functools.cached_property
+    def sliding(self) -> SlidingTread:
+        """Friction heat of the tread on the road, in phases with slip."""
+        return SlidingTread(self, self.mesh)
+
+    @functools.cached_property
+    def problem(self) -> Conduction:
+        """The conduction problem.
+
+        Raises
+        ------
+        InputError : the study has feedback, and strain cycles that follow its temperatures are not given.
+        """
+        if self.cycles is None and self.study.card.mechanics.feedback is not None:
+            raise InputError(
+                "only a run finds strain cycles that follow the temperature; a diagnosis takes them as they are at the "
+                "drive's pressure: leave the table away and let the effect 'pressure-rise' stand for the warm air",
+                field="mechanics.feedback",
+                file=self.study.file,
+            )
+        return Conduction(
+            self.mesh.mesh,
+            self.bodies,
+            self.boundaries,
+            self.sources,
+            axisymmetric=True,
+            element=self.study.card.mesh.element,
+            reservoirs=self._reservoirs(),
+        )
+
+
+def _of_time(law: Callable[[float], float]) -> Callable[[Any, float], float]:
+    """A datum f(x, t) that does not vary in space; solvers ask for the same times again, on fixed steps for all."""
+    remembered = functools.lru_cache(maxsize=REMEMBERED)(law)
+    return lambda _x, t: remembered(t)

@@ -1,0 +1,38 @@
+from __future__ import annotations
+
+from collections.abc import Callable
+
+from tyrefem.inputs.study import Study
+from tyrefem.simulation.estimate import RunEstimate
+from tyrefem.simulation.result import Result
+from tyrefem.simulation.rolling_tyre import RollingTyre
+from tyrefem.simulation.simulate import simulate
+
+
+def run(
+    study: Study,
+    progress: Callable[[float], None] | None = None,
+    like: RollingTyre | None = None,
+    *,
+    partial: bool = False,
+) -> Result:
+    """Simulate a study's drive. With ``mechanics.feedback``: `tyrefem.simulation.feedback.run`.
+
+    Parameters
+    ----------
+    progress : called with the time (s) after every step. like : see `RollingTyre`.
+    partial : Ctrl-C gives back what is finished, see `tyrefem.conduction.Conduction.transient`; else it is raised.
+
+    A campaign's own drive is simulated, which `Result.warnings` says; its cases are run by `Campaign.runs`.
+
+    Raises
+    ------
+    InputError : more than there is memory for.
+    """
+    if like is None:
+        RunEstimate.of(study).check()
+    if study.card.mechanics.feedback is not None:
+        from tyrefem.simulation import feedback
+
+        return feedback.run(study, progress, like, partial=partial)
+    return simulate(RollingTyre(study, like), progress, partial=partial)

@@ -1,0 +1,90 @@
+"""The measurement operator: where a thermocouple sits, how it lags, and what the logger makes of it."""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING
+
+import numpy as np
+from numpy.typing import ArrayLike, NDArray
+from scipy.linalg import solve_banded
+
+if TYPE_CHECKING:
+    from tyrefem.inputs.study import Study
+
+Array = NDArray[np.float64]
+
+
+def lagged(times: Array, temperatures: Array, lag: float) -> Array:
+    """Reading of a first-order sensor, lag dy/dt + y = T, that starts in equilibrium.
+
+    Exact for a temperature linear between the times.
+
+    Parameters
+    ----------
+    times : (n,) s; temperatures : (n,) degC; lag : time constant, s.
+
+    >>> t = np.linspace(0.0, 10.0, 11)
+    >>> bool(abs(lagged(t, 2.0 * t, 1.0)[-1] - (20.0 - 2.0 * (1 - np.exp(-10.0)))) < 1e-12)
+    True
+    """
+    if lag <= 0 or len(times) < 2:
+        return np.array(temperatures, dtype=float)
+    steps = np.diff(times)
+    behind = lag * np.diff(temperatures) / steps
+    before, after, decay = temperatures[:-1] - behind, temperatures[1:] - behind, np.exp(-steps / lag)
+    # Particular solution T - lag * slope, plus what is left of the old offset: a recursion, solved as a band of two.
+    bands = np.ones((2, len(times)))
+    bands[1, :-1] = -decay
+    given = np.concatenate([temperatures[:1], after - before * decay])
+    return np.asarray(solve_banded((1, 0), bands, given, check_finite=False))
+
+
+def true_places(study: Study) -> dict[str, tuple[float, float]]:
+    """(r, z) of every sensor, m: as stated, moved by the study's effects, but never out of the rubber."""
+    stated = study.stated_places
+    section, found = study.section, dict(stated)
+    worn_away = () if section.as_built is None else [name for name in stated if not section.contains([stated[name]])[0]]
+    moved: dict[str, tuple[float, float]] = {}
+    effects = study.effects
+    for name in stated:
+        moves = [move for effect in effects if (move := effect.displacement(name)) != (0.0, 0.0)]
+        if moves or name in worn_away:
+            along, deeper = (sum(part) for part in zip((0.0, 0.0), *moves, strict=True))
+            moved[name] = along, deeper
+    if moved:
+        s, depth = section.locate(np.array([stated[name] for name in moved]))
+        along_by, deeper_by = np.array(list(moved.values())).T
+        places = section.place(*section.clamp(s + along_by, depth + deeper_by, 0.0))
+        found |= {name: (float(r), float(z)) for name, (r, z) in zip(moved, places, strict=True)}
+    return found
+
+
+def recorded(study: Study, times: Array, temperatures: ArrayLike) -> dict[str, Array]:
+    """What the logger records for temperatures (n_times, n_sensors) in degC at the sensors, in the study's order.
+
+    Lag first, then the effects of measurement: a further lag, swapped channels, offset, a logger's clock that is off.
+    """
+    values = np.asarray(temperatures, dtype=float)
+    effects = study.effects
+    lags = {
+        name: sensor.lag + sum(effect.lag_addend(name) for effect in effects) for name, sensor in study.sensors.items()
+    }
+    read = {name: lagged(times, values[:, column], lags[name]) for column, name in enumerate(lags)}
+    late = sum(effect.clock() for effect in effects)
+    found = {}
+    for name in read:
+        channel = name
+        for effect in effects:
+            channel = effect.channel(channel)
+        column = read[channel] + sum(effect.offset(name) for effect in effects)
+        found[name] = np.interp(times + late, times, column) if late else column
+    return found
+
+
+def recorded_change(study: Study, times: Array, temperatures: ArrayLike) -> dict[str, Array]:
+    """How the record changes, K, when the temperatures at the sensors change by (n_times, n_sensors) K.
+
+    `recorded` is linear but for the offsets of channels, which no temperature changes.
+    """
+    found = recorded(study, times, temperatures)
+    return {name: one - sum(effect.offset(name) for effect in study.effects) for name, one in found.items()}

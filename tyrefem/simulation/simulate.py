@@ -1,0 +1,34 @@
+from __future__ import annotations
+
+import time as clock
+from collections.abc import Callable
+
+import numpy as np
+
+from tyrefem.simulation.result import Result
+from tyrefem.simulation.rolling_tyre import Array, RollingTyre
+
+
+def simulate(tyre: RollingTyre, progress: Callable[[float], None] | None = None, *, partial: bool = False) -> Result:
+    """Simulate a tyre's drive with the strain cycles that it has; parameters as of `run`."""
+    began = clock.perf_counter()
+    study = tyre.study
+    times, fields = output_times(tyre)
+    history = tyre.problem.transient(
+        times,
+        tyre.drive.initial,
+        study.tolerance,
+        breakpoints=tyre.drive.starts[1:],
+        progress=progress,
+        partial=partial,
+    )
+    return Result(study, tyre, history, fields, clock.perf_counter() - began)
+
+
+def output_times(tyre: RollingTyre) -> tuple[Array, Array]:
+    """Times of the readings, and of the fields that are written out, s."""
+    end, output = tyre.drive.end, tyre.study.card.output
+    fields = np.linspace(0.0, end, output.fields)
+    starts = tyre.drive.starts
+    readings = np.concatenate([np.arange(0.0, end, output.every), starts, tyre.sliding.readings, fields, [end]])
+    return np.unique(np.round(readings, 9)), fields

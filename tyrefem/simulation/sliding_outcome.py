@@ -1,0 +1,273 @@
+"""What sliding did in a run: friction, heat into the tread, mean tread and exit-edge temperatures."""
+
+from __future__ import annotations
+
+import functools
+import math
+from collections.abc import Iterator, Mapping
+from dataclasses import asdict, dataclass
+from typing import TYPE_CHECKING, Any, Protocol
+
+import numpy as np
+from numpy.typing import NDArray
+
+from tyrefem.boundaries.skid import half_space_surface
+from tyrefem.brief import Brief
+
+if TYPE_CHECKING:
+    import pandas as pd
+
+    from tyrefem.conduction.field import History
+    from tyrefem.inputs.study import Study
+    from tyrefem.simulation.heat_budget import HeatBudget
+    from tyrefem.simulation.phases import PhaseState
+    from tyrefem.simulation.rolling_tyre import RollingTyre
+
+Array = NDArray[np.float64]
+Numbers = NDArray[np.intp]
+#: Part of a skid's rise by which the section's surface may differ from a half-space's before the result warns.
+UNRESOLVED = 0.05
+#: Part of a skid after which that is asked: no mesh resolves its first instant.
+SETTLED = 0.2
+
+
+class SlidingRun(Protocol):
+    """What the sliding of a run is read from; a `Result` is one."""
+
+    @property
+    def study(self) -> Study: ...
+    @property
+    def tyre(self) -> RollingTyre: ...
+    @property
+    def history(self) -> History: ...
+    @property
+    def times(self) -> Array: ...
+    @property
+    def phases(self) -> tuple[PhaseState, ...]: ...
+    @property
+    def heat_budget(self) -> HeatBudget: ...
+
+
+@dataclass(frozen=True)
+class SlidingPhase:
+    """A phase with slip. SI, degC; ``highest`` values are over the phase's readings.
+
+    ``sliding_speed`` is the highest, with the ``friction`` of that moment; ``pressure`` that of the contact at the end.
+    ``tread_start``, ``tread_highest`` are means over the tread's surface by finite elements; ``half_space_highest``
+    is the same of a half-space, for a locked wheel. ``exit_edge_highest`` is the hottest that a point of the contact
+    gets. ``friction_work`` is mu F_z v_s in time; ``tread_heat`` the tread's part of it, both of one footprint.
+    """
+
+    name: str
+    start: float
+    end: float
+    locked: bool
+    sliding_speed: float
+    pressure: float
+    friction: float
+    friction_lowest: float
+    capped: bool
+    friction_work: float
+    tread_heat: float
+    tread_start: float
+    tread_highest: float
+    half_space_highest: float | None
+    exit_edge_highest: float
+    exit_edge_time: float
+    heated_depth: float
+
+    @property
+    def mean_highest(self) -> float:
+        """Highest mean temperature of the sliding surface: that of the half-space under a locked wheel."""
+        return self.tread_highest if self.half_space_highest is None else self.half_space_highest
+
+
+@dataclass(frozen=True, eq=False)
+class SlidingOutcome(Brief):
+    """Sliding in a run.
+
+    Parameters
+    ----------
+    title : of the study. decomposition_temperature : of the tread's rubber, degC.
+    phases : one entry per phase with slip that was reached. series : the contact over time, one row per reading.
+    warnings : for people, one line each.
+    """
+
+    title: str
+    decomposition_temperature: float
+    phases: tuple[SlidingPhase, ...]
+    series: pd.DataFrame
+    warnings: tuple[str, ...]
+
+    def _facts(self) -> Mapping[str, Any]:
+        return {
+            phase.name: f"{phase.sliding_speed:.3g} m/s, mean tread {phase.mean_highest:.0f} degC at most, exit edge "
+            f"{phase.exit_edge_highest:.0f} degC at {phase.exit_edge_time:g} s"
+            for phase in self.phases
+        }
+
+    @functools.cached_property
+    def table(self) -> pd.DataFrame:
+        """``phases`` as a table."""
+        import pandas as pd
+
+        return pd.DataFrame([asdict(phase) for phase in self.phases])
+
+    @property
+    def hottest(self) -> SlidingPhase:
+        """The phase with the hottest exit edge."""
+        return max(self.phases, key=lambda phase: phase.exit_edge_highest)
+
+    def to_dict(self) -> dict[str, Any]:
+        """JSON-ready: one entry per phase."""
+        return {"phases": [asdict(phase) for phase in self.phases]}
+
+
+def _warnings(run: SlidingRun, phase: SlidingPhase, series: pd.DataFrame) -> Iterator[str]:
+    """Friction that was limited, what a locked wheel stands for, skids that the mesh does not resolve."""
+    limit = run.tyre.sliding.law.decomposition_temperature
+    if phase.capped:
+        yield (
+            f"phase '{phase.name}': friction falls from {phase.friction:.2g} to {phase.friction_lowest:.2g}, so "
+            f"that the contact stays below {limit:g} degC, where its rubber decomposes"
+        )
+    tyre = run.tyre
+    share = tyre.sliding.footprint_share((phase.start + phase.end) / 2)
+    # A wheel off the road slides on nothing.
+    if not phase.locked or share == 0:
+        return
+    yield (
+        f"phase '{phase.name}': the wheel is locked, the section is the one on the road; the heat budget counts a "
+        f"ring of such sections, {1 / share:.3g} times the footprint"
+    )
+    late = series[series.time_s > phase.start]
+    late = late[late.time_s >= phase.start + SETTLED * (phase.end - phase.start)]
+    apart = (late.tread_mean_degC - late.half_space_degC).abs().max()
+    rise = late.half_space_degC.max() - phase.tread_start
+    if apart > UNRESOLVED * abs(rise):
+        yield (
+            f"phase '{phase.name}': heat goes {phase.heated_depth * 1e3:.2g} mm deep, elements are "
+            f"{tyre.mesh.size * 1e3:.2g} mm: the section's surface is up to {apart:.2g} K off the half-space "
+            "value, which is given beside it; a smaller mesh.size helps"
+        )
+
+
+def sliding_outcome(run: SlidingRun) -> SlidingOutcome | None:
+    """The sliding of a run; None where no phase with slip was reached."""
+    import pandas as pd
+
+    phases, rows = [], []
+    warnings: list[str] = []
+    for number, phase in enumerate(run.study.card.drive.phases):
+        start = run.study.card.drive.starts[number]
+        numbers = np.flatnonzero((run.times >= start - 1e-6) & (run.times <= start + phase.duration + 1e-6))
+        if phase.slides and len(numbers) > 1:
+            readings = list(_series(run, number, numbers))
+            series = pd.DataFrame(readings)
+            rows += readings
+            phases.append(_phase(run, number, numbers, series))
+            warnings += _warnings(run, phases[-1], series)
+    if not phases:
+        return None
+    limit = run.tyre.sliding.law.decomposition_temperature
+    return SlidingOutcome(run.study.title, limit, tuple(phases), pd.DataFrame(rows), tuple(warnings))
+
+
+def _within(run: SlidingRun, number: int, i: int) -> float:
+    """The time of a reading, seen from inside a phase."""
+    drive = run.study.card.drive
+    start, duration = drive.starts[number], drive.phases[number].duration
+    return float(np.clip(run.times[i], start + 1e-9 * duration, start + duration * (1 - 1e-9)))
+
+
+def _series(run: SlidingRun, number: int, numbers: Numbers) -> Iterator[dict[str, Any]]:
+    sliding, drive = run.tyre.sliding, run.study.card.drive
+    surface, phase = sliding.surface, drive.phases[number]
+    beside = _half_space(run, number, numbers)
+    for i, skid in zip(numbers, beside, strict=True):
+        t = _within(run, number, int(i))
+        nodes = run.history.values[i][surface.dofs]
+        T = surface.trace @ nodes
+        mean, flux = float(surface.weight @ T / surface.area), sliding.friction_flux(t, T)
+        used, wanted = float(surface.weight @ flux / surface.area), sliding.uncapped_flux(t)
+        friction, passage = sliding.friction(t), sliding.passage(t)
+        locked = drive.locked_since(t) is not None
+        share = 0.0 if passage is None else passage.tread_share
+        if locked and used > 0:
+            share = 1.0 - sliding.skid_film(t) * (skid - run.tyre.road_temperature(t)) / used
+        yield {
+            "phase": phase.name,
+            "time_s": float(run.times[i]),
+            "sliding_speed_m_s": drive.slip(t).sliding_speed,
+            "contact_pressure_Pa": sliding.pressure(t),
+            "friction": friction * used / wanted if wanted > 0 else friction,
+            "capped": bool(flux.min() < wanted * (1 - 1e-9)),
+            "friction_power_W": used * sliding.contact_area(t),
+            "tread_share": share,
+            "tread_mean_degC": mean,
+            "tread_hottest_degC": float(nodes.max()),
+            "half_space_degC": skid,
+            "exit_edge_degC": float(np.max(sliding.exit_edge(t, np.array([skid]) if locked else nodes))),
+        }
+
+
+def _half_space(run: SlidingRun, number: int, numbers: Numbers) -> Array:
+    """Surface of a locked wheel's half-space at readings, from the section's mean when it locked; NaN for another."""
+    tyre, drive = run.tyre, run.study.card.drive
+    inside = [_within(run, number, int(i)) for i in numbers]
+    since = drive.locked_since(inside[0])
+    if since is None:
+        return np.full(len(numbers), math.nan)
+    sliding = tyre.sliding
+    first = int(np.searchsorted(run.times, since - 1e-6))
+    initial = _mean_surface(run, first)
+    last = drive.starts[number] + drive.phases[number].duration
+
+    def at(time: float) -> float:
+        return min(since + time, last * (1 - 1e-12))
+
+    return half_space_surface(
+        np.array(inside) - since,
+        lambda time: float(sliding.friction_flux(at(time), np.array([initial]))[0]),
+        lambda time: sliding.skid_film(at(time)),
+        lambda time: tyre.road_temperature(at(time)),
+        initial,
+        sliding.effusivities[0],
+    )
+
+
+def _mean_surface(run: SlidingRun, i: int) -> float:
+    surface = run.tyre.sliding.surface
+    return float(surface.row @ run.history.values[i][surface.dofs] / surface.area)
+
+
+def _phase(run: SlidingRun, number: int, numbers: Numbers, series: pd.DataFrame) -> SlidingPhase:
+    sliding, tyre = run.tyre.sliding, run.tyre
+    drive, state = run.study.card.drive, run.phases[number]
+    seconds = series.time_s.to_numpy()
+    hottest, fastest = int(series.exit_edge_degC.argmax()), int(series.sliding_speed_m_s.argmax())
+    energy = sum(e for (kind, _), e in run.heat_budget.energies.items() if kind == "sliding")
+    heat = float(energy[numbers[-1]] - energy[numbers[0]])  # type: ignore[index]
+    middle = float(seconds[0] + seconds[-1]) / 2
+    k, capacity = tyre.tread
+    since = drive.locked_since(middle)
+    return SlidingPhase(
+        name=state.name,
+        start=state.start,
+        end=min(state.end, float(run.times[-1])),
+        locked=state.locked,
+        sliding_speed=float(series.sliding_speed_m_s.iloc[fastest]),
+        pressure=float(series.contact_pressure_Pa.iloc[-1]),
+        friction=sliding.friction(_within(run, number, int(numbers[fastest]))),
+        friction_lowest=float(series.friction.min()),
+        capped=bool(series.capped.any()),
+        friction_work=float(np.trapezoid(series.friction_power_W, seconds)),
+        # A ring of sections slides under a locked wheel in the budget: the footprint's part of it.
+        tread_heat=heat * (sliding.footprint_share(middle) if state.locked else 1.0),
+        tread_start=float(series.tread_mean_degC.iloc[0]),
+        tread_highest=float(series.tread_mean_degC.max()),
+        half_space_highest=float(series.half_space_degC.max()) if state.locked else None,
+        exit_edge_highest=float(series.exit_edge_degC.iloc[hottest]),
+        exit_edge_time=float(seconds[hottest]),
+        heated_depth=math.sqrt(4.0 * k / capacity * (float(seconds[-1]) - since)) if since is not None else 0.0,
+    )

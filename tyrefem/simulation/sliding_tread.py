@@ -1,0 +1,159 @@
+"""The tread of a rolling or skidding tyre that slides on the road: friction heat, its share, the contact's heat."""
+
+from __future__ import annotations
+
+import functools
+from typing import TYPE_CHECKING, Any
+
+import numpy as np
+from numpy.typing import NDArray
+
+from tyrefem.boundaries.road_film import effusivity
+from tyrefem.boundaries.skid import Passage
+from tyrefem.conduction import Film, Flux
+from tyrefem.conduction.operators import Surface, operators_of
+
+if TYPE_CHECKING:
+    from tyrefem.boundaries.sliding import SlidingLaw
+    from tyrefem.geometry.meshing import TyreMesh
+    from tyrefem.inputs.drive import Drive
+    from tyrefem.simulation.surroundings import Surroundings
+
+Array = NDArray[np.float64]
+#: Readings that a phase with slip gets beside those of ``output.every``; closer at its start, where a skid warms fast.
+READINGS = 24
+
+
+class SlidingTread:
+    """The sliding contact of a study's tyre as functions of time (s). SI units, temperatures in degC.
+
+    A rolling tread point takes its share of mu p v_s once per revolution; the mean over the revolution goes into the
+    section. A locked wheel does not turn: the section modelled is the one on the road, takes mu p v all the time and
+    gives to the road that passes under it through `Passage.skid_film`.
+
+    Parameters
+    ----------
+    surroundings : the drive, the boundary laws and the load cases. mesh : has the tread's surface, ``road``.
+    """
+
+    def __init__(self, surroundings: Surroundings, mesh: TyreMesh) -> None:
+        self.surroundings, self.mesh = surroundings, mesh
+
+    @property
+    def drive(self) -> Drive:
+        """The drive."""
+        return self.surroundings.drive
+
+    @property
+    def law(self) -> SlidingLaw:
+        """The study's ``[boundaries] sliding``."""
+        return self.surroundings.study.card.boundaries.sliding
+
+    @property
+    def conditions(self) -> list[Flux | Film]:
+        """What acts on the road boundary: nothing without slip, else the heat, and a locked wheel's road."""
+        phases = self.drive.phases
+        if not any(phase.slides for phase in phases):
+            return []
+        heat = Flux(self.mean_heat, of_temperature=True)
+        if all(self.drive.locked_since(start) is None for start in self.drive.starts):
+            return [heat]
+        return [heat, Film(lambda _x, t: self.skid_film(t), lambda _x, t: self.surroundings.road_temperature(t))]
+
+    @property
+    def readings(self) -> list[float]:
+        """Times at which phases with slip are looked at, s."""
+        share = np.linspace(0.0, 1.0, READINGS + 1)[1:-1] ** 2
+        parts = zip(self.drive.starts, self.drive.phases, strict=True)
+        return [start + phase.duration * x for start, phase in parts if phase.slides for x in share.tolist()]
+
+    @functools.cached_property
+    def surface(self) -> Surface:
+        """Quadrature of the tread's surface."""
+        return operators_of(self.mesh.mesh, self.surroundings.study.card.mesh.element, True).surface("road")
+
+    @functools.cached_property
+    def effusivities(self) -> tuple[float, float]:
+        """b of tread (its card at 25 degC) and road, J/m2/K/s^0.5."""
+        return effusivity(*self.surroundings.tread), self.law.road_effusivity(
+            self.surroundings.study.card.boundaries.road
+        )
+
+    def footprint_share(self, t: float) -> float:
+        """Part of the tread's surface in contact while the wheel turns: the area of a strain law that presses the tyre
+        on its road; else, and where the road's law gives the fraction, the fraction of a revolution on the road."""
+        area = self.surroundings.footprint_area(t)
+        if area is None or self.surroundings.study.card.boundaries.road.fraction is not None:
+            return self.surroundings.rolling_fraction(t)
+        return area / (self.surface.area * self._sides)
+
+    def contact_area(self, t: float) -> float:
+        """Footprint, m2: the tread's surface times `footprint_share`."""
+        return self.footprint_share(t) * self.surface.area * self._sides
+
+    @property
+    def _sides(self) -> float:
+        return 2.0 if self.surroundings.study.section.half else 1.0
+
+    def pressure(self, t: float) -> float:
+        """Contact pressure, Pa: the law's, else load over `contact_area`; none off the road."""
+        area = self.contact_area(t)
+        load = float(self.surroundings.schedule.mean(lambda case: case.load, t))
+        if area <= 0 or load <= 0:
+            return 0.0
+        return load / area if self.law.pressure is None else self.law.pressure
+
+    def friction(self, t: float) -> float:
+        """Coefficient of friction before decomposition limits it."""
+        return self.law.friction(self.drive.slip(t))
+
+    def passage(self, t: float) -> Passage | None:
+        """The passage through the footprint; None where tread and road do not touch or do not move."""
+        slip, length = self.drive.slip(t), self.surroundings.schedule.mean(lambda case: case.footprint_length, t)
+        if not (slip.forward > 0 and length > 0):
+            return None
+        rolling = 0.0 if self.drive.locked_since(t) is not None else slip.rolling_speed
+        return Passage(*self.effusivities, length, rolling, slip.forward)
+
+    def uncapped_flux(self, t: float) -> float:
+        """F_0 = mu p v_s before decomposition limits it, W/m2 of contact."""
+        return self.friction(t) * self.pressure(t) * self.drive.slip(t).sliding_speed
+
+    def friction_flux(self, t: float, T: Array) -> Array:
+        """F_0 at surface temperatures T (n,), W/m2: the exit edge stays below the decomposition temperature (13)."""
+        flux = np.full(np.shape(T), self.uncapped_flux(t))
+        passage = self.passage(t)
+        if passage is None or not flux.any():
+            return np.zeros(np.shape(T))
+        most = passage.largest_flux(self.law.decomposition_temperature, T, self.surroundings.road_temperature(t))
+        return np.asarray(np.minimum(flux, np.maximum(most, 0.0)))
+
+    def mean_heat(self, _x: Any, t: float, T: Array) -> Array:
+        """Heat into the section, W/m2: the tread's share over the revolution; all of F_0 for a locked wheel."""
+        flux, passage = self.friction_flux(t, T), self.passage(t)
+        if passage is None:
+            return flux
+        if self.drive.locked_since(t) is not None:
+            return self.surroundings.road_fraction(t) * flux
+        return self.footprint_share(t) * passage.tread_share * flux
+
+    def skid_film(self, t: float) -> float:
+        """Film between a locked wheel and the passing road, W/m2/K; 0 for one that turns or stands."""
+        since, passage = self.drive.locked_since(t), self.passage(t)
+        if since is None or passage is None or self.pressure(t) == 0:
+            return 0.0
+        return passage.skid_film(max(t - since, 0.0))
+
+    def exit_edge(self, t: float, T: Array) -> Array:
+        """Temperature at the exit edge of the contact, degC, from the surface's T (n,).
+
+        Rolling: `Passage.meeting` plus the rise of the passage (1, 3, 5). Locked: the rise of the surface over the
+        road, which is the mean over the contact, times exit over mean.
+        """
+        passage, road = self.passage(t), self.surroundings.road_temperature(t)
+        if passage is None:
+            return np.asarray(T)
+        since = self.drive.locked_since(t)
+        if since is not None:
+            return np.asarray(road + (np.asarray(T) - road) / passage.road_age(max(t - since, 0.0))[1])
+        return np.asarray(passage.meeting(T, road) + passage.exit_rise(self.friction_flux(t, T)))

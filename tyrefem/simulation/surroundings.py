@@ -1,0 +1,158 @@
+"""What surrounds the tyre during its drive: temperatures, speed, films, time on the road."""
+
+from __future__ import annotations
+
+import functools
+from dataclasses import dataclass
+
+import numpy as np
+from numpy.typing import NDArray
+
+from tyrefem.boundaries import Contact
+from tyrefem.boundaries.road_film import propagation_depth
+from tyrefem.effects.combined import Acting
+from tyrefem.inputs.drive import Drive
+from tyrefem.inputs.study import Study
+from tyrefem.mechanics.cycle_schedule import CycleSchedule, cycle_schedule, rated_case
+
+GAS, RIM = "contained-air", "rim"
+
+
+Array = NDArray[np.float64]
+
+
+@dataclass(frozen=True, eq=False)
+class Surroundings:
+    """A study's drive and boundary laws as functions of time (s). SI units, temperatures in degC."""
+
+    study: Study
+
+    @property
+    def drive(self) -> Drive:
+        """The drive."""
+        return self.study.card.drive
+
+    @functools.cached_property
+    def schedule(self) -> CycleSchedule:
+        """Load cases and strain cycles of every phase."""
+        return cycle_schedule(self.study)
+
+    @functools.cached_property
+    def acting(self) -> Acting:
+        """The study's effects, at work on this tyre."""
+        return Acting(self, self.study.effects)
+
+    @functools.cached_property
+    def rated_deflection(self) -> float:
+        """Deflection at the rated load and pressure, m, as the strain law has it: finite elements find their own."""
+        return rated_case(self.study).deflection
+
+    def region(self, zone: str) -> str:
+        """The region that a strain zone is part of."""
+        return self._regions[zone]
+
+    @functools.cached_property
+    def _regions(self) -> dict[str, str]:
+        return {one.name: str(one.region) for one in self.schedule.zones}
+
+    def places(self, x: Array) -> tuple[Array, Array]:
+        """|s| along the meridian and depth of points x (2, n), m; remembered for arrays that come back."""
+        kept = self._places.get(id(x))
+        if kept is None or kept[0] is not x:
+            s, depth = self.study.section.locate(np.asarray(x).T)
+            if len(self._places) > 32:
+                self._places.clear()
+            kept = self._places[id(x)] = (x, np.abs(s), depth)
+        return kept[1:]
+
+    @functools.cached_property
+    def _places(self) -> dict[int, tuple[Array, Array, Array]]:
+        return {}
+
+    def ambient(self, t: float) -> float:
+        """Ambient temperature, degC."""
+        return self.acting.sink("outside_air", t, float(self.drive.value("ambient", t) or 0.0))
+
+    def road_temperature(self, t: float) -> float:
+        """Road temperature, degC: the drive's, else the law's, else the ambient."""
+        driven, law = self.drive.value("road_temperature", t), self.study.card.boundaries.road.temperature
+        return self.acting.sink("road", t, self._first(driven, law, t))
+
+    def rim_temperature(self, t: float) -> float:
+        """Temperature of a fixed rim, degC: the drive's, else the law's, else the drive's initial one."""
+        driven = self.drive.value("rim_temperature", t)
+        law = self.study.card.boundaries.rim.temperature
+        base = driven if driven is not None else self.drive.initial if law is None else law
+        return self.acting.sink("rim", t, base)
+
+    def _first(self, driven: float | None, law: float | None, t: float) -> float:
+        return driven if driven is not None else self.ambient(t) if law is None else law
+
+    def speed(self, t: float) -> float:
+        """Speed, m/s."""
+        return float(self.drive.value("speed", t) or 0.0)
+
+    def rolling_speed(self, t: float) -> float:
+        """Speed of the tread through the footprint, m/s: the wheel's without slip, 0 for a locked wheel."""
+        return self.drive.slip(t).rolling_speed
+
+    def road_fraction(self, t: float) -> float:
+        """Part of the time that the section is on the road: none at standstill, all of it under a locked wheel."""
+        if self.speed(t) == 0:
+            return 0.0
+        fraction = self.rolling_fraction(t)
+        return 1.0 if fraction > 0 and self.drive.locked_since(t) is not None else fraction
+
+    def rolling_fraction(self, t: float) -> float:
+        """Fraction of a revolution that a tread point spends on the road while the wheel turns."""
+        law = self.study.card.boundaries.road
+        if law.fraction is not None:
+            return law.fraction
+        return self.schedule.mean(lambda case: case.road_fraction, t)
+
+    def footprint_area(self, t: float) -> float | None:
+        """Area of rubber in contact, m2; None where the strain law does not press the tyre on its road."""
+        if any(case.contact is None for cases in self.schedule.cases for case in cases):
+            return None
+        return self.schedule.mean(lambda case: case.footprint_area or 0.0, t)
+
+    @functools.cached_property
+    def tread(self) -> tuple[float, float]:
+        """Conductivity (through the thickness) and heat capacity of the tread at 25 degC: what meets the road."""
+        card = self.study.materials["tread"]
+        conductivity, capacity = card.conductivity.law(), card.heat_capacity()
+        k = conductivity(25.0) if callable(conductivity) else conductivity
+        return float(np.ravel(k)[-1]), float(capacity(25.0) if callable(capacity) else capacity)
+
+    def road_film(self, t: float) -> float:
+        """H_c during contact, W/m2/K; none under a locked wheel, whose road has a film of its own."""
+        if self.drive.locked_since(t) is not None:
+            return 0.0
+        length = self.schedule.mean(lambda case: case.footprint_length, t)
+        base = self.study.card.boundaries.road.film(Contact(self.rolling_speed(t), length, *self.tread))
+        return self.acting.film("road", t, base)
+
+    def propagation_depth(self, t: float) -> float:
+        """Depth to which one contact cools the tread, m (Cattani et al. 2023, eq 8); 0 for a wheel that stands."""
+        if self.rolling_speed(t) <= 0 or self.drive.locked_since(t) is not None:
+            return 0.0
+        contact = self.schedule.mean(lambda case: case.footprint_length, t) / self.rolling_speed(t)
+        phase = self.drive.phases[self.drive.locate(t)[0]]
+        # A wheel that slows to a lock has no last contact of its own: none is longer than the phase.
+        return propagation_depth(min(contact, phase.duration) if phase.slides else contact, *self.tread)
+
+    def air_film(self, t: float) -> float:
+        """Outside film, W/m2/K."""
+        return self.acting.film("outside_air", t, self.study.card.boundaries.outside_air.film(self.speed(t)))
+
+    def tread_air_film(self, t: float) -> float:
+        """Outside film of the tread between two contacts, W/m2/K."""
+        return self.acting.film("tread_air", t, self.air_film(t))
+
+    def gas_film(self, t: float) -> float:
+        """Film between inner surface and contained air, W/m2/K."""
+        return self.acting.film("contained_air", t, self.study.card.boundaries.contained_air.film)
+
+    def rim_film(self, t: float) -> float:
+        """Film between bead and rim with every resistance in series, W/m2/K."""
+        return self.acting.film("rim", t, self.study.card.boundaries.rim.total_film)

@@ -1,0 +1,192 @@
+"""The strain cycles of a drive at temperatures that a run has found.
+
+What the mechanics feels of the temperatures: the contained air's, and every region's mean.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from dataclasses import dataclass
+from typing import TYPE_CHECKING
+
+import numpy as np
+from numpy.typing import NDArray
+
+from tyrefem.boundaries.contained_air import KELVIN
+from tyrefem.mechanics.cycle_schedule import CycleSchedule, KnotSolver, ramp_knots, warming_knots
+from tyrefem.mechanics.strain_cycle import settled
+
+if TYPE_CHECKING:
+    from tyrefem.inputs.loading import LoadCase
+    from tyrefem.inputs.study import Study
+    from tyrefem.inputs.study_card import Feedback
+    from tyrefem.mechanics.strain_cycle import StrainCycle
+    from tyrefem.simulation.result import Result
+
+Array = NDArray[np.float64]
+
+
+@dataclass(frozen=True)
+class Moment:
+    """Temperatures of a moment, degC: of the contained air, and the mean of every region."""
+
+    gas: float
+    regions: Mapping[str, float]
+
+    def distance(self, other: Moment, *, gas: bool, regions: tuple[str, ...]) -> float:
+        """Largest difference, K, of the contained air (if ``gas``) and of some regions."""
+        found = [abs(self.gas - other.gas)] if gas else []
+        found += [abs(self.regions[name] - other.regions[name]) for name in regions]
+        return max(found, default=0.0)
+
+    def towards(self, other: Moment, share: float) -> Moment:
+        """A share of the way to another moment."""
+        if share == 1:
+            return other
+        regions = {name: T + share * (other.regions[name] - T) for name, T in self.regions.items()}
+        return Moment(self.gas + share * (other.gas - self.gas), regions)
+
+
+@dataclass(frozen=True, eq=False)
+class Warmth:
+    """Temperatures over a drive, degC: ``times`` (n,) s, contained air ``gas`` (n,), ``regions`` name -> (n,).
+
+    Linear between the times, constant beyond them.
+
+    >>> warmth = Warmth(np.array([0.0, 100.0]), np.array([25.0, 45.0]), {"tread": np.array([25.0, 65.0])})
+    >>> warmth.at(50.0)
+    Moment(gas=35.0, regions={'tread': 45.0})
+    """
+
+    times: Array
+    gas: Array
+    regions: Mapping[str, Array]
+
+    def at(self, time: float) -> Moment:
+        """The moment of a time, s."""
+        regions = {name: float(np.interp(time, self.times, T)) for name, T in self.regions.items()}
+        return Moment(float(np.interp(time, self.times, self.gas)), regions)
+
+    @classmethod
+    def even(cls, study: Study, warmer_by: float = 0.0) -> Warmth:
+        """Every region at the drive's initial temperature and the air at its own, or all so much warmer, K."""
+        initial = study.card.drive.initial
+        gas = study.card.boundaries.contained_air.start(initial)
+        regions = {region: np.array([initial + warmer_by]) for region in study.materials}
+        return cls(np.zeros(1), np.array([gas + warmer_by]), regions)
+
+    @classmethod
+    def of(cls, result: Result) -> Warmth:
+        """That of a finished run: means by volume."""
+        operators, values, regions = result.tyre.problem.operators, result.history.values, {}
+        for region in result.study.materials:
+            weights = np.asarray(operators.source(region).sum(axis=0)).ravel()
+            regions[region] = values[:, operators.dofs(region)] @ (weights / weights.sum())
+        return cls(result.times, result.gas_temperature, regions)
+
+
+#: A strain cycle stays where its temperatures have moved by less than this share of the tolerance.
+STILL = 0.25
+
+
+#: Relative modulus of every region's compound and cords that soften.
+Softened = tuple[float, ...]
+
+
+@dataclass(frozen=True, eq=False)
+class _Knot:
+    """A strain cycle, its load case as driven, and the temperatures that it belongs to."""
+
+    moment: Moment
+    case: LoadCase
+    softened: Softened
+    cycle: StrainCycle
+
+
+class WarmCycles:
+    """Load cases at p + p_atm = (p_drive + p_atm) T_gas / T_gas,start, strain cycles at the regions' moduli.
+
+    Parameters
+    ----------
+    study, choice : the study, and its ``[mechanics.feedback]``. warmth : the temperatures to begin with.
+
+    Raises
+    ------
+    InputError : a load, deflection or pressure that the section cannot take; names the phase.
+    """
+
+    def __init__(self, study: Study, choice: Feedback, warmth: Warmth) -> None:
+        self.study, self.choice, self._cold = study, choice, KnotSolver(study)
+        drive, law = study.card.drive, study.card.boundaries.contained_air
+        self.gas_start = law.start(drive.initial)
+        self.softening = tuple(r for r, card in study.materials.items() if choice.modulus and card.softens)
+        self.knots = tuple(
+            tuple(ramp_knots(True) if phase.changes_load else warming_knots(choice.knots)) for phase in drive.phases
+        )
+        self._solvers: dict[Softened, KnotSolver] = {}
+        self._kept: dict[tuple[int, int], _Knot] = {}
+        for place in self._places():
+            self._kept[place] = self._solved(place, self._moment(place, warmth))
+        self._solvers.clear()
+
+    def change(self, warmth: Warmth) -> float:
+        """Largest difference, K, between the temperatures of the strain cycles and these, over all knots."""
+        return max(self._distance(place, warmth) for place in self._places())
+
+    def update(self, warmth: Warmth, share: float = 1.0) -> None:
+        """Go a share of the way to other temperatures, wherever these differ noticeably."""
+        for place in self._places():
+            if self._distance(place, warmth) > STILL * self.choice.tolerance:
+                moment = self._kept[place].moment.towards(self._moment(place, warmth), share)
+                self._kept[place] = self._solved(place, moment)
+        self._solvers.clear()
+
+    def schedule(self) -> CycleSchedule:
+        """What a run takes. A phase in which nothing changes has one strain cycle, as without feedback."""
+        fractions, cases, cycles = [], [], []
+        for number, (phase, knots) in enumerate(zip(self.study.card.drive.phases, self.knots, strict=True)):
+            found = [self._kept[number, place] for place in range(len(knots))]
+            same = all((one.case, one.softened) == (found[0].case, found[0].softened) for one in found)
+            if same and not phase.changes_load:
+                found, knots = found[:1], (0.0,)
+            fractions.append(knots)
+            cases.append(tuple(settled(one.cycle, one.case) for one in found))
+            cycles.append(tuple(one.cycle for one in found))
+        return CycleSchedule(self.study.card.drive, tuple(fractions), tuple(cases), tuple(cycles))
+
+    def _places(self) -> list[tuple[int, int]]:
+        return [(number, place) for number, knots in enumerate(self.knots) for place in range(len(knots))]
+
+    def _moment(self, place: tuple[int, int], warmth: Warmth) -> Moment:
+        drive, (number, knot) = self.study.card.drive, place
+        return warmth.at(drive.starts[number] + self.knots[number][knot] * drive.phases[number].duration)
+
+    def _distance(self, place: tuple[int, int], warmth: Warmth) -> float:
+        own = self._kept[place].moment
+        return own.distance(self._moment(place, warmth), gas=self.choice.pressure, regions=self.softening)
+
+    def _solved(self, place: tuple[int, int], moment: Moment) -> _Knot:
+        number, knot = place
+        warmed = (moment.gas + KELVIN) / (self.gas_start + KELVIN) if self.choice.pressure else 1.0
+        case = self._cold.case(number, self.knots[number][knot], warmed)
+        softened = self._softened(moment)
+        for other in self._kept.values():
+            if (other.case, other.softened) == (case, softened):
+                return _Knot(moment, case, softened, other.cycle)
+        return _Knot(moment, case, softened, self._solver(softened, moment).cycle(number, case))
+
+    def _softened(self, moment: Moment) -> Softened:
+        found: list[float] = []
+        for region in self.softening:
+            card, T = self.study.materials[region], moment.regions[region]
+            laws = [one.softening for one in (card, card.cord, card.cords) if one is not None]
+            found += [law(T) for law in laws if law is not None]
+        return tuple(found)
+
+    def _solver(self, softened: Softened, moment: Moment) -> KnotSolver:
+        """One for all knots of equal moduli; forgotten after every update, as the next one has other moduli."""
+        if not self.softening:
+            return self._cold
+        if softened not in self._solvers:
+            self._solvers[softened] = KnotSolver(self.study.warmed(moment.regions))
+        return self._solvers[softened]

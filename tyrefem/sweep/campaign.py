@@ -1,0 +1,124 @@
+"""A campaign: one study, a table of cases, one table of answers."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Iterator, Mapping
+from contextlib import suppress
+from dataclasses import dataclass
+from typing import TYPE_CHECKING, Any, Self
+
+from tyrefem.brief import Brief
+from tyrefem.conduction import SolverError
+from tyrefem.errors import InputError
+from tyrefem.estimates import work as estimate
+from tyrefem.inputs.study import Study
+from tyrefem.measured.cases import Case
+from tyrefem.simulation.estimate import RunEstimate
+from tyrefem.simulation.run import run
+
+if TYPE_CHECKING:
+    from tyrefem.simulation.result import Result
+
+#: Cases that are looked at to judge how long all will take.
+LOOKED_AT = 10
+
+
+@dataclass(frozen=True, eq=False)
+class Campaign(Brief):
+    """The cases of a study, each a study of its own. Made by `Study.campaign`."""
+
+    study: Study
+    cases: tuple[Case, ...]
+
+    def _title(self) -> str:
+        return self.study.name
+
+    def _facts(self) -> Mapping[str, Any]:
+        return {
+            "title": self.study.title,
+            "cases": [case.name for case in self.cases],
+            "changed": list(dict.fromkeys(key for case in self.cases for key in case.changes)),
+            "section": self.study.section.name,
+        }
+
+    @classmethod
+    def of(cls, study: Study) -> Self:
+        """The campaign of a study that names a table of cases.
+
+        Raises
+        ------
+        InputError : the study names none, or the table or a case of it is wrong (file and line).
+        """
+        for case in study.cases:
+            study.case_study(case)
+        return cls(study, study.cases)
+
+    def case_study(self, case: Case) -> Study:
+        """The study of one case."""
+        return self.study.case_study(case)
+
+    def runs(self, progress: Callable[[int, int], None] | None = None) -> Iterator[tuple[Case, Result | str]]:
+        """Run the cases in their order; a case that fails gives its reason in place of a result.
+
+        An interruption (Ctrl-C) yields the part of the case that is finished, then raises ``KeyboardInterrupt``.
+        """
+        self._warn()
+        for number, case in enumerate(self.cases):
+            outcome = self.outcome(case)
+            if progress is not None:
+                progress(number + 1, len(self.cases))
+            yield case, outcome
+            if not isinstance(outcome, str) and outcome.history.interrupted:
+                raise KeyboardInterrupt
+
+    def _warn(self) -> None:
+        """Of long work, judged by some of the cases."""
+        some = self.cases[:: max(len(self.cases) // LOOKED_AT, 1)]
+        times: list[float] = []
+        for case in some:
+            with suppress(InputError):  # a case that is wrong is a row of the table that says so
+                times.append(RunEstimate.of(self.case_study(case)).total.time)
+        if times:
+            mean = sum(times) / len(times)
+            estimate.warn_of(mean * len(self.cases), f"{len(self.cases):,} cases of {self.study.name}")
+
+    def outcome(self, case: Case) -> Result | str:
+        """The result of a case, or why there is none."""
+        try:
+            return run(self.case_study(case), partial=True)
+        except (InputError, SolverError) as error:
+            return str(error)
+        except Exception as error:  # one case's defect must not cost the others; it is named as what it is
+            return f"defect, please report: {type(error).__name__}: {error}"
+
+
+def row(case: Case, outcome: Result | str) -> dict[str, Any]:
+    """One case as a row of the campaign's table; a failed case has only its name and ``failure``."""
+    if isinstance(outcome, str):
+        return {"case": case.name, "note": case.note, "failure": outcome}
+    phase, peak = outcome.phases[-1], outcome.extremes.iloc[0]
+    resistance, readings = outcome.rolling_resistance, outcome.readings
+    hottest_region = outcome.extremes.iloc[1:].set_index("region")["temperature_degC"].idxmax()
+    regions = {f"{entry.region}_max_degC": entry.temperature_degC for entry in outcome.extremes.iloc[1:].itertuples()}
+    return {
+        "case": case.name,
+        "note": case.note,
+        "section": outcome.study.section.name,
+        "load_N": phase.load,
+        "pressure_Pa": phase.pressure,
+        "speed_m_s": phase.speed,
+        "deflection_m": phase.deflection,
+        "road_fraction": phase.road_fraction,
+        "hottest_degC": peak.temperature_degC,
+        "hottest_region": hottest_region,
+        "hottest_s_m": peak.s_m,
+        "hottest_depth_m": peak.depth_m,
+        "hottest_time_s": peak.time_s,
+        **regions,
+        "rolling_resistance_N": resistance.force,
+        "rolling_resistance_coefficient": resistance.coefficient,
+        **{f"{name}_degC": float(readings[name].iloc[-1]) for name in readings.columns if name != "time_s"},
+        **({} if outcome.sliding is None else {"exit_edge_max_degC": outcome.sliding.hottest.exit_edge_highest}),
+        "heat_budget_imbalance": outcome.heat_budget.imbalance,
+        "failure": f"interrupted at {outcome.times[-1]:g} s" if outcome.history.interrupted else "",
+    }

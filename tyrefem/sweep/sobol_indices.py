@@ -1,0 +1,122 @@
+"""Sobol indices: which share of an answer's variance comes from which number, alone and together with others."""
+
+from __future__ import annotations
+
+import functools
+from dataclasses import dataclass
+from typing import TYPE_CHECKING, Any
+
+import numpy as np
+
+from tyrefem.errors import InputError
+from tyrefem.sweep.sweep import Sweep
+from tyrefem.variants.answer_units import name_of
+from tyrefem.variants.samples import problem
+
+if TYPE_CHECKING:
+    import pandas as pd
+
+#: Half a 95 % interval of a total index beyond which the sample is too small to say much.
+WIDE = 0.15
+
+
+def indices(swept: Sweep, answer: str) -> pd.DataFrame:
+    """First-order and total indices of an answer with their 95 % intervals; the largest total first.
+
+    S_i = Var(E(y | x_i)) / Var(y), T_i = E(Var(y | x_~i)) / Var(y) (Saltelli et al. 2010, by SALib; intervals by its
+    bootstrap), numbers uniform in their ranges and independent.
+
+    Raises
+    ------
+    InputError : the variants are no Saltelli sample, or some failed or were not run: the estimate needs every one.
+    """
+    import pandas as pd
+    from SALib.analyze import sobol
+
+    plan = swept.plan
+    if plan.how.get("sample") != "saltelli":
+        raise InputError("Sobol indices need sample = 'saltelli'", field="sample")
+    values = [swept.outcomes.get(n, {}).get("answers", {}).get(answer) for n in range(len(plan.variants))]
+    missing = sum(value is None or value != value for value in values)
+    if missing:
+        raise InputError(f"{missing} of {len(values)} variants have no '{answer}'; Sobol indices need them all")
+    y = np.array(values, dtype=float)
+    names = [one.key for one in plan.varied]
+    if np.ptp(y) == 0:
+        nothing = np.zeros(len(names))
+        found = dict.fromkeys(("S1", "S1_conf", "ST", "ST_conf"), nothing)
+    else:
+        found = sobol.analyze(
+            problem(plan.varied), y, calc_second_order=False, seed=plan.how["seed"], print_to_console=False
+        )
+    table = pd.DataFrame(
+        {
+            "number": names,
+            "first": found["S1"],
+            "first_95": found["S1_conf"],
+            "total": found["ST"],
+            "total_95": found["ST_conf"],
+        }
+    )
+    return table.sort_values("total", ascending=False, ignore_index=True)
+
+
+@dataclass(frozen=True, eq=False)
+class Indices:
+    """Sobol indices of some answers of a sweep over Saltelli's sample."""
+
+    swept: Sweep
+    answers: tuple[str, ...]
+
+    name = "indices"
+    heading = "Sobol indices"
+
+    @functools.cached_property
+    def _found(self) -> dict[str, pd.DataFrame | str]:
+        found: dict[str, pd.DataFrame | str] = {}
+        for answer in self.answers:
+            try:
+                found[answer] = indices(self.swept, answer)
+            except InputError as error:
+                found[answer] = error.message
+        return found
+
+    @property
+    def tables(self) -> dict[str, pd.DataFrame]:
+        """Answer -> its indices, of those that could be estimated."""
+        return {answer: one for answer, one in self._found.items() if not isinstance(one, str)}
+
+    @functools.cached_property
+    def table(self) -> pd.DataFrame:
+        """All of them, the answer in the first column."""
+        import pandas as pd
+
+        parts = [one.assign(answer=answer) for answer, one in self.tables.items()]
+        columns = ["answer", "number", "first", "first_95", "total", "total_95"]
+        return pd.concat(parts, ignore_index=True)[columns] if parts else pd.DataFrame(columns=columns)
+
+    @property
+    def words(self) -> list[str]:
+        """The answer in sentences."""
+        told = []
+        for answer, one in self._found.items():
+            if isinstance(one, str):
+                told.append(f"No Sobol indices of the {name_of(answer)}: {one}.")
+                continue
+            shares = ", ".join(
+                f"{row['number']} {100 * row['total']:.0f} % (±{100 * row['total_95']:.0f})"
+                for row in one.head(4).to_dict("records")
+            )
+            wide = float(one["total_95"].max())
+            alone = 100 * float(one["first"].sum())
+            told.append(
+                f"Variance of the {name_of(answer)}, with all that each number takes part in: {shares}. Numbers acting"
+                f" alone make {alone:.0f} % of it."
+            )
+            if wide > WIDE:
+                told.append(f"Intervals of up to ±{100 * wide:.0f} % are wide: take a larger base.")
+        return told
+
+    def to_dict(self) -> dict[str, Any]:
+        """JSON-ready."""
+        return {"rows": self.table.to_dict("records"), "words": self.words}

@@ -1,0 +1,237 @@
+"""The sweep file: which numbers of a study vary, how they are sampled, what the answers must keep to."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from pathlib import Path
+from typing import TYPE_CHECKING, Annotated, Any, ClassVar, Literal
+
+from pydantic import Field, field_validator, model_validator
+
+from tyrefem.cards import Card, Temperature, Text
+from tyrefem.errors import InputError
+from tyrefem.quantity import Unit
+
+if TYPE_CHECKING:
+    from tyrefem.inputs.study import Study
+
+Sample = Literal["grid", "latin-hypercube", "sobol", "list", "saltelli"]
+#: Values of a continuous quantity in a grid, where the file does not say.
+LEVELS = 5
+
+
+class VaryCard(Card):
+    """How one dotted name of the study varies: listed values, a range, or a factor on what the study says.
+
+    >>> VaryCard.check({"from": "10 mph", "to": "40 mph", "levels": 4}).levels
+    4
+    """
+
+    kind: ClassVar[str] = "sweep"
+    values: list[Any] | None = None
+    low: str | float | None = Field(default=None, alias="from")
+    high: str | float | None = Field(default=None, alias="to")
+    factor: tuple[float, float] | None = None
+    levels: Annotated[int, Field(ge=2)] = LEVELS
+    scale: Literal["linear", "log"] = "linear"
+
+    @model_validator(mode="after")
+    def _one_way(self) -> VaryCard:
+        ranged = self.low is not None or self.high is not None
+        if (self.values is not None) + ranged + (self.factor is not None) != 1:
+            raise InputError("give one of 'values', 'from' with 'to', or 'factor'")
+        if ranged and (self.low is None or self.high is None):
+            raise InputError("'from' and 'to' go together")
+        if self.values is not None and not self.values:
+            raise InputError("needs at least one value", field="values")
+        if self.factor is not None and not 0 < self.factor[0] < self.factor[1]:
+            raise InputError(f"must be two rising positive numbers, not {list(self.factor)}", field="factor")
+        return self
+
+
+class LimitCard(Card):
+    """What an answer must keep to, in the answer's own unit (`hottest_degC` in degC)."""
+
+    kind: ClassVar[str] = "sweep"
+    below: float | None = None
+    above: float | None = None
+
+    @model_validator(mode="after")
+    def _some(self) -> LimitCard:
+        if self.below is None and self.above is None:
+            raise InputError("give 'below', 'above' or both")
+        if self.below is not None and self.above is not None and self.below <= self.above:
+            raise InputError(f"nothing is below {self.below:g} and above {self.above:g}")
+        return self
+
+
+class TornadoCard(Card):
+    """Every uncertain number alone, less and more by its tolerance.
+
+    ``tolerances``: dotted name -> share of the number; by default one standard deviation of what cards and study state
+    and what can matter. A card's number is moved in every region that takes it from that card.
+    """
+
+    kind: ClassVar[str] = "sweep"
+    tolerances: dict[str, Annotated[float, Unit("1", gt=0, lt=1)]] = Field(default_factory=dict)
+
+    @field_validator("tolerances", mode="before")
+    @classmethod
+    def _quoted(cls, data: Any) -> Any:
+        return flat(data) if isinstance(data, dict) else data
+
+
+class OptimiseCard(Card):
+    """The smallest (or largest) answer within what varies, under the limits.
+
+    ``runs``: variants that may be evaluated. ``seed``: of the search.
+    """
+
+    kind: ClassVar[str] = "sweep"
+    minimise: Text | None = None
+    maximise: Text | None = None
+    runs: Annotated[int, Field(ge=20, le=1_000_000)] = 400
+    seed: Annotated[int, Field(ge=0)] = 1
+
+    @model_validator(mode="after")
+    def _one_aim(self) -> OptimiseCard:
+        if (self.minimise is None) == (self.maximise is None):
+            raise InputError("give either 'minimise' or 'maximise', the name of an answer")
+        return self
+
+    @property
+    def answer(self) -> str:
+        """What is looked at."""
+        found = self.minimise or self.maximise
+        assert found is not None
+        return found
+
+
+class EnvelopeCard(Card):
+    """The largest speed, between ``slowest`` and ``fastest``, at which ``answer`` stays below a limit.
+
+    For every one of ``loads`` x ``pressures``; where not given, shares of the study's own load, and its own pressure.
+    """
+
+    kind: ClassVar[str] = "sweep"
+    below: float
+    answer: Text = "hottest_degC"
+    loads: tuple[Text, ...] = ()
+    pressures: tuple[Text, ...] = ()
+    slowest: Text = "1 m/s"
+    fastest: Text = "60 m/s"
+
+
+class SweepCard(Card):
+    """A sweep file.
+
+    Parameters
+    ----------
+    study : name or path (relative to the file); ``case``: of a campaign, the case to take. change : values changed
+        first, for every variant.
+    sample : how variants are chosen; ``count`` of them (Latin hypercube, Sobol; Saltelli: the base), ``seed``;
+        ``cases``: CSV (list). Not given: a grid, or no variants but the optimiser's if there is ``[optimise]``.
+    vary : dotted name -> how it varies. uncertain : every uncertain number that can matter varies too, evenly within so
+        many standard deviations either way; a card's number in all regions that use the card.
+    limits : answer -> what it must keep to.
+    time_to : temperature whose first reaching is an answer (``time_to_limit_s``).
+    answers : what is drawn and judged; by default temperature and rolling resistance (and time to the limit).
+    pareto : answer -> "min" or "max"; by default temperature, rolling resistance and mass, all "min".
+    tornado, optimise, envelope : further questions.
+    """
+
+    kind: ClassVar[str] = "sweep"
+    title: str = ""
+    study: Text
+    case: Text | None = None
+    change: dict[str, Any] = Field(default_factory=dict)
+    sample: Sample | None = None
+    count: Annotated[int, Field(ge=1)] | None = None
+    seed: Annotated[int, Field(ge=0)] = 1
+    cases: str | None = None
+    vary: dict[str, VaryCard] = Field(default_factory=dict)
+    uncertain: Annotated[float, Unit("1", gt=0, le=5)] | None = None
+    limits: dict[str, LimitCard] = Field(default_factory=dict)
+    time_to: Temperature | None = None
+    answers: tuple[Text, ...] = ()
+    pareto: dict[str, Literal["min", "max"]] = Field(default_factory=dict)
+    tornado: TornadoCard | None = None
+    optimise: OptimiseCard | None = None
+    envelope: EnvelopeCard | None = None
+
+    @field_validator("vary", mode="before")
+    @classmethod
+    def _quoted(cls, data: Any) -> Any:
+        """TOML reads ``drive.speed = {...}`` as nested tables: both spellings are one name; a list is its values."""
+        found = flat(data) if isinstance(data, dict) else data
+        if not isinstance(found, dict):
+            return found
+        return {key: {"values": value} if isinstance(value, list) else value for key, value in found.items()}
+
+    @field_validator("change")
+    @classmethod
+    def _dotted(cls, data: dict[str, Any]) -> dict[str, Any]:
+        """A whole table in place of one value would take the study's other values of it away."""
+        for key, value in data.items():
+            if "." not in key and isinstance(value, dict):
+                raise InputError(f'write dotted names in quotes, e.g. "{key}.{next(iter(value), "...")}" = ...')
+        return data
+
+    def load_study(self, near: Path | None, changes: Mapping[str, Any] | None = None) -> Study:
+        """The study, with the file's changes and then others made; its path may be relative to a folder."""
+        from tyrefem.inputs.study import study
+
+        beside = None if near is None else near / self.study
+        name = self.study if beside is None or not beside.exists() else str(beside)
+        return study(name, {**self.change, **(changes or {})}, self.case)
+
+    @property
+    def sampled(self) -> bool:
+        """Are variants chosen beforehand?"""
+        return self.sample is not None or (self.varies and self.optimise is None)
+
+    @property
+    def varies(self) -> bool:
+        """Is there a box?"""
+        return bool(self.vary) or self.uncertain is not None
+
+    @property
+    def chosen(self) -> Sample:
+        """How they are."""
+        return self.sample or "grid"
+
+    @model_validator(mode="after")
+    def _fits(self) -> SweepCard:
+        if self.chosen == "list":
+            if self.cases is None:
+                raise InputError("sample = 'list' needs a CSV file of cases", field="cases")
+            if self.varies:
+                raise InputError("sample = 'list' takes its values from 'cases' alone", field="vary")
+        elif self.cases is not None:
+            raise InputError("goes with sample = 'list'", field="cases")
+        elif not self.varies and (self.sample or self.optimise or not (self.tornado or self.envelope)):
+            raise InputError("nothing varies; e.g. \"drive.speed\" = { from = '10 mph', to = '40 mph' }", field="vary")
+        if self.chosen in ("grid", "list"):
+            if self.count is not None:
+                made = "levels in [vary]" if self.chosen == "grid" else "rows in the list"
+                raise InputError(f"there are as many variants as {made}; only the other samples take it", field="count")
+        elif self.count is None:
+            raise InputError(f"sample = '{self.sample}' needs a number of variants", field="count")
+        return self
+
+
+def flat(data: dict[str, Any], before: str = "") -> dict[str, Any]:
+    """Nested tables as dotted names, down to the tables that say how to vary.
+
+    >>> flat({"drive": {"speed": {"from": "1 m/s", "to": "2 m/s"}}})
+    {'drive.speed': {'from': '1 m/s', 'to': '2 m/s'}}
+    """
+    known = {"values", "from", "to", "factor", "levels", "scale"}
+    found: dict[str, Any] = {}
+    for key, value in data.items():
+        name = f"{before}.{key}" if before else key
+        if isinstance(value, dict) and value and not known & set(value):
+            found |= flat(value, name)
+        else:
+            found[name] = value
+    return found

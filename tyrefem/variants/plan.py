@@ -1,0 +1,197 @@
+"""A plan: one study, what varies, and every variant of it. Refused before anything runs if it makes no sense."""
+
+from __future__ import annotations
+
+import functools
+import hashlib
+import json
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass
+from pathlib import Path
+from typing import Any
+
+from tyrefem.errors import InputError
+from tyrefem.inputs.study import Study
+from tyrefem.inputs.uncertain_numbers import left_out
+from tyrefem.mechanics.cycle_schedule import check_cases
+from tyrefem.quantity import written
+from tyrefem.variants.answers import check_answer
+from tyrefem.variants.card import LimitCard, SweepCard, VaryCard
+from tyrefem.variants.samples import drawn, grid, listed, size_of, without_repeats
+from tyrefem.variants.task import Bundle, Task, bundle
+from tyrefem.variants.varied import Varied, uncertain, varied
+
+
+@dataclass(frozen=True, eq=False)
+class Plan:
+    """The variants of a study.
+
+    Parameters
+    ----------
+    study : the study. varied : what varies; empty where the variants come from a list. variants : changes of each.
+    names : of the variants. limits : answer -> what it must keep to. time_to : see `answers`. how : of the sample, in
+        words that are recorded.
+    """
+
+    study: Study
+    varied: tuple[Varied, ...]
+    variants: tuple[Mapping[str, Any], ...]
+    names: tuple[str, ...]
+    limits: Mapping[str, LimitCard]
+    time_to: float | None
+    how: Mapping[str, Any]
+
+    @functools.cached_property
+    def packed(self) -> Bundle:
+        """The study as it is sent to workers."""
+        return bundle(self.study)
+
+    @functools.cached_property
+    def digest(self) -> str:
+        """Of the study, its files, and every variant in its order."""
+        text = json.dumps([self.packed.digest, list(self.variants), self.time_to], sort_keys=True, default=str)
+        return hashlib.sha256(text.encode()).hexdigest()[:16]
+
+    @property
+    def keys(self) -> list[str]:
+        """Dotted names that any variant changes, in order."""
+        return list(dict.fromkeys(key for one in self.variants for key in one))
+
+    def task(self, number: int) -> Task:
+        """The work of a variant."""
+        return Task(number, self.packed, self.variants[number], self.time_to)
+
+    def row(self, number: int) -> dict[str, Any]:
+        """What a table shows of a variant: its name and the values that it has."""
+        by_key, changes = {one.key: one for one in self.varied}, self.variants[number]
+        beside = {key for one in self.varied for key, _ in one.also}
+        shown = {
+            (by_key[key].heading if key in by_key else key): (by_key[key].of(value) if key in by_key else value)
+            for key, value in changes.items()
+            if key not in beside
+        }
+        return {"variant": self.names[number], **shown}
+
+
+def planned(study: Study, card: SweepCard, near: Path | None = None) -> Plan:
+    """The variants that a sweep file asks for.
+
+    Raises
+    ------
+    InputError : a name that the study does not have, a value that it refuses, two variants that are the same; more
+        variants than there is memory for.
+    """
+    for name in (*card.limits, *card.answers, *card.pareto):
+        try:
+            check_answer(name, study, card.time_to)
+        except InputError as error:
+            table = next(one for one in ("limits", "answers", "pareto") if name in getattr(card, one))
+            raise error.within(field=table) from None
+    names: Sequence[str]
+    if card.chosen == "list":
+        assert card.cases is not None
+        path = (near or Path()) / card.cases
+        variants, names = listed(path)
+        chosen: tuple[Varied, ...] = ()
+        try:
+            sensible(study, [(f"variant '{name}'", one) for name, one in zip(names, variants, strict=True)])
+        except InputError as error:
+            raise error if error.file else error.within(file=path) from None
+    else:
+        chosen = tuple(varied(study, key, one) for key, one in _outer_first(card.vary).items())
+        if card.uncertain is not None:
+            chosen += _beside(chosen, uncertain(study, card.uncertain))
+        if card.sampled:
+            size_of(chosen, card.chosen, card.count)
+        sensible(study, [("", one.changes(value)) for one in chosen for value in one.ends])
+        if not card.sampled:
+            variants = []
+        elif card.chosen == "grid":
+            variants = grid(chosen)
+        else:
+            assert card.count is not None
+            variants = drawn(chosen, card.chosen, card.count, card.seed)
+        names = [str(number + 1) for number in range(len(variants))]
+        if card.chosen != "saltelli":
+            without_repeats(variants, names)
+    seed = card.seed if card.chosen in ("latin-hypercube", "sobol", "saltelli") else None
+    how: dict[str, Any] = {"sample": card.chosen if card.sampled else None, "count": len(variants), "seed": seed}
+    if card.uncertain is not None:
+        also = {one.key: [key for key, _ in one.also] for one in chosen if one.also}
+        how |= {"uncertain": card.uncertain, "also": also, "left_out": left_out(study.uncertain_numbers)}
+    return Plan(study, chosen, tuple(variants), tuple(names), dict(card.limits), card.time_to, how)
+
+
+def _beside(chosen: Sequence[Varied], numbers: Sequence[Varied]) -> tuple[Varied, ...]:
+    """The uncertain numbers that do not vary otherwise.
+
+    Raises
+    ------
+    InputError : the card of one of them is swapped.
+    """
+    named = {one.key for one in chosen}
+    found = tuple(one for one in numbers if not named & {one.key, *(key for key, _ in one.also)})
+    for one in found:
+        for key in (one.key, *(key for key, _ in one.also)):
+            outer = next((name for name in named if key.startswith(f"{name}.")), None)
+            if outer is not None:
+                message = f"the numbers of '{outer}', which is swapped, have no one value to vary about ('{key}')"
+                raise InputError(message, field="uncertain")
+    return found
+
+
+def _outer_first(vary: Mapping[str, VaryCard]) -> dict[str, VaryCard]:
+    """A swapped card or section before what varies in it, which it would wipe out otherwise."""
+    within = {key: outer for key in vary for outer in vary if key.startswith(f"{outer}.")}
+    for key, outer in within.items():
+        if vary[key].factor is not None:
+            raise InputError(f"a factor on what '{outer}' swaps has no meaning: give values", field=f"vary.{key}")
+    if not within:
+        return dict(vary)
+    return dict(sorted(vary.items(), key=lambda entry: entry[0].count(".")))
+
+
+def card_of(study: Study, vary: Mapping[str, Any] | None = None, **said: Any) -> SweepCard:
+    """A sweep file's content from Python.
+
+    ``vary``: e.g. ``{"drive.speed": ("10 mph", "40 mph"), "materials.tread": ["soft", "hard"]}``.
+
+    A pair (tuple) is a range, a third entry its levels, a list its values, a mapping what a sweep file would say.
+    ``said``: every other key of a sweep file; None: not said.
+    """
+    data = {key: value for key, value in said.items() if value is not None}
+    if vary:
+        data["vary"] = {key: _vary(value) for key, value in vary.items()}
+    if "cases" in data:
+        data.setdefault("sample", "list")
+    return SweepCard.check({"study": study.name, **data})
+
+
+def plan_of(study: Study, vary: Mapping[str, Any], **said: Any) -> Plan:
+    """The variants of `card_of`."""
+    return planned(study, card_of(study, vary, **said))
+
+
+def _vary(value: Any) -> Any:
+    if isinstance(value, VaryCard):
+        return value
+    plain = written(value)
+    if isinstance(plain, Mapping):
+        return plain
+    if isinstance(value, tuple):
+        if len(value) not in (2, 3):
+            raise InputError(f"a range is (from, to) or (from, to, levels), not {value!r}", field="vary")
+        return dict(zip(("from", "to", "levels"), plain, strict=False))
+    if isinstance(plain, list):
+        return {"values": plain}
+    raise InputError(f"a list of values or a tuple (from, to), not {value!r:.60}", field="vary")
+
+
+def sensible(study: Study, trials: Sequence[tuple[str, Mapping[str, Any]]]) -> None:
+    """Build the study and the load cases of each; the first that is refused names itself."""
+    for name, changes in trials:
+        try:
+            check_cases(study.replace(changes))
+        except InputError as error:
+            shown = ", ".join(f"{key} = {value!r}" for key, value in changes.items())
+            raise InputError(f"{name or 'a variant'} with {shown}: {error.message}", field=error.field) from None

@@ -1,0 +1,139 @@
+"""Which variants: grids, Latin hypercubes, Sobol sequences, Saltelli's sample, lists from CSV."""
+
+from __future__ import annotations
+
+import itertools
+import math
+from collections.abc import Sequence
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+from numpy.typing import NDArray
+
+from tyrefem.errors import InputError
+from tyrefem.estimates.work import check_memory, rounded_down, variants
+from tyrefem.variants.varied import Varied, alike
+
+Array = NDArray[np.float64]
+
+
+def size_of(varied: Sequence[Varied], sample: str, count: int | None) -> int:
+    """How many variants a sample has, before any of them is made; raises as `check_size`.
+
+    >>> size_of([Varied("a", levels=3), Varied("b", values=("x",))], "grid", None)
+    3
+    >>> size_of([Varied("a")], "sobol", 100), size_of([Varied("a"), Varied("b")], "saltelli", 64)
+    (128, 256)
+    """
+    if sample == "grid":
+        found = math.prod(len(one.values) or one.levels for one in varied)
+        check_size(found, len(varied), "the grid", "vary")
+        return found
+    assert count is not None
+    found = {"sobol": 1 << (count - 1).bit_length(), "saltelli": count * (len(varied) + 2)}.get(sample, count)
+    check_size(found, len(varied), f"sample = '{sample}'", "count")
+    return found
+
+
+def check_size(count: int, numbers: int, what: str, field: str) -> None:
+    """Refuse more variants than there is memory for, with all that is said of them.
+
+    Raises
+    ------
+    InputError : at ``field``; how many would fit.
+    """
+    words = f"{count:,}" if count < 10**15 else "more than 10^15"
+    try:
+        check_memory(
+            variants(count, numbers),
+            f"{what} makes {words} variants",
+            lambda free: f"{rounded_down(free / variants(1, numbers)):,.0f} variants would fit",
+        )
+    except InputError as error:
+        raise error.within(field=field) from None
+
+
+def grid(varied: Sequence[Varied]) -> list[dict[str, Any]]:
+    """Every combination of the levels, the last name running fastest.
+
+    >>> grid([Varied("a", values=(1, 2)), Varied("b", values=("x",))])
+    [{'a': 1, 'b': 'x'}, {'a': 2, 'b': 'x'}]
+    """
+    return [_changes(varied, values) for values in itertools.product(*(one.grid for one in varied))]
+
+
+def _changes(varied: Sequence[Varied], values: Sequence[Any]) -> dict[str, Any]:
+    found: dict[str, Any] = {}
+    for one, value in zip(varied, values, strict=True):
+        found |= one.changes(value)
+    return found
+
+
+def places(varied: Sequence[Varied], sample: str, count: int, seed: int) -> Array:
+    """Places in the unit cube, one row each: ``count`` of a Latin hypercube.
+
+    A Sobol sequence has a power of two of them, rounded up. Saltelli's sample (2010), which Sobol indices need, has
+    ``count``, a power of two, times the numbers and two more.
+    """
+    from scipy.stats import qmc
+
+    if sample == "saltelli":
+        from SALib.sample import sobol
+
+        if count < 2 or count & (count - 1):
+            raise InputError(f"Saltelli's sample needs a power of two, e.g. 64, not {count}", field="count")
+        if len(varied) < 2:
+            raise InputError("Sobol indices need at least two numbers that vary", field="vary")
+        return np.asarray(sobol.sample(problem(varied), count, calc_second_order=False, seed=seed))
+    rng = np.random.default_rng(seed)
+    if sample == "latin-hypercube":
+        return np.asarray(qmc.LatinHypercube(len(varied), seed=rng).random(count))
+    return np.asarray(qmc.Sobol(len(varied), seed=rng).random_base2(max(math.ceil(math.log2(count)), 0)))
+
+
+def problem(varied: Sequence[Varied]) -> dict[str, Any]:
+    """What SALib wants to know: names and bounds (the unit cube: `Varied.at` takes it from there)."""
+    return {"num_vars": len(varied), "names": [one.key for one in varied], "bounds": [[0.0, 1.0]] * len(varied)}
+
+
+def drawn(varied: Sequence[Varied], sample: str, count: int, seed: int) -> list[dict[str, Any]]:
+    """A sample as changes of the study."""
+    return [changes_at(varied, row) for row in places(varied, sample, count, seed)]
+
+
+def changes_at(varied: Sequence[Varied], place: Sequence[float] | Array) -> dict[str, Any]:
+    """Changes of the study at a place of the unit cube."""
+    return _changes(varied, [one.at(float(u)) for one, u in zip(varied, place, strict=True)])
+
+
+def listed(path: Path) -> tuple[list[dict[str, Any]], list[str]]:
+    """The variants of a CSV file (see `tyrefem.measured.cases`), and their names.
+
+    Raises
+    ------
+    InputError : no table of cases; two variants that are the same, in whatever units.
+    """
+    from tyrefem.measured.cases import read_cases
+
+    found = read_cases(path)
+    keys = list(dict.fromkeys(key for case in found for key in case.changes))
+    check_size(len(found), len(keys), path.name, "cases")
+    changes, names = [dict(case.changes) for case in found], [case.name for case in found]
+    columns = {key: alike([one.get(key) for one in changes]) for key in keys}
+    plain = [{key: columns[key][place] for key in one} for place, one in enumerate(changes)]
+    try:
+        without_repeats(plain, names)
+    except InputError as error:
+        raise error.within(file=path) from None
+    return changes, names
+
+
+def without_repeats(variants: Sequence[dict[str, Any]], names: Sequence[str]) -> None:
+    """Raise `InputError` naming two variants that are the same."""
+    seen: dict[str, str] = {}
+    for changes, name in zip(variants, names, strict=True):
+        key = repr(sorted((key, str(value)) for key, value in changes.items()))
+        if key in seen:
+            raise InputError(f"variants '{seen[key]}' and '{name}' are the same: a variant is wanted once")
+        seen[key] = name

@@ -1,0 +1,211 @@
+"""A study with the files it needs, to be sent to another process or machine.
+
+One variant's work, done in a worker: build the study, run it, answer.
+"""
+
+from __future__ import annotations
+
+import copy
+import functools
+import gc
+import hashlib
+import json
+import tempfile
+import threading
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass
+from pathlib import Path
+from typing import TYPE_CHECKING, Any
+
+import tyrefem
+from tyrefem import library
+from tyrefem.errors import InputError
+from tyrefem.inputs.study import Study
+
+if TYPE_CHECKING:
+    from tyrefem.simulation.rolling_tyre import RollingTyre
+
+
+class VersionError(RuntimeError):
+    """The packer's and the worker's package differ."""
+
+
+@dataclass(frozen=True)
+class Bundle:
+    """A study as plain data and the files beside it that are not shipped with the package.
+
+    Parameters
+    ----------
+    name : of the study. data : the study, its references into ``files``. files : name -> bytes.
+    version : of the package that packed it.
+    """
+
+    name: str
+    data: Mapping[str, Any]
+    files: Mapping[str, bytes]
+    version: str = tyrefem.__version__
+
+    @property
+    def digest(self) -> str:
+        """What the study says and all its files hold, shipped cards included by the package's version."""
+        heads = {name: hashlib.sha256(content).hexdigest() for name, content in sorted(self.files.items())}
+        text = json.dumps([self.version, self.name, self.data, heads], sort_keys=True, default=str)
+        return hashlib.sha256(text.encode()).hexdigest()[:16]
+
+    def unpacked(self, folder: Path) -> Study:
+        """The study again, its files in a folder.
+
+        Raises
+        ------
+        VersionError : another version of the package would answer differently.
+        """
+        if self.version != tyrefem.__version__:
+            raise VersionError(f"asked by tyrefem {self.version}, but this worker has {tyrefem.__version__}")
+        for name, content in self.files.items():
+            (folder / name).write_bytes(content)
+        return Study(self.name, self.data, None, folder)
+
+
+def bundle(study: Study) -> Bundle:
+    """Pack a study: whoever unpacks it needs no file of this machine.
+
+    >>> import tempfile, tyrefem
+    >>> packed = bundle(tyrefem.study("nasa-22x5.5-8pr"))
+    >>> packed.unpacked(Path(tempfile.mkdtemp())).section.name
+    'nasa-22x5.5-8pr'
+    """
+    data: dict[str, Any] = copy.deepcopy(dict(study.data))
+    # What a variant does not need, and would have to bring files for.
+    for key in ("measured", "cases"):
+        data.pop(key, None)
+    files: dict[str, bytes] = {}
+    near = study.folder
+    data["section"] = _packed("section", data["section"], near, files)
+    data["materials"] = {
+        region: _packed("material", reference, near, files) for region, reference in data["materials"].items()
+    }
+    mesh = data.get("mesh", {})
+    if isinstance(mesh.get("file"), str):
+        mesh["file"] = _kept((near or Path()) / mesh["file"], files)
+    return Bundle(study.name, data, files)
+
+
+def _packed(kind: str, reference: Any, near: Path | None, files: dict[str, bytes]) -> Any:
+    """The reference as it must be written where only the package and ``files`` are at hand."""
+    name = reference["base"] if isinstance(reference, Mapping) else reference
+    path = library.find(kind, name, near).resolve()
+    if not path.is_relative_to(library.shipped().resolve()):
+        name = _kept(path, files)
+    return {**reference, "base": name} if isinstance(reference, Mapping) else name
+
+
+def _kept(path: Path, files: dict[str, bytes]) -> str:
+    try:
+        content = path.read_bytes()
+    except OSError as error:
+        raise InputError(f"cannot be read: {error.strerror or error}", file=path) from None
+    name = f"{path.stem}-{hashlib.sha256(content).hexdigest()[:8]}{path.suffix}"
+    files[name] = content
+    return name
+
+
+class Unpacked:
+    """Bundles that this process has unpacked, by digest: a worker keeps its studies, meshes and operators."""
+
+    def __init__(self) -> None:
+        self._studies: dict[str, Study] = {}
+        self._folders: list[tempfile.TemporaryDirectory[str]] = []
+
+    def study(self, packed: Bundle) -> Study:
+        """The study of a bundle, unpacked once."""
+        digest = packed.digest
+        if digest not in self._studies:
+            folder = tempfile.TemporaryDirectory(prefix="tyrefem-")
+            self._folders.append(folder)
+            self._studies[digest] = packed.unpacked(Path(folder.name))
+        return self._studies[digest]
+
+
+@dataclass(frozen=True)
+class Task:
+    """A variant to run.
+
+    Parameters
+    ----------
+    number : of the variant. packed : the study. changes : what the variant changes. time_to : see `answers`.
+    """
+
+    number: int
+    packed: Bundle
+    changes: Mapping[str, Any]
+    time_to: float | None = None
+
+
+@functools.cache
+def _shelf() -> Unpacked:
+    """Of this process."""
+    return Unpacked()
+
+
+def unpacked(packed: Bundle) -> Study:
+    """The study of a bundle, unpacked once in this process."""
+    return _shelf().study(packed)
+
+
+#: Tyres that a thread ran last: mesh, operators and strain cycles serve the next variant where they are the same.
+REMEMBERED = 4
+_recent = threading.local()
+
+
+def _most_alike(study: Study) -> RollingTyre | None:
+    """The tyre among the last ones from which most can be taken over."""
+    tyres: list[RollingTyre] = _recent.__dict__.setdefault("tyres", [])
+    return max(tyres, key=lambda tyre: _alike(study, tyre.study), default=None)
+
+
+def _alike(study: Study, other: Study) -> tuple[bool, bool, int]:
+    """Same section; same strain cycle as far as the study says; how many materials are the same."""
+    same = [study.data.get(table) == other.data.get(table) for table in ("section", "mesh", "drive", "mechanics")]
+    mine, theirs = study.data["materials"], other.data["materials"]
+    return same[0] and same[1], same[2] and same[3], sum(mine[region] == theirs.get(region) for region in mine)
+
+
+def _remember(tyre: RollingTyre) -> None:
+    """Keep a tyre; it must not hold those before it alive."""
+    object.__setattr__(tyre, "like", None)
+    tyres: list[RollingTyre] = _recent.tyres
+    forgotten = tyres[REMEMBERED - 1 :]
+    tyres[:] = [tyre, *tyres[: REMEMBERED - 1]]
+    if any(all(one.mesh is not other.mesh for other in tyres) for one in forgotten):
+        # A mesh that goes takes its operators with it, tens of MB that refer to each other.
+        del forgotten
+        gc.collect()
+
+
+def perform_all(tasks: Sequence[Task]) -> dict[str, Any]:
+    """``{"outcomes": [...]}``: several variants one after the other."""
+    return {"outcomes": [perform(task) for task in tasks]}
+
+
+def perform(task: Task) -> dict[str, Any]:
+    """``{"answers": {...}}``, or ``{"failure": reason}``: one variant's failure must not cost the others."""
+    from tyrefem.conduction import SolverError
+    from tyrefem.errors import InputError
+    from tyrefem.simulation.run import run
+    from tyrefem.variants.answers import answers
+
+    try:
+        study = unpacked(task.packed).replace(task.changes)
+        before = _most_alike(study)
+        if before is not None:
+            study = unpacked(task.packed).replace(task.changes, like=before.study)
+        result = run(study, like=before)
+        found = answers(result, task.time_to)
+        _remember(result.tyre)
+        return {"answers": found}
+    except (InputError, SolverError) as error:
+        return {"failure": str(error)}
+    except VersionError:
+        raise
+    except Exception as error:  # a defect; it is named as what it is
+        return {"failure": f"defect, please report: {type(error).__name__}: {error}"}

@@ -1,0 +1,238 @@
+"""A varied quantity: from a place in the unit interval to a value as a study writes it."""
+
+from __future__ import annotations
+
+import math
+import re
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass
+from typing import TYPE_CHECKING, Any
+
+import numpy as np
+
+from tyrefem.errors import InputError
+from tyrefem.inputs.changes import scaled, value_at
+from tyrefem.quantity import parse
+from tyrefem.variants.card import VaryCard
+
+if TYPE_CHECKING:
+    from tyrefem.inputs.study import Study
+
+_AMOUNT = re.compile(r"^\s*([-+]?(?:\d+\.?\d*|\.\d+)(?:[eE][-+]?\d+)?)\s*(.*?)\s*$", re.DOTALL)
+#: Significant digits of a value that is written out: a variant can be typed again.
+DIGITS = 9
+
+
+@dataclass(frozen=True)
+class Varied:
+    """One dotted name of a study and the values it takes.
+
+    Parameters
+    ----------
+    key : dotted name. unit : of the numbers; empty for pure numbers, cards and words.
+    values : listed values, as written; empty where the quantity is continuous.
+    low, high : ends of a continuous range, in ``unit``. log : spaced by ratios. levels : values in a grid.
+    nominal : the value as the study has it; the numbers are factors on it.
+    also : other dotted names, and what stands there, that take the same factor: a card's number in other regions.
+    """
+
+    key: str
+    unit: str = ""
+    values: tuple[Any, ...] = ()
+    low: float = 0.0
+    high: float = 1.0
+    log: bool = False
+    levels: int = 5
+    nominal: Any = None
+    also: tuple[tuple[str, Any], ...] = ()
+
+    def changes(self, value: Any) -> dict[str, Any]:
+        """Dotted name -> value, of a value as a study writes it.
+
+        >>> ply = Varied("materials.ply.k", low=0.5, high=1.5, nominal="2 W", also=(("materials.wrap.k", "2 W"),))
+        >>> ply.changes(ply.at(1.0))
+        {'materials.ply.k': '3 W', 'materials.wrap.k': '3 W'}
+        """
+        if not self.also:
+            return {self.key: value}
+        factor = _ratio(value, self.nominal)
+        return {self.key: value, **{key: scaled(own, factor, DIGITS) for key, own in self.also}}
+
+    def together(self, value: Any, others: Mapping[str, Any]) -> bool:
+        """Do other names have the factor that a value of this has?"""
+        factor = _ratio(value, self.nominal) if self.also else 1.0
+        return all(math.isclose(_ratio(others[key], own), factor, rel_tol=1e-6) for key, own in self.also)
+
+    @property
+    def heading(self) -> str:
+        """Column of a table: ``drive.speed [mph]``; of a factor ``NAME [x]``."""
+        unit = self.unit or ("x" if self.nominal is not None else "")
+        return f"{self.key} [{unit}]" if unit else self.key
+
+    def number(self, place: float) -> float:
+        """The number at a place of [0, 1] of a continuous range, in `unit`."""
+        if self.log:
+            return float(self.low * (self.high / self.low) ** place)
+        return float(self.low + (self.high - self.low) * place)
+
+    def at(self, place: float) -> Any:
+        """The value at a place of [0, 1], as a study writes it.
+
+        >>> Varied("drive.speed", "mph", low=10.0, high=40.0).at(0.5)
+        '25 mph'
+        >>> Varied("materials.tread", values=("soft", "hard")).at(0.5)
+        'hard'
+        """
+        if self.values:
+            return self.values[min(int(place * len(self.values)), len(self.values) - 1)]
+        return self.written(self.number(place))
+
+    def written(self, number: float) -> Any:
+        """A number of this quantity as a study writes it."""
+        rounded = float(f"{number:.{DIGITS}g}")
+        if self.nominal is not None:
+            return scaled(self.nominal, rounded, DIGITS)
+        return f"{rounded:.{DIGITS}g} {self.unit}" if self.unit else rounded
+
+    def of(self, value: Any) -> Any:
+        """What a table shows of a written value: its number in `unit` where it has one, else the value."""
+        if self.values and not self.unit:
+            return value if isinstance(value, int | float) else str(value)
+        if self.nominal is not None:
+            return _ratio(value, self.nominal)
+        return _amount(value)[0]
+
+    def contains(self, value: Any) -> bool:
+        """Is a value, as a study writes it, one that this takes?
+
+        >>> Varied("drive.speed", "mph", low=10.0, high=40.0).contains("10 m/s")
+        True
+        """
+        if self.values:
+            return value in self.values
+        try:
+            if self.nominal is not None:
+                number = _ratio(value, self.nominal)
+            else:
+                number, unit = _amount(value)
+                if unit != self.unit:
+                    number = parse(value, self.unit or "1")
+        except InputError:
+            return False
+        room = 1e-9 * max(abs(self.low), abs(self.high))
+        return self.low - room <= number <= self.high + room
+
+    @property
+    def grid(self) -> list[Any]:
+        """Values of a grid, as a study writes them."""
+        if self.values:
+            return list(self.values)
+        return [self.at(float(place)) for place in np.linspace(0.0, 1.0, self.levels)]
+
+    @property
+    def ends(self) -> list[Any]:
+        """Every listed value, or both ends: what is tried before anything is run."""
+        return list(self.values) or [self.at(0.0), self.at(1.0)]
+
+
+def varied(study: Study, key: str, card: VaryCard) -> Varied:
+    """A varied quantity of a study.
+
+    Raises
+    ------
+    InputError : the study has no such number, ends in different units, a logarithmic range through zero.
+    """
+    try:
+        if card.values is not None:
+            return _listed(key, card.values)
+        if card.factor is not None:
+            nominal = value_at(study.data, key, study.folder)
+            scaled(nominal, 1.0)
+            return Varied(key, "", (), *card.factor, log=card.scale == "log", levels=card.levels, nominal=nominal)
+        (low, unit), (high, other) = _amount(card.low), _amount(card.high)
+        if unit != other:
+            raise InputError(f"'from' is in '{unit}' and 'to' in '{other}'; write both in the same unit")
+        if not low < high:
+            raise InputError(f"'from' ({low:g}) must be below 'to' ({high:g})")
+        if card.scale == "log" and low <= 0:
+            raise InputError(f"a logarithmic range must be positive; 'from' is {low:g}")
+    except InputError as error:
+        raise error if error.field == key else error.within(field=f"vary.{key}") from None
+    return Varied(key, unit, (), low, high, card.scale == "log", card.levels)
+
+
+def uncertain(study: Study, deviations: float) -> list[Varied]:
+    """Every uncertain number of a study that can matter, evenly within so many standard deviations either way.
+
+    Raises
+    ------
+    InputError : none is stated; a range that reaches zero.
+    """
+    found = []
+    for number in study.uncertain_numbers:
+        if number.idle:
+            continue
+        reach = deviations * number.sd
+        if reach >= 1:
+            message = f"{deviations:g} standard deviations of '{number.key}' ({100 * number.sd:.3g} %) reach zero"
+            raise InputError(message, field="uncertain")
+        pairs = zip(number.keys, number.written, strict=True)
+        (key, nominal), *also = pairs
+        found.append(Varied(key, "", (), 1 - reach, 1 + reach, nominal=nominal, also=tuple(also)))
+    if not found:
+        raise InputError("neither cards (relative_sd) nor [uncertainty] state a standard deviation", field="uncertain")
+    return found
+
+
+def _listed(key: str, values: list[Any]) -> Varied:
+    amounts = [_AMOUNT.match(value) if isinstance(value, str) else None for value in values]
+    units = {match[2] for match in amounts if match}
+    same = alike(values)
+    for number, one in enumerate(same):
+        if one in same[:number]:
+            first, again = values[same.index(one)], values[number]
+            raise InputError(f"{again!r} is given twice" + ("" if first == again else f": it is {first!r}"))
+    unit = units.pop() if len(units) == 1 and all(amounts) else ""
+    return Varied(key, unit, tuple(values), levels=len(values))
+
+
+def alike(values: Sequence[Any]) -> list[Any]:
+    """The values as numbers in the unit of the first quantity among them, so that equal ones are the same.
+
+    >>> alike(["10 mph", "4.4704 m/s", "10.0 mph"]), alike(["soft", "8 mm"])
+    ([10.0, 10.0, 10.0], ['soft', 8.0])
+    """
+    amounts = [_AMOUNT.match(value) if isinstance(value, str) else None for value in values]
+    unit = next((match[2] for match in amounts if match), "") or "1"
+    found = []
+    for value, match in zip(values, amounts, strict=True):
+        try:
+            found.append(float(f"{parse(value, unit):.12g}") if match else value)
+        except InputError:
+            found.append(value)
+    return found
+
+
+def _amount(value: Any) -> tuple[float, str]:
+    if isinstance(value, bool):
+        raise InputError(f"{value!r} is not a number")
+    if isinstance(value, int | float):
+        if not math.isfinite(value):
+            raise InputError(f"{value!r} is not a finite number")
+        return float(value), ""
+    match = _AMOUNT.match(value) if isinstance(value, str) else None
+    if match is None:
+        raise InputError(f"{value!r} is not a number with its unit, e.g. '20 mph'")
+    return float(match[1]), match[2]
+
+
+def _ratio(value: Any, nominal: Any) -> float:
+    if isinstance(value, list):
+        value, nominal = value[-1], nominal[-1]
+        return _ratio(value, nominal)
+    return _amount(value)[0] / _amount(nominal)[0]
+
+
+def scaled_value(study: Study, key: str, factor: float, digits: int = DIGITS) -> Any:
+    """The value at a dotted name of a study times a factor, as a study writes it."""
+    return scaled(value_at(study.data, key, study.folder), factor, digits)
