@@ -23,8 +23,8 @@ from tyrefem.variants.plan import plan_of
 NASA = "nasa-22x5.5-8pr"
 STOP = "work begins"
 BEGINNINGS = (
-    "rolling.simulate", "sweep.answering.Answering._make", "sweep.answering.Answering._run",
-    "reduced.certify.RollingTyre", "diagnose.blind_rates.laboratory", "solid.inflation.inflate",
+    "simulation.run.simulate", "sweep.answering.Answering._make", "sweep.answering.Answering._run",
+    "realtime.certificate.RollingTyre", "diagnose.blind_rates.laboratory", "mechanics.solid.inflation.inflate",
 )  # fmt: skip
 
 
