@@ -25,7 +25,7 @@ from pathlib import Path
 from typing import Any
 
 from interface_parts import Part, card_trees, commands, effects, import_everything, members, public_name
-from record_numbers import COARSE, SHORT, elsewhere, run_command
+from record_numbers import COARSE, SHORT, VARIED, elsewhere, run_command
 
 #: One quick run of every command that writes files or prints JSON.
 RUNS = (
@@ -39,8 +39,8 @@ RUNS = (
     f"diagnose hidden-effect --looks 1 --largest 1 --workers 1 {COARSE}",
     f"isolability hidden-effect --workers 1 {COARSE}",
     f"blind hidden-effect --cases 1 --workers 1 {COARSE}",
-    f"sweep nasa-22x5.5-8pr --workers 1 {COARSE} {SHORT} --vary drive.load=x0.8:x1.2 --vary drive.speed=x0.8:x1.2:4",
-    f"sweep nasa-22x5.5-8pr --workers 1 {COARSE} {SHORT} --vary drive.load=x0.8:x1.2 --indices 8 --time-to '30 degC'",
+    f"sweep nasa-22x5.5-8pr --workers 1 {COARSE} {SHORT} {VARIED} --time-to '30 degC'",
+    f"sweep nasa-22x5.5-8pr --workers 1 {COARSE} {SHORT} {VARIED} --indices 8",
     f"sweep nasa-22x5.5-8pr --workers 1 {COARSE} {SHORT} --tornado",
     f"sweep nasa-22x5.5-8pr --workers 1 {COARSE} {SHORT} --vary drive.load=x0.8:x1.2 --minimise hottest_degC --runs 20",
     f"sweep nasa-22x5.5-8pr --workers 1 {COARSE} {SHORT} --envelope 'hottest_degC<80' --pressures '80 psi'",
