@@ -15,12 +15,12 @@ from hidden import FINISHED, HELD_OUT, NOISE, RUNS, WARMER, Case
 
 import tyrefem as tf
 from tyrefem.cli import main
-from tyrefem.cli.diagnose import PROGRESS
 from tyrefem.diagnose.evaluations import ProgressStore, key_of
 from tyrefem.diagnose.forward_model import Bench
 from tyrefem.diagnose.unknowns import base_unknowns, sensor_unknowns, with_values
 from tyrefem.diagnose.words import verdict_words
 from tyrefem.measured import MeasuredRun
+from tyrefem.variants.answer_store import PROGRESS
 
 
 def test_the_hidden_effect_is_named_with_its_size(case: Case) -> None:

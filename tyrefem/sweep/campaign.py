@@ -53,6 +53,11 @@ class Campaign(Brief):
             study.case_study(case)
         return cls(study, study.cases)
 
+    @classmethod
+    def case_of(cls, study: Study, name: str) -> Study:
+        """The study of the case of that name: `Study.case`."""
+        return study.case(name)
+
     def case_study(self, case: Case) -> Study:
         """The study of one case."""
         return self.study.case_study(case)
