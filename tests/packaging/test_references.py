@@ -10,7 +10,7 @@ import pytest
 ROOT = Path(__file__).resolve().parents[2]
 TEXTS = sorted(
     path
-    for pattern in ("tyrefem/**/*.py", "tyrefem/**/*.j2", "tyrefem/**/*.html", "docs/*.md", "*.md", "studies/*/*.md",
+    for pattern in ("tyrefem/**/*.py", "tyrefem/**/*.j2", "tyrefem/**/*.html", "docs/**/*.md", "*.md", "studies/*/*.md",
                     "studies/*/*.toml", "materials/*.toml", "geometry/*.toml")
     for path in ROOT.glob(pattern)
 )  # fmt: skip
@@ -20,7 +20,7 @@ def test_every_page_that_is_named_is_there() -> None:
     missing = {
         f"{path.relative_to(ROOT)}: {name}"
         for path in TEXTS
-        for name in re.findall(r"\bdocs/[\w-]+\.(?:md|png)", path.read_text(encoding="utf-8"))
+        for name in re.findall(r"\bdocs/[\w/-]+\.(?:md|png)", path.read_text(encoding="utf-8"))
         if not (ROOT / name).is_file()
     }
     assert missing == set()
@@ -30,7 +30,7 @@ def test_every_page_that_is_named_is_there() -> None:
 def test_the_page_that_a_study_refers_to_for_a_symbol_has_it(study: Path) -> None:
     """``poisson_term = 0.7  # c_a of eq 7a: ..., see README.md``: the page tells of c_a."""
     for line in study.read_text(encoding="utf-8").splitlines():
-        found = re.search(r"#\s*(\w+)\b.*\bsee (?:the README of ([\w.-]*\w)|(docs/[\w-]+\.md|README\.md))", line)
+        found = re.search(r"#\s*(\w+)\b.*\bsee (?:the README of ([\w.-]*\w)|(docs/[\w/-]+\.md|README\.md))", line)
         if found is None:
             continue
         symbol, other, page = found.groups()
