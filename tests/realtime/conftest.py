@@ -9,15 +9,15 @@ import pytest
 
 import tyrefem
 from tyrefem.api import Study
-from tyrefem.realtime import certificate as certify
-from tyrefem.realtime import tables
+from tyrefem.realtime.certificate import Certificate, export
+from tyrefem.realtime.settings import ExportSettings, TablePoints
 
 
 @dataclass(frozen=True)
 class Exported:
     study: Study
     file: Path
-    certificate: certify.Certificate
+    certificate: Certificate
 
 
 RANGES = {
@@ -43,10 +43,7 @@ def exported(tmp_path_factory: pytest.TempPathFactory) -> Exported:
             "boundaries.rim": {"law": "lumped", "mass": "4 kg", "cooling": "2 W/K", "air": "0.5 W/K"},
         },
     )
-    with pytest.MonkeyPatch.context() as patch:
-        patch.setattr(tables, "POINTS", {"speed": 9, "bend": 11, "pressure": 4})
-        patch.setattr(certify, "LEARN", 3)
-        patch.setattr(certify, "FRESH", 2)
-        file = tmp_path_factory.mktemp("realtime") / "tyre.npz"
-        certificate = certify.export(study, file, ranges=RANGES, duration=80.0, tolerance=0.3)
+    file = tmp_path_factory.mktemp("realtime") / "tyre.npz"
+    settings = ExportSettings(TablePoints(9, 11, 4), learn=3, fresh=2)
+    certificate = export(study, file, ranges=RANGES, duration=80.0, tolerance=0.3, settings=settings)
     return Exported(study, file, certificate)

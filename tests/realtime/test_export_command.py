@@ -11,11 +11,10 @@ import pytest
 import tyrefem
 from tyrefem.cli import main
 from tyrefem.errors import InputError
-from tyrefem.realtime import certificate as certify
-from tyrefem.realtime import tables
 from tyrefem.realtime.certificate import export
 from tyrefem.realtime.fmu import variable_names, write_fmu
 from tyrefem.realtime.inputs import box_of
+from tyrefem.realtime.settings import ExportSettings, TablePoints
 from tyrefem.realtime.tyre import INPUTS, Inputs, RealTimeTyre
 
 STUDY = "nasa-22x5.5-8pr"
@@ -62,20 +61,16 @@ def test_effects_on_the_heat_are_refused(tmp_path):
         export(study, tmp_path / "tyre.npz")
 
 
-def test_a_box_without_width_no_sensors_held_air_and_a_tolerance_that_cannot_be_met(
-    needs_compiler, tmp_path, monkeypatch
-):
-    monkeypatch.setattr(tables, "POINTS", {"speed": 5, "bend": 4, "pressure": 4})
-    for name, value in {"LEARN": 1, "FRESH": 1, "ROUNDS": 1}.items():
-        monkeypatch.setattr(certify, name, value)
+def test_a_box_without_width_no_sensors_held_air_and_a_tolerance_that_cannot_be_met(needs_compiler, tmp_path):
+    settings = ExportSettings(TablePoints(5, 4, 4), learn=1, fresh=1, rounds=1)
     held = {"law": "held", "temperature": "35 degC"}
     changes = {"mesh.size": "12 mm", "mesh.through": 1, "sensors": {}, "boundaries.contained_air": held}
     study = tyrefem.study(STUDY, changes)
     ranges = {"load": ("12 kN",), "pressure": ("560 kPa",), "ambient": (20.0, 20.0)}
     with pytest.raises(InputError, match="still differ by"):
-        export(study, tmp_path / "no.npz", ranges=ranges, duration=40.0, tolerance=0.01)
+        export(study, tmp_path / "no.npz", ranges=ranges, duration=40.0, tolerance=0.01, settings=settings)
     assert not (tmp_path / "no.npz").exists()
-    found = export(study, tmp_path / "tyre.npz", ranges=ranges, duration=40.0, tolerance=1.0)
+    found = export(study, tmp_path / "tyre.npz", ranges=ranges, duration=40.0, tolerance=1.0, settings=settings)
     assert found.worst < 1.0
     tyre = RealTimeTyre(tmp_path / "tyre.npz")
     assert tyre.names == ["contained-air", "hottest", "gas_pressure", "rolling_resistance"]

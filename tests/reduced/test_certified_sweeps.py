@@ -22,6 +22,7 @@ from tyrefem.simulation.run import run
 from tyrefem.simulation.simulate import output_times
 from tyrefem.sweep.sweep import Sweep, sweep
 from tyrefem.variants.answers import answers
+from tyrefem.variants.execution import SweepSettings
 from tyrefem.variants.plan import Plan, plan_of
 from tyrefem.variants.task import perform
 
@@ -122,22 +123,21 @@ def test_another_mesh_is_refused(found: Surrogate, tyre: Study) -> None:
         reduced_balance(found.model, RollingTyre(finer, found.model.base))
 
 
-def test_above_its_tolerance_it_falls_back_to_full_runs(tyre: Study, monkeypatch: pytest.MonkeyPatch) -> None:
-    monkeypatch.setattr("tyrefem.reduced.surrogate.TRIALS", 1)
-    monkeypatch.setattr("tyrefem.reduced.surrogate.ROUNDS", 1)
+def test_above_its_tolerance_it_falls_back_to_full_runs(tyre: Study) -> None:
+    settings = SweepSettings(trials=1, rounds=1)
     few = plan_of(
         tyre.replace({"drive.duration": "20 s", "mesh.size": "25 mm", "mesh.element": "P1"}),
         {"drive.speed": ("10 mph", "40 mph")},
         sample="sobol",
         count=12,
     )
-    swept = sweep(few, tolerance=1e-6)
+    swept = sweep(few, tolerance=1e-6, settings=settings)
     assert (swept.table["by"] == "full").all()
     assert swept.certificate is None
     assert "still off by" in swept.why_full
     assert "x 1e-06 K" in swept.why_full
     with pytest.raises(NotReducibleError):
-        sweep(few, tolerance=1e-6, reduced="always")
+        sweep(few, tolerance=1e-6, reduced="always", settings=settings)
 
 
 def test_a_tolerance_that_nothing_is_certified_to_costs_no_training(tyre: Study) -> None:

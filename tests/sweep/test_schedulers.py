@@ -14,6 +14,7 @@ from tyrefem import study
 from tyrefem.errors import InputError
 from tyrefem.sweep.sweep import sweep
 from tyrefem.variants.dask_cluster import Dask
+from tyrefem.variants.execution import SweepSettings
 from tyrefem.variants.plan import plan_of
 from tyrefem.variants.schedulers import Here, Local
 
@@ -100,11 +101,11 @@ class Tearing:
             yield place, {"failure": "died"} if torn else work(task)
 
 
-def test_variants_of_a_lost_piece_are_tried_one_by_one(monkeypatch: pytest.MonkeyPatch) -> None:
-    monkeypatch.setattr("tyrefem.sweep.answering.SINGLE", 2)
+def test_variants_of_a_lost_piece_are_tried_one_by_one() -> None:
     tyre = study("nasa-22x5.5-8pr", {"mesh.size": "12 mm", "numerics.tolerance": "0.5 K", "drive.duration": "20 s"})
     scheduler = Tearing()
-    found = sweep(plan_of(tyre, {"drive.speed": ("10 mph", "20 mph", 4)}), scheduler=scheduler)
+    plan = plan_of(tyre, {"drive.speed": ("10 mph", "20 mph", 4)})
+    found = sweep(plan, scheduler=scheduler, settings=SweepSettings(single=2))
     assert scheduler.lost == 2
     assert found.complete
     assert not found.failed

@@ -21,11 +21,12 @@ from tyrefem.inputs.study import Study
 from tyrefem.output import versions
 from tyrefem.realtime.export import arrays_of, outputs_of, write
 from tyrefem.realtime.inputs import NAMES, Box, Course, box_of, random_course, steady
+from tyrefem.realtime.settings import ExportSettings
 from tyrefem.realtime.tables import Probe
 from tyrefem.realtime.tyre import STANDSTILL, RealTimeTyre
 from tyrefem.reduced.balance import reduced_balance
 from tyrefem.reduced.model import NotReducibleError
-from tyrefem.reduced.training import Fineness, Snapshots, snapshots, trained
+from tyrefem.reduced.training import Snapshots, snapshots, trained
 from tyrefem.requirements import Requirements
 from tyrefem.simulation.estimate import RunEstimate
 from tyrefem.simulation.rolling_tyre import RollingTyre
@@ -124,16 +125,8 @@ def certificate(
 Array = NDArray[np.float64]
 
 
-#: Random drives to learn from, fresh steady and random ones to certify with, and rounds of both.
-LEARN, FRESH, ROUNDS = 6, 4, 4
-
-
 #: What a real-time model needs of a study.
 NEEDS = Requirements("a real-time model")
-
-
-#: Few modes: a step costs their square, and its matrix their cube.
-FINENESS = Fineness(modes_tolerance=2e-4, source_tolerance=2e-6, most_modes=60, most_sources=60, fields=40)
 
 
 #: What it costs: full runs of drives of several phases in runs of one, strain cycles by finite elements for the tables,
@@ -153,9 +146,8 @@ def export(
     tolerance: float = 0.2,
     duration: float | None = None,
     scheduler: Scheduler | None = None,
-    choice: Fineness | None = None,
-    seed: int = 11,
     progress: Callable[[str, int, int], None] | None = None,
+    settings: ExportSettings | None = None,
 ) -> Certificate:
     """Train a real-time model of a study, certify it, and write it to one file.
 
@@ -163,6 +155,7 @@ def export(
     ----------
     path : ``.npz`` file. ranges : input -> (from, to), see `box_of`. tolerance : K, of every temperature of fresh full
     runs. duration : of the drives it learns from and is certified with, s; that of the study's drive.
+    settings : numbers of the method.
 
     Raises
     ------
@@ -173,7 +166,7 @@ def export(
     if study.card.mechanics.feedback is not None:
         raise InputError("a real-time model has no feedback of temperature on the strain cycle", field="mechanics")
     tick = progress or (lambda what, done, total: None)
-    scheduler, choice = scheduler or Here(), choice or FINENESS
+    scheduler, settings = scheduler or Here(), settings or ExportSettings()
     if tolerance < study.tolerance:
         raise InputError(
             f"{tolerance:g} K is less than the time error of the full runs themselves: must be at least "
@@ -182,16 +175,17 @@ def export(
         )
     box, horizon = box_of(study, ranges), float(duration or study.card.drive.end)
     tick("tables", 0, 1)
-    tool = _Tool(study, box, horizon, choice, tick, scheduler)
+    tool = _Tool(study, box, horizon, settings, tick, scheduler)
     tick("tables", 1, 1)
-    cube = np.random.default_rng(seed).random((ROUNDS * FRESH, 5))
+    seed, count = settings.seed, settings.fresh
+    cube = np.random.default_rng(seed).random((settings.rounds * count, 5))
     courses = [steady(box, place, horizon) for place in _corners()]
-    courses += [random_course(box, horizon, 1000 * seed + k) for k in range(LEARN)]
+    courses += [random_course(box, horizon, 1000 * seed + k) for k in range(settings.learn)]
     learnt, between = tool.full(courses, "training"), tool.tables.errors(tool.probe)
-    for number in range(ROUNDS):
+    for number in range(settings.rounds):
         arrays = tool.model(learnt)
-        fresh = [steady(box, place, horizon) for place in cube[number * FRESH : (number + 1) * FRESH]]
-        fresh += [random_course(box, horizon, 2000 * seed + number * FRESH + k) for k in range(FRESH)]
+        fresh = [steady(box, place, horizon) for place in cube[number * count : (number + 1) * count]]
+        fresh += [random_course(box, horizon, 2000 * seed + number * count + k) for k in range(count)]
         full = tool.full(fresh, "certifying")
         about = tool.about()
         with tempfile.TemporaryDirectory() as folder:
@@ -224,7 +218,7 @@ class _Tool:
     study: Study
     box: Box
     horizon: float
-    choice: Fineness
+    settings: ExportSettings
     tick: Callable[[str, int, int], None]
     scheduler: Scheduler
 
@@ -233,7 +227,7 @@ class _Tool:
         middle = steady(self.box, np.full(5, 0.5), self.horizon).study(self.study, self.every)
         self._expect(middle)
         self.base = RollingTyre(middle)
-        self.probe = Probe(self.study, self.box, self.base)
+        self.probe = Probe(self.study, self.box, self.base, self.settings.points)
         self.tables = self.probe.tables()
         self.packed = bundle(self.study)
 
@@ -247,7 +241,7 @@ class _Tool:
 
     def full(self, courses: Sequence[Course], what: str) -> list[dict[str, Any]]:
         """Full runs of drives."""
-        exams = [Exam(self.packed, course, self.every, self.choice.fields) for course in courses]
+        exams = [Exam(self.packed, course, self.every, self.settings.fineness.fields) for course in courses]
         outcomes: dict[int, dict[str, Any]] = {}
         for place, outcome in self.scheduler.outcomes(sit, exams):
             if "failure" in outcome:
@@ -260,7 +254,9 @@ class _Tool:
         """Arrays of a model of what was learnt."""
         taught: list[Snapshots] = [one["snapshots"] for one in learnt]
         none = np.zeros((0, taught[0].fields.shape[1]))
-        self.reduced = trained(self.base, [*taught, Snapshots(none, self._sources(taught))], choice=self.choice)
+        self.reduced = trained(
+            self.base, [*taught, Snapshots(none, self._sources(taught))], choice=self.settings.fineness
+        )
         hot = np.unique(np.concatenate([one["hot"] for one in learnt]))
         return arrays_of(self.reduced, self.probe, self.tables, hot)
 

@@ -12,6 +12,7 @@ from numpy.typing import NDArray
 from tyrefem.errors import InputError
 from tyrefem.inputs.study import Study
 from tyrefem.realtime.inputs import NAMES, Box, Course
+from tyrefem.realtime.settings import COSTLY, TablePoints
 from tyrefem.realtime.tyre import STANDSTILL, Table
 from tyrefem.reduced.balance import ReducedBalance, reduced_balance
 from tyrefem.reduced.model import ReducedModel
@@ -19,9 +20,6 @@ from tyrefem.simulation.heat_source import HeatSource
 from tyrefem.simulation.rolling_tyre import RollingTyre
 
 Array = NDArray[np.float64]
-#: Points over the root of speed, the root of the deflection, and pressure; fewer deflections and pressures where a
-#: strain cycle takes seconds.
-POINTS, COSTLY = {"speed": 25, "bend": 81, "pressure": 4}, {"speed": 25, "bend": 7, "pressure": 3}
 #: Points over the root of load, and pressure, of the deflection: it costs nothing.
 BENDS = 61, 13
 #: degC: tan delta between these, every so many kelvin.
@@ -88,12 +86,13 @@ class Probe:
 
     Parameters
     ----------
-    base : a tyre of the study, whose mesh is taken.
+    base : a tyre of the study, whose mesh is taken. points : of the tables; None: as many as the strain law allows.
     """
 
     study: Study
     box: Box
     base: RollingTyre
+    points: TablePoints | None = None
 
     def balance(self, course: Course) -> ReducedBalance:
         """The tyre on a drive, with one even mode: what acts on it is all that is asked for."""
@@ -147,7 +146,7 @@ class Probe:
         InputError : a load that the tyre cannot carry at a pressure of the box; films that change with time.
         """
         costly = self.study.card.mechanics.strain in ("fem", "barrel")
-        points = COSTLY if costly else POINTS
+        points = self.points or (COSTLY if costly else TablePoints())
         low, high = self.box.ranges["load"]
         least, most = self.box.ranges["pressure"]
         law, rating = self.study.card.mechanics.load_law, self.study.section.rating
@@ -160,9 +159,9 @@ class Probe:
         # The box's corners are asked first: a load that the tyre cannot carry is said as such.
         self.at(np.ones(1), np.array([(load, pressure) for load in (low, high) for pressure in (least, most)]))
         axes = {
-            "speed": _axis(*(float(np.sqrt(one)) for one in self.box.ranges["speed"]), count=points["speed"]),
-            "bend": _axis(bend(low, most), bend(high, least), count=points["bend"]),
-            "pressure": _axis(least, most, count=points["pressure"]),
+            "speed": _axis(*(float(np.sqrt(one)) for one in self.box.ranges["speed"]), count=points.speed),
+            "bend": _axis(bend(low, most), bend(high, least), count=points.bend),
+            "pressure": _axis(least, most, count=points.pressure),
         }
         pairs = np.array([(law.load(x**2, p, rating), p) for x in axes["bend"] for p in axes["pressure"]])
         films, heats = self.at(axes["speed"] ** 2, pairs)

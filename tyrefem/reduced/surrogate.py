@@ -16,6 +16,7 @@ from tyrefem.reduced.answers import reduced_answers
 from tyrefem.reduced.model import NotReducibleError, ReducedModel
 from tyrefem.reduced.training import Fineness
 from tyrefem.reduced.training_rounds import Packed, School, Tick, pack
+from tyrefem.variants.execution import SweepSettings
 from tyrefem.variants.plan import Plan
 from tyrefem.variants.samples import changes_at
 from tyrefem.variants.schedulers import Here, Scheduler
@@ -23,16 +24,12 @@ from tyrefem.variants.task import Bundle
 from tyrefem.variants.varied import Varied
 
 Array = NDArray[np.float64]
-#: Fresh full runs that a certificate is made of; how often it is tried.
-FRESH, TRIALS = 3, 3
 #: Time error of the training runs over the wanted tolerance: snapshots need not be good, certification is.
 COARSER = 100.0
 #: K: no full run is asked for a smaller time error. What is to be nearer than that fails for a reason.
 FINEST = 1e-3
 #: K: the full runs that a certificate compares with do not agree so well among themselves, whatever is learnt.
 HOPELESS = 1e-6
-#: Rounds of corrections before the first certificate.
-ROUNDS = 3
 #: Largest correction of a round over the tolerance that ends the rounds: what is left is a fraction of it.
 ENOUGH = 1.0
 #: Share of the tolerance that the fresh runs may take up: the few of them do not show the worst case.
@@ -140,17 +137,20 @@ def surrogate(
     choice: Fineness | None = None,
     seed: int = 7,
     progress: Tick | None = None,
+    settings: SweepSettings | None = None,
 ) -> Surrogate:
     """Train a reduced model for a plan's box, and try it on fresh full runs.
 
     Parameters
     ----------
     plan : its `varied` says which box. tolerance : K, of every temperature answer of the fresh runs.
+    settings : how many fresh runs, certificates and rounds of corrections.
 
     Raises
     ------
     NotReducibleError : the box varies what a reduced model cannot follow, or the tolerance was not reached.
     """
+    settings = settings or SweepSettings()
     check_varied(plan)
     if tolerance < HOPELESS:
         raise NotReducibleError(f"no reduced model is certified to {tolerance:g} K; allowed: {HOPELESS:g} K or more")
@@ -160,9 +160,9 @@ def surrogate(
     places = [np.zeros(len(plan.varied)), np.ones(len(plan.varied))]
     lesson.run(places, COARSER * max(tolerance, FINEST), "training", asked=False)
     certificate: Certificate | None = None
-    for trial in range(TRIALS):
-        model = lesson.rounds(1 if trial else ROUNDS, ENOUGH * tolerance)
-        places = lesson.fresh(FRESH)
+    for trial in range(settings.trials):
+        model = lesson.rounds(1 if trial else settings.rounds, ENOUGH * tolerance)
+        places = lesson.fresh(settings.fresh)
         known = len(lesson.learnt)
         full = lesson.run(places, min(plan.study.tolerance, max(tolerance, FINEST)), "certifying", asked=True)
         reduced = reduced_answers(model, [plan.study.replace(lesson.variant(one)) for one in places], plan.time_to)

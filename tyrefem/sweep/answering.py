@@ -16,7 +16,7 @@ from tyrefem.estimates import work as estimate
 from tyrefem.simulation.estimate import RunEstimate
 from tyrefem.variants.execution import Execution
 from tyrefem.variants.plan import Plan
-from tyrefem.variants.schedulers import Here, Local, Scheduler
+from tyrefem.variants.schedulers import Here, Local
 from tyrefem.variants.store import Name, Store
 from tyrefem.variants.task import Task, perform, perform_all
 
@@ -28,10 +28,6 @@ Outcome = dict[str, Any]
 
 #: Fewer variants than this per number that varies are run in full: training would cost as much.
 WORTH_TRAINING = 12
-
-
-#: Variants of one piece of work at most; so many variants are run one by one.
-PIECE, SINGLE = 64, 2000
 
 
 #: Under this name a sweep's folder keeps the certificate of the reduced model.
@@ -135,7 +131,9 @@ class Answering:
 
         how = self.how
         try:
-            self._model = surrogate(self.plan, tolerance=how.tolerance, scheduler=how.where, progress=how.tick)
+            self._model = surrogate(
+                self.plan, tolerance=how.tolerance, scheduler=how.where, progress=how.tick, settings=how.settings
+            )
         except NotReducibleError as error:
             if how.reduced == "always":
                 raise
@@ -151,13 +149,13 @@ class Answering:
             self._make()
         if self._model is not None and not full and numbers:
             variants = [self.variants[n] for n in numbers]
-            for found in by_model(self._model, self.plan, variants, self.how.where):
+            for found in by_model(self._model, self.plan, variants, self.how):
                 yield self._keep({numbers[place]: outcome for place, outcome in found.items()})
-        yield from self._run([n for n in numbers if n not in self.outcomes], PIECE)
+        yield from self._run([n for n in numbers if n not in self.outcomes], self.how.settings.piece)
 
     def _run(self, left: Sequence[int], most: int) -> Iterator[int]:
         """Run variants in full, so many together that a scheduler is not kept busy by counting them."""
-        where, size = self.how.where, min(max(len(left) // SINGLE, 1), most)
+        where, size = self.how.where, min(max(len(left) // self.how.settings.single, 1), most)
         if size == 1:
             for place, outcome in where.outcomes(perform, [self._task(n) for n in left]):
                 yield self._keep({left[place]: _by(outcome, "full")})
@@ -186,15 +184,15 @@ class Answering:
 
 
 def by_model(
-    trained: Surrogate, plan: Plan, variants: Sequence[Mapping[str, Any]], scheduler: Scheduler
+    trained: Surrogate, plan: Plan, variants: Sequence[Mapping[str, Any]], how: Execution
 ) -> Iterator[dict[int, Outcome]]:
     """Outcomes of variants, by place, as pieces are finished; what could not be reduced is left out, for full runs."""
     from tyrefem.reduced.training_rounds import ReducedTask, perform_reduced
 
-    packed = trained.packed(plan.packed)
-    firsts = range(0, len(variants), PIECE)
-    tasks = [ReducedTask(list(variants[first : first + PIECE]), plan.time_to) for first in firsts]
-    for number, outcome in scheduler.outcomes(perform_reduced, tasks, packed):
+    packed, piece = trained.packed(plan.packed), how.settings.piece
+    firsts = range(0, len(variants), piece)
+    tasks = [ReducedTask(list(variants[first : first + piece]), plan.time_to) for first in firsts]
+    for number, outcome in how.where.outcomes(perform_reduced, tasks, packed):
         found = enumerate(outcome.get("outcomes", ()), firsts[number])
         yield {place: _by(one, "reduced") for place, one in found if "not_reducible" not in one}
 

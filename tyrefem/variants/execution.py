@@ -17,6 +17,33 @@ Tick = Callable[[str, int, int], None]
 REDUCED = ("auto", "never", "always")
 
 
+@dataclass(frozen=True)
+class SweepSettings:
+    """Numbers of the method; no answer depends on them beyond the tolerance.
+
+    Parameters
+    ----------
+    single : up to so many variants, each is a piece of work of its own. piece : variants of a piece of work, at most.
+    fresh : full runs that a certificate is made of. trials : certificates that are tried. rounds : rounds of
+        corrections before the first certificate.
+
+    Raises
+    ------
+    InputError : a number below 1.
+    """
+
+    single: int = 2000
+    piece: int = 64
+    fresh: int = 3
+    trials: int = 3
+    rounds: int = 3
+
+    def __post_init__(self) -> None:
+        for name, number in dataclasses.asdict(self).items():
+            if number < 1:
+                raise InputError(f"must be at least 1, not {number}", field=f"settings.{name}")
+
+
 class Said(TypedDict, total=False):
     """Fields of an `Execution` by name."""
 
@@ -26,6 +53,7 @@ class Said(TypedDict, total=False):
     reduced: str
     tolerance: float
     progress: Tick | None
+    settings: SweepSettings
 
 
 @dataclass(frozen=True)
@@ -38,7 +66,7 @@ class Execution:
     folder : where finished variants are kept, to go on from; None: nowhere. restart : forget what it has.
     reduced : ``never``: full runs only; ``auto``: a reduced model where many variants are asked for and it is
         certified, full runs otherwise; ``always``: refuse where it is not certified. tolerance : K, of the certificate.
-    progress : called with (what is done, finished, of how many).
+    progress : called with (what is done, finished, of how many). settings : see `SweepSettings`.
 
     Raises
     ------
@@ -54,6 +82,7 @@ class Execution:
     reduced: str = "auto"
     tolerance: float = 0.01
     progress: Tick | None = None
+    settings: SweepSettings = SweepSettings()
 
     def __post_init__(self) -> None:
         if self.reduced not in REDUCED:

@@ -8,7 +8,7 @@ from dataclasses import dataclass, field, replace
 from tyrefem.errors import InputError
 from tyrefem.mechanics.footprint.contact import Pressing
 from tyrefem.mechanics.footprint.footprint import Footprint
-from tyrefem.mechanics.footprint.large_motion import LargeMotion, Moment
+from tyrefem.mechanics.footprint.large_motion import BEFORE_RIM, LargeMotion, Moment
 from tyrefem.mechanics.solid.finite_law import FiniteLaw
 
 #: Numbers of harmonics: the way is gone with the first, the others refine what it leads to.
@@ -34,6 +34,7 @@ class Balance:
     harmonics : highest harmonic.
     tolerance : last change of motion and load, relative.
     law : stress; by default that of the state's own compounds and cords, or linear in Green's strain without these.
+    steps : deflections on the way, at most. before_rim : share of the way to the rim at which deflections end.
 
     >>> from tyrefem.mechanics.footprint.example_tyre import PlainTyre
     >>> found = Balance(Pressing(PlainTyre().state(along=6)), 12).at_deflection(0.004)
@@ -45,13 +46,15 @@ class Balance:
     harmonics: int = LADDER[-1]
     tolerance: float = 1e-3
     law: FiniteLaw | None = None
+    steps: int = MOST
+    before_rim: float = BEFORE_RIM
     #: (deflection, load), m and N, on the way, balanced to `ON_THE_WAY`; cleared by every solution.
     path: list[tuple[float, float]] = field(default_factory=list, init=False, repr=False)
 
     @functools.cached_property
     def motion(self) -> LargeMotion:
         """Balances near by one another."""
-        return LargeMotion(self.pressing, self.law)
+        return LargeMotion(self.pressing, self.law, self.before_rim)
 
     def at_deflection(self, deflection: float) -> Footprint:
         """The footprint at a deflection, m, with all harmonics; raises as `solve`."""
@@ -101,7 +104,7 @@ class Balance:
             whole, slope = linear.deflection, load / linear.deflection
         now, step = motion.free(harmonics, whole), whole
         self.path[:] = [(0.0, 0.0)]
-        for _ in range(MOST):
+        for _ in range(self.steps):
             left = whole - now.deflection if load is None else (load - now.load) / slope
             if abs(left) <= NEAR * whole * (load is not None):
                 return now

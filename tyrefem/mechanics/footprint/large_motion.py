@@ -27,8 +27,10 @@ STEPS, UNSTABLE = 12, 2
 LOOSE = 5e-3
 #: What conjugate gradients leave of a residual: of a Newton step, for a change of deflection, and for the stiffness.
 INNER, BORDER, STIFFNESS = 0.05, 0.02, 0.001
-#: Angles that may touch are those of this many deflections; deflections end this near the rim.
-WIDER, BEFORE_RIM = 1.6, 0.999
+#: Angles that may touch are those of this many deflections.
+WIDER = 1.6
+#: Share of the way to the rim at which deflections end.
+BEFORE_RIM = 0.999
 
 
 @dataclass(frozen=True, eq=False)
@@ -56,10 +58,12 @@ class LargeMotion:
     ----------
     pressing : the tyre and its road.
     law : stress; by default that of the state.
+    before_rim : share of the way to the rim at which deflections end.
     """
 
     pressing: Pressing
     law: FiniteLaw | None = None
+    before_rim: float = BEFORE_RIM
     _forces: dict[int, NonlinearForces] = field(default_factory=dict, init=False, repr=False)
 
     @functools.cached_property
@@ -75,7 +79,7 @@ class LargeMotion:
     @property
     def deepest(self) -> float:
         """Greatest deflection that is tried, m: just before the crown meets the rim."""
-        return BEFORE_RIM * self.pressing.bottoming
+        return self.before_rim * self.pressing.bottoming
 
     def nonlinear(self, harmonics: int) -> NonlinearForces:
         """Inner forces with so many harmonics; the last asked for is remembered."""
