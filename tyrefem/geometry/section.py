@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Mapping
-from dataclasses import dataclass, replace
+from dataclasses import dataclass, fields, replace
 from functools import cached_property
 from typing import Any
 
@@ -82,6 +82,14 @@ class Section(Brief, Stated):
     def __post_init__(self) -> None:
         _ = self._layup
         check_possible(self)
+
+    def __hash__(self) -> int:
+        return self._hash
+
+    @cached_property
+    def _hash(self) -> int:
+        """Of all that a section is given; caches are keyed by sections."""
+        return hash(tuple(getattr(self, field.name) for field in fields(self)))
 
     def _facts(self) -> Mapping[str, Any]:
         wear = "" if self.as_built is None else ", worn"

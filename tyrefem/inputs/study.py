@@ -2,27 +2,26 @@
 
 from __future__ import annotations
 
-import copy
 import functools
 from collections.abc import Mapping
-from dataclasses import dataclass, field, replace
+from dataclasses import InitVar, dataclass, field
 from pathlib import Path
 from typing import TYPE_CHECKING, Any, Self
 
 from tyrefem import library
 from tyrefem.brief import Brief
 from tyrefem.cards import read_toml
-from tyrefem.effects import catalogue
-from tyrefem.errors import InputError, InputWarning, nearest, quoted
+from tyrefem.errors import InputError, InputWarning, nearest
 from tyrefem.inputs.changes import all_changed
-from tyrefem.inputs.drive import as_written
+from tyrefem.inputs.sensor_places import sensor_place
 from tyrefem.inputs.study_card import MeasuredEntry, Sensor, StudyCard
+from tyrefem.inputs.study_effects import check_effects
+from tyrefem.inputs.study_file import write_study
+from tyrefem.inputs.study_parts import StudyParts, error_as_written
 from tyrefem.inputs.uncertain_numbers import UncertainNumber, uncertain_number, uncertain_numbers
 from tyrefem.inputs.warnings import study_warnings
 from tyrefem.materials.card import MaterialCard
-from tyrefem.materials.cord_layers import check_cords_fit
 from tyrefem.measured.cases import Case, read_cases
-from tyrefem.quantity import written
 
 if TYPE_CHECKING:
     from tyrefem.effects import Effect
@@ -34,7 +33,18 @@ if TYPE_CHECKING:
 class Study(Brief):
     """A tyre, its materials, drive, boundaries and sensors. Made by `study`; changed by `replace`.
 
-    ``data`` is the file as written (units in the text); ``card`` the same, validated, in SI.
+    Parameters
+    ----------
+    name : what the study is called.
+    data : the file as written (units in the text).
+    file : where it was read; None: nowhere.
+    folder : where relative references (cards, tables) start from.
+    like : another study of the same cards; what it is built of serves where the two do not differ.
+    built : what this study is built of, if that is known and checked.
+
+    Raises
+    ------
+    InputError : something wrong in the study or in a card it names: file, field, what is allowed.
 
     >>> faster = study("nasa-22x5.5-8pr").replace({"drive.speed": "25 mph"})
     >>> faster.data["drive"]["speed"]
@@ -44,9 +54,10 @@ class Study(Brief):
     name: str
     data: Mapping[str, Any]
     file: Path | None = None
-    #: Folder that relative references (cards, tables) start from.
     folder: Path | None = None
-    card: StudyCard = field(init=False, repr=False)
+    like: InitVar[Study | None] = None
+    built: InitVar[StudyParts | None] = None
+    parts: StudyParts = field(init=False, repr=False)
 
     @classmethod
     def load(cls, name: str | Path, changes: Mapping[str, Any] | None = None, case: str | None = None) -> Self:
@@ -67,36 +78,15 @@ class Study(Brief):
         loaded = cls(stem, all_changed(read_toml(path), first), path, folder)
         return loaded if case is None else loaded.case(case).replace(changes)
 
-    def __post_init__(self) -> None:
-        like = self.__dict__.pop("_like", None)
-        try:
-            if like is None:
-                card = StudyCard.check(self.data, self.file)
-            else:
-                card = like.card.checked(like.data, self.data, self.file)
-            object.__setattr__(self, "card", card)
-        except InputError as error:
-            raise self.as_written(error) from None
-        self._share(like)
-        _ = self.section, self.materials
-        self._check_energy()
-        if like is not None and self.new_section is like.new_section and self.sensors == like.sensors:
-            self.__dict__["stated_places"] = like.stated_places
-        _ = self.stated_places
-        self._check_effects()
+    def __post_init__(self, like: Study | None, built: StudyParts | None) -> None:
+        parts = built or StudyParts.read(self.data, self.file, self.folder, None if like is None else like.parts)
+        object.__setattr__(self, "parts", parts)
+        if built is None:
+            check_effects(self)
 
-    def __getstate__(self) -> dict[str, Any]:
-        """What was written, the section and the materials: the cards may have changed where it is opened again.
-
-        The study's card is validated again: a user's own effect is in no importable module.
-        """
-        state = {name: self.__dict__[name] for name in ("name", "data", "file", "folder")}
-        built = ("new_section", "section", "materials", "_material_data", "temperatures")
-        return state | {name: self.__dict__[name] for name in built if name in self.__dict__}
-
-    def __setstate__(self, state: Mapping[str, Any]) -> None:
-        self.__dict__.update(state)
-        object.__setattr__(self, "card", StudyCard.check(self.data, self.file))
+    def __reduce__(self) -> tuple[Any, ...]:
+        """What it is built of travels too: the cards may have changed where it is opened again."""
+        return type(self), (self.name, self.data, self.file, self.folder, None, self.parts)
 
     def _facts(self) -> Mapping[str, Any]:
         drive, section = self.card.drive, self.section
@@ -117,101 +107,58 @@ class Study(Brief):
 
     def as_written(self, error: InputError) -> InputError:
         """The error in the file's own words: what a phase takes over from ``[drive]`` is wrong there."""
-        drive = self.data.get("drive")
-        if not isinstance(drive, Mapping) or not (error.field or "").startswith("drive.phases."):
-            return error
-        field = as_written(drive, str(error.field))
-        return InputError(error.message, field=field, file=error.file)
+        return error_as_written(error, self.data)
 
     # -- what it is made of ------------------------------------------------------------------------------------------
 
-    @functools.cached_property
-    def section(self) -> Section:
-        """The tyre's section, half or full as the mesh table says, worn as the study's effects say."""
-        wear = [effect for effect in self.effects if effect.overrides("worn")]
-        # Studies that share a new section share the worn one too: operators are assembled once per section.
-        known = self.new_section.__dict__.setdefault("_worn", {})
-        key = tuple((effect.name, *effect.values.items()) for effect in wear)
-        if key not in known:
-            section = self.new_section
-            for effect in wear:
-                section = effect.worn(section)
-            known[key] = section
-        worn: Section = known[key]
-        return worn
-
-    @functools.cached_property
-    def new_section(self) -> Section:
-        """The section before any wear."""
-        from tyrefem.geometry import load
-
-        try:
-            built = load(self.data["section"], near=self.folder)
-        except InputError as error:
-            raise error if error.file else error.within(field="section", file=self.file) from None
-        return built.as_full() if self.card.mesh.section == "full" else built
+    @property
+    def card(self) -> StudyCard:
+        """The study's data, validated, in SI."""
+        return self.parts.card
 
     @property
-    def effects(self) -> tuple[Effect, ...]:
-        """The study's effects that are not null."""
-        return tuple(one for one in self.card.effects if not one.is_null)
+    def section(self) -> Section:
+        """The tyre's section, half or full as the mesh table says, worn as the study's effects say."""
+        return self.parts.section
+
+    @property
+    def new_section(self) -> Section:
+        """The section before any wear."""
+        return self.parts.new_section
 
     @functools.cached_property
+    def effects(self) -> tuple[Effect, ...]:
+        """The study's effects that are not null."""
+        return tuple(effect for effect in self.card.effects if not effect.is_null)
+
+    @property
     def materials(self) -> dict[str, MaterialCard]:
         """Region of the section -> material card."""
-        regions = self.new_section.regions
-        for region in self.data["materials"]:
-            if region not in regions:
-                message = f"unknown region '{region}'{nearest(str(region), regions)}"
-                raise InputError(message, field="materials", file=self.file)
-        found: dict[str, MaterialCard] = {}
-        known, like = self.__dict__.pop("_known_materials", {}), self.__dict__.pop("_like_materials", None)
-        read = self.__dict__["_material_data"] = {}
-        for region in regions:
-            if region not in self.data["materials"]:
-                raise InputError(f"no material card for region '{region}'", field="materials", file=self.file)
-            if region in known:
-                found[region] = known[region]
-                read[region] = like.__dict__["_material_data"][region]
-                continue
-            try:
-                found[region], read[region] = self._material(region, like)
-                check_cords_fit(found[region], self.new_section, region)
-            except InputError as error:
-                raise error if error.file else error.within(field=f"materials.{region}", file=self.file) from None
-        return found
+        return self.parts.materials.cards
 
-    def _material(self, region: str, like: Study | None) -> tuple[MaterialCard, tuple[dict[str, Any], Path]]:
-        """A card, and the data and file that it was made of."""
-        reference = self.data["materials"][region]
-        if like is not None and region in like.__dict__["_material_data"] and like.folder == self.folder:
-            before, path = like.__dict__["_material_data"][region]
-            data = library.over("material", reference, like.data["materials"][region], before)
-            if data is not None:
-                return like.materials[region].checked(before, data, path), (data, path)
-        data, path, _ = library.load("material", reference, self.folder)
-        return MaterialCard.check(data, path), (data, path)
+    @property
+    def material_data(self) -> Mapping[str, tuple[Mapping[str, Any], Path]]:
+        """Region -> its material card as written, changes laid over it, and the card's file."""
+        return self.parts.materials.written
 
-    def warmed(self, temperatures: Mapping[str, float]) -> Self:
-        """This study with the moduli that its cards have at the mean temperatures of the regions, degC.
+    @property
+    def temperatures(self) -> Mapping[str, float] | None:
+        """Mean temperature of each region that the moduli are at, degC; None: as the cards give them."""
+        return self.parts.temperatures
 
-        What it is made of is shared; it is for finding strain cycles, not for writing or changing.
-        """
-        study = object.__new__(type(self))
-        study.__dict__.update(self.__dict__)
-        cards = {region: card.warmed(temperatures[region]) for region, card in self.materials.items()}
-        study.__dict__.update(materials=cards, temperatures=dict(temperatures))
-        return study
+    @property
+    def stated_places(self) -> Mapping[str, tuple[float, float]]:
+        """(r, z) of every sensor as it was built in, m."""
+        return self.parts.sensor_places
+
+    def section_place(self, sensor: Sensor) -> tuple[float, float]:
+        """(r, z) of a sensor as it was built in, m; refuses one outside the rubber."""
+        return sensor_place(sensor, self.new_section)
 
     @functools.cached_property
     def warnings(self) -> tuple[InputWarning, ...]:
         """What can be run but is perhaps not meant, in the study, its section and its material cards."""
         return study_warnings(self.card, self.new_section, self.materials, self.file)
-
-    @functools.cached_property
-    def temperatures(self) -> Mapping[str, float] | None:
-        """Mean temperature of each region that the moduli are at, degC; None: as the cards give them."""
-        return None
 
     @property
     def title(self) -> str:
@@ -240,13 +187,6 @@ class Study(Brief):
         """Standard deviation of a reading left by the mesh, K."""
         return self.card.numerics.mesh_sd
 
-    @property
-    def material_data(self) -> Mapping[str, tuple[Mapping[str, Any], Path]]:
-        """Region -> its material card as written, changes laid over it, and the card's file."""
-        _ = self.materials
-        data: Mapping[str, tuple[Mapping[str, Any], Path]] = self.__dict__["_material_data"]
-        return data
-
     @functools.cached_property
     def uncertain_numbers(self) -> tuple[UncertainNumber, ...]:
         """Every number with a standard deviation, from the cards and the study, also those that cannot matter.
@@ -262,83 +202,6 @@ class Study(Brief):
         """Dotted name of an uncertain number that can matter -> relative standard deviation."""
         return {number.key: number.sd for number in self.uncertain_numbers if not number.idle}
 
-    def _share(self, like: Study | None) -> None:
-        """Take over what another study has built, where the two do not differ."""
-        if like is None:
-            return
-        if self.data["section"] != like.data["section"]:
-            return
-        if self.card.mesh.section == like.card.mesh.section:
-            self.__dict__["new_section"] = like.new_section
-        mine, theirs = self.data["materials"], like.data["materials"]
-        self.__dict__["_like_materials"] = like
-        self.__dict__["_known_materials"] = {
-            region: like.materials[region] for region in like.materials if mine.get(region) == theirs[region]
-        }
-
-    def _check_energy(self) -> None:
-        energy = self.card.mechanics.energy
-        try:
-            if energy is not None:
-                energy.check_regions(self.new_section)
-        except InputError as error:
-            raise error.within(field="mechanics.energy", file=self.file) from None
-
-    def _check_effects(self) -> None:
-        for number, effect in enumerate(self.card.effects):
-            problem = effect.problem(self)
-            if problem is None and any(_same(effect, other) for other in self.card.effects[:number]):
-                problem = "is given twice; give it once"
-            if problem is not None:
-                raise InputError(problem, field=f"effects.{effect.name}", file=self.file)
-        excluded = self.card.diagnosis.exclude
-        unknown = [name for name in excluded if name not in catalogue()] if excluded else []
-        if unknown:
-            wrong = f"unknown effects {quoted(unknown, catalogue())}; 'tyrefem list effects' names them all"
-            raise InputError(wrong, field="diagnosis.exclude", file=self.file)
-
-    @functools.cached_property
-    def stated_places(self) -> Mapping[str, tuple[float, float]]:
-        """(r, z) of every sensor as it was built in, m; refuses one outside the rubber."""
-        found = {}
-        for name, sensor in self.sensors.items():
-            try:
-                found[name] = self.section_place(sensor)
-            except InputError as error:
-                raise error.within(field=f"sensors.{name}", file=self.file) from None
-        return found
-
-    def section_place(self, sensor: Sensor) -> tuple[float, float]:
-        """(r, z) of a sensor as it was built in, m; refuses one outside the rubber."""
-        section = self.new_section
-        if sensor.at is not None:
-            r, z = sensor.at
-            if not section.contains([[r, z]])[0]:
-                s, depth = section.locate([[r, z]])
-                raise InputError(
-                    f"at (r, z) = ({r * 1e3:.1f}, {z * 1e3:.1f}) mm the sensor is outside the rubber; the nearest "
-                    f"meridian point is s = {float(s[0]) * 1e3:.1f} mm, where the rubber is "
-                    f"{float(section.rubber_thickness(s)[0]) * 1e3:.1f} mm thick (depth there "
-                    f"{float(depth[0]) * 1e3:.1f} mm)"
-                )
-            return float(r), float(z)
-        assert sensor.s is not None
-        assert sensor.depth is not None
-        length = section.line.length
-        lowest = 0.0 if section.half else -length
-        if not lowest <= sensor.s <= length:
-            raise InputError(
-                f"s = {sensor.s * 1e3:.1f} mm is off the section; allowed: {lowest * 1e3:.1f} to {length * 1e3:.1f} mm"
-            )
-        thickness = float(section.rubber_thickness([sensor.s])[0])
-        if sensor.depth > thickness * (1 + 1e-9):
-            raise InputError(
-                f"depth = {sensor.depth * 1e3:.2f} mm is outside the rubber, which is {thickness * 1e3:.2f} mm thick "
-                f"at s = {sensor.s * 1e3:.1f} mm"
-            )
-        r, z = section.place([sensor.s], [min(sensor.depth, thickness)])[0]
-        return float(r), float(z)
-
     # -- change ------------------------------------------------------------------------------------------------------
 
     def replace(self, changes: Mapping[str, Any], like: Study | None = None) -> Self:
@@ -350,13 +213,16 @@ class Study(Brief):
         ------
         InputError : unknown name (says the nearest), or a value that is not allowed.
         """
-        return self._with(all_changed(self.data, changes), self if like is None else like)
+        data = all_changed(self.data, changes)
+        return type(self)(self.name, data, self.file, self.folder, self if like is None else like)
 
-    def _with(self, data: Mapping[str, Any], like: Study) -> Self:
-        study = object.__new__(type(self))
-        study.__dict__.update(name=self.name, data=data, file=self.file, folder=self.folder, _like=like)
-        study.__post_init__()
-        return study
+    def warmed(self, temperatures: Mapping[str, float]) -> Self:
+        """This study with the moduli that its cards have at the mean temperatures of the regions, degC.
+
+        Everything else is shared. It is for finding strain cycles, not for writing or changing.
+        """
+        built = self.parts.warmed(temperatures)
+        return type(self)(self.name, self.data, self.file, self.folder, built=built)
 
     def scaled(self, key: str, factor: float) -> Self:
         """A new study with the number at a dotted name times a factor, in every region that takes it from that card.
@@ -378,30 +244,7 @@ class Study(Brief):
 
         Files that the study names relative to its own folder are named by their whole path, if it is another folder.
         """
-        import tomli_w
-
-        from tyrefem.output import atomic_path
-
-        path = Path(path)
-        data = dict(self.data) if path.parent.resolve() == self.folder else self._portable()
-        with atomic_path(path) as temporary:
-            temporary.write_text(tomli_w.dumps(written(data)), encoding="utf-8")
-        return path
-
-    def _portable(self) -> dict[str, Any]:
-        data: dict[str, Any] = copy.deepcopy(dict(self.data))
-        folder = (self.folder or Path()).resolve()
-        for holder, key in [(data, "cases"), (data.get("mesh", {}), "file")]:
-            if isinstance(holder.get(key), str):
-                holder[key] = str(folder / holder[key])
-        for entry in data.get("measured", []):
-            entry["table"] = str(folder / entry["table"])
-        data["section"] = library.located("section", data["section"], self.folder)
-        data["materials"] = {
-            region: library.located("material", reference, self.folder)
-            for region, reference in data["materials"].items()
-        }
-        return data
+        return write_study(self.data, self.folder, Path(path))
 
     # -- work --------------------------------------------------------------------------------------------------------
 
@@ -468,15 +311,11 @@ class Study(Brief):
             changed = self.replace(case.changes)
             data = {key: value for key, value in changed.data.items() if key != "cases"}
             data["title"] = f"{case.name}: {case.note}" if case.note else case.name
-            return replace(changed, name=case.name, data=data)
+            return type(self)(case.name, data, self.file, self.folder, changed)
         except InputError as error:
             of_study = error.file is None or error.file == self.file
             reason = InputError(error.message, field=error.field) if of_study else error
             raise InputError(f"line {case.line}, case '{case.name}': {reason}", file=self.cases_file) from None
-
-
-def _same(one: Effect, other: Effect) -> bool:
-    return one.name == other.name and one.choice == other.choice
 
 
 def study(name: str | Path, changes: Mapping[str, Any] | None = None, case: str | None = None) -> Study:

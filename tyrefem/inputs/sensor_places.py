@@ -1,0 +1,67 @@
+"""Where the thermocouples of a study are built in."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from pathlib import Path
+from typing import TYPE_CHECKING
+
+from tyrefem.errors import InputError
+from tyrefem.inputs.study_card import Sensor
+
+if TYPE_CHECKING:
+    from tyrefem.geometry import Section
+
+
+def sensor_places(
+    sensors: Mapping[str, Sensor], section: Section, file: Path | None
+) -> Mapping[str, tuple[float, float]]:
+    """(r, z) of every sensor as it was built in, m.
+
+    Raises
+    ------
+    InputError : a sensor outside the rubber.
+    """
+    places = {}
+    for name, sensor in sensors.items():
+        try:
+            places[name] = sensor_place(sensor, section)
+        except InputError as error:
+            raise error.within(field=f"sensors.{name}", file=file) from None
+    return places
+
+
+def sensor_place(sensor: Sensor, section: Section) -> tuple[float, float]:
+    """(r, z) of a sensor in a section before wear, m.
+
+    Raises
+    ------
+    InputError : the sensor is outside the rubber.
+    """
+    if sensor.at is not None:
+        r, z = sensor.at
+        if not section.contains([[r, z]])[0]:
+            s, depth = section.locate([[r, z]])
+            raise InputError(
+                f"at (r, z) = ({r * 1e3:.1f}, {z * 1e3:.1f}) mm the sensor is outside the rubber; the nearest "
+                f"meridian point is s = {float(s[0]) * 1e3:.1f} mm, where the rubber is "
+                f"{float(section.rubber_thickness(s)[0]) * 1e3:.1f} mm thick (depth there "
+                f"{float(depth[0]) * 1e3:.1f} mm)"
+            )
+        return float(r), float(z)
+    assert sensor.s is not None
+    assert sensor.depth is not None
+    length = section.line.length
+    lowest = 0.0 if section.half else -length
+    if not lowest <= sensor.s <= length:
+        raise InputError(
+            f"s = {sensor.s * 1e3:.1f} mm is off the section; allowed: {lowest * 1e3:.1f} to {length * 1e3:.1f} mm"
+        )
+    thickness = float(section.rubber_thickness([sensor.s])[0])
+    if sensor.depth > thickness * (1 + 1e-9):
+        raise InputError(
+            f"depth = {sensor.depth * 1e3:.2f} mm is outside the rubber, which is {thickness * 1e3:.2f} mm thick "
+            f"at s = {sensor.s * 1e3:.1f} mm"
+        )
+    r, z = section.place([sensor.s], [min(sensor.depth, thickness)])[0]
+    return float(r), float(z)

@@ -1,0 +1,82 @@
+"""The material cards of a study, region by region."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from dataclasses import dataclass
+from pathlib import Path
+from typing import TYPE_CHECKING, Any
+
+from tyrefem import library
+from tyrefem.errors import InputError, nearest
+from tyrefem.materials.card import MaterialCard
+from tyrefem.materials.cord_layers import check_cords_fit
+
+if TYPE_CHECKING:
+    from tyrefem.geometry import Section
+
+
+@dataclass(frozen=True, eq=False)
+class StudyMaterials:
+    """Region -> material card; and region -> the card as written, changes laid over it, with the card's file.
+
+    ``references`` is the study's table ``[materials]``, ``folder`` where its references start from.
+    """
+
+    references: Mapping[str, Any]
+    folder: Path | None
+    cards: dict[str, MaterialCard]
+    written: dict[str, tuple[dict[str, Any], Path]]
+
+    @classmethod
+    def read(
+        cls,
+        references: Mapping[str, Any],
+        section: Section,
+        folder: Path | None,
+        file: Path | None,
+        like: StudyMaterials | None,
+    ) -> StudyMaterials:
+        """The cards of all regions of a section. Those of ``like``, of the same section, serve where nothing changed.
+
+        Raises
+        ------
+        InputError : a region without a card, a card without a region, a card that is wrong or cannot lie there.
+        """
+        regions = section.regions
+        for region in references:
+            if region not in regions:
+                message = f"unknown region '{region}'{nearest(str(region), regions)}"
+                raise InputError(message, field="materials", file=file)
+        cards: dict[str, MaterialCard] = {}
+        written: dict[str, tuple[dict[str, Any], Path]] = {}
+        for region in regions:
+            if region not in references:
+                raise InputError(f"no material card for region '{region}'", field="materials", file=file)
+            if like is not None and region in like.cards and references[region] == like.references[region]:
+                cards[region], written[region] = like.cards[region], like.written[region]
+                continue
+            try:
+                cards[region], written[region] = _card(region, references[region], folder, like)
+                check_cords_fit(cards[region], section, region)
+            except InputError as error:
+                raise error if error.file else error.within(field=f"materials.{region}", file=file) from None
+        return cls(references, folder, cards, written)
+
+    def warmed(self, temperatures: Mapping[str, float]) -> StudyMaterials:
+        """The cards with the moduli that they have at the mean temperatures of the regions, degC."""
+        cards = {region: card.warmed(temperatures[region]) for region, card in self.cards.items()}
+        return StudyMaterials(self.references, self.folder, cards, self.written)
+
+
+def _card(
+    region: str, reference: object, folder: Path | None, like: StudyMaterials | None
+) -> tuple[MaterialCard, tuple[dict[str, Any], Path]]:
+    """A card, and the data and file that it was made of; tables that ``like`` has read are not read again."""
+    if like is not None and region in like.cards and like.folder == folder:
+        before, path = like.written[region]
+        data = library.over("material", reference, like.references[region], before)
+        if data is not None:
+            return like.cards[region].checked(before, data, path), (data, path)
+    data, path, _ = library.load("material", reference, folder)
+    return MaterialCard.check(data, path), (data, path)

@@ -1,0 +1,127 @@
+"""What a study is built of: its validated card, its section, its material cards, the places of its sensors."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from dataclasses import dataclass, replace
+from pathlib import Path
+from typing import TYPE_CHECKING, Any
+
+from tyrefem.cache import Cache
+from tyrefem.errors import InputError
+from tyrefem.inputs.drive import as_written
+from tyrefem.inputs.sensor_places import sensor_places
+from tyrefem.inputs.study_card import StudyCard
+from tyrefem.inputs.study_materials import StudyMaterials
+
+if TYPE_CHECKING:
+    from tyrefem.geometry import Section
+
+#: Worn sections, by new section and wear. Studies that share a new section share the worn one.
+_WORN: Cache[Section] = Cache(size=32)
+
+
+@dataclass(frozen=True, eq=False)
+class StudyParts:
+    """A study's data with file and folder, and what was read from them.
+
+    ``new_section`` is the section before wear, ``section`` the section as the study's effects wear it. ``temperatures``
+    are the mean temperatures of the regions that the moduli are at, degC; None: as the cards give them.
+    """
+
+    data: Mapping[str, Any]
+    file: Path | None
+    folder: Path | None
+    card: StudyCard
+    new_section: Section
+    section: Section
+    materials: StudyMaterials
+    sensor_places: Mapping[str, tuple[float, float]]
+    temperatures: Mapping[str, float] | None = None
+
+    @classmethod
+    def read(
+        cls, data: Mapping[str, Any], file: Path | None, folder: Path | None, like: StudyParts | None = None
+    ) -> StudyParts:
+        """Read all parts. Parts of ``like``, which has the same cards, serve where the two studies do not differ.
+
+        Raises
+        ------
+        InputError : something wrong in the study or in a card it names: file, field, what is allowed.
+        """
+        try:
+            card = StudyCard.check(data, file) if like is None else like.card.checked(like.data, data, file)
+        except InputError as error:
+            raise error_as_written(error, data) from None
+        if like is not None and data["section"] != like.data["section"]:
+            # Another section: cords may not fit in it, sensors may be outside it.
+            like = None
+        if like is not None and card.mesh.section == like.card.mesh.section:
+            new_section = like.new_section
+        else:
+            new_section = _section(data["section"], card, folder, file)
+        section = _worn(new_section, card)
+        materials = StudyMaterials.read(
+            data["materials"], new_section, folder, file, None if like is None else like.materials
+        )
+        _check_energy(card, new_section, file)
+        if like is not None and new_section is like.new_section and card.sensors == like.card.sensors:
+            places = like.sensor_places
+        else:
+            places = sensor_places(card.sensors, new_section, file)
+        return cls(data, file, folder, card, new_section, section, materials, places)
+
+    def warmed(self, temperatures: Mapping[str, float]) -> StudyParts:
+        """The same parts with the moduli that the cards have at the mean temperatures of the regions, degC."""
+        return replace(self, materials=self.materials.warmed(temperatures), temperatures=dict(temperatures))
+
+    def __reduce__(self) -> tuple[Any, ...]:
+        """The card is validated again where it is opened: a user's effect is in no importable module."""
+        sections = (self.new_section, self.section)
+        read = (self.materials, self.sensor_places, self.temperatures)
+        return _opened, (self.data, self.file, self.folder, *sections, *read)
+
+
+def _opened(data: Mapping[str, Any], file: Path | None, folder: Path | None, *read: Any) -> StudyParts:
+    return StudyParts(data, file, folder, StudyCard.check(data, file), *read)
+
+
+def error_as_written(error: InputError, data: Mapping[str, Any]) -> InputError:
+    """The error in the file's own words: what a phase takes over from ``[drive]`` is wrong there."""
+    drive = data.get("drive")
+    if not isinstance(drive, Mapping) or not (error.field or "").startswith("drive.phases."):
+        return error
+    return InputError(error.message, field=as_written(drive, str(error.field)), file=error.file)
+
+
+def _section(reference: object, card: StudyCard, folder: Path | None, file: Path | None) -> Section:
+    from tyrefem.geometry import load
+
+    try:
+        built = load(reference, near=folder)
+    except InputError as error:
+        raise error if error.file else error.within(field="section", file=file) from None
+    return built.as_full() if card.mesh.section == "full" else built
+
+
+def _worn(section: Section, card: StudyCard) -> Section:
+    """The section as the study's effects wear it."""
+    wear = [effect for effect in card.effects if not effect.is_null and effect.overrides("worn")]
+    if not wear:
+        return section
+
+    def worn() -> Section:
+        left = section
+        for effect in wear:
+            left = effect.worn(left)
+        return left
+
+    return _WORN.get((section, *((type(effect), effect.model_dump_json()) for effect in wear)), worn)
+
+
+def _check_energy(card: StudyCard, section: Section, file: Path | None) -> None:
+    try:
+        if card.mechanics.energy is not None:
+            card.mechanics.energy.check_regions(section)
+    except InputError as error:
+        raise error.within(field="mechanics.energy", file=file) from None
