@@ -21,7 +21,7 @@ from tyrefem.mechanics.footprint.example_tyre import PlainTyre
 from tyrefem.mechanics.footprint.loss import RevolutionLoss
 from tyrefem.mechanics.footprint.reference_3d import Hexahedra, angles_near_contact
 from tyrefem.mechanics.footprint.road import Road
-from tyrefem.mechanics.footprint.strain_harmonics import StrainCycle
+from tyrefem.mechanics.footprint.strain_harmonics import StrainHarmonics
 from tyrefem.mechanics.solid.inflation import inflate
 
 MESHES = ((24, (1, 1, 1)), (60, (1, 1, 2)), (130, (1, 2, 6)), (240, (2, 2, 6)))
@@ -43,7 +43,7 @@ def by_harmonics(along: int, through: tuple[int, int, int], harmonics: int) -> d
     assembled = time.perf_counter()
     found = pressing.at_load(3000.0, harmonics)
     touched = time.perf_counter()
-    loss = RevolutionLoss(StrainCycle(found), dict.fromkeys(state.mesh.subdomains, OfTemperature(0.15)), 20.0)
+    loss = RevolutionLoss(StrainHarmonics(found), dict.fromkeys(state.mesh.subdomains, OfTemperature(0.15)), 20.0)
     coefficient = loss.coefficient
     ended = time.perf_counter()
     return {
@@ -68,7 +68,7 @@ def real_tyre() -> dict[str, float]:
     found = Pressing(inflated.state, Road(2.0)).at_load(4825.0, 40)
     touched = time.perf_counter()
     laws = {region: tyre.materials[region].loss_tangent.over_frequency for region in inflated.body.parts}
-    coefficient = RevolutionLoss(StrainCycle(found), laws, 22.2, 25.0).coefficient
+    coefficient = RevolutionLoss(StrainHarmonics(found), laws, 22.2, 25.0).coefficient
     ended = time.perf_counter()
     return {
         "nodes": inflated.body.rings.n_nodes,

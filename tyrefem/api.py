@@ -33,7 +33,7 @@ def with_verbs(kind: type[Data], data: Any) -> Data:
     return found
 
 
-class Result(result.Result):
+class Result(result.ResultData):
     """A run's result, and how to write and show it."""
 
     def summary(self) -> dict[str, Any]:
@@ -67,7 +67,7 @@ class Result(result.Result):
         return write_tables(self, Path(folder))
 
 
-class Campaign(campaign.Campaign):
+class Campaign(campaign.CampaignData):
     """The cases of a study, each a study of its own, whose results can be written and shown."""
 
     def outcome(self, case: Case) -> Result | str:
@@ -120,7 +120,7 @@ class Diagnosis(diagnosis.Diagnosis):
         return save(self, folder)
 
 
-class Design(design.Design):
+class Design(design.DesignData):
     """The answers to a design study, with `save`."""
 
     def save(self, folder: str | Path, *, pictures: bool = True) -> Path:
@@ -136,7 +136,7 @@ class Design(design.Design):
         return Path(folder)
 
 
-class Identification(identification.Identification):
+class Identification(identification.IdentificationData):
     """What a rig's tables say about its layers, with `words`, `to_dict` and `save`."""
 
     @cached_property
@@ -164,7 +164,7 @@ class Identification(identification.Identification):
         return save(self, folder, base)
 
 
-class Study(studies.Study):
+class Study(studies.StudyData):
     """A study, and what can be asked of it. Made by `study`; changed by `replace`.
 
     >>> coarse = study("nasa-22x5.5-8pr", {"mesh.size": "12 mm", "drive.duration": "60 s"})
@@ -183,7 +183,7 @@ class Study(studies.Study):
         RunEstimate.of(self).announce()
         return with_verbs(Result, run(self, progress, partial=partial))
 
-    def compare(self, table: Any = None, result: result.Result | None = None, **options: Any) -> Comparison:
+    def compare(self, table: Any = None, result: result.ResultData | None = None, **options: Any) -> Comparison:
         """Deviation from measured tables: the one given, or the study's own. Options: see `tyrefem.compare.compare`."""
         from tyrefem.compare import compare
 

@@ -16,7 +16,7 @@ from tyrefem.api import Study
 from tyrefem.cli import main
 from tyrefem.reports.campaign import run_campaign, write_campaign_report
 from tyrefem.sweep import campaign as campaigns
-from tyrefem.sweep.campaign import Campaign
+from tyrefem.sweep.campaign import CampaignData
 
 
 def rows_of(path: Path) -> list[dict[str, str]]:
@@ -24,7 +24,7 @@ def rows_of(path: Path) -> list[dict[str, str]]:
         return list(csv.DictReader(file))
 
 
-def test_each_case_is_the_study_with_its_row(folder: Path, campaign: Campaign) -> None:
+def test_each_case_is_the_study_with_its_row(folder: Path, campaign: CampaignData) -> None:
     table = run_campaign(campaign, folder / "out")
     assert list(table["case"]) == ["light", "usual", "crushed"]
     data = {key: value for key, value in campaign.study.data.items() if key != "cases"}
@@ -43,7 +43,7 @@ def test_each_case_is_the_study_with_its_row(folder: Path, campaign: Campaign) -
     assert light["rolling_resistance_N"] < usual["rolling_resistance_N"]
 
 
-def test_a_failing_case_is_named_and_the_others_go_on(folder: Path, campaign: Campaign) -> None:
+def test_a_failing_case_is_named_and_the_others_go_on(folder: Path, campaign: CampaignData) -> None:
     # The case that cannot be is put first: what follows must still be run.
     turned = replace(campaign, cases=campaign.cases[::-1])
     table = run_campaign(turned, folder / "out")
@@ -59,7 +59,9 @@ def test_a_failing_case_is_named_and_the_others_go_on(folder: Path, campaign: Ca
     assert (folder / "out/cases/usual/readings.csv").is_file()
 
 
-def test_a_defect_in_one_case_is_called_that(campaign: Campaign, folder: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+def test_a_defect_in_one_case_is_called_that(
+    campaign: CampaignData, folder: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
     run = campaigns.run
 
     def sometimes(study: Study, progress: Any = None, **how: Any) -> Any:
@@ -74,7 +76,7 @@ def test_a_defect_in_one_case_is_called_that(campaign: Campaign, folder: Path, m
 
 
 def test_an_interrupted_campaign_keeps_what_is_finished(
-    campaign: Campaign, folder: Path, monkeypatch: pytest.MonkeyPatch
+    campaign: CampaignData, folder: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:
     run = campaigns.run
 
@@ -97,7 +99,7 @@ def test_an_interrupted_campaign_keeps_what_is_finished(
 
 
 def test_an_older_table_does_not_pass_for_this_one(
-    campaign: Campaign, folder: Path, monkeypatch: pytest.MonkeyPatch
+    campaign: CampaignData, folder: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:
     (folder / "out").mkdir()
     (folder / "out/campaign.csv").write_text("case,failure\nold,\n", encoding="utf-8")
@@ -112,7 +114,7 @@ def test_an_older_table_does_not_pass_for_this_one(
     assert json.loads((folder / "out/summary.json").read_text(encoding="utf-8"))["complete"] is False
 
 
-def test_page_stands_alone_and_names_the_failed(campaign: Campaign, folder: Path) -> None:
+def test_page_stands_alone_and_names_the_failed(campaign: CampaignData, folder: Path) -> None:
     table = run_campaign(campaign, folder / "out")
     page = write_campaign_report(campaign, table, folder / "out/report.html").read_text(encoding="utf-8")
     assert "<h1>Three &lt;loads&gt;</h1>" in page
@@ -122,7 +124,7 @@ def test_page_stands_alone_and_names_the_failed(campaign: Campaign, folder: Path
     assert table["failure"][2].split(":")[-1].strip() in page.replace("&#39;", "'").replace("&#34;", '"')
 
 
-def test_page_of_nothing_but_failures(campaign: Campaign, folder: Path) -> None:
+def test_page_of_nothing_but_failures(campaign: CampaignData, folder: Path) -> None:
     table = run_campaign(replace(campaign, cases=campaign.cases[2:]), folder / "out")
     page = write_campaign_report(campaign, table, folder / "report.html").read_text(encoding="utf-8")
     assert "0 of 3 cases finished." in page

@@ -123,7 +123,7 @@ def test_a_campaign_keeps_its_cases(here: Path) -> None:
     study.write_text('cases = "cases.csv"\n' + study.read_text(encoding="utf-8"), encoding="utf-8")
     study.with_name("cases.csv").write_text("name,drive.speed\na,10 mph\nb,20 mph\n", encoding="utf-8")
     command = ("run", "mine", *SHORT, "--no-vtk", "--out", "out")
-    second = "tyrefem.inputs.study:Study.case_study:4"
+    second = "tyrefem.inputs.study:StudyData.case_study:4"
     line = clean(here, interrupted(*command, at=second, folder=here))
     assert line == "tyrefem: interrupted; finished cases are in out/campaign.csv\n"
     # While the first one's report is drawn: its numbers are in the table.

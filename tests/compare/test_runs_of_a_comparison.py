@@ -12,7 +12,7 @@ import tyrefem as tf
 from tyrefem.compare import runs
 from tyrefem.compare.reduced_inputs import Certificate, Neighbours
 from tyrefem.compare.runs import Runs
-from tyrefem.inputs.study import Study
+from tyrefem.inputs.study import StudyData
 from tyrefem.mechanics.footprint.pressed_tyre import REMEMBERED_TYRES
 from tyrefem.processes import processes
 from tyrefem.reduced import residual
@@ -22,19 +22,19 @@ from tyrefem.variants.answer_store import AnswerStore
 QUICK = {"mesh.size": "12 mm", "mesh.element": "P1", "numerics.tolerance": "0.1 delta_degC", "output.every": "20 s"}
 
 
-def table(study: Study) -> pd.DataFrame:
+def table(study: StudyData) -> pd.DataFrame:
     """What the study computes, 3 K warmer, every minute."""
     readings = study.run().readings.iloc[::3]
     return readings.assign(**{name: readings[name] + 3.0 for name in readings if name != "time_s"})
 
 
 @pytest.fixture(scope="module")
-def quick() -> Study:
+def quick() -> StudyData:
     return tf.study("example-validation").replace(QUICK)
 
 
 @pytest.fixture(scope="module")
-def measured(quick: Study) -> pd.DataFrame:
+def measured(quick: StudyData) -> pd.DataFrame:
     return table(quick)
 
 
@@ -60,7 +60,7 @@ def counted(monkeypatch: pytest.MonkeyPatch) -> Counted:
 
 
 def test_an_interrupted_comparison_goes_on(
-    quick: Study, measured: pd.DataFrame, tmp_path: Path, counted: Counted
+    quick: StudyData, measured: pd.DataFrame, tmp_path: Path, counted: Counted
 ) -> None:
     whole = quick.compare(measured, reduced="never")
     count = len(counted.made)
@@ -94,7 +94,7 @@ def test_an_interrupted_comparison_goes_on(
 
 
 def test_runs_of_a_reduced_model_and_its_certificate_are_kept_too(
-    quick: Study, measured: pd.DataFrame, tmp_path: Path, counted: Counted
+    quick: StudyData, measured: pd.DataFrame, tmp_path: Path, counted: Counted
 ) -> None:
     first = quick.compare(measured, store=AnswerStore(tmp_path))
     assert first.reduced is not None
@@ -120,13 +120,13 @@ def remembered() -> int:
 
 
 @pytest.fixture(scope="module")
-def pressed() -> Study:
+def pressed() -> StudyData:
     """Finite elements on a coarse mesh, for ten seconds."""
     changes = {"mechanics.strain": "fem", "drive.duration": "10 s", "output.every": "5 s", "mesh.size": "15 mm"}
     return tf.study("nasa-22x5.5-8pr").replace({**QUICK, **changes, "sensors.crown": {"s": "0 mm", "depth": "5 mm"}})
 
 
-def test_finite_elements_are_solved_once_for_all_that_does_not_change_them(pressed: Study) -> None:
+def test_finite_elements_are_solved_once_for_all_that_does_not_change_them(pressed: StudyData) -> None:
     measured = pressed.run().readings[["time_s", "crown"]]
     said: list[str] = []
     with processes(1) as pool:

@@ -6,7 +6,7 @@ import numpy as np
 import pytest
 from scipy.linalg import cholesky_banded
 
-from tyrefem.conduction.linear_solver import Blocks
+from tyrefem.conduction.linear_solver import BlockFactor
 
 
 @pytest.mark.parametrize(("size", "width"), [(10, 3), (24, 24), (100, 1), (131, 30), (240, 40)])
@@ -21,5 +21,5 @@ def test_solution_leaves_no_residual(size: int, width: int) -> None:
         part = np.diag(band[distance, : size - distance], -distance)
         A += part + part.T
     right = rng.standard_normal((size, 7))
-    found = Blocks(np.asfortranarray(cholesky_banded(band, lower=True))).solve(right)
+    found = BlockFactor(np.asfortranarray(cholesky_banded(band, lower=True))).solve(right)
     assert np.abs(A @ found - right).max() < 1e-12 * np.abs(A).sum(axis=1).max()

@@ -12,7 +12,7 @@ from tyrefem.mechanics.footprint.example_tyre import PlainTyre, pressurised, str
 from tyrefem.mechanics.footprint.harmonic_balance import Balance
 from tyrefem.mechanics.footprint.harmonics import Harmonics
 from tyrefem.mechanics.footprint.nonlinear import NonlinearForces
-from tyrefem.mechanics.footprint.strain_harmonics import StrainCycle
+from tyrefem.mechanics.footprint.strain_harmonics import StrainHarmonics
 
 
 @pytest.fixture(scope="module")
@@ -90,7 +90,7 @@ def test_balance_under_a_load(tyre: Pressing) -> None:
     found = Balance(tyre, 12).at_load(600.0)
     assert found.load == pytest.approx(600.0, rel=1e-3)
     assert found.deflection > tyre.at_load(600.0, 12).deflection
-    assert np.isfinite(StrainCycle(found).amplitudes).all()
+    assert np.isfinite(StrainHarmonics(found).amplitudes).all()
 
 
 def test_out_of_reach_says_how_far_it_got(tyre: Pressing) -> None:

@@ -11,24 +11,24 @@ from tyrefem.materials.loss_tangent import FrequencyTable, OfTemperature, PowerL
 from tyrefem.mechanics.footprint.contact import Pressing
 from tyrefem.mechanics.footprint.example_tyre import PlainTyre
 from tyrefem.mechanics.footprint.loss import RevolutionLoss
-from tyrefem.mechanics.footprint.strain_harmonics import StrainCycle
+from tyrefem.mechanics.footprint.strain_harmonics import StrainHarmonics
 
 REGIONS = ("ply", "belt", "tread", "sidewall")
 
 
 @pytest.fixture(scope="module")
-def cycle() -> StrainCycle:
-    return StrainCycle(Pressing(PlainTyre().state(along=12)).at_deflection(0.02, 54))
+def cycle() -> StrainHarmonics:
+    return StrainHarmonics(Pressing(PlainTyre().state(along=12)).at_deflection(0.02, 54))
 
 
-def test_strain_is_the_symmetric_gradient_of_the_displacement(cycle: StrainCycle) -> None:
+def test_strain_is_the_symmetric_gradient_of_the_displacement(cycle: StrainHarmonics) -> None:
     h = cycle.gradient(0.1)
     e = cycle.strain(np.array([0.1]))[..., 0]
     assert e[:3] == pytest.approx(np.stack([h[0, 0], h[1, 1], h[2, 2]]), abs=1e-12)
     assert e[3:] == pytest.approx(np.stack([h[0, 1] + h[1, 0], h[0, 2] + h[2, 0], h[1, 2] + h[2, 1]]), abs=1e-12)
 
 
-def test_belt_is_bent_under_the_footprint_and_at_rest_opposite(cycle: StrainCycle) -> None:
+def test_belt_is_bent_under_the_footprint_and_at_rest_opposite(cycle: StrainHarmonics) -> None:
     angles = np.linspace(-np.pi, np.pi, 73)
     history = cycle.at(0.3105, 0.0, angles)
     assert np.abs(history[2]).argmax() in range(30, 43)
@@ -38,7 +38,7 @@ def test_belt_is_bent_under_the_footprint_and_at_rest_opposite(cycle: StrainCycl
     assert history[4:] == pytest.approx(-history[4:, ::-1], abs=1e-9)
 
 
-def test_belt_edge_shear_is_found_at_the_belt_edge(cycle: StrainCycle) -> None:
+def test_belt_edge_shear_is_found_at_the_belt_edge(cycle: StrainHarmonics) -> None:
     shear = cycle.belt_edge_shear("belt")
     members = cycle.elements.mesh.subdomains["belt"]
     assert shear.place[1] > 0.9 * cycle.elements.points[1][members].max()
@@ -47,7 +47,7 @@ def test_belt_edge_shear_is_found_at_the_belt_edge(cycle: StrainCycle) -> None:
         cycle.belt_edge_shear("belts")
 
 
-def test_cords_across_the_hoop_feel_the_hoop_strain(cycle: StrainCycle) -> None:
+def test_cords_across_the_hoop_feel_the_hoop_strain(cycle: StrainHarmonics) -> None:
     direction = np.zeros((3, *cycle.elements.radii.shape))
     direction[2] = 1.0
     angles = np.array([0.0, 1.0])
@@ -55,7 +55,7 @@ def test_cords_across_the_hoop_feel_the_hoop_strain(cycle: StrainCycle) -> None:
     assert tension == pytest.approx(100.0 + 5e4 * cycle.strain(angles)[2])
 
 
-def test_loss_is_the_area_of_the_hysteresis_loop(cycle: StrainCycle) -> None:
+def test_loss_is_the_area_of_the_hysteresis_loop(cycle: StrainHarmonics) -> None:
     """int stress d(strain) over the revolution, with each harmonic's stress leading its strain by delta."""
     found = RevolutionLoss(cycle, {name: PowerLaw(0.1, 0.3) for name in REGIONS}, 20.0)
     storage = cycle.footprint.pressing.state.storage
@@ -97,7 +97,7 @@ def test_prony_loss_is_that_of_a_maxwell_element_in_time() -> None:
     assert total == pytest.approx(lost, rel=1e-3)
 
 
-def test_heat_is_rolling_resistance_times_speed(cycle: StrainCycle) -> None:
+def test_heat_is_rolling_resistance_times_speed(cycle: StrainHarmonics) -> None:
     card = material("nasa-tread").loss_tangent
     found = RevolutionLoss(cycle, {name: OfTemperature(card) for name in REGIONS}, 15.0, 60.0)
     volume = (cycle.elements.weights.sum(axis=1) * 2 * np.pi * 2).astype(float)
@@ -108,7 +108,7 @@ def test_heat_is_rolling_resistance_times_speed(cycle: StrainCycle) -> None:
     assert 1e-4 < found.coefficient < 0.1
 
 
-def test_loss_follows_its_tangent(cycle: StrainCycle) -> None:
+def test_loss_follows_its_tangent(cycle: StrainHarmonics) -> None:
     def lost(law: object, temperature: float = 25.0) -> RevolutionLoss:
         return RevolutionLoss(cycle, dict.fromkeys(REGIONS, law), 20.0, temperature)  # type: ignore[arg-type]
 
@@ -123,7 +123,7 @@ def test_loss_follows_its_tangent(cycle: StrainCycle) -> None:
     assert RevolutionLoss(cycle, {"tread": OfTemperature(0.1)}, 20.0).energy < one.energy
 
 
-def test_one_cycle_convention_is_half_of_the_sinusoid(cycle: StrainCycle) -> None:
+def test_one_cycle_convention_is_half_of_the_sinusoid(cycle: StrainHarmonics) -> None:
     found = RevolutionLoss(cycle, dict.fromkeys(REGIONS, OfTemperature(0.1)), 20.0)
     nasa, sinusoid = (found.total(found.one_cycle_density(name)) for name in ("nasa", "sinusoid"))
     assert sinusoid == pytest.approx(2 * nasa)
@@ -148,7 +148,7 @@ def test_time_temperature_shift_moves_the_peak_of_tan_delta() -> None:
         Prony(1.0, (1.0,), (-1.0,))
 
 
-def test_bad_requests_are_refused(cycle: StrainCycle) -> None:
+def test_bad_requests_are_refused(cycle: StrainHarmonics) -> None:
     with pytest.raises(InputError, match="did you mean 'tread'"):
         RevolutionLoss(cycle, {"treads": OfTemperature(0.1)}, 20.0)
     with pytest.raises(InputError, match="speed must be positive"):
@@ -157,5 +157,5 @@ def test_bad_requests_are_refused(cycle: StrainCycle) -> None:
 
 def test_linearised_strains_become_coarser_with_deflection() -> None:
     pressing = Pressing(PlainTyre().state(along=10))
-    small, large = (StrainCycle(pressing.at_deflection(d, 36)).coarseness() for d in (0.002, 0.03))
+    small, large = (StrainHarmonics(pressing.at_deflection(d, 36)).coarseness() for d in (0.002, 0.03))
     assert small.max() < 0.4 * large.max()

@@ -10,7 +10,7 @@ from tyrefem.mechanics.footprint.contact import Pressing
 from tyrefem.mechanics.footprint.example_tyre import PlainTyre
 from tyrefem.mechanics.footprint.footprint import Footprint
 from tyrefem.mechanics.footprint.loss import RevolutionLoss
-from tyrefem.mechanics.footprint.strain_harmonics import StrainCycle
+from tyrefem.mechanics.footprint.strain_harmonics import StrainHarmonics
 from tyrefem.reports.figures.footprint import (
     deformed_figure,
     harmonics_figure,
@@ -34,7 +34,7 @@ def test_pressure_map_is_the_whole_footprint(found: Footprint) -> None:
 
 
 def test_pictures_carry_the_numbers(found: Footprint) -> None:
-    cycle = StrainCycle(found)
+    cycle = StrainHarmonics(found)
     loss = RevolutionLoss(cycle, {"tread": OfTemperature(0.1)}, 20.0)
     history = strain_history_figure(cycle, {"crown": (0.31, 0.0), "sidewall": (0.28, 0.1)}, count=37)
     drawn = [pressure_map_figure(found), history, harmonics_figure(loss), deformed_figure(found)]

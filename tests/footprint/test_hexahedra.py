@@ -9,7 +9,7 @@ from tyrefem.mechanics.footprint.contact import Pressing
 from tyrefem.mechanics.footprint.example_tyre import PlainTyre
 from tyrefem.mechanics.footprint.harmonics import Harmonics
 from tyrefem.mechanics.footprint.reference_3d import Hexahedra, angles_near_contact
-from tyrefem.mechanics.footprint.strain_harmonics import StrainCycle
+from tyrefem.mechanics.footprint.strain_harmonics import StrainHarmonics
 
 
 @pytest.mark.parametrize("n", [1, 2, 3])
@@ -36,7 +36,7 @@ def test_load_footprint_and_strains_agree_with_hexahedra() -> None:
     assert found.load == pytest.approx(pressed.load, rel=0.003)
     ends = pressed.angles[pressed.forces > 0].max(), found.grid.angles[found.pressure.max(axis=1) > 0].max()
     assert ends[1] == pytest.approx(ends[0], abs=0.35 / 14 + np.pi / 80)
-    cycle = StrainCycle(found)
+    cycle = StrainHarmonics(found)
     places, strains = solid.strain(pressed.displacement)
     # Ten points of the section and of the wheel, chosen without looking.
     rng = np.random.default_rng(0)

@@ -9,7 +9,7 @@ import pytest
 
 import tyrefem
 from tyrefem.api import Study
-from tyrefem.realtime.certificate import Certificate, export
+from tyrefem.realtime.certificate import RealTimeCertificate, export
 from tyrefem.realtime.settings import ExportSettings, TablePoints
 
 
@@ -17,7 +17,7 @@ from tyrefem.realtime.settings import ExportSettings, TablePoints
 class Exported:
     study: Study
     file: Path
-    certificate: Certificate
+    certificate: RealTimeCertificate
 
 
 RANGES = {

@@ -8,9 +8,9 @@ from cases import TIMES
 from curved_patch import CurvedPatch, TrueLayer, Truth
 from scipy.special import erfc
 
-from tyrefem.rig import Layer, Patch, Property, load
+from tyrefem.rig import Patch, PatchLayer, Property, load
 from tyrefem.rig.card import Clock, since_switch
-from tyrefem.rig.grid import Fineness, Grid
+from tyrefem.rig.grid import Fineness, PatchGrid
 from tyrefem.rig.parameters import at, parameters_of
 from tyrefem.rig.readings import view
 from tyrefem.rig.twin import Twin
@@ -18,8 +18,8 @@ from tyrefem.rig.twin import Twin
 COARSE = Fineness(3, 6, 3)
 
 
-def rubber(thickness: float) -> Layer:
-    return Layer("rubber", thickness, 1150.0, Property(0.25), Property(1700.0))
+def rubber(thickness: float) -> PatchLayer:
+    return PatchLayer("rubber", thickness, 1150.0, Property(0.25), Property(1700.0))
 
 
 def patch(thickness: float, radius: float, **changes: object) -> Patch:
@@ -61,7 +61,7 @@ def test_absorbed_heat_is_stored_or_lost(profile: str, curvature: float) -> None
 
 def test_shells_have_the_volume_of_a_sphere_s_cap() -> None:
     R, reach, thick = 0.2, 0.05, 0.015
-    grid = Grid.make(["a", "b"], [0.008, 0.007], reach, 1 / R, 5e-3, Fineness(8, 16, 4))
+    grid = PatchGrid.make(["a", "b"], [0.008, 0.007], reach, 1 / R, 5e-3, Fineness(8, 16, 4))
     cone = 2 * np.pi * (1 - np.cos(reach / R)) / 3
     assert grid.operators.weight.sum() == pytest.approx(cone * (R**3 - (R - thick) ** 3), rel=1e-3)
     assert grid.operators.surface("inner").area == pytest.approx(3 * cone * (R - thick) ** 2, rel=1e-3)

@@ -7,7 +7,7 @@ import skfem
 
 from tyrefem.mechanics.solid.body import Body
 from tyrefem.mechanics.solid.compounds import Compound, neo_hookean
-from tyrefem.mechanics.solid.parts import Part
+from tyrefem.mechanics.solid.parts import RegionMaterial
 
 END = 1e-9
 
@@ -23,7 +23,7 @@ def tube(
             "ends": lambda x: (x[1] < END) | (x[1] > height - END),
         }
     ).with_subdomains({"rubber": np.arange(mesh.t.shape[1])})
-    return Body(mesh, {"rubber": Part(compound or neo_hookean(1e6))}, {"ends": "z"})
+    return Body(mesh, {"rubber": RegionMaterial(compound or neo_hookean(1e6))}, {"ends": "z"})
 
 
 def skewed(n: int = 3) -> skfem.MeshQuad:
@@ -52,4 +52,4 @@ def torus(tube_radius: float, centre: float, thickness: float, n: int, compound:
             "symmetry": lambda x: x[1] < END,
         }
     ).with_subdomains({"rubber": np.arange(n)})
-    return Body(mesh, {"rubber": Part(compound)}, {"symmetry": "z"})
+    return Body(mesh, {"rubber": RegionMaterial(compound)}, {"symmetry": "z"})

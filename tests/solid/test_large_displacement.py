@@ -16,7 +16,7 @@ from tyrefem.mechanics.solid.body import Body
 from tyrefem.mechanics.solid.compounds import mooney_rivlin, neo_hookean
 from tyrefem.mechanics.solid.cords import CordLayer
 from tyrefem.mechanics.solid.newton import NewtonChoice, equilibrium
-from tyrefem.mechanics.solid.parts import Part
+from tyrefem.mechanics.solid.parts import RegionMaterial
 
 
 def lame(body: Body, pressure: float, shear: float, bulk: float) -> tuple[np.ndarray, np.ndarray]:
@@ -34,7 +34,7 @@ def random_motion(body: Body, size: float) -> np.ndarray:
 def test_patch(bulk: float) -> None:
     """A stretch along the axis with its hoop and radius alike: constant stress, inner nodes in balance anywhere."""
     mesh = skewed()
-    body = Body(mesh, {"rubber": Part(neo_hookean(1e6, bulk))}, {"outside": "rz"})
+    body = Body(mesh, {"rubber": RegionMaterial(neo_hookean(1e6, bulk))}, {"outside": "rz"})
     exact = np.array([[-0.05], [0.1]]) * body.rings.nodes
     residual = body.residual(exact, 0.0)
     assert np.abs(residual[body.free]).max() < 1e-10 * np.abs(residual).max()
@@ -116,7 +116,7 @@ def test_tangent_against_differences(law: object) -> None:
     plain = tube(3, law)  # type: ignore[arg-type]
     shape = plain.rings.weights.shape
     cords = CordLayer(np.full(shape, 0.6), np.array([0.0, 1.0])[:, None, None] * np.ones(shape), np.full(shape, 1e8))
-    body = Body(plain.mesh, {"rubber": Part(law, (cords,))}, plain.held)  # type: ignore[arg-type]
+    body = Body(plain.mesh, {"rubber": RegionMaterial(law, (cords,))}, plain.held)  # type: ignore[arg-type]
     now, change, h = random_motion(body, 1e-2), random_motion(body, 1.0), 1e-6
     slope = (body.residual(now + h * change, 3e5) - body.residual(now - h * change, 3e5)) / (2 * h)
     np.testing.assert_allclose(body.stiffness(now, 3e5) @ change.T.ravel(), slope, atol=1e-7 * np.abs(slope).max())
@@ -136,7 +136,7 @@ def test_axial_translation_and_rigid_hoops_cost_nothing() -> None:
     plain = tube(3)
     shape = plain.rings.weights.shape
     cords = CordLayer(np.full(shape, 0.6), np.array([0.0, 1.0])[:, None, None] * np.ones(shape), np.full(shape, 1e9))
-    body = Body(plain.mesh, {"rubber": Part(neo_hookean(1e6), (cords,))}, {})
+    body = Body(plain.mesh, {"rubber": RegionMaterial(neo_hookean(1e6), (cords,))}, {})
     moved = np.zeros((2, body.rings.n_nodes))
     moved[1] = 0.3
     assert body.energy(moved) < 1e-12 * 1e9
@@ -181,6 +181,6 @@ def test_a_first_step_that_fails_is_halved_without_being_tried_twice(monkeypatch
 def test_unknown_names_are_named() -> None:
     body = tube(2)
     with pytest.raises(InputError, match="no region 'ruber'; did you mean 'rubber'"):
-        Body(body.mesh, {"ruber": Part(neo_hookean(1e6))}, {})
+        Body(body.mesh, {"ruber": RegionMaterial(neo_hookean(1e6))}, {})
     with pytest.raises(InputError, match="no boundary 'end'"):
         _ = Body(body.mesh, body.parts, {"end": "z"}).free

@@ -19,7 +19,7 @@ from tyrefem.mechanics.solid.compounds import determinant, neo_hookean
 from tyrefem.mechanics.solid.elements import Rings
 from tyrefem.mechanics.solid.inflation import Inflation, inflate
 from tyrefem.mechanics.solid.newton import NewtonChoice, equilibrium
-from tyrefem.mechanics.solid.parts import Part
+from tyrefem.mechanics.solid.parts import RegionMaterial
 from tyrefem.mechanics.solid.rim import FLANGE, SEAT, Flange, on_rim
 
 END = 1e-9
@@ -36,7 +36,7 @@ def resting(stiffness: float = 1e9) -> Body:
         }
     ).with_subdomains({"rubber": np.arange(mesh.t.shape[1])})
     flange = Flange(Rings(mesh), (1.12, 0.1 + 0.1 + 2e-3), 0.1, stiffness=stiffness)
-    return Body(mesh, {"rubber": Part(neo_hookean(1e6))}, {"ends": "rz"}, flanges=(flange,))
+    return Body(mesh, {"rubber": RegionMaterial(neo_hookean(1e6))}, {"ends": "rz"}, flanges=(flange,))
 
 
 @functools.cache

@@ -14,7 +14,7 @@ from tyrefem.mechanics.solid.body import Body
 from tyrefem.mechanics.solid.compounds import neo_hookean
 from tyrefem.mechanics.solid.cords import CordLayer
 from tyrefem.mechanics.solid.inflation import inflate
-from tyrefem.mechanics.solid.parts import Part
+from tyrefem.mechanics.solid.parts import RegionMaterial
 from tyrefem.mechanics.solid.thermal import Expansion, expansions, relaxed, warm
 
 G, KAPPA = 1e6, 1e8
@@ -67,7 +67,7 @@ def test_cords_hinder_the_expansion_of_their_rubber() -> None:
     shape = plain.rings.weights.shape
     cords = CordLayer(np.zeros(shape), np.stack([np.zeros(shape), np.ones(shape)]), np.full(shape, 3 * E))
     mesh = plain.mesh.with_boundaries({"foot": lambda x: x[1] < 1e-9})
-    body = Body(mesh, {"rubber": Part(neo_hookean(G, KAPPA), (cords,))}, {"foot": "z"})
+    body = Body(mesh, {"rubber": RegionMaterial(neo_hookean(G, KAPPA), (cords,))}, {"foot": "z"})
     found = relaxed(warm(body, 30.0, EXPANSION)).displacement[0] / body.rings.nodes[0]
     assert found.mean() == pytest.approx(ALPHA * 5 * E / (E + 3 * E), rel=5e-3)
     alike = relaxed(warm(body, 30.0, {"rubber": Expansion(ALPHA, ALPHA)})).displacement[0] / body.rings.nodes[0]
@@ -78,7 +78,7 @@ def test_the_stiffness_is_the_derivative_of_the_forces() -> None:
     body = tube(2, neo_hookean(G, KAPPA))
     shape = body.rings.weights.shape
     cords = CordLayer(np.full(shape, 0.6), np.stack([np.zeros(shape), np.ones(shape)]), np.full(shape, 2e7))
-    body = replace(body, parts={"rubber": Part(neo_hookean(G, KAPPA), (cords,))})
+    body = replace(body, parts={"rubber": RegionMaterial(neo_hookean(G, KAPPA), (cords,))})
     hot = warm(body, lambda x: 60 + 40 * x[0], {"rubber": Expansion(ALPHA, 1e-5)})
     rng = np.random.default_rng(3)
     u, du = (0.02 * rng.standard_normal((2, body.rings.n_nodes)) for _ in range(2))

@@ -21,7 +21,7 @@ from tyrefem.mechanics.solid.cords import CordLayer
 from tyrefem.mechanics.solid.flattening import flatten
 from tyrefem.mechanics.solid.inflation import Inflation
 from tyrefem.mechanics.solid.newton import equilibrium
-from tyrefem.mechanics.solid.parts import Part
+from tyrefem.mechanics.solid.parts import RegionMaterial
 from tyrefem.mechanics.strain_cycle import StrainCycle
 
 COARSE = {"mechanics.strain": "barrel", "mesh.size": "10 mm", "drive.duration": "60 s"}
@@ -47,7 +47,7 @@ def ring(cords: bool = False) -> Inflation:
     ).with_subdomains({"rubber": np.arange(6)})
     shape = (6, 9)
     layer = CordLayer(np.zeros(shape), np.stack([np.ones(shape), np.zeros(shape)]), np.full(shape, 1e8))
-    body = Body(mesh, {"rubber": Part(neo_hookean(1e6, 1e8), (layer,) if cords else ())}, {"ends": "z"})
+    body = Body(mesh, {"rubber": RegionMaterial(neo_hookean(1e6, 1e8), (layer,) if cords else ())}, {"ends": "z"})
     return Inflation(body, equilibrium(body, 0.0), half=False)
 
 
@@ -158,7 +158,7 @@ def test_what_is_impossible_is_one_error(changes: dict[str, str], words: str) ->
 def test_interpolation_keeps_to_the_region() -> None:
     """A step between two regions stays a step; constants stay constants; further axes are carried along."""
     mesh = skfem.MeshQuad.init_tensor([1.0, 1.1, 1.2], [0.0, 0.1]).with_subdomains({"a": [0], "b": [1]})
-    body = Body(mesh, {name: Part(neo_hookean(1e6)) for name in "ab"}, {"top": "z"})
+    body = Body(mesh, {name: RegionMaterial(neo_hookean(1e6)) for name in "ab"}, {"top": "z"})
     points = GaussPoints(body.rings)
     left = int(np.argmin(body.rings.points[0].mean(axis=1)))
     values = np.zeros((3, 2, 9))

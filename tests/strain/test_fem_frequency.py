@@ -12,7 +12,7 @@ import tyrefem as tf
 from tyrefem.mechanics.cycle_schedule import CycleSchedule
 from tyrefem.mechanics.finite_elements import FiniteElements
 from tyrefem.mechanics.footprint.loss import RevolutionLoss
-from tyrefem.mechanics.footprint.strain_harmonics import StrainCycle
+from tyrefem.mechanics.footprint.strain_harmonics import StrainHarmonics
 from tyrefem.mechanics.strain_cycle import ORDERS, by_order
 from tyrefem.simulation.rolling_tyre import RollingTyre
 
@@ -66,7 +66,7 @@ def test_the_heat_is_that_of_every_harmonic_at_its_own_frequency(frequency: dict
     law = tyre.study.materials[region].loss_tangent
     temperature = np.full(cycle.tyre.body.rings.weights.shape, 25.0)
     temperature[members] = T.reshape(len(members), -1)
-    own = RevolutionLoss(StrainCycle(cycle.footprint), {region: law.over_frequency}, tyre.speed(0.0), temperature)
+    own = RevolutionLoss(StrainHarmonics(cycle.footprint), {region: law.over_frequency}, tyre.speed(0.0), temperature)
     heat = tyre.hysteresis[region](x, 0.0, T)
     assert heat == pytest.approx(own.frequency * own.density[members].ravel(), rel=4e-3)
     alike = RollingTyre(study(None), None, schedule()).hysteresis[region](x, 0.0, T)
@@ -79,7 +79,7 @@ def test_one_cycle_loses_what_the_footprints_own_account_of_the_reports_conventi
     one = FiniteElements(found.tyre, found.footprint, found.case, found.factor, one_cycle=True)
     laws = {region: study(None).materials[region].loss_tangent.over_frequency for region in REGIONS}
     tyre = RollingTyre(study(None, **changes), None, schedule(one))
-    own = RevolutionLoss(StrainCycle(found.footprint), laws, tyre.speed(0.0), 25.0)
+    own = RevolutionLoss(StrainHarmonics(found.footprint), laws, tyre.speed(0.0), 25.0)
     density = own.frequency * own.one_cycle_density("nasa")
     for region in REGIONS:
         members = found.tyre.body.mesh.subdomains[region]

@@ -24,11 +24,11 @@ def test_the_heat_of_a_run_is_the_loss_of_all_harmonics() -> None:
     schedule = cycle_schedule(study)
     cycle = schedule.cycles[0][0]
     assert isinstance(cycle, FiniteElements)
-    from tyrefem.mechanics.footprint.strain_harmonics import StrainCycle
+    from tyrefem.mechanics.footprint.strain_harmonics import StrainHarmonics
 
     laws = {region: OfTemperature(study.materials[region].loss_tangent) for region in cycle.tyre.body.parts}
     initial, speed = study.card.drive.initial, study.card.drive.phases[0].speed.start
-    own = RevolutionLoss(StrainCycle(cycle.footprint), laws, speed, initial)
+    own = RevolutionLoss(StrainHarmonics(cycle.footprint), laws, speed, initial)
     cold = study.run().rolling_resistance.cold_force
     # Other quadrature: nearest Gauss points at the nodes of the thermal mesh.
     assert cold == pytest.approx(own.rolling_resistance, rel=0.05)

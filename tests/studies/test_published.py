@@ -7,7 +7,7 @@ import html
 import pytest
 
 import tyrefem as tf
-from tyrefem.inputs.published import Comparison, compared
+from tyrefem.inputs.published import PublishedComparison, compared
 from tyrefem.reports.run import render
 from tyrefem.reports.run_files import of_run
 
@@ -50,7 +50,7 @@ def test_the_gross_area_of_the_truck_tyre_by_the_tire_and_rim_association() -> N
 
 
 def test_words_and_json() -> None:
-    found = Comparison("footprint_length", 0.11, 0.12, 0.15, "a book")
+    found = PublishedComparison("footprint_length", 0.11, 0.12, 0.15, "a book")
     assert found.words == "footprint length 110, published 120 to 150 mm: outside (a book)"
     assert found.to_dict()["verdict"] == "outside"
     assert found.to_dict()["unit"] == "m"

@@ -17,7 +17,7 @@ from hypothesis import strategies as st
 from tyrefem import study
 from tyrefem.api import Study
 from tyrefem.errors import InputError
-from tyrefem.reduced.surrogate import Certificate
+from tyrefem.reduced.surrogate import SurrogateCertificate
 from tyrefem.reports import sweep_answer_figures as answer_pictures  # noqa: F401  registers its pictures
 from tyrefem.reports.sweep_figures import figures
 from tyrefem.sweep.envelope import Envelope, checked_pairs, envelope
@@ -281,7 +281,7 @@ def test_an_interrupted_search_goes_on_without_running_anything_twice(tyre: Stud
 class Optimist:
     """A reduced model that says half a kelvin too little, and knows it."""
 
-    certificate = Certificate({"hottest_degC": 0.5}, cases=4, worst=0.5, tolerance=1.0, trained_on=11)
+    certificate = SurrogateCertificate({"hottest_degC": 0.5}, cases=4, worst=0.5, tolerance=1.0, trained_on=11)
 
 
 @pytest.fixture

@@ -157,7 +157,7 @@ def periodic_state(point: TreadPoint) -> PeriodicState:
     free = slice(1 if held else 0, None)
     load = (load - K[:, 0] * inside * held)[free]
     C, K = C[free, free], K[free, free]
-    on, off = (_Phase.of(C, K, load, *phase) for phase in point.phases)
+    on, off = (_PhaseMap.of(C, K, load, *phase) for phase in point.phases)
     before = np.linalg.solve(np.eye(len(C)) - off.map @ on.map, off.map @ on.shift + off.shift)
     after = on.map @ before + on.shift
     mean_on = on.mean_map @ before + on.mean_shift
@@ -169,7 +169,7 @@ def periodic_state(point: TreadPoint) -> PeriodicState:
 
 
 @dataclass(frozen=True, eq=False)
-class _Phase:
+class _PhaseMap:
     """T -> map T + shift at the phase's end, T -> mean_map T + mean_shift averaged over it."""
 
     map: Array
@@ -178,7 +178,7 @@ class _Phase:
     mean_shift: Array
 
     @classmethod
-    def of(cls, C: Array, K: Array, load: Array, duration: float, film: float, sink: float) -> _Phase:
+    def of(cls, C: Array, K: Array, load: Array, duration: float, film: float, sink: float) -> _PhaseMap:
         from scipy.linalg import eigh
 
         A, f = K.copy(), load.copy()

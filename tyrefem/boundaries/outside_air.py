@@ -38,7 +38,7 @@ class Nasa(OutsideAirLaw):
         return self.at_rest + self.per_speed * speed
 
 
-class Constant(OutsideAirLaw):
+class ConstantAirFilm(OutsideAirLaw):
     """The same film at every speed."""
 
     law: Literal["constant"]
@@ -49,14 +49,14 @@ class Constant(OutsideAirLaw):
         return self.coefficient
 
 
-class Table(OutsideAirLaw):
+class AirFilmTable(OutsideAirLaw):
     """Rows ``[speed, film]``; linear between rows, constant beyond the ends."""
 
     law: Literal["table"]
     table: list[list[Any]]
 
     @model_validator(mode="after")
-    def _rising(self) -> Table:
+    def _rising(self) -> AirFilmTable:
         self._columns()
         return self
 

@@ -28,13 +28,13 @@ class RimLaw(Law):
         return 1 / (1 / self.film + self.contact_resistance) if self.film > 0 else 0.0
 
 
-class Fixed(RimLaw):
+class FixedRim(RimLaw):
     """A rim of constant (or driven) temperature, as in the report."""
 
     law: Literal["fixed"]
 
 
-class Lumped(RimLaw):
+class LumpedRim(RimLaw):
     """A rim of one temperature: C dT/dt = heat from the beads - UA (T - ambient) + heat from the contained air.
 
     ``mass`` and ``cooling`` are of the whole wheel. The report's aluminium: 962 J/kg/K.

@@ -31,7 +31,7 @@ class RoadLaw(Law):
         """H_c during contact, W/m2/K."""
 
 
-class Constant(RoadLaw):
+class ConstantRoadFilm(RoadLaw):
     """One film at every speed: the report's 0.25 cal/(cm2 s K) = 10460 W/m2/K."""
 
     law: Literal["constant"]

@@ -43,7 +43,7 @@ class SlidingLaw(Law):
         )
 
 
-class Constant(SlidingLaw):
+class ConstantFriction(SlidingLaw):
     """One coefficient at every slip: the force that is used, over the load. At small slip 0.8 is an upper bound."""
 
     law: Literal["constant"]

@@ -25,7 +25,7 @@ from tyrefem.errors import InputError
 from tyrefem.output.file import results_file
 
 if TYPE_CHECKING:
-    from tyrefem.realtime.certificate import Certificate
+    from tyrefem.realtime.certificate import RealTimeCertificate
 
 
 def _range(text: str | None, name: str) -> dict[str, tuple[str, str]]:
@@ -142,7 +142,7 @@ def has_binary(path: Path) -> bool:
         return any(name.startswith("binaries/") for name in stored.namelist())
 
 
-def words(certificate: Certificate) -> list[str]:
+def words(certificate: RealTimeCertificate) -> list[str]:
     """What a person reads of a certificate."""
     found = [
         f"trained on {certificate.trained_on} full runs, certified on {certificate.cases[0]} steady and "

@@ -27,7 +27,7 @@ from tyrefem.output.folder import results_folder
 
 if TYPE_CHECKING:
     from tyrefem.api import Result, Study
-    from tyrefem.sweep.campaign import Campaign
+    from tyrefem.sweep.campaign import CampaignData
 
 
 def run(
@@ -119,7 +119,7 @@ def _words(result: Result) -> str:
 
 
 def _campaign(
-    campaign: Campaign, folder: Path, pictures: bool, vtk: bool, revolved: bool, as_json: bool, quiet: bool
+    campaign: CampaignData, folder: Path, pictures: bool, vtk: bool, revolved: bool, as_json: bool, quiet: bool
 ) -> None:
     from tyrefem.reports.campaign import run_campaign, write_campaign_report
 
@@ -154,7 +154,7 @@ def _campaign(
         raise typer.Exit(1)
 
 
-def _refuse_overlaid(campaign: Campaign, values: dict[str, Any]) -> None:
+def _refuse_overlaid(campaign: CampaignData, values: dict[str, Any]) -> None:
     """A value that the table sets again in every case would be changed in vain."""
     for key in values:
         if all(key in case.changes for case in campaign.cases):

@@ -17,7 +17,7 @@ from typing import TYPE_CHECKING, Any
 from tyrefem.errors import InputError, nearest
 
 if TYPE_CHECKING:
-    from tyrefem.sweep.design import Design, Questions
+    from tyrefem.sweep.design import DesignData, Questions
     from tyrefem.variants.execution import Execution
     from tyrefem.variants.schedulers import Scheduler
 
@@ -231,7 +231,7 @@ class _InterruptedError(Exception):
     """Processes that are at work are ended, not waited for."""
 
 
-def answered(wanted: Questions, how: Execution, address: str | None, workers: int | None) -> Design:
+def answered(wanted: Questions, how: Execution, address: str | None, workers: int | None) -> DesignData:
     """The answers, by a Dask cluster at an address or by so many processes; None: one per core."""
     try:
         with _scheduler(address, workers) as where:

@@ -11,12 +11,12 @@ import numpy as np
 from tyrefem.compare.interface import Computed
 from tyrefem.compare.runs import Key, Runs, Work
 from tyrefem.errors import InputError
-from tyrefem.inputs.study import Study
+from tyrefem.inputs.study import StudyData
 from tyrefem.mechanics.cycle_schedule import BY_ELEMENTS, same_cycles
 from tyrefem.reduced.answers import outcomes_of
 from tyrefem.reduced.model import NotReducibleError, ReducedModel
 from tyrefem.reduced.residual import corrected
-from tyrefem.reduced.training import Fineness, Snapshots, trained
+from tyrefem.reduced.training import ReducedFineness, Snapshots, trained
 from tyrefem.reduced.training_rounds import HORIZONS, Packed, pack, remember
 from tyrefem.reduced.variant import Variant
 
@@ -34,7 +34,7 @@ ROUNDS, FINER, MOST_MODES = 2, 0.25, 200
 WORTH = 12
 
 
-def followed(studies: Mapping[Key, Study]) -> dict[Key, Study]:
+def followed(studies: Mapping[Key, StudyData]) -> dict[Key, StudyData]:
     """The runs that a reduced model is worth making for: of strain cycles that take longer than a run, those that have
     their drive's.
 
@@ -47,7 +47,7 @@ def followed(studies: Mapping[Key, Study]) -> dict[Key, Study]:
     }
 
 
-def worth(studies: Mapping[Key, Study]) -> bool:
+def worth(studies: Mapping[Key, StudyData]) -> bool:
     """Are there changed runs enough?"""
     return sum(name is not None for _, name in studies) >= WORTH
 
@@ -169,8 +169,8 @@ class Neighbours:
         )
 
     @property
-    def _fineness(self) -> Fineness:
-        return replace(Fineness.of(FINER * self.tolerance), most_modes=MOST_MODES, most_sources=MOST_MODES)
+    def _fineness(self) -> ReducedFineness:
+        return replace(ReducedFineness.of(FINER * self.tolerance), most_modes=MOST_MODES, most_sources=MOST_MODES)
 
     def _filled(self, reduced: Mapping[Key, Computed], worst: float, cases: int) -> Certificate:
         """Take the reduced runs; what no reduced model can follow is run in full."""

@@ -16,12 +16,12 @@ import numpy as np
 
 from tyrefem.compare.interface import Computed, arrays_of, computed_from, computed_of
 from tyrefem.errors import InputError
-from tyrefem.inputs.study import Study
+from tyrefem.inputs.study import StudyData
 from tyrefem.inputs.uncertain_numbers import uncertain_number
 from tyrefem.mechanics.cycle_schedule import BY_ELEMENTS, CycleSchedule, same_cycles
 from tyrefem.output import versions
 from tyrefem.reduced.training import Snapshots, snapshots
-from tyrefem.simulation.result import Result
+from tyrefem.simulation.result import ResultData
 from tyrefem.simulation.rolling_tyre import RollingTyre
 from tyrefem.simulation.run import run
 from tyrefem.simulation.simulate import simulate
@@ -94,13 +94,13 @@ class Work:
         study = base.study.replace(self.changes, base.study)
         return RollingTyre(study, base, base.cycles if same_cycles(study, base.study) else None)
 
-    def result(self) -> Result:
+    def result(self) -> ResultData:
         """Simulate it."""
         tyre = self.tyre
         return simulate(tyre) if tyre.study.card.mechanics.feedback is None else run(tyre.study)
 
 
-def _computed(result: Result) -> Computed:
+def _computed(result: ResultData) -> Computed:
     # The study need not travel: who gave the work has it.
     return replace(computed_of(result), study=None)
 
@@ -111,7 +111,7 @@ def driven(packed: Bundle) -> tuple[Computed, Snapshots, CycleSchedule | None]:
     return _computed(result), snapshots(result, FIELDS), _dear(result)
 
 
-def _dear(result: Result) -> CycleSchedule | None:
+def _dear(result: ResultData) -> CycleSchedule | None:
     mechanics = result.study.card.mechanics
     return result.tyre.schedule if mechanics.strain in BY_ELEMENTS and mechanics.feedback is None else None
 
@@ -127,7 +127,7 @@ def full(work: Work) -> Computed:
     return _computed(work.result())
 
 
-def store_key(study: Study) -> str:
+def store_key(study: StudyData) -> str:
     """Digest of what decides the runs of a study and its uncertain numbers."""
     return digest([versions(), effects_source(), plain(study)])
 
@@ -143,9 +143,9 @@ class Runs:
     executor : makes runs side by side. store : keeps them, opened. done : called with how many are made.
     """
 
-    studies: Mapping[Key, Study]
+    studies: Mapping[Key, StudyData]
     keys: Mapping[str, float]
-    known: Mapping[str, Result] = field(default_factory=dict)
+    known: Mapping[str, ResultData] = field(default_factory=dict)
     executor: Executor | None = None
     store: AnswerStore | None = None
     done: Callable[[int], None] = lambda count: None

@@ -4,11 +4,11 @@ from __future__ import annotations
 
 from tyrefem.compare.experiment import experiments
 from tyrefem.errors import InputError
-from tyrefem.inputs.study import Study
+from tyrefem.inputs.study import StudyData
 from tyrefem.mechanics.cycle_schedule import check_cases
 
 
-def check_study(study: Study) -> int:
+def check_study(study: StudyData) -> int:
     """Follow every name of a study to its end without running it; the number of its measured runs.
 
     Raises
@@ -31,7 +31,7 @@ def check_study(study: Study) -> int:
     return len(experiments(study)) if study.measured else 0
 
 
-def _check_drive(study: Study, number: int) -> None:
+def _check_drive(study: StudyData, number: int) -> None:
     entry = study.card.measured[number]
     try:
         check_cases(study.with_drive(entry.drive))

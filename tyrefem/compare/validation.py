@@ -14,10 +14,10 @@ from tyrefem.compare.experiment import Experiment, Table, experiments
 from tyrefem.compare.history import histories
 from tyrefem.compare.interface import ResultLike, StudyLike, computed_of
 from tyrefem.errors import InputError
-from tyrefem.inputs.study import Study
+from tyrefem.inputs.study import StudyData
 from tyrefem.inputs.uncertain_numbers import left_out
 from tyrefem.requirements import Requirements
-from tyrefem.simulation.result import Result
+from tyrefem.simulation.result import ResultData
 from tyrefem.simulation.run import run
 from tyrefem.variants.answer_store import AnswerStore
 
@@ -77,7 +77,7 @@ def compare(
     if reduced not in ("auto", "never"):
         raise InputError(f"reduced is 'auto' or 'never', not {reduced!r}")
     planned = experiments(study, table, ignore=ignore, rename=rename)
-    if result is None and isinstance(study, Study):
+    if result is None and isinstance(study, StudyData):
         _check_times(study, planned)
     keys = dict(study.uncertainty) if inputs else {}
     how = _How(executor, progress, reduced, store, begin)
@@ -146,8 +146,8 @@ def _solved(
             driven = result.study
         studies[drive, None] = driven
         studies |= {(drive, key): driven.scaled(key, 1.0 + sd) for key, sd in keys.items()}
-    own = {key: one for key, one in studies.items() if isinstance(one, Study)}
-    at_hand = {drive: one for drive, one in known.items() if isinstance(one, Result)}
+    own = {key: one for key, one in studies.items() if isinstance(one, StudyData)}
+    at_hand = {drive: one for drive, one in known.items() if isinstance(one, ResultData)}
     if len(own) == len(studies) and len(at_hand) == len(known):
         found, certificate, notes = _by_runs(own, at_hand, keys, how)
     else:
@@ -171,10 +171,12 @@ def _one_by_one(studies: Mapping[Key, StudyLike], known: Mapping[str, ResultLike
 
 def _run(study: StudyLike) -> ResultLike:
     other: Any = study
-    return computed_of(run(study) if isinstance(study, Study) else other.run())
+    return computed_of(run(study) if isinstance(study, StudyData) else other.run())
 
 
-def _by_runs(studies: Mapping[Key, Study], known: Mapping[str, Result], keys: Mapping[str, float], how: _How) -> Solved:
+def _by_runs(
+    studies: Mapping[Key, StudyData], known: Mapping[str, ResultData], keys: Mapping[str, float], how: _How
+) -> Solved:
     """The runs of studies, those with a changed input by a reduced model where it holds."""
     from tyrefem.compare.reduced_inputs import Certificate, Neighbours, followed, worth
     from tyrefem.compare.runs import Runs, store_key
@@ -214,7 +216,7 @@ def _said(model: bool, certificate: Certificate | None, why: str) -> list[str]:
     return [f"Note: all runs with a changed input are full ones: {why}"] if model else []
 
 
-def _check_times(study: Study, planned: Sequence[Experiment]) -> None:
+def _check_times(study: StudyData, planned: Sequence[Experiment]) -> None:
     """Refuse readings that are all outside their runs' drives, before these are simulated."""
     notes: list[str] = []
     for experiment in planned:

@@ -26,7 +26,7 @@ Array = NDArray[Any]
 _SMALLEST = 24
 
 
-class Blocks:
+class BlockFactor:
     """The factor L of A = L L^T as blocks no narrower than its band: D on the diagonal, E below, all else zero.
 
     LAPACK's banded solve takes one right-hand side at a time, a few numbers per step; here a block of the solution
@@ -41,7 +41,7 @@ class Blocks:
     >>> A = np.diag(np.full(90, 4.0)) + np.diag(np.ones(89), 1) + np.diag(np.ones(89), -1)
     >>> band = np.asfortranarray(cholesky_banded(np.array([A.diagonal(), np.append(A.diagonal(1), 0.0)]), lower=True))
     >>> right = np.arange(180.0).reshape(90, 2)
-    >>> bool(np.allclose(A @ Blocks(band).solve(right), right))
+    >>> bool(np.allclose(A @ BlockFactor(band).solve(right), right))
     True
     """
 
@@ -185,8 +185,8 @@ class Factor:
             )
 
     @functools.cached_property
-    def _blocks(self) -> Blocks:
-        return Blocks(self._band)
+    def _blocks(self) -> BlockFactor:
+        return BlockFactor(self._band)
 
     def solve(self, right: Array) -> Array:
         """x with A x = right, for one vector (n,) or several (n, m)."""

@@ -12,7 +12,7 @@ import numpy as np
 from tyrefem.diagnose.linearised import Gap
 from tyrefem.diagnose.unknowns import Unknown, with_values
 from tyrefem.inputs.changes import scaled, value_at
-from tyrefem.inputs.study import Study
+from tyrefem.inputs.study import StudyData
 
 #: A correction of a base number or a sensor that moves no block mean by this much is left out, K.
 NEGLIGIBLE = 0.2
@@ -57,7 +57,7 @@ def rounded(change: Sequence[Change]) -> dict[Unknown, float]:
     return {one.unknown: _rounded(one.x, one.sd) for one in change}
 
 
-def amended(study: Study, change: Sequence[Change]) -> Study:
+def amended(study: StudyData, change: Sequence[Change]) -> StudyData:
     """The study with the changes, rounded, and where they come from.
 
     A factor on a number of the drive applies to the drives of the ``[[measured]]`` runs too.
@@ -102,14 +102,14 @@ def amended(study: Study, change: Sequence[Change]) -> Study:
     return new.replace({"title": title}) if change else new
 
 
-def _restated(study: Study, one: Change, key: str) -> Any:
+def _restated(study: StudyData, one: Change, key: str) -> Any:
     """A base number as the study writes it, changed, to the digits that a hundredth of its standard deviation has."""
     written = value_at(study.data, key, study.folder)
     digits = max(3, int(np.ceil(-np.log10(max(one.sd, 1e-6) / 100))) + 1)
     return scaled(written, one.unknown.value(one.x), digits)
 
 
-def _provenance(study: Study, one: Change, key: str) -> dict[str, Any]:
+def _provenance(study: StudyData, one: Change, key: str) -> dict[str, Any]:
     """What a corrected number of a card must say: its new source and standard deviation."""
     # What a law over frequency says has source and deviation in the table above it.
     table = key.rpartition(".")[0].removesuffix(".frequency")
@@ -128,7 +128,7 @@ def _rounded(x: float, sd: float) -> float:
     return round(x, digits)
 
 
-def difference(study: Study, new: Study) -> list[str]:
+def difference(study: StudyData, new: StudyData) -> list[str]:
     """The lines by which the amended study's file differs, as a unified difference."""
     import difflib
 

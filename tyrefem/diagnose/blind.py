@@ -23,7 +23,7 @@ from tyrefem.diagnose.synthetic import HotRing, Lamp, Logger, own_mesh, record
 from tyrefem.diagnose.unknowns import Candidate, Unknown, base_unknowns, candidates, sensor_unknowns, with_values
 from tyrefem.diagnose.workflow import diagnose
 from tyrefem.effects import Effect
-from tyrefem.inputs.study import Study
+from tyrefem.inputs.study import StudyData
 from tyrefem.measured import MeasuredRun
 
 Array = NDArray[np.float64]
@@ -56,7 +56,7 @@ class Case:
         return [one.key for one in self.hidden] or ([] if self.stranger is None else [type(self.stranger).name])
 
 
-def cases(study: Study, count: int, seed: int) -> list[Case]:
+def cases(study: StudyData, count: int, seed: int) -> list[Case]:
     """So many cases: kinds in fixed shares, every candidate effect in turn, amplitudes from barely visible to strong.
 
     Variants of an effect (sensors) are drawn; amplitudes are log-uniform from 0.25 to 3 prior standard deviations.
@@ -120,7 +120,7 @@ def _variant(found: Sequence[Candidate], name: str, rng: np.random.Generator) ->
     return own[int(rng.integers(len(own)))]
 
 
-def _stranger(study: Study, rng: np.random.Generator) -> tuple[Effect, float]:
+def _stranger(study: StudyData, rng: np.random.Generator) -> tuple[Effect, float]:
     length = study.section.line.length
     width = rng.uniform(0.12, 0.25) * length
     start = rng.uniform(0.0, length - width)
@@ -148,7 +148,7 @@ def _stranger(study: Study, rng: np.random.Generator) -> tuple[Effect, float]:
     return lamp, start + width / 2
 
 
-def measured(study: Study, case: Case, logger: Logger | None = None) -> list[MeasuredRun]:
+def measured(study: StudyData, case: Case, logger: Logger | None = None) -> list[MeasuredRun]:
     """The data of a case: the truth simulated run by run, and recorded."""
     logger = logger or Logger()
     extra = () if case.stranger is None else (case.stranger,)
@@ -184,7 +184,7 @@ class Outcome:
         }
 
 
-def identifiable(gap: Gap, study: Study, case: Case) -> bool:
+def identifiable(gap: Gap, study: StudyData, case: Case) -> bool:
     """Would the linear model, without noise, put the hidden effects ahead of every rival by the margin?
 
     Found from the response of the study itself (no data, no diagnosis), simulated at the hidden amplitude.
@@ -203,7 +203,7 @@ def identifiable(gap: Gap, study: Study, case: Case) -> bool:
     return min(ahead) >= MARGIN
 
 
-def run_case(study: Study, case: Case, known: Sequence[Response], reduced: str = "auto") -> Outcome:
+def run_case(study: StudyData, case: Case, known: Sequence[Response], reduced: str = "auto") -> Outcome:
     """Make the data of a case, diagnose them, and put both side by side.
 
     ``known``: responses of the planned runs; ``reduced`` as of `diagnose`.

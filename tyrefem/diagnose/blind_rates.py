@@ -22,7 +22,7 @@ from tyrefem.diagnose.isolability import candidates_of, layout_notes, planned
 from tyrefem.diagnose.sensitivities import responses, unknowns_of
 from tyrefem.diagnose.synthetic import own_mesh
 from tyrefem.errors import InputError
-from tyrefem.inputs.study import Study
+from tyrefem.inputs.study import StudyData
 from tyrefem.interruption import held_back, keeping
 from tyrefem.output import atomic_path, jsonable
 from tyrefem.processes import processes
@@ -203,10 +203,10 @@ FAILED: Row = {
     "verdict": "failed", "named": [], "set": [], "best": "", "probability": 0.0, "missing_station_m": math.nan,
     "rms_K": {}, "held_out_rms_K": {"before": 0.0, "after": math.inf}, "noise_K": 0.0,
 }  # fmt: skip
-_KNOWN: list[tuple[Study, tuple[Response, ...], str]] = []
+_KNOWN: list[tuple[StudyData, tuple[Response, ...], str]] = []
 
 
-def _install(study: Study, known: tuple[Response, ...], reduced: str) -> None:
+def _install(study: StudyData, known: tuple[Response, ...], reduced: str) -> None:
     _KNOWN[:] = [(study, known, reduced)]
 
 
@@ -223,7 +223,7 @@ def _case(number: int, count: int, seed: int) -> Row:
 
 
 def run_blind(
-    study: Study,
+    study: StudyData,
     count: int,
     seed: int,
     folder: Path,
@@ -280,7 +280,7 @@ def run_blind(
 
 
 def _answers(
-    known: tuple[Study, tuple[Response, ...], str], numbers: Sequence[int], count: int, seed: int, workers: int
+    known: tuple[StudyData, tuple[Response, ...], str], numbers: Sequence[int], count: int, seed: int, workers: int
 ) -> Iterable[tuple[int, Row]]:
     if workers <= 1:
         _install(*known)

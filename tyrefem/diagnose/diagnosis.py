@@ -23,7 +23,7 @@ if TYPE_CHECKING:
     from tyrefem.diagnose.missing_heat import MissingHeat
     from tyrefem.diagnose.unknowns import Candidate
     from tyrefem.diagnose.verdict import Judgement
-    from tyrefem.inputs.study import Study
+    from tyrefem.inputs.study import StudyData
 
 
 @dataclass(frozen=True, eq=False)
@@ -40,8 +40,8 @@ class Diagnosis(Brief):
     seconds : wall time. again : what was found when the amended study was held against the same data.
     """
 
-    original: Study
-    study: Study
+    original: StudyData
+    study: StudyData
     judgement: Judgement
     gap: Gap
     candidates: tuple[Candidate, ...]

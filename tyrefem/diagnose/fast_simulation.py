@@ -20,7 +20,7 @@ from tyrefem.conduction.points import located
 from tyrefem.conduction.sensitivity import Tangents, stage_times
 from tyrefem.diagnose.unknowns import Unknown
 from tyrefem.geometry.wall import inside
-from tyrefem.inputs.study import Study
+from tyrefem.inputs.study import StudyData
 from tyrefem.mechanics.nearby_cycles import NearbyCycles
 from tyrefem.simulation.rolling_tyre import RollingTyre
 from tyrefem.simulation.sensors import recorded, recorded_change, true_places
@@ -43,13 +43,13 @@ class Lean:
     times : (n_times,) s, every step's start, stage and end; values (n_times, n), reservoirs (n_times, m): degC.
     """
 
-    study: Study
+    study: StudyData
     tyre: RollingTyre
     times: Array
     values: Array
     reservoirs: Array
 
-    def as_measured_by(self, study: Study) -> Lean:
+    def as_measured_by(self, study: StudyData) -> Lean:
         """The same temperatures, measured by another study's sensors."""
         return dataclasses.replace(self, study=study)
 
@@ -85,7 +85,7 @@ class Lean:
         return read(self.study, self.grid, at_sensors, lumped)
 
 
-def sensor_points(study: Study, tyre: RollingTyre) -> Array:
+def sensor_points(study: StudyData, tyre: RollingTyre) -> Array:
     """(n_sensors, 2) m: places of a study's sensors in a tyre's mesh, kept within the straight-sided elements."""
     places = true_places(study)
     section = tyre.study.section
@@ -93,7 +93,7 @@ def sensor_points(study: Study, tyre: RollingTyre) -> Array:
     return inside(section, tyre.mesh.size, s, depth)
 
 
-def read(study: Study, grid: Array, at_sensors: Array | None, lumped: dict[str, Array]) -> dict[str, Array]:
+def read(study: StudyData, grid: Array, at_sensors: Array | None, lumped: dict[str, Array]) -> dict[str, Array]:
     """Sensor -> degC on ``grid`` as the study's logger records it; contained air and rim too.
 
     Parameters
@@ -107,7 +107,7 @@ def read(study: Study, grid: Array, at_sensors: Array | None, lumped: dict[str, 
     return found
 
 
-def lean(study: Study, like: RollingTyre | None = None, near: NearbyCycles | None = None) -> Lean:
+def lean(study: StudyData, like: RollingTyre | None = None, near: NearbyCycles | None = None) -> Lean:
     """Simulate a study's drive on fixed steps; ``like``, ``near``: see `RollingTyre`."""
     tyre = RollingTyre(study, like, near=near)
     times = stage_times([*tyre.drive.starts, tyre.drive.end])

@@ -12,7 +12,7 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
-from tyrefem.boundaries.rim import Lumped
+from tyrefem.boundaries.rim import LumpedRim
 from tyrefem.brief import Brief
 from tyrefem.conduction.sensitivity import Perturbed, tangents
 from tyrefem.diagnose.fast_simulation import Lean, Varied, lean
@@ -20,7 +20,7 @@ from tyrefem.diagnose.reduced_forward import Modes, ReducedDrive, modes_of
 from tyrefem.diagnose.runs import Trial
 from tyrefem.diagnose.unknowns import Unknown, with_values
 from tyrefem.errors import InputError
-from tyrefem.inputs.study import Study
+from tyrefem.inputs.study import StudyData
 from tyrefem.mechanics.cycle_schedule import BY_ELEMENTS
 from tyrefem.mechanics.nearby_cycles import NearbyCycles, SolvedCycles
 from tyrefem.reduced.model import NotReducibleError
@@ -79,7 +79,7 @@ class Bench(Brief):
     ``folder``: where strain cycles by finite elements are left for other processes.
     """
 
-    study: Study
+    study: StudyData
     trials: tuple[Trial, ...]
     folder: Path | None = None
 
@@ -88,7 +88,7 @@ class Bench(Brief):
         return Bench, (self.study, self.trials, self.folder)
 
     @functools.cached_property
-    def coarse(self) -> Study:
+    def coarse(self) -> StudyData:
         """The study on the mesh of the fit."""
         coarse = dict(COARSE)
         if self.study.card.mesh.file is not None:
@@ -99,7 +99,7 @@ class Bench(Brief):
     def _bases(self) -> dict[int, Lean]:
         return {}
 
-    def driven(self, study: Study, number: int) -> Study:
+    def driven(self, study: StudyData, number: int) -> StudyData:
         """The study at the drive of a trial."""
         drive = self.trials[number].drive
         return study.with_drive(drive) if drive else study
@@ -112,7 +112,7 @@ class Bench(Brief):
             self._bases[number] = lean(driven, like, self.nearby(driven))
         return self._bases[number]
 
-    def nearby(self, driven: Study) -> NearbyCycles | None:
+    def nearby(self, driven: StudyData) -> NearbyCycles | None:
         """Strain cycles near those of the coarse study at a trial's drive; None where each costs next to nothing."""
         if driven.card.mechanics.strain not in BY_ELEMENTS:
             return None
@@ -129,7 +129,7 @@ class Bench(Brief):
             [one.sampled(times, np.asarray(readings[one.sensor], dtype=float)) for one in self.trials[number].series]
         )
 
-    def full(self, number: int, study: Study) -> Array:
+    def full(self, number: int, study: StudyData) -> Array:
         """Block means of a trial from a run of a study (at the trial's drive) with error control on its own mesh."""
         readings = run(study).readings
         times = readings["time_s"].to_numpy(dtype=float)
@@ -138,7 +138,7 @@ class Bench(Brief):
     @property
     def sensors(self) -> tuple[str, ...]:
         """Everything that can be read: the study's sensors, the contained air, a lumped rim."""
-        lumped = isinstance(self.study.card.boundaries.rim, Lumped)
+        lumped = isinstance(self.study.card.boundaries.rim, LumpedRim)
         return (*self.study.sensors, GAS, RIM) if lumped else (*self.study.sensors, GAS)
 
     def response(self, number: int, unknowns: Sequence[Unknown]) -> tuple[Array, Array, Array, Array, Array]:
@@ -193,7 +193,7 @@ class Bench(Brief):
         base, drive = self.base(number), self._reduced_drive(number, modes)
         status = np.full(len(points), UNSAID)
         found = np.full((len(points), len(self.trials[number].measured)), np.nan)
-        studies: dict[int, Study] = {}
+        studies: dict[int, StudyData] = {}
         for place, values in enumerate(points):
             with contextlib.suppress(InputError):
                 studies[place] = with_values(base.study, values, base.study)
@@ -234,7 +234,7 @@ class Bench(Brief):
             self._drives[key] = ReducedDrive(self.base(number), modes)
         return self._drives[key]
 
-    def _varied(self, base: Lean, origin: Study, unknowns: Sequence[Unknown], at: Values) -> Varied:
+    def _varied(self, base: Lean, origin: StudyData, unknowns: Sequence[Unknown], at: Values) -> Varied:
         """What unknowns change about a solution; from its operators where the mesh stays."""
         again: dict[int, Lean] = {}
         columns: list[int] = []

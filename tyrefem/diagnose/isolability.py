@@ -23,7 +23,7 @@ from tyrefem.diagnose.search import Prior
 from tyrefem.diagnose.sensitivities import gap_of
 from tyrefem.diagnose.unknowns import Candidate, candidates
 from tyrefem.errors import InputError
-from tyrefem.inputs.study import Study
+from tyrefem.inputs.study import StudyData
 from tyrefem.requirements import Requirements
 
 if TYPE_CHECKING:
@@ -39,7 +39,7 @@ MARGIN = 9.3
 EVERY = 10.0
 
 
-def planned(study: Study, sensors: Sequence[str] = ()) -> tuple[Trial, ...]:
+def planned(study: StudyData, sensors: Sequence[str] = ()) -> tuple[Trial, ...]:
     """The runs of a study's ``[[measured]]`` entries (or its own drive) with all its sensors read every 10 s.
 
     Raises
@@ -72,7 +72,7 @@ def planned(study: Study, sensors: Sequence[str] = ()) -> tuple[Trial, ...]:
     return tuple(found)
 
 
-def layout_notes(study: Study) -> tuple[str, ...]:
+def layout_notes(study: StudyData) -> tuple[str, ...]:
     """What a study has not, and what `planned` takes instead, in sentences."""
     notes = []
     if not study.sensors:
@@ -188,7 +188,7 @@ def rivals_of(true: Members, found: Sequence[Candidate]) -> list[Members]:
     return sets
 
 
-def candidates_of(study: Study) -> tuple[Candidate, ...]:
+def candidates_of(study: StudyData) -> tuple[Candidate, ...]:
     """The effects that a study may lack.
 
     Raises
@@ -203,7 +203,7 @@ def candidates_of(study: Study) -> tuple[Candidate, ...]:
 
 
 def isolability(
-    study: Study,
+    study: StudyData,
     *,
     workers: int = 1,
     progress: Callable[[str, int, int], None] | None = None,

@@ -17,7 +17,7 @@ from tyrefem.diagnose.fitted import Explained
 from tyrefem.diagnose.linearised import Gap
 from tyrefem.diagnose.unknowns import Candidate, Unknown, of_effect
 from tyrefem.effects import catalogue
-from tyrefem.inputs.study import Study
+from tyrefem.inputs.study import StudyData
 
 Array = NDArray[np.float64]
 #: Stations along the half meridian.
@@ -28,7 +28,7 @@ HEAT, FLUX = 4e4, 400.0
 SPREAD, SOURCES = 3.0, 3
 
 
-def patches(study: Study) -> tuple[Unknown, ...]:
+def patches(study: StudyData) -> tuple[Unknown, ...]:
     """Unknown heat (while rolling) and unknown flux (always) at stations evenly spread from crown to bead."""
     length = study.section.line.length
     spacing = length / STATIONS
@@ -215,7 +215,7 @@ def _score(mean: Array, spread: Array, half: int) -> Array:
     return np.hypot(ratio[:half], ratio[half:])
 
 
-def _watts(study: Study, stations: Array, heat: Array, flux: Array) -> Array:
+def _watts(study: StudyData, stations: Array, heat: Array, flux: Array) -> Array:
     """Missing heat of the whole tyre by station, W: patch height times ring volume and surface of its stretch."""
     section = study.section
     spacing = section.line.length / STATIONS

@@ -16,7 +16,7 @@ from tyrefem.diagnose.linearised import Gap
 from tyrefem.diagnose.runs import Series, Trial
 from tyrefem.diagnose.verdict import Judgement, Standing
 from tyrefem.errors import InputError
-from tyrefem.inputs.study import Study
+from tyrefem.inputs.study import StudyData
 from tyrefem.simulation.surroundings import GAS
 
 Array = NDArray[np.float64]
@@ -80,7 +80,7 @@ def _rivals(judgement: Judgement) -> list[Standing]:
     return sets[:2]
 
 
-def _places(study: Study, pair: list[Lean]) -> list[tuple[str, dict[str, float], Array, Array, Array]]:
+def _places(study: StudyData, pair: list[Lean]) -> list[tuple[str, dict[str, float], Array, Array, Array]]:
     """(name, place, difference (n,), sd of a new sensor's place (n,) K, times) at every feasible place."""
     section = study.section
     s = np.repeat(np.linspace(0.0, section.line.length * 0.98, STATIONS), 3)
@@ -110,7 +110,7 @@ def _places(study: Study, pair: list[Lean]) -> list[tuple[str, dict[str, float],
 
 
 def _gain(
-    times: Array, delta: Array, spread: Array, study: Study, noise: float = NOISE, accuracy: float = 1.0
+    times: Array, delta: Array, spread: Array, study: StudyData, noise: float = NOISE, accuracy: float = 1.0
 ) -> float:
     choice = study.card.diagnosis
     thinned = slice(None, None, max(len(times) // 60, 1))

@@ -15,7 +15,7 @@ from tyrefem.conduction.sensitivity import Tangents
 from tyrefem.diagnose.fast_simulation import Lean, read, sensor_points
 from tyrefem.diagnose.unknowns import Unknown
 from tyrefem.errors import InputError
-from tyrefem.inputs.study import Study
+from tyrefem.inputs.study import StudyData
 from tyrefem.reduced.answers import side_by_side
 from tyrefem.reduced.balance import ReducedBalance, reduced_balance
 from tyrefem.reduced.exponential import Marched
@@ -100,7 +100,7 @@ class ReducedDrive:
             raise NotReducibleError("the drive as it is")
         return found
 
-    def readings(self, studies: Sequence[Study]) -> tuple[list[Readings | None], list[int]]:
+    def readings(self, studies: Sequence[StudyData]) -> tuple[list[Readings | None], list[int]]:
         """Readings on the drive's grid by study, None where there are none; numbers of those it can never follow."""
         found: list[Readings | None] = [None] * len(studies)
         marched, refused = self._marched([RollingTyre(study, self.base.tyre) for study in studies])
@@ -110,7 +110,9 @@ class ReducedDrive:
                 found[number] = self.read(studies[number], part.batch.balances[place], states[:, place])
         return found, refused
 
-    def slopes(self, here: Study, there: Sequence[tuple[Study, bool]], steps: Sequence[float]) -> list[Readings] | None:
+    def slopes(
+        self, here: StudyData, there: Sequence[tuple[StudyData, bool]], steps: Sequence[float]
+    ) -> list[Readings] | None:
         """d(reading)/dx of the studies ``there``, each a step from ``here``; None where the model cannot follow.
 
         All are marched together, with the same steps and sweeps: differences are smooth however short the way.
@@ -130,7 +132,7 @@ class ReducedDrive:
         place = {number: where for where, number in enumerate(numbers)}
         at = {number: place[order] for order, number in enumerate(moved, start=1)}
 
-        def reading(study: Study, where: int) -> Readings:
+        def reading(study: StudyData, where: int) -> Readings:
             return self.read(study, balances[where], states[:, where])
 
         first = reading(here, place[0])
@@ -152,7 +154,7 @@ class ReducedDrive:
                     refused += numbers
         return found, refused
 
-    def read(self, study: Study, balance: ReducedBalance, states: Array) -> Readings:
+    def read(self, study: StudyData, balance: ReducedBalance, states: Array) -> Readings:
         """What the study's logger records of states (n_grid, n): modes, then reservoirs."""
         m = self.model.size
         at_sensors = None

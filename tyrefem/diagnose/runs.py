@@ -11,7 +11,7 @@ from scipy.linalg import cholesky, solve_triangular
 
 from tyrefem.brief import Brief
 from tyrefem.compare.experiment import Experiment
-from tyrefem.inputs.study import Study
+from tyrefem.inputs.study import StudyData
 
 Array = NDArray[np.float64]
 #: Readings of one sensor in one run are averaged into so many blocks at most.
@@ -109,7 +109,7 @@ class Trial:
         return found
 
 
-def trial(experiment: Experiment, study: Study) -> Trial:
+def trial(experiment: Experiment, study: StudyData) -> Trial:
     """An experiment's readings within the simulated drive."""
     choice, run = study.card.diagnosis, experiment.run
     driven = study.with_drive(dict(experiment.drive)) if experiment.drive else study

@@ -12,12 +12,12 @@ from tyrefem.diagnose.multifidelity import Predictions
 from tyrefem.diagnose.reduced_forward import Modes
 from tyrefem.diagnose.unknowns import Unknown, base_unknowns, candidates, sensor_unknowns
 from tyrefem.errors import InputError
-from tyrefem.inputs.study import Study
+from tyrefem.inputs.study import StudyData
 
 Tick = Callable[[str, int, int], None]
 
 
-def unknowns_of(study: Study, measured: Iterable[str]) -> tuple[tuple[Unknown, ...], int]:
+def unknowns_of(study: StudyData, measured: Iterable[str]) -> tuple[tuple[Unknown, ...], int]:
     """Everything that a diagnosis with these sensors may fit, and how many of it, the first, are in every model."""
     nuisance = (*base_unknowns(study), *sensor_unknowns(study, set(measured)))
     found = [one for each in candidates(study) for one in (*each.amplitudes, *each.presence)]

@@ -24,7 +24,7 @@ from tyrefem.effects.combined import Acting
 from tyrefem.effects.effect import Factor, Prior
 from tyrefem.effects.tyre import Tyre
 from tyrefem.geometry.meshing.gmsh import gmsh_works
-from tyrefem.inputs.study import Study
+from tyrefem.inputs.study import StudyData
 from tyrefem.measured import MeasuredRun
 from tyrefem.quantity import Unit
 from tyrefem.simulation.rolling_tyre import RollingTyre
@@ -95,7 +95,7 @@ def backward(problem: Conduction, times: Array, initial: float) -> tuple[Array, 
 
 
 def record(
-    study: Study, name: str, logger: Logger, rng: np.random.Generator, extra: tuple[Effect, ...] = ()
+    study: StudyData, name: str, logger: Logger, rng: np.random.Generator, extra: tuple[Effect, ...] = ()
 ) -> MeasuredRun:
     """A run as a logger records it. ``study``: the truth, at this run's drive; ``extra``: effects of no catalogue."""
     tyre = RollingTyre(study)

@@ -11,7 +11,7 @@ from tyrefem.brief import Brief
 from tyrefem.effects import catalogue
 from tyrefem.effects.effect import Effect, Parameter
 from tyrefem.inputs.changes import scaled, value_at
-from tyrefem.inputs.study import Study
+from tyrefem.inputs.study import StudyData
 from tyrefem.quantity import parse
 
 Choice = tuple[tuple[str, str], ...]
@@ -142,7 +142,7 @@ def of_effect(
     return tuple(found)
 
 
-def base_unknowns(study: Study) -> tuple[Unknown, ...]:
+def base_unknowns(study: StudyData) -> tuple[Unknown, ...]:
     """The uncertain base numbers: those of the study that can matter, the films, and effects stated with uncertain
     values."""
     numbers = tuple(
@@ -164,13 +164,13 @@ def base_unknowns(study: Study) -> tuple[Unknown, ...]:
     return (*numbers, *films, *(one for one in fitted if one.sd > 0))
 
 
-def _stated(study: Study, name: str, choice: Choice) -> Effect | None:
+def _stated(study: StudyData, name: str, choice: Choice) -> Effect | None:
     """The effect as the study has it, if it has."""
     found = (one for one in study.card.effects if one.name == name and tuple(one.choice.items()) == choice)
     return next(found, None)
 
 
-def sensor_unknowns(study: Study, measured: set[str]) -> tuple[Unknown, ...]:
+def sensor_unknowns(study: StudyData, measured: set[str]) -> tuple[Unknown, ...]:
     """Place, lag and offset of every sensor that was read; contained air and rim have an offset only."""
     known = catalogue()
     found: list[Unknown] = []
@@ -184,7 +184,7 @@ def sensor_unknowns(study: Study, measured: set[str]) -> tuple[Unknown, ...]:
     return tuple(found)
 
 
-def candidates(study: Study) -> tuple[Candidate, ...]:
+def candidates(study: StudyData) -> tuple[Candidate, ...]:
     """Every effect and variant that has a meaning in the study and is not in it already."""
     present = {(effect.name, tuple(effect.choice.items())) for effect in study.card.effects}
     found = []
@@ -198,7 +198,7 @@ def candidates(study: Study) -> tuple[Candidate, ...]:
     return tuple(found)
 
 
-def with_values(study: Study, values: Mapping[Unknown, float], like: Study | None = None) -> Study:
+def with_values(study: StudyData, values: Mapping[Unknown, float], like: StudyData | None = None) -> StudyData:
     """The study with unknowns set to values x; exactly the study itself where all are zero.
 
     ``like``: a study close to it, with which it shares what it can; see `Study.replace`.
@@ -228,7 +228,7 @@ def with_values(study: Study, values: Mapping[Unknown, float], like: Study | Non
     return study.replace(changes, like) if changes else study
 
 
-def _written(study: Study, key: str) -> Any:
+def _written(study: StudyData, key: str) -> Any:
     """The number at a dotted name as it is written; looked up once per study, which is immutable."""
     known = study.__dict__.setdefault("_written", {})
     if key not in known:

@@ -37,7 +37,7 @@ from tyrefem.diagnose.verdict import (
     standings,
 )
 from tyrefem.errors import InputError
-from tyrefem.inputs.study import Study
+from tyrefem.inputs.study import StudyData
 from tyrefem.requirements import Requirements
 
 #: Heat of unknown origin that the linear model puts this far, or less, below the best set is fitted in the full model.
@@ -54,7 +54,7 @@ class Naming:
     """
 
     def __init__(
-        self, gap: Gap, study: Study, found: tuple[Candidate, ...], largest: int, count: Callable[[str], None]
+        self, gap: Gap, study: StudyData, found: tuple[Candidate, ...], largest: int, count: Callable[[str], None]
     ) -> None:
         self.gap = gap
         prior = Prior(found, study.card.diagnosis.effects_expected)
@@ -72,13 +72,13 @@ class Naming:
         return self.explained[members]
 
 
-def _outside(study: Study) -> float:
+def _outside(study: StudyData) -> float:
     """ln of the prior probability that what is missing is not in the catalogue."""
     return math.log(study.card.diagnosis.effects_expected * OUTSIDE)
 
 
 def _searched(
-    gap: Gap, study: Study, found: tuple[Candidate, ...], prior: Prior, largest: int, count: Callable[[str], None]
+    gap: Gap, study: StudyData, found: tuple[Candidate, ...], prior: Prior, largest: int, count: Callable[[str], None]
 ) -> tuple[list[Scored], MissingHeat]:
     """All sets with their scores, and heat of unknown origin: in the full model where it may matter."""
     unknown, outside = patches(study), _outside(study)
@@ -109,7 +109,7 @@ LOOKS = 3
 
 
 def diagnose(
-    study: Study,
+    study: StudyData,
     table: Table | None = None,
     *,
     ignore: Iterable[str] = (),
@@ -180,7 +180,7 @@ def _numbered(progress: Tick | None, number: int) -> Tick:
 
 
 def _look(
-    study: Study,
+    study: StudyData,
     table: Table | None,
     *,
     ignore: Iterable[str],
@@ -245,7 +245,7 @@ class _Counted:
 
 
 def _lacking(
-    study: Study, judgement: Judgement, best: Explained, missing: MissingHeat
+    study: StudyData, judgement: Judgement, best: Explained, missing: MissingHeat
 ) -> tuple[Mapping[Unknown, float], Mapping[Unknown, float], list[Unknown]]:
     """Values and sd of the unknowns, and which of them the study lacks."""
     if judgement.verdict != UNEXPLAINED:

@@ -77,16 +77,16 @@ class TrR64(Card):
     shape_factor: Annotated[float, Unit("1", gt=0, lt=0.2)] = TYPE_VII
     source: Text = "NASA TR R-64, static, type VII, C_z = 0.02 (quoted from memory)"
 
-    def _scale(self, pressure: float, tyre: Rating) -> float:
+    def _scale(self, pressure: float, tyre: RatedTyre) -> float:
         return (pressure + 0.08 * tyre.pressure) * tyre.width * math.sqrt(tyre.width * tyre.diameter)
 
-    def load(self, deflection: float, pressure: float, tyre: Rating) -> float:
+    def load(self, deflection: float, pressure: float, tyre: RatedTyre) -> float:
         """Vertical load, N."""
         u, c = deflection / tyre.width, self.shape_factor
         shape = 0.96 * u + 0.216 * u * u / c if u <= 10 * c / 3 else 2.4 * (u - c)
         return shape * self._scale(pressure, tyre)
 
-    def deflection(self, load: float, pressure: float, tyre: Rating) -> float:
+    def deflection(self, load: float, pressure: float, tyre: RatedTyre) -> float:
         """Deflection, m: the closed-form inverse of the two branches."""
         f, c = load / self._scale(pressure, tyre), self.shape_factor
         if f <= 2.4 * (10 * c / 3 - c):
@@ -102,16 +102,16 @@ class VerticalStiffness(Card):
     stiffness: Annotated[float, Unit("N/m", gt=0)]
     source: Text
 
-    def load(self, deflection: float, pressure: float, tyre: Rating) -> float:
+    def load(self, deflection: float, pressure: float, tyre: RatedTyre) -> float:
         """Vertical load, N."""
         return self.stiffness * deflection
 
-    def deflection(self, load: float, pressure: float, tyre: Rating) -> float:
+    def deflection(self, load: float, pressure: float, tyre: RatedTyre) -> float:
         """Deflection, m."""
         return load / self.stiffness
 
 
-class Rating(Protocol):
+class RatedTyre(Protocol):
     """What a load-deflection law needs of the tyre: nominal width and diameter (m), rated pressure (Pa)."""
 
     @property
@@ -193,7 +193,7 @@ class LoadCase:
 
 def load_case(
     law: TrR64 | VerticalStiffness | None,
-    rating: Rating,
+    rating: RatedTyre,
     *,
     outer_radius: float,
     pressure: float,

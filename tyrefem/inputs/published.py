@@ -29,25 +29,25 @@ class _Range(Card):
         return self
 
 
-class Stiffness(_Range):
+class StiffnessRange(_Range):
     """Range of a stiffness, N/m."""
 
     between: tuple[Annotated[float, Unit("N/m", gt=0)], Annotated[float, Unit("N/m", gt=0)]]
 
 
-class Length(_Range):
+class LengthRange(_Range):
     """Range of a length, m."""
 
     between: tuple[Annotated[float, Unit("m", gt=0)], Annotated[float, Unit("m", gt=0)]]
 
 
-class Area(_Range):
+class AreaRange(_Range):
     """Range of an area, m2."""
 
     between: tuple[Annotated[float, Unit("m**2", gt=0)], Annotated[float, Unit("m**2", gt=0)]]
 
 
-class Ratio(_Range):
+class RatioRange(_Range):
     """Range of a number."""
 
     between: tuple[Annotated[float, Unit("1", gt=0)], Annotated[float, Unit("1", gt=0)]]
@@ -60,11 +60,11 @@ class Published(Card):
     footprint's outline, the area is what touches, less the grooves that the section draws.
     """
 
-    vertical_stiffness: Stiffness | None = None
-    footprint_length: Length | None = None
-    footprint_width: Length | None = None
-    footprint_area: Area | None = None
-    rolling_resistance_coefficient: Ratio | None = None
+    vertical_stiffness: StiffnessRange | None = None
+    footprint_length: LengthRange | None = None
+    footprint_width: LengthRange | None = None
+    footprint_area: AreaRange | None = None
+    rolling_resistance_coefficient: RatioRange | None = None
 
 
 #: Unit in SI, unit in which a person reads it, digits.
@@ -78,7 +78,7 @@ SHOWN = {
 
 
 @dataclass(frozen=True)
-class Comparison:
+class PublishedComparison:
     """A result beside the published range of its quantity, SI."""
 
     quantity: str
@@ -96,7 +96,7 @@ class Comparison:
     def words(self) -> str:
         """For a person.
 
-        >>> print(Comparison("vertical_stiffness", 226e3, 180e3, 220e3, "a book").words)
+        >>> print(PublishedComparison("vertical_stiffness", 226e3, 180e3, 220e3, "a book").words)
         vertical stiffness 226, published 180 to 220 N/mm: outside (a book)
         """
         quantity, value, between, verdict, source = self.cells
@@ -107,7 +107,7 @@ class Comparison:
     def cells(self) -> list[str]:
         """A row of a table: quantity, result with its unit, published range, verdict, source.
 
-        >>> Comparison("footprint_length", 0.13, 0.12, 0.15, "a book").cells
+        >>> PublishedComparison("footprint_length", 0.13, 0.12, 0.15, "a book").cells
         ['footprint length', '130 mm', '120 to 150', 'inside', 'a book']
         """
         unit, shown, digits = SHOWN[self.quantity]
@@ -121,7 +121,7 @@ class Comparison:
         return {**asdict(self), "unit": SHOWN[self.quantity][0], "verdict": "inside" if self.inside else "outside"}
 
 
-def compared(published: Published, values: Mapping[str, float]) -> tuple[Comparison, ...]:
+def compared(published: Published, values: Mapping[str, float]) -> tuple[PublishedComparison, ...]:
     """Results beside the ranges that are published for them; others are left out.
 
     Parameters
@@ -133,7 +133,7 @@ def compared(published: Published, values: Mapping[str, float]) -> tuple[Compari
         known = getattr(published, name)
         if known is not None and name in values:
             low, high = known.between
-            found.append(Comparison(name, values[name], low, high, known.source))
+            found.append(PublishedComparison(name, values[name], low, high, known.source))
     return tuple(found)
 
 

@@ -30,7 +30,7 @@ if TYPE_CHECKING:
 
 
 @dataclass(frozen=True, eq=False)
-class Study(Brief):
+class StudyData(Brief):
     """A tyre, its materials, drive, boundaries and sensors. Made by `study`; changed by `replace`.
 
     Parameters
@@ -55,7 +55,7 @@ class Study(Brief):
     data: Mapping[str, Any]
     file: Path | None = None
     folder: Path | None = None
-    like: InitVar[Study | None] = None
+    like: InitVar[StudyData | None] = None
     built: InitVar[StudyParts | None] = None
     parts: StudyParts = field(init=False, repr=False)
 
@@ -78,7 +78,7 @@ class Study(Brief):
         loaded = cls(stem, all_changed(read_toml(path), first), path, folder)
         return loaded if case is None else loaded.case(case).replace(changes)
 
-    def __post_init__(self, like: Study | None, built: StudyParts | None) -> None:
+    def __post_init__(self, like: StudyData | None, built: StudyParts | None) -> None:
         parts = built or StudyParts.read(self.data, self.file, self.folder, None if like is None else like.parts)
         object.__setattr__(self, "parts", parts)
         if built is None:
@@ -204,7 +204,7 @@ class Study(Brief):
 
     # -- change ------------------------------------------------------------------------------------------------------
 
-    def replace(self, changes: Mapping[str, Any], like: Study | None = None) -> Self:
+    def replace(self, changes: Mapping[str, Any], like: StudyData | None = None) -> Self:
         """A new study with values changed by dotted names; units as text, as in a file.
 
         What another study, ``like`` (this one, if not given), has built is taken over where the two do not differ.
@@ -318,6 +318,6 @@ class Study(Brief):
             raise InputError(f"line {case.line}, case '{case.name}': {reason}", file=self.cases_file) from None
 
 
-def study(name: str | Path, changes: Mapping[str, Any] | None = None, case: str | None = None) -> Study:
+def study(name: str | Path, changes: Mapping[str, Any] | None = None, case: str | None = None) -> StudyData:
     """The study of a name or path, with values changed by dotted names: `Study.load`."""
-    return Study.load(name, changes, case)
+    return StudyData.load(name, changes, case)

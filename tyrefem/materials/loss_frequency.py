@@ -56,7 +56,7 @@ class Power(OfFrequency):
         return PowerLaw(law, self.exponent, self.reference)
 
 
-class Table(OfFrequency):
+class LossFrequencyTable(OfFrequency):
     """m tabulated: rows ``[f, tan delta]``, linear in log f and constant beyond; ``shift`` multiplies f by a_T."""
 
     law: Literal["table"]
@@ -64,7 +64,7 @@ class Table(OfFrequency):
     shift: ShiftCard | None = None
 
     @model_validator(mode="after")
-    def _rising(self) -> Table:
+    def _rising(self) -> LossFrequencyTable:
         _ = self._tabulated
         return self
 
@@ -109,7 +109,7 @@ class PronySeries(OfFrequency):
         return self._prony
 
 
-LossFrequency = Annotated[Power | Table | PronySeries, Field(discriminator="law")]
+LossFrequency = Annotated[Power | LossFrequencyTable | PronySeries, Field(discriminator="law")]
 
 
 def loss_over_frequency(law: Any, frequency: OfFrequency | None, *, master: bool) -> Loss:

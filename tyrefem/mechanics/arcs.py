@@ -38,7 +38,7 @@ def report_zones(shoulder: float) -> tuple[Zone, ...]:
 
 
 @dataclass(frozen=True)
-class Stiffness:
+class ArcStiffness:
     """What the strain energy needs of the materials. SI."""
 
     carcass: BiasPlies
@@ -137,7 +137,7 @@ class Arcs:
     """
 
     section: Any
-    stiffness: Stiffness
+    stiffness: ArcStiffness
     case: LoadCase
 
     def __post_init__(self) -> None:

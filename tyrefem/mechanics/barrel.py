@@ -17,7 +17,7 @@ from tyrefem.mechanics.strain_cycle import StrainCycle, Zone
 
 if TYPE_CHECKING:
     from tyrefem.inputs.loading import LoadCase
-    from tyrefem.inputs.study import Study
+    from tyrefem.inputs.study import StudyData
     from tyrefem.mechanics.solid.flattening import Flattened
     from tyrefem.mechanics.solid.inflation import Inflation
 
@@ -69,7 +69,7 @@ class Barrel:
         return self.energies.energy_density(zone, points)
 
 
-def provider(study: Study) -> Callable[[LoadCase], StrainCycle]:
+def provider(study: StudyData) -> Callable[[LoadCase], StrainCycle]:
     """From a load case to its strain cycle: what ``mechanics.strain = "barrel"`` chooses.
 
     The tyre is inflated once for every pressure; each deflection starts from the next smaller one already solved.

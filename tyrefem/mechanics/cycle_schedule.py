@@ -15,10 +15,10 @@ from tyrefem.brief import Brief, Stated
 from tyrefem.errors import InputError
 from tyrefem.inputs.drive import Drive
 from tyrefem.inputs.loading import GivenFootprint, LoadCase, load_case
-from tyrefem.inputs.study import Study
+from tyrefem.inputs.study import StudyData
 from tyrefem.materials.reads import ARCS, values_read
 from tyrefem.mechanics.arc_geometry import BiasPlies
-from tyrefem.mechanics.arcs import Arcs, Stiffness
+from tyrefem.mechanics.arcs import Arcs, ArcStiffness
 from tyrefem.mechanics.given import Given
 from tyrefem.mechanics.strain_cycle import StrainCycle, settled
 
@@ -108,7 +108,7 @@ BY_ELEMENTS = ("barrel", "fem")
 PRESSES = ("fem",)
 
 
-def stiffness(study: Study) -> Stiffness:
+def stiffness(study: StudyData) -> ArcStiffness:
     """What the strain energy of the arcs needs of the cards, SI.
 
     Raises
@@ -136,7 +136,7 @@ def stiffness(study: Study) -> Stiffness:
     crown_radius = section.__dict__.get("_crown_radius")
     if crown_radius is None:
         crown_radius = section.__dict__["_crown_radius"] = float(section.line.position(np.zeros(1))[0, 0])
-    return Stiffness(
+    return ArcStiffness(
         BiasPlies(_modulus(study, "carcass", "shear_modulus"), angle, crown_radius, mechanics.poisson_term),
         cord.ply_shear_modulus if mechanics.membrane_shear else np.inf,
         _modulus(study, "tread", "shear_modulus"),
@@ -146,14 +146,14 @@ def stiffness(study: Study) -> Stiffness:
     )
 
 
-def _modulus(study: Study, region: str, name: str) -> float:
+def _modulus(study: StudyData, region: str, name: str) -> float:
     modulus = getattr(study.materials[region], name)
     if modulus is None:
         raise InputError(f"the card of region '{region}' needs '{name}'", field=f"materials.{region}.{name}")
     return float(modulus.value)
 
 
-def cycle_schedule(study: Study) -> CycleSchedule:
+def cycle_schedule(study: StudyData) -> CycleSchedule:
     """Load cases and strain cycles of every phase of the drive.
 
     Raises
@@ -171,7 +171,7 @@ def cycle_schedule(study: Study) -> CycleSchedule:
     return CycleSchedule(study.card.drive, tuple(knots), tuple(cases), tuple(cycles))
 
 
-def check_cases(study: Study) -> None:
+def check_cases(study: StudyData) -> None:
     """Refuse loads and deflections that the section cannot take, as far as that is known without finite elements.
 
     Raises
@@ -186,7 +186,7 @@ def check_cases(study: Study) -> None:
                 solver.cycle(number, case)
 
 
-def same_cycles(study: Study, other: Study) -> bool:
+def same_cycles(study: StudyData, other: StudyData) -> bool:
     """Do two studies have the same strain cycles? Section, drive, mechanics, what the law reads of the cards, mesh."""
     if study.section is not other.section:
         return False
@@ -198,7 +198,7 @@ def same_cycles(study: Study, other: Study) -> bool:
     return values_read(law, study.materials) == values_read(law, other.materials)
 
 
-def rated_case(study: Study) -> LoadCase:
+def rated_case(study: StudyData) -> LoadCase:
     """The load case of the section's rated load and pressure on a flat road, as the strain law has it.
 
     Raises
@@ -222,7 +222,7 @@ def rated_case(study: Study) -> LoadCase:
 class KnotSolver:
     """Load case and strain cycle of a moment of a study's drive."""
 
-    def __init__(self, study: Study) -> None:
+    def __init__(self, study: StudyData) -> None:
         _check_footprint(study)
         self.study = study
         if study.card.mechanics.strain not in BY_ELEMENTS:
@@ -262,7 +262,7 @@ class KnotSolver:
         return self.study.as_written(error.within(field=f"drive.phases.{name}", file=self.study.file))
 
 
-def _provider(study: Study) -> Callable[[LoadCase], StrainCycle]:
+def _provider(study: StudyData) -> Callable[[LoadCase], StrainCycle]:
     """The study's strain law: from a load case to its strain cycle."""
     if study.card.mechanics.strain == "given":
         return _given(study)
@@ -278,7 +278,7 @@ def _provider(study: Study) -> Callable[[LoadCase], StrainCycle]:
     return lambda case: _cycle(study, moduli, case)
 
 
-def _given(study: Study) -> Callable[[LoadCase], StrainCycle]:
+def _given(study: StudyData) -> Callable[[LoadCase], StrainCycle]:
     section, energy = study.section, study.card.mechanics.energy
     assert energy is not None
     if section.rating is None:
@@ -288,7 +288,7 @@ def _given(study: Study) -> Callable[[LoadCase], StrainCycle]:
     return lambda case: Given(section, energy.regions, deflection, case, softened)
 
 
-def _softened(study: Study, given: float | None) -> dict[str, float]:
+def _softened(study: StudyData, given: float | None) -> dict[str, float]:
     """Region -> modulus of its compound over that at the temperature where its energy was given."""
     warm = study.temperatures
     if warm is None or given is None:
@@ -297,7 +297,7 @@ def _softened(study: Study, given: float | None) -> dict[str, float]:
     return {region: law(warm[region]) / law(given) for region, law in laws.items() if law is not None}
 
 
-def _check_footprint(study: Study) -> None:
+def _check_footprint(study: StudyData) -> None:
     law, diameter = study.card.mechanics.footprint, study.section.outer_diameter
     if isinstance(law, GivenFootprint) and law.length >= diameter:
         message = (
@@ -306,7 +306,7 @@ def _check_footprint(study: Study) -> None:
         raise InputError(message, field="mechanics.footprint.length", file=study.file)
 
 
-def _cycle(study: Study, moduli: Stiffness, case: LoadCase) -> Arcs:
+def _cycle(study: StudyData, moduli: ArcStiffness, case: LoadCase) -> Arcs:
     cycle = Arcs(study.section, moduli, case)
     try:
         _ = cycle.deflected if case.deflection > 0 else None
@@ -316,7 +316,7 @@ def _cycle(study: Study, moduli: Stiffness, case: LoadCase) -> Arcs:
     return cycle
 
 
-def _load_case(study: Study, number: int, fraction: float, pressure_ratio: float = 1.0) -> LoadCase:
+def _load_case(study: StudyData, number: int, fraction: float, pressure_ratio: float = 1.0) -> LoadCase:
     phase, section = study.card.drive.phases[number], study.section
     assert section.rating is not None
     pressure = phase.pressure.at(fraction)

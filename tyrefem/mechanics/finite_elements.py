@@ -19,7 +19,7 @@ from tyrefem.mechanics.strain_cycle import LOSS_FACTOR, Zone, by_order
 
 if TYPE_CHECKING:
     from tyrefem.inputs.loading import LoadCase
-    from tyrefem.inputs.study import Study
+    from tyrefem.inputs.study import StudyData
     from tyrefem.mechanics.footprint.footprint import Footprint
     from tyrefem.mechanics.solid.elements import Rings
     from tyrefem.mechanics.solid.inflation import Inflation
@@ -144,9 +144,9 @@ class FiniteElements:
         """(orders, n_elements, n_points) U, J/m3, at the Gauss points of the mechanical mesh, by `strain.ORDERS`."""
         if self.footprint is None:
             return np.zeros((1, *self.tyre.body.rings.weights.shape))
-        from tyrefem.mechanics.footprint.strain_harmonics import StrainCycle as Harmonics
+        from tyrefem.mechanics.footprint.strain_harmonics import StrainHarmonics
 
-        cycle = Harmonics(self.footprint)
+        cycle = StrainHarmonics(self.footprint)
         if self.one_cycle:
             return np.asarray(cycle.largest_energy()[None])
         products = cycle.storage_products
@@ -172,7 +172,7 @@ class FiniteElements:
         return self.energies.spectrum(zone, points)
 
 
-def provider(study: Study) -> Callable[[LoadCase], FiniteElements]:
+def provider(study: StudyData) -> Callable[[LoadCase], FiniteElements]:
     """From a load case to its strain cycle: what ``mechanics.strain = "fem"`` chooses.
 
     The tyre is inflated once for every pressure, and every load, pressure and drum is solved once, also for other

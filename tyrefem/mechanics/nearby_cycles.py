@@ -21,7 +21,7 @@ from tyrefem.mechanics.strain_cycle import settled
 from tyrefem.output import atomic_path
 
 if TYPE_CHECKING:
-    from tyrefem.inputs.study import Study
+    from tyrefem.inputs.study import StudyData
 
 _AMOUNT = re.compile(r"^\s*([-+]?(?:\d+\.?\d*|\.\d+)(?:[eE][-+]?\d+)?)\s*(.*?)\s*$", re.DOTALL)
 Solved = tuple[LoadCase, PointEnergies]
@@ -77,7 +77,7 @@ class NearbyCycles:
     study : with a strain law by finite elements. solved : may be shared by studies that differ in their drives.
     """
 
-    study: Study
+    study: StudyData
     solved: SolvedCycles = field(default_factory=SolvedCycles)
 
     @functools.cached_property
@@ -94,7 +94,7 @@ class NearbyCycles:
             if not number.idle and not same_cycles(self._up(number), self.study)
         )
 
-    def of(self, study: Study) -> CycleSchedule | None:
+    def of(self, study: StudyData) -> CycleSchedule | None:
         """The strain cycles of another study; None where it differs in more than `numbers`.
 
         Raises
@@ -129,7 +129,7 @@ class NearbyCycles:
             )
         return CycleSchedule(study.card.drive, own.knots, tuple(cases), tuple(cycles))
 
-    def _up(self, number: UncertainNumber) -> Study:
+    def _up(self, number: UncertainNumber) -> StudyData:
         return self.study.replace(number.changes(1.0 + number.sd))
 
     @functools.cached_property
@@ -169,7 +169,7 @@ def _energies(cycle: Any) -> PointEnergies:
     return energies
 
 
-def _factor(study: Study, number: UncertainNumber) -> float:
+def _factor(study: StudyData, number: UncertainNumber) -> float:
     """What a study's number is over that of another; 1: as it was, or not to be compared."""
     now, before = written_at(study, number.keys[0]), number.written[0]
     if now == before:

@@ -17,7 +17,7 @@ from numpy.typing import NDArray
 
 from tyrefem.errors import InputError
 from tyrefem.estimates import work as estimate
-from tyrefem.inputs.study import Study
+from tyrefem.inputs.study import StudyData
 from tyrefem.output import versions
 from tyrefem.realtime.export import arrays_of, outputs_of, write
 from tyrefem.realtime.inputs import NAMES, Box, Course, box_of, random_course, steady
@@ -46,7 +46,7 @@ class Exam:
 
 
 @dataclass(frozen=True, eq=False)
-class Certificate:
+class RealTimeCertificate:
     """Largest differences between the real-time model, stepped by 1 s, and full runs that it had not learnt from.
 
     Parameters
@@ -114,12 +114,14 @@ def differences(tyre: RealTimeTyre, course: Course, full: Mapping[str, Any], ste
 
 def certificate(
     errors: Sequence[Mapping[str, float]], tolerance: float, trained: int, duration: float, tables: dict[str, float]
-) -> Certificate:
+) -> RealTimeCertificate:
     """Of errors of steady drives, the first half, and of changing ones."""
     half = len(errors) // 2
     kinds = [{name: max(one[name] for one in part) for name in part[0]} for part in (errors[:half], errors[half:])]
     worst = max(error for kind in kinds for name, error in kind.items() if name != "rolling_resistance")
-    return Certificate(kinds[0], kinds[1], worst, tolerance, (half, len(errors) - half), trained, duration, tables)
+    return RealTimeCertificate(
+        kinds[0], kinds[1], worst, tolerance, (half, len(errors) - half), trained, duration, tables
+    )
 
 
 Array = NDArray[np.float64]
@@ -139,7 +141,7 @@ READINGS = 900
 
 
 def export(
-    study: Study,
+    study: StudyData,
     path: str | Path,
     *,
     ranges: Mapping[str, tuple[Any, Any]] | None = None,
@@ -148,7 +150,7 @@ def export(
     scheduler: Scheduler | None = None,
     progress: Callable[[str, int, int], None] | None = None,
     settings: ExportSettings | None = None,
-) -> Certificate:
+) -> RealTimeCertificate:
     """Train a real-time model of a study, certify it, and write it to one file.
 
     Parameters
@@ -215,7 +217,7 @@ def _corners() -> list[Array]:
 
 @dataclass(eq=False)
 class _Tool:
-    study: Study
+    study: StudyData
     box: Box
     horizon: float
     settings: ExportSettings
@@ -231,7 +233,7 @@ class _Tool:
         self.tables = self.probe.tables()
         self.packed = bundle(self.study)
 
-    def _expect(self, study: Study) -> None:
+    def _expect(self, study: StudyData) -> None:
         """Refuse full runs that do not fit side by side in memory; warn of long work."""
         run, workers = RunEstimate.of(study), getattr(self.scheduler, "workers", 1)
         if isinstance(self.scheduler, Here | Local):

@@ -12,7 +12,7 @@ from numpy.typing import NDArray
 
 from tyrefem.conduction.points import located
 from tyrefem.errors import InputError
-from tyrefem.inputs.study import Study
+from tyrefem.inputs.study import StudyData
 from tyrefem.output import atomic_path, jsonable
 from tyrefem.output.file import mark_archive
 from tyrefem.realtime.tables import COLD, FINE, Probe, Tables, loss_tables
@@ -68,7 +68,7 @@ def arrays_of(model: ReducedModel, probe: Probe, tables: Tables, hot: Array) -> 
     }
 
 
-def outputs_of(study: Study, balance: ReducedBalance) -> list[dict[str, str]]:
+def outputs_of(study: StudyData, balance: ReducedBalance) -> list[dict[str, str]]:
     """Name, unit and meaning of every output, in order."""
     found = [{"name": name, "unit": "degC", "what": f"sensor {name}"} for name in study.sensors]
     if RIM in balance.reservoirs:
@@ -82,7 +82,7 @@ def outputs_of(study: Study, balance: ReducedBalance) -> list[dict[str, str]]:
     ]
 
 
-def _read(model: ReducedModel, study: Study, balance: ReducedBalance) -> tuple[Array, Array]:
+def _read(model: ReducedModel, study: StudyData, balance: ReducedBalance) -> tuple[Array, Array]:
     """(n_read, n) rows on the state of sensors and a lumped rim, and their lags, s."""
     places, section = true_places(study), study.section
     rows = np.zeros((len(places), len(balance.start)))
@@ -115,7 +115,7 @@ def _starts(probe: Probe) -> Array:
     return np.where(first == second, first, np.nan)
 
 
-def _gas(study: Study, tyre: RollingTyre) -> Array:
+def _gas(study: StudyData, tyre: RollingTyre) -> Array:
     """Heat capacity of the contained air: c0 + c1 (p + p_atm) / T, J/K; empty where its temperature is held."""
     law, volume, effects = study.card.boundaries.contained_air, study.section.gas_volume(), tyre.acting
 

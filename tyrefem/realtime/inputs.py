@@ -10,7 +10,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from tyrefem.errors import InputError
-from tyrefem.inputs.study import Study
+from tyrefem.inputs.study import StudyData
 from tyrefem.quantity import parse
 from tyrefem.realtime.tyre import INPUTS, Inputs
 
@@ -49,7 +49,7 @@ class Box:
         return self.low + (self.high - self.low) * np.asarray(places)
 
 
-def box_of(study: Study, given: Mapping[str, tuple[Any, Any]] | None = None) -> Box:
+def box_of(study: StudyData, given: Mapping[str, tuple[Any, Any]] | None = None) -> Box:
     """The box round a study's drive: `FACTORS` and `AROUND`, and what is given in their place.
 
     Parameters
@@ -94,7 +94,7 @@ def _pair(name: str, given: Any) -> tuple[Any, Any]:
     return given[0], given[-1]
 
 
-def _around(study: Study, name: str) -> tuple[float, float]:
+def _around(study: StudyData, name: str) -> tuple[float, float]:
     drive = study.card.drive
     if name == "load" and any(phase.load is None for phase in drive.phases):
         raise InputError("the study's drive gives a deflection: give a range of loads", field="load")
@@ -141,7 +141,7 @@ class Course:
         """Does a part begin at a time?"""
         return bool(np.abs(self.ends[:-1] - t).min() < 1e-6)
 
-    def study(self, study: Study, every: float = 1.0) -> Study:
+    def study(self, study: StudyData, every: float = 1.0) -> StudyData:
         """The study with this drive, read every so many seconds."""
         phases = []
         for k, (a, b) in enumerate(zip(self.first, self.last, strict=True)):
@@ -167,7 +167,7 @@ def _written(first: Sequence[float], last: Sequence[float]) -> dict[str, Any]:
     return found
 
 
-def _kept(study: Study) -> dict[str, Any]:
+def _kept(study: StudyData) -> dict[str, Any]:
     drive = study.data["drive"]
     phases = drive.get("phases", [{}])
     if any("slip" in key for one in (drive, *phases) for key in one):

@@ -5,10 +5,10 @@ from __future__ import annotations
 from dataclasses import astuple, dataclass
 
 from tyrefem.errors import InputError
-from tyrefem.reduced.training import Fineness
+from tyrefem.reduced.training import ReducedFineness
 
 #: Few modes: a step costs their square, and its matrix their cube.
-FINENESS = Fineness(modes_tolerance=2e-4, source_tolerance=2e-6, most_modes=60, most_sources=60, fields=40)
+FINENESS = ReducedFineness(modes_tolerance=2e-4, source_tolerance=2e-6, most_modes=60, most_sources=60, fields=40)
 
 
 @dataclass(frozen=True)
@@ -47,7 +47,7 @@ class ExportSettings:
     learn: int = 6
     fresh: int = 4
     rounds: int = 4
-    fineness: Fineness = FINENESS
+    fineness: ReducedFineness = FINENESS
     seed: int = 11
 
     def __post_init__(self) -> None:

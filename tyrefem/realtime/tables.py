@@ -10,10 +10,10 @@ import numpy as np
 from numpy.typing import NDArray
 
 from tyrefem.errors import InputError
-from tyrefem.inputs.study import Study
+from tyrefem.inputs.study import StudyData
 from tyrefem.realtime.inputs import NAMES, Box, Course
 from tyrefem.realtime.settings import COSTLY, TablePoints
-from tyrefem.realtime.tyre import STANDSTILL, Table
+from tyrefem.realtime.tyre import STANDSTILL, CubicTable
 from tyrefem.reduced.balance import ReducedBalance, reduced_balance
 from tyrefem.reduced.model import ReducedModel
 from tyrefem.simulation.heat_source import HeatSource
@@ -71,7 +71,9 @@ class Tables:
         speeds = np.maximum(places[:, 0], 1e-3)
         films, heats = probe.at(speeds, places[:, 1:3])
         arrays = self.arrays()
-        film, heat, bend = (Table(arrays[f"{name}_table"], arrays[f"{name}_axes"]) for name in ("film", "heat", "bend"))
+        film, heat, bend = (
+            CubicTable(arrays[f"{name}_table"], arrays[f"{name}_axes"]) for name in ("film", "heat", "bend")
+        )
         off = np.zeros((count, 2))
         for k, (load, pressure) in enumerate(places[:, 1:3]):
             where = float(bend(float(np.sqrt(load)), float(pressure))[0]), float(pressure)
@@ -89,7 +91,7 @@ class Probe:
     base : a tyre of the study, whose mesh is taken. points : of the tables; None: as many as the strain law allows.
     """
 
-    study: Study
+    study: StudyData
     box: Box
     base: RollingTyre
     points: TablePoints | None = None

@@ -99,7 +99,7 @@ class RealTimeTyre:
         width = data["loss_table"].shape[1]
         self._loss, self._row = data["loss_table"].ravel(), data["loss_row"].astype(np.intp) * width
         self._cold, self._per_kelvin, self._last = float(data["loss_axis"][0]), 1 / data["loss_axis"][1], width - 1.001
-        tables = (Table(data[f"{name}_table"], data[f"{name}_axes"]) for name in ("film", "heat", "bend"))
+        tables = (CubicTable(data[f"{name}_table"], data[f"{name}_axes"]) for name in ("film", "heat", "bend"))
         self._films, self._heat, self._bend = tables
         self._read, self._lag, self._power = data["read"], data["lag"], data["power"]
         hot = np.zeros((len(data["hot"]), self._n))
@@ -284,7 +284,7 @@ def _five(inputs: Inputs) -> list[float]:
     return [inputs.speed, inputs.load, inputs.pressure, inputs.ambient, road]
 
 
-class Table:
+class CubicTable:
     """Values on even axes: cubic through the four nearest points of every axis, fewer where an axis has fewer."""
 
     def __init__(self, values: Array, axes: Array) -> None:

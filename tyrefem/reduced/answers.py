@@ -6,7 +6,7 @@ from collections.abc import Iterator, Sequence
 from typing import Any
 
 from tyrefem.errors import InputError
-from tyrefem.inputs.study import Study
+from tyrefem.inputs.study import StudyData
 from tyrefem.reduced.balance import ReducedBalance, reduced_balance
 from tyrefem.reduced.batch import Batch
 from tyrefem.reduced.exponential import Marched
@@ -24,7 +24,7 @@ SIDE_BY_SIDE = 32
 TIME_TOLERANCE = 0.2
 
 
-def reduced_answers(model: ReducedModel, studies: Sequence[Study], time_to: float | None) -> list[dict[str, Any]]:
+def reduced_answers(model: ReducedModel, studies: Sequence[StudyData], time_to: float | None) -> list[dict[str, Any]]:
     """``{"answers"}``, ``{"failure"}`` or ``{"not_reducible"}`` per study."""
     found: list[dict[str, Any]] = [{} for _ in studies]
     for number, outcome in reduced_outcomes(model, studies):
@@ -33,7 +33,7 @@ def reduced_answers(model: ReducedModel, studies: Sequence[Study], time_to: floa
 
 
 def reduced_outcomes(
-    model: ReducedModel, studies: Sequence[Study], tolerance: float = TIME_TOLERANCE
+    model: ReducedModel, studies: Sequence[StudyData], tolerance: float = TIME_TOLERANCE
 ) -> Iterator[tuple[int, Variant | dict[str, str]]]:
     """(number, variant) of every study, marched side by side; or ``{"failure"}`` or ``{"not_reducible"}``.
 

@@ -39,13 +39,13 @@ def march(batch: Batch) -> Marched:
         # Between load cases the heat is linear in time: no window may reach over one.
         kinks = [start + (end - start) * one for one in knots[number] if 0 < one < 1]
         for first, last in pairwise([start, *kinks, end]):
-            phase = _Phase(batch, number, first, last, y)
+            phase = _MarchedPhase(batch, number, first, last, y)
             windows += phase.run()
             y = phase.y
     return Marched(batch, windows, y)
 
 
-class _Phase:
+class _MarchedPhase:
     """One phase: data are seen from inside, steady ones only once."""
 
     def __init__(self, batch: Batch, number: int, start: float, end: float, y: Array) -> None:

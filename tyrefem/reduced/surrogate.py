@@ -11,10 +11,10 @@ from numpy.typing import NDArray
 
 from tyrefem.brief import Brief
 from tyrefem.inputs.changes import all_changed, value_at
-from tyrefem.inputs.study import Study
+from tyrefem.inputs.study import StudyData
 from tyrefem.reduced.answers import reduced_answers
 from tyrefem.reduced.model import NotReducibleError, ReducedModel
-from tyrefem.reduced.training import Fineness
+from tyrefem.reduced.training import ReducedFineness
 from tyrefem.reduced.training_rounds import Packed, School, Tick, pack
 from tyrefem.variants.execution import SweepSettings
 from tyrefem.variants.plan import Plan
@@ -41,7 +41,7 @@ UNSEEN = ("title", "measured", "cases", "diagnosis", "uncertainty")
 
 
 @dataclass(frozen=True, eq=False)
-class Certificate(Brief):
+class SurrogateCertificate(Brief):
     """What fresh full runs say of a reduced model.
 
     Parameters
@@ -70,7 +70,7 @@ class Surrogate(Brief):
 
     model: ReducedModel
     varied: tuple[Varied, ...]
-    certificate: Certificate
+    certificate: SurrogateCertificate
     time_to: float | None = None
 
     def _title(self) -> str:
@@ -88,7 +88,7 @@ class Surrogate(Brief):
         """To be sent to other processes; ``base`` is the study it was made for."""
         return pack(self.model, base)
 
-    def answers(self, studies: Sequence[Study]) -> list[dict[str, Any]]:
+    def answers(self, studies: Sequence[StudyData]) -> list[dict[str, Any]]:
         """``{"answers"}`` of studies, marched side by side; ``{"not_reducible": why}`` of one that is outside the box,
         or differs in something that the box does not vary."""
         reasons = [outside(study, self.model.base.study, self.varied) for study in studies]
@@ -100,7 +100,7 @@ class Surrogate(Brief):
         return found
 
 
-def outside(study: Study, base: Study, varied: Sequence[Varied]) -> str:
+def outside(study: StudyData, base: StudyData, varied: Sequence[Varied]) -> str:
     """Why a study is not in a box about another; empty: it is."""
     for one in varied:
         value = value_at(study.data, one.key, study.folder)
@@ -134,7 +134,7 @@ def surrogate(
     *,
     tolerance: float = 0.01,
     scheduler: Scheduler | None = None,
-    choice: Fineness | None = None,
+    choice: ReducedFineness | None = None,
     seed: int = 7,
     progress: Tick | None = None,
     settings: SweepSettings | None = None,
@@ -155,11 +155,11 @@ def surrogate(
     if tolerance < HOPELESS:
         raise NotReducibleError(f"no reduced model is certified to {tolerance:g} K; allowed: {HOPELESS:g} K or more")
     tick = progress or (lambda what, done, total: None)
-    lesson = School(plan, scheduler or Here(), choice or Fineness.of(tolerance), tick, seed)
+    lesson = School(plan, scheduler or Here(), choice or ReducedFineness.of(tolerance), tick, seed)
     # Two opposite corners: the rest of the box is learnt from residuals.
     places = [np.zeros(len(plan.varied)), np.ones(len(plan.varied))]
     lesson.run(places, COARSER * max(tolerance, FINEST), "training", asked=False)
-    certificate: Certificate | None = None
+    certificate: SurrogateCertificate | None = None
     for trial in range(settings.trials):
         model = lesson.rounds(1 if trial else settings.rounds, ENOUGH * tolerance)
         places = lesson.fresh(settings.fresh)
@@ -185,12 +185,12 @@ def surrogate(
 
 def certified(
     pairs: Sequence[tuple[Mapping[str, Any], Mapping[str, Any]]], tolerance: float, trained_on: int, amended: int
-) -> Certificate:
+) -> SurrogateCertificate:
     """The certificate of pairs (reduced, full) of answers."""
     names = [name for name, value in pairs[0][1].items() if isinstance(value, float)]
     errors = {name: max(abs(a[name] - b[name]) for a, b in pairs) for name in names}
     worst = max(temperature_error(a, b) for a, b in pairs)
-    return Certificate(errors, len(pairs), worst, tolerance, trained_on, amended)
+    return SurrogateCertificate(errors, len(pairs), worst, tolerance, trained_on, amended)
 
 
 def check_varied(plan: Plan) -> None:

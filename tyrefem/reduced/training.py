@@ -12,7 +12,7 @@ from numpy.typing import NDArray
 from tyrefem.conduction.operators import Operators
 from tyrefem.reduced.model import ReducedModel
 from tyrefem.reduced.pod import modes, places
-from tyrefem.simulation.result import Result
+from tyrefem.simulation.result import ResultData
 from tyrefem.simulation.rolling_tyre import RollingTyre
 
 Array = NDArray[np.float64]
@@ -22,7 +22,7 @@ NEAR, EVEN = 0.005, 0.5
 
 
 @dataclass(frozen=True)
-class Fineness:
+class ReducedFineness:
     """How fine a reduced model is.
 
     Parameters
@@ -40,7 +40,7 @@ class Fineness:
     fields: int = 14
 
     @classmethod
-    def of(cls, tolerance: float) -> Fineness:
+    def of(cls, tolerance: float) -> ReducedFineness:
         """Fine enough for a tolerance, K: modes leave out a twenty-fifth of it."""
         return cls(0.04 * tolerance, 8e-4 * tolerance)
 
@@ -62,7 +62,7 @@ class Snapshots:
     sources: Array
 
 
-def snapshots(result: Result, count: int) -> Snapshots:
+def snapshots(result: ResultData, count: int) -> Snapshots:
     """Fields and heat sources of a run, dense where temperatures change fast: after every start of a phase."""
     times, tyre = result.times, result.tyre
     spread = np.unique(np.round(np.linspace(0, len(times) - 1, count)).astype(int))
@@ -94,9 +94,9 @@ def sources_at(ops: Operators, tyre: RollingTyre, t: float, field: Array) -> Arr
     return np.concatenate([source(ops.nodes(zone), t, field[ops.dofs(zone)]) for zone, source in tyre.sources.items()])
 
 
-def trained(base: RollingTyre, learnt: Sequence[Snapshots], choice: Fineness | None = None) -> ReducedModel:
+def trained(base: RollingTyre, learnt: Sequence[Snapshots], choice: ReducedFineness | None = None) -> ReducedModel:
     """A reduced model on a tyre's mesh, from what variants on that mesh have taught."""
-    choice = choice or Fineness()
+    choice = choice or ReducedFineness()
     ops = base.problem.operators
     fields = np.vstack([one.fields for one in learnt])
     hot = hot_nodes(base, learnt)

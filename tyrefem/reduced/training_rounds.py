@@ -19,7 +19,7 @@ from tyrefem.reduced.answers import reduced_answers, side_by_side
 from tyrefem.reduced.model import NotReducibleError, ReducedModel
 from tyrefem.reduced.residual import TIME_TOLERANCE as CORRECTED_TO
 from tyrefem.reduced.residual import correction
-from tyrefem.reduced.training import Fineness, Snapshots, snapshots, trained, training_run
+from tyrefem.reduced.training import ReducedFineness, Snapshots, snapshots, trained, training_run
 from tyrefem.simulation.rolling_tyre import RollingTyre
 from tyrefem.simulation.run import run
 from tyrefem.variants.answers import answers
@@ -193,7 +193,7 @@ def amend(work: Amendment, packed: Packed) -> dict[str, Any]:
 class School:
     """Teaches: full runs, and corrections by residuals."""
 
-    def __init__(self, plan: Plan, scheduler: Scheduler, choice: Fineness, tick: Tick, seed: int) -> None:
+    def __init__(self, plan: Plan, scheduler: Scheduler, choice: ReducedFineness, tick: Tick, seed: int) -> None:
         from scipy.stats import qmc
 
         self.plan, self.scheduler, self.choice, self.tick = plan, scheduler, choice, tick

@@ -11,10 +11,10 @@ from numpy.typing import NDArray
 
 from tyrefem.conduction.field import Peak
 from tyrefem.geometry.wall import inside
-from tyrefem.inputs.study import Study
+from tyrefem.inputs.study import StudyData
 from tyrefem.reduced.readout import Readout
 from tyrefem.simulation.heat_budget import HeatBudget
-from tyrefem.simulation.result import Result
+from tyrefem.simulation.result import ResultData
 from tyrefem.simulation.rolling_resistance import RollingResistance, rolling_resistance
 from tyrefem.simulation.rolling_tyre import RollingTyre
 from tyrefem.simulation.sensors import recorded, true_places
@@ -46,7 +46,7 @@ class Variant:
         return self.readout.marched.batch.balances[self.number].tyre
 
     @property
-    def study(self) -> Study:
+    def study(self) -> StudyData:
         """What it is."""
         return self.tyre.study
 
@@ -56,10 +56,10 @@ class Variant:
         return self.readout.times
 
     @functools.cached_property
-    def result(self) -> Result:
+    def result(self) -> ResultData:
         """The whole result: every field, the budget over time."""
         _, fields = output_times(self.tyre)
-        return Result(self.study, self.tyre, self.readout.marched.history(self.number, self.times), fields, 0.0)
+        return ResultData(self.study, self.tyre, self.readout.marched.history(self.number, self.times), fields, 0.0)
 
     def __getattr__(self, name: str) -> Any:
         if name.startswith("__"):
@@ -105,7 +105,7 @@ class Variant:
         """A lumped rim, (n_times,) degC; None where its temperature is given."""
         return self.readout.reservoirs(self.number).get(RIM)
 
-    pressure_at = Result.pressure_at
+    pressure_at = ResultData.pressure_at
 
     @functools.cached_property
     def readings(self) -> pd.DataFrame:

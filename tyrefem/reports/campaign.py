@@ -13,7 +13,7 @@ from tyrefem.output import atomic_path, versions, write_json
 from tyrefem.reports.figures.style import FONT, TITLE, add_axes, figure, line_style, plain, png, short, tidy, title
 from tyrefem.reports.run_files import run_files, write_tables
 from tyrefem.reports.vtk import file_names
-from tyrefem.sweep.campaign import Campaign, row
+from tyrefem.sweep.campaign import CampaignData, row
 
 if TYPE_CHECKING:
     import pandas as pd
@@ -24,7 +24,7 @@ if TYPE_CHECKING:
 MOST_NAMES = 60
 
 
-def campaign_files(campaign: Campaign) -> list[str]:
+def campaign_files(campaign: CampaignData) -> list[str]:
     """The files that `run_campaign` and its report may write, relative to their folder."""
     cases = [f"cases/{escape(case.name)}/{name}" for case in campaign.cases for name in run_files(campaign.study)]
     vtk = [f"cases/{escape(case.name)}/vtk/{name}" for case in campaign.cases for name in file_names(case.name)]
@@ -33,7 +33,7 @@ def campaign_files(campaign: Campaign) -> list[str]:
 
 
 def run_campaign(
-    campaign: Campaign,
+    campaign: CampaignData,
     folder: Path,
     progress: Callable[[int, int], None] | None = None,
     each: Callable[[Any, Path], None] | None = None,
@@ -61,7 +61,7 @@ def run_campaign(
     return table
 
 
-def _write_table(campaign: Campaign, rows: list[dict[str, Any]], folder: Path) -> pd.DataFrame:
+def _write_table(campaign: CampaignData, rows: list[dict[str, Any]], folder: Path) -> pd.DataFrame:
     import pandas as pd
 
     names = dict.fromkeys(name for entry in rows for name in entry if name != "failure")
@@ -73,7 +73,7 @@ def _write_table(campaign: Campaign, rows: list[dict[str, Any]], folder: Path) -
     return table
 
 
-def _summary(campaign: Campaign, table: pd.DataFrame, complete: bool) -> dict[str, Any]:
+def _summary(campaign: CampaignData, table: pd.DataFrame, complete: bool) -> dict[str, Any]:
     return {
         "study": campaign.study.name,
         "title": campaign.study.title,
@@ -88,7 +88,7 @@ def _summary(campaign: Campaign, table: pd.DataFrame, complete: bool) -> dict[st
     }
 
 
-def write_campaign_report(campaign: Campaign, table: pd.DataFrame, path: str | Path) -> Path:
+def write_campaign_report(campaign: CampaignData, table: pd.DataFrame, path: str | Path) -> Path:
     """Write one self-contained page: all cases in a table, two pictures, failed cases with their reasons.
 
     ``table`` is what `run_campaign` returns.
@@ -125,7 +125,7 @@ def finished(table: pd.DataFrame) -> pd.DataFrame:
     return done.sort_values(["section", "pressure_Pa", "load_N"], kind="stable") if len(done) else done
 
 
-def _one_line(campaign: Campaign, done: pd.DataFrame) -> str:
+def _one_line(campaign: CampaignData, done: pd.DataFrame) -> str:
     counted = f"{len(done)} of {len(campaign.cases)} cases finished."
     if not len(done):
         return counted

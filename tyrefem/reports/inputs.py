@@ -18,14 +18,14 @@ from tyrefem.reports.words import number
 
 if TYPE_CHECKING:
     from tyrefem.cards import Card
-    from tyrefem.inputs.study import Study
+    from tyrefem.inputs.study import StudyData
     from tyrefem.inputs.study_card import Feedback, Mechanics
     from tyrefem.materials.card import LossTangent, MaterialCard
     from tyrefem.materials.elasticity import Cords
     from tyrefem.materials.properties import Softening
 
 
-def material_rows(study: Study) -> tuple[list[dict[str, Any]], list[str]]:
+def material_rows(study: StudyData) -> tuple[list[dict[str, Any]], list[str]]:
     """One row per number: region, card, property, value, uncertainty, source, estimate or not; and the estimates."""
     rows, estimates = [], []
     idle = {table for number in study.uncertain_numbers if number.idle for table in number.tables}
@@ -118,7 +118,7 @@ def _law(law: Any, unit: str) -> str:
     return f"{ends} {unit} from {number(low)} to {number(high)} °C"
 
 
-def boundary_rows(study: Study) -> list[list[str]]:
+def boundary_rows(study: StudyData) -> list[list[str]]:
     """Side, law, what it says, and its numbers in SI."""
     laws = study.card.boundaries
     rows = []
@@ -130,7 +130,7 @@ def boundary_rows(study: Study) -> list[list[str]]:
     return rows
 
 
-def mechanics_rows(study: Study) -> list[list[str]]:
+def mechanics_rows(study: StudyData) -> list[list[str]]:
     """Name and value of every choice about strain and load."""
     mechanics = study.card.mechanics
     law, energy = mechanics.load_law, mechanics.energy if mechanics.strain == "given" else None
@@ -158,7 +158,7 @@ def mechanics_rows(study: Study) -> list[list[str]]:
     ]
 
 
-def _load(study: Study) -> list[str]:
+def _load(study: StudyData) -> list[str]:
     """What a strain law that presses the tyre itself makes of the study's laws of load and footprint."""
     words = "by finite elements, footprint and rolling radius too; the study's load law and footprint law are not read"
     if any(effect.name in ("pressure-rise", "pressure-loss") for effect in study.effects):
@@ -174,7 +174,7 @@ def _feedback(mechanics: Mechanics) -> list[list[str]]:
     return [["feedback of temperature", f"{' and '.join(acting) or 'nothing'}, within {number(choice.tolerance)} K"]]
 
 
-def effect_rows(study: Study) -> list[list[str]]:
+def effect_rows(study: StudyData) -> list[list[str]]:
     """Name, sentence, values with their standard deviations, and where they come from, of every effect at work."""
     rows = []
     for effect in study.effects:
@@ -214,7 +214,7 @@ def _unit(parts: list[Any]) -> str:
     return ""
 
 
-def section_sources(study: Study) -> list[list[str]]:
+def section_sources(study: StudyData) -> list[list[str]]:
     """Table of the section's card -> the source it names."""
     from tyrefem import library
 
@@ -235,7 +235,7 @@ def _sources(data: Any, where: str) -> Iterator[tuple[str, str]]:
             yield from _sources(entry, where)
 
 
-def study_text(study: Study) -> tuple[str, bool]:
+def study_text(study: StudyData) -> tuple[str, bool]:
     """The study's file, and whether it is the file as written; if values were changed, the study as it was run."""
     if study.file is not None and study.file.is_file():
         text = study.file.read_text(encoding="utf-8-sig")
@@ -294,7 +294,7 @@ LOCKED = {
 }
 
 
-def assumptions(study: Study, estimates: list[str]) -> list[tuple[str, str]]:
+def assumptions(study: StudyData, estimates: list[str]) -> list[tuple[str, str]]:
     """(what, why it matters); ``estimates`` are the material entries that are marked as estimates."""
     mechanics = study.card.mechanics
     drive = study.card.drive

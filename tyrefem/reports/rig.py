@@ -23,12 +23,12 @@ from tyrefem.rig.verdict import sentences, spoken
 
 if TYPE_CHECKING:
     from tyrefem.rig.card import RigCard
-    from tyrefem.rig.identification import Identification
+    from tyrefem.rig.identification import IdentificationData
     from tyrefem.rig.layer_study import LayerStudy
     from tyrefem.rig.simulation import Simulation
 
 
-def page(found: Identification, pictures: Mapping[str, bytes], cards: Mapping[str, Any]) -> str:
+def page(found: IdentificationData, pictures: Mapping[str, bytes], cards: Mapping[str, Any]) -> str:
     """The page's HTML; ``pictures`` maps file name -> PNG, ``cards`` layer -> material card data."""
     from jinja2 import Environment, FileSystemLoader, StrictUndefined
 
@@ -59,7 +59,7 @@ FILES = ("report.html", "rig.json", "estimates.csv", "residuals.csv", "residuals
 LAYER_FILES = ("layers.csv", "layers.png")
 
 
-def save(found: Identification, folder: str | Path, base: str | Sequence[str] | None = None) -> Path:
+def save(found: IdentificationData, folder: str | Path, base: str | Sequence[str] | None = None) -> Path:
     """Write an identification: ``report.html``, ``rig.json``, ``summary.json``, CSV tables, PNGs, material cards.
 
     ``base``: the card, or ``LAYER=CARD`` entries, that give what the rig cannot know; without it no card is written.
@@ -98,7 +98,7 @@ def save(found: Identification, folder: str | Path, base: str | Sequence[str] | 
     return folder
 
 
-def _residuals(found: Identification) -> Any:
+def _residuals(found: IdentificationData) -> Any:
     import pandas as pd
 
     parts = [

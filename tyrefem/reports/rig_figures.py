@@ -36,15 +36,15 @@ if TYPE_CHECKING:
     from matplotlib.figure import Figure
 
     from tyrefem.rig.card import Phases, RigCard
-    from tyrefem.rig.grid import Grid
-    from tyrefem.rig.identification import Identification
+    from tyrefem.rig.grid import PatchGrid
+    from tyrefem.rig.identification import IdentificationData
     from tyrefem.rig.layer_study import LayerStudy
     from tyrefem.rig.noise import Block
 
 Array = NDArray[Any]
 
 
-def pictures(found: Identification) -> dict[str, bytes]:
+def pictures(found: IdentificationData) -> dict[str, bytes]:
     """File name -> PNG: ``residuals-RUN``, ``intervals``, ``correlation``."""
     drawn = {}
     for test in found.tests:
@@ -62,7 +62,7 @@ def bands(phases: Phases) -> list[tuple[str, float, float]]:
     return [(name, float(a), float(b)) for name, a, b in named if b > a]
 
 
-def residuals(found: Identification, run: str) -> Figure:
+def residuals(found: IdentificationData, run: str) -> Figure:
     """Readings and the computed line of every sensor in one test, and what is left between them."""
     blocks = [block for block in found.fit.blocks if block.series.test == run]
     columns = len(blocks)
@@ -84,7 +84,7 @@ def residuals(found: Identification, run: str) -> Figure:
     return drawn
 
 
-def _histories(found: Identification, block: Block, high: Axes, low: Axes) -> None:
+def _histories(found: IdentificationData, block: Block, high: Axes, low: Axes) -> None:
     one, noise = block.series, found.fit.noise
     t = one.times / 60
     shown = bands(found.card.phases)
@@ -111,7 +111,7 @@ def references(card: RigCard) -> str:
     return "at " + ", ".join(f"{one.reference_temperature:g} °C ({one.name})" for one in card.layers)
 
 
-def intervals(found: Identification) -> Figure:
+def intervals(found: IdentificationData) -> Figure:
     """Every property: first guess and identified value with their 95 % intervals, relative to the identified value."""
     shown = found.properties
     drawn = figure(8.2, 0.42 * len(shown) + 0.95 + TITLE)
@@ -145,7 +145,7 @@ def intervals(found: Identification) -> Figure:
     return drawn
 
 
-def correlation(found: Identification) -> Figure:
+def correlation(found: IdentificationData) -> Figure:
     """Correlation of every pair of free parameters; strong ones with their number."""
     n = len(found.estimates)
     size = 0.36 * n
@@ -210,7 +210,7 @@ def histories(
     return drawn
 
 
-def heated_patch(grid: Grid, temperatures: Array, borders: Sequence[float], words: str) -> Figure:
+def heated_patch(grid: PatchGrid, temperatures: Array, borders: Sequence[float], words: str) -> Figure:
     """Temperature in a cut through the beam's axis; the laser comes from above."""
     reach = float(grid.along[-1])
     s = np.concatenate([[0.0], np.linspace(0.0, 1.0, 160)[1:] ** 1.3 * reach])

@@ -32,10 +32,10 @@ from tyrefem.reports.words import number, seconds
 
 if TYPE_CHECKING:
     from tyrefem.simulation.phases import PhaseState
-    from tyrefem.simulation.result import Result
+    from tyrefem.simulation.result import ResultData
 
 
-def sliding_card(result: Result) -> list[dict[str, str]]:
+def sliding_card(result: ResultData) -> list[dict[str, str]]:
     """The hottest contact; nothing for a run without slip."""
     if result.sliding is None:
         return []
@@ -51,7 +51,7 @@ def sliding_card(result: Result) -> list[dict[str, str]]:
     ]
 
 
-def sliding_rows(result: Result) -> list[list[str]]:
+def sliding_rows(result: ResultData) -> list[list[str]]:
     """One row per phase with slip, as the template's heads say."""
     if result.sliding is None:
         return []
@@ -72,7 +72,7 @@ def sliding_rows(result: Result) -> list[list[str]]:
 Rows = list[list[str]]
 
 
-def content(result: Result) -> dict[str, Any]:
+def content(result: ResultData) -> dict[str, Any]:
     """Everything the template needs, as text."""
     study = result.study
     materials, estimates = material_rows(study)
@@ -104,13 +104,13 @@ def content(result: Result) -> dict[str, Any]:
     }
 
 
-def _interrupted(result: Result) -> str:
+def _interrupted(result: ResultData) -> str:
     if not result.history.interrupted:
         return ""
     return f"{seconds(result.times[-1])} of {seconds(result.study.card.drive.end)}"
 
 
-def headline(result: Result) -> list[dict[str, str]]:
+def headline(result: ResultData) -> list[dict[str, str]]:
     """The numbers that decide: label, value and what belongs to it."""
     found = summary(result)
     hot, resistance, air = found["hottest"], found["rolling_resistance"], found["contained_air"]
@@ -170,16 +170,16 @@ def _area(phase: PhaseState) -> str:
     return "" if phase.footprint_area is None else f"{phase.footprint_area * 1e4:.0f} cm² in contact, "
 
 
-def _warming(result: Result) -> str:
+def _warming(result: ResultData) -> str:
     """What the feedback of temperature did to the deflection; nothing where there is none."""
     return "" if result.feedback is None else f"{result.feedback.words}; "
 
 
-def _rubbed(result: Result) -> str:
+def _rubbed(result: ResultData) -> str:
     return "" if result.sliding is None else f"sliding {number(result.heat_budget.total('sliding') / 1e3)} kJ more; "
 
 
-def _at_end_of(result: Result) -> str:
+def _at_end_of(result: ResultData) -> str:
     """Which phase the rolling resistance belongs to, where there are several."""
     i = result.rolling_reading
     if i is None or len(result.phases) < 2:
@@ -188,7 +188,7 @@ def _at_end_of(result: Result) -> str:
     return f"; after {seconds(result.times[i])}, phase {name}"
 
 
-def _drag(result: Result, phase: PhaseState) -> str:
+def _drag(result: ResultData, phase: PhaseState) -> str:
     """Rolling resistance at the end of a phase, N."""
     end = min(phase.end, float(result.times[-1]))
     if phase.speed <= 0 or phase.start >= result.times[-1]:
@@ -198,7 +198,7 @@ def _drag(result: Result, phase: PhaseState) -> str:
     return number(float(result.heat_budget.power("generated")[i]) / speed, 3) if speed > 0 else "–"
 
 
-def _sensors(result: Result) -> Rows:
+def _sensors(result: ResultData) -> Rows:
     section, readings = result.study.section, result.readings
     gradients = result.gradient_at_sensors
     times, rows = result.times, []
@@ -222,7 +222,7 @@ def _sensors(result: Result) -> Rows:
     return rows
 
 
-def _extremes(result: Result) -> Rows:
+def _extremes(result: ResultData) -> Rows:
     return [
         [
             "whole tyre" if row["region"] == "tyre" else str(row["region"]),
@@ -234,7 +234,7 @@ def _extremes(result: Result) -> Rows:
     ]  # fmt: skip
 
 
-def _phase(result: Result, phase: PhaseState) -> list[str]:
+def _phase(result: ResultData, phase: PhaseState) -> list[str]:
     reached = result.times[-1]
     state = "" if reached >= phase.end - 1e-6 else " (not reached)" if phase.start >= reached else " (cut short)"
     return [
@@ -245,7 +245,7 @@ def _phase(result: Result, phase: PhaseState) -> list[str]:
     ]  # fmt: skip
 
 
-def _budget(result: Result) -> list[dict[str, Any]]:
+def _budget(result: ResultData) -> list[dict[str, Any]]:
     budget, rows = result.heat_budget, []
     made = budget.made
 
@@ -281,7 +281,7 @@ def _budget(result: Result) -> list[dict[str, Any]]:
     return rows
 
 
-def _numerics(result: Result) -> Rows:
+def _numerics(result: ResultData) -> Rows:
     study, steps, mesh = result.study, result.history.steps, result.tyre.mesh.summary()
     rows = [
         ["mesh", f"{mesh['mesher']}: {mesh['nodes']} nodes, {mesh['elements']} {mesh['cell']}s of "
@@ -316,7 +316,7 @@ CAPTIONS = {
 }
 
 
-def write_report(result: Result, path: Path, *, three_d: bool = False) -> Path:
+def write_report(result: ResultData, path: Path, *, three_d: bool = False) -> Path:
     """Write the report; the pictures already drawn for this result are used again.
 
     Parameters
@@ -334,7 +334,7 @@ def write_report(result: Result, path: Path, *, three_d: bool = False) -> Path:
     return path
 
 
-def render(result: Result, *, three_d: bool = False) -> str:
+def render(result: ResultData, *, three_d: bool = False) -> str:
     """The report's HTML."""
     from jinja2 import Environment, PackageLoader, StrictUndefined
 
@@ -355,7 +355,7 @@ def render(result: Result, *, three_d: bool = False) -> str:
     return environment.get_template("run.html.j2").render(pictures=embedded, **content(result))
 
 
-def _three_d(result: Result) -> bytes | None:
+def _three_d(result: ResultData) -> bytes | None:
     from tyrefem.reports.view3d import screenshot
     from tyrefem.reports.vtk import write_series
 

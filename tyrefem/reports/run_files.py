@@ -6,15 +6,15 @@ from dataclasses import asdict
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
-from tyrefem.inputs.published import Comparison, compared, of_footprint
+from tyrefem.inputs.published import PublishedComparison, compared, of_footprint
 from tyrefem.output import atomic_path, versions, write_json
 
 if TYPE_CHECKING:
-    from tyrefem.inputs.study import Study
-    from tyrefem.simulation.result import Result
+    from tyrefem.inputs.study import StudyData
+    from tyrefem.simulation.result import ResultData
 
 
-def of_run(result: Result) -> tuple[Comparison, ...]:
+def of_run(result: ResultData) -> tuple[PublishedComparison, ...]:
     """A run beside its study's published ranges: rolling resistance at its end, and what its strain cycle knows of
     the footprint under the last load of the first phase that carries one (``mechanics.strain = "fem"``)."""
     from tyrefem.mechanics.finite_elements import FiniteElements
@@ -31,7 +31,7 @@ def of_run(result: Result) -> tuple[Comparison, ...]:
 TABLES = ("readings.csv", "extremes.csv", "heat_budget.csv", "heat_power.csv", "sliding.csv")
 
 
-def summary(result: Result) -> dict[str, Any]:
+def summary(result: ResultData) -> dict[str, Any]:
     """The run in numbers. SI units and degC, as the keys say."""
     study, history = result.study, result.history
     readings, peak = result.readings, result.extremes.iloc[0]
@@ -81,12 +81,12 @@ def summary(result: Result) -> dict[str, Any]:
     }
 
 
-def _hottest_region(result: Result) -> str:
+def _hottest_region(result: ResultData) -> str:
     peaks = result.history.region_maximum
     return max(peaks, key=lambda region: peaks[region].temperature)
 
 
-def run_files(study: Study) -> list[str]:
+def run_files(study: StudyData) -> list[str]:
     """The files that a run of ``study`` may write, relative to its folder."""
     from tyrefem.reports.figures import PICTURES
     from tyrefem.reports.vtk import file_names
@@ -95,7 +95,7 @@ def run_files(study: Study) -> list[str]:
             *(f"vtk/{name}" for name in file_names(study.name))]  # fmt: skip
 
 
-def write_tables(result: Result, folder: Path) -> Path:
+def write_tables(result: ResultData, folder: Path) -> Path:
     """``readings.csv``, ``extremes.csv``, ``heat_budget.csv``, ``heat_power.csv``, ``study.toml``, ``summary.json``.
 
     With slip also ``sliding.csv``: the contact over time.

@@ -23,8 +23,8 @@ from tyrefem.variants.answer_units import difference_unit, name_of, shown
 if TYPE_CHECKING:
     import pandas as pd
 
-    from tyrefem.sweep.design import Design
-    from tyrefem.sweep.part import Part
+    from tyrefem.sweep.design import DesignData
+    from tyrefem.sweep.part import DesignPart
 
 #: File of the page.
 PAGE = "sweep.html"
@@ -41,7 +41,7 @@ COLUMNS = (
 )  # fmt: skip
 
 
-def write_page(found: Design, summary: Mapping[str, Any], folder: Path) -> list[str]:
+def write_page(found: DesignData, summary: Mapping[str, Any], folder: Path) -> list[str]:
     """Write ``sweep.html``, and the pictures as PNG files in ``pictures``; names of these files."""
     from jinja2 import Environment, PackageLoader, StrictUndefined
 
@@ -68,7 +68,7 @@ def write_page(found: Design, summary: Mapping[str, Any], folder: Path) -> list[
     return [PAGE, *(picture["file"] for part in parts for picture in part["pictures"])]
 
 
-def _part(part: Part, folder: Path) -> dict[str, Any]:
+def _part(part: DesignPart, folder: Path) -> dict[str, Any]:
     """Heading, words, pictures and table of an answer."""
     drawn = []
     for name, caption, picture in figures(part):
@@ -97,7 +97,7 @@ def cell(value: Any, digits: int = 5) -> str:
     return "" if value is None else str(value)
 
 
-def _variants(found: Design, swept: Sweep) -> dict[str, Any]:
+def _variants(found: DesignData, swept: Sweep) -> dict[str, Any]:
     table, certificate = found.table, swept.certificate
     errors = {} if certificate is None else dict(certificate.errors)
     wanted = dict.fromkeys((*found.card.answers, *found.card.limits, *COLUMNS))
@@ -124,7 +124,7 @@ def _variants(found: Design, swept: Sweep) -> dict[str, Any]:
     }
 
 
-def _numbers(found: Design) -> list[dict[str, str]]:
+def _numbers(found: DesignData) -> list[dict[str, str]]:
     """The few numbers to see first."""
     cards: list[dict[str, str]] = []
     if found.optimum is not None and found.optimum.best is not None:
@@ -164,7 +164,7 @@ def _numbers(found: Design) -> list[dict[str, str]]:
     return cards
 
 
-def _assumed(found: Design) -> list[str]:
+def _assumed(found: DesignData) -> list[str]:
     """What every reader has to know."""
     told = [
         "Every variant is the whole study with some values changed: what its cards and laws assume holds here too.",

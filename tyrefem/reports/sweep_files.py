@@ -15,7 +15,7 @@ from tyrefem.variants.store import NAME as VARIANTS
 if TYPE_CHECKING:
     import pandas as pd
 
-    from tyrefem.sweep.design import Design
+    from tyrefem.sweep.design import DesignData
 
 PAGE = "sweep.html"
 #: Answers that have tables, and the files that `save` may write.
@@ -32,7 +32,7 @@ FILES = (
 KEPT = (VARIANTS, *(f"{name}/{VARIANTS}" for name in PARTS))
 
 
-def save(found: Design, folder: Path, *, pictures: bool = True) -> dict[str, Any]:
+def save(found: DesignData, folder: Path, *, pictures: bool = True) -> dict[str, Any]:
     """Write ``NAME.csv`` and ``.parquet`` of every part, ``summary.json`` and the page; returns the summary.
 
     ``errors.csv`` is there where a reduced model answered: the largest error of every answer in fresh full runs.
@@ -71,7 +71,7 @@ def write_errors(found: Sweep, folder: Path) -> list[str]:
     return ["errors.csv"]
 
 
-def summarised(found: Design) -> dict[str, Any]:
+def summarised(found: DesignData) -> dict[str, Any]:
     """What `summary.json` holds: how the variants were chosen and answered, every answer, versions, words."""
     study, card = found.study, found.card
     return {
@@ -115,7 +115,7 @@ def of_sample(found: Sweep) -> dict[str, Any]:
     }
 
 
-def spoken(found: Design) -> list[str]:
+def spoken(found: DesignData) -> list[str]:
     """A few lines for people: title, how the variants were answered, every answer under its heading."""
     lines = [found.card.title or found.study.title]
     if found.swept is not None:

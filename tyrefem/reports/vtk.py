@@ -18,7 +18,7 @@ from numpy.typing import NDArray
 from tyrefem.output import atomic_path
 
 if TYPE_CHECKING:
-    from tyrefem.simulation.result import Result
+    from tyrefem.simulation.result import ResultData
 
 Array = NDArray[Any]
 
@@ -32,7 +32,7 @@ _CELLS: dict[int, tuple[str, tuple[int, ...]]] = {
 SEGMENTS = 72
 
 
-def write_series(result: Result, folder: Path, *, revolved: bool = False, segments: int = SEGMENTS) -> Path:
+def write_series(result: ResultData, folder: Path, *, revolved: bool = False, segments: int = SEGMENTS) -> Path:
     """Write ``<name>.pvd`` and ``<name>_0000.vtu`` ...; the .pvd's path is returned.
 
     Point data ``temperature_degC``; cell data ``region`` and ``zone`` (numbers, named by the field data
@@ -66,7 +66,7 @@ def file_names(study: str) -> list[str]:
     return [f"{stem}{rest}" for stem in (name, f"{name}-revolved") for rest in (".pvd", f"_{4 * '[0-9]'}*.vtu")]
 
 
-def saved_times(result: Result) -> list[int]:
+def saved_times(result: ResultData) -> list[int]:
     """Numbers of the reading times whose fields are written; of an interrupted run also the last one reached."""
     times = result.times
     near = [int(np.argmin(np.abs(times - t))) for t in result.field_times if t <= times[-1] + 1e-6]
@@ -78,7 +78,7 @@ def saved_times(result: Result) -> list[int]:
 class _Plane:
     """The section itself."""
 
-    def __init__(self, result: Result) -> None:
+    def __init__(self, result: ResultData) -> None:
         operators = result.tyre.problem.operators
         dofs = np.asarray(operators.element_dofs)
         self.cell, order = _CELLS[len(dofs)]
@@ -96,7 +96,7 @@ class _Plane:
 class _Ring:
     """The section turned about the wheel's axis, from the screen's plane towards the viewer."""
 
-    def __init__(self, result: Result, segments: int) -> None:
+    def __init__(self, result: ResultData, segments: int) -> None:
         from tyrefem.reports.figures.cells import linear_cells
 
         operators = result.tyre.problem.operators
@@ -122,7 +122,7 @@ class _Ring:
         return np.tile(values[self.parent].astype(kind), self.segments)
 
 
-def _write(result: Result, folder: Path, name: str, shape: _Plane | _Ring) -> Path:
+def _write(result: ResultData, folder: Path, name: str, shape: _Plane | _Ring) -> Path:
     import meshio
 
     regions, zones, names = _numbers(result)
@@ -145,7 +145,7 @@ def _write(result: Result, folder: Path, name: str, shape: _Plane | _Ring) -> Pa
     return _write_collection(result, folder / f"{name}.pvd", names, entries)
 
 
-def _write_collection(result: Result, path: Path, names: dict[str, int], entries: list[str]) -> Path:
+def _write_collection(result: ResultData, path: Path, names: dict[str, int], entries: list[str]) -> Path:
     table = "\n".join(f"    {name} = {number}" for name, number in names.items())
     # A comment may hold neither markup nor two hyphens in a row.
     about = re.sub(r"-(?=-)|-$", "- ", escape(result.study.title))
@@ -169,7 +169,7 @@ def _write_collection(result: Result, path: Path, names: dict[str, int], entries
     return path
 
 
-def _numbers(result: Result) -> tuple[Array, Array, dict[str, int]]:
+def _numbers(result: ResultData) -> tuple[Array, Array, dict[str, int]]:
     """Region and zone of every element, counted from 1 (0: none), and the numbers' names."""
     mesh, section = result.tyre.mesh.mesh, result.study.section
     names: dict[str, int] = {}
@@ -183,7 +183,7 @@ def _numbers(result: Result) -> tuple[Array, Array, dict[str, int]]:
     return arrays[0], arrays[1], names
 
 
-def _cell_means(result: Result, i: int) -> tuple[Array, Array]:
+def _cell_means(result: ResultData, i: int) -> tuple[Array, Array]:
     """Heat source, W/m3, and strain energy, J/m3, of every element at ``times[i]``: means over its nodes."""
     operators = result.tyre.problem.operators
     t = float(result.times[i])

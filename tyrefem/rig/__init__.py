@@ -9,14 +9,14 @@ import importlib
 from typing import Any
 
 from tyrefem.rig.card import RigCard, load
-from tyrefem.rig.patch import Layer, Patch, Property, air, natural_film, nusselt
+from tyrefem.rig.patch import Patch, PatchLayer, Property, air, natural_film, nusselt
 from tyrefem.rig.readings import read
 from tyrefem.rig.simulation import Simulation, simulate
 
 __all__ = [
     "Identification",
-    "Layer",
     "Patch",
+    "PatchLayer",
     "Property",
     "RigCard",
     "Simulation",

@@ -76,7 +76,7 @@ class KnownDensity(Card):
     source: Text
 
 
-class LayerCard(Card):
+class RigLayerCard(Card):
     """One layer: ``thickness`` with the standard deviation of its measurement, and what it is made of.
 
     ``reference_temperature``: at which its properties are given, best where the layer is during the tests.
@@ -193,7 +193,7 @@ class RigCard(Card):
     patch: PatchCard
     phases: Phases
     surroundings: SurroundingsCard
-    layers: Annotated[tuple[LayerCard, ...], Field(min_length=1, max_length=8)]
+    layers: Annotated[tuple[RigLayerCard, ...], Field(min_length=1, max_length=8)]
     sensors: Annotated[dict[str, SensorCard], Field(min_length=1)]
     runs: Annotated[dict[str, RunCard], Field(min_length=1)]
     slope_sd: Annotated[float, Unit("1/delta_degC", gt=0, le=0.02)] = 2e-3

@@ -24,7 +24,7 @@ _LONGEST = 1.5
 
 
 @dataclass(frozen=True, eq=False)
-class Fit(Brief):
+class RigFit(Brief):
     """A finished fit.
 
     Attributes
@@ -91,7 +91,7 @@ class Fitter:
                 total, k = total + float(white @ white), k + 1
         return total
 
-    def fit(self, parameters: Parameters, x: Array, noise: Noise, floor: float, *, rough: bool = False) -> Fit:
+    def fit(self, parameters: Parameters, x: Array, noise: Noise, floor: float, *, rough: bool = False) -> RigFit:
         """Fit from coordinates x; the model error is estimated twice, once the fit has nearly settled.
 
         A rough fit ends early: near enough to see which properties are missing.
@@ -111,7 +111,7 @@ class Fitter:
                 break
             x, predicted, damping = self._step(parameters, x, predicted, eq, blocks, noise, damping)
         covariance = np.linalg.inv(np.eye(x.size) + eq.matrix)
-        return Fit(parameters, x, covariance, noise, blocks, log_evidence(eq, x), self.solutions)
+        return RigFit(parameters, x, covariance, noise, blocks, log_evidence(eq, x), self.solutions)
 
     def _step(
         self,

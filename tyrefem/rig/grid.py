@@ -47,7 +47,7 @@ def graded(length: float, count: int, first: float) -> Array:
 
 
 @dataclass(frozen=True, eq=False)
-class Grid:
+class PatchGrid:
     """A mesh with named layers and the boundaries ``outer``, ``spot`` (part of it), ``inner``, ``rim``.
 
     Attributes
@@ -71,7 +71,7 @@ class Grid:
         curvature: float,
         spot_radius: float,
         fineness: Fineness,
-    ) -> Grid:
+    ) -> PatchGrid:
         """Mesh layers of given thicknesses (outer first), m."""
         edge = float(np.arcsin(curvature * spot_radius) / curvature) if curvature else spot_radius
         # Fine towards the spot's edge, where the flux jumps, from both sides.

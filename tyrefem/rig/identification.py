@@ -15,12 +15,12 @@ from threadpoolctl import threadpool_limits
 from tyrefem.brief import Brief
 from tyrefem.rig.card import RigCard, load
 from tyrefem.rig.card import tables as beside
-from tyrefem.rig.fit import Fit, Fitter
+from tyrefem.rig.fit import Fitter, RigFit
 from tyrefem.rig.grid import USUAL, Fineness
 from tyrefem.rig.noise import Noise, estimated, normal
 from tyrefem.rig.parameters import PROPERTY, RIG, SLOPE, Parameters, parameters_of
 from tyrefem.rig.readings import HeatingTest, read
-from tyrefem.rig.selection import Estimate, Selection, estimate_of, select
+from tyrefem.rig.selection import ParameterEstimate, Selection, estimate_of, select
 from tyrefem.rig.twin import Twin
 
 if TYPE_CHECKING:
@@ -30,7 +30,7 @@ Array = NDArray[Any]
 
 
 @dataclass(frozen=True, eq=False)
-class Identification(Brief):
+class IdentificationData(Brief):
     """What a rig's tables say about its layers.
 
     Attributes
@@ -44,9 +44,9 @@ class Identification(Brief):
     card: RigCard
     file: Path | None
     tests: tuple[HeatingTest, ...]
-    fit: Fit
+    fit: RigFit
     selection: Selection
-    estimates: tuple[Estimate, ...]
+    estimates: tuple[ParameterEstimate, ...]
     correlation: Array
 
     def _title(self) -> str:
@@ -60,12 +60,12 @@ class Identification(Brief):
         return {"tests": [test.name for test in self.tests], **rows}
 
     @cached_property
-    def by_name(self) -> dict[str, Estimate]:
+    def by_name(self) -> dict[str, ParameterEstimate]:
         """Name -> estimate."""
         return {one.name: one for one in self.estimates}
 
     @property
-    def properties(self) -> tuple[Estimate, ...]:
+    def properties(self) -> tuple[ParameterEstimate, ...]:
         """Conductivity and specific heat of every layer."""
         return tuple(one for one in self.estimates if one.group == PROPERTY)
 
@@ -86,7 +86,7 @@ def identify(
     linear: bool = True,
     fineness: Fineness | None = None,
     progress: Callable[[], None] | None = None,
-) -> Identification:
+) -> IdentificationData:
     """Find conductivity and specific heat of every layer of a rig from its measured tables.
 
     Minimises |C^(-1/2) (measured - computed)|^2 + |x|^2 over the coordinates x of all uncertain numbers, C the noise
@@ -112,7 +112,7 @@ def identify(
         return _identified(card, file, fitter, linear)
 
 
-def _identified(card: RigCard, file: Path | None, fitter: Fitter, linear: bool) -> Identification:
+def _identified(card: RigCard, file: Path | None, fitter: Fitter, linear: bool) -> IdentificationData:
     """A rough fit shows which properties need a slope; then fits and weighings in turn, until the choice stands."""
     sensors = fitter.twin.sensors
     every = parameters_of(card, sensors)
@@ -142,7 +142,7 @@ def _identified(card: RigCard, file: Path | None, fitter: Fitter, linear: bool) 
     return _result(card, file, fitter.tests, fit, selection, every, keep)
 
 
-def _weighed(fitter: Fitter, every: Parameters, x: Array, fit: Fit, floor: float) -> tuple[Noise, Selection]:
+def _weighed(fitter: Fitter, every: Parameters, x: Array, fit: RigFit, floor: float) -> tuple[Noise, Selection]:
     """The noise with every slope free, and the combinations weighed with it."""
     predicted = fitter.predict(every, x)
     blocks = fitter.blocks(every, x, predicted)
@@ -154,11 +154,11 @@ def _result(
     card: RigCard,
     file: Path | None,
     tests: tuple[HeatingTest, ...],
-    fit: Fit,
+    fit: RigFit,
     selection: Selection,
     every: Parameters,
     keep: Array,
-) -> Identification:
+) -> IdentificationData:
     """Intervals about the fit: the combinations' spread about their mean, plus what the fit is away from it."""
     away = selection.mean[keep] - fit.x
     mixed = selection.covariance[np.ix_(keep, keep)] + np.outer(away, away)
@@ -170,4 +170,4 @@ def _result(
     sd = np.sqrt(np.diag(covariance))
     correlation = (covariance / np.outer(sd, sd))[np.ix_(order, order)]
     estimates = tuple(estimate_of(fit.parameters.free[i], float(fit.x[i]), float(sd[i])) for i in order)
-    return Identification(card, file, tests, fit, selection, estimates, correlation)
+    return IdentificationData(card, file, tests, fit, selection, estimates, correlation)

@@ -13,7 +13,7 @@ from tyrefem.rig.verdict import sentences
 
 if TYPE_CHECKING:
     from tyrefem.rig.card import RigCard
-    from tyrefem.rig.identification import Identification
+    from tyrefem.rig.identification import IdentificationData
 
 #: The largest relative standard deviation that a card may state.
 _MOST = 0.99
@@ -38,7 +38,7 @@ def bases(card: RigCard, given: Sequence[str]) -> dict[str, str]:
     return chosen
 
 
-def layer_card(found: Identification, layer: str, base: str) -> dict[str, Any]:
+def layer_card(found: IdentificationData, layer: str, base: str) -> dict[str, Any]:
     """The data of one layer's card: what the rig knows laid over a base card, which gives the rest.
 
     The rig cannot know the loss tangent, the stiffness or the cords: they stay the base card's, with its sources.
@@ -68,7 +68,7 @@ def layer_card(found: Identification, layer: str, base: str) -> dict[str, Any]:
     return card
 
 
-def _property(found: Identification, layer: str, key: str, unit: str, source: str) -> dict[str, Any]:
+def _property(found: IdentificationData, layer: str, key: str, unit: str, source: str) -> dict[str, Any]:
     one = found.by_name[f"{layer}.{key}"]
     sd = min(one.relative_sd or 0.0, _MOST)
     words = f"{source}; 95 % interval {one.low:.4g} to {one.high:.4g} {unit}"
@@ -88,11 +88,11 @@ def _property(found: Identification, layer: str, key: str, unit: str, source: st
     return {**entry, "table": rows}
 
 
-def _guess(found: Identification, layer: str, key: str) -> str:
+def _guess(found: IdentificationData, layer: str, key: str) -> str:
     own = next(one for one in found.card.layers if one.name == layer)
     return str(getattr(own, key).source)
 
 
-def layer_cards(found: Identification, chosen: Mapping[str, str]) -> dict[str, dict[str, Any]]:
+def layer_cards(found: IdentificationData, chosen: Mapping[str, str]) -> dict[str, dict[str, Any]]:
     """Layer -> card data for every layer that has a base."""
     return {layer: layer_card(found, layer, base) for layer, base in chosen.items()}

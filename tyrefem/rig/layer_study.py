@@ -13,7 +13,7 @@ from numpy.typing import NDArray
 from tyrefem.errors import InputError
 from tyrefem.rig.card import RigCard
 from tyrefem.rig.grid import Fineness
-from tyrefem.rig.identification import Identification, identify
+from tyrefem.rig.identification import IdentificationData, identify
 from tyrefem.rig.readings import HeatingTest
 
 if TYPE_CHECKING:
@@ -75,7 +75,7 @@ class LayerStudy:
     """
 
     counts: tuple[int, ...]
-    fits: tuple[Identification, ...]
+    fits: tuple[IdentificationData, ...]
 
     def table(self) -> pd.DataFrame:
         """One row per fit: misfit without noise (K) soon after a switch of the laser and later; rms; evidence.
@@ -103,7 +103,7 @@ class LayerStudy:
         return pd.DataFrame(rows)
 
 
-def _misfits(found: Identification) -> tuple[float, float]:
+def _misfits(found: IdentificationData) -> tuple[float, float]:
     """Root of the mean product of neighbouring residuals of all sensors: soon after a switch, and the rest, K."""
     phases = found.card.phases
     switches = (phases.idle, phases.idle + phases.heating)
@@ -127,7 +127,7 @@ def study(
     progress: Callable[[int], None] | None = None,
 ) -> LayerStudy:
     """Fit the tests with each number of layers, properties constant in temperature."""
-    found: dict[int, Identification] = {}
+    found: dict[int, IdentificationData] = {}
     for count, fit in fits(card, tests, counts, fineness):
         found[count] = fit
         if progress:
@@ -140,7 +140,7 @@ def fits(
     tests: Sequence[HeatingTest],
     counts: Sequence[int],
     fineness: Fineness | None = None,
-) -> Iterator[tuple[int, Identification]]:
+) -> Iterator[tuple[int, IdentificationData]]:
     """The same one by one: number of layers, and its fit as soon as it is finished."""
     for count in counts:
         yield count, identify(merged(card, count), tests=tests, linear=False, fineness=fineness)

@@ -16,7 +16,7 @@ from numpy.typing import NDArray
 from scipy.linalg import cho_solve, cholesky, solve_triangular
 
 from tyrefem.brief import Brief
-from tyrefem.rig.readings import Series
+from tyrefem.rig.readings import SensorReadings
 
 Array = NDArray[Any]
 #: Correlation times that the fit may choose, s.
@@ -34,7 +34,7 @@ class Noise:
     model: Mapping[str, float]
     tau: float = 200.0
 
-    def factor(self, one: Series, rise: Array) -> Array:
+    def factor(self, one: SensorReadings, rise: Array) -> Array:
         """Lower Cholesky factor of the covariance of a series, `rise` (n,) in K."""
         gap = np.abs(one.times[:, None] - one.times[None, :])
         g = self.model[one.sensor] * rise
@@ -47,7 +47,7 @@ class Noise:
 class Block(Brief):
     """One series with its computed readings, its residual (measured - computed), slopes (n, parameters), rise (n,)."""
 
-    series: Series
+    series: SensorReadings
     computed: Array
     slopes: Array
     rise: Array

@@ -19,13 +19,13 @@ PROPERTY, SLOPE, RIG = "property", "slope", "rig"
 
 
 @dataclass(frozen=True)
-class Parameter:
+class RigParameter:
     """One number with its prior.
 
     ``log``: ln p ~ N(ln centre, spread); ``linear``: p ~ N(centre, spread); ``rayleigh``: distance of a point whose two
     coordinates are N(0, spread); ``folded``: |N(0, spread)|. `value` maps the coordinate x ~ N(0, 1) to p.
 
-    >>> k = Parameter("tread.conductivity", "W/m/K", "log", 0.25, 0.5, PROPERTY)
+    >>> k = RigParameter("tread.conductivity", "W/m/K", "log", 0.25, 0.5, PROPERTY)
     >>> round(k.value(0.0), 3), round(k.value(k.coordinate(0.3)), 3)
     (0.25, 0.3)
     """
@@ -69,7 +69,7 @@ class Parameter:
 class Parameters:
     """The free parameters in order, and the value of what is not free."""
 
-    free: tuple[Parameter, ...]
+    free: tuple[RigParameter, ...]
     held: Mapping[str, float]
 
     def __len__(self) -> int:
@@ -98,14 +98,14 @@ def parameters_of(card: RigCard, sensors: Sequence[str]) -> Parameters:
     >>> found.names[:4]
     ('tread.conductivity', 'tread.specific_heat', 'tread.conductivity_slope', 'tread.specific_heat_slope')
     """
-    listed: list[Parameter] = []
+    listed: list[RigParameter] = []
     for layer in card.layers:
         for key, unit in (("conductivity", "W/m/K"), ("specific_heat", "J/kg/K")):
             guess = getattr(layer, key)
             listed.append(_log(f"{layer.name}.{key}", unit, guess.value, guess.relative_sd, PROPERTY))
         for key in ("conductivity", "specific_heat"):
             slope = getattr(layer, key).slope
-            listed.append(Parameter(f"{layer.name}.{key}_slope", "1/K", "linear", slope, card.slope_sd, SLOPE))
+            listed.append(RigParameter(f"{layer.name}.{key}_slope", "1/K", "linear", slope, card.slope_sd, SLOPE))
     laser, around = card.laser, card.surroundings
     listed += [
         _log("absorptance", "1", laser.absorptance, laser.absorptance_sd / laser.absorptance, RIG),
@@ -113,26 +113,28 @@ def parameters_of(card: RigCard, sensors: Sequence[str]) -> Parameters:
         _log("inner_film", "1", 1.0, around.convection_sd, RIG),
     ]
     emissivity = around.emissivity if around.radiation else 0.0
-    listed.append(Parameter("emissivity", "1", "linear", emissivity, around.emissivity_sd if emissivity else 0.0, RIG))
+    listed.append(
+        RigParameter("emissivity", "1", "linear", emissivity, around.emissivity_sd if emissivity else 0.0, RIG)
+    )
     for layer in card.layers:
-        listed.append(Parameter(f"{layer.name}.thickness", "m", "linear", layer.thickness, layer.thickness_sd, RIG))
+        listed.append(RigParameter(f"{layer.name}.thickness", "m", "linear", layer.thickness, layer.thickness_sd, RIG))
     seen = {name: card.sensors[name] for name in sensors}
     # One coordinate is enough where every sensor is aimed at the mark: only the distance matters.
     aside = any(one.aside > 0 for one in seen.values())
-    listed.append(Parameter("spot_along", "m", "linear", 0.0, laser.placing_sd if aside else 0.0, RIG))
-    listed.append(Parameter("spot_across", "m", "folded" if aside else "rayleigh", 0.0, laser.placing_sd, RIG))
+    listed.append(RigParameter("spot_along", "m", "linear", 0.0, laser.placing_sd if aside else 0.0, RIG))
+    listed.append(RigParameter("spot_across", "m", "folded" if aside else "rayleigh", 0.0, laser.placing_sd, RIG))
     for name, sensor in seen.items():
         if sensor.depth is not None:
-            listed.append(Parameter(f"{name}.depth", "m", "linear", sensor.depth, sensor.depth_sd, RIG))
+            listed.append(RigParameter(f"{name}.depth", "m", "linear", sensor.depth, sensor.depth_sd, RIG))
             spread = sensor.lag_sd if sensor.lag else 0.0
             listed.append(_log(f"{name}.lag", "s", sensor.lag, spread, RIG))
-        listed.append(Parameter(f"{name}.offset", "K", "linear", 0.0, sensor.offset_sd, RIG))
+        listed.append(RigParameter(f"{name}.offset", "K", "linear", 0.0, sensor.offset_sd, RIG))
     free = tuple(one for one in listed if one.spread > 0)
     return Parameters(free, {one.name: one.centre for one in listed if not one.spread > 0})
 
 
-def _log(name: str, unit: str, centre: float, relative_sd: float, group: str) -> Parameter:
-    return Parameter(name, unit, "log", centre, math.sqrt(math.log1p(relative_sd**2)), group)
+def _log(name: str, unit: str, centre: float, relative_sd: float, group: str) -> RigParameter:
+    return RigParameter(name, unit, "log", centre, math.sqrt(math.log1p(relative_sd**2)), group)
 
 
 def at(x: Array, place: int, step: float) -> Array:

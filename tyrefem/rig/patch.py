@@ -14,7 +14,7 @@ from numpy.typing import ArrayLike, NDArray
 
 from tyrefem.conduction import Conduction, Convection, Flux, History, Material, Radiation
 from tyrefem.errors import InputError
-from tyrefem.rig.grid import USUAL, Fineness, Grid
+from tyrefem.rig.grid import USUAL, Fineness, PatchGrid
 
 Array = NDArray[Any]
 
@@ -102,7 +102,7 @@ class Property:
 
 
 @dataclass(frozen=True)
-class Layer:
+class PatchLayer:
     """One layer: thickness m, density kg/m3, conductivity W/m/K, specific heat J/kg/K."""
 
     name: str
@@ -137,7 +137,7 @@ class Patch:
     emissivity : of both faces; 0 leaves radiation out.
     """
 
-    layers: tuple[Layer, ...]
+    layers: tuple[PatchLayer, ...]
     radius: float
     curvature: float
     spot_radius: float
@@ -149,7 +149,7 @@ class Patch:
     inner_film: float = 1.0
     emissivity: float = 0.95
 
-    def grid(self, fineness: Fineness | None = None) -> Grid:
+    def grid(self, fineness: Fineness | None = None) -> PatchGrid:
         """The mesh; patches of one shape share it."""
         shape = tuple((one.name, one.thickness) for one in self.layers)
         return _grid(shape, self.radius, self.curvature, self.spot_radius, fineness or USUAL)
@@ -159,7 +159,7 @@ class Patch:
         film = Convection(lambda T: factor * natural_film(T, ambient, length), ambient)
         return [film, Radiation(self.emissivity, ambient)] if self.emissivity > 0 else [film]
 
-    def conduction(self, grid: Grid, *, lit: bool) -> Conduction:
+    def conduction(self, grid: PatchGrid, *, lit: bool) -> Conduction:
         """The conduction problem with the laser on or off."""
         regions = {one.name: one.material() for one in self.layers}
         boundaries: dict[str, list[Any]] = {"outer": self._face(self.outer_film), "inner": self._face(self.inner_film)}
@@ -168,7 +168,7 @@ class Patch:
             boundaries = {**boundaries, where: [*boundaries.get(where, []), Flux(lambda _x, _t: flux)]}
         return Conduction(grid.mesh, regions, boundaries, element="P2")
 
-    def beam(self, grid: Grid) -> tuple[str, Array]:
+    def beam(self, grid: PatchGrid) -> tuple[str, Array]:
         """The boundary that the laser hits and the absorbed flux at its quadrature points, W/m2; exact in sum."""
         where = "spot" if self.profile == "uniform" else "outer"
         surface = grid.operators.surface(where)
@@ -178,11 +178,11 @@ class Patch:
             shape = shape * np.exp(-2 * (r / self.spot_radius) ** 2)
         return where, shape * (self.absorbed / float(surface.weight @ shape))
 
-    def heated(self, grid: Grid, times: Array, tolerance: float) -> History:
+    def heated(self, grid: PatchGrid, times: Array, tolerance: float) -> History:
         """Temperatures from the moment the laser is switched on; times[0] = 0."""
         return self.conduction(grid, lit=True).transient(times, self.ambient, tolerance)
 
-    def cooled(self, grid: Grid, times: Array, start: Array, tolerance: float) -> History:
+    def cooled(self, grid: PatchGrid, times: Array, start: Array, tolerance: float) -> History:
         """Temperatures after the laser is switched off, from nodal temperatures `start`; times[0] = 0."""
         return self.conduction(grid, lit=False).transient(times, start, tolerance)
 
@@ -190,6 +190,6 @@ class Patch:
 @lru_cache(maxsize=16)
 def _grid(
     shape: tuple[tuple[str, float], ...], radius: float, curvature: float, spot_radius: float, fineness: Fineness
-) -> Grid:
+) -> PatchGrid:
     names, thicknesses = zip(*shape, strict=True)
-    return Grid.make(names, thicknesses, radius, curvature, spot_radius, fineness)
+    return PatchGrid.make(names, thicknesses, radius, curvature, spot_radius, fineness)

@@ -18,7 +18,7 @@ from tyrefem.brief import Brief
 from tyrefem.errors import InputError, nearest, quoted
 from tyrefem.measured import MeasuredRun, read_table
 from tyrefem.rig.card import Clock, RigCard, RunCard, SensorCard
-from tyrefem.rig.grid import Grid
+from tyrefem.rig.grid import PatchGrid
 
 Array = NDArray[Any]
 
@@ -32,7 +32,7 @@ _SLACK = 5.0
 
 
 @dataclass(frozen=True, eq=False)
-class Series(Brief):
+class SensorReadings(Brief):
     """One sensor in one test: mean readings of groups, how many each holds, and the way from computed times to them.
 
     Attributes
@@ -56,7 +56,7 @@ class HeatingTest(Brief):
     name: str
     run: RunCard
     clock: Clock
-    series: tuple[Series, ...]
+    series: tuple[SensorReadings, ...]
     file: Path | None = None
 
 
@@ -129,7 +129,7 @@ def matched(card: RigCard, run: MeasuredRun, wanted: Sequence[str], without: Ite
     return HeatingTest(run.name, card.runs[run.name], clock, tuple(series), run.file)
 
 
-def _series(test: str, sensor: str, times: Array, values: Array, clock: Clock, card: RigCard) -> Series:
+def _series(test: str, sensor: str, times: Array, values: Array, clock: Clock, card: RigCard) -> SensorReadings:
     """Groups of neighbours that do not reach over a switch of the laser."""
     group = int(np.ceil(times.size / MOST))
     phases = card.phases
@@ -145,7 +145,7 @@ def _series(test: str, sensor: str, times: Array, values: Array, clock: Clock, c
         means = np.zeros((counts.size, matrix.shape[1]))
         np.add.at(means, number, matrix)
         matrix = means / counts[:, None]
-    return Series(
+    return SensorReadings(
         test,
         sensor,
         np.bincount(number, times) / counts,
@@ -165,7 +165,7 @@ def _disc(radius: float) -> tuple[Array, Array]:
     return np.outer(rho, np.cos(angle)).ravel(), np.outer(rho, np.sin(angle)).ravel()
 
 
-def view(name: str, sensor: SensorCard, grid: Grid, values: Mapping[str, float]) -> csr_matrix:
+def view(name: str, sensor: SensorCard, grid: PatchGrid, values: Mapping[str, float]) -> csr_matrix:
     """Row (1, unknowns) that takes nodal temperatures to what a sensor sees, before lag and offset.
 
     The spot's centre lies (spot_along, spot_across) from the mark, the sensor (aside, 0).

@@ -15,7 +15,7 @@ from numpy.typing import NDArray
 
 from tyrefem.brief import Brief
 from tyrefem.rig.noise import Normal, log_evidence
-from tyrefem.rig.parameters import SLOPE, Parameter, Parameters
+from tyrefem.rig.parameters import SLOPE, Parameters, RigParameter
 
 Array = NDArray[Any]
 
@@ -102,7 +102,7 @@ POOR = 0.10
 
 
 @dataclass(frozen=True)
-class Estimate:
+class ParameterEstimate:
     """A parameter's most probable value, its 95 % interval, and the share of the prior's sd that is left.
 
     ``relative_sd`` is None for numbers that may be 0.
@@ -151,10 +151,10 @@ class Estimate:
         }
 
 
-def estimate_of(parameter: Parameter, x: float, sd: float) -> Estimate:
+def estimate_of(parameter: RigParameter, x: float, sd: float) -> ParameterEstimate:
     """The estimate of a coordinate and its standard deviation.
 
-    >>> k = Parameter("tread.conductivity", "W/m/K", "log", 0.25, 0.47, "property")
+    >>> k = RigParameter("tread.conductivity", "W/m/K", "log", 0.25, 0.47, "property")
     >>> one = estimate_of(k, 0.1, 0.05)
     >>> round(one.low, 3), round(one.value, 3), round(one.high, 3), one.verdict
     (0.248, 0.262, 0.277, 'determined')
@@ -165,6 +165,6 @@ def estimate_of(parameter: Parameter, x: float, sd: float) -> Estimate:
     relative = parameter.spread * sd if parameter.law == "log" else None
     prior = parameter.value(0.0)
     prior_sd = abs(parameter.derivative(0.0))
-    return Estimate(
+    return ParameterEstimate(
         parameter.name, parameter.unit, parameter.group, value, ends[0], ends[1], width, relative, prior, prior_sd, sd
     )

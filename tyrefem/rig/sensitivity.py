@@ -17,8 +17,8 @@ from numpy.typing import NDArray
 from scipy.sparse import diags
 from scipy.sparse.linalg import splu
 
-from tyrefem.rig.grid import Grid
-from tyrefem.rig.patch import Layer, Patch, natural_film
+from tyrefem.rig.grid import PatchGrid
+from tyrefem.rig.patch import Patch, PatchLayer, natural_film
 
 Array = NDArray[Any]
 
@@ -35,7 +35,7 @@ class Sensitivity:
         ``emissivity`` (d/dp).
     """
 
-    def __init__(self, patch: Patch, grid: Grid, names: tuple[str, ...]) -> None:
+    def __init__(self, patch: Patch, grid: PatchGrid, names: tuple[str, ...]) -> None:
         self.patch, self.grid, self.ops, self.names = patch, grid, grid.operators, names
         self.layers = {one.name: (one, self.ops.quadrature(one.name)) for one in patch.layers}
         self.faces = {name: self.ops.surface(name) for name in ("outer", "inner")}
@@ -119,7 +119,7 @@ class Sensitivity:
                 self._of_faces(name, u, f[:, column])
         return h, f
 
-    def _of_layer(self, layer: Layer, q: Any, key: str, u: Array, h: Array, f: Array) -> None:
+    def _of_layer(self, layer: PatchLayer, q: Any, key: str, u: Array, h: Array, f: Array) -> None:
         T = q.value @ u
         prop = layer.conductivity if key.startswith("conductivity") else layer.specific_heat
         away = T - prop.reference

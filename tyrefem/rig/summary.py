@@ -12,10 +12,10 @@ from tyrefem.rig.selection import COVERAGE
 from tyrefem.rig.verdict import sentences
 
 if TYPE_CHECKING:
-    from tyrefem.rig.identification import Identification
+    from tyrefem.rig.identification import IdentificationData
 
 
-def summary(found: Identification) -> dict[str, Any]:
+def summary(found: IdentificationData) -> dict[str, Any]:
     """What ``rig.json`` holds: estimates, correlation, verdict, selection, noise, misfit."""
     names = [one.name for one in found.estimates]
     return {
@@ -65,12 +65,12 @@ def summary(found: Identification) -> dict[str, Any]:
     }
 
 
-def ranked(found: Identification, most: int) -> list[tuple[tuple[str, ...], float]]:
+def ranked(found: IdentificationData, most: int) -> list[tuple[tuple[str, ...], float]]:
     """Combinations of linear properties by evidence, best first."""
     return sorted(found.selection.log_evidence.items(), key=lambda pair: -pair[1])[:most]
 
 
-def diffusivities(found: Identification) -> list[dict[str, Any]]:
+def diffusivities(found: IdentificationData) -> list[dict[str, Any]]:
     """k/(rho c) of every layer, m2/s, with its relative standard deviation."""
     place = {one.name: i for i, one in enumerate(found.estimates) if one.group == PROPERTY}
     out = []

@@ -10,9 +10,9 @@ import numpy as np
 from numpy.typing import NDArray
 
 from tyrefem.rig.card import Clock, RigCard, RunCard
-from tyrefem.rig.grid import USUAL, Fineness, Grid
-from tyrefem.rig.parameters import Parameter, Parameters, at
-from tyrefem.rig.patch import Layer, Patch, Property
+from tyrefem.rig.grid import USUAL, Fineness, PatchGrid
+from tyrefem.rig.parameters import Parameters, RigParameter, at
+from tyrefem.rig.patch import Patch, PatchLayer, Property
 from tyrefem.rig.readings import view
 from tyrefem.rig.sensitivity import Sensitivity
 
@@ -42,7 +42,7 @@ class Twin:
         """The heated patch of one test."""
         card = self.card
         layers = tuple(
-            Layer(
+            PatchLayer(
                 one.name,
                 max(values[f"{one.name}.thickness"], 0.2 * one.thickness),
                 one.density.value,
@@ -67,7 +67,7 @@ class Twin:
             min(max(values["emissivity"], 0.0), 1.0),
         )
 
-    def grid(self, values: Mapping[str, float]) -> Grid:
+    def grid(self, values: Mapping[str, float]) -> PatchGrid:
         """The mesh of the layers' thicknesses, kept for the latest few."""
         return self.patch(values, next(iter(self.card.runs.values()))).grid(self.fineness)
 
@@ -133,9 +133,9 @@ class Twin:
         return np.concatenate([hot, cold[1:]])
 
 
-def _only_seen(one: Parameter) -> bool:
+def _only_seen(one: RigParameter) -> bool:
     return one.name.rpartition(".")[2] in _VIEWS
 
 
-def _thickness(one: Parameter) -> bool:
+def _thickness(one: RigParameter) -> bool:
     return one.name.endswith(".thickness")

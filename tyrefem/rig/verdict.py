@@ -8,10 +8,10 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from tyrefem.rig.parameters import PROPERTY, RIG, SLOPE
-from tyrefem.rig.selection import POOR, Estimate
+from tyrefem.rig.selection import POOR, ParameterEstimate
 
 if TYPE_CHECKING:
-    from tyrefem.rig.identification import Identification
+    from tyrefem.rig.identification import IdentificationData
 
 #: Correlations beyond this bind two properties together.
 BOUND = 0.95
@@ -29,13 +29,13 @@ def spoken(name: str) -> str:
     return f"{key.replace('_', ' ')} of {owner}" if owner else key.replace("_", " ")
 
 
-def shown(one: Estimate, digits: int = 3) -> str:
+def shown(one: ParameterEstimate, digits: int = 3) -> str:
     """Value and interval, e.g. ``0.282 (0.272 to 0.293) W/m/K``."""
     unit = "" if one.unit == "1" else f" {one.unit}"
     return f"{one.value:.{digits}g} ({one.low:.{digits}g} to {one.high:.{digits}g}){unit}"
 
 
-def sentences(found: Identification) -> tuple[str, ...]:
+def sentences(found: IdentificationData) -> tuple[str, ...]:
     """The verdict, most important first; empty of complaints where everything is determined."""
     unknown = [one for one in found.properties if one.verdict == "not determined"]
     poor = [one for one in found.properties if one.verdict == "poor"]
@@ -64,7 +64,7 @@ def sentences(found: Identification) -> tuple[str, ...]:
     return tuple(out)
 
 
-def _reasons(found: Identification) -> Iterator[str]:
+def _reasons(found: IdentificationData) -> Iterator[str]:
     """Why something is not determined, as far as the test itself tells."""
     sensors = {one.sensor for test in found.tests for one in test.series}
     faces = {found.card.sensors[name].face for name in sensors}
@@ -86,7 +86,7 @@ def _reasons(found: Identification) -> Iterator[str]:
         yield "The cooling phase was not read."
 
 
-def _bound(found: Identification) -> Iterator[str]:
+def _bound(found: IdentificationData) -> Iterator[str]:
     own = [i for i, one in enumerate(found.estimates) if one.group == PROPERTY]
     for a in own:
         for b in own:
@@ -97,7 +97,7 @@ def _bound(found: Identification) -> Iterator[str]:
                 yield f"{pair} are known better together (correlation {r:+.2f}): their {known} is the firmer."
 
 
-def _linear(found: Identification) -> Iterator[str]:
+def _linear(found: IdentificationData) -> Iterator[str]:
     chosen = found.selection.chosen
     for one in found.estimates:
         if one.group == SLOPE:
@@ -115,7 +115,7 @@ def _linear(found: Identification) -> Iterator[str]:
             yield f"Undecided: {key} may be linear in temperature (probability {p:.2f}); the intervals allow for it."
 
 
-def _misfit(found: Identification) -> Iterator[str]:
+def _misfit(found: IdentificationData) -> Iterator[str]:
     for name, error in found.fit.noise.model.items():
         if error > ASTRAY:
             yield (

@@ -15,7 +15,7 @@ from tyrefem.mechanics.cycle_schedule import ramp_knots
 from tyrefem.mechanics.footprint.pressed_tyre import COARSER
 
 if TYPE_CHECKING:
-    from tyrefem.inputs.study import Study
+    from tyrefem.inputs.study import StudyData
     from tyrefem.inputs.study_card import MeshChoice
 
 #: Runs that a feedback usually takes (2 to 7 in docs/two-way.md).
@@ -30,11 +30,11 @@ INFLATED = ("fem", "barrel")
 class RunEstimate:
     """Of one run of a study; ``mesh``: in place of the study's own choice."""
 
-    study: Study
+    study: StudyData
     mesh: MeshChoice
 
     @classmethod
-    def of(cls, study: Study) -> RunEstimate:
+    def of(cls, study: StudyData) -> RunEstimate:
         """Of a study as it is."""
         return cls(study, study.card.mesh)
 

@@ -7,14 +7,14 @@ from collections.abc import Callable
 from dataclasses import replace
 from typing import TYPE_CHECKING
 
-from tyrefem.simulation.feedback_outcome import Contact, FeedbackOutcome
+from tyrefem.simulation.feedback_outcome import FeedbackOutcome, InflationState
 from tyrefem.simulation.warm_cycles import WarmCycles, Warmth
 
 if TYPE_CHECKING:
     from tyrefem.inputs.loading import LoadCase
-    from tyrefem.inputs.study import Study
+    from tyrefem.inputs.study import StudyData
     from tyrefem.mechanics.cycle_schedule import CycleSchedule
-    from tyrefem.simulation.result import Result
+    from tyrefem.simulation.result import ResultData
     from tyrefem.simulation.rolling_tyre import RollingTyre
 
 #: A run that leaves more than this share of the last one's disagreement makes the next one go half as far.
@@ -22,13 +22,13 @@ SLOW, LEAST = 0.7, 1 / 16
 
 
 def run(
-    study: Study,
+    study: StudyData,
     progress: Callable[[float], None] | None = None,
     like: RollingTyre | None = None,
     start: Warmth | None = None,
     *,
     partial: bool = False,
-) -> Result:
+) -> ResultData:
     """Simulate a study's drive again and again until its temperatures are those of its strain cycles.
 
     Every run takes its strain cycles at the temperatures of the one before (the first: ``start``, by default the
@@ -72,9 +72,9 @@ def run(
     return replace(result, feedback=outcome, wall_time=wall_time)
 
 
-def _contact(schedule: CycleSchedule, time: float) -> Contact:
+def _contact(schedule: CycleSchedule, time: float) -> InflationState:
     pressure, deflection = (schedule.mean(quantity, time) for quantity in (_pressure, _deflection))
-    return Contact(time, pressure, deflection)
+    return InflationState(time, pressure, deflection)
 
 
 def _pressure(case: LoadCase) -> float:

@@ -8,7 +8,7 @@ from typing import Any
 
 
 @dataclass(frozen=True)
-class Contact:
+class InflationState:
     """Gauge pressure, Pa, and deflection, m, at a time, s."""
 
     time: float
@@ -33,8 +33,8 @@ class FeedbackOutcome:
 
     tolerance: float
     changes: tuple[float, ...]
-    start: Contact
-    end: Contact
+    start: InflationState
+    end: InflationState
     softened: dict[str, float]
 
     @property

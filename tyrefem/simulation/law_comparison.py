@@ -20,8 +20,8 @@ if TYPE_CHECKING:
 
     from tyrefem.geometry.meshing.mesh import TyreMesh
     from tyrefem.inputs.loading import LoadCase
-    from tyrefem.inputs.study import Study
-    from tyrefem.simulation.result import Result
+    from tyrefem.inputs.study import StudyData
+    from tyrefem.simulation.result import ResultData
 
 Array = NDArray[np.float64]
 #: The laws that find a tyre's strain cycle, in the order of the columns.
@@ -41,7 +41,7 @@ class LawOutcome:
     """
 
     law: str
-    result: Result
+    result: ResultData
     phase: int
     knot: int
 
@@ -69,10 +69,10 @@ class LawOutcome:
 
     @functools.cached_property
     def _largest(self) -> tuple[GaussPoints, Array]:
-        from tyrefem.mechanics.footprint.strain_harmonics import StrainCycle as Harmonics
+        from tyrefem.mechanics.footprint.strain_harmonics import StrainHarmonics
 
         cycle: Any = self.cycle
-        return GaussPoints(cycle.tyre.body.rings), Harmonics(cycle.footprint).largest_energy()
+        return GaussPoints(cycle.tyre.body.rings), StrainHarmonics(cycle.footprint).largest_energy()
 
     @property
     def temperatures(self) -> dict[str, float]:
@@ -86,7 +86,7 @@ class LawOutcome:
 class LawComparison:
     """A study by several strain laws. Made by `compare_laws`; ``refused``: law -> why it has no answer."""
 
-    study: Study
+    study: StudyData
     outcomes: tuple[LawOutcome, ...]
     refused: dict[str, str]
 
@@ -216,7 +216,7 @@ class LawComparison:
         }
 
 
-def compare_laws(study: Study | str, laws: tuple[str, ...] = LAWS) -> LawComparison:
+def compare_laws(study: StudyData | str, laws: tuple[str, ...] = LAWS) -> LawComparison:
     """Run a study by several strain laws, everything else alike, tan delta included.
 
     The arcs are left out beside others where the section has none. A law that has no answer is kept in ``refused``
@@ -251,7 +251,7 @@ def compare_laws(study: Study | str, laws: tuple[str, ...] = LAWS) -> LawCompari
     return LawComparison(chosen, tuple(outcomes), refused)
 
 
-def _outcome(study: Study, law: str) -> LawOutcome:
+def _outcome(study: StudyData, law: str) -> LawOutcome:
     result = run(study.replace({"mechanics.strain": law}))
     cases = result.tyre.schedule.cases
     deflections = {(i, k): case.deflection for i, phase in enumerate(cases) for k, case in enumerate(phase)}
@@ -261,7 +261,7 @@ def _outcome(study: Study, law: str) -> LawOutcome:
     return LawOutcome(law, result, phase, knot)
 
 
-def _has_arcs(study: Study) -> bool:
+def _has_arcs(study: StudyData) -> bool:
     from tyrefem.mechanics.cycle_schedule import ARC_REGIONS
 
     section = study.section

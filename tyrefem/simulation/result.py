@@ -27,7 +27,7 @@ if TYPE_CHECKING:
     import pandas as pd
 
     from tyrefem.conduction.field import Peak
-    from tyrefem.inputs.study import Study
+    from tyrefem.inputs.study import StudyData
     from tyrefem.simulation.feedback_outcome import FeedbackOutcome
     from tyrefem.simulation.rolling_tyre import RollingTyre
 
@@ -45,13 +45,13 @@ KEPT = (
 
 
 @dataclass(frozen=True, eq=False)
-class Result(Brief):
+class ResultData(Brief):
     """A finished (or interrupted) run of a study.
 
     It can be pickled: study, mesh, strain cycles and temperatures are kept, everything else is worked out again.
     """
 
-    study: Study
+    study: StudyData
     tyre: RollingTyre
     history: History
     #: Times of the temperature fields that are written out, s.
@@ -333,14 +333,14 @@ class Result(Brief):
 
 
 def _again(
-    kind: type[Result],
-    study: Study,
+    kind: type[ResultData],
+    study: StudyData,
     tyre: RollingTyre,
     history: dict[str, Any],
     times: Array,
     wall_time: float,
     feedback: Any,
-) -> Result:
+) -> ResultData:
     """A result out of what is stored of it."""
     problem = tyre.problem
     return kind(study, tyre, History(problem.operators, problem.regions, **history), times, wall_time, feedback)

@@ -10,7 +10,7 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
-from tyrefem.boundaries.rim import Lumped
+from tyrefem.boundaries.rim import LumpedRim
 from tyrefem.conduction import Conduction, Film, Material, Reservoir
 from tyrefem.effects.combined import Source
 from tyrefem.errors import InputError
@@ -136,7 +136,7 @@ class RollingTyre(Surroundings):
         laws = self.study.card.boundaries
         gas = GAS if self._gas_capacity is not None else laws.contained_air.temperature  # type: ignore[attr-defined]
 
-        rim = RIM if isinstance(laws.rim, Lumped) else _of_time(self.rim_temperature)
+        rim = RIM if isinstance(laws.rim, LumpedRim) else _of_time(self.rim_temperature)
         air = _of_time(self.ambient)
         driven = self.acting.changes_films
         return {
@@ -163,7 +163,7 @@ class RollingTyre(Surroundings):
         if self._gas_capacity is not None:
             start = self.study.card.boundaries.contained_air.start(self.drive.initial)
             found[GAS] = Reservoir(self._gas_capacity, start)
-        if isinstance(rim, Lumped):
+        if isinstance(rim, LumpedRim):
             exchanges: list[tuple[float, Any]] = [(rim.cooling * share, self.ambient)]
             if self._gas_capacity is not None and rim.air > 0:
                 exchanges.append((rim.air * share, GAS))

@@ -2,20 +2,20 @@ from __future__ import annotations
 
 from collections.abc import Callable
 
-from tyrefem.inputs.study import Study
+from tyrefem.inputs.study import StudyData
 from tyrefem.simulation.estimate import RunEstimate
-from tyrefem.simulation.result import Result
+from tyrefem.simulation.result import ResultData
 from tyrefem.simulation.rolling_tyre import RollingTyre
 from tyrefem.simulation.simulate import simulate
 
 
 def run(
-    study: Study,
+    study: StudyData,
     progress: Callable[[float], None] | None = None,
     like: RollingTyre | None = None,
     *,
     partial: bool = False,
-) -> Result:
+) -> ResultData:
     """Simulate a study's drive. With ``mechanics.feedback``: `tyrefem.simulation.feedback.run`.
 
     Parameters

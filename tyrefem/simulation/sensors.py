@@ -9,7 +9,7 @@ from numpy.typing import ArrayLike, NDArray
 from scipy.linalg import solve_banded
 
 if TYPE_CHECKING:
-    from tyrefem.inputs.study import Study
+    from tyrefem.inputs.study import StudyData
 
 Array = NDArray[np.float64]
 
@@ -39,7 +39,7 @@ def lagged(times: Array, temperatures: Array, lag: float) -> Array:
     return np.asarray(solve_banded((1, 0), bands, given, check_finite=False))
 
 
-def true_places(study: Study) -> dict[str, tuple[float, float]]:
+def true_places(study: StudyData) -> dict[str, tuple[float, float]]:
     """(r, z) of every sensor, m: as stated, moved by the study's effects, but never out of the rubber."""
     stated = study.stated_places
     section, found = study.section, dict(stated)
@@ -59,7 +59,7 @@ def true_places(study: Study) -> dict[str, tuple[float, float]]:
     return found
 
 
-def recorded(study: Study, times: Array, temperatures: ArrayLike) -> dict[str, Array]:
+def recorded(study: StudyData, times: Array, temperatures: ArrayLike) -> dict[str, Array]:
     """What the logger records for temperatures (n_times, n_sensors) in degC at the sensors, in the study's order.
 
     Lag first, then the effects of measurement: a further lag, swapped channels, offset, a logger's clock that is off.
@@ -81,7 +81,7 @@ def recorded(study: Study, times: Array, temperatures: ArrayLike) -> dict[str, A
     return found
 
 
-def recorded_change(study: Study, times: Array, temperatures: ArrayLike) -> dict[str, Array]:
+def recorded_change(study: StudyData, times: Array, temperatures: ArrayLike) -> dict[str, Array]:
     """How the record changes, K, when the temperatures at the sensors change by (n_times, n_sensors) K.
 
     `recorded` is linear but for the offsets of channels, which no temperature changes.

@@ -5,11 +5,13 @@ from collections.abc import Callable
 
 import numpy as np
 
-from tyrefem.simulation.result import Result
+from tyrefem.simulation.result import ResultData
 from tyrefem.simulation.rolling_tyre import Array, RollingTyre
 
 
-def simulate(tyre: RollingTyre, progress: Callable[[float], None] | None = None, *, partial: bool = False) -> Result:
+def simulate(
+    tyre: RollingTyre, progress: Callable[[float], None] | None = None, *, partial: bool = False
+) -> ResultData:
     """Simulate a tyre's drive with the strain cycles that it has; parameters as of `run`."""
     began = clock.perf_counter()
     study = tyre.study
@@ -22,7 +24,7 @@ def simulate(tyre: RollingTyre, progress: Callable[[float], None] | None = None,
         progress=progress,
         partial=partial,
     )
-    return Result(study, tyre, history, fields, clock.perf_counter() - began)
+    return ResultData(study, tyre, history, fields, clock.perf_counter() - began)
 
 
 def output_times(tyre: RollingTyre) -> tuple[Array, Array]:

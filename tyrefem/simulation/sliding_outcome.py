@@ -18,7 +18,7 @@ if TYPE_CHECKING:
     import pandas as pd
 
     from tyrefem.conduction.field import History
-    from tyrefem.inputs.study import Study
+    from tyrefem.inputs.study import StudyData
     from tyrefem.simulation.heat_budget import HeatBudget
     from tyrefem.simulation.phases import PhaseState
     from tyrefem.simulation.rolling_tyre import RollingTyre
@@ -35,7 +35,7 @@ class SlidingRun(Protocol):
     """What the sliding of a run is read from; a `Result` is one."""
 
     @property
-    def study(self) -> Study: ...
+    def study(self) -> StudyData: ...
     @property
     def tyre(self) -> RollingTyre: ...
     @property

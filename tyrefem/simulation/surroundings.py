@@ -12,7 +12,7 @@ from tyrefem.boundaries import Contact
 from tyrefem.boundaries.road_film import propagation_depth
 from tyrefem.effects.combined import Acting
 from tyrefem.inputs.drive import Drive
-from tyrefem.inputs.study import Study
+from tyrefem.inputs.study import StudyData
 from tyrefem.mechanics.cycle_schedule import CycleSchedule, cycle_schedule, rated_case
 
 GAS, RIM = "contained-air", "rim"
@@ -25,7 +25,7 @@ Array = NDArray[np.float64]
 class Surroundings:
     """A study's drive and boundary laws as functions of time (s). SI units, temperatures in degC."""
 
-    study: Study
+    study: StudyData
 
     @property
     def drive(self) -> Drive:

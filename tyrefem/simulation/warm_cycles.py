@@ -18,33 +18,33 @@ from tyrefem.mechanics.strain_cycle import settled
 
 if TYPE_CHECKING:
     from tyrefem.inputs.loading import LoadCase
-    from tyrefem.inputs.study import Study
+    from tyrefem.inputs.study import StudyData
     from tyrefem.inputs.study_card import Feedback
     from tyrefem.mechanics.strain_cycle import StrainCycle
-    from tyrefem.simulation.result import Result
+    from tyrefem.simulation.result import ResultData
 
 Array = NDArray[np.float64]
 
 
 @dataclass(frozen=True)
-class Moment:
+class TyreTemperatures:
     """Temperatures of a moment, degC: of the contained air, and the mean of every region."""
 
     gas: float
     regions: Mapping[str, float]
 
-    def distance(self, other: Moment, *, gas: bool, regions: tuple[str, ...]) -> float:
+    def distance(self, other: TyreTemperatures, *, gas: bool, regions: tuple[str, ...]) -> float:
         """Largest difference, K, of the contained air (if ``gas``) and of some regions."""
         found = [abs(self.gas - other.gas)] if gas else []
         found += [abs(self.regions[name] - other.regions[name]) for name in regions]
         return max(found, default=0.0)
 
-    def towards(self, other: Moment, share: float) -> Moment:
+    def towards(self, other: TyreTemperatures, share: float) -> TyreTemperatures:
         """A share of the way to another moment."""
         if share == 1:
             return other
         regions = {name: T + share * (other.regions[name] - T) for name, T in self.regions.items()}
-        return Moment(self.gas + share * (other.gas - self.gas), regions)
+        return TyreTemperatures(self.gas + share * (other.gas - self.gas), regions)
 
 
 @dataclass(frozen=True, eq=False)
@@ -55,20 +55,20 @@ class Warmth:
 
     >>> warmth = Warmth(np.array([0.0, 100.0]), np.array([25.0, 45.0]), {"tread": np.array([25.0, 65.0])})
     >>> warmth.at(50.0)
-    Moment(gas=35.0, regions={'tread': 45.0})
+    TyreTemperatures(gas=35.0, regions={'tread': 45.0})
     """
 
     times: Array
     gas: Array
     regions: Mapping[str, Array]
 
-    def at(self, time: float) -> Moment:
+    def at(self, time: float) -> TyreTemperatures:
         """The moment of a time, s."""
         regions = {name: float(np.interp(time, self.times, T)) for name, T in self.regions.items()}
-        return Moment(float(np.interp(time, self.times, self.gas)), regions)
+        return TyreTemperatures(float(np.interp(time, self.times, self.gas)), regions)
 
     @classmethod
-    def even(cls, study: Study, warmer_by: float = 0.0) -> Warmth:
+    def even(cls, study: StudyData, warmer_by: float = 0.0) -> Warmth:
         """Every region at the drive's initial temperature and the air at its own, or all so much warmer, K."""
         initial = study.card.drive.initial
         gas = study.card.boundaries.contained_air.start(initial)
@@ -76,7 +76,7 @@ class Warmth:
         return cls(np.zeros(1), np.array([gas + warmer_by]), regions)
 
     @classmethod
-    def of(cls, result: Result) -> Warmth:
+    def of(cls, result: ResultData) -> Warmth:
         """That of a finished run: means by volume."""
         operators, values, regions = result.tyre.problem.operators, result.history.values, {}
         for region in result.study.materials:
@@ -97,7 +97,7 @@ Softened = tuple[float, ...]
 class _Knot:
     """A strain cycle, its load case as driven, and the temperatures that it belongs to."""
 
-    moment: Moment
+    moment: TyreTemperatures
     case: LoadCase
     softened: Softened
     cycle: StrainCycle
@@ -115,7 +115,7 @@ class WarmCycles:
     InputError : a load, deflection or pressure that the section cannot take; names the phase.
     """
 
-    def __init__(self, study: Study, choice: Feedback, warmth: Warmth) -> None:
+    def __init__(self, study: StudyData, choice: Feedback, warmth: Warmth) -> None:
         self.study, self.choice, self._cold = study, choice, KnotSolver(study)
         drive, law = study.card.drive, study.card.boundaries.contained_air
         self.gas_start = law.start(drive.initial)
@@ -157,7 +157,7 @@ class WarmCycles:
     def _places(self) -> list[tuple[int, int]]:
         return [(number, place) for number, knots in enumerate(self.knots) for place in range(len(knots))]
 
-    def _moment(self, place: tuple[int, int], warmth: Warmth) -> Moment:
+    def _moment(self, place: tuple[int, int], warmth: Warmth) -> TyreTemperatures:
         drive, (number, knot) = self.study.card.drive, place
         return warmth.at(drive.starts[number] + self.knots[number][knot] * drive.phases[number].duration)
 
@@ -165,7 +165,7 @@ class WarmCycles:
         own = self._kept[place].moment
         return own.distance(self._moment(place, warmth), gas=self.choice.pressure, regions=self.softening)
 
-    def _solved(self, place: tuple[int, int], moment: Moment) -> _Knot:
+    def _solved(self, place: tuple[int, int], moment: TyreTemperatures) -> _Knot:
         number, knot = place
         warmed = (moment.gas + KELVIN) / (self.gas_start + KELVIN) if self.choice.pressure else 1.0
         case = self._cold.case(number, self.knots[number][knot], warmed)
@@ -175,7 +175,7 @@ class WarmCycles:
                 return _Knot(moment, case, softened, other.cycle)
         return _Knot(moment, case, softened, self._solver(softened, moment).cycle(number, case))
 
-    def _softened(self, moment: Moment) -> Softened:
+    def _softened(self, moment: TyreTemperatures) -> Softened:
         found: list[float] = []
         for region in self.softening:
             card, T = self.study.materials[region], moment.regions[region]
@@ -183,7 +183,7 @@ class WarmCycles:
             found += [law(T) for law in laws if law is not None]
         return tuple(found)
 
-    def _solver(self, softened: Softened, moment: Moment) -> KnotSolver:
+    def _solver(self, softened: Softened, moment: TyreTemperatures) -> KnotSolver:
         """One for all knots of equal moduli; forgotten after every update, as the next one has other moduli."""
         if not self.softening:
             return self._cold

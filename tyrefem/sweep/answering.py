@@ -21,7 +21,7 @@ from tyrefem.variants.store import Name, Store
 from tyrefem.variants.task import Task, perform, perform_all
 
 if TYPE_CHECKING:
-    from tyrefem.reduced.surrogate import Certificate, Surrogate
+    from tyrefem.reduced.surrogate import Surrogate, SurrogateCertificate
 
 Outcome = dict[str, Any]
 
@@ -53,7 +53,7 @@ class Answering:
     def __init__(self, plan: Plan, how: Execution, variants: Sequence[Mapping[str, Any]], digest: str) -> None:
         self.plan, self.how, self.variants = plan, how, variants
         self.outcomes: dict[int, Outcome] = {}
-        self.certificate: Certificate | None = None
+        self.certificate: SurrogateCertificate | None = None
         self.why_full = ""
         self.taken_up = 0
         self.reduced = False
@@ -201,10 +201,10 @@ def _by(outcome: Outcome, how: str) -> Outcome:
     return outcome if "failure" in outcome else {**outcome, "by": how}
 
 
-def _certificate(noted: Mapping[str, Any] | None) -> Certificate | None:
-    from tyrefem.reduced.surrogate import Certificate
+def _certificate(noted: Mapping[str, Any] | None) -> SurrogateCertificate | None:
+    from tyrefem.reduced.surrogate import SurrogateCertificate
 
-    return None if noted is None else Certificate(**noted)
+    return None if noted is None else SurrogateCertificate(**noted)
 
 
 class Asked(Answering):

@@ -11,23 +11,23 @@ from tyrefem.brief import Brief
 from tyrefem.conduction import SolverError
 from tyrefem.errors import InputError
 from tyrefem.estimates import work as estimate
-from tyrefem.inputs.study import Study
+from tyrefem.inputs.study import StudyData
 from tyrefem.measured.cases import Case
 from tyrefem.simulation.estimate import RunEstimate
 from tyrefem.simulation.run import run
 
 if TYPE_CHECKING:
-    from tyrefem.simulation.result import Result
+    from tyrefem.simulation.result import ResultData
 
 #: Cases that are looked at to judge how long all will take.
 LOOKED_AT = 10
 
 
 @dataclass(frozen=True, eq=False)
-class Campaign(Brief):
+class CampaignData(Brief):
     """The cases of a study, each a study of its own. Made by `Study.campaign`."""
 
-    study: Study
+    study: StudyData
     cases: tuple[Case, ...]
 
     def _title(self) -> str:
@@ -42,7 +42,7 @@ class Campaign(Brief):
         }
 
     @classmethod
-    def of(cls, study: Study) -> Self:
+    def of(cls, study: StudyData) -> Self:
         """The campaign of a study that names a table of cases.
 
         Raises
@@ -54,15 +54,15 @@ class Campaign(Brief):
         return cls(study, study.cases)
 
     @classmethod
-    def case_of(cls, study: Study, name: str) -> Study:
+    def case_of(cls, study: StudyData, name: str) -> StudyData:
         """The study of the case of that name: `Study.case`."""
         return study.case(name)
 
-    def case_study(self, case: Case) -> Study:
+    def case_study(self, case: Case) -> StudyData:
         """The study of one case."""
         return self.study.case_study(case)
 
-    def runs(self, progress: Callable[[int, int], None] | None = None) -> Iterator[tuple[Case, Result | str]]:
+    def runs(self, progress: Callable[[int, int], None] | None = None) -> Iterator[tuple[Case, ResultData | str]]:
         """Run the cases in their order; a case that fails gives its reason in place of a result.
 
         An interruption (Ctrl-C) yields the part of the case that is finished, then raises ``KeyboardInterrupt``.
@@ -87,7 +87,7 @@ class Campaign(Brief):
             mean = sum(times) / len(times)
             estimate.warn_of(mean * len(self.cases), f"{len(self.cases):,} cases of {self.study.name}")
 
-    def outcome(self, case: Case) -> Result | str:
+    def outcome(self, case: Case) -> ResultData | str:
         """The result of a case, or why there is none."""
         try:
             return run(self.case_study(case), partial=True)
@@ -97,7 +97,7 @@ class Campaign(Brief):
             return f"defect, please report: {type(error).__name__}: {error}"
 
 
-def row(case: Case, outcome: Result | str) -> dict[str, Any]:
+def row(case: Case, outcome: ResultData | str) -> dict[str, Any]:
     """One case as a row of the campaign's table; a failed case has only its name and ``failure``."""
     if isinstance(outcome, str):
         return {"case": case.name, "note": case.note, "failure": outcome}

@@ -12,12 +12,12 @@ from typing import TYPE_CHECKING, Any, Unpack
 
 from tyrefem.brief import Brief
 from tyrefem.errors import InputError, nearest
-from tyrefem.inputs.study import Study
+from tyrefem.inputs.study import StudyData
 from tyrefem.requirements import Requirements
 from tyrefem.sweep.envelope import Envelope, checked_pairs, envelope
 from tyrefem.sweep.optimum import Optimum, optimum
 from tyrefem.sweep.pareto import ParetoFront
-from tyrefem.sweep.part import Part
+from tyrefem.sweep.part import DesignPart
 from tyrefem.sweep.responses import Responses, judged
 from tyrefem.sweep.sobol_indices import Indices
 from tyrefem.sweep.sweep import Sweep, sweep
@@ -33,7 +33,7 @@ if TYPE_CHECKING:
 
 
 @dataclass(frozen=True, eq=False)
-class Design(Brief):
+class DesignData(Brief):
     """The answers to a design study.
 
     Parameters
@@ -42,7 +42,7 @@ class Design(Brief):
     tornado, optimum, envelope : the answers asked for, else None. interrupted : why some were not reached; empty: none.
     """
 
-    study: Study
+    study: StudyData
     card: SweepCard
     swept: Sweep | None
     tornado: Tornado | None = None
@@ -59,9 +59,9 @@ class Design(Brief):
         return {**swept, **told, **({"interrupted": self.interrupted} if self.interrupted else {})}
 
     @property
-    def parts(self) -> tuple[Part, ...]:
+    def parts(self) -> tuple[DesignPart, ...]:
         """All answers, in the order in which they are told."""
-        found: list[Part] = []
+        found: list[DesignPart] = []
         if self.optimum is not None:
             found.append(self.optimum)
         if self.swept is not None and self.swept.outcomes:
@@ -117,7 +117,7 @@ class Questions:
     plan : the variants of the sample, maybe none, with what varies. tornado : variants of the tolerances.
     """
 
-    study: Study
+    study: StudyData
     card: SweepCard
     plan: Plan
     tornado: Plan | None
@@ -134,7 +134,7 @@ class Questions:
             parts.append(f"an envelope of {len(checked_pairs(self.study, self.card.envelope))} loads and pressures")
         return f"{', '.join(parts)}; study {self.study.name}"
 
-    def answered(self, how: Execution | None = None, **said: Unpack[Said]) -> Design:
+    def answered(self, how: Execution | None = None, **said: Unpack[Said]) -> DesignData:
         """Run what is needed; parameters as of `tyrefem.sweep.sweep.sweep`. Ctrl-C keeps what is finished.
 
         A `Local` scheduler used as a context manager keeps its processes from one question to the next.
@@ -158,10 +158,10 @@ class Questions:
             interrupted = "interrupted"
         except ClusterLostError as error:
             interrupted = str(error)
-        return Design(self.study, card, swept, tornado, best, safe, interrupted)
+        return DesignData(self.study, card, swept, tornado, best, safe, interrupted)
 
 
-def questions(study: Study, card: SweepCard, near: Path | None = None) -> Questions:
+def questions(study: StudyData, card: SweepCard, near: Path | None = None) -> Questions:
     """What a sweep file asks, or the first thing that makes no sense.
 
     Raises
@@ -186,7 +186,7 @@ def questions(study: Study, card: SweepCard, near: Path | None = None) -> Questi
     return Questions(study, card, plan, tornado)
 
 
-def asked_of(study: Study, vary: Mapping[str, Any] | None = None, **options: Any) -> Design:
+def asked_of(study: StudyData, vary: Mapping[str, Any] | None = None, **options: Any) -> DesignData:
     """The answers to what `card_of` takes, carried out as `Execution` says: `Study.sweep`.
 
     Raises

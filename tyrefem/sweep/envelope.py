@@ -14,7 +14,7 @@ from typing import TYPE_CHECKING, Any, Unpack
 
 from tyrefem.errors import InputError
 from tyrefem.inputs.changes import scaled, value_at
-from tyrefem.inputs.study import Study
+from tyrefem.inputs.study import StudyData
 from tyrefem.quantity import parse
 from tyrefem.sweep.answering import Asked
 from tyrefem.variants.answer_units import name_of, shown
@@ -27,13 +27,13 @@ from tyrefem.variants.varied import Varied
 if TYPE_CHECKING:
     import pandas as pd
 
-    from tyrefem.reduced.surrogate import Certificate
+    from tyrefem.reduced.surrogate import SurrogateCertificate
 
 #: Loads where none are given: shares of the study's own.
 SHARES = (0.5, 0.75, 1.0, 1.25)
 
 
-def checked_pairs(study: Study, card: EnvelopeCard) -> list[tuple[str, str]]:
+def checked_pairs(study: StudyData, card: EnvelopeCard) -> list[tuple[str, str]]:
     """Loads and pressures of an envelope, as written; every one of them is something that the study takes.
 
     Raises
@@ -63,14 +63,14 @@ def speed_range(card: EnvelopeCard) -> tuple[float, float]:
     return low, high
 
 
-def _given(study: Study, name: str) -> Any:
+def _given(study: StudyData, name: str) -> Any:
     try:
         return value_at(study.data, f"drive.{name}", study.folder)
     except InputError as error:
         raise InputError(f"the study gives no one {name}: name them", field=f"envelope.{name}s") from error
 
 
-def _shares(study: Study) -> list[str]:
+def _shares(study: StudyData) -> list[str]:
     load = _given(study, "load")
     try:
         return [scaled(load, share, significant=4) for share in SHARES]
@@ -171,11 +171,11 @@ class Envelope:
         t km/h, ``by``, ``error_K``, ``failure``.
     """
 
-    study: Study
+    study: StudyData
     card: EnvelopeCard
     table: pd.DataFrame
     runs: int
-    certificate: Certificate | None = None
+    certificate: SurrogateCertificate | None = None
     why_full: str = ""
 
     name = "envelope"
@@ -230,7 +230,7 @@ def _speed_words(row: Mapping[Any, Any]) -> str:
     return f"{row['speed_m_s'] * 3.6:.0f} km/h{beyond} with {row['load']}"
 
 
-def envelope(study: Study, card: EnvelopeCard, how: Execution | None = None, **said: Unpack[Said]) -> Envelope:
+def envelope(study: StudyData, card: EnvelopeCard, how: Execution | None = None, **said: Unpack[Said]) -> Envelope:
     """The largest speed at which an answer stays below a limit, for every load and pressure.
 
     The answer must rise with speed. All pairs are searched at once: each round runs one speed of every pair that is not

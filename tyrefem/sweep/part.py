@@ -6,7 +6,7 @@ if TYPE_CHECKING:
     import pandas as pd
 
 
-class Part(Protocol):
+class DesignPart(Protocol):
     """One answer: a table and words. Its folder of finished variants and its files have its ``name``.
 
     Its pictures are what is registered for its class with `tyrefem.reports.sweep_figures.figures`.

@@ -20,7 +20,7 @@ from tyrefem.variants.plan import Plan
 if TYPE_CHECKING:
     import pandas as pd
 
-    from tyrefem.reduced.surrogate import Certificate
+    from tyrefem.reduced.surrogate import SurrogateCertificate
 
 
 @dataclass(frozen=True, eq=False)
@@ -36,7 +36,7 @@ class Sweep(Brief):
 
     plan: Plan
     outcomes: dict[int, dict[str, Any]]
-    certificate: Certificate | None = None
+    certificate: SurrogateCertificate | None = None
     why_full: str = ""
     seconds: float = 0.0
     taken_up: int = 0

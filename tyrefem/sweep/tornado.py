@@ -9,7 +9,7 @@ from dataclasses import dataclass
 from typing import TYPE_CHECKING, Any
 
 from tyrefem.errors import InputError
-from tyrefem.inputs.study import Study
+from tyrefem.inputs.study import StudyData
 from tyrefem.inputs.uncertain_numbers import UncertainNumber, left_out, uncertain_number
 from tyrefem.sweep.sweep import Sweep
 from tyrefem.variants.answer_units import difference_unit, name_of, shown
@@ -20,7 +20,7 @@ if TYPE_CHECKING:
     import pandas as pd
 
 
-def tolerances(study: Study, only: Mapping[str, float] | None = None) -> tuple[UncertainNumber, ...]:
+def tolerances(study: StudyData, only: Mapping[str, float] | None = None) -> tuple[UncertainNumber, ...]:
     """The numbers to move, with their relative tolerances as sd: those given, or all that cards and study state a
     standard deviation for and that can matter. A card's number is one in all regions that take it from that card.
 
@@ -39,7 +39,7 @@ def tolerances(study: Study, only: Mapping[str, float] | None = None) -> tuple[U
     return tuple(found)
 
 
-def tornado_plan(study: Study, given: Mapping[str, float] | None = None, time_to: float | None = None) -> Plan:
+def tornado_plan(study: StudyData, given: Mapping[str, float] | None = None, time_to: float | None = None) -> Plan:
     """The study as it is, then every number at 1 - tolerance and 1 + tolerance, the others as they are."""
     variants: list[dict[str, Any]] = [{}]
     names = ["as it is"]

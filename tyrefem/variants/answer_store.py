@@ -17,7 +17,7 @@ import numpy as np
 
 from tyrefem import library
 from tyrefem.effects import catalogue
-from tyrefem.inputs.study import Study
+from tyrefem.inputs.study import StudyData
 from tyrefem.interruption import held_back
 from tyrefem.output import atomic_path, jsonable
 
@@ -98,7 +98,7 @@ def digest(content: Any) -> str:
 
 def plain(value: Any) -> Any:
     """A question as JSON can hold it: numbers exactly, an unknown in full, a study with its cards."""
-    if isinstance(value, Study):
+    if isinstance(value, StudyData):
         return _study(value)
     if isinstance(value, Mapping):
         return [[plain(key), plain(entry)] for key, entry in value.items()]
@@ -107,7 +107,7 @@ def plain(value: Any) -> Any:
     return repr(value)
 
 
-def _study(study: Study) -> list[Any]:
+def _study(study: StudyData) -> list[Any]:
     cards = [library.load("section", study.data["section"], study.folder)[0]]
     cards += [library.load("material", reference, study.folder)[0] for reference in study.data["materials"].values()]
     mesh = study.card.mesh.file

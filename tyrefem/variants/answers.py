@@ -14,14 +14,14 @@ from typing import TYPE_CHECKING, Any, Protocol
 import numpy as np
 from numpy.typing import NDArray
 
-from tyrefem.boundaries.rim import Lumped
+from tyrefem.boundaries.rim import LumpedRim
 from tyrefem.errors import InputError, nearest
 from tyrefem.inputs.drive import slides
 from tyrefem.simulation.surroundings import GAS, RIM
 
 if TYPE_CHECKING:
     from tyrefem.conduction.field import Peak
-    from tyrefem.inputs.study import Study
+    from tyrefem.inputs.study import StudyData
     from tyrefem.simulation.heat_budget import HeatBudget
     from tyrefem.simulation.rolling_resistance import RollingResistance
     from tyrefem.simulation.rolling_tyre import RollingTyre
@@ -35,11 +35,11 @@ TIME_TO = "time_to_limit_s"
 
 #: Stands for a time that was never reached, s: later than any.
 NEVER = 1e9
-Function = Callable[["Outcome", float | None], Answers]
+Function = Callable[["FinishedRun", float | None], Answers]
 
 
 #: Names of a function's answers for a study; ``*`` stands for any name.
-Names = Callable[["Study"], list[str]]
+Names = Callable[["StudyData"], list[str]]
 _FUNCTIONS: list[tuple[Function, Names]] = []
 
 
@@ -53,7 +53,7 @@ def answer(names: Names) -> Callable[[Function], Function]:
     return add
 
 
-def answers(result: Outcome, time_to: float | None = None) -> Answers:
+def answers(result: FinishedRun, time_to: float | None = None) -> Answers:
     """Every answer of a run by name, the unit at its end; SI units and degC.
 
     Parameters
@@ -66,7 +66,7 @@ def answers(result: Outcome, time_to: float | None = None) -> Answers:
     return found
 
 
-def answer_names(study: Study, time_to: float | None = None) -> list[str]:
+def answer_names(study: StudyData, time_to: float | None = None) -> list[str]:
     """Names of the numbers that `answers` will give of a study, without running it.
 
     >>> import tyrefem
@@ -77,7 +77,7 @@ def answer_names(study: Study, time_to: float | None = None) -> list[str]:
     return found if time_to is not None else [name for name in found if name != TIME_TO]
 
 
-def check_answer(name: str, study: Study, time_to: float | None = None) -> None:
+def check_answer(name: str, study: StudyData, time_to: float | None = None) -> None:
     """Raise `InputError`, with the nearest name, for an answer that a study has not."""
     known = answer_names(study, time_to)
     if not any(fnmatch.fnmatchcase(name, one) for one in known):
@@ -91,7 +91,7 @@ def check_answer(name: str, study: Study, time_to: float | None = None) -> None:
         *(f"{region}_max_degC" for region in study.section.regions),
     ]
 )
-def hottest(result: Outcome, _: float | None) -> Answers:
+def hottest(result: FinishedRun, _: float | None) -> Answers:
     """Highest temperature over the run, its place and time; per region."""
     peaks = dict(result.peaks)
     peak = peaks.pop("tyre")
@@ -107,7 +107,7 @@ def hottest(result: Outcome, _: float | None) -> Answers:
 
 
 @answer(lambda study: [f"{name}{end}" for end in ("_degC", "_max_degC") for name in study.sensors])
-def sensors(result: Outcome, _: float | None) -> Answers:
+def sensors(result: FinishedRun, _: float | None) -> Answers:
     """Every sensor at the end and at its highest."""
     read = result.recorded
     return {f"{name}_degC": float(series[-1]) for name, series in read.items()} | {
@@ -118,10 +118,10 @@ def sensors(result: Outcome, _: float | None) -> Answers:
 @answer(
     lambda study: [
         *(f"{GAS}_degC", "gas_pressure_Pa"),
-        *([f"{RIM}_degC"] if isinstance(study.card.boundaries.rim, Lumped) else []),
+        *([f"{RIM}_degC"] if isinstance(study.card.boundaries.rim, LumpedRim) else []),
     ]
 )
-def gas(result: Outcome, _: float | None) -> Answers:
+def gas(result: FinishedRun, _: float | None) -> Answers:
     """Contained air at the end; a lumped rim."""
     found = {
         f"{GAS}_degC": float(result.gas_temperature[-1]),
@@ -132,7 +132,7 @@ def gas(result: Outcome, _: float | None) -> Answers:
 
 
 @answer(lambda _: ["gradient_K_m", "gradient_s_m"])
-def gradient(result: Outcome, _: float | None) -> Answers:
+def gradient(result: FinishedRun, _: float | None) -> Answers:
     """Steepest mean gradient from the inner to the outer surface at the end, K/m, and where."""
     s, steep = result.wall_gradient
     i = int(np.argmax(steep))
@@ -142,7 +142,7 @@ def gradient(result: Outcome, _: float | None) -> Answers:
 @answer(
     lambda _: [f"rolling_resistance_{end}" for end in ("N", "coefficient", "coefficient_cold")],
 )
-def resistance(result: Outcome, _: float | None) -> Answers:
+def resistance(result: FinishedRun, _: float | None) -> Answers:
     """Rolling resistance of hysteresis, warm and cold."""
     found = result.rolling_resistance
     return {
@@ -161,7 +161,7 @@ def resistance(result: Outcome, _: float | None) -> Answers:
         "heat_J",
     ]
 )
-def shares(result: Outcome, _: float | None) -> Answers:
+def shares(result: FinishedRun, _: float | None) -> Answers:
     """Parts of the heat budget over all heat that came into the rubber."""
     budget = result.end_budget
     made = budget.made
@@ -174,7 +174,7 @@ def shares(result: Outcome, _: float | None) -> Answers:
 
 
 @answer(lambda _: ["mass_kg"])
-def mass(result: Outcome, _: float | None) -> Answers:
+def mass(result: FinishedRun, _: float | None) -> Answers:
     """Mass of the whole tyre, kg."""
     from tyrefem.materials.cord_layers import masses
 
@@ -183,7 +183,7 @@ def mass(result: Outcome, _: float | None) -> Answers:
 
 
 @answer(lambda _: ["load_N", "deflection_m"])
-def drive(result: Outcome, _: float | None) -> Answers:
+def drive(result: FinishedRun, _: float | None) -> Answers:
     """Load and deflection of the last phase."""
     schedule, end = result.tyre.schedule, result.tyre.drive.end * (1 - 1e-12)
     return {
@@ -193,7 +193,7 @@ def drive(result: Outcome, _: float | None) -> Answers:
 
 
 @answer(lambda _: [TIME_TO])
-def time_to_limit(result: Outcome, time_to: float | None) -> Answers:
+def time_to_limit(result: FinishedRun, time_to: float | None) -> Answers:
     """When the hottest node first reaches a temperature, s; NaN: not within the drive. Linear between readings."""
     if time_to is None:
         return {}
@@ -211,12 +211,12 @@ def time_to_limit(result: Outcome, time_to: float | None) -> Answers:
 Array = NDArray[np.float64]
 
 
-class Outcome(Protocol):
+class FinishedRun(Protocol):
     """A finished run, as far as answers look at it. An answer that needs more takes it from the whole `Result`, which
     a reduced variant makes when it is first asked for: right, but slower."""
 
     @property
-    def study(self) -> Study:
+    def study(self) -> StudyData:
         """What was run."""
         ...
 

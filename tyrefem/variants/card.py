@@ -13,7 +13,7 @@ from tyrefem.errors import InputError
 from tyrefem.quantity import Unit
 
 if TYPE_CHECKING:
-    from tyrefem.inputs.study import Study
+    from tyrefem.inputs.study import StudyData
 
 Sample = Literal["grid", "latin-hypercube", "sobol", "list", "saltelli"]
 #: Values of a continuous quantity in a grid, where the file does not say.
@@ -177,7 +177,7 @@ class SweepCard(Card):
                 raise InputError(f'write dotted names in quotes, e.g. "{key}.{next(iter(value), "...")}" = ...')
         return data
 
-    def load_study(self, near: Path | None, changes: Mapping[str, Any] | None = None) -> Study:
+    def load_study(self, near: Path | None, changes: Mapping[str, Any] | None = None) -> StudyData:
         """The study, with the file's changes and then others made; its path may be relative to a folder."""
         from tyrefem.inputs.study import study
 

@@ -11,7 +11,7 @@ from pathlib import Path
 from typing import Any
 
 from tyrefem.errors import InputError
-from tyrefem.inputs.study import Study
+from tyrefem.inputs.study import StudyData
 from tyrefem.inputs.uncertain_numbers import left_out
 from tyrefem.mechanics.cycle_schedule import check_cases
 from tyrefem.quantity import written
@@ -33,7 +33,7 @@ class Plan:
         words that are recorded.
     """
 
-    study: Study
+    study: StudyData
     varied: tuple[Varied, ...]
     variants: tuple[Mapping[str, Any], ...]
     names: tuple[str, ...]
@@ -73,7 +73,7 @@ class Plan:
         return {"variant": self.names[number], **shown}
 
 
-def planned(study: Study, card: SweepCard, near: Path | None = None) -> Plan:
+def planned(study: StudyData, card: SweepCard, near: Path | None = None) -> Plan:
     """The variants that a sweep file asks for.
 
     Raises
@@ -151,7 +151,7 @@ def _outer_first(vary: Mapping[str, VaryCard]) -> dict[str, VaryCard]:
     return dict(sorted(vary.items(), key=lambda entry: entry[0].count(".")))
 
 
-def card_of(study: Study, vary: Mapping[str, Any] | None = None, **said: Any) -> SweepCard:
+def card_of(study: StudyData, vary: Mapping[str, Any] | None = None, **said: Any) -> SweepCard:
     """A sweep file's content from Python.
 
     ``vary``: e.g. ``{"drive.speed": ("10 mph", "40 mph"), "materials.tread": ["soft", "hard"]}``.
@@ -167,7 +167,7 @@ def card_of(study: Study, vary: Mapping[str, Any] | None = None, **said: Any) ->
     return SweepCard.check({"study": study.name, **data})
 
 
-def plan_of(study: Study, vary: Mapping[str, Any], **said: Any) -> Plan:
+def plan_of(study: StudyData, vary: Mapping[str, Any], **said: Any) -> Plan:
     """The variants of `card_of`."""
     return planned(study, card_of(study, vary, **said))
 
@@ -187,7 +187,7 @@ def _vary(value: Any) -> Any:
     raise InputError(f"a list of values or a tuple (from, to), not {value!r:.60}", field="vary")
 
 
-def sensible(study: Study, trials: Sequence[tuple[str, Mapping[str, Any]]]) -> None:
+def sensible(study: StudyData, trials: Sequence[tuple[str, Mapping[str, Any]]]) -> None:
     """Build the study and the load cases of each; the first that is refused names itself."""
     for name, changes in trials:
         try:

@@ -20,7 +20,7 @@ from typing import TYPE_CHECKING, Any
 import tyrefem
 from tyrefem import library
 from tyrefem.errors import InputError
-from tyrefem.inputs.study import Study
+from tyrefem.inputs.study import StudyData
 
 if TYPE_CHECKING:
     from tyrefem.simulation.rolling_tyre import RollingTyre
@@ -52,7 +52,7 @@ class Bundle:
         text = json.dumps([self.version, self.name, self.data, heads], sort_keys=True, default=str)
         return hashlib.sha256(text.encode()).hexdigest()[:16]
 
-    def unpacked(self, folder: Path) -> Study:
+    def unpacked(self, folder: Path) -> StudyData:
         """The study again, its files in a folder.
 
         Raises
@@ -63,10 +63,10 @@ class Bundle:
             raise VersionError(f"asked by tyrefem {self.version}, but this worker has {tyrefem.__version__}")
         for name, content in self.files.items():
             (folder / name).write_bytes(content)
-        return Study(self.name, self.data, None, folder)
+        return StudyData(self.name, self.data, None, folder)
 
 
-def bundle(study: Study) -> Bundle:
+def bundle(study: StudyData) -> Bundle:
     """Pack a study: whoever unpacks it needs no file of this machine.
 
     >>> import tempfile, tyrefem
@@ -113,10 +113,10 @@ class Unpacked:
     """Bundles that this process has unpacked, by digest: a worker keeps its studies, meshes and operators."""
 
     def __init__(self) -> None:
-        self._studies: dict[str, Study] = {}
+        self._studies: dict[str, StudyData] = {}
         self._folders: list[tempfile.TemporaryDirectory[str]] = []
 
-    def study(self, packed: Bundle) -> Study:
+    def study(self, packed: Bundle) -> StudyData:
         """The study of a bundle, unpacked once."""
         digest = packed.digest
         if digest not in self._studies:
@@ -147,7 +147,7 @@ def _shelf() -> Unpacked:
     return Unpacked()
 
 
-def unpacked(packed: Bundle) -> Study:
+def unpacked(packed: Bundle) -> StudyData:
     """The study of a bundle, unpacked once in this process."""
     return _shelf().study(packed)
 
@@ -157,13 +157,13 @@ REMEMBERED = 4
 _recent = threading.local()
 
 
-def _most_alike(study: Study) -> RollingTyre | None:
+def _most_alike(study: StudyData) -> RollingTyre | None:
     """The tyre among the last ones from which most can be taken over."""
     tyres: list[RollingTyre] = _recent.__dict__.setdefault("tyres", [])
     return max(tyres, key=lambda tyre: _alike(study, tyre.study), default=None)
 
 
-def _alike(study: Study, other: Study) -> tuple[bool, bool, int]:
+def _alike(study: StudyData, other: StudyData) -> tuple[bool, bool, int]:
     """Same section; same strain cycle as far as the study says; how many materials are the same."""
     same = [study.data.get(table) == other.data.get(table) for table in ("section", "mesh", "drive", "mechanics")]
     mine, theirs = study.data["materials"], other.data["materials"]

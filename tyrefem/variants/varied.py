@@ -16,7 +16,7 @@ from tyrefem.quantity import parse
 from tyrefem.variants.card import VaryCard
 
 if TYPE_CHECKING:
-    from tyrefem.inputs.study import Study
+    from tyrefem.inputs.study import StudyData
 
 _AMOUNT = re.compile(r"^\s*([-+]?(?:\d+\.?\d*|\.\d+)(?:[eE][-+]?\d+)?)\s*(.*?)\s*$", re.DOTALL)
 #: Significant digits of a value that is written out: a variant can be typed again.
@@ -135,7 +135,7 @@ class Varied:
         return list(self.values) or [self.at(0.0), self.at(1.0)]
 
 
-def varied(study: Study, key: str, card: VaryCard) -> Varied:
+def varied(study: StudyData, key: str, card: VaryCard) -> Varied:
     """A varied quantity of a study.
 
     Raises
@@ -161,7 +161,7 @@ def varied(study: Study, key: str, card: VaryCard) -> Varied:
     return Varied(key, unit, (), low, high, card.scale == "log", card.levels)
 
 
-def uncertain(study: Study, deviations: float) -> list[Varied]:
+def uncertain(study: StudyData, deviations: float) -> list[Varied]:
     """Every uncertain number of a study that can matter, evenly within so many standard deviations either way.
 
     Raises
@@ -233,6 +233,6 @@ def _ratio(value: Any, nominal: Any) -> float:
     return _amount(value)[0] / _amount(nominal)[0]
 
 
-def scaled_value(study: Study, key: str, factor: float, digits: int = DIGITS) -> Any:
+def scaled_value(study: StudyData, key: str, factor: float, digits: int = DIGITS) -> Any:
     """The value at a dotted name of a study times a factor, as a study writes it."""
     return scaled(value_at(study.data, key, study.folder), factor, digits)

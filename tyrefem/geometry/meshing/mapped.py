@@ -101,7 +101,7 @@ GROWTH = 0.3
 
 
 @dataclass(frozen=True)
-class Grid:
+class MappedGrid:
     """Stations (n_columns + 1,), and heights of the nodes above the meridian (n_rows + 1, n_columns + 1) [m].
 
     ``layer`` is the layer of each row.
@@ -112,7 +112,7 @@ class Grid:
     layer: NDArray[np.int64]
 
 
-def make_grid(section: Section, size: float, through: int) -> Grid:
+def make_grid(section: Section, size: float, through: int) -> MappedGrid:
     """Rows and stations for a size [m]: conforming to every layer, region and boundary."""
     rows = [_rows(section, index, size, through) for index in range(len(section.layers))]
     s = _stations(section, size, rows)
@@ -123,7 +123,7 @@ def make_grid(section: Section, size: float, through: int) -> Grid:
         share = np.stack([_fractions(section, index, t, size, count) for t in thickness], axis=1)
         level = faces[index] + share * thickness
         heights.append(level if index == 0 else level[1:])
-    return Grid(s, np.concatenate(heights), np.repeat(np.arange(len(rows)), rows))
+    return MappedGrid(s, np.concatenate(heights), np.repeat(np.arange(len(rows)), rows))
 
 
 def grid_lines(section: Section, size: float, through: int) -> tuple[int, int]:
@@ -197,12 +197,12 @@ def mapped_mesh(section: Section, size: float, cell: str, through: int) -> Any:
     return mesh if section.half else mirrored(mesh)
 
 
-def _region_names(section: Section, grid: Grid) -> NDArray[np.str_]:
+def _region_names(section: Section, grid: MappedGrid) -> NDArray[np.str_]:
     middle = (grid.s[:-1] + grid.s[1:]) / 2
     return np.concatenate([section.layers[index].regions.at(middle) for index in grid.layer])
 
 
-def _edges(section: Section, grid: Grid, node: Indices) -> dict[str, Indices]:
+def _edges(section: Section, grid: MappedGrid, node: Indices) -> dict[str, Indices]:
     """Node pairs of each boundary."""
 
     def along(line: Indices) -> Indices:

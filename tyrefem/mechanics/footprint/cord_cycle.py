@@ -9,7 +9,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 if TYPE_CHECKING:
-    from tyrefem.mechanics.footprint.strain_harmonics import StrainCycle
+    from tyrefem.mechanics.footprint.strain_harmonics import StrainHarmonics
     from tyrefem.mechanics.solid.cords import CordLayer
     from tyrefem.mechanics.solid.inflation import Inflation
 
@@ -38,7 +38,7 @@ class CordCycle:
     unit: str
 
 
-def cord_cycles(tyre: Inflation, cycle: StrainCycle, count: int = 181) -> tuple[CordCycle, ...]:
+def cord_cycles(tyre: Inflation, cycle: StrainHarmonics, count: int = 181) -> tuple[CordCycle, ...]:
     """The cords of every region: inflated tension + E A lambda a . e a, a the cords' present direction.
 
     E A is less where the inflated cord is compressed, as in the tangent from which the footprint is computed. In large
@@ -55,7 +55,7 @@ def cord_cycles(tyre: Inflation, cycle: StrainCycle, count: int = 181) -> tuple[
     )
 
 
-def _greatest(tyre: Inflation, cycle: StrainCycle, region: str, layer: CordLayer, angles: Array) -> CordCycle:
+def _greatest(tyre: Inflation, cycle: StrainHarmonics, region: str, layer: CordLayer, angles: Array) -> CordCycle:
     members = np.asarray(tyre.body.mesh.subdomains[region])
     here = tyre.deformation[:, :, members]
     known = layer.cord_stiffness is not None

@@ -8,7 +8,7 @@ from dataclasses import dataclass, field, replace
 from tyrefem.errors import InputError
 from tyrefem.mechanics.footprint.contact import Pressing
 from tyrefem.mechanics.footprint.footprint import Footprint
-from tyrefem.mechanics.footprint.large_motion import BEFORE_RIM, LargeMotion, Moment
+from tyrefem.mechanics.footprint.large_motion import BEFORE_RIM, DeflectedState, LargeMotion
 from tyrefem.mechanics.solid.finite_law import FiniteLaw
 
 #: Numbers of harmonics: the way is gone with the first, the others refine what it leads to.
@@ -92,7 +92,7 @@ class Balance:
         assert found is not None
         return replace(found, stiffness=self.motion.stiffness(moment))
 
-    def _way(self, deflection: float | None, load: float | None, harmonics: int) -> Moment:
+    def _way(self, deflection: float | None, load: float | None, harmonics: int) -> DeflectedState:
         """From the free tyre to near a deflection or a load: steps as long as the motion allows."""
         pressing, motion = self.pressing, self.motion
         if deflection is not None:
@@ -130,7 +130,7 @@ class Balance:
         raise self._stuck(now, deflection, load, "")
 
     @staticmethod
-    def _stuck(now: Moment, deflection: float | None, load: float | None, how: str) -> InputError:
+    def _stuck(now: DeflectedState, deflection: float | None, load: float | None, how: str) -> InputError:
         wanted = f"{load:.5g} N" if deflection is None else f"{deflection * 1e3:.4g} mm of deflection"
         return InputError(
             f"the balance in large motion reaches {now.deflection * 1e3:.4g} mm ({now.load:.5g} N), not {wanted}{how}",

@@ -11,7 +11,7 @@ from numpy.typing import NDArray
 from tyrefem.mechanics.footprint.contact import Pressing
 from tyrefem.mechanics.footprint.footprint import Footprint
 from tyrefem.mechanics.footprint.grid import ContactGrid
-from tyrefem.mechanics.footprint.newton import LinearFactors, Step, Touching, newton_step
+from tyrefem.mechanics.footprint.newton import LinearFactors, NewtonStep, Touching, newton_step
 from tyrefem.mechanics.footprint.nonlinear import NonlinearForces, Tangent
 from tyrefem.mechanics.solid.finite_law import FiniteLaw
 
@@ -34,7 +34,7 @@ BEFORE_RIM = 0.999
 
 
 @dataclass(frozen=True, eq=False)
-class Moment:
+class DeflectedState:
     """Amplitudes ``motion`` (harmonics + 1, n_dofs), m, and contact forces (k,) on a grid, N, at a deflection, m; the
     load of the whole tyre, N."""
 
@@ -91,13 +91,13 @@ class LargeMotion:
     def _grid(self, harmonics: int, deflection: float) -> ContactGrid:
         return self.pressing.grid(harmonics, min(WIDER * deflection, self.deepest))
 
-    def free(self, harmonics: int, deflection: float) -> Moment:
+    def free(self, harmonics: int, deflection: float) -> DeflectedState:
         """The tyre off the road, on a grid that serves up to a deflection, m."""
         grid = self._grid(harmonics, deflection)
         motion = np.zeros((harmonics + 1, self.pressing.harmonics.elements.n_dofs))
-        return Moment(0.0, motion, grid, np.zeros(len(grid.areas)))
+        return DeflectedState(0.0, motion, grid, np.zeros(len(grid.areas)))
 
-    def refined(self, moment: Moment, harmonics: int) -> Moment:
+    def refined(self, moment: DeflectedState, harmonics: int) -> DeflectedState:
         """The same motion and pressure with another number of harmonics."""
         if moment.harmonics == harmonics:
             return moment
@@ -110,7 +110,9 @@ class LargeMotion:
         forces = pressure.ravel() * np.repeat(grid.sides, len(grid.tread.nodes)) * grid.areas
         return replace(moment, motion=motion, grid=grid, forces=forces)
 
-    def settled(self, start: Moment, deflection: float, tolerance: float, load: float | None = None) -> Moment | None:
+    def settled(
+        self, start: DeflectedState, deflection: float, tolerance: float, load: float | None = None
+    ) -> DeflectedState | None:
         """The balance at a deflection, m, or from there on under a load, N; None where it does not settle.
 
         Where the first step would move the tyre too far, it goes ahead to a smaller deflection, and that is balanced.
@@ -122,7 +124,7 @@ class LargeMotion:
         outside = self.nonlinear(start.harmonics)
         u, forces = start.motion, start.forces
         closed: Flags | None = None
-        rate: Step | None = None
+        rate: NewtonStep | None = None
         tangent: Tangent | None = None
         unstable, change = 0, np.inf
         for count in range(STEPS):
@@ -163,11 +165,11 @@ class LargeMotion:
         return None
 
     @staticmethod
-    def _turned(outside: NonlinearForces, step: Step) -> float:
+    def _turned(outside: NonlinearForces, step: NewtonStep) -> float:
         """Largest change of a displacement gradient."""
         return float(np.abs(outside.round.gradient(step.motion)).max())
 
-    def _road(self, moment: Moment) -> tuple[Array, Array, Touching]:
+    def _road(self, moment: DeflectedState) -> tuple[Array, Array, Touching]:
         """Gaps, m, how much each closes per metre of deflection, and the points that may touch."""
         pressing, grid = self.pressing, moment.grid
         moved = grid.displacements(moment.motion)
@@ -175,11 +177,11 @@ class LargeMotion:
         return gaps, pressing.road.normal @ normals, Touching(self.factors, grid, grid.along(normals))
 
     @staticmethod
-    def _rate(touching: Touching, closed: Flags, tangent: Tangent, leads: Array, accuracy: float) -> Step:
+    def _rate(touching: Touching, closed: Flags, tangent: Tangent, leads: Array, accuracy: float) -> NewtonStep:
         """Motion and forces per metre of deflection, while the same points touch."""
         return newton_step(touching, closed, replace(tangent, forces=np.zeros_like(tangent.forces)), -leads, accuracy)
 
-    def footprint(self, moment: Moment) -> Footprint:
+    def footprint(self, moment: DeflectedState) -> Footprint:
         """The footprint of a balance; its stiffness is left to `stiffness`."""
         gaps, _, touching = self._road(moment)
         return Footprint(
@@ -187,7 +189,7 @@ class LargeMotion:
             moment.grid.displacements(moment.motion), gaps, balanced=moment.motion,
         )  # fmt: skip
 
-    def stiffness(self, moment: Moment) -> float:
+    def stiffness(self, moment: DeflectedState) -> float:
         """d load / d deflection of a balance, N/m, while the same points touch."""
         _, leads, touching = self._road(moment)
         tangent = self.nonlinear(moment.harmonics).at(moment.motion)

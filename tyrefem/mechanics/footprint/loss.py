@@ -12,7 +12,7 @@ from numpy.typing import NDArray
 from tyrefem.brief import Brief
 from tyrefem.errors import InputError, nearest
 from tyrefem.materials.loss_tangent import Loss
-from tyrefem.mechanics.footprint.strain_harmonics import StrainCycle
+from tyrefem.mechanics.footprint.strain_harmonics import StrainHarmonics
 
 Array = NDArray[np.float64]
 #: Energy lost per cycle over U tan d: pi for the report's U (Clark & Dodge 1980, eq 25), 2 pi for U = E' e0^2 / 2.
@@ -38,7 +38,7 @@ class RevolutionLoss(Brief):
     InputError : a region that the mesh does not have; a speed that is not positive.
     """
 
-    cycle: StrainCycle
+    cycle: StrainHarmonics
     tangents: Mapping[str, Loss]
     speed: float
     temperature: float | Array = 25.0

@@ -140,7 +140,7 @@ class Touching:
 
 
 @dataclass(frozen=True, eq=False)
-class Step:
+class NewtonStep:
     """A step (highest + 1, n_dofs), m; contact forces (k,), N, with it; iterations; ``stable``: the stiffness was
     positive in every direction that was tried."""
 
@@ -157,7 +157,7 @@ def newton_step(
     distance: Array,
     accuracy: float,
     least: float = 0.0,
-) -> Step:
+) -> NewtonStep:
     """J x + B' f = -g with B x = w on the closed points: conjugate gradients on the motions that B leaves.
 
     The linear tyre, held at the same points, is the preconditioner: K^-1 - K^-1 B' (B K^-1 B')^-1 B K^-1.
@@ -203,4 +203,4 @@ def newton_step(
             along = change + size / before * along
     forces = np.zeros(len(touching.rows))
     forces[closed] = total
-    return Step(x, forces, count, stable)
+    return NewtonStep(x, forces, count, stable)

@@ -11,7 +11,7 @@ from numpy.typing import NDArray
 
 from tyrefem.mechanics.footprint.elements import COMPONENTS, WheelAngles
 from tyrefem.mechanics.footprint.harmonics import Harmonics, along_wall
-from tyrefem.mechanics.solid.finite_law import FiniteLaw, GreenLaw, Response
+from tyrefem.mechanics.solid.finite_law import FiniteLaw, GreenLaw, StressResponse
 
 Array = NDArray[np.float64]
 
@@ -22,7 +22,7 @@ class Tangent:
 
     outside: NonlinearForces
     forces: Array
-    response: Response
+    response: StressResponse
     wall: tuple[Array, Array]
 
     def product(self, change: Array) -> Array:
@@ -81,7 +81,7 @@ class NonlinearForces:
         found[:, self.harmonics.held] = 0.0
         return np.asarray(found)
 
-    def _total(self, amplitudes: Array, tangent: bool) -> tuple[Array, Response, tuple[Array, Array]]:
+    def _total(self, amplitudes: Array, tangent: bool) -> tuple[Array, StressResponse, tuple[Array, Array]]:
         response = self._law.response(self.round.gradient(amplitudes), tangent)
         wall = self._vectors(amplitudes)
         if self.harmonics.state.pressure:

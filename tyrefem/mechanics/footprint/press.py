@@ -20,12 +20,12 @@ from tyrefem.requirements import Requirements
 
 if TYPE_CHECKING:
     from tyrefem.geometry.meshing.mesh import TyreMesh
-    from tyrefem.inputs.published import Comparison
-    from tyrefem.inputs.study import Study
+    from tyrefem.inputs.published import PublishedComparison
+    from tyrefem.inputs.study import StudyData
     from tyrefem.mechanics.footprint.contact import Pressing
     from tyrefem.mechanics.footprint.footprint import Footprint
     from tyrefem.mechanics.footprint.loss import RevolutionLoss
-    from tyrefem.mechanics.footprint.strain_harmonics import StrainCycle
+    from tyrefem.mechanics.footprint.strain_harmonics import StrainHarmonics
     from tyrefem.mechanics.solid.inflation import Inflation
 
 Array = NDArray[np.float64]
@@ -50,7 +50,7 @@ class Pressed(Brief):
     path : (deflection, load), m and N, on the way to a footprint in large motion; empty: linear about the inflation.
     """
 
-    study: Study
+    study: StudyData
     mesh: TyreMesh
     tyre: Inflation
     pressing: Pressing
@@ -94,16 +94,16 @@ class Pressed(Brief):
         return float(ramp.start or ramp.end)
 
     @functools.cached_property
-    def cycle(self) -> StrainCycle:
+    def cycle(self) -> StrainHarmonics:
         """Strains round the wheel."""
-        from tyrefem.mechanics.footprint.strain_harmonics import StrainCycle
+        from tyrefem.mechanics.footprint.strain_harmonics import StrainHarmonics
 
-        return StrainCycle(self.footprint)
+        return StrainHarmonics(self.footprint)
 
     @functools.cached_property
     def left_out(self) -> tuple[float, float, str]:
-        """What linearised strains leave out of Green's, over themselves (`StrainCycle.coarseness`): root mean square by
-        volume, the greatest of an element, and its region."""
+        """What linearised strains leave out of Green's, over themselves (`StrainHarmonics.coarseness`): root mean
+        square by volume, the greatest of an element, and its region."""
         coarse = self.cycle.coarseness()
         worst = int(np.argmax(coarse))
         volumes = self.cycle.elements.weights.sum(axis=1)
@@ -121,7 +121,7 @@ class Pressed(Brief):
         return RevolutionLoss(self.cycle, laws, self.speed, self.study.card.drive.initial)
 
     @property
-    def published(self) -> tuple[Comparison, ...]:
+    def published(self) -> tuple[PublishedComparison, ...]:
         """The results beside the study's published ranges."""
         from tyrefem.inputs.published import compared, of_footprint
 
@@ -191,7 +191,7 @@ class Pressed(Brief):
 
 
 def press(
-    study: Study,
+    study: StudyData,
     *,
     pressure: float | None = None,
     load: float | None = None,

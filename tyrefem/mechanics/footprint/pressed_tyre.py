@@ -20,7 +20,7 @@ from tyrefem.materials.reads import values_read
 if TYPE_CHECKING:
     from tyrefem.geometry.meshing.mesh import TyreMesh
     from tyrefem.inputs.loading import LoadCase
-    from tyrefem.inputs.study import Study
+    from tyrefem.inputs.study import StudyData
     from tyrefem.mechanics.footprint.contact import Pressing
     from tyrefem.mechanics.footprint.footprint import Footprint
     from tyrefem.mechanics.solid.inflation import Inflation
@@ -35,7 +35,7 @@ REMEMBERED = 10
 TYRES = 2
 
 
-def mechanical_mesh(study: Study, *, large: bool | None = None) -> TyreMesh:
+def mechanical_mesh(study: StudyData, *, large: bool | None = None) -> TyreMesh:
     """The study's own mesh file; gmsh's quadrilaterals where the study asks for these; otherwise a mapped mesh of
     nine-node elements twice as large as the study asks for, also beside gmsh's triangles (nine-node elements need
     quadrilaterals; energies go over by region and place). ``large``: for large motion; None: as the study says.
@@ -61,7 +61,7 @@ def mechanical_mesh(study: Study, *, large: bool | None = None) -> TyreMesh:
         raise InputError(message, field=f"mesh.{error.field}", file=study.file) from None
 
 
-def _check_memory(study: Study, mesher: str, size: float, large: bool) -> None:
+def _check_memory(study: StudyData, mesher: str, size: float, large: bool) -> None:
     """Refuse a mesh on which the footprint has no room."""
 
     def nodes(size: float) -> float:
@@ -85,7 +85,7 @@ def _check_memory(study: Study, mesher: str, size: float, large: bool) -> None:
 class PressedTyre:
     """A study's tyre; every pressure, road and load is solved once. Made by `pressed_tyre`."""
 
-    study: Study
+    study: StudyData
 
     def inflated(self, pressure: float) -> Inflation:
         """The tyre under a gauge pressure, Pa.
@@ -150,7 +150,7 @@ class Remembered:
     tyres: OrderedDict[Hashable, PressedTyre] = field(default_factory=OrderedDict)
     lock: Lock = field(default_factory=Lock)
 
-    def of(self, study: Study) -> PressedTyre:
+    def of(self, study: StudyData) -> PressedTyre:
         """The tyre of a study, made if it is not among them."""
         key = inputs(study)
         with self.lock:
@@ -169,7 +169,7 @@ class Remembered:
 REMEMBERED_TYRES = Remembered()
 
 
-def pressed_tyre(study: Study) -> PressedTyre:
+def pressed_tyre(study: StudyData) -> PressedTyre:
     """The tyre of a study: a remembered one, if all that its finite elements depend on is the same."""
     return REMEMBERED_TYRES.of(study)
 
@@ -187,7 +187,7 @@ class _Same:
         return id(self.thing)
 
 
-def inputs(study: Study) -> Hashable:
+def inputs(study: StudyData) -> Hashable:
     """All that a study's finite elements depend on, apart from load, pressure and road: equal for equal tyres.
 
     The section, the choice of mesh with its file's content, and of every card what `strain.reads` names.

@@ -21,7 +21,7 @@ Indices = NDArray[np.int64]
 
 
 @dataclass(frozen=True)
-class Pressed:
+class PressedHexahedra:
     """Load, N, of the whole tyre, contact forces and displacements of `Hexahedra.at_deflection`."""
 
     load: float
@@ -209,7 +209,7 @@ class Hexahedra:
         options = {"SymmetricMode": True}
         return free, splu(matrix, permc_spec="MMD_AT_PLUS_A", diag_pivot_thresh=0.0, options=options)
 
-    def at_deflection(self, deflection: float) -> Pressed:
+    def at_deflection(self, deflection: float) -> PressedHexahedra:
         """Frictionless contact with a flat road at a deflection, m."""
         r, _, t = places = np.asarray(self.basis.doflocs)
         tread = self.nodes_on(self.state.tread)
@@ -224,7 +224,7 @@ class Hexahedra:
         moved[free] = factor.solve(np.ascontiguousarray(loads[free]))
         gaps = reach - deflection - r[tread] * np.cos(t[tread])
         forces, _ = contact_forces(loads.T @ moved, gaps)
-        return Pressed(4 * float(forces.sum()), forces, t[tread], -(moved @ forces))
+        return PressedHexahedra(4 * float(forces.sum()), forces, t[tread], -(moved @ forces))
 
     def strain(self, displacement: Array) -> tuple[Array, Array]:
         """(3, e, q) places and (6, e, q) strains at the Gauss points."""

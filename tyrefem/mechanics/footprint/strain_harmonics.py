@@ -18,7 +18,7 @@ COMPONENTS = ("rr", "zz", "tt", "rz", "rt", "zt")
 
 
 @dataclass(frozen=True)
-class BeltEdgeShear:
+class LargestEdgeShear:
     """Largest shear strain round the wheel at the edge of a region: its range, place (r, z) in m and component."""
 
     range: float
@@ -27,7 +27,7 @@ class BeltEdgeShear:
 
 
 @dataclass(frozen=True, eq=False)
-class StrainCycle:
+class StrainHarmonics:
     """Strain e(t) = sum e_n (cos n t for rr, zz, tt, rz; sin n t for rt, zt) at the Gauss points, beyond inflation.
 
     t is the angle from the middle of the footprint; a point of a tyre that rolls steadily runs through it once per
@@ -96,7 +96,7 @@ class StrainCycle:
         change = stiffness * self.along(direction, angles, elements)
         return np.asarray(np.asarray(inflated)[..., None] + change)
 
-    def belt_edge_shear(self, region: str, count: int = 180) -> BeltEdgeShear:
+    def belt_edge_shear(self, region: str, count: int = 180) -> LargestEdgeShear:
         """The largest range of a shear strain over a revolution in the outermost elements of a region.
 
         Raises
@@ -113,7 +113,7 @@ class StrainCycle:
         ranges = np.ptp(shears, axis=-1)
         kind, element, point = (int(i) for i in np.unravel_index(int(ranges.argmax()), ranges.shape))
         r, z = self.elements.points[:, edge[element], point]
-        return BeltEdgeShear(float(ranges.max()), (float(r), float(z)), COMPONENTS[3 + kind])
+        return LargestEdgeShear(float(ranges.max()), (float(r), float(z)), COMPONENTS[3 + kind])
 
     @functools.cached_property
     def storage_products(self) -> Array:

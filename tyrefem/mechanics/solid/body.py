@@ -18,7 +18,7 @@ from tyrefem.errors import InputError, nearest
 from tyrefem.mechanics.solid.compounds import determinant
 from tyrefem.mechanics.solid.elements import SYMMETRIC_UNIT, UNIT, Indices, PressedWall, Rings, outer, over
 from tyrefem.mechanics.solid.finite_law import BodyLaw
-from tyrefem.mechanics.solid.parts import Part
+from tyrefem.mechanics.solid.parts import RegionMaterial
 from tyrefem.mechanics.solid.rim import Flange
 
 if TYPE_CHECKING:
@@ -86,7 +86,7 @@ class Body(Brief):
     """
 
     mesh: Any
-    parts: Mapping[str, Part]
+    parts: Mapping[str, RegionMaterial]
     held: Mapping[str, str]
     pressurised: str = "contained_air"
     flanges: tuple[Flange, ...] = ()

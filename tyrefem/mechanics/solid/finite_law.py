@@ -13,7 +13,7 @@ from numpy.typing import NDArray
 
 from tyrefem.mechanics.solid.compounds import determinant
 from tyrefem.mechanics.solid.elements import SYMMETRIC_UNIT, UNIT, Indices, Rings, over
-from tyrefem.mechanics.solid.parts import Part
+from tyrefem.mechanics.solid.parts import RegionMaterial
 
 Array = NDArray[np.float64]
 #: Where a tensor's component stands among the six.
@@ -27,7 +27,7 @@ CHUNK = 8
 
 
 @dataclass(frozen=True, eq=False)
-class Response:
+class StressResponse:
     """First Piola stress P over the pre-stressed place and its derivative, both times r dA, at m angles.
 
     dP = A : dF + V kappa Proj(V : dF), V = dJ/dF: the dilatation is projected on 1, xi, eta of each element.
@@ -57,8 +57,8 @@ class Response:
 class FiniteLaw(Protocol):
     """Stress over a pre-stressed place."""
 
-    def response(self, gradient: Array, tangent: bool = True) -> Response:
-        """`Response` at displacement gradients H (e, q, m, 9) from the pre-stressed place."""
+    def response(self, gradient: Array, tangent: bool = True) -> StressResponse:
+        """`StressResponse` at displacement gradients H (e, q, m, 9) from the pre-stressed place."""
         ...  # pragma: no cover
 
 
@@ -112,7 +112,7 @@ class GreenLaw:
         functions, weights = self.rings.linear_functions, self.rings.weights
         return np.einsum("eqa,eq,eqb->eab", functions, weights * self.bulk_modulus, functions)
 
-    def response(self, gradient: Array, tangent: bool = True) -> Response:
+    def response(self, gradient: Array, tangent: bool = True) -> StressResponse:
         """P = F S, A = F c F' + 1 S."""
         f, functions, weights = _deformation(gradient), self.rings.linear_functions, self.rings.weights[..., None]
         green = [(f[:, i] * f[:, j]).sum(axis=0) - (i == j) for i, j in PAIRS]
@@ -123,7 +123,7 @@ class GreenLaw:
         s = _points(six[PLACE] * weights, 2)
         stress = (_points(f, 2) @ s).reshape(gradient.shape)
         if not tangent:
-            return Response(stress, np.zeros(0), np.zeros(0), functions, self._bulk)
+            return StressResponse(stress, np.zeros(0), np.zeros(0), functions, self._bulk)
         strains = np.zeros((*gradient.shape[:3], 6, 9))
         for row, (i, j) in enumerate(PAIRS):
             for k in range(3):
@@ -132,7 +132,7 @@ class GreenLaw:
                     strains[..., row, 3 * k + i] += f[k, j]
         c = _points(self.modulus * self.rings.weights, 2)[:, :, None]
         volume = _points(f * weights, 2).reshape(gradient.shape)
-        return Response(stress, _tangent(strains, c, s), volume, functions, self._bulk)
+        return StressResponse(stress, _tangent(strains, c, s), volume, functions, self._bulk)
 
 
 @dataclass(frozen=True, eq=False)
@@ -147,7 +147,7 @@ class BodyLaw:
     """
 
     rings: Rings
-    parts: Mapping[str, Part]
+    parts: Mapping[str, RegionMaterial]
     members: Mapping[str, Indices]
     bulk_modulus: Array
     inflated: Array
@@ -157,7 +157,7 @@ class BodyLaw:
         return np.asarray(self.bulk_modulus[:, None, None] * np.eye(3))
 
     @functools.cached_property
-    def _parts(self) -> dict[str, Part]:
+    def _parts(self) -> dict[str, RegionMaterial]:
         """The parts, with values at the points ready for one more axis, that of the angles."""
         found = {}
         for name, part in self.parts.items():
@@ -184,7 +184,7 @@ class BodyLaw:
             found[..., members, :, :] = total
         return found
 
-    def response(self, gradient: Array, tangent: bool = True) -> Response:
+    def response(self, gradient: Array, tangent: bool = True) -> StressResponse:
         """P = tau F^-T, A = F^-1 (J c + tau 1) F^-T."""
         rings, size = self.rings, gradient.shape[2]
         functions, weights = rings.linear_functions, rings.weights[..., None]
@@ -211,4 +211,4 @@ class BodyLaw:
                     if i != m:
                         strains[..., row, 3 * m : 3 * m + 3] += inverse[..., i]
                 found[:, :, part] = _tangent(strains, _points(c * weights, 2), inverse @ tau @ inverse.swapaxes(-1, -2))
-        return Response(stress, found, volume, functions, self._bulk)
+        return StressResponse(stress, found, volume, functions, self._bulk)

@@ -16,7 +16,7 @@ from tyrefem.mechanics.solid.newton import Equilibrium, NewtonChoice, equilibriu
 
 if TYPE_CHECKING:
     from tyrefem.geometry.meshing.mesh import TyreMesh
-    from tyrefem.inputs.study import Study
+    from tyrefem.inputs.study import StudyData
 
 Array = NDArray[np.float64]
 
@@ -134,7 +134,7 @@ def _spread(values: Array, weights: Array) -> tuple[float, float, float]:
 
 
 def inflate(
-    study: Study,
+    study: StudyData,
     pressure: float | None = None,
     mesh: TyreMesh | None = None,
     choice: NewtonChoice | None = None,

@@ -9,7 +9,7 @@ from tyrefem.mechanics.solid.cords import CordLayer
 
 
 @dataclass(frozen=True, eq=False)
-class Part:
+class RegionMaterial:
     """What a region is made of: a compound and layers of cords at the points of the region's elements.
 
     ``cord_loss`` is the cords' tan delta over the compound's: 0 where the cords lose nothing.

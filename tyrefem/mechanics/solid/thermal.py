@@ -15,10 +15,10 @@ from tyrefem.mechanics.solid.body import Body, Prestressed
 from tyrefem.mechanics.solid.compounds import Compound, determinant
 from tyrefem.mechanics.solid.cords import CordLayer
 from tyrefem.mechanics.solid.newton import Equilibrium
-from tyrefem.mechanics.solid.parts import Part
+from tyrefem.mechanics.solid.parts import RegionMaterial
 
 if TYPE_CHECKING:
-    from tyrefem.inputs.study import Study
+    from tyrefem.inputs.study import StudyData
 
 Array = NDArray[np.float64]
 
@@ -123,7 +123,7 @@ class WarmBody(Body):
         return replace(found, bulk=found.bulk / self.thermal**6, law=None)
 
 
-def expansions(study: Study) -> dict[str, Expansion]:
+def expansions(study: StudyData) -> dict[str, Expansion]:
     """Region -> expansion, of the cards that give one.
 
     Raises
@@ -171,7 +171,7 @@ def warm(body: Body, temperature: Any, expansions: Mapping[str, Expansion]) -> W
         thermal[members] = law.stretch(here)
         compound = WarmCompound(**_fields(part.compound), thermal=thermal[members])
         cords = tuple(WarmCords(**_fields(layer), thermal=law.cord_stretch(here)) for layer in part.cords)
-        parts[region] = Part(compound, cords, part.cord_loss)
+        parts[region] = RegionMaterial(compound, cords, part.cord_loss)
     if thermal.min() <= 0.5:
         raise InputError("temperatures at which nothing would be left of a region", field="temperature")
     return WarmBody(**{**_fields(body), "parts": parts}, thermal=thermal)

@@ -15,12 +15,12 @@ from tyrefem.mechanics.solid.body import Body
 from tyrefem.mechanics.solid.compounds import Compound, neo_hookean
 from tyrefem.mechanics.solid.cords import CordLayer, lifted_angle, lifted_ends
 from tyrefem.mechanics.solid.elements import Rings
-from tyrefem.mechanics.solid.parts import Part
+from tyrefem.mechanics.solid.parts import RegionMaterial
 from tyrefem.mechanics.solid.rim import FLANGE_RADIUS, SEAT, on_rim
 
 if TYPE_CHECKING:
     from tyrefem.geometry.meshing.mesh import TyreMesh
-    from tyrefem.inputs.study import Study
+    from tyrefem.inputs.study import StudyData
     from tyrefem.materials.card import MaterialCard
 
 Array = NDArray[np.float64]
@@ -33,7 +33,7 @@ BUCKLING = 0.5
 BIAS_ANGLES = (10.0, 80.0)
 
 
-def tyre_body(study: Study, mesh: TyreMesh | None = None) -> Body:
+def tyre_body(study: StudyData, mesh: TyreMesh | None = None) -> Body:
     """The body of a study's tyre on its mesh: held on the rim's seat, lying on its flanges; u_z = 0 on the mid plane
     of a half section.
 
@@ -65,20 +65,20 @@ def tyre_body(study: Study, mesh: TyreMesh | None = None) -> Body:
 
 @dataclass(frozen=True, eq=False)
 class _Reader:
-    study: Study
+    study: StudyData
     mesh: TyreMesh
     rings: Rings
 
-    def part(self, region: str) -> Part:
+    def part(self, region: str) -> RegionMaterial:
         card = self.study.materials[region]
         cords = getattr(card, "cords", None)
         compound = self.compound(card)
         if cords is not None:
             own = getattr(cords, "loss_tangent", None) or 0.0
             ratio = own / max(float(card.loss_tangent(LOSS_TEMPERATURE)), 1e-12)
-            return Part(compound, (self._limited(self.layer(region, cords), compound),), ratio)
+            return RegionMaterial(compound, (self._limited(self.layer(region, cords), compound),), ratio)
         layer = self.bias_plies(region, card) or self.bead_wire(region, card)
-        return Part(compound, (self._limited(layer, compound),) if layer else ())
+        return RegionMaterial(compound, (self._limited(layer, compound),) if layer else ())
 
     @staticmethod
     def _limited(layer: CordLayer, compound: Compound) -> CordLayer:

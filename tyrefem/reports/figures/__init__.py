@@ -10,7 +10,7 @@ from weakref import WeakKeyDictionary
 from tyrefem.output import atomic_path
 
 if TYPE_CHECKING:
-    from tyrefem.simulation.result import Result
+    from tyrefem.simulation.result import ResultData
 
 #: Files of the standard pictures.
 PICTURES = (
@@ -20,7 +20,7 @@ PICTURES = (
 _DRAWN: WeakKeyDictionary[Any, dict[str, bytes]] = WeakKeyDictionary()
 
 
-def _figures(result: Result) -> dict[str, Callable[[], Any]]:
+def _figures(result: ResultData) -> dict[str, Callable[[], Any]]:
     """File name -> what draws it, in the order of a report."""
     from tyrefem.reports.figures.budget import budget_figure
     from tyrefem.reports.figures.heat_source import heat_source_figure
@@ -45,7 +45,7 @@ def _figures(result: Result) -> dict[str, Callable[[], Any]]:
     return found | {"mesh.png": lambda: mesh_figure(result.tyre.mesh)}
 
 
-def pictures(result: Result) -> dict[str, bytes]:
+def pictures(result: ResultData) -> dict[str, bytes]:
     """File name -> PNG of the standard pictures of a run; drawn once per result.
 
     ``temperature`` at the end, and at the hottest moment where that is earlier; ``histories``; ``heat-budget``;
@@ -58,7 +58,7 @@ def pictures(result: Result) -> dict[str, bytes]:
     return _DRAWN[result]
 
 
-def write_pictures(result: Result, folder: Path) -> list[Path]:
+def write_pictures(result: ResultData, folder: Path) -> list[Path]:
     """Write the standard pictures as PNG files; each is complete or not there.
 
     Raises

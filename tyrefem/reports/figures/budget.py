@@ -33,7 +33,7 @@ if TYPE_CHECKING:
     from matplotlib.figure import Figure
 
     from tyrefem.simulation.heat_budget import HeatBudget
-    from tyrefem.simulation.result import Result
+    from tyrefem.simulation.result import ResultData
 
 #: Mean width of a letter of the bars' names, inches.
 LETTER = 0.074
@@ -75,7 +75,7 @@ def waterfall(budget: HeatBudget) -> list[Bar]:
     return bars
 
 
-def budget_figure(result: Result) -> Figure:
+def budget_figure(result: ResultData) -> Figure:
     """Left the waterfall of energies of the whole tyre, right the powers over time."""
     budget = result.heat_budget
     bars = waterfall(budget)

@@ -40,7 +40,7 @@ if TYPE_CHECKING:
     from tyrefem.mechanics.footprint.footprint import Footprint
     from tyrefem.mechanics.footprint.loss import RevolutionLoss
     from tyrefem.mechanics.footprint.press import Pressed
-    from tyrefem.mechanics.footprint.strain_harmonics import StrainCycle
+    from tyrefem.mechanics.footprint.strain_harmonics import StrainHarmonics
     from tyrefem.mechanics.solid.inflation import Inflation
 
 Array = NDArray[np.float64]
@@ -124,7 +124,7 @@ def pressure_map(found: Footprint) -> tuple[Array, Array, Array]:
     return x, z[order], pressure[order]
 
 
-def strain_history_figure(cycle: StrainCycle, places: dict[str, tuple[float, float]], count: int = 361) -> Figure:
+def strain_history_figure(cycle: StrainHarmonics, places: dict[str, tuple[float, float]], count: int = 361) -> Figure:
     """The six strains round the wheel at named places (r, z), m."""
     drawn = figure(10.4, 0.1 + 2.3 * len(places) + TITLE)
     angles = np.linspace(-np.pi, np.pi, count)

@@ -15,7 +15,7 @@ from tyrefem.reports.figures.style import ENERGY_MAP, Label, digits, millimetres
 if TYPE_CHECKING:
     from matplotlib.figure import Figure
 
-    from tyrefem.simulation.result import Result
+    from tyrefem.simulation.result import ResultData
 
 Array = NDArray[np.float64]
 #: Share of the section's area that a colour scale spans; what is above has the last colour.
@@ -35,7 +35,7 @@ class ZoneHeat:
     power: float
 
 
-def zone_heat(result: Result, i: int) -> list[ZoneHeat]:
+def zone_heat(result: ResultData, i: int) -> list[ZoneHeat]:
     """Every zone with its own values, so that the steps between zones stay sharp."""
     operators = result.tyre.problem.operators
     t = float(result.times[i]) * (1 - 1e-12)
@@ -53,7 +53,7 @@ def zone_heat(result: Result, i: int) -> list[ZoneHeat]:
     return found
 
 
-def heat_source_figure(result: Result) -> Figure:
+def heat_source_figure(result: ResultData) -> Figure:
     """Left half: strain energy per cycle, J/m3; right half: heat source, W/m3, in the phase with most heat."""
     i = result.rolling_reading
     zones = zone_heat(result, len(result.times) - 1 if i is None else i)
@@ -109,7 +109,7 @@ def _row(zone: ZoneHeat, total: float) -> str:
     return f"{zone.power / factor:{digits(total / factor)}} {unit}{share}"
 
 
-def _subtitle(result: Result, i: int | None, total: float) -> str:
+def _subtitle(result: ResultData, i: int | None, total: float) -> str:
     if i is None:
         return "the tyre never rolls under load and makes no heat; left: strain energy of a cycle, if it rolled"
     divisor, unit = time_unit(float(result.times[-1]))

@@ -27,13 +27,13 @@ if TYPE_CHECKING:
     from matplotlib.axes import Axes
     from matplotlib.figure import Figure
 
-    from tyrefem.simulation.result import Result
+    from tyrefem.simulation.result import ResultData
 
 #: Inches left of, right of and below the axes; height of the temperatures and of the speed.
 LEFT, RIGHT, BELOW, HIGH, LOW = 0.75, 2.5, 0.55, 3.6, 0.9
 
 
-def histories_figure(result: Result) -> Figure:
+def histories_figure(result: ResultData) -> Figure:
     """Readings, °C, over time with the phases of the drive; the speed, m/s, below where it varies."""
     times = result.times
     last = float(times[-1])
@@ -71,7 +71,7 @@ def histories_figure(result: Result) -> Figure:
     return drawn
 
 
-def _lines(axes: Axes, result: Result, divisor: float) -> list[Label]:
+def _lines(axes: Axes, result: ResultData, divisor: float) -> list[Label]:
     """Draw every column of the readings; the labels for their ends."""
     readings = result.readings
     t = readings["time_s"].to_numpy() / divisor
@@ -92,7 +92,7 @@ def _lines(axes: Axes, result: Result, divisor: float) -> list[Label]:
     return labels
 
 
-def _speed(result: Result, last: float) -> tuple[np.ndarray, np.ndarray]:
+def _speed(result: ResultData, last: float) -> tuple[np.ndarray, np.ndarray]:
     """Corner points (time s, speed m/s) of the drive, with its jumps, up to ``last``."""
     drive = result.study.card.drive
     times: list[float] = []

@@ -27,7 +27,7 @@ if TYPE_CHECKING:
     from matplotlib.figure import Figure
 
     from tyrefem.geometry import Section
-    from tyrefem.inputs.study import Study
+    from tyrefem.inputs.study import StudyData
     from tyrefem.mechanics.arcs import Arcs
 
 Array = NDArray[np.float64]
@@ -35,7 +35,7 @@ SURFACES = {"inner surface": (PALETTE[0], "-"), "carcass midline": (PALETTE[1], 
             "outer surface": (PALETTE[2], (0, (6, 1.5, 1.2, 1.5)))}  # fmt: skip
 
 
-def strain_figure(study: Study) -> Figure:
+def strain_figure(study: StudyData) -> Figure:
     """Arcs before and under load, and hoop strain, meridional strain and U along the meridian.
 
     The load case is the drive's with the largest deflection; below the deflection that flattens the whole crown the
@@ -46,7 +46,7 @@ def strain_figure(study: Study) -> Figure:
     return cycle_figure(study, RollingTyre(study).schedule)
 
 
-def cycle_figure(study: Study, schedule: Any) -> Figure:
+def cycle_figure(study: StudyData, schedule: Any) -> Figure:
     """As `strain_figure`, from load cases already solved."""
     number, cycle = max(
         ((n, cycle) for n, cycles in enumerate(schedule.cycles) for cycle in cycles),

@@ -23,14 +23,14 @@ from tyrefem.reports.figures.style import FONT, INK, Label, millimetres, short, 
 if TYPE_CHECKING:
     from matplotlib.figure import Figure
 
-    from tyrefem.simulation.result import Result
+    from tyrefem.simulation.result import ResultData
 
 Array = NDArray[np.float64]
 #: K. A field that differs by less is the same everywhere, and has no hottest point.
 EVEN = 0.01
 
 
-def temperature_figure(result: Result, time: float | None = None) -> Figure:
+def temperature_figure(result: ResultData, time: float | None = None) -> Figure:
     """Map of the temperature, °C, at the reading time nearest to ``time`` (s); by default the last one.
 
     Left of the mid plane isotherms and regions, right of it the thermocouples' readings. Raises nothing for studies
@@ -61,13 +61,13 @@ def temperature_figure(result: Result, time: float | None = None) -> Figure:
     return drawn.figure
 
 
-def _hottest(result: Result, temperatures: Array) -> Label:
+def _hottest(result: ResultData, temperatures: Array) -> Label:
     node = int(np.argmax(temperatures))
     x, y = millimetres(result.history.points[:, node])
     return Label(f"hottest {temperatures[node]:.1f} °C", float(x), float(y), bold=True)
 
 
-def _map(drawn: Canvas, result: Result, temperatures: Array) -> None:
+def _map(drawn: Canvas, result: ResultData, temperatures: Array) -> None:
     from matplotlib.ticker import MaxNLocator
 
     axes, operators = drawn.axes, result.tyre.problem.operators
