@@ -10,7 +10,7 @@ import pytest
 
 from tyrefem.api import Study, study
 from tyrefem.compare import Comparison
-from tyrefem.compare import reduced_inputs as neighbours
+from tyrefem.compare.reduced_inputs import ReducedInputSettings
 from tyrefem.errors import InputError
 from tyrefem.processes import processes
 
@@ -81,11 +81,10 @@ def test_few_runs_are_full_and_the_comparison_says_so(
     assert full.to_dict()["reduced"] is None
 
 
-def test_what_does_not_hold_is_run_in_full(quick: Study, table: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+def test_what_does_not_hold_is_run_in_full(quick: Study, table: Path) -> None:
     """No model can be so near: every run is made, and none twice."""
-    monkeypatch.setattr(neighbours, "SAFETY", 1e-9)
     rough, counting = quick.replace({"numerics.tolerance": "1 delta_degC"}), Counting()
-    found = rough.compare(table, executor=counting)
+    found = rough.compare(table, executor=counting, settings=ReducedInputSettings(safety=1e-9))
     assert found.reduced is None
     assert counting.full == 15
     assert found.inputs["key"].nunique() == 14

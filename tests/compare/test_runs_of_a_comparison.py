@@ -10,12 +10,11 @@ import pytest
 
 import tyrefem as tf
 from tyrefem.compare import runs
-from tyrefem.compare.reduced_inputs import Certificate, Neighbours
+from tyrefem.compare.reduced_inputs import Certificate, Neighbours, ReducedInputSettings
 from tyrefem.compare.runs import Runs
 from tyrefem.inputs.study import StudyData
 from tyrefem.mechanics.footprint.pressed_tyre import REMEMBERED_TYRES
 from tyrefem.processes import processes
-from tyrefem.reduced import residual
 from tyrefem.reduced.model import NotReducibleError
 from tyrefem.variants.answer_store import AnswerStore
 
@@ -140,7 +139,7 @@ def test_finite_elements_are_solved_once_for_all_that_does_not_change_them(press
     assert change == pytest.approx((alone - measured["crown"]).mean(), abs=1e-9)
 
 
-def test_a_long_drive_is_followed_from_its_first_readings(monkeypatch: pytest.MonkeyPatch) -> None:
+def test_a_long_drive_is_followed_from_its_first_readings() -> None:
     """What a change does to a surface within the first minutes of three hours must be taught.
 
     A fiftieth of the drive, 216 s, is too late: such a model was made, and refused.
@@ -151,12 +150,11 @@ def test_a_long_drive_is_followed_from_its_first_readings(monkeypatch: pytest.Mo
     keys = {key: sd for key, sd in study.uncertainty.items() if key.split(".")[1] in outer}
     studies = {("", None): study} | {("", key): study.scaled(key, 1.0 + sd) for key, sd in keys.items()}
 
-    def certificate() -> Certificate:
+    def certificate(settings: ReducedInputSettings) -> Certificate:
         with Runs(studies, keys) as made:
             made.begin()
-            return Neighbours(made).solve()
+            return Neighbours(made, settings).solve()
 
-    assert certificate().worst < 0.01
-    monkeypatch.setattr(residual, "EARLY", np.inf)
+    assert certificate(ReducedInputSettings()).worst < 0.01
     with pytest.raises(NotReducibleError, match="full runs are off by"):
-        certificate()
+        certificate(ReducedInputSettings(early=np.inf))

@@ -3,28 +3,18 @@
 from __future__ import annotations
 
 import shutil
-from collections.abc import Iterator
 from pathlib import Path
 from typing import Any
 
 import pytest
 from hidden import FINISHED, WARMER, Case, measure, study
 
-from tyrefem.diagnose import search
 from tyrefem.diagnose.evaluations import ProgressStore
 from tyrefem.diagnose.forward_model import Bench
 
 
-@pytest.fixture(scope="session", autouse=True)
-def one_at_a_time() -> Iterator[None]:
-    """One set is fitted at a time: the best is clear here, so that its rivals need no fit, and the test is short."""
-    with pytest.MonkeyPatch.context() as patch:
-        patch.setattr(search, "BATCH", 1)
-        yield
-
-
 @pytest.fixture(scope="session")
-def case(one_at_a_time: None, tmp_path_factory: pytest.TempPathFactory) -> Case:
+def case(tmp_path_factory: pytest.TempPathFactory) -> Case:
     """Hot road, three runs, one of them held out."""
     folder = tmp_path_factory.mktemp("hidden")
     owner = study(folder / "study")

@@ -15,10 +15,11 @@ from tyrefem.compare.experiment import experiments
 from tyrefem.diagnose import Diagnosis
 from tyrefem.diagnose.evaluations import Laboratory
 from tyrefem.diagnose.forward_model import FOLLOWED, NOT_FOLLOWED, UNSAID, Bench, Response
-from tyrefem.diagnose.multifidelity import ALLOWED, Predictions
+from tyrefem.diagnose.multifidelity import Predictions
 from tyrefem.diagnose.reduced_forward import Modes, ReducedDrive
 from tyrefem.diagnose.runs import trial
 from tyrefem.diagnose.sensitivities import responses, unknowns_of
+from tyrefem.diagnose.settings import DEFAULT
 from tyrefem.diagnose.unknowns import Candidate, Unknown, candidates, with_values
 from tyrefem.effects import catalogue
 
@@ -158,7 +159,7 @@ def test_a_model_that_is_off_is_found_out_and_not_used(drives: Drives) -> None:
     said = Predictions(Laboratory(drives.bench), [spoiled(one) for one in drives.modes])
     point = drives.drawn(4)
     found = said.predict([((), point)], [DRIVE])[0][0]
-    assert said.certificates[(), DRIVE].apart > ALLOWED
+    assert said.certificates[(), DRIVE].apart > DEFAULT.reduced_allowed
     np.testing.assert_array_equal(found, drives.bench.predict(DRIVE, point))
     wanted = drives.unknowns[:3]
     J = said.jacobians([((), wanted, point)], [DRIVE])[0][0]
@@ -184,7 +185,7 @@ def test_the_verdict_is_that_of_simulations_alone(drives: Drives, never: Diagnos
     said = auto.to_dict()["reduced"]
     assert said["used"]
     assert said["points_by_reduced_models"] > said["points_by_lean_simulations"] / 2
-    assert said["worst_whitened"] <= ALLOWED
+    assert said["worst_whitened"] <= DEFAULT.reduced_allowed
     assert {one["run"] for one in said["certificates"]} == {"slow", "loaded", "fast"}
     assert never.to_dict()["reduced"]["points_by_reduced_models"] == 0
 

@@ -6,7 +6,8 @@ import numpy as np
 import pytest
 
 from tyrefem.diagnose.residuals import stretches
-from tyrefem.diagnose.runs import BLOCKS, Series, Trial, _scatter
+from tyrefem.diagnose.runs import Series, Trial, _scatter
+from tyrefem.diagnose.settings import DEFAULT
 
 
 def _series(count: int = 200, *, noise: float = 0.5, discrepancy: float = 0.1, tau: float = 120.0) -> Series:
@@ -16,7 +17,7 @@ def _series(count: int = 200, *, noise: float = 0.5, discrepancy: float = 0.1, t
 
 def test_block_means_are_means_and_hold_every_reading() -> None:
     one = _series(203)
-    assert len(one.starts) == BLOCKS
+    assert len(one.starts) == DEFAULT.blocks
     assert one.sizes.sum() == 203
     assert one.block_means(one.measured) @ one.sizes == pytest.approx(one.measured.sum())
     own = one.measured[one.starts[3] : one.starts[4]].mean()
@@ -53,7 +54,7 @@ def test_whitening_leaves_independent_numbers_of_unit_variance() -> None:
 def test_a_trial_takes_its_series_one_after_the_other() -> None:
     first, second = _series(30), _series(80, noise=2.0)
     trial = Trial("run", {}, False, (first, second))
-    blocks = np.arange(30.0 + BLOCKS)
+    blocks = np.arange(30.0 + DEFAULT.blocks)
     expected = np.concatenate([first.whitened(blocks[:30]), second.whitened(blocks[30:])])
     np.testing.assert_array_equal(trial.whitened(blocks), expected)
 

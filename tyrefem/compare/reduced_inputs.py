@@ -15,23 +15,38 @@ from tyrefem.inputs.study import StudyData
 from tyrefem.mechanics.cycle_schedule import BY_ELEMENTS, same_cycles
 from tyrefem.reduced.answers import outcomes_of
 from tyrefem.reduced.model import NotReducibleError, ReducedModel
-from tyrefem.reduced.residual import corrected
+from tyrefem.reduced.residual import EARLY, corrected
 from tyrefem.reduced.training import ReducedFineness, Snapshots, trained
 from tyrefem.reduced.training_rounds import HORIZONS, Packed, pack, remember
 from tyrefem.reduced.variant import Variant
 
-#: K: a reading of a changed run may be off by this much, or by twice the time error that the study allows full runs,
-#: as either of the two that are compared may be off by that.
-FINEST = 0.02
-#: Share of that which the fresh runs may take up.
-SAFETY = 0.8
-#: Fresh runs that a certificate needs at least; how often one is tried.
-FRESH, TRIALS = 3, 2
-#: Rounds of corrections before the first certificate, or as many as drives; the modes' share of the tolerance; modes at
-#: most: many numbers, each with an early and a late change of its own, need more than a few numbers in a box.
-ROUNDS, FINER, MOST_MODES = 2, 0.25, 200
-#: With fewer changed runs a model is not worth its making.
-WORTH = 12
+
+@dataclass(frozen=True)
+class ReducedInputSettings:
+    """How a reduced model is made for changed inputs, and when it is believed."""
+
+    #: A reading of a changed run may be off by this much, K, or by twice the time error that the study allows full
+    #: runs, as either of the two that are compared may be off by that.
+    finest: float = 0.02
+    #: Share of that which the fresh runs may take up.
+    safety: float = 0.8
+    #: Fresh runs that a certificate needs at least; how often one is tried.
+    fresh: int = 3
+    trials: int = 2
+    #: Rounds of corrections before the first certificate, or as many as drives.
+    rounds: int = 2
+    #: The modes' share of the tolerance.
+    finer: float = 0.25
+    #: Modes at most: many numbers, each with an early and a late change of its own, need more than a few in a box.
+    most_modes: int = 200
+    #: With fewer changed runs a model is not worth its making.
+    worth: int = 12
+    #: The first field that a phase is corrected at is one of its first s.
+    early: float = EARLY
+
+
+#: As shipped.
+DEFAULT = ReducedInputSettings()
 
 
 def followed(studies: Mapping[Key, StudyData]) -> dict[Key, StudyData]:
@@ -47,9 +62,9 @@ def followed(studies: Mapping[Key, StudyData]) -> dict[Key, StudyData]:
     }
 
 
-def worth(studies: Mapping[Key, StudyData]) -> bool:
+def worth(studies: Mapping[Key, StudyData], settings: ReducedInputSettings = DEFAULT) -> bool:
     """Are there changed runs enough?"""
-    return sum(name is not None for _, name in studies) >= WORTH
+    return sum(name is not None for _, name in studies) >= settings.worth
 
 
 @dataclass(frozen=True, eq=False)
@@ -89,16 +104,16 @@ class Certificate:
         )
 
 
-def amended(task: tuple[Packed, Work, float]) -> Snapshots | None:
+def amended(task: tuple[Packed, Work, float, float]) -> Snapshots | None:
     """Done in a worker: what the full model makes of the reduced run of a study, over a horizon.
 
     None: no reduced model can follow it. It will be run in full, which says what is wrong, if anything is.
     """
-    packed, work, share = task
+    packed, work, share, early = task
     first = work.drive.first or work.drive
     try:
         remember(first.packed, first.tyre)
-        return corrected(packed.unpacked(), work.tyre, share)[0]
+        return corrected(packed.unpacked(), work.tyre, share, early)[0]
     except InputError:
         return None
 
@@ -112,6 +127,7 @@ class Neighbours:
     """
 
     runs: Runs
+    settings: ReducedInputSettings = DEFAULT
     rounds: int = 0
     corrections: int = 0
 
@@ -124,9 +140,9 @@ class Neighbours:
         #: Those that the model is made for.
         self.studies = followed(runs.studies)
         self.changed = [key for key in self.studies if key[1] is not None]
-        if not worth(self.studies):
-            raise NotReducibleError(f"fewer than {WORTH} runs with a changed input")
-        self.tolerance = max(FINEST, 2 * study.tolerance)
+        if not worth(self.studies, self.settings):
+            raise NotReducibleError(f"fewer than {self.settings.worth} runs with a changed input")
+        self.tolerance = max(self.settings.finest, 2 * study.tolerance)
         first = runs.work((drive, None)).drive
         self.packed, self.base = first.packed, first.tyre
         remember(self.packed, self.base)
@@ -150,8 +166,8 @@ class Neighbours:
         if len({one.fields.shape[1] for one in runs.learnt} | {self.base.problem.operators.size}) > 1:
             raise NotReducibleError("another mesh")
         model, worst = trained(self.base, runs.learnt, self._fineness), np.inf
-        for trial in range(TRIALS):
-            for _ in range(1 if trial else max(ROUNDS, len(runs.drives))):
+        for trial in range(self.settings.trials):
+            for _ in range(1 if trial else max(self.settings.rounds, len(runs.drives))):
                 model = self._round(model)
             reduced = self._reduced(model)
             fresh = self._fresh(reduced)
@@ -160,17 +176,18 @@ class Neighbours:
             runs.teach(fresh)
             errors = [_difference(reduced[key], self.found[key]) for key in fresh if key in reduced]
             worst = max(errors, default=np.inf)
-            if worst <= SAFETY * self.tolerance:
+            if worst <= self.settings.safety * self.tolerance:
                 return self._filled(reduced, worst, len(errors))
         raise NotReducibleError(
-            f"full runs are off by {worst:.2g} K; allowed: {SAFETY:g} x {self.tolerance:g} K"
+            f"full runs are off by {worst:.2g} K; allowed: {self.settings.safety:g} x {self.tolerance:g} K"
             if np.isfinite(worst)
             else "no run to certify with"
         )
 
     @property
     def _fineness(self) -> ReducedFineness:
-        return replace(ReducedFineness.of(FINER * self.tolerance), most_modes=MOST_MODES, most_sources=MOST_MODES)
+        most = self.settings.most_modes
+        return replace(ReducedFineness.of(self.settings.finer * self.tolerance), most_modes=most, most_sources=most)
 
     def _filled(self, reduced: Mapping[Key, Computed], worst: float, cases: int) -> Certificate:
         """Take the reduced runs; what no reduced model can follow is run in full."""
@@ -184,10 +201,10 @@ class Neighbours:
         """Corrections: every input lowered once, at one drive after the other; what is wanted raised stays untaught."""
         runs, drives = self.runs, self.runs.drives
         inputs = dict.fromkeys(name for _, name in self.changed)
-        packed, number = pack(model, self.packed), self.rounds
+        packed, number, early = pack(model, self.packed), self.rounds, self.settings.early
         # The model goes with each: an executor's map names no workers, nor need they read this machine's files.
         work = [
-            (packed, runs.work((drives[n % len(drives)], name), lowered=True), HORIZONS[n % len(HORIZONS)])
+            (packed, runs.work((drives[n % len(drives)], name), lowered=True), HORIZONS[n % len(HORIZONS)], early)
             for n, name in enumerate(inputs, number)
         ]
         lessons = [lesson for lesson in runs.each(amended, work) if lesson is not None]
@@ -201,11 +218,11 @@ class Neighbours:
         left.sort(key=lambda key: -self._size(reduced, key))
         drives = self.runs.drives
         chosen: list[Key] = []
-        for number in range(max(FRESH, len(drives))):
+        for number in range(max(self.settings.fresh, len(drives))):
             here = [key for key in left if key not in chosen and key[0] == drives[number % len(drives)]]
             new = [key for key in here if key[1] not in {one[1] for one in chosen}]
             chosen += (new or here)[:1]
-        return chosen if len(chosen) >= FRESH else []
+        return chosen if len(chosen) >= self.settings.fresh else []
 
     def _size(self, reduced: Mapping[Key, Computed], key: Key) -> float:
         return _difference(reduced[key], self.found[key[0], None])

@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections.abc import Callable, Iterable, Mapping, Sequence
 from concurrent.futures import Executor
 from dataclasses import dataclass
-from typing import TYPE_CHECKING, Any
+from typing import Any
 
 import numpy as np
 
@@ -13,6 +13,15 @@ from tyrefem.compare.comparison import Comparison, comparison_of
 from tyrefem.compare.experiment import Experiment, Table, experiments
 from tyrefem.compare.history import histories
 from tyrefem.compare.interface import ResultLike, StudyLike, computed_of
+from tyrefem.compare.reduced_inputs import (
+    DEFAULT,
+    Certificate,
+    Neighbours,
+    ReducedInputSettings,
+    followed,
+    worth,
+)
+from tyrefem.compare.runs import Runs, store_key
 from tyrefem.errors import InputError
 from tyrefem.inputs.study import StudyData
 from tyrefem.inputs.uncertain_numbers import left_out
@@ -20,9 +29,6 @@ from tyrefem.requirements import Requirements
 from tyrefem.simulation.result import ResultData
 from tyrefem.simulation.run import run
 from tyrefem.variants.answer_store import AnswerStore
-
-if TYPE_CHECKING:
-    from tyrefem.compare.reduced_inputs import Certificate
 
 #: What a comparison needs of a study.
 NEEDS = Requirements("a comparison", measured=True)
@@ -42,6 +48,7 @@ def compare(
     reduced: str = "auto",
     store: AnswerStore | None = None,
     begin: Callable[[str], None] | None = None,
+    settings: ReducedInputSettings = DEFAULT,
 ) -> Comparison:
     """Deviations between a study and measured temperature histories, E = computed - measured.
 
@@ -62,6 +69,7 @@ def compare(
     reduced : "auto" makes a reduced model of the drives' runs for the changed inputs, where there are at least 12 of
         these, tries it on three or more of them that are run in full, and uses it if it held; "never" does not.
     store : keeps finished simulations, so that an interrupted comparison takes them up again.
+    settings : how reduced models are made and when they are believed.
     begin : called before the first simulation with a sentence of how many there are.
 
     Raises
@@ -80,7 +88,7 @@ def compare(
     if result is None and isinstance(study, StudyData):
         _check_times(study, planned)
     keys = dict(study.uncertainty) if inputs else {}
-    how = _How(executor, progress, reduced, store, begin)
+    how = _How(executor, progress, reduced, store, begin, settings)
     solved, certificate, said = _solved(study, planned, result, keys, how)
     found, curves, notes = [], {}, []
     for experiment in planned:
@@ -107,7 +115,7 @@ def _drive(experiment: Experiment) -> str:
 
 #: Drive and changed input; None: as the study has it.
 Key = tuple[str, str | None]
-Solved = tuple[dict[Key, ResultLike], "Certificate | None", list[str]]
+Solved = tuple[dict[Key, ResultLike], Certificate | None, list[str]]
 
 
 @dataclass(frozen=True, eq=False)
@@ -119,6 +127,7 @@ class _How:
     reduced: str
     store: AnswerStore | None
     begin: Callable[[str], None] | None
+    settings: ReducedInputSettings
 
     def done(self, total: int) -> Callable[[int], None]:
         """What is called with the number of simulations made."""
@@ -178,10 +187,7 @@ def _by_runs(
     studies: Mapping[Key, StudyData], known: Mapping[str, ResultData], keys: Mapping[str, float], how: _How
 ) -> Solved:
     """The runs of studies, those with a changed input by a reduced model where it holds."""
-    from tyrefem.compare.reduced_inputs import Certificate, Neighbours, followed, worth
-    from tyrefem.compare.runs import Runs, store_key
-
-    model = how.reduced == "auto" and worth(followed(studies))
+    model = how.reduced == "auto" and worth(followed(studies), how.settings)
     if how.store is not None:
         how.store.take_up(store_key(next(iter(studies.values()))))
     with Runs(studies, keys, known, how.executor, how.store, how.done(len(studies))) as runs:
@@ -199,7 +205,7 @@ def _by_runs(
         certificate, why = None, str(verdict) if refused else ""
         if model and not why:
             try:
-                certificate = Neighbours(runs).solve()
+                certificate = Neighbours(runs, how.settings).solve()
                 runs.note(certificate.values)
             except (InputError, np.linalg.LinAlgError) as error:
                 # What is wrong with the study itself is said by its full run.

@@ -14,9 +14,6 @@ from tyrefem.diagnose.unknowns import Unknown, with_values
 from tyrefem.inputs.changes import scaled, value_at
 from tyrefem.inputs.study import StudyData
 
-#: A correction of a base number or a sensor that moves no block mean by this much is left out, K.
-NEGLIGIBLE = 0.2
-
 
 @dataclass(frozen=True)
 class Change:
@@ -47,7 +44,7 @@ def changes(
             continue
         column = gap.unknowns.index(unknown)
         moved = max(float(np.abs(J[:, column] * values[unknown]).max()) for J in gap.jacobians)
-        if moved > NEGLIGIBLE:
+        if moved > gap.settings.negligible:
             found.append(Change(unknown, values[unknown], sd[unknown], False, source))
     return tuple(found)
 

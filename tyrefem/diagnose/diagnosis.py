@@ -99,7 +99,7 @@ class Diagnosis(Brief):
     @functools.cached_property
     def prior(self) -> Prior:
         """ln of the prior probability of a set."""
-        return Prior(self.candidates, self.original.card.diagnosis.effects_expected)
+        return Prior(self.candidates, self.original.card.diagnosis.effects_expected, self.gap.settings.size_shares)
 
     def rms(self, *, after: bool, held_out: bool) -> float:
         """Root mean square of measured - computed, K."""

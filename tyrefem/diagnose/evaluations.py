@@ -52,7 +52,9 @@ def key_of(bench: Bench) -> str:
     False
     """
     trials = [[one.name, one.drive, one.hold_out, [_series(each) for each in one.series]] for one in bench.trials]
-    return digest([versions(), effects_source(), plain(bench.study), jsonable(trials)])
+    return digest(
+        [versions(), effects_source(), plain(bench.study), jsonable(trials), repr(bench.settings.of_simulations)]
+    )
 
 
 def _series(one: Series) -> list[Any]:

@@ -29,10 +29,6 @@ from tyrefem.simulation.surroundings import GAS, RIM
 Array = NDArray[np.float64]
 
 
-#: Readings are computed this often, s.
-EVERY = 5.0
-
-
 @dataclass(frozen=True, eq=False)
 class Lean:
     """A study simulated on fixed steps.
@@ -41,6 +37,7 @@ class Lean:
     ----------
     study : what the sensors and the logger are; may differ from the tyre's study in effects of measurement.
     times : (n_times,) s, every step's start, stage and end; values (n_times, n), reservoirs (n_times, m): degC.
+    every : s between two readings on `grid`.
     """
 
     study: StudyData
@@ -48,6 +45,7 @@ class Lean:
     times: Array
     values: Array
     reservoirs: Array
+    every: float
 
     def as_measured_by(self, study: StudyData) -> Lean:
         """The same temperatures, measured by another study's sensors."""
@@ -56,7 +54,7 @@ class Lean:
     @cached_property
     def grid(self) -> Array:
         """Times of the readings, s."""
-        return time_grid(self.times)
+        return time_grid(self.times, self.every)
 
     def dense(self, history: Array) -> Array:
         """A history at ``times`` (n_times, ...) on `grid`: cubic between the ends of steps, phase by phase."""
@@ -107,16 +105,18 @@ def read(study: StudyData, grid: Array, at_sensors: Array | None, lumped: dict[s
     return found
 
 
-def lean(study: StudyData, like: RollingTyre | None = None, near: NearbyCycles | None = None) -> Lean:
-    """Simulate a study's drive on fixed steps; ``like``, ``near``: see `RollingTyre`."""
+def lean(
+    study: StudyData, like: RollingTyre | None = None, near: NearbyCycles | None = None, *, every: float = 5.0
+) -> Lean:
+    """Simulate a study's drive on fixed steps, read ``every`` s; ``like``, ``near``: see `RollingTyre`."""
     tyre = RollingTyre(study, like, near=near)
     times = stage_times([*tyre.drive.starts, tyre.drive.end])
-    return Lean(study, tyre, times, *quick(tyre.problem, times, tyre.drive.initial))
+    return Lean(study, tyre, times, *quick(tyre.problem, times, tyre.drive.initial), every)
 
 
-def time_grid(times: Array) -> Array:
+def time_grid(times: Array, every: float) -> Array:
     """Evenly spaced times over the whole drive, s."""
-    return np.linspace(times[0], times[-1], max(int(np.ceil((times[-1] - times[0]) / EVERY)), 2) + 1)
+    return np.linspace(times[0], times[-1], max(int(np.ceil((times[-1] - times[0]) / every)), 2) + 1)
 
 
 def on_grid(times: Array, history: Array, starts: tuple[float, ...], grid: Array, *, ends_only: bool = False) -> Array:

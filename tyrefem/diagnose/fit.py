@@ -16,19 +16,6 @@ from tyrefem.diagnose.linearised import Gap
 from tyrefem.diagnose.unknowns import Unknown
 
 Array = NDArray[np.float64]
-#: The prediction of the linear model is good enough when it misses the simulation by this much (whitened norm); far
-#: enough off to take new tangents when it misses it by the second.
-CLOSE, ASTRAY = 1.0, 6.0
-#: A fit has converged when the linear model about it promises no more than this drop of the misfit.
-SETTLED = 0.5
-#: A misfit that noise makes this seldom is not believed to be the smallest before tangents are taken where it is.
-SELDOM = 0.1
-#: With more than the first the fit is given up when a step leaves more than the second of the misfit.
-FAR_OFF, SLOW = 3.0, 0.9
-FIRST_STEPS, MORE_STEPS, MORE_TANGENTS = 4, 14, 4
-#: Trust: no unknown moves by more than so many prior sd in the first step; a step that fails leaves this much of itself
-#: as the next radius, a good one widens it; below the last the fit stays where it is.
-RADIUS, SHORTER, WIDER, TINY = 3.0, 0.4, 2.0, 0.01
 
 
 class Refinement(Brief):
@@ -39,7 +26,7 @@ class Refinement(Brief):
     """
 
     def __init__(self, gap: Gap, members: Members, start: Explained | None = None) -> None:
-        self.gap, self.members = gap, members
+        self.gap, self.members, self.settings = gap, members, gap.settings
         linear = gap.linear(gap.fitted)
         taken = () if start is None else start.members
         new = [one for one in members if one not in taken]
@@ -61,7 +48,7 @@ class Refinement(Brief):
             self.computed, self.shapes = dict(part.computed), list(part.shapes)
         self.r = self.r - linear.jacobian[:, linear.columns(present)].sum(axis=1)
         self.shapes += [one for member in new for one in member.shapes]
-        self.steps, self.radius, self.limit, self.tangents = 0, RADIUS, FIRST_STEPS, 0
+        self.steps, self.radius, self.limit, self.tangents = 0, self.settings.trust, self.settings.first_steps, 0
         self.done, self.converged, self.matters = False, False, False
         #: Whether the tangents are not those of x; whether they are asked for.
         self.moved, self.wants_tangents = False, False
@@ -104,9 +91,9 @@ class Refinement(Brief):
     def _propose(self) -> None:
         """Choose the next point, or end."""
         self.best, self.trial = self._fitted(), self._fitted(self.radius).mean
-        if self.promised < SETTLED:
+        if self.promised < self.settings.settled:
             self.done = self.converged = True
-        elif self.steps >= self.limit or self.radius < TINY:
+        elif self.steps >= self.limit or self.radius < self.settings.trust_smallest:
             self.done = True
 
     def accept(self, answers: Sequence[Array]) -> None:
@@ -118,7 +105,7 @@ class Refinement(Brief):
         self.steps += 1
         if not all(np.isfinite(one).all() for one in answers):
             # No tyre can be like that.
-            self.radius = SHORTER * reach
+            self.radius = self.settings.trust_shorter * reach
             self._propose()
             return
         r = np.concatenate([self.gap.residual(i, computed[i]) for i in self.gap.fitted])
@@ -129,23 +116,27 @@ class Refinement(Brief):
             self.J = self.J + np.outer(missed, step / sd**2) / float(((step / sd) ** 2).sum())
         first, self.simulated = not self.simulated, True
         if gained < 0 and not first:
-            self.radius = SHORTER * reach
+            self.radius = self.settings.trust_shorter * reach
             self._learn() if self.moved and self._may_learn else self._propose()
             return
         limited = bool((np.abs(step / sd) > 0.99 * self.radius).any())
         if limited and gained > promised / 2:
-            self.radius *= WIDER
+            self.radius *= self.settings.trust_wider
         self.x, self.r, self.computed, self.moved = self.trial, r, computed, True
         if first:
             self._new_tangents(())
             return
         now = self.misfit(r, self.x)
-        slow = self.matters and now > max(FAR_OFF * len(r), SLOW * (now + gained))
-        if (self.shapes or float(np.linalg.norm(missed)) > ASTRAY) and self._may_learn and not slow:
+        slow = self.matters and now > max(self.settings.far_off * len(r), self.settings.slow * (now + gained))
+        if (
+            (self.shapes or float(np.linalg.norm(missed)) > self.settings.predicted_astray)
+            and self._may_learn
+            and not slow
+        ):
             self._learn()
             return
         self._propose()
-        if not limited and np.linalg.norm(missed) < CLOSE:
+        if not limited and np.linalg.norm(missed) < self.settings.predicted_close:
             self.done = self.converged = True
         self.done = self.done or slow
         if self.converged and self.matters and self.moved and self._may_learn and self._poor:
@@ -156,7 +147,7 @@ class Refinement(Brief):
     @property
     def _poor(self) -> bool:
         """Would noise seldom make a misfit like this?"""
-        return float(chi2.sf(self.misfit(self.r, self.x), len(self.r))) < SELDOM
+        return float(chi2.sf(self.misfit(self.r, self.x), len(self.r))) < self.settings.seldom
 
     @property
     def _may_learn(self) -> bool:
@@ -179,7 +170,7 @@ class Refinement(Brief):
         further.unknowns, further.shapes = list(self.unknowns), list(self.shapes)
         further.computed = dict(self.computed)
         further.done, further.matters = False, True
-        further.tangents, further.limit = MORE_TANGENTS - 1, self.steps + MORE_STEPS
+        further.tangents, further.limit = self.settings.more_tangents - 1, self.steps + self.settings.more_steps
         further.radius = max(self.radius, 1.0)
         further._new_tangents(further.shapes)
         return further

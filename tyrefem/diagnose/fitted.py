@@ -14,15 +14,10 @@ from scipy.stats import chi2
 from tyrefem.brief import Brief
 from tyrefem.diagnose.evidence import Fit, Members
 from tyrefem.diagnose.linearised import Gap
+from tyrefem.diagnose.settings import DiagnosisSettings
 from tyrefem.diagnose.unknowns import Unknown
 
 Array = NDArray[np.float64]
-#: A fit with a misfit of so many times the number of readings nearly explains them.
-NEARLY = 1.3
-#: A misfit that noise makes with at least this probability is nothing unusual.
-USUAL = 0.01
-#: So many standard deviations beyond a bound that physics sets, and the fit counts as one that ends there.
-PRESSED = 2.0
 
 
 @dataclass(frozen=True, eq=False)
@@ -53,6 +48,7 @@ class Explained(Brief):
     jacobian: Array
     #: State of the fit, from which `tyrefem.diagnose.fit` goes on.
     refinement: Any
+    settings: DiagnosisSettings
 
     @property
     def close(self) -> bool:
@@ -60,7 +56,9 @@ class Explained(Brief):
 
         A fit that has not converged must already fit as well as noise lets the truth.
         """
-        return self.misfit < NEARLY * self.readings and (self.converged or self.p_value > USUAL)
+        return self.misfit < self.settings.nearly * self.readings and (
+            self.converged or self.p_value > self.settings.usual
+        )
 
     @property
     def finished(self) -> bool:
@@ -92,7 +90,7 @@ class Explained(Brief):
         """
         own = {one for member in self.members for one in member.amplitudes}
         pairs = zip(self.unknowns, self.fit.beyond, strict=True)
-        return tuple(one.key for one, beyond in pairs if beyond > PRESSED and one in own)
+        return tuple(one.key for one, beyond in pairs if beyond > self.settings.pressed and one in own)
 
 
 def explained(gap: Gap, one: Any) -> Explained:
@@ -131,6 +129,7 @@ def explained(gap: Gap, one: Any) -> Explained:
         effective,
         one.J,
         one,
+        gap.settings,
     )
 
 

@@ -18,6 +18,7 @@ from tyrefem.conduction.sensitivity import Perturbed, tangents
 from tyrefem.diagnose.fast_simulation import Lean, Varied, lean
 from tyrefem.diagnose.reduced_forward import Modes, ReducedDrive, modes_of
 from tyrefem.diagnose.runs import Trial
+from tyrefem.diagnose.settings import DEFAULT, DiagnosisSettings
 from tyrefem.diagnose.unknowns import Unknown, with_values
 from tyrefem.errors import InputError
 from tyrefem.inputs.study import StudyData
@@ -30,15 +31,6 @@ from tyrefem.simulation.surroundings import GAS, RIM
 
 Array = NDArray[np.float64]
 Values = Mapping[Unknown, float]
-#: Mesh and tolerance of the fit; what they leave is corrected by one run with the study's own (at x = 0).
-COARSE = {
-    "mesh.size": "3.5 mm",
-    "mesh.element": "P1",
-    "numerics.tolerance": "0.05 delta_degC",
-    "output.fields": 2,
-}
-
-
 #: A drive's reduced model follows a point; it never can, for such effects; it says nothing of this one, as of a tyre
 #: that cannot be.
 FOLLOWED, NOT_FOLLOWED, UNSAID = 0, 1, 2
@@ -82,15 +74,22 @@ class Bench(Brief):
     study: StudyData
     trials: tuple[Trial, ...]
     folder: Path | None = None
+    settings: DiagnosisSettings = DEFAULT
 
     def __reduce__(self) -> tuple[Any, ...]:
         """Another process starts with what was stated, not with what was simulated."""
-        return Bench, (self.study, self.trials, self.folder)
+        return Bench, (self.study, self.trials, self.folder, self.settings)
 
     @functools.cached_property
     def coarse(self) -> StudyData:
         """The study on the mesh of the fit."""
-        coarse = dict(COARSE)
+        settings = self.settings
+        coarse = {
+            "mesh.size": settings.mesh_size,
+            "mesh.element": settings.mesh_element,
+            "numerics.tolerance": settings.tolerance,
+            "output.fields": 2,
+        }
         if self.study.card.mesh.file is not None:
             coarse = {key: value for key, value in coarse.items() if key != "mesh.size"}
         return self.study.replace(coarse)
@@ -109,7 +108,7 @@ class Bench(Brief):
         if number not in self._bases:
             like = next((one.tyre for one in self._bases.values()), None)
             driven = self.driven(self.coarse, number)
-            self._bases[number] = lean(driven, like, self.nearby(driven))
+            self._bases[number] = lean(driven, like, self.nearby(driven), every=self.settings.readings_every)
         return self._bases[number]
 
     def nearby(self, driven: StudyData) -> NearbyCycles | None:
@@ -151,12 +150,18 @@ class Bench(Brief):
         varied = self._varied(base, base.study, unknowns, {})
         slopes = varied.slopes(self.sensors)
         stacked = np.array([slopes[one] for one in self.sensors])
-        return base.grid, readings, exact - readings, stacked, modes_of(base, varied.moved, varied.tangents)
+        return (
+            base.grid,
+            readings,
+            exact - readings,
+            stacked,
+            modes_of(base, varied.moved, varied.tangents, self.settings),
+        )
 
     def jacobian(self, number: int, unknowns: Sequence[Unknown], at: Values) -> Array:
         """(n_blocks, n_unknowns): d(block mean)/dx with unknowns at ``at``."""
         base = self.base(number)
-        here = lean(with_values(base.study, at), base.tyre)
+        here = lean(with_values(base.study, at), base.tyre, every=base.every)
         series = self.trials[number].series
         slopes = self._varied(here, base.study, unknowns, at).slopes([one.sensor for one in series])
         return np.concatenate([one.sampled(here.grid, slopes[one.sensor]) for one in series])
@@ -167,7 +172,7 @@ class Bench(Brief):
         try:
             study = with_values(base.study, values)
             same = all(unknown.measures or x == 0.0 for unknown, x in values.items())
-            found = base.as_measured_by(study) if same else lean(study, base.tyre)
+            found = base.as_measured_by(study) if same else lean(study, base.tyre, every=base.every)
         except InputError:
             # A load that the tyre cannot carry, say: the fit has stepped too far and will try a shorter step.
             return np.full(len(self.trials[number].measured), np.nan)
@@ -175,7 +180,8 @@ class Bench(Brief):
 
     def simulate(self, number: int, values: Values) -> Lean:
         """A trial's drive with unknowns at ``values``, by the lean simulation: temperatures at any place."""
-        return lean(with_values(self.driven(self.coarse, number), values))
+        study = with_values(self.driven(self.coarse, number), values)
+        return lean(study, every=self.settings.readings_every)
 
     def differences(self, number: int, unknowns: Sequence[Unknown], at: Values) -> Array:
         """(n_blocks, n_unknowns): difference quotients by simulating again."""
@@ -231,7 +237,7 @@ class Bench(Brief):
     def _reduced_drive(self, number: int, modes: Modes) -> ReducedDrive:
         key = number, modes.digest
         if key not in self._drives:
-            self._drives[key] = ReducedDrive(self.base(number), modes)
+            self._drives[key] = ReducedDrive(self.base(number), modes, self.settings)
         return self._drives[key]
 
     def _varied(self, base: Lean, origin: StudyData, unknowns: Sequence[Unknown], at: Values) -> Varied:
@@ -249,6 +255,6 @@ class Bench(Brief):
                 columns.append(column)
                 perturbed.append(Perturbed(tyre.problem, one.step, tyre.drive.initial))
             else:
-                again[column] = lean(study)
+                again[column] = lean(study, every=base.every)
         found = tangents(base.tyre.problem, base.times, base.values, base.reservoirs, perturbed) if perturbed else None
         return Varied(base, tuple(unknowns), again, columns, found)

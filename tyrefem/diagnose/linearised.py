@@ -14,11 +14,10 @@ from tyrefem.diagnose.evaluations import Laboratory
 from tyrefem.diagnose.evidence import Linear
 from tyrefem.diagnose.forward_model import Response
 from tyrefem.diagnose.multifidelity import Predictions
+from tyrefem.diagnose.settings import DEFAULT, DiagnosisSettings
 from tyrefem.diagnose.unknowns import Unknown
 
 Array = NDArray[np.float64]
-#: What a mesh leaves may be so many times smaller or larger than in the study as it is.
-SCALES = 0.2, 5.0
 
 
 @dataclass(frozen=True, eq=False)
@@ -41,6 +40,7 @@ class Gap(Brief):
     jacobians: tuple[Array, ...]
     responses: tuple[Response, ...] = ()
     predictions: Predictions | None = None
+    settings: DiagnosisSettings = DEFAULT
 
     @cached_property
     def predicted(self) -> Predictions:
@@ -70,7 +70,7 @@ class Gap(Brief):
         """
         start, own = self._start[number], self.computed[number]
         before, after = (float(np.mean((values - start) ** 2)) for values in (own, computed))
-        scale = np.clip(np.sqrt(after / before), *SCALES) if before > 1.0 else 1.0
+        scale = np.clip(np.sqrt(after / before), *self.settings.mesh_error_scales) if before > 1.0 else 1.0
         return np.asarray(computed + self.correction[number] * scale)
 
     def residual(self, number: int, computed: Array) -> Array:

@@ -15,27 +15,22 @@ from tyrefem.diagnose.evidence import fit
 from tyrefem.diagnose.fit import polished, refined
 from tyrefem.diagnose.fitted import Explained
 from tyrefem.diagnose.linearised import Gap
+from tyrefem.diagnose.settings import DiagnosisSettings
 from tyrefem.diagnose.unknowns import Candidate, Unknown, of_effect
 from tyrefem.effects import catalogue
 from tyrefem.inputs.study import StudyData
 
 Array = NDArray[np.float64]
-#: Stations along the half meridian.
-STATIONS = 7
-#: Prior of the missing heat: a share of the hottest zone's hysteresis. Of a missing flux: W/m2. Estimates.
-HEAT, FLUX = 4e4, 400.0
-#: A single source may be so many times stronger than a patch of many; and so many sources are sought.
-SPREAD, SOURCES = 3.0, 3
 
 
-def patches(study: StudyData) -> tuple[Unknown, ...]:
+def patches(study: StudyData, settings: DiagnosisSettings) -> tuple[Unknown, ...]:
     """Unknown heat (while rolling) and unknown flux (always) at stations evenly spread from crown to bead."""
     length = study.section.line.length
-    spacing = length / STATIONS
+    spacing = length / settings.stations
     known = catalogue()
     found: list[Unknown] = []
-    for name, sd in (("missing-heat", HEAT), ("missing-flux", FLUX)):
-        for number in range(STATIONS):
+    for name, sd in (("missing-heat", settings.missing_heat), ("missing-flux", settings.missing_flux)):
+        for number in range(settings.stations):
             station = round((number + 0.5) * spacing, 6)
             choice = (("station", f"{station!r} m"), ("width", f"{round(spacing * 0.6, 6)!r} m"))
             found += of_effect(known[name], choice, sd)
@@ -107,8 +102,8 @@ def missing_heat_fitted(
     return dataclasses.replace(found, values=one.values, sd=one.sd)
 
 
-def pursuit(gap: Gap, unknown: Sequence[Unknown], most: int = SOURCES) -> tuple[Unknown, ...]:
-    """The patches that explain the data best, one after the other while the evidence rises by 3; at least one.
+def pursuit(gap: Gap, unknown: Sequence[Unknown]) -> tuple[Unknown, ...]:
+    """The patches that explain the data best, one after the other while the evidence rises; at least one.
 
     Each is judged in the linear model about the study as it is, with a heat of its own in every run that may not be
     negative, so that a single source is not split into sources and sinks side by side.
@@ -125,17 +120,17 @@ def pursuit(gap: Gap, unknown: Sequence[Unknown], most: int = SOURCES) -> tuple[
             for run, (start, end) in enumerate(pairwise(ends)):
                 own[start:end, run] = linear.jacobian[start:end, linear.place[one]]
             columns.append(own)
-            sd.append(np.full(own.shape[1], SPREAD * one.sd))
+            sd.append(np.full(own.shape[1], gap.settings.source_spread * one.sd))
         J, more = np.hstack(columns), len(patches) * (len(ends) - 1)
         limits = np.concatenate([low, np.zeros(more)]), np.concatenate([high, np.full(more, np.inf)])
         return fit(J.T @ J, J.T @ linear.data, np.concatenate(sd), *limits).log_evidence
 
     chosen: list[Unknown] = []
     best = -np.inf
-    while len(chosen) < most:
+    while len(chosen) < gap.settings.most_sources:
         found = [(evidence([*chosen, one]), number) for number, one in enumerate(unknown) if one not in chosen]
         value, number = max(found)
-        if chosen and value < best + 3:
+        if chosen and value < best + gap.settings.source_gain:
             break
         best = value
         chosen.append(unknown[number])
@@ -218,7 +213,7 @@ def _score(mean: Array, spread: Array, half: int) -> Array:
 def _watts(study: StudyData, stations: Array, heat: Array, flux: Array) -> Array:
     """Missing heat of the whole tyre by station, W: patch height times ring volume and surface of its stretch."""
     section = study.section
-    spacing = section.line.length / STATIONS
+    spacing = section.line.length / len(stations)
     radius = section.line.position(stations)[:, 0]
     thickness = np.asarray(section.rubber_thickness(stations))
     ring = 2 * np.pi * radius * spacing * 2

@@ -15,14 +15,12 @@ from tyrefem.diagnose.evaluations import Laboratory
 from tyrefem.diagnose.evidence import Members
 from tyrefem.diagnose.forward_model import FOLLOWED, NOT_FOLLOWED
 from tyrefem.diagnose.reduced_forward import Modes
+from tyrefem.diagnose.settings import DiagnosisSettings
 from tyrefem.diagnose.unknowns import Unknown
 
 Array = NDArray[np.float64]
 Values = Mapping[Unknown, float]
 Tick = Callable[[], None] | None
-#: Model and lean simulation may be apart by this much, in the whitened norm of a drive's readings, as a fit's linear
-#: model may be: ln of the evidence changes by about as much times a normal number.
-ALLOWED = 1.0
 
 
 @dataclass(frozen=True)
@@ -37,6 +35,7 @@ class Certificate:
 
     members: Members
     number: int
+    allowed: float
     apart: float = 0.0
     error: float = 0.0
     cases: int = 0
@@ -44,12 +43,12 @@ class Certificate:
     @property
     def good(self) -> bool:
         """May the model speak for these effects at this drive?"""
-        return self.apart <= ALLOWED
+        return self.apart <= self.allowed
 
     def with_case(self, apart: float, error: float) -> Certificate:
         """After one more point."""
         worst = max(apart, self.apart), max(error, self.error)
-        return Certificate(self.members, self.number, *worst, self.cases + 1)
+        return Certificate(self.members, self.number, self.allowed, *worst, self.cases + 1)
 
 
 @dataclass(eq=False)
@@ -57,7 +56,8 @@ class Predictions(Brief):
     """Predictions and tangents for a laboratory's trials, each by whoever may say.
 
     The first point of every set of effects at every drive is simulated lean as well: that is the certificate. Where a
-    model cannot follow a set's effects, or is off by more than `ALLOWED`, the set stays with the lean simulation.
+    model cannot follow a set's effects, or is off by more than the settings allow, the set stays with the lean
+    simulation.
 
     Parameters
     ----------
@@ -72,6 +72,10 @@ class Predictions(Brief):
     reduced: int = 0
     lean: int = 0
     given_up: bool = False
+
+    @property
+    def settings(self) -> DiagnosisSettings:
+        return self.lab.bench.settings
 
     def predict(
         self, asking: Sequence[tuple[Members, Values]], numbers: Sequence[int], tick: Tick = None
@@ -121,7 +125,7 @@ class Predictions(Brief):
             "modes": {name: one.V.shape[1] for name, one in zip(names, self.modes, strict=False)},
             "points_by_reduced_models": self.reduced,
             "points_by_lean_simulations": self.lean,
-            "allowed_whitened": ALLOWED,
+            "allowed_whitened": self.settings.reduced_allowed,
             "worst_whitened": max((one.apart for one in good), default=None),
             "worst_K": max((one.error for one in good), default=None),
             "certificates": [
@@ -149,7 +153,9 @@ class Predictions(Brief):
             for k, one, row in zip(own, status, blocks, strict=True):
                 if one == NOT_FOLLOWED:
                     members = asking[k][0]
-                    self.certificates[members, i] = Certificate(members, i, apart=np.inf, error=np.inf)
+                    self.certificates[members, i] = Certificate(
+                        members, i, self.settings.reduced_allowed, apart=np.inf, error=np.inf
+                    )
                 elif one == FOLLOWED:
                     found[k, i] = row
         self.reduced += len(found)
@@ -168,7 +174,7 @@ class Predictions(Brief):
 
     def _tried(self, members: Members, number: int, modal: Array, lean: Array) -> Certificate:
         """The certificate after one more point."""
-        known = self.certificates.get((members, number)) or Certificate(members, number)
+        known = self.certificates.get((members, number)) or Certificate(members, number, self.settings.reduced_allowed)
         apart = float(np.linalg.norm(self.lab.bench.trials[number].whitened(modal - lean)))
         error = float(np.abs(modal - lean).max(initial=0.0))
         finite = np.isfinite(apart)

@@ -13,6 +13,7 @@ from numpy.typing import NDArray
 
 from tyrefem.conduction.sensitivity import Tangents
 from tyrefem.diagnose.fast_simulation import Lean, read, sensor_points
+from tyrefem.diagnose.settings import DiagnosisSettings
 from tyrefem.diagnose.unknowns import Unknown
 from tyrefem.errors import InputError
 from tyrefem.inputs.study import StudyData
@@ -27,15 +28,6 @@ from tyrefem.simulation.surroundings import GAS, RIM
 
 Array = NDArray[np.float64]
 Readings = dict[str, Array]
-#: Rms that the modes leave out of the drive's fields and of what every unknown does to them at one prior standard
-#: deviation, K; modes at most.
-LEFT_OUT, MOST = 5e-4, 150
-#: Fields taken of the drive, and of every unknown's tangent.
-FIELDS, OF_TANGENT = 30, 12
-#: K, of the reduced model's time integration: what it leaves is a hundredth of it.
-TIME_TOLERANCE = 0.1
-#: Tyres marched together: all that a tangent needs, so that they have their steps in common.
-TOGETHER = 96
 
 
 @dataclass(frozen=True, eq=False)
@@ -52,7 +44,7 @@ class Modes:
         return f"Modes({self.V.shape[1]}, {self.digest})"
 
 
-def modes_of(base: Lean, unknowns: Sequence[Unknown], found: Tangents | None) -> Array:
+def modes_of(base: Lean, unknowns: Sequence[Unknown], found: Tangents | None, settings: DiagnosisSettings) -> Array:
     """(n, m) modes of a drive and of what unknowns change in it, from tangents that are at hand.
 
     Tangents say what the mesh does with every unknown to first order; how far, and how two of them act together, is
@@ -63,16 +55,16 @@ def modes_of(base: Lean, unknowns: Sequence[Unknown], found: Tangents | None) ->
         reduced_balance(ReducedModel(tyre, np.ones((len(base.values[0]), 1)), {}, np.zeros((0, 0))), tyre)
     except NotReducibleError:
         return np.zeros((len(base.values[0]), 0))
-    rows = [base.values[np.unique(np.linspace(0, last, FIELDS).round().astype(int))]]
+    rows = [base.values[np.unique(np.linspace(0, last, settings.drive_fields).round().astype(int))]]
     if found is not None:
         # Early and evenly: what changes the start of a phase is gone later.
         when = np.unique(
-            np.concatenate([np.arange(2, 10, 2), np.linspace(0, last, OF_TANGENT)[1:].round().astype(int)])
+            np.concatenate([np.arange(2, 10, 2), np.linspace(0, last, settings.tangent_fields)[1:].round().astype(int)])
         )
         rows += [tangent[when[when <= last]] * one.sd for one, tangent in zip(unknowns, found.values, strict=True)]
     operators = tyre.problem.operators
     everywhere = {region: operators.dofs(region) for region in tyre.bodies}
-    return modes(np.vstack(rows), weight(tyre, everywhere), LEFT_OUT, MOST)
+    return modes(np.vstack(rows), weight(tyre, everywhere), settings.modes_left_out, settings.most_modes)
 
 
 @dataclass(frozen=True, eq=False)
@@ -81,6 +73,7 @@ class ReducedDrive:
 
     base: Lean
     modes: Modes
+    settings: DiagnosisSettings
 
     @functools.cached_property
     def model(self) -> ReducedModel:
@@ -145,9 +138,10 @@ class ReducedDrive:
         """Those that can be marched, together; numbers of those that the model cannot follow."""
         found: list[tuple[list[int], Marched]] = []
         refused: list[int] = []
+        tolerance, together = self.settings.reduced_time_tolerance, self.settings.marched_together
         # Where one of them takes no step any more, the lean simulation says what is wrong with it.
         with contextlib.suppress(InputError):
-            for numbers, part in side_by_side(self.model, tyres, TIME_TOLERANCE, TOGETHER):
+            for numbers, part in side_by_side(self.model, tyres, tolerance, together):
                 if isinstance(part, Marched):
                     found.append((numbers, part))
                 elif "not_reducible" in part:

@@ -11,11 +11,10 @@ from scipy.linalg import cholesky, solve_triangular
 
 from tyrefem.brief import Brief
 from tyrefem.compare.experiment import Experiment
+from tyrefem.diagnose.settings import DEFAULT, DiagnosisSettings
 from tyrefem.inputs.study import StudyData
 
 Array = NDArray[np.float64]
-#: Readings of one sensor in one run are averaged into so many blocks at most.
-BLOCKS = 40
 
 
 @dataclass(frozen=True, eq=False)
@@ -32,11 +31,13 @@ class Series(Brief):
     noise: float
     discrepancy: float
     correlation_time: float
+    #: Blocks at most.
+    blocks: int = DEFAULT.blocks
 
     @cached_property
     def starts(self) -> NDArray[np.intp]:
         """First reading of every block."""
-        count = min(len(self.times), BLOCKS)
+        count = min(len(self.times), self.blocks)
         return np.unique(np.linspace(0, len(self.times), count + 1).astype(np.intp)[:-1])
 
     @cached_property
@@ -109,7 +110,7 @@ class Trial:
         return found
 
 
-def trial(experiment: Experiment, study: StudyData) -> Trial:
+def trial(experiment: Experiment, study: StudyData, settings: DiagnosisSettings = DEFAULT) -> Trial:
     """An experiment's readings within the simulated drive."""
     choice, run = study.card.diagnosis, experiment.run
     driven = study.with_drive(dict(experiment.drive)) if experiment.drive else study
@@ -123,7 +124,17 @@ def trial(experiment: Experiment, study: StudyData) -> Trial:
         card = study.sensors.get(sensor)
         stated = experiment.noise or (card.noise if card is not None else 0.5)
         noise = max(stated, _scatter(run.times[used], values[used]))
-        series.append(Series(sensor, run.times[used], values[used], noise, choice.discrepancy, choice.correlation_time))
+        series.append(
+            Series(
+                sensor,
+                run.times[used],
+                values[used],
+                noise,
+                choice.discrepancy,
+                choice.correlation_time,
+                settings.blocks,
+            )
+        )
     return Trial(experiment.name, dict(experiment.drive), experiment.hold_out, tuple(series))
 
 

@@ -16,25 +16,21 @@ from tyrefem.diagnose.evidence import Linear, Members
 from tyrefem.diagnose.fit import polished, refined
 from tyrefem.diagnose.fitted import Explained
 from tyrefem.diagnose.linearised import Gap
+from tyrefem.diagnose.settings import DiagnosisSettings
 from tyrefem.diagnose.unknowns import Candidate, Unknown
-
-#: Probability of one, two, three effects, given that there are any (estimate).
-SIZES = (0.75, 0.22, 0.03)
-
-
-#: So many sets of every size are carried to the next.
-BEAM = 30
 
 
 class Prior:
     """ln of the prior probability of a set.
 
-    No effect: 1 - ``expected``. A set of n: ``expected`` x SIZES[n - 1], shared evenly by all sets of n different
+    No effect: 1 - ``expected``. A set of n: ``expected`` x ``shares``[n - 1], shared evenly by all sets of n different
     effects, and an effect's share by its variants. This is what corrects for the number of candidates tried.
     """
 
-    def __init__(self, candidates: Sequence[Candidate], expected: float) -> None:
-        self.expected = expected
+    def __init__(
+        self, candidates: Sequence[Candidate], expected: float, shares: Sequence[float] = DiagnosisSettings.size_shares
+    ) -> None:
+        self.expected, self.shares = expected, shares
         names = [one.name for one in candidates]
         self._variants = {name: names.count(name) for name in names}
         self.effects = len(self._variants)
@@ -43,12 +39,12 @@ class Prior:
         n = len(members)
         if n == 0:
             return math.log(1 - self.expected)
-        size = math.log(self.expected * SIZES[n - 1]) - math.log(math.comb(max(self.effects, n), n))
+        size = math.log(self.expected * self.shares[n - 1]) - math.log(math.comb(max(self.effects, n), n))
         return size - sum(math.log(self._variants[one.name]) for one in members)
 
 
 def screened(
-    linear: Linear, candidates: Sequence[Candidate], prior: Callable[[Members], float], largest: int = 3
+    linear: Linear, candidates: Sequence[Candidate], prior: Callable[[Members], float], largest: int = 3, beam: int = 30
 ) -> list[tuple[float, Members]]:
     """Sets up to ``largest`` effects with ln(prior x evidence) in the linear model, best first; the empty set included.
 
@@ -66,7 +62,7 @@ def screened(
         pairs = [score(pair) for pair in itertools.combinations(ordered, 2) if pair[0].name != pair[1].name]
         found += pairs
         if largest >= 3:
-            best = sorted(pairs, key=lambda one: -one[0])[:BEAM]
+            best = sorted(pairs, key=lambda one: -one[0])[:beam]
             triples = {
                 frozenset((*pair, third)): (*pair, third)
                 for _, pair in best
@@ -77,31 +73,6 @@ def screened(
     return sorted(found, key=lambda one: -one[0])
 
 
-#: Sets fitted at once, and in all.
-BATCH, MOST = 4, 14
-
-
-#: Leading fits that are carried on to convergence after every batch.
-POLISHED = 2
-
-
-#: So often a fit is carried on; not at all where not even the linear model promises a misfit of less than the second
-#: times the number of readings, and not twice with more than the third. No effect is only carried on before anything
-#: else with less than the last.
-CARRIED, LOST, DOUBTED, NONE = 2, 50.0, 3.0, 10.0
-
-
-#: Heat of unknown origin explains the data better by this much, ln, than any set of the catalogue: no more are fitted.
-HOPELESS = 500.0
-
-
-#: Single effects that are fitted whatever comes.
-SINGLES = 4
-
-
-#: A set whose ln(prior x evidence) is estimated so far below the best needs no full fit: when judged from the study as
-#: it is, and when judged from the fit of a part of it.
-FAR, NEAR = 12.0, 3.0
 Scored = tuple[float, Members, Explained | None]
 
 
@@ -109,6 +80,7 @@ class _Search:
     """Sets fitted so far, and estimates for all others."""
 
     def __init__(self, gap: Gap, candidates: Sequence[Candidate], prior: Prior, largest: int, tick: Tick) -> None:
+        self.settings = gap.settings
         self.gap, self.candidates, self.prior, self.largest, self.tick = gap, candidates, prior, largest, tick
         self.order = {one: number for number, one in enumerate(candidates)}
         self.done: dict[Members, Explained] = {}
@@ -118,7 +90,7 @@ class _Search:
         #: Set -> (estimate of ln(prior x evidence), whether it was judged from the fit of a part).
         self.estimate: dict[Members, tuple[float, bool]] = {
             self.sorted(members): (score + self.linear.constant, False)
-            for score, members in screened(self.linear, candidates, prior, min(largest, 2))
+            for score, members in screened(self.linear, candidates, prior, min(largest, 2), self.settings.beam)
         }
 
     def _count(self) -> None:
@@ -141,7 +113,7 @@ class _Search:
             self.done[self.sorted(one.members)] = one
         # From a fit that has converged, the sets that add to it are judged once more.
         for members in dict.fromkeys((*wanted, *self._polish())):
-            if members and len(members) < self.largest and self.score(members) > self.top - FAR:
+            if members and len(members) < self.largest and self.score(members) > self.top - self.settings.far:
                 self._extend(members)
 
     def _starts(self, sets: Sequence[Members]) -> dict[Members, Explained]:
@@ -153,12 +125,12 @@ class _Search:
     def _polish(self) -> list[Members]:
         """Carry the leading fits on to convergence: their numbers decide. Returns which."""
         carried: list[Members] = []
-        for _ in range(POLISHED * CARRIED):
+        for _ in range(self.settings.carried_sets * self.settings.carried_times):
             ahead = sorted(self.done, key=self.score, reverse=True)
             left = [
                 members
-                for members in ahead[:POLISHED]
-                if self.score(members) > self.top - FAR and self._worth_carrying(members)
+                for members in ahead[: self.settings.carried_sets]
+                if self.score(members) > self.top - self.settings.far and self._worth_carrying(members)
             ]
             if not left:
                 break
@@ -170,12 +142,12 @@ class _Search:
 
     def _worth_carrying(self, members: Members) -> bool:
         one, often = self.done[members], self.polished[members]
-        if one.finished or often >= CARRIED:
+        if one.finished or often >= self.settings.carried_times:
             return False
         if often or not self.singles:
-            return one.misfit < (DOUBTED if often else NONE) * one.readings
+            return one.misfit < (self.settings.doubted if often else self.settings.none_carried) * one.readings
         # The first steps of a strong effect may still be far off; what the linear model promises counts.
-        return -2 * one.log_evidence < LOST * one.readings
+        return -2 * one.log_evidence < self.settings.lost * one.readings
 
     @property
     def singles(self) -> list[Members]:
@@ -188,7 +160,7 @@ class _Search:
         unknowns = [unknown for each in self.candidates for unknown in (*each.amplitudes, *each.presence)]
         about = _about(self.gap, one, unknowns)
         own = self.prior(()) + about.log_evidence(())
-        for score, members in screened(about, self.candidates, self.prior, min(self.largest, 2)):
+        for score, members in screened(about, self.candidates, self.prior, min(self.largest, 2), self.settings.beam):
             if members:
                 self.estimate[self.sorted(members)] = (self.score(()) + score - own, True)
 
@@ -213,7 +185,7 @@ class _Search:
         found = [
             (value, members)
             for members, (value, judged) in self.estimate.items()
-            if members not in self.done and value > top - (NEAR if judged else FAR)
+            if members not in self.done and value > top - (self.settings.near if judged else self.settings.far)
         ]
         # A pair judged from afar waits until its parts have been fitted and it can be judged from there.
         found = [(value, members) for value, members in found if len(members) < 2 or self.estimate[members][1]]
@@ -253,12 +225,14 @@ def search(
     if found.done[()].close:
         found.extend_none()
     else:
-        found.fit([*singles[:SINGLES], *ahead])
+        found.fit([*singles[: gap.settings.singles], *ahead])
     batches = 0
     unknown = outside(found.done[()]) if outside else -np.inf
-    while len(found.done) < MOST and not (batches >= largest and unknown > found.top + HOPELESS):
+    while len(found.done) < gap.settings.most_sets and not (
+        batches >= largest and unknown > found.top + gap.settings.hopeless
+    ):
         batches += 1
-        promising = found.promising()[:BATCH]
+        promising = found.promising()[: gap.settings.batch]
         if not promising:
             best = max(found.done, key=found.score)
             parts = [part for size in range(1, len(best)) for part in itertools.combinations(best, size)]
@@ -269,10 +243,10 @@ def search(
         found.fit(promising)
     scored: list[Scored] = [(found.score(members), members, one) for members, one in found.done.items()]
     scored += [(value, members, None) for members, (value, _) in found.estimate.items() if members not in found.done]
-    top = found.top
+    top, near = found.top, gap.settings.near
     # A set that was only judged from afar may not stand above the best that was fitted.
     return sorted(
-        ((score if one is not None else min(score, top - NEAR), members, one) for score, members, one in scored),
+        ((score if one is not None else min(score, top - near), members, one) for score, members, one in scored),
         key=lambda one: -one[0],
     )
 

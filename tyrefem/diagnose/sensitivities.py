@@ -10,6 +10,7 @@ from tyrefem.diagnose.linearised import Gap
 from tyrefem.diagnose.missing_heat import patches
 from tyrefem.diagnose.multifidelity import Predictions
 from tyrefem.diagnose.reduced_forward import Modes
+from tyrefem.diagnose.settings import DEFAULT, DiagnosisSettings
 from tyrefem.diagnose.unknowns import Unknown, base_unknowns, candidates, sensor_unknowns
 from tyrefem.errors import InputError
 from tyrefem.inputs.study import StudyData
@@ -17,11 +18,13 @@ from tyrefem.inputs.study import StudyData
 Tick = Callable[[str, int, int], None]
 
 
-def unknowns_of(study: StudyData, measured: Iterable[str]) -> tuple[tuple[Unknown, ...], int]:
+def unknowns_of(
+    study: StudyData, measured: Iterable[str], settings: DiagnosisSettings = DEFAULT
+) -> tuple[tuple[Unknown, ...], int]:
     """Everything that a diagnosis with these sensors may fit, and how many of it, the first, are in every model."""
     nuisance = (*base_unknowns(study), *sensor_unknowns(study, set(measured)))
     found = [one for each in candidates(study) for one in (*each.amplitudes, *each.presence)]
-    return (*nuisance, *found, *patches(study)), len(nuisance)
+    return (*nuisance, *found, *patches(study, settings)), len(nuisance)
 
 
 def responses(lab: Laboratory, unknowns: tuple[Unknown, ...], tick: Tick | None = None) -> tuple[Response, ...]:
@@ -53,7 +56,9 @@ def gap_of(
     ``reduced``: whether the drives' reduced models may predict.
     """
     trials = lab.bench.trials
-    unknowns, nuisance = unknowns_of(lab.bench.study, {one.sensor for each in trials for one in each.series})
+    unknowns, nuisance = unknowns_of(
+        lab.bench.study, {one.sensor for each in trials for one in each.series}, lab.bench.settings
+    )
     if known is not None and any(one.unknowns != unknowns for one in known):
         raise InputError("the responses at hand are of another study, or of other sensors")
     found = known or responses(lab, unknowns, tick)
@@ -61,4 +66,4 @@ def gap_of(
         *(one.blocks(each) for one, each in zip(found, trials, strict=True)), strict=True
     )
     predictions = Predictions(lab, [one.modes for one in found] if reduced else ())
-    return Gap(lab, unknowns, nuisance, correction, computed, jacobians, tuple(found), predictions)
+    return Gap(lab, unknowns, nuisance, correction, computed, jacobians, tuple(found), predictions, lab.bench.settings)

@@ -9,18 +9,11 @@ from dataclasses import dataclass
 from tyrefem.brief import Brief
 from tyrefem.diagnose.evidence import Members
 from tyrefem.diagnose.fitted import Explained
+from tyrefem.diagnose.settings import DEFAULT, DiagnosisSettings
 
 IDENTIFIED, CONFOUNDED, UNEXPLAINED, NO_GAP = "identified", "confounded", "unexplained", "no gap"
-#: A set is named when it is this probable; sets of joint probability up to the second are reported.
-SURE, CREDIBLE = 0.9, 0.99
-#: And when nothing more is missing with at least this probability.
-WHOLE = 0.5
 #: So many sets are named in a reason.
 SHOWN = 8
-#: A misfit less probable than this, were the model right, is not accepted.
-IMPROBABLE = 1e-4
-#: Probability that the cause is not in the catalogue, given that there is any (estimate).
-OUTSIDE = 0.05
 
 
 @dataclass(frozen=True)
@@ -102,7 +95,11 @@ def probability(ranked: Sequence[Standing]) -> float:
     return sum(one.probability for one in ranked if own <= {member.key for member in one.members})
 
 
-def judge(ranked: Sequence[Standing], explained: Callable[[Members], Explained | None]) -> Judgement:
+def judge(
+    ranked: Sequence[Standing],
+    explained: Callable[[Members], Explained | None],
+    settings: DiagnosisSettings = DEFAULT,
+) -> Judgement:
     """The verdict on sets ranked by probability.
 
     A set is *identified* when it is part of the truth with at least 90 % and all of it with at least 50 % probability,
@@ -115,7 +112,7 @@ def judge(ranked: Sequence[Standing], explained: Callable[[Members], Explained |
     for one in ranked:
         credible.append(one)
         mass += one.probability
-        if mass >= CREDIBLE:
+        if mass >= settings.credible:
             break
     named = inclusion(ranked)
     fit = best.explained or explained(best.members)
@@ -127,7 +124,7 @@ def judge(ranked: Sequence[Standing], explained: Callable[[Members], Explained |
     if best.unexplained:
         reasons.append("heat of unknown origin explains the data better than any set of effects in the catalogue")
         return verdict(UNEXPLAINED)
-    if fit is not None and fit.p_value < IMPROBABLE:
+    if fit is not None and fit.p_value < settings.improbable:
         reasons.append(
             f"the best set ({best.key}) leaves a misfit that noise makes with probability {fit.p_value:.1g}: "
             "something else is missing"
@@ -136,14 +133,14 @@ def judge(ranked: Sequence[Standing], explained: Callable[[Members], Explained |
     if not best.members:
         reasons.append("noise and the uncertainty of base numbers and sensors account for the disagreement")
         return verdict(NO_GAP)
-    if fit is not None and fit.held_out_p < IMPROBABLE:
+    if fit is not None and fit.held_out_p < settings.improbable:
         reasons.append(f"the held-out runs reject {best.key} (probability {fit.held_out_p:.1g})")
         return verdict(UNEXPLAINED)
     if fit is not None and fit.at_bound:
         reasons.append("the data want it beyond a bound that physics sets: " + ", ".join(fit.at_bound))
         return verdict(CONFOUNDED)
     sure = probability(ranked)
-    if sure >= SURE and best.probability >= WHOLE:
+    if sure >= settings.sure and best.probability >= settings.whole:
         reasons.append(f"{best.key} is missing with {100 * sure:.1f} % probability, by all sets of effects tried")
         return verdict(IDENTIFIED)
     more = f"; and {len(credible) - SHOWN} more" if len(credible) > SHOWN else ""

@@ -11,7 +11,7 @@ import numpy as np
 from tyrefem.diagnose.contenders import contenders, support
 from tyrefem.diagnose.numbers import percent
 from tyrefem.diagnose.unknowns import Candidate, Unknown
-from tyrefem.diagnose.verdict import CONFOUNDED, IDENTIFIED, NO_GAP, SURE
+from tyrefem.diagnose.verdict import CONFOUNDED, IDENTIFIED, NO_GAP
 from tyrefem.geometry.place_names import place
 
 if TYPE_CHECKING:
@@ -121,7 +121,7 @@ def missing_words(d: Diagnosis) -> str:
 def _confounded(d: Diagnosis, closing: str) -> tuple[str, ...]:
     rivals, best = contenders(d), d.judgement.best
     held, clauses = support(d, best), " And: ".join(effect_words(one, d.best) for one in best.members)
-    if best.members and held >= SURE:
+    if best.members and held >= d.gap.settings.sure:
         first = f"{clauses}: {percent(held)} probable."
         if not d.best.at_bound:
             alone = percent(best.probability)

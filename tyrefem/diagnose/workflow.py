@@ -25,12 +25,11 @@ from tyrefem.diagnose.missing_heat import MissingHeat, missing_heat, missing_hea
 from tyrefem.diagnose.runs import trial
 from tyrefem.diagnose.search import Prior, Scored, search
 from tyrefem.diagnose.sensitivities import Tick, gap_of
+from tyrefem.diagnose.settings import DEFAULT, DiagnosisSettings
 from tyrefem.diagnose.unknowns import Candidate, Unknown, candidates
 from tyrefem.diagnose.verdict import (
     CONFOUNDED,
     IDENTIFIED,
-    IMPROBABLE,
-    OUTSIDE,
     UNEXPLAINED,
     Judgement,
     judge,
@@ -39,9 +38,6 @@ from tyrefem.diagnose.verdict import (
 from tyrefem.errors import InputError
 from tyrefem.inputs.study import StudyData
 from tyrefem.requirements import Requirements
-
-#: Heat of unknown origin that the linear model puts this far, or less, below the best set is fitted in the full model.
-NEAR = 10.0
 
 
 class Naming:
@@ -53,15 +49,13 @@ class Naming:
     missing : heat of unknown origin.
     """
 
-    def __init__(
-        self, gap: Gap, study: StudyData, found: tuple[Candidate, ...], largest: int, count: Callable[[str], None]
-    ) -> None:
+    def __init__(self, gap: Gap, study: StudyData, found: tuple[Candidate, ...], count: Callable[[str], None]) -> None:
         self.gap = gap
-        prior = Prior(found, study.card.diagnosis.effects_expected)
-        scored, self.missing = _searched(gap, study, found, prior, largest, count)
+        prior = Prior(found, study.card.diagnosis.effects_expected, gap.settings.size_shares)
+        scored, self.missing = _searched(gap, study, found, prior, count)
         self.explained = {one.members: one for _, _, one in scored if one is not None}
         self.null = self.explained[()]
-        self.judgement = judge(standings(scored, _outside(study) + self.missing.log_evidence), self.fitted)
+        self.judgement = judge(standings(scored, _outside(gap) + self.missing.log_evidence), self.fitted, gap.settings)
         ahead = self.judgement.best
         self.best = ahead.explained or (self.null if ahead.unexplained else self.fitted(ahead.members))
 
@@ -72,16 +66,17 @@ class Naming:
         return self.explained[members]
 
 
-def _outside(study: StudyData) -> float:
+def _outside(gap: Gap) -> float:
     """ln of the prior probability that what is missing is not in the catalogue."""
-    return math.log(study.card.diagnosis.effects_expected * OUTSIDE)
+    return math.log(gap.lab.bench.study.card.diagnosis.effects_expected * gap.settings.outside_share)
 
 
 def _searched(
-    gap: Gap, study: StudyData, found: tuple[Candidate, ...], prior: Prior, largest: int, count: Callable[[str], None]
+    gap: Gap, study: StudyData, found: tuple[Candidate, ...], prior: Prior, count: Callable[[str], None]
 ) -> tuple[list[Scored], MissingHeat]:
     """All sets with their scores, and heat of unknown origin: in the full model where it may matter."""
-    unknown, outside = patches(study), _outside(study)
+    settings = gap.settings
+    unknown, outside = patches(study, settings), _outside(gap)
 
     @functools.cache
     def linear(null: Explained) -> MissingHeat:
@@ -90,12 +85,12 @@ def _searched(
     def elsewhere(null: Explained) -> float:
         return outside + linear(null).log_evidence
 
-    scored = search(gap, found, prior, largest=largest, tick=count, outside=elsewhere)
+    scored = search(gap, found, prior, largest=settings.largest, tick=count, outside=elsewhere)
     null = next(one for _, members, one in scored if one is not None and not members)
     missing = linear(null)
     score, _, ahead = scored[0]
-    doubtful = ahead is None or ahead.p_value < IMPROBABLE or ahead.held_out_p < IMPROBABLE
-    if doubtful or outside + missing.log_evidence > score - NEAR:
+    doubtful = ahead is None or min(ahead.p_value, ahead.held_out_p) < settings.improbable
+    if doubtful or outside + missing.log_evidence > score - settings.missing_near:
         missing = missing_heat_fitted(gap, unknown, null, lambda: count("fitting heat of unknown origin"))
     return scored, missing
 
@@ -104,24 +99,21 @@ def _searched(
 NEEDS = Requirements("a diagnosis", measured=True, fitted=True)
 
 
-#: Diagnoses at most, each of what the one before it has left.
-LOOKS = 3
-
-
 def diagnose(
     study: StudyData,
     table: Table | None = None,
     *,
     ignore: Iterable[str] = (),
     rename: Mapping[str, str] | None = None,
-    largest: int = 3,
+    largest: int | None = None,
     workers: int = 1,
     progress: Tick | None = None,
     known: Sequence[Response] | None = None,
     rerun: bool = True,
     store: ProgressStore | None = None,
-    looks: int = LOOKS,
-    reduced: str = "auto",
+    looks: int | None = None,
+    reduced: str | None = None,
+    settings: DiagnosisSettings = DEFAULT,
 ) -> Diagnosis:
     """Find where study and data disagree, name the missing effect, add it and show what is left.
 
@@ -132,23 +124,22 @@ def diagnose(
     ----------
     study : the study; its cards and sensors state what is uncertain, its ``[diagnosis]`` table the rest.
     table : as of `compare`; None = the study's own ``[[measured]]`` entries. ignore, rename : see `compare`.
-    largest : effects at most in a set. workers : processes. progress : called with (what is done, number, of how many).
+    workers : processes. progress : called with (what is done, number, of how many).
     known : responses of the runs' drives already at hand (see `responses`), for many diagnoses of one layout.
     rerun : run the amended study on its own mesh at the end; else ``after`` is the fit's own prediction.
     store : where finished simulations are kept, so that an interrupted diagnosis takes them up again.
-    looks : diagnoses at most.
-    reduced : "auto" lets reduced models of the drives predict for the fits, effect by effect where fresh simulations
-        bear them out (see `tyrefem.diagnose.multifidelity`); "never" simulates every point.
+    largest, looks, reduced : in place of what ``settings`` say.
+    settings : every number that steers the diagnosis.
 
     Raises
     ------
     InputError : as `compare`; or every run is held out, or read outside the simulated drive only.
     """
-    if reduced not in ("auto", "never"):
-        raise InputError(f"reduced is 'auto' or 'never', not {reduced!r}")
+    stated: dict[str, Any] = {"largest": largest, "looks": looks, "reduced": reduced}
+    settings = replace(settings, **{name: value for name, value in stated.items() if value is not None})
     NEEDS.check(study, table)
     found: list[Diagnosis] = []
-    while not found or (found[-1].verdict == IDENTIFIED and len(found) < looks):
+    while not found or (found[-1].verdict == IDENTIFIED and len(found) < settings.looks):
         number = len(found)
         found.append(
             _look(
@@ -156,13 +147,12 @@ def diagnose(
                 table,
                 ignore=ignore,
                 rename=rename,
-                largest=largest,
                 workers=workers,
                 tick=_numbered(progress, number),
                 known=None if number else known,
                 rerun=rerun,
                 store=store and store.look(number),
-                reduced=reduced == "auto",
+                settings=settings,
             )
         )
     result = found.pop()
@@ -185,38 +175,37 @@ def _look(
     *,
     ignore: Iterable[str],
     rename: Mapping[str, str] | None,
-    largest: int,
     workers: int,
     tick: Tick,
     known: Sequence[Response] | None,
     rerun: bool,
     store: ProgressStore | None,
-    reduced: bool,
+    settings: DiagnosisSettings,
 ) -> Diagnosis:
     """One diagnosis."""
     began = time.perf_counter()
     planned = experiments(study, table, ignore=ignore, rename=rename)
     NEEDS.check_fitted(study, [one.hold_out for one in planned])
-    trials = tuple(one for one in (trial(each, study) for each in planned) if one.series)
+    trials = tuple(one for one in (trial(each, study, settings) for each in planned) if one.series)
     if not any(not one.hold_out for one in trials):
         message = "no reading within the simulated drive in any run that is not held out"
         raise InputError(message, field="measured", file=study.file)
-    bench = Bench(study, trials)
+    bench = Bench(study, trials, settings=settings)
     if known is None:
         check_effort(bench, f"the diagnosis of {study.name}", 1.0, workers)
     if store is not None and store.open(bench):
         tick(f"taking up {store.taken_up} simulations", 0, 0)
     with laboratory(bench, workers, store) as lab:
-        gap = gap_of(lab, tick, known, reduced=reduced)
+        gap = gap_of(lab, tick, known, reduced=settings.reduced == "auto")
         found = candidates(study)
-        named = Naming(gap, study, found, largest, _Counted(tick))
+        named = Naming(gap, study, found, _Counted(tick))
         if not gap.predicted.confirmed(named.best.members, named.best.values):
             tick("the reduced models do not hold there: simulating", 0, 0)
             said = gap.predicted
             gap = replace(gap, predictions=replace(said, modes=(), given_up=True))
-            named = Naming(gap, study, found, largest, _Counted(tick))
+            named = Naming(gap, study, found, _Counted(tick))
         judgement, best, missing = named.judgement, named.best, named.missing
-        values, sd, lacking = _lacking(study, judgement, best, missing)
+        values, sd, lacking = _lacking(gap, judgement, best, missing)
         change = changes(gap, values, sd, lacking, [one.name for one in trials])
         tick("running the amended study", 0, 0)
         after = _after(gap, change if rerun else None, values)
@@ -245,13 +234,13 @@ class _Counted:
 
 
 def _lacking(
-    study: StudyData, judgement: Judgement, best: Explained, missing: MissingHeat
+    gap: Gap, judgement: Judgement, best: Explained, missing: MissingHeat
 ) -> tuple[Mapping[Unknown, float], Mapping[Unknown, float], list[Unknown]]:
     """Values and sd of the unknowns, and which of them the study lacks."""
     if judgement.verdict != UNEXPLAINED:
         return best.values, best.sd, [one for member in best.members for one in member.unknowns]
     # Nothing is named: the study gets the heat of unknown origin that is more than two sd from none.
-    unknown = patches(study)
+    unknown = patches(gap.lab.bench.study, gap.settings)
     lacking = [one for one in unknown if abs(missing.values.get(one, 0.0)) > 2 * missing.sd.get(one, 1.0)]
     return {one: x for one, x in missing.values.items() if one in lacking or one not in unknown}, missing.sd, lacking
 

@@ -30,8 +30,10 @@ KEPT, LEFT, ITERATIONS = 8, 0.1, 8
 TIME_TOLERANCE = 0.2
 
 
-def parts(span: float) -> Array:
+def parts(span: float, early: float = EARLY) -> Array:
     """Parts of a phase of so many s at which its fields are corrected: `PARTS`, and in a long phase earlier ones.
+
+    ``early``: the first of them lies within so many s.
 
     >>> parts(600.0)
     array([0.02, 0.1 , 0.3 , 0.6 , 1.  ])
@@ -39,17 +41,17 @@ def parts(span: float) -> Array:
     array([ 13.5,  54. , 216. ])
     """
     found = list(PARTS)
-    while found[0] * span > EARLY:
+    while found[0] * span > early:
         found.insert(0, found[0] / EARLIER)
     return np.array(found)
 
 
-def corrected(model: ReducedModel, tyre: RollingTyre, share: float) -> tuple[Snapshots, float]:
+def corrected(model: ReducedModel, tyre: RollingTyre, share: float, early: float = EARLY) -> tuple[Snapshots, float]:
     """`correction` of a variant that is marched alone."""
-    return correction(march(Batch(model, [reduced_balance(model, tyre)], TIME_TOLERANCE)), 0, share)
+    return correction(march(Batch(model, [reduced_balance(model, tyre)], TIME_TOLERANCE)), 0, share, early)
 
 
-def correction(marched: Marched, place: int, share: float) -> tuple[Snapshots, float]:
+def correction(marched: Marched, place: int, share: float, early: float = EARLY) -> tuple[Snapshots, float]:
     """Fields and heat sources of a variant as the full model corrects its reduced ones, and the largest correction, K.
 
     With the residual of the full heat balance at the reduced field u = V a and its rate V a',
@@ -70,7 +72,7 @@ def correction(marched: Marched, place: int, share: float) -> tuple[Snapshots, f
     fields, sources, largest = [], [], 0.0
     for number, (start, end) in enumerate(pairwise([*tyre.drive.starts, tyre.drive.end])):
         span = end - start
-        times = start + parts(span) * span * (1 - 1e-9)
+        times = start + parts(span, early) * span * (1 - 1e-9)
         states, slopes = marched.states(times)[:, place], marched.slopes(times)[:, place]
         values, rates = (each[:, :m] @ model.V.T for each in (states, slopes))
         middle = len(times) - len(PARTS) + int(np.searchsorted(PARTS, MIDDLE))
