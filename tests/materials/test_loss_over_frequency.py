@@ -49,6 +49,19 @@ def test_a_table_is_linear_in_the_logarithm_and_scales_the_law_of_temperature() 
     assert law.over_frequency(1e4, T) == pytest.approx(3.0 * law(T), rel=1e-12)
 
 
+def test_one_maxwell_element_is_the_standard_linear_solid() -> None:
+    """tan d peaks at x = sqrt(E_0 / (E_0 + E)) with E / (2 sqrt(E_0 (E_0 + E))) (Ferry 1980)."""
+    relaxed, element, time = 1.5e6, 2.4e6, 1e-3
+    solid, x = Prony(relaxed, (element,), (time,)), np.sqrt(relaxed / (relaxed + element))
+    peak = x / (2 * np.pi * time)
+    at = [float(solid(peak * factor, np.array(20.0))) for factor in (0.9, 1.0, 1.1)]
+    assert at[1] == pytest.approx(element / (2 * np.sqrt(relaxed * (relaxed + element))), rel=1e-12)
+    assert at[1] > max(at[0], at[2])
+    # Far above the peak it is elastic: tan d falls as 1/f.
+    high = [float(solid(factor * peak, np.array(20.0))) for factor in (1e4, 2e4)]
+    assert high[0] == pytest.approx(2 * high[1], rel=1e-6)
+
+
 def test_a_prony_series_with_a_shift_says_everything() -> None:
     law = over(PRONY, law="frequency")
     moduli, times = (1.2e6, 0.5e6, 0.2e6), (1e-5, 1e-3, 0.1)
