@@ -240,3 +240,24 @@ class Unit:
         from pydantic_core import core_schema
 
         return core_schema.no_info_plain_validator_function(self)
+
+
+@dataclass(frozen=True)
+class Ramp:
+    """A quantity that goes from ``start`` to ``end``, linear in time. SI.
+
+    >>> Ramp(0.0, 10.0).at(0.25)
+    2.5
+    """
+
+    start: float
+    end: float
+
+    @property
+    def constant(self) -> bool:
+        """Does it stay the same?"""
+        return self.start == self.end
+
+    def at(self, fraction: float) -> float:
+        """The value at a fraction of the time that it takes."""
+        return self.start + (self.end - self.start) * fraction

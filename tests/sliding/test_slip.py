@@ -7,9 +7,9 @@ import math
 import pytest
 
 from tyrefem.boundaries import LawOf
-from tyrefem.boundaries.slip import Slip
 from tyrefem.errors import InputError
 from tyrefem.inputs.drive import Drive
+from tyrefem.inputs.motion import Motion, motion_at
 
 STEADY = {"speed": "36 km/h", "load": "12 kN", "pressure": "5 bar", "duration": "10 s"}
 
@@ -22,25 +22,29 @@ def law(name, **numbers):
     return LawOf("sliding", "constant")({"law": name, **numbers})
 
 
+def friction(sliding, motion):
+    return sliding.friction(motion.sliding_speed, motion.rolling_speed)
+
+
 def test_without_slip_the_tread_passes_at_the_wheel_s_speed():
-    slip = drive().slip(3.0)
-    assert (slip.rolling_speed, slip.sliding_speed, slip.ratio) == (slip.speed, 0.0, 0.0)
+    motion = motion_at(drive(), 3.0)
+    assert (motion.rolling_speed, motion.sliding_speed, motion.slip_ratio) == (motion.speed, 0.0, 0.0)
     assert not drive(slip_ratio=0, slip_angle="0 deg").phases[0].slides
 
 
 def test_braking_slip_slows_the_tread_and_driving_slip_speeds_it_up():
-    braked, driven = drive(slip_ratio="20 %").slip(0.0), drive(slip_ratio=-0.2).slip(0.0)
+    braked, driven = (motion_at(drive(slip_ratio=ratio), 0.0) for ratio in ("20 %", -0.2))
     assert (braked.rolling_speed, driven.rolling_speed) == (pytest.approx(8.0), pytest.approx(12.0))
     assert braked.sliding_speed == pytest.approx(driven.sliding_speed) == pytest.approx(2.0)
-    assert drive(slip_speed="2 m/s").slip(0.0).ratio == pytest.approx(0.2)
+    assert motion_at(drive(slip_speed="2 m/s"), 0.0).slip_ratio == pytest.approx(0.2)
 
 
 def test_longitudinal_and_lateral_slip_add_as_vectors():
-    slip = drive(slip_ratio=0.3, slip_angle="-10 deg").slip(0.0)
+    motion = motion_at(drive(slip_ratio=0.3, slip_angle="-10 deg"), 0.0)
     along, across = 0.3 * 10 * math.cos(math.radians(10)), 10 * math.sin(math.radians(10))
-    assert slip.sliding_speed == pytest.approx(math.hypot(along, across))
+    assert motion.sliding_speed == pytest.approx(math.hypot(along, across))
     # A locked wheel slides at the vehicle's speed whichever way it points.
-    locked = drive(slip_ratio=1, slip_angle="30 deg").slip(0.0)
+    locked = motion_at(drive(slip_ratio=1, slip_angle="30 deg"), 0.0)
     assert (locked.rolling_speed, locked.sliding_speed) == (0.0, pytest.approx(10.0))
 
 
@@ -80,7 +84,7 @@ def test_slip_that_cannot_be(changes, field, message):
 
 def test_a_phase_s_slip_speed_replaces_the_drive_s_slip_ratio():
     mixed = drive(slip_ratio=0.1, phases=[{}, {"slip_speed": "3 m/s"}])
-    assert [mixed.slip(t).ratio for t in (5.0, 15.0)] == pytest.approx([0.1, 0.3])
+    assert [motion_at(mixed, t).slip_ratio for t in (5.0, 15.0)] == pytest.approx([0.1, 0.3])
 
 
 def test_brush_friction_grows_from_nothing_to_that_of_a_sliding_block():
@@ -88,14 +92,14 @@ def test_brush_friction_grows_from_nothing_to_that_of_a_sliding_block():
     brush = law("brush", coefficient=0.9, full_slip=0.2)
 
     def at(slip: float) -> float:
-        return brush.friction(Slip(10.0 * (1 + slip), 10.0 * slip))
+        return friction(brush, Motion(10.0 * (1 + slip), 10.0 * slip))
 
     assert at(1e-6) == pytest.approx(3 * 0.9 / 0.2 * 1e-6, rel=1e-4)
     assert at(0.1) == pytest.approx(0.9 * (1 - 0.5**3))
     assert at(0.2) == pytest.approx(0.9)
-    assert at(5.0) == brush.friction(Slip(10.0, 10.0)) == 0.9
-    assert brush.friction(Slip(10.0)) == 0.0
-    assert law("constant", coefficient=0.9).friction(Slip(10.0, 0.1)) == 0.9
+    assert at(5.0) == friction(brush, Motion(10.0, 10.0)) == 0.9
+    assert friction(brush, Motion(10.0)) == 0.0
+    assert friction(law("constant", coefficient=0.9), Motion(10.0, 0.1)) == 0.9
 
 
 def test_the_road_is_that_of_the_road_law_unless_given():
@@ -105,3 +109,12 @@ def test_the_road_is_that_of_the_road_law_unless_given():
     assert law("constant").road_effusivity(half_space) == pytest.approx(math.sqrt(0.75 * 2e6))
     ice = law("constant", road_conductivity="2.2 W/m/K", road_heat_capacity="1.914e6 J/m**3/K")
     assert ice.road_effusivity(half_space) == pytest.approx(math.sqrt(2.2 * 1.914e6))
+
+
+def test_a_wheel_turns_once_in_the_length_of_its_rolling_circle():
+    rolling, braked = Motion(10.0, rolling_radius=0.25), Motion(10.0, 2.0, rolling_radius=0.25)
+    assert rolling.revolutions_per_second * 2 * math.pi * 0.25 == pytest.approx(10.0, rel=1e-15)
+    assert braked.revolutions_per_second == pytest.approx(0.8 * rolling.revolutions_per_second, rel=1e-15)
+    assert Motion(10.0, 10.0, rolling_radius=0.25).revolutions_per_second == 0.0
+    # Without a load case nobody knows the rolling radius: no number is better than a wrong one.
+    assert math.isnan(motion_at(drive(), 3.0).revolutions_per_second)

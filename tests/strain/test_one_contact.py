@@ -113,7 +113,7 @@ def test_all_of_the_load_rubs_on_the_footprints_area() -> None:
     assert sliding.contact_area(0.5) == pytest.approx(case.footprint_area, rel=1e-12)
     assert sliding.pressure(0.5) * case.footprint_area == pytest.approx(case.load, rel=1e-12)
     passage = sliding.passage(0.5)
-    power = 0.5 * case.load * tyre.drive.slip(0.5).sliding_speed * passage.tread_share
+    power = 0.5 * case.load * tyre.motion(0.5).sliding_speed * passage.tread_share
     heat = sliding.mean_heat(None, 0.5, np.full(3, 25.0)) * sliding.surface.area * 2
     assert heat == pytest.approx(power, rel=1e-9)
 

@@ -8,7 +8,6 @@ from typing import Annotated, ClassVar, Literal
 from tyrefem.boundaries import Law
 from tyrefem.boundaries.road import HalfSpace, RoadLaw
 from tyrefem.boundaries.road_film import effusivity
-from tyrefem.boundaries.slip import Slip
 from tyrefem.cards import Temperature
 from tyrefem.cards.plausible import ROAD_CONDUCTIVITY, SOLID_CAPACITY
 from tyrefem.quantity import Unit
@@ -32,8 +31,9 @@ class SlidingLaw(Law):
     decomposition_temperature: Temperature = 350.0
 
     @abstractmethod
-    def friction(self, slip: Slip) -> float:
-        """Friction force over load, before decomposition limits it."""
+    def friction(self, sliding_speed: float, rolling_speed: float) -> float:
+        """Friction force over load, before decomposition limits it; speeds of the tread over the road and through the
+        footprint, m/s."""
 
     def road_effusivity(self, road: RoadLaw) -> float:
         """b of the road, J/m2/K/s^0.5: given here, else that of the road law, else its default."""
@@ -49,7 +49,7 @@ class ConstantFriction(SlidingLaw):
     law: Literal["constant"]
     coefficient: Friction = 0.8
 
-    def friction(self, slip: Slip) -> float:
+    def friction(self, sliding_speed: float, rolling_speed: float) -> float:
         """Friction force over load."""
         return self.coefficient
 
@@ -65,8 +65,8 @@ class Brush(SlidingLaw):
     coefficient: Friction = 0.8
     full_slip: Annotated[float, Unit("1", gt=0, le=2)] = 0.15
 
-    def friction(self, slip: Slip) -> float:
+    def friction(self, sliding_speed: float, rolling_speed: float) -> float:
         """Friction force over load."""
-        full = self.full_slip * slip.rolling_speed
-        x = slip.sliding_speed / full if full > slip.sliding_speed else 1.0
+        full = self.full_slip * rolling_speed
+        x = sliding_speed / full if full > sliding_speed else 1.0
         return self.coefficient * (1.0 - (1.0 - x) ** 3)

@@ -53,7 +53,7 @@ class BeltEdgeShear(Effect):
         along = (s - self.CENTRE * section.line.shoulder_s) / self.ALONG
         across = (section.midline_offset(s, depth) - section.thickness("carcass", s) / 2) / self.ACROSS
         here = np.exp(-(along**2 + across**2) / 2)
-        lost = self.loss * tyre.schedule.revolutions_per_second(t)
+        lost = self.loss * tyre.motion(t).revolutions_per_second
         return np.asarray(lost * deflection_ratio(tyre, t) ** 2 * here)
 
     @classmethod

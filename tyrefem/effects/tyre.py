@@ -47,8 +47,11 @@ class Tyre(Protocol):
     def tread(self) -> tuple[float, float]:
         """Conductivity through the tread, W/m/K, and its volumetric heat capacity, J/m3/K, at 25 degC."""
 
+    def motion(self, t: float) -> MotionOfTyre:
+        """How the wheel moves at time t (s)."""
+
     def speed(self, t: float) -> float:
-        """Speed over the road at time t (s), m/s."""
+        """Speed over the road at time t (s), m/s: short for ``motion(t).speed``."""
 
     def ambient(self, t: float) -> float:
         """Ambient temperature at time t (s), degC, with the effects on it."""
@@ -63,6 +66,30 @@ class Tyre(Protocol):
         """|s| along the meridian from the crown and depth from the inner surface of points x (2, n), m."""
 
 
+class MotionOfTyre(Protocol):
+    """The motion of the wheel at one time."""
+
+    @property
+    def speed(self) -> float:
+        """Speed of the wheel's centre over the road, m/s."""
+
+    @property
+    def rolling_speed(self) -> float:
+        """Speed of the tread through the footprint, m/s; 0 for a locked wheel."""
+
+    @property
+    def sliding_speed(self) -> float:
+        """Speed of the tread over the road, m/s."""
+
+    @property
+    def slip_ratio(self) -> float:
+        """Longitudinal slip: 1 for a locked wheel."""
+
+    @property
+    def revolutions_per_second(self) -> float:
+        """Revolutions of the wheel per second, 1/s."""
+
+
 class LoadSchedule(Protocol):
     """The load cases of a drive, interpolated in time."""
 
@@ -70,7 +97,7 @@ class LoadSchedule(Protocol):
         """A quantity of the load case at a time (s): ``mean(lambda case: case.deflection, t)``."""
 
     def revolutions_per_second(self, time: float) -> float:
-        """Revolutions of the wheel per second, 1/s, at a time (s)."""
+        """Revolutions of the wheel per second, 1/s, at a time (s): short for the tyre's ``motion``."""
 
 
 class LoadOnTyre(Protocol):

@@ -8,7 +8,7 @@ from typing import Any
 
 from tyrefem import library
 from tyrefem.errors import InputError, nearest
-from tyrefem.inputs.drive import RIVALS
+from tyrefem.inputs.drive_table import RIVALS
 from tyrefem.quantity import written
 
 #: Tables whose text value is a reference to a card: changing something below it lays the change over the card.

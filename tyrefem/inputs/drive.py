@@ -12,31 +12,11 @@ from typing import Annotated, Any, ClassVar
 from pydantic import GetCoreSchemaHandler, model_validator
 from pydantic_core import CoreSchema, core_schema
 
-from tyrefem.boundaries.slip import Slip
 from tyrefem.cards import Card, Temperature, Text
 from tyrefem.errors import InputError, nearest
-from tyrefem.quantity import Unit
-
-
-@dataclass(frozen=True)
-class Ramp:
-    """A quantity during a phase: from ``start`` to ``end``, linear in time. SI.
-
-    >>> Ramp(0.0, 10.0).at(0.25)
-    2.5
-    """
-
-    start: float
-    end: float
-
-    @property
-    def constant(self) -> bool:
-        """Does it stay the same?"""
-        return self.start == self.end
-
-    def at(self, fraction: float) -> float:
-        """The value at a fraction of the phase."""
-        return self.start + (self.end - self.start) * fraction
+from tyrefem.inputs.drive_table import DriveTable
+from tyrefem.inputs.motion import motion_in
+from tyrefem.quantity import Ramp, Unit
 
 
 @dataclass(frozen=True)
@@ -68,15 +48,6 @@ class RampOf:
 
 #: Fastest wheel speed accepted, m/s: the land-speed record is 341 m/s.
 FASTEST = 400.0
-
-
-#: Keys that say the same thing: a phase's own takes the place of the drive's other.
-RIVALS = {
-    "load": ["deflection"],
-    "deflection": ["load"],
-    "slip_ratio": ["slip_speed"],
-    "slip_speed": ["slip_ratio"],
-}
 
 
 class Phase(Card):
@@ -116,43 +87,35 @@ class Phase(Card):
         return slides(self)
 
     @property
+    def stands(self) -> bool:
+        """Does the vehicle stand all the time?"""
+        return self.speed.start == self.speed.end == 0
+
+    @property
+    def stops(self) -> bool:
+        """Does the vehicle stand at the end?"""
+        return self.speed.end <= 0
+
+    @property
+    def steady_motion(self) -> bool:
+        """Is the motion the same all the time, and without slip?"""
+        return self.speed.constant and not self.slides
+
+    @property
     def changes_load(self) -> bool:
         """Does the strain cycle change during the phase?"""
         ramps = [self.load, self.deflection, self.pressure]
         return any(ramp is not None and not ramp.constant for ramp in ramps)
 
 
-class Drive(Card):
+class Drive(DriveTable):
     """The whole drive: ``phases`` in their order, starting at ``initial`` temperature."""
 
     kind: ClassVar[str] = "drive"
+    phase_card: ClassVar[type[Card]] = Phase
     # Before `initial`, which may be taken from an ambient temperature: what is wrong there is said of the phase.
     phases: tuple[Phase, ...]
     initial: Temperature
-
-    @model_validator(mode="before")
-    @classmethod
-    def _spread_defaults(cls, data: Any) -> Any:
-        if not isinstance(data, Mapping):
-            return data
-        defaults = {key: value for key, value in data.items() if key not in ("phases", "initial")}
-        for key in defaults:
-            if key not in Phase.model_fields:
-                raise InputError(f"unknown key '{key}'{nearest(str(key), {*Phase.model_fields, *cls.model_fields})}")
-        phases = data.get("phases", [{}])
-        if not isinstance(phases, list) or not phases:
-            raise InputError("must be a list of at least one phase", field="phases")
-        filled = [cls._filled(defaults, phase, number, len(phases)) for number, phase in enumerate(phases)]
-        initial = data.get("initial", _start_of(filled[0].get("ambient", "25 degC")))
-        return {"initial": initial, "phases": filled}
-
-    @staticmethod
-    def _filled(defaults: Mapping[str, Any], phase: Any, number: int, count: int) -> dict[str, Any]:
-        if not isinstance(phase, Mapping):
-            raise InputError("must be a table of keys", field=f"phases.{number}")
-        drop = {rival for key, rivals in RIVALS.items() if key in phase for rival in rivals}
-        own = {"name": f"phase {number + 1}" if count > 1 else "rolling"}
-        return own | {key: value for key, value in defaults.items() if key not in drop} | dict(phase)
 
     @model_validator(mode="after")
     def _distinct_names(self) -> Drive:
@@ -189,11 +152,6 @@ class Drive(Card):
         ramp = getattr(self.phases[number], quantity)
         return None if ramp is None else ramp.at(fraction)
 
-    def slip(self, time: float) -> Slip:
-        """The wheel's motion at a time."""
-        number, fraction = self.locate(time)
-        return slip_of(self.phases[number], fraction)
-
     @functools.cached_property
     def _locked(self) -> tuple[bool, ...]:
         return tuple(is_locked(phase) for phase in self.phases)
@@ -208,52 +166,12 @@ class Drive(Card):
         return self.starts[number]
 
 
-def as_written(drive: Mapping[str, Any], field: str) -> str:
-    """The field of a study file that a phase's field comes from: ``[drive]`` itself gives what no phase says.
-
-    >>> as_written({"ambient": "25 lbf"}, "drive.phases.0.ambient")
-    'drive.ambient'
-    >>> drive = {"ambient": "25 degC", "phases": [{"name": "taxi", "speed": "20 mph"}, {"ambient": "5 lbf"}]}
-    >>> as_written(drive, "drive.phases.taxi.ambient.from"), as_written(drive, "drive.phases.1.ambient")
-    ('drive.ambient.from', 'drive.phases.1.ambient')
-    """
-    listed = drive.get("phases")
-    phases = listed if isinstance(listed, list) and listed else [{"name": drive.get("name", "rolling")}]
-    for number, phase in enumerate(phases):
-        given = phase if isinstance(phase, Mapping) else {}
-        for which in (str(number), str(given.get("name", f"phase {number + 1}"))):
-            if f"{field}.".startswith(f"drive.phases.{which}."):
-                rest = field.removeprefix(f"drive.phases.{which}").removeprefix(".")
-                key = rest.partition(".")[0]
-                from_drive = listed is None or (key in drive and key not in given)
-                return f"drive.{rest}".removesuffix(".") if from_drive else field
-    return field
-
-
-def _start_of(value: Any) -> Any:
-    return value.get("from") if isinstance(value, Mapping) else value
-
-
 #: Largest slip angle: beyond it a wheel skids sideways rather than rolls (a judgement).
 STEEPEST = math.radians(45.0)
 
 
 #: Fractions of a phase where its slip is checked.
 LOOKS = tuple(i / 50 for i in range(51))
-
-
-#: A wheel that turns slower than this share of its free speed is locked: what rounding leaves.
-ROUNDING = 1e-12
-
-
-def slip_of(phase: Phase, fraction: float) -> Slip:
-    """The slip at a fraction of a phase."""
-    speed = phase.speed.at(fraction)
-    angle = 0.0 if phase.slip_angle is None else phase.slip_angle.at(fraction)
-    if phase.slip_speed is not None:
-        return Slip(speed, phase.slip_speed.at(fraction), angle)
-    ratio = 0.0 if phase.slip_ratio is None else phase.slip_ratio.at(fraction)
-    return Slip(speed, ratio * Slip(speed, angle=angle).forward, angle)
 
 
 def slides(phase: Phase) -> bool:
@@ -267,10 +185,9 @@ def is_locked(phase: Phase) -> bool:
 
     A phase that only ends locked, by a ramp, still turns.
     """
-    if not slides(phase) or phase.speed.start == phase.speed.end == 0:
+    if not slides(phase) or phase.stands:
         return False
-    looks = (slip_of(phase, fraction) for fraction in (0.0, 0.5, 1.0))
-    return all(slip.rolling_speed <= ROUNDING * slip.speed for slip in looks)
+    return not any(motion_in(phase, fraction).turns for fraction in (0.0, 0.5, 1.0))
 
 
 def check_slip(phase: Phase) -> None:
@@ -283,14 +200,14 @@ def check_slip(phase: Phase) -> None:
                 raise InputError(f"{math.degrees(angle):.4g} deg is out of range: -45 to 45 deg", field="slip_angle")
     if not slides(phase):
         return
-    if phase.speed.start == phase.speed.end == 0:
+    if phase.stands:
         keys = ("slip_ratio", "slip_speed", "slip_angle")
         key = next(key for key in keys if (ramp := getattr(phase, key)) is not None and (ramp.start or ramp.end))
         raise InputError("needs a speed, and the wheel stands still: leave it out or make it 0 here", field=key)
-    for slip in (slip_of(phase, fraction) for fraction in LOOKS if phase.slip_speed is not None):
-        if abs(slip.longitudinal) > slip.forward * (1 + 1e-9):
+    for motion in (motion_in(phase, fraction) for fraction in LOOKS if phase.slip_speed is not None):
+        if abs(motion.slip_speed) > motion.forward_speed * (1 + 1e-9):
             raise InputError(
-                f"{slip.longitudinal:.4g} m/s is more than the wheel's forward speed, {slip.forward:.4g} m/s, with "
-                "which it would be locked",
+                f"{motion.slip_speed:.4g} m/s is more than the wheel's forward speed, {motion.forward_speed:.4g} m/s, "
+                "with which it would be locked",
                 field="slip_speed",
             )

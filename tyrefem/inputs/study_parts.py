@@ -9,7 +9,7 @@ from typing import TYPE_CHECKING, Any
 
 from tyrefem.cache import Cache
 from tyrefem.errors import InputError
-from tyrefem.inputs.drive import as_written
+from tyrefem.inputs.drive_table import as_written
 from tyrefem.inputs.sensor_places import sensor_places
 from tyrefem.inputs.study_card import StudyCard
 from tyrefem.inputs.study_materials import StudyMaterials

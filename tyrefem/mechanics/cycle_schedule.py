@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 import functools
-import math
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass
 from typing import Any
@@ -15,6 +14,7 @@ from tyrefem.brief import Brief, Stated
 from tyrefem.errors import InputError
 from tyrefem.inputs.drive import Drive
 from tyrefem.inputs.loading import GivenFootprint, LoadCase, load_case
+from tyrefem.inputs.motion import WheelMotion
 from tyrefem.inputs.study import StudyData
 from tyrefem.materials.reads import ARCS, values_read
 from tyrefem.mechanics.arc_geometry import BiasPlies
@@ -40,20 +40,15 @@ class CycleSchedule(Brief, Stated):
 
     def weights(self, time: float) -> list[tuple[int, int, float]]:
         """(phase, knot, weight) of the load cases that make up a time."""
-        return self._moment(time)[0]
-
-    def _moment(self, time: float) -> tuple[list[tuple[int, int, float]], float]:
-        """Weights and revolutions per second of a time; remembered, as every zone and film asks for the same times."""
-        if time not in self._moments:
-            if len(self._moments) >= REMEMBERED:
-                self._moments.clear()
-            weights = self._weights(time)
-            radius = sum(weight * self.cases[phase][knot].rolling_radius for phase, knot, weight in weights)
-            self._moments[time] = weights, self.drive.slip(time).rolling_speed / (2 * math.pi * radius)
-        return self._moments[time]
+        # Remembered, as every zone and film asks for the same times.
+        if time not in self._remembered:
+            if len(self._remembered) >= REMEMBERED:
+                self._remembered.clear()
+            self._remembered[time] = self._weights(time)
+        return self._remembered[time]
 
     @functools.cached_property
-    def _moments(self) -> dict[float, tuple[list[tuple[int, int, float]], float]]:
+    def _remembered(self) -> dict[float, list[tuple[int, int, float]]]:
         return {}
 
     def _weights(self, time: float) -> list[tuple[int, int, float]]:
@@ -74,9 +69,22 @@ class CycleSchedule(Brief, Stated):
         """The strain provider's zones."""
         return self.cycles[0][0].zones
 
+    def rolling_radius(self, time: float) -> float:
+        """Rolling radius of the load case at a time, m."""
+        return self.mean(_rolling_radius, time)
+
+    @property
+    def motion(self) -> WheelMotion:
+        """How the wheel moves at a time, on the rolling radius that the load cases have then."""
+        return WheelMotion(self.drive, self.rolling_radius)
+
     def revolutions_per_second(self, time: float) -> float:
-        """v / (2 pi r_r), 1/s, v the speed of the tread on the rolling radius: the vehicle's less slip."""
-        return self._moment(time)[1]
+        """Revolutions of the wheel per second, 1/s, at a time (s): those of `motion`, for effects."""
+        return self.motion(time).revolutions_per_second
+
+
+def _rolling_radius(case: LoadCase) -> float:
+    return case.rolling_radius
 
 
 def warming_knots(count: int) -> Sequence[float]:

@@ -82,7 +82,7 @@ def sit(exam: Exam) -> dict[str, Any]:
     _last.tyre = result.tyre
     readings, values = result.readings, np.asarray(result.history.values)
     columns = {name: readings[name].to_numpy() for name in readings.columns if name != "time_s"}
-    speed = np.array([study.card.drive.value("speed", t) for t in result.times])
+    speed = np.array([result.tyre.motion(t).speed for t in result.times])
     power = result.heat_budget.power("generated")
     # A ramp to rest may end at a speed of rounding.
     resistance = np.divide(power, speed, out=np.zeros_like(power), where=speed >= STANDSTILL)

@@ -186,9 +186,9 @@ def _ends(*axes: Array) -> Array:
 
 def _per_metre(tyre: RollingTyre, t: float) -> Array:
     """(nodes of all zones,) energy lost per revolution, per unit of tan delta, x revolutions per metre: J/m3/m."""
-    parts = []
+    parts, motion = [], tyre.motion(t)
     for zone, source in tyre.hysteresis.items():
-        rate = source.lost_per_revolution * source.schedule.revolutions_per_second(t) / tyre.speed(t)
+        rate = source.lost_per_revolution * motion.revolutions_per_second / motion.speed
         parts.append(rate * source.energy_density(tyre.problem.points(zone), t))
     return np.concatenate(parts)
 

@@ -9,7 +9,7 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import NDArray
 
-from tyrefem.inputs.drive import Ramp
+from tyrefem.quantity import Ramp
 from tyrefem.reduced.balance import ReducedBalance, matrices_of
 from tyrefem.reduced.boundary_data import BoundaryData
 from tyrefem.reduced.budget import Ledger

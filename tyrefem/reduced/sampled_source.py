@@ -106,7 +106,7 @@ class TabledHeat:
         if key not in self._known:
             if len(self._known) > 4:
                 self._known.clear()
-            rates = np.array([[one.tyre.schedule.revolutions_per_second(t) for t in times] for one in self.balances])
+            rates = np.array([[one.tyre.motion(t).revolutions_per_second for t in times] for one in self.balances])
             shares = np.zeros((self._energies.shape[1], len(times)))
             for column, t in enumerate(times):
                 for _, knot, weight in schedule.weights(t):
@@ -117,16 +117,14 @@ class TabledHeat:
 
 
 def _same_speed(balance: ReducedBalance, phase: int) -> bool:
-    one = balance.tyre.drive.phases[phase]
-    return one.speed.constant and not one.slides
+    return balance.tyre.drive.phases[phase].steady_motion
 
 
 def _energies(balance: ReducedBalance, phase: int) -> Array:
     """(n_knots, n_samples) J/m3 lost per revolution, per unit of tan delta."""
     tyre, model = balance.tyre, balance.model
     found = np.zeros((len(tyre.schedule.knots[phase]), model.at_samples.shape[0]))
-    speed = tyre.drive.phases[phase].speed
-    if not speed.start and not speed.end:
+    if tyre.drive.phases[phase].stands:
         return found
     for row, cycle in zip(found, tyre.schedule.cycles[phase], strict=True):
         for zone, part in model.sample_slices.items():

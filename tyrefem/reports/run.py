@@ -194,7 +194,7 @@ def _drag(result: ResultData, phase: PhaseState) -> str:
     if phase.speed <= 0 or phase.start >= result.times[-1]:
         return "–"
     i = int(np.searchsorted(result.times, end - 1e-6))
-    speed = result.tyre.speed(end * (1 - 1e-12))
+    speed = result.tyre.motion(end * (1 - 1e-12)).speed
     return number(float(result.heat_budget.power("generated")[i]) / speed, 3) if speed > 0 else "–"
 
 

@@ -9,6 +9,7 @@ from dataclasses import dataclass, field
 import numpy as np
 from numpy.typing import NDArray
 
+from tyrefem.inputs.motion import WheelMotion
 from tyrefem.materials.loss_tangent import Loss
 from tyrefem.mechanics.cycle_schedule import CycleSchedule
 from tyrefem.mechanics.strain_cycle import ORDERS
@@ -30,6 +31,7 @@ class HeatSource:
 
     zone: str
     schedule: CycleSchedule
+    motion: WheelMotion
     loss_tangent: Callable[[Array], Array]
     loss_factor: float = 1.0
     over_frequency: Loss | None = None
@@ -77,7 +79,7 @@ class HeatSource:
             self._spectra.clear()
 
     def __call__(self, x: Array, t: float, T: Array) -> Array:
-        revolutions = self.schedule.revolutions_per_second(t)
+        revolutions = self.motion(t).revolutions_per_second
         if revolutions == 0:
             return np.zeros(x.shape[1])
         if self._nodes is not x or self._losses is None or self._losses[0] != t:

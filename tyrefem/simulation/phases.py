@@ -47,13 +47,13 @@ def phase_states(tyre: RollingTyre) -> tuple[PhaseState, ...]:
     for start, phase in zip(drive.starts, drive.phases, strict=True):
         end = start + phase.duration
         t = end * (1 - 1e-12)
-        mean = functools.partial(tyre.schedule.mean, time=t)
+        mean, motion = functools.partial(tyre.schedule.mean, time=t), tyre.motion(t)
         found.append(
             PhaseState(
                 phase.name,
                 start,
                 end,
-                tyre.speed(t),
+                motion.speed,
                 mean(lambda case: case.load),
                 mean(lambda case: case.pressure),
                 mean(lambda case: case.deflection),
@@ -64,7 +64,7 @@ def phase_states(tyre: RollingTyre) -> tuple[PhaseState, ...]:
                 tyre.road_film(t) + tyre.sliding.skid_film(t),
                 tyre.air_film(t),
                 tyre.propagation_depth(t),
-                drive.slip(t).sliding_speed,
+                motion.sliding_speed,
                 drive.locked_since(t) is not None,
             )
         )

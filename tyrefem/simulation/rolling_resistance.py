@@ -63,9 +63,10 @@ def rolling_reading(result: Rolled) -> int | None:
     for start, phase in zip(drive.starts, drive.phases, strict=True):
         t = (start + phase.duration) * (1 - 1e-12)
         load = tyre.schedule.mean(lambda case: case.load, t)
-        if phase.speed.end <= 0 or load <= 0 or start >= result.times[-1]:
+        if phase.stops or load <= 0 or start >= result.times[-1]:
             continue
-        if tyre.rolling_speed(t) <= TURNS * tyre.speed(t):
+        motion = tyre.motion(t)
+        if motion.rolling_speed <= TURNS * motion.speed:
             continue
         end = min(start + phase.duration, float(result.times[-1]))
         first, last = (int(np.searchsorted(result.times, t - 1e-6)) for t in (start, end))
@@ -81,7 +82,7 @@ def rolling_resistance(result: Rolled) -> RollingResistance:
         return RollingResistance("", 0.0, 0.0, 0.0, 0.0)
     t, drive, tyre = just_before(result.times, i), result.tyre.drive, result.tyre
     phase = drive.phases[drive.locate(t)[0]].name
-    speed, load = tyre.speed(t), float(tyre.schedule.mean(lambda case: case.load, t))
+    speed, load = tyre.motion(t).speed, float(tyre.schedule.mean(lambda case: case.load, t))
     force, cold = result.generated(i)[1] / speed, result.cold_power(t) / speed
     return RollingResistance(phase, force, force / load, cold, cold / load)
 

@@ -178,7 +178,7 @@ class RollingTyre(Surroundings):
         for zone in self.schedule.zones:
             law = self.study.materials[zone.region].loss_tangent
             over_frequency = None if law.frequency is None else law.over_frequency
-            found[zone.name] = HeatSource(zone.name, self.schedule, law, factor, over_frequency)
+            found[zone.name] = HeatSource(zone.name, self.schedule, self.motion, law, factor, over_frequency)
         return found
 
     @functools.cached_property

@@ -198,7 +198,7 @@ def _series(run: SlidingRun, number: int, numbers: Numbers) -> Iterator[dict[str
         yield {
             "phase": phase.name,
             "time_s": float(run.times[i]),
-            "sliding_speed_m_s": drive.slip(t).sliding_speed,
+            "sliding_speed_m_s": run.tyre.motion(t).sliding_speed,
             "contact_pressure_Pa": sliding.pressure(t),
             "friction": friction * used / wanted if wanted > 0 else friction,
             "capped": bool(flux.min() < wanted * (1 - 1e-9)),

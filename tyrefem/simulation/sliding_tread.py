@@ -105,19 +105,21 @@ class SlidingTread:
 
     def friction(self, t: float) -> float:
         """Coefficient of friction before decomposition limits it."""
-        return self.law.friction(self.drive.slip(t))
+        motion = self.surroundings.motion(t)
+        return self.law.friction(motion.sliding_speed, motion.rolling_speed)
 
     def passage(self, t: float) -> Passage | None:
         """The passage through the footprint; None where tread and road do not touch or do not move."""
-        slip, length = self.drive.slip(t), self.surroundings.schedule.mean(lambda case: case.footprint_length, t)
-        if not (slip.forward > 0 and length > 0):
+        motion = self.surroundings.motion(t)
+        length = self.surroundings.schedule.mean(lambda case: case.footprint_length, t)
+        if not (motion.forward_speed > 0 and length > 0):
             return None
-        rolling = 0.0 if self.drive.locked_since(t) is not None else slip.rolling_speed
-        return Passage(*self.effusivities, length, rolling, slip.forward)
+        rolling = 0.0 if self.drive.locked_since(t) is not None else motion.rolling_speed
+        return Passage(*self.effusivities, length, rolling, motion.forward_speed)
 
     def uncapped_flux(self, t: float) -> float:
         """F_0 = mu p v_s before decomposition limits it, W/m2 of contact."""
-        return self.friction(t) * self.pressure(t) * self.drive.slip(t).sliding_speed
+        return self.friction(t) * self.pressure(t) * self.surroundings.motion(t).sliding_speed
 
     def friction_flux(self, t: float, T: Array) -> Array:
         """F_0 at surface temperatures T (n,), W/m2: the exit edge stays below the decomposition temperature (13)."""

@@ -12,6 +12,7 @@ from tyrefem.boundaries import Contact
 from tyrefem.boundaries.road_film import propagation_depth
 from tyrefem.effects.combined import Acting
 from tyrefem.inputs.drive import Drive
+from tyrefem.inputs.motion import WheelMotion
 from tyrefem.inputs.study import StudyData
 from tyrefem.mechanics.cycle_schedule import CycleSchedule, cycle_schedule, rated_case
 
@@ -88,17 +89,18 @@ class Surroundings:
     def _first(self, driven: float | None, law: float | None, t: float) -> float:
         return driven if driven is not None else self.ambient(t) if law is None else law
 
-    def speed(self, t: float) -> float:
-        """Speed, m/s."""
-        return float(self.drive.value("speed", t) or 0.0)
+    @property
+    def motion(self) -> WheelMotion:
+        """How the wheel moves at a time: ``motion(t).rolling_speed``."""
+        return self.schedule.motion
 
-    def rolling_speed(self, t: float) -> float:
-        """Speed of the tread through the footprint, m/s: the wheel's without slip, 0 for a locked wheel."""
-        return self.drive.slip(t).rolling_speed
+    def speed(self, t: float) -> float:
+        """Speed over the road, m/s: that of `motion`, for effects."""
+        return self.motion(t).speed
 
     def road_fraction(self, t: float) -> float:
         """Part of the time that the section is on the road: none at standstill, all of it under a locked wheel."""
-        if self.speed(t) == 0:
+        if self.motion(t).speed == 0:
             return 0.0
         fraction = self.rolling_fraction(t)
         return 1.0 if fraction > 0 and self.drive.locked_since(t) is not None else fraction
@@ -129,21 +131,22 @@ class Surroundings:
         if self.drive.locked_since(t) is not None:
             return 0.0
         length = self.schedule.mean(lambda case: case.footprint_length, t)
-        base = self.study.card.boundaries.road.film(Contact(self.rolling_speed(t), length, *self.tread))
+        base = self.study.card.boundaries.road.film(Contact(self.motion(t).rolling_speed, length, *self.tread))
         return self.acting.film("road", t, base)
 
     def propagation_depth(self, t: float) -> float:
         """Depth to which one contact cools the tread, m (Cattani et al. 2023, eq 8); 0 for a wheel that stands."""
-        if self.rolling_speed(t) <= 0 or self.drive.locked_since(t) is not None:
+        speed = self.motion(t).rolling_speed
+        if speed <= 0 or self.drive.locked_since(t) is not None:
             return 0.0
-        contact = self.schedule.mean(lambda case: case.footprint_length, t) / self.rolling_speed(t)
+        contact = self.schedule.mean(lambda case: case.footprint_length, t) / speed
         phase = self.drive.phases[self.drive.locate(t)[0]]
         # A wheel that slows to a lock has no last contact of its own: none is longer than the phase.
         return propagation_depth(min(contact, phase.duration) if phase.slides else contact, *self.tread)
 
     def air_film(self, t: float) -> float:
         """Outside film, W/m2/K."""
-        return self.acting.film("outside_air", t, self.study.card.boundaries.outside_air.film(self.speed(t)))
+        return self.acting.film("outside_air", t, self.study.card.boundaries.outside_air.film(self.motion(t).speed))
 
     def tread_air_film(self, t: float) -> float:
         """Outside film of the tread between two contacts, W/m2/K."""

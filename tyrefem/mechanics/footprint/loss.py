@@ -11,6 +11,7 @@ from numpy.typing import NDArray
 
 from tyrefem.brief import Brief
 from tyrefem.errors import InputError, nearest
+from tyrefem.inputs.motion import Motion
 from tyrefem.materials.loss_tangent import Loss
 from tyrefem.mechanics.footprint.strain_harmonics import StrainHarmonics
 
@@ -54,7 +55,7 @@ class RevolutionLoss(Brief):
     @functools.cached_property
     def frequency(self) -> float:
         """Revolutions per second."""
-        return self.speed / (2 * np.pi * self.cycle.footprint.rolling_radius)
+        return Motion(self.speed, rolling_radius=self.cycle.footprint.rolling_radius).revolutions_per_second
 
     def tangent(self, frequency: float) -> Array:
         """(n_elements, n_points) tan delta at a frequency, Hz."""

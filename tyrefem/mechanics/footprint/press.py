@@ -14,6 +14,7 @@ from tyrefem.brief import Brief
 from tyrefem.errors import InputError
 from tyrefem.estimates import work as estimate
 from tyrefem.geometry.meshing.expected import QUADRATIC
+from tyrefem.inputs.motion import motion_in
 from tyrefem.mechanics.footprint.pressed_tyre import TOLERANCE, mechanical_mesh
 from tyrefem.mechanics.footprint.road import Road
 from tyrefem.requirements import Requirements
@@ -90,8 +91,8 @@ class Pressed(Brief):
     @property
     def speed(self) -> float:
         """Speed of the drive's first phase, m/s: where it starts, or where it ends if it starts at rest."""
-        ramp = self.study.card.drive.phases[0].speed
-        return float(ramp.start or ramp.end)
+        phase = self.study.card.drive.phases[0]
+        return motion_in(phase, 0.0).speed or motion_in(phase, 1.0).speed
 
     @functools.cached_property
     def cycle(self) -> StrainHarmonics:

@@ -113,7 +113,7 @@ def _subtitle(result: ResultData, i: int | None, total: float) -> str:
     if i is None:
         return "the tyre never rolls under load and makes no heat; left: strain energy of a cycle, if it rolled"
     divisor, unit = time_unit(float(result.times[-1]))
-    force = total / result.tyre.speed(float(result.times[i]) * (1 - 1e-12))
+    force = total / result.tyre.motion(float(result.times[i]) * (1 - 1e-12)).speed
     return (
         f"left: strain energy per cycle; right: heat source after {result.times[i] / divisor:.4g} {unit}; "
         f"the whole tyre makes {total:.4g} W = {force:.3g} N of drag times its speed"

@@ -6,6 +6,7 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
+from tyrefem.inputs.motion import motion_in
 from tyrefem.reports.figures.phases import draw_phases, make_room
 from tyrefem.reports.figures.style import (
     FONT,
@@ -102,5 +103,5 @@ def _speed(result: ResultData, last: float) -> tuple[np.ndarray, np.ndarray]:
         if start > last or (start == last and times):
             break
         times += [start, end]
-        speeds += [phase.speed.start, phase.speed.at((end - start) / phase.duration)]
+        speeds += [motion_in(phase, (time - start) / phase.duration).speed for time in (start, end)]
     return np.array(times), np.array(speeds)
