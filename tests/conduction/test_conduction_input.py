@@ -9,7 +9,7 @@ import pytest
 import skfem
 
 from tyrefem.conduction import Conduction, Film, Fixed, Flux, Material, Radiation, Reservoir, SolverError
-from tyrefem.conduction.conditions import checked
+from tyrefem.conduction.datum import checked
 from tyrefem.conduction.linear_solver import Ordering
 from tyrefem.errors import InputError
 

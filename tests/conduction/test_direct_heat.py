@@ -10,8 +10,8 @@ import skfem
 
 from tyrefem.conduction import Conduction, Film, Flux, Material, Radiation, Reservoir
 from tyrefem.conduction.direct_sensitivity import DirectHeat, heat_of
-from tyrefem.conduction.loads import State
 from tyrefem.conduction.sensitivity import Perturbed, stage_times, tangents
+from tyrefem.conduction.terms import State
 
 VALUES = {
     "k": 0.25, "k_rise": 1e-3, "c": 2.0e6, "c_rise": 3e-3, "heat": 2.0e5, "loss": 6e-3, "film": 40.0, "uneven": 5.0,

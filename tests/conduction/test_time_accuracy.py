@@ -7,9 +7,9 @@ import pytest
 import skfem
 
 from tyrefem.conduction import Conduction, Film, Fixed, Flux, Material, Radiation, Reservoir
-from tyrefem.conduction.loads import State
-from tyrefem.conduction.problem import balance_of
 from tyrefem.conduction.rosenbrock import ALPHA, DENSE, EMBEDDED, GAMMA, LOWER, NODE, SHIFT, WEIGHT, StageMatrices, Step
+from tyrefem.conduction.statement import balance_of
+from tyrefem.conduction.terms import State
 
 RUBBER = Material(conductivity=0.21, heat_capacity=2.09e6)
 

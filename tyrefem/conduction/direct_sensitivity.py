@@ -10,9 +10,11 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
-from tyrefem.conduction.balance import Capacity, HeatBalance
-from tyrefem.conduction.loads import Load, SourceLoad, State
+from tyrefem.conduction.balance import HeatBalance
+from tyrefem.conduction.capacity import Capacity
+from tyrefem.conduction.sources import SourceLoad
 from tyrefem.conduction.surface_loads import FilmLoad
+from tyrefem.conduction.terms import Load, State
 
 Array = NDArray[Any]
 
@@ -188,6 +190,4 @@ def _heat_of_films(films: list[FilmLoad], shares: Array, t: float, y: State) -> 
 
 def heat_of(balance: HeatBalance, t: float, y: State) -> Array:
     """(n + m,) heat into every unknown, W; exact wherever the linear part was frozen."""
-    G, Gg, _ = balance.remainder(t, y)
-    body = G - balance.S @ y.u + balance.B @ y.g
-    return np.concatenate([body, Gg + balance.B.T @ y.u - balance.D @ y.g])
+    return np.concatenate(balance.heat(t, y))

@@ -9,7 +9,7 @@ from numpy.typing import NDArray
 
 from tyrefem.conduction.balance import HeatBalance
 from tyrefem.conduction.linear_solver import one_thread
-from tyrefem.conduction.loads import State
+from tyrefem.conduction.terms import State
 from tyrefem.errors import InputError
 
 if TYPE_CHECKING:

@@ -9,6 +9,7 @@ import numpy as np
 import skfem
 from numpy.typing import NDArray
 from scipy.sparse import csr_matrix
+from skfem.assembly.form.form import FormExtraParams
 
 from tyrefem.errors import InputError, nearest
 
@@ -20,6 +21,20 @@ _ELEMENTS = {
     ("quad", "P1"): skfem.ElementQuad1,
     ("quad", "P2"): skfem.ElementQuad2,
 }
+
+#: Numbers that an integrand may hold at a time: what fits a processor's cache.
+_CHUNK = 500_000
+
+
+def integrand(form: skfem.BilinearForm, phi: Array, slopes: Array | None = None, **data: Array) -> Array:
+    """A form for every pair of shape functions: (test i, trial j, element, point).
+
+    ``phi`` (i, element, point) are the shape functions, ``slopes`` (2, i, element, point) their gradients, ``data``
+    what the form reads as ``w.name``.
+    """
+    T = skfem.DiscreteField(phi[None], None if slopes is None else slopes[:, None])
+    v = skfem.DiscreteField(phi[:, None], None if slopes is None else slopes[:, :, None])
+    return np.asarray(form.form(T, v, FormExtraParams(data)))
 
 
 class FunctionSpace:
@@ -62,7 +77,7 @@ class FunctionSpace:
             np.stack([np.broadcast_to(np.asarray(b[0]), shape)[:1] for b in self.basis.basis]),
             (len(self.basis.basis), *shape),
         )
-        self._grad = np.stack([b[0].grad for b in self.basis.basis])
+        self._grad = np.stack([b[0].grad for b in self.basis.basis], axis=1)
         self.x: Array = np.asarray(self.basis.global_coordinates())
         self.weight: Array = self.basis.dx * (2 * np.pi * self.x[0] if axisymmetric else 1.0)
         self.constant_slopes = type(mesh) is skfem.MeshTri1 and element == "P1"
@@ -98,10 +113,47 @@ class FunctionSpace:
         e = self.elements(name)
         grad = self._grad[:, :, e]
         if direction is None:
-            return grad[:, 0], grad[:, 1]
+            return grad[0], grad[1]
+        d, across = self.directions(name, direction)
+        return d[0] * grad[0] + d[1] * grad[1], across[0] * grad[0] + across[1] * grad[1]
+
+    def directions(self, name: str, direction: Callable[..., Any] | None) -> tuple[Array, Array]:
+        """Unit vectors along and across `direction` at a subdomain's quadrature points: (2, n_el, n_q) or (2, 1, 1)."""
+        if direction is None:
+            return np.array([[[1.0]], [[0.0]]]), np.array([[[0.0]], [[1.0]]])
+        e = self.elements(name)
         x = self.x[:, e]
         d = np.asarray(direction(x.reshape(2, -1)), dtype=float)
         if d.shape != (2, x[0].size) or not np.allclose(np.hypot(*d), 1.0, atol=1e-6):
             raise InputError("direction must return unit vectors of shape (2, n)", field=f"regions.{name}")
         d = d.reshape(x.shape)
-        return d[0] * grad[:, 0] + d[1] * grad[:, 1], -d[1] * grad[:, 0] + d[0] * grad[:, 1]
+        return d, np.stack([-d[1], d[0]])
+
+    def _integrand(self, form: skfem.BilinearForm, e: Array, points: slice, data: dict[str, Array]) -> Array:
+        # The shape functions, unlike their slopes, are the same in every element.
+        return integrand(form, self.phi[:, :1, points], self._grad[:, :, e, points], **data)
+
+    def integrands(self, form: skfem.BilinearForm, elements: Array, **data: Array) -> Array:
+        """`integrand` of elements, times the volume that belongs to each quadrature point."""
+        return np.asarray(self._integrand(form, elements, slice(None), data) * self.weight[elements])
+
+    def integrals(self, form: skfem.BilinearForm, elements: Array, even: bool = False, **data: Array) -> Array:
+        """The integral of a form over every one of so many elements, (i, j, n_elements).
+
+        ``even``: the integrand does not vary within an element; one of its points stands for all.
+        """
+        weight = self.weight[elements]
+        points = slice(0, 1) if even else slice(None)
+        weight = weight.sum(axis=1, keepdims=True) if even else weight
+        n = len(self.phi)
+        local = np.empty((n, n, elements.size))
+        size = max(1, _CHUNK // (n * n * weight.shape[1]))
+        for first in range(0, elements.size, size):
+            part = slice(first, first + size)
+            here = {name: value if value.shape[1] == 1 else value[:, part] for name, value in data.items()}
+            pairs = self._integrand(form, elements[part], points, here)
+            if pairs.shape[2] == 1:
+                local[:, :, part] = pairs[:, :, 0] @ weight[part].T
+            else:
+                np.einsum("ijeq,eq->ije", pairs, weight[part], out=local[:, :, part])
+        return local

@@ -11,6 +11,7 @@ import numpy as np
 from numpy.typing import NDArray
 from scipy.sparse import csr_matrix, hstack
 
+from tyrefem.conduction.equation import conduction, storage
 from tyrefem.conduction.function_space import FunctionSpace
 from tyrefem.conduction.linear_solver import Ordering
 from tyrefem.conduction.quadrature import Quadrature, Surface
@@ -81,10 +82,7 @@ class Operators(FunctionSpace):
 
         def make() -> Array:
             e = self.elements(name)
-            phi = self.phi[:, 0]  # The same in every element: one matrix product assembles them all.
-            products = (phi[:, None] * phi[None]).reshape(-1, phi.shape[1])
-            local = products @ self.weight[e].T
-            return self._gather(e, local.reshape(len(phi), len(phi), -1))
+            return self._gather(e, self.integrals(storage, e))
 
         return self._once(("mass", name), make)
 
@@ -97,11 +95,9 @@ class Operators(FunctionSpace):
 
         def make() -> tuple[Array, Array]:
             e = self.elements(name)
-            w = self.weight[e]
-            slopes = self.directed_gradients(name, direction)
-            if self.constant_slopes and direction is None:
-                slopes, w = (slopes[0][:, :, :1], slopes[1][:, :, :1]), w.sum(axis=1, keepdims=True)
-            first, second = (self._gather(e, np.einsum("ieq,jeq->ije", g * w, g, optimize=True)) for g in slopes)
+            even = self.constant_slopes and direction is None
+            along, across = self.directions(name, direction)
+            first, second = (self._gather(e, self.integrals(conduction, e, even, d=d)) for d in (along, across))
             return first, second
 
         return self._once(("conduction", name, direction), make)

@@ -11,7 +11,8 @@ import skfem
 from numpy.typing import NDArray
 from scipy.sparse import csr_matrix
 
-from tyrefem.conduction.function_space import FunctionSpace
+from tyrefem.conduction.equation import conduction, exchange, storage
+from tyrefem.conduction.function_space import FunctionSpace, integrand
 from tyrefem.errors import InputError, nearest
 
 Array = NDArray[Any]
@@ -43,12 +44,13 @@ class Quadrature:
         q = np.broadcast_to(np.arange(self.weight.size).reshape(e.size, n_q), (n_local, n_local, e.size, n_q))
         where = np.broadcast_to(place[..., None], q.shape).reshape(-1)
 
-        def scatter(local: Array) -> csr_matrix:
-            product = local[:, None] * local[None] * space.weight[e]
-            return csr_matrix((product.reshape(-1), (where, q.reshape(-1))), (space.nnz, self.weight.size))
+        def scatter(form: skfem.BilinearForm, **data: Array) -> csr_matrix:
+            """From a coefficient at the points to the operator values of the form with it."""
+            values = space.integrands(form, e, **data)
+            return csr_matrix((values.reshape(-1), (where, q.reshape(-1))), (space.nnz, self.weight.size))
 
-        self.mass = scatter(phi)
-        self.conduction = tuple(scatter(g) for g in slopes)
+        self.mass = scatter(storage)
+        self.conduction = tuple(scatter(conduction, d=d) for d in space.directions(name, direction))
 
 
 class Surface:
@@ -80,7 +82,14 @@ class Surface:
         self.trace_t = self.trace.T.tocsr()
         self.row = self.trace_t @ self.weight
         self.points = np.ascontiguousarray(space.points[:, self.dofs])
-        self._keys, self._size = space.keys, space.size
+        # From h times the weights at the points to the values of the film's form on the common pattern.
+        shape = (len(phi), *phi.shape)
+        i, j = np.broadcast_to(dofs[:, None], shape), np.broadcast_to(dofs[None], shape)
+        both = used[:, None] & used[None]
+        pairs, place = np.unique(i[both].astype(np.int64) * space.size + j[both], return_inverse=True)
+        self._places = np.searchsorted(space.keys, pairs)
+        points = np.broadcast_to(q, shape)[both]
+        self._films = csr_matrix((integrand(exchange, phi)[both], (place, points)), (pairs.size, self.weight.size))
 
     def load(self, q: Any) -> Array:
         """Load (n_dofs,) W of a flux: a number or its values at the points, W/m2."""
@@ -101,10 +110,16 @@ class Surface:
     @functools.cached_property
     def even_exchange(self) -> tuple[Array, Array]:
         """What `exchange` finds for h = 1 everywhere."""
-        return self.exchange(self.weight)
+        return self._places, self._films @ self.weight
 
-    def exchange(self, weighted: Array) -> tuple[Array, Array]:
-        """Positions and values on the common pattern of the integral of h v u, given h times the weights."""
-        product = (self.trace_t.multiply(weighted) @ self.trace).tocoo()
-        keys = self.dofs[product.row].astype(np.int64) * self._size + self.dofs[product.col]
-        return np.searchsorted(self._keys, keys), product.data
+    def film_matrix(self, h: Any, n: int) -> csr_matrix:
+        """int h v T dA (n, n)."""
+        product = (self.trace_t.multiply(self.weight * h) @ self.trace).tocoo()
+        return csr_matrix((product.data, (self.dofs[product.row], self.dofs[product.col])), (n, n))
+
+    def exchange(self, h: Any) -> tuple[Array, Array]:
+        """Positions and values on the common pattern of int h v T dA; h: a number or values at the points, W/m2/K."""
+        if isinstance(h, float):
+            where, value = self.even_exchange
+            return where, h * value
+        return self._places, self._films @ (self.weight * h)

@@ -8,8 +8,9 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
-from tyrefem.conduction.conditions import Datum, Reservoir
-from tyrefem.conduction.loads import STALE, Linear, Load, State
+from tyrefem.conduction.conditions import Reservoir
+from tyrefem.conduction.datum import Datum
+from tyrefem.conduction.terms import STALE, LinearPart, Load, State
 from tyrefem.errors import InputError, nearest
 
 Array = NDArray[Any]
@@ -26,13 +27,9 @@ class ExchangeLoad(Load):
         self.timed = not (self.conductance.constant and self.other.constant)
         self.static = not self.timed
 
-    def freeze(self, t: float, y: State, linear: Linear) -> None:
-        self.h0, i, j = self.conductance(t), self.owner, self.partner
-        linear.D[i, i] += self.h0
-        if j is not None:
-            linear.D[j, j] += self.h0
-            linear.D[i, j] -= self.h0
-            linear.D[j, i] -= self.h0
+    def freeze(self, t: float, y: State, linear: LinearPart) -> None:
+        self.h0 = self.conductance(t)
+        linear.add_conductance(self.h0, self.owner, self.partner)
 
     def stale(self, t: float, y: State) -> bool:
         h = self.conductance(t)

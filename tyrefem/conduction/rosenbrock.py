@@ -14,7 +14,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from tyrefem.conduction.balance import HeatBalance
-from tyrefem.conduction.loads import State
+from tyrefem.conduction.terms import State
 
 Array = NDArray[Any]
 

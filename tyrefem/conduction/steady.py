@@ -2,20 +2,16 @@
 
 from __future__ import annotations
 
-from typing import Any
-
 import numpy as np
-from scipy.sparse import bmat, csr_matrix, diags
 from scipy.sparse.linalg import splu
 
 from tyrefem.conduction.balance import HeatBalance
 from tyrefem.conduction.errors import SolverError
-from tyrefem.conduction.loads import ConvectionLoad, SourceLoad, State
-from tyrefem.conduction.surface_loads import FilmLoad, FluxLoad, RadiationLoad
+from tyrefem.conduction.surface_loads import ConvectionLoad, FilmLoad, RadiationLoad
+from tyrefem.conduction.terms import State
 from tyrefem.errors import InputError
 
 _MOST = 60
-_BUMP = 1e-4
 
 
 def solve_steady(balance: HeatBalance, y: State, t: float, tolerance: float = 1e-9) -> State:
@@ -63,33 +59,16 @@ def _try(balance: HeatBalance, t: float, y: State) -> tuple[np.ndarray, float]:
 
 
 def _residual(balance: HeatBalance, t: float, y: State) -> np.ndarray:
-    G, Gg, _ = balance.remainder(t, y)
-    ru = G - balance.S @ y.u + balance.B @ y.g
-    rg = Gg + balance.B.T @ y.u - balance.D @ y.g
-    return np.concatenate((ru[balance.fixed.free], rg))
+    body, gas = balance.heat(t, y)
+    return np.concatenate((body[balance.fixed.free], gas))
 
 
 def _correction(balance: HeatBalance, t: float, y: State, residual: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
     """Newton's correction; slopes of user functions by differences in T."""
     balance.freeze(t, y)
-    J: Any = balance.S
-    for region in balance.conduction:
-        k, bumped = region.values(y.u), region.values(y.u + _BUMP)
-        for slope, back, a, b in zip(region.q.slopes, region.q.slopes_t, k, bumped, strict=True):
-            J = J + back @ diags(region.q.weight * (b - a) / _BUMP * (slope @ y.u)) @ region.q.value
-    for load in balance.loads:
-        if isinstance(load, SourceLoad) and not load.static:
-            J = J - balance.ops.matrix(load.slope(t, y.u, _BUMP))
-        elif isinstance(load, FluxLoad) and load.of_temperature:
-            dq = (load.value(t, y.u + _BUMP) - load.value(t, y.u - _BUMP)) / (2 * _BUMP)
-            data = np.zeros(balance.ops.nnz)
-            np.add.at(data, *load.s.exchange(load.s.weight * dq))
-            J = J - balance.ops.matrix(data)
     free = balance.fixed.free
-    J = J.tocsr()[free][:, free]
-    if y.g.size:
-        B = csr_matrix(balance.B[free])
-        J = bmat([[J, -B], [-B.T, csr_matrix(balance.D)]])
+    unknown = np.concatenate((free, y.u.size + np.arange(y.g.size)))
+    J = balance.jacobian(t, y)[unknown][:, unknown]
     try:
         step = splu(J.tocsc()).solve(residual)
     except RuntimeError as error:

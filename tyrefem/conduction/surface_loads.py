@@ -1,4 +1,4 @@
-"""How films, fluxes and radiation act on the unknowns."""
+"""How films, fluxes, radiation and natural convection act on the unknowns."""
 
 from __future__ import annotations
 
@@ -6,10 +6,13 @@ from typing import Any
 
 import numpy as np
 from numpy.typing import NDArray
+from scipy.sparse import csr_matrix
 
-from tyrefem.conduction.conditions import Datum, Film, Flux, Radiation, checked
-from tyrefem.conduction.loads import STALE, Linear, Load, State
+from tyrefem.conduction.conditions import Convection, Film, Flux, Radiation
+from tyrefem.conduction.datum import Datum, checked
 from tyrefem.conduction.operators import Surface
+from tyrefem.conduction.terms import SLOPE_STEP, STALE, LinearPart, Load, State
+from tyrefem.errors import InputError
 
 Array = NDArray[Any]
 
@@ -27,19 +30,10 @@ class FilmLoad(Load):
         self.static = not self.timed
         self.h0: Any = 0.0
 
-    def freeze(self, t: float, y: State, linear: Linear) -> None:
+    def freeze(self, t: float, y: State, linear: LinearPart) -> None:
         self.h0 = self.h(t)
-        if isinstance(self.h0, float):
-            where, value = self.s.even_exchange
-            value = self.h0 * value
-        else:
-            where, value = self.s.exchange(self.s.weight * self.h0)
-        np.add.at(linear.S, where, value)
-        self.row = self.s.load(self.h0)
+        self.row = linear.add_film(self.s, self.h0, self.reservoir)
         self.total = float(self.row.sum())
-        if self.reservoir is not None:
-            linear.B[self.s.dofs, self.reservoir] += self.row
-            linear.D[self.reservoir, self.reservoir] += self.total
 
     def stale(self, t: float, y: State) -> bool:
         if self.h.constant:
@@ -107,6 +101,13 @@ class FluxLoad(Load):
         G[self.s.dofs] += load
         return float(load.sum())
 
+    def jacobian(self, t: float, y: State) -> csr_matrix | None:
+        if not self.of_temperature:
+            return None
+        u, n = y.u, y.u.size
+        dq = (self.value(t, u + SLOPE_STEP) - self.value(t, u - SLOPE_STEP)) / (2 * SLOPE_STEP)
+        return self.s.film_matrix(dq, n)
+
 
 class RadiationLoad(Load):
     """eps sigma (Ts^4 - T^4); its frozen part is 4 eps sigma T^3 at the temperature of the last freeze."""
@@ -120,12 +121,9 @@ class RadiationLoad(Load):
         """Quadrature values of -dq/dT."""
         return 4 * self.factor * (self.s.trace @ y.u[self.s.dofs] + 273.15) ** 3
 
-    def freeze(self, t: float, y: State, linear: Linear) -> None:
+    def freeze(self, t: float, y: State, linear: LinearPart) -> None:
         self.h0 = self.slopes(t, y)
-        weighted = self.s.weight * self.h0
-        where, value = self.s.exchange(weighted)
-        np.add.at(linear.S, where, value)
-        self.row = self.s.trace_t @ weighted
+        self.row = linear.add_film(self.s, self.h0)
 
     def stale(self, t: float, y: State) -> bool:
         return bool(np.any(np.abs(self.slopes(t, y) - self.h0) > STALE * self.h0))
@@ -134,6 +132,47 @@ class RadiationLoad(Load):
         T = self.s.trace @ y.u[self.s.dofs]
         q = self.factor * ((self.surroundings(t) + 273.15) ** 4 - (T + 273.15) ** 4)
         load = self.s.trace_t @ (self.s.weight * (q + self.h0 * T))
+        G[self.s.dofs] += load
+        return float(load.sum())
+
+    def linear_power(self, y: State) -> float:
+        return float(-self.row @ y.u[self.s.dofs])
+
+
+#: Half the difference of temperature over which the slope of the heat flux is taken, K.
+_BUMP = 0.05
+
+
+class ConvectionLoad(Load):
+    """h(T) (sink - T); its frozen part is the slope of h (T - sink) at the temperature of the last freeze."""
+
+    def __init__(self, surface: Surface, convection: Convection, field: str) -> None:
+        self.s, self.h, self.sink, self._field = surface, convection.h, float(convection.sink), f"{field}.h"
+
+    def _loss(self, T: Array, t: float) -> Array:
+        h = checked(self.h(T), T.size, self._field, t)
+        if np.min(h) < 0:
+            raise InputError(f"is negative between {T.min():.6g} and {T.max():.6g} degC", field=self._field)
+        return np.asarray(h * (T - self.sink))
+
+    def _slopes(self, t: float, y: State) -> Array:
+        """Quadrature values of -dq/dT; never negative, which would feed the body."""
+        T = self.s.trace @ y.u[self.s.dofs]
+        slopes = (self._loss(T + _BUMP, t) - self._loss(T - _BUMP, t)) / (2 * _BUMP)
+        return np.asarray(np.maximum(slopes, 0.0))
+
+    def freeze(self, t: float, y: State, linear: LinearPart) -> None:
+        self.h0 = self._slopes(t, y)
+        self.row = linear.add_film(self.s, self.h0)
+
+    def stale(self, t: float, y: State) -> bool:
+        # The largest film decides: near the sink's temperature the slope of natural convection is steep but small.
+        now = self._slopes(t, y)
+        return bool(np.max(np.abs(now - self.h0)) > STALE * max(np.max(now), np.max(self.h0)))
+
+    def remainder(self, t: float, y: State, G: Array, Gg: Array) -> float:
+        T = self.s.trace @ y.u[self.s.dofs]
+        load = self.s.trace_t @ (self.s.weight * (self.h0 * T - self._loss(T, t)))
         G[self.s.dofs] += load
         return float(load.sum())
 

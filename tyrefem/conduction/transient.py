@@ -13,8 +13,8 @@ from tyrefem.conduction.balance import HeatBalance
 from tyrefem.conduction.budget import Tally
 from tyrefem.conduction.errors import SolverError
 from tyrefem.conduction.field import Peak
-from tyrefem.conduction.loads import State
 from tyrefem.conduction.rosenbrock import StageMatrices, Step
+from tyrefem.conduction.terms import State
 
 Array = NDArray[Any]
 

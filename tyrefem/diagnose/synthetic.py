@@ -17,8 +17,8 @@ from scipy.sparse.linalg import splu
 
 from tyrefem.boundaries.contained_air import ContainedAirLaw
 from tyrefem.conduction import Conduction
-from tyrefem.conduction.loads import State
 from tyrefem.conduction.points import located
+from tyrefem.conduction.terms import State
 from tyrefem.effects import Effect
 from tyrefem.effects.combined import Acting
 from tyrefem.effects.effect import Factor, Prior

@@ -8,9 +8,9 @@ import numpy as np
 from numpy.typing import NDArray
 
 from tyrefem.conduction.balance import HeatBalance
-from tyrefem.conduction.loads import State
-from tyrefem.conduction.problem import balance_of
 from tyrefem.conduction.rosenbrock import GAMMA, StageMatrix
+from tyrefem.conduction.statement import balance_of
+from tyrefem.conduction.terms import State
 from tyrefem.reduced.balance import reduced_balance
 from tyrefem.reduced.batch import Batch
 from tyrefem.reduced.exponential import Marched

@@ -101,7 +101,7 @@ class Sensitivity:
             T = face.trace @ u[face.dofs]
             up, down = self._loss(T + 0.05), self._loss(T - 0.05)
             film, black = ((a - b) / 0.1 for a, b in zip(up, down, strict=True))
-            where, value = face.exchange(face.weight * (self.films[name] * film + self.patch.emissivity * black))
+            where, value = face.exchange(self.films[name] * film + self.patch.emissivity * black)
             np.add.at(S, where, value)
         return C, S, skew
 
