@@ -144,7 +144,8 @@ class System:
 
     def remainder(self, t: float, y: State) -> tuple[Array, Array, Array]:
         """G (n,), Gg (m,) and the power of every line of the ledger, W, that the frozen part leaves out."""
-        total = tuple(part.copy() for part in self.constant)
+        G, Gg, P = self.constant
+        total = G.copy(), Gg.copy(), P.copy()
         self.add(total, t, y, self.moving)
         return total
 
