@@ -30,7 +30,7 @@ def test_interruption_keeps_what_is_finished_and_nothing_else(case: Case, tmp_pa
                 time.sleep(0.05)
             # A terminal sends it to the whole group, workers too.
             os.killpg(running.pid, signal.SIGINT)
-            said, err = running.communicate(timeout=60)
+            said, err = running.communicate(timeout=120)
         finally:
             if running.poll() is None:
                 os.killpg(running.pid, signal.SIGKILL)

@@ -178,7 +178,7 @@ def test_a_cluster_that_loses_a_worker_answers_every_variant_as_one_process_does
 def test_a_lost_scheduler_costs_only_what_was_running(
     cluster: Cluster, plan: Plan, whole: Sweep, tmp_path: Path
 ) -> None:
-    inner = Dask(cluster.address, timeout=5)
+    inner = Dask(cluster.address, timeout=60)
     found = sweep(plan, scheduler=After(inner, 3, cluster.scheduler.kill), folder=tmp_path / "out", reduced="never")
     inner.close()
     assert "Dask scheduler" in found.interrupted

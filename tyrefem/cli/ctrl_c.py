@@ -19,7 +19,7 @@ if TYPE_CHECKING:
 
 INTERRUPTED = 130
 #: s that an interrupted process may take to end in good order; s until an interruption that went nowhere is sent again.
-PATIENCE, MOMENT = 5.0, 0.01
+PATIENCE, MOMENT = 20.0, 0.01
 
 
 class CtrlC:
