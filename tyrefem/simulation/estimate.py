@@ -18,7 +18,7 @@ if TYPE_CHECKING:
     from tyrefem.inputs.study import StudyData
     from tyrefem.inputs.study_card import MeshChoice
 
-#: Runs that a feedback usually takes (2 to 7 in docs/two-way.md).
+#: Runs that a feedback usually takes (2 to 7 in docs/evidence/two-way.md).
 USUAL_RUNS = 5
 #: Readings that a phase with slip has beside those asked for, at most.
 SLIP_READINGS = 24
