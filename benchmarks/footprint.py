@@ -2,8 +2,8 @@
 
     python benchmarks/footprint.py [--quick]
 
-Prints the tables of docs/evidence/footprint.md and, as its last line, one JSON object: seconds and peak memory of the half
-section with about 5000 nodes and 40 harmonics, and how much longer one small three-dimensional solve takes.
+Prints the tables of docs/evidence/footprint.md and, as its last line, one JSON object: seconds and peak memory of
+the half section with about 5000 nodes and 40 harmonics, and how much longer one small three-dimensional solve takes.
 """
 
 from __future__ import annotations

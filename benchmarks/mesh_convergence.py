@@ -2,8 +2,8 @@
 
     python benchmarks/mesh_convergence.py [--quick]
 
-Prints a table (the one in docs/evidence/sections-and-meshes.md) and, as its last line, one JSON object: the largest deviation of
-any sensor over each run, K, and the largest difference between the two meshers at default size.
+Prints a table (that of docs/evidence/sections-and-meshes.md) and, as its last line, one JSON object: the largest
+deviation of any sensor over each run, K, and the largest difference between the two meshers at default size.
 """
 
 from __future__ import annotations
