@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+import subprocess
+import sys
 from types import SimpleNamespace
 
 import pandas as pd
@@ -37,3 +39,13 @@ def test_what_a_curve_stands_for_has_its_unit() -> None:
     legend = curves(found, speed, "hottest_degC").axes[0].get_legend()
     assert legend is not None
     assert legend.get_title().get_text() == "load [lbf]"
+
+
+def test_the_page_knows_the_pictures_of_every_answer() -> None:
+    """In a fresh process, where no test has imported the modules that draw them."""
+    code = (
+        "import tyrefem.reports.sweep as page\n"
+        "print(*sorted(kind.__name__ for kind in page.figures.registry if kind is not object))"
+    )
+    done = subprocess.run([sys.executable, "-c", code], capture_output=True, text=True, check=True)
+    assert done.stdout.split() == ["Envelope", "Indices", "Optimum", "ParetoFront", "Responses", "Tornado"]

@@ -15,6 +15,9 @@ from typing import TYPE_CHECKING, Any
 
 from tyrefem.output import atomic_path, jsonable
 from tyrefem.output.folder import BOOKKEEPING
+
+# Registers the pictures of tornado, indices, optimum and envelope.
+from tyrefem.reports import sweep_answer_figures as sweep_answer_figures
 from tyrefem.reports.figures.style import png
 from tyrefem.reports.sweep_figures import figures
 from tyrefem.sweep.sweep import Sweep
