@@ -13,15 +13,15 @@ from typing import TYPE_CHECKING, Any, TypeVar
 from tyrefem.compare import comparison
 from tyrefem.diagnose import diagnosis
 from tyrefem.inputs import study as studies
-from tyrefem.rig import identification
+from tyrefem.heating_test import identification
 from tyrefem.simulation import result
 from tyrefem.sweep import campaign, design
 
 if TYPE_CHECKING:
     from tyrefem.measured.cases import Case
-    from tyrefem.rig.card import RigCard
-    from tyrefem.rig.grid import Fineness
-    from tyrefem.rig.readings import HeatingTest
+    from tyrefem.heating_test.card import RigCard
+    from tyrefem.heating_test.grid import Fineness
+    from tyrefem.heating_test.readings import HeatingTest
 
 Data = TypeVar("Data")
 
@@ -142,13 +142,13 @@ class Identification(identification.IdentificationData):
     @cached_property
     def words(self) -> tuple[str, ...]:
         """What the data cannot determine and what else a reader must know, a sentence each."""
-        from tyrefem.rig.verdict import sentences
+        from tyrefem.heating_test.verdict import sentences
 
         return sentences(self)
 
     def to_dict(self) -> dict[str, Any]:
         """What `rig.json` holds."""
-        from tyrefem.rig.summary import summary
+        from tyrefem.heating_test.summary import summary
 
         return summary(self)
 
@@ -246,7 +246,7 @@ def identify(
     Parameters
     ----------
     rig : name, path or card. tables : CSV files whose runs are named like the card's; none: those beside the card.
-    tests, without, linear, fineness, progress : as of `tyrefem.rig.identification.identify`.
+    tests, without, linear, fineness, progress : as of `tyrefem.heating_test.identification.identify`.
 
     Raises
     ------

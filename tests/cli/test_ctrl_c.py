@@ -15,7 +15,7 @@ from interrupting import Interrupted, interrupted
 from terminal import NASA, SHORT, TABLES
 
 from tyrefem.cli import main
-from tyrefem.rig.card import find
+from tyrefem.heating_test.card import find
 
 #: In the middle of a simulation, of a picture, of a table.
 STEP = "tyrefem.conduction.balance:HeatBalance.remainder:40"
@@ -138,7 +138,7 @@ def test_rig_keeps_fits_and_tables(rig: Path) -> None:
     assert clean(rig, done) == "tyrefem: interrupted; the tables are in sim, the pictures are not\n"
     assert {file.name for file in (rig / "sim").iterdir()} == {"low.csv", "summary.json"}
     layers = ("rig", "layers", "mine.toml", "sim/low.csv", "--out", "layers")
-    line = clean(rig, interrupted(*layers, at="tyrefem.rig.identification:identify:2", folder=rig))
+    line = clean(rig, interrupted(*layers, at="tyrefem.heating_test.identification:identify:2", folder=rig))
     assert line == "tyrefem: interrupted; 1 of 2 fits are in layers/layers.csv\n"
     assert json.loads((rig / "layers/summary.json").read_text(encoding="utf-8"))["complete"] is False
     identify = ("rig", "identify", "mine.toml", "sim/low.csv", "--constant", "--out", "identified")

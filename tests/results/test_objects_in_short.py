@@ -14,8 +14,8 @@ import tyrefem as tf
 from tyrefem.mechanics.footprint.press import press
 from tyrefem.reduced.surrogate import surrogate
 from tyrefem.rig import identify, load, simulate
-from tyrefem.rig.grid import Fineness
-from tyrefem.rig.readings import matched
+from tyrefem.heating_test.grid import Fineness
+from tyrefem.heating_test.readings import matched
 from tyrefem.variants.plan import plan_of
 
 QUICK = {"mesh.size": "12 mm", "drive.duration": "60 s"}

@@ -7,7 +7,7 @@ import pandas as pd
 from curved_patch import CurvedPatch, TrueLayer, Truth
 
 from tyrefem.measured import MeasuredRun
-from tyrefem.rig.card import RigCard
+from tyrefem.heating_test.card import RigCard
 
 TIMES = np.arange(0.0, 1661.0, 5.0)
 

@@ -10,8 +10,8 @@ import pytest
 from cases import measured, properties, truth
 
 from tyrefem.rig import Identification, RigCard, identify, load, simulate
-from tyrefem.rig.grid import Fineness
-from tyrefem.rig.readings import matched
+from tyrefem.heating_test.grid import Fineness
+from tyrefem.heating_test.readings import matched
 
 COARSE, MIDDLE = Fineness(2, 5, 2), Fineness(3, 7, 3)
 

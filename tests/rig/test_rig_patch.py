@@ -9,11 +9,11 @@ from curved_patch import CurvedPatch, TrueLayer, Truth
 from scipy.special import erfc
 
 from tyrefem.rig import Patch, PatchLayer, Property, load
-from tyrefem.rig.card import Clock, since_switch
-from tyrefem.rig.grid import Fineness, PatchGrid
-from tyrefem.rig.parameters import at, parameters_of
-from tyrefem.rig.readings import view
-from tyrefem.rig.twin import Twin
+from tyrefem.heating_test.card import Clock, since_switch
+from tyrefem.heating_test.grid import Fineness, PatchGrid
+from tyrefem.heating_test.parameters import at, parameters_of
+from tyrefem.heating_test.readings import view
+from tyrefem.heating_test.twin import Twin
 
 COARSE = Fineness(3, 6, 3)
 

@@ -39,7 +39,7 @@ def simulate(
     from tyrefem import rig as rigs
     from tyrefem.quantity import parse
     from tyrefem.reports.rig import simulation_files, write_simulation
-    from tyrefem.rig.card import beside
+    from tyrefem.heating_test.card import beside
 
     card, file = rigs.load(rig)
     warn(warning.within(file=file) for warning in card.warnings())
@@ -89,9 +89,9 @@ def identify(
     """Conductivity and specific heat of every layer with 95 % intervals; what the tables cannot determine."""
     from tyrefem import rig as rigs
     from tyrefem.reports.rig import FILES, save
-    from tyrefem.rig.card import tables as tables_of
-    from tyrefem.rig.layer_cards import bases
-    from tyrefem.rig.verdict import shown, spoken
+    from tyrefem.heating_test.card import tables as tables_of
+    from tyrefem.heating_test.layer_cards import bases
+    from tyrefem.heating_test.verdict import shown, spoken
 
     card, file = rigs.load(rig)
     warn(warning.within(file=file) for warning in card.warnings())
@@ -141,9 +141,9 @@ def layers(
     """Fit one set of readings with 1, 2, 3 ... layers: what more layers improve."""
     from tyrefem import rig as rigs
     from tyrefem.reports.rig import LAYER_FILES, save_layer_table, save_layers
-    from tyrefem.rig.card import tables as tables_of
-    from tyrefem.rig.layer_study import LayerStudy, fits
-    from tyrefem.rig.readings import matched
+    from tyrefem.heating_test.card import tables as tables_of
+    from tyrefem.heating_test.layer_study import LayerStudy, fits
+    from tyrefem.heating_test.readings import matched
 
     card, file = rigs.load(rig)
     warn(warning.within(file=file) for warning in card.warnings())

@@ -16,16 +16,16 @@ from tyrefem.interruption import keeping
 from tyrefem.output import atomic_folder, jsonable, versions
 from tyrefem.reports.figures.style import png
 from tyrefem.reports.rig_figures import heated_patch, histories, layers_figure, pictures, references
-from tyrefem.rig.layer_cards import bases, layer_cards
-from tyrefem.rig.selection import COVERAGE
-from tyrefem.rig.summary import diffusivities, ranked, summary
-from tyrefem.rig.verdict import sentences, spoken
+from tyrefem.heating_test.layer_cards import bases, layer_cards
+from tyrefem.heating_test.selection import COVERAGE
+from tyrefem.heating_test.summary import diffusivities, ranked, summary
+from tyrefem.heating_test.verdict import sentences, spoken
 
 if TYPE_CHECKING:
-    from tyrefem.rig.card import RigCard
-    from tyrefem.rig.identification import IdentificationData
-    from tyrefem.rig.layer_study import LayerStudy
-    from tyrefem.rig.simulation import Simulation
+    from tyrefem.heating_test.card import RigCard
+    from tyrefem.heating_test.identification import IdentificationData
+    from tyrefem.heating_test.layer_study import LayerStudy
+    from tyrefem.heating_test.simulation import Simulation
 
 
 def page(found: IdentificationData, pictures: Mapping[str, bytes], cards: Mapping[str, Any]) -> str:

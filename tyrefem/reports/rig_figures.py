@@ -28,18 +28,18 @@ from tyrefem.reports.figures.style import (
     tidy,
     title,
 )
-from tyrefem.rig.selection import COVERAGE
-from tyrefem.rig.verdict import spoken
+from tyrefem.heating_test.selection import COVERAGE
+from tyrefem.heating_test.verdict import spoken
 
 if TYPE_CHECKING:
     from matplotlib.axes import Axes
     from matplotlib.figure import Figure
 
-    from tyrefem.rig.card import Phases, RigCard
-    from tyrefem.rig.grid import PatchGrid
-    from tyrefem.rig.identification import IdentificationData
-    from tyrefem.rig.layer_study import LayerStudy
-    from tyrefem.rig.noise import Block
+    from tyrefem.heating_test.card import Phases, RigCard
+    from tyrefem.heating_test.grid import PatchGrid
+    from tyrefem.heating_test.identification import IdentificationData
+    from tyrefem.heating_test.layer_study import LayerStudy
+    from tyrefem.heating_test.noise import Block
 
 Array = NDArray[Any]
 

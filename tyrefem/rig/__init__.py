@@ -1,17 +1,16 @@
 """The laser rig (Allouis et al. 2016): simulate a heating test, find conductivity and specific heat of every layer.
 
-Knows nothing of tyres, drives and studies.
+What people work with; the work is done in `tyrefem.heating_test`.
 """
 
 from __future__ import annotations
 
-import importlib
 from typing import Any
 
-from tyrefem.rig.card import RigCard, load
-from tyrefem.rig.patch import Patch, PatchLayer, Property, air, natural_film, nusselt
-from tyrefem.rig.readings import read
-from tyrefem.rig.simulation import Simulation, simulate
+from tyrefem.heating_test.card import RigCard, load
+from tyrefem.heating_test.patch import Patch, PatchLayer, Property, air, natural_film, nusselt
+from tyrefem.heating_test.readings import read
+from tyrefem.heating_test.simulation import Simulation, simulate
 
 __all__ = [
     "Identification",
@@ -29,14 +28,14 @@ __all__ = [
     "simulate",
 ]
 
-#: What a person gets has the verbs of `tyrefem.api`; the data alone: `tyrefem.rig.identification`.
-_WHERE = {"Identification": "tyrefem.api", "identify": "tyrefem.api"}
-
 
 def __getattr__(name: str) -> Any:
-    if name not in _WHERE:
+    """An identification has verbs; their modules are loaded when somebody identifies."""
+    if name not in ("Identification", "identify"):
         raise AttributeError(f"module 'tyrefem.rig' has no attribute '{name}'")
-    return getattr(importlib.import_module(_WHERE[name]), name)
+    from tyrefem import api
+
+    return getattr(api, name)
 
 
 def __dir__() -> list[str]:

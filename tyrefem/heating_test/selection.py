@@ -14,8 +14,8 @@ import numpy as np
 from numpy.typing import NDArray
 
 from tyrefem.brief import Brief
-from tyrefem.rig.noise import Normal, log_evidence
-from tyrefem.rig.parameters import SLOPE, Parameters, RigParameter
+from tyrefem.heating_test.noise import Normal, log_evidence
+from tyrefem.heating_test.parameters import SLOPE, Parameters, RigParameter
 
 Array = NDArray[Any]
 

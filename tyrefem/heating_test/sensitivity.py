@@ -17,8 +17,8 @@ from numpy.typing import NDArray
 from scipy.sparse import diags
 from scipy.sparse.linalg import splu
 
-from tyrefem.rig.grid import PatchGrid
-from tyrefem.rig.patch import Patch, PatchLayer, natural_film
+from tyrefem.heating_test.grid import PatchGrid
+from tyrefem.heating_test.patch import Patch, PatchLayer, natural_film
 
 Array = NDArray[Any]
 

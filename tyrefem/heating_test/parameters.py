@@ -10,7 +10,7 @@ from typing import Any, Literal
 import numpy as np
 from numpy.typing import NDArray
 
-from tyrefem.rig.card import RigCard
+from tyrefem.heating_test.card import RigCard
 
 Array = NDArray[Any]
 
@@ -93,7 +93,7 @@ class Parameters:
 def parameters_of(card: RigCard, sensors: Sequence[str]) -> Parameters:
     """Every parameter of a rig, for the sensors that are read; those without an uncertainty are held.
 
-    >>> from tyrefem.rig.card import load
+    >>> from tyrefem.heating_test.card import load
     >>> found = parameters_of(load("trtlab")[0], ["outer", "inner", "interface"])
     >>> found.names[:4]
     ('tread.conductivity', 'tread.specific_heat', 'tread.conductivity_slope', 'tread.specific_heat_slope')

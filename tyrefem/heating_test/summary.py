@@ -7,12 +7,12 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 
 from tyrefem.output import versions
-from tyrefem.rig.parameters import PROPERTY
-from tyrefem.rig.selection import COVERAGE
-from tyrefem.rig.verdict import sentences
+from tyrefem.heating_test.parameters import PROPERTY
+from tyrefem.heating_test.selection import COVERAGE
+from tyrefem.heating_test.verdict import sentences
 
 if TYPE_CHECKING:
-    from tyrefem.rig.identification import IdentificationData
+    from tyrefem.heating_test.identification import IdentificationData
 
 
 def summary(found: IdentificationData) -> dict[str, Any]:

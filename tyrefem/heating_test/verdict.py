@@ -7,11 +7,11 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from tyrefem.rig.parameters import PROPERTY, RIG, SLOPE
-from tyrefem.rig.selection import POOR, ParameterEstimate
+from tyrefem.heating_test.parameters import PROPERTY, RIG, SLOPE
+from tyrefem.heating_test.selection import POOR, ParameterEstimate
 
 if TYPE_CHECKING:
-    from tyrefem.rig.identification import IdentificationData
+    from tyrefem.heating_test.identification import IdentificationData
 
 #: Correlations beyond this bind two properties together.
 BOUND = 0.95

@@ -9,11 +9,11 @@ from tyrefem import library
 from tyrefem.cards import merged
 from tyrefem.errors import InputError, nearest
 from tyrefem.materials.card import MaterialCard, material
-from tyrefem.rig.verdict import sentences
+from tyrefem.heating_test.verdict import sentences
 
 if TYPE_CHECKING:
-    from tyrefem.rig.card import RigCard
-    from tyrefem.rig.identification import IdentificationData
+    from tyrefem.heating_test.card import RigCard
+    from tyrefem.heating_test.identification import IdentificationData
 
 #: The largest relative standard deviation that a card may state.
 _MOST = 0.99

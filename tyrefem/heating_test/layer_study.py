@@ -11,10 +11,10 @@ import numpy as np
 from numpy.typing import NDArray
 
 from tyrefem.errors import InputError
-from tyrefem.rig.card import RigCard
-from tyrefem.rig.grid import Fineness
-from tyrefem.rig.identification import IdentificationData, identify
-from tyrefem.rig.readings import HeatingTest
+from tyrefem.heating_test.card import RigCard
+from tyrefem.heating_test.grid import Fineness
+from tyrefem.heating_test.identification import IdentificationData, identify
+from tyrefem.heating_test.readings import HeatingTest
 
 if TYPE_CHECKING:
     import pandas as pd
@@ -30,7 +30,7 @@ def merged(card: RigCard, count: int) -> RigCard:
     Thicknesses add up; the guess of the conductivity is that of layers in series, density and specific heat keep
     mass and heat capacity. Raises InputError for a count that the card does not have.
 
-    >>> from tyrefem.rig.card import load
+    >>> from tyrefem.heating_test.card import load
     >>> one = merged(load("trtlab")[0], 1).layers[0]
     >>> one.name, round(one.thickness, 4), round(one.conductivity.value, 3)
     ('tread+carcass', 0.015, 0.271)

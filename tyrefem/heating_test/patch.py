@@ -14,7 +14,7 @@ from numpy.typing import ArrayLike, NDArray
 
 from tyrefem.conduction import Conduction, Convection, Flux, History, Material, Radiation
 from tyrefem.errors import InputError
-from tyrefem.rig.grid import USUAL, Fineness, PatchGrid
+from tyrefem.heating_test.grid import USUAL, Fineness, PatchGrid
 
 Array = NDArray[Any]
 

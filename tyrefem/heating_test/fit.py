@@ -10,10 +10,10 @@ import numpy as np
 from numpy.typing import NDArray
 
 from tyrefem.brief import Brief
-from tyrefem.rig.noise import Block, Noise, Normal, estimated, log_evidence, normal
-from tyrefem.rig.parameters import Parameters
-from tyrefem.rig.readings import HeatingTest
-from tyrefem.rig.twin import Twin
+from tyrefem.heating_test.noise import Block, Noise, Normal, estimated, log_evidence, normal
+from tyrefem.heating_test.parameters import Parameters
+from tyrefem.heating_test.readings import HeatingTest
+from tyrefem.heating_test.twin import Twin
 
 Array = NDArray[Any]
 #: A step shorter than this share of the posterior's standard deviations ends the fit; one far longer, a rough one.

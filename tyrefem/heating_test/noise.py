@@ -16,7 +16,7 @@ from numpy.typing import NDArray
 from scipy.linalg import cho_solve, cholesky, solve_triangular
 
 from tyrefem.brief import Brief
-from tyrefem.rig.readings import SensorReadings
+from tyrefem.heating_test.readings import SensorReadings
 
 Array = NDArray[Any]
 #: Correlation times that the fit may choose, s.

@@ -9,12 +9,12 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
-from tyrefem.rig.card import Clock, RigCard, RunCard
-from tyrefem.rig.grid import USUAL, Fineness, PatchGrid
-from tyrefem.rig.parameters import Parameters, RigParameter, at
-from tyrefem.rig.patch import Patch, PatchLayer, Property
-from tyrefem.rig.readings import view
-from tyrefem.rig.sensitivity import Sensitivity
+from tyrefem.heating_test.card import Clock, RigCard, RunCard
+from tyrefem.heating_test.grid import USUAL, Fineness, PatchGrid
+from tyrefem.heating_test.parameters import Parameters, RigParameter, at
+from tyrefem.heating_test.patch import Patch, PatchLayer, Property
+from tyrefem.heating_test.readings import view
+from tyrefem.heating_test.sensitivity import Sensitivity
 
 Array = NDArray[Any]
 #: Error in time that a solve aims at, K: with the tests' computed times it stays far below the cameras' noise.

@@ -13,15 +13,15 @@ from numpy.typing import NDArray
 from threadpoolctl import threadpool_limits
 
 from tyrefem.brief import Brief
-from tyrefem.rig.card import RigCard, load
-from tyrefem.rig.card import tables as beside
-from tyrefem.rig.fit import Fitter, RigFit
-from tyrefem.rig.grid import USUAL, Fineness
-from tyrefem.rig.noise import Noise, estimated, normal
-from tyrefem.rig.parameters import PROPERTY, RIG, SLOPE, Parameters, parameters_of
-from tyrefem.rig.readings import HeatingTest, read
-from tyrefem.rig.selection import ParameterEstimate, Selection, estimate_of, select
-from tyrefem.rig.twin import Twin
+from tyrefem.heating_test.card import RigCard, load
+from tyrefem.heating_test.card import tables as beside
+from tyrefem.heating_test.fit import Fitter, RigFit
+from tyrefem.heating_test.grid import USUAL, Fineness
+from tyrefem.heating_test.noise import Noise, estimated, normal
+from tyrefem.heating_test.parameters import PROPERTY, RIG, SLOPE, Parameters, parameters_of
+from tyrefem.heating_test.readings import HeatingTest, read
+from tyrefem.heating_test.selection import ParameterEstimate, Selection, estimate_of, select
+from tyrefem.heating_test.twin import Twin
 
 if TYPE_CHECKING:
     import pandas as pd
@@ -90,7 +90,7 @@ def identify(
     """Find conductivity and specific heat of every layer of a rig from its measured tables.
 
     Minimises |C^(-1/2) (measured - computed)|^2 + |x|^2 over the coordinates x of all uncertain numbers, C the noise
-    and model error of `tyrefem.rig.noise`, priors N(0, 1) in x; several tests are fitted together. Intervals are
+    and model error of `tyrefem.heating_test.noise`, priors N(0, 1) in x; several tests are fitted together. Intervals are
     Laplace's, averaged over which properties are linear in temperature.
 
     Parameters
