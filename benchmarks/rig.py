@@ -28,9 +28,9 @@ sys.path.insert(0, str(Path(__file__).resolve().parents[1] / "tests" / "rig"))
 
 from cases import measured, properties, truth
 
-from tyrefem.rig import identify, load
 from tyrefem.heating_test.readings import matched
 from tyrefem.heating_test.selection import COVERAGE
+from tyrefem.rig import identify, load
 
 
 def case(seed: int, tables: str | None = None) -> dict[str, Any]:

@@ -12,16 +12,16 @@ from typing import TYPE_CHECKING, Any, TypeVar
 
 from tyrefem.compare import comparison
 from tyrefem.diagnose import diagnosis
-from tyrefem.inputs import study as studies
 from tyrefem.heating_test import identification
+from tyrefem.inputs import study as studies
 from tyrefem.simulation import result
 from tyrefem.sweep import campaign, design
 
 if TYPE_CHECKING:
-    from tyrefem.measured.cases import Case
     from tyrefem.heating_test.card import RigCard
     from tyrefem.heating_test.grid import Fineness
     from tyrefem.heating_test.readings import HeatingTest
+    from tyrefem.measured.cases import Case
 
 Data = TypeVar("Data")
 

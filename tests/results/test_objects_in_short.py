@@ -11,11 +11,11 @@ import pytest
 import skfem
 
 import tyrefem as tf
+from tyrefem.heating_test.grid import Fineness
+from tyrefem.heating_test.readings import matched
 from tyrefem.mechanics.footprint.press import press
 from tyrefem.reduced.surrogate import surrogate
 from tyrefem.rig import identify, load, simulate
-from tyrefem.heating_test.grid import Fineness
-from tyrefem.heating_test.readings import matched
 from tyrefem.variants.plan import plan_of
 
 QUICK = {"mesh.size": "12 mm", "drive.duration": "60 s"}

@@ -6,8 +6,8 @@ import numpy as np
 import pandas as pd
 from curved_patch import CurvedPatch, TrueLayer, Truth
 
-from tyrefem.measured import MeasuredRun
 from tyrefem.heating_test.card import RigCard
+from tyrefem.measured import MeasuredRun
 
 TIMES = np.arange(0.0, 1661.0, 5.0)
 

@@ -8,14 +8,14 @@ from pathlib import Path
 import pytest
 
 from tyrefem.cli import main
-from tyrefem.materials.card import material
-from tyrefem.measured import read_table
-from tyrefem.reports.rig import save_layers
-from tyrefem.rig import load, simulate
 from tyrefem.heating_test.card import find
 from tyrefem.heating_test.grid import Fineness
 from tyrefem.heating_test.layer_study import merged, study
 from tyrefem.heating_test.readings import matched
+from tyrefem.materials.card import material
+from tyrefem.measured import read_table
+from tyrefem.reports.rig import save_layers
+from tyrefem.rig import load, simulate
 
 SHORT = ("--set", "drive.duration=10 s", "--set", "mesh.size=8 mm", "--set", "output.fields=2")
 

@@ -9,9 +9,9 @@ import numpy as np
 import pytest
 from cases import measured, properties, truth
 
-from tyrefem.rig import Identification, RigCard, identify, load, simulate
 from tyrefem.heating_test.grid import Fineness
 from tyrefem.heating_test.readings import matched
+from tyrefem.rig import Identification, RigCard, identify, load, simulate
 
 COARSE, MIDDLE = Fineness(2, 5, 2), Fineness(3, 7, 3)
 

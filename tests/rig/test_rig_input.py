@@ -9,8 +9,8 @@ import pytest
 
 from tyrefem.cli import main
 from tyrefem.errors import InputError
-from tyrefem.rig import load, read
 from tyrefem.heating_test.card import find, tables
+from tyrefem.rig import load, read
 
 CARD = find("trtlab").read_text(encoding="utf-8")
 TABLE = "time [s],outer [degC],inner [degC],interface [degC]\n" + "".join(

@@ -8,12 +8,12 @@ from cases import TIMES
 from curved_patch import CurvedPatch, TrueLayer, Truth
 from scipy.special import erfc
 
-from tyrefem.rig import Patch, PatchLayer, Property, load
 from tyrefem.heating_test.card import Clock, since_switch
 from tyrefem.heating_test.grid import Fineness, PatchGrid
 from tyrefem.heating_test.parameters import at, parameters_of
 from tyrefem.heating_test.readings import view
 from tyrefem.heating_test.twin import Twin
+from tyrefem.rig import Patch, PatchLayer, Property, load
 
 COARSE = Fineness(3, 6, 3)
 

@@ -9,8 +9,8 @@ import pytest
 
 from tyrefem.cli import main
 from tyrefem.errors import InputError
-from tyrefem.rig import load, read
 from tyrefem.heating_test.card import find, tables
+from tyrefem.rig import load, read
 
 
 @pytest.fixture

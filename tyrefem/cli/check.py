@@ -114,8 +114,8 @@ def _card(path: Path) -> str:
 
 def _rig_tables(rig: RigCard, path: Path) -> str:
     """The tables beside a rig's card: none at all is a rig to simulate, one that is missing an error."""
-    from tyrefem.rig import read
     from tyrefem.heating_test.card import tables
+    from tyrefem.rig import read
 
     if not any((path.parent / f"{run}.csv").is_file() for run in rig.runs):
         return "no table beside it"

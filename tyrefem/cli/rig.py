@@ -37,9 +37,9 @@ def simulate(
 ) -> None:
     """What the sensors would read in the card's tests: one table per run, pictures."""
     from tyrefem import rig as rigs
+    from tyrefem.heating_test.card import beside
     from tyrefem.quantity import parse
     from tyrefem.reports.rig import simulation_files, write_simulation
-    from tyrefem.heating_test.card import beside
 
     card, file = rigs.load(rig)
     warn(warning.within(file=file) for warning in card.warnings())
@@ -88,10 +88,10 @@ def identify(
 ) -> None:
     """Conductivity and specific heat of every layer with 95 % intervals; what the tables cannot determine."""
     from tyrefem import rig as rigs
-    from tyrefem.reports.rig import FILES, save
     from tyrefem.heating_test.card import tables as tables_of
     from tyrefem.heating_test.layer_cards import bases
     from tyrefem.heating_test.verdict import shown, spoken
+    from tyrefem.reports.rig import FILES, save
 
     card, file = rigs.load(rig)
     warn(warning.within(file=file) for warning in card.warnings())
@@ -140,10 +140,10 @@ def layers(
 ) -> None:
     """Fit one set of readings with 1, 2, 3 ... layers: what more layers improve."""
     from tyrefem import rig as rigs
-    from tyrefem.reports.rig import LAYER_FILES, save_layer_table, save_layers
     from tyrefem.heating_test.card import tables as tables_of
     from tyrefem.heating_test.layer_study import LayerStudy, fits
     from tyrefem.heating_test.readings import matched
+    from tyrefem.reports.rig import LAYER_FILES, save_layer_table, save_layers
 
     card, file = rigs.load(rig)
     warn(warning.within(file=file) for warning in card.warnings())

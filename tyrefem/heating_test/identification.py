@@ -90,8 +90,8 @@ def identify(
     """Find conductivity and specific heat of every layer of a rig from its measured tables.
 
     Minimises |C^(-1/2) (measured - computed)|^2 + |x|^2 over the coordinates x of all uncertain numbers, C the noise
-    and model error of `tyrefem.heating_test.noise`, priors N(0, 1) in x; several tests are fitted together. Intervals are
-    Laplace's, averaged over which properties are linear in temperature.
+    and model error of `tyrefem.heating_test.noise`, priors N(0, 1) in x; several tests are fitted together. Intervals
+    are Laplace's, averaged over which properties are linear in temperature.
 
     Parameters
     ----------

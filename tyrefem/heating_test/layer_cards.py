@@ -8,8 +8,8 @@ from typing import TYPE_CHECKING, Any
 from tyrefem import library
 from tyrefem.cards import merged
 from tyrefem.errors import InputError, nearest
-from tyrefem.materials.card import MaterialCard, material
 from tyrefem.heating_test.verdict import sentences
+from tyrefem.materials.card import MaterialCard, material
 
 if TYPE_CHECKING:
     from tyrefem.heating_test.card import RigCard

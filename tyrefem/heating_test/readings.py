@@ -16,9 +16,9 @@ from scipy.sparse import csr_matrix
 
 from tyrefem.brief import Brief
 from tyrefem.errors import InputError, nearest, quoted
-from tyrefem.measured import MeasuredRun, read_table
 from tyrefem.heating_test.card import Clock, RigCard, RunCard, SensorCard
 from tyrefem.heating_test.grid import PatchGrid
+from tyrefem.measured import MeasuredRun, read_table
 
 Array = NDArray[Any]
 

@@ -13,12 +13,12 @@ from threadpoolctl import threadpool_limits
 
 from tyrefem.errors import InputError
 from tyrefem.estimates.work import check_readings
-from tyrefem.measured import MeasuredRun
 from tyrefem.heating_test.card import Clock, RigCard, load
 from tyrefem.heating_test.grid import USUAL, Fineness
 from tyrefem.heating_test.parameters import parameters_of
 from tyrefem.heating_test.twin import Twin
 from tyrefem.heating_test.verdict import HOT
+from tyrefem.measured import MeasuredRun
 
 Array = NDArray[Any]
 #: More readings than this per sensor are no table for a person or a fit.

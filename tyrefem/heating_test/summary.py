@@ -6,10 +6,10 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
-from tyrefem.output import versions
 from tyrefem.heating_test.parameters import PROPERTY
 from tyrefem.heating_test.selection import COVERAGE
 from tyrefem.heating_test.verdict import sentences
+from tyrefem.output import versions
 
 if TYPE_CHECKING:
     from tyrefem.heating_test.identification import IdentificationData

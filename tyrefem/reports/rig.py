@@ -12,14 +12,14 @@ from glob import escape
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
-from tyrefem.interruption import keeping
-from tyrefem.output import atomic_folder, jsonable, versions
-from tyrefem.reports.figures.style import png
-from tyrefem.reports.rig_figures import heated_patch, histories, layers_figure, pictures, references
 from tyrefem.heating_test.layer_cards import bases, layer_cards
 from tyrefem.heating_test.selection import COVERAGE
 from tyrefem.heating_test.summary import diffusivities, ranked, summary
 from tyrefem.heating_test.verdict import sentences, spoken
+from tyrefem.interruption import keeping
+from tyrefem.output import atomic_folder, jsonable, versions
+from tyrefem.reports.figures.style import png
+from tyrefem.reports.rig_figures import heated_patch, histories, layers_figure, pictures, references
 
 if TYPE_CHECKING:
     from tyrefem.heating_test.card import RigCard

@@ -12,6 +12,8 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 from numpy.typing import NDArray
 
+from tyrefem.heating_test.selection import COVERAGE
+from tyrefem.heating_test.verdict import spoken
 from tyrefem.reports.figures.phases import draw_phases, make_room
 from tyrefem.reports.figures.style import (
     FONT,
@@ -28,8 +30,6 @@ from tyrefem.reports.figures.style import (
     tidy,
     title,
 )
-from tyrefem.heating_test.selection import COVERAGE
-from tyrefem.heating_test.verdict import spoken
 
 if TYPE_CHECKING:
     from matplotlib.axes import Axes
