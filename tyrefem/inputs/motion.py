@@ -6,10 +6,11 @@ Films, friction, heat sources, effects and reports take the numbers of a `Motion
 from __future__ import annotations
 
 import math
-from collections.abc import Callable, Sequence
+from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass
-from typing import Protocol
+from typing import Any, Protocol
 
+from tyrefem.brief import Brief
 from tyrefem.quantity import Ramp
 
 #: A wheel that turns slower than this share of its free speed is locked: what rounding leaves.
@@ -117,7 +118,7 @@ def motion_at(drive: Phases, time: float, rolling_radius: float = math.nan) -> M
 
 
 @dataclass(frozen=True)
-class WheelMotion:
+class WheelMotion(Brief):
     """The motion of a loaded wheel as a function of time (s): ``motion(t).revolutions_per_second``.
 
     ``rolling_radius``: of the load case at a time, m.
@@ -125,6 +126,9 @@ class WheelMotion:
 
     drive: Phases
     rolling_radius: Callable[[float], float]
+
+    def _facts(self) -> Mapping[str, Any]:
+        return {"phases": len(self.drive.phases), "at the start": self(0.0)}
 
     def __call__(self, time: float) -> Motion:
         """The motion at a time."""

@@ -8,6 +8,7 @@ from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
 from tyrefem import library
+from tyrefem.brief import Brief
 from tyrefem.errors import InputError, nearest
 from tyrefem.materials.card import MaterialCard
 from tyrefem.materials.cord_layers import check_cords_fit
@@ -17,7 +18,7 @@ if TYPE_CHECKING:
 
 
 @dataclass(frozen=True, eq=False)
-class StudyMaterials:
+class StudyMaterials(Brief):
     """Region -> material card; and region -> the card as written, changes laid over it, with the card's file.
 
     ``references`` is the study's table ``[materials]``, ``folder`` where its references start from.

@@ -7,6 +7,7 @@ from dataclasses import dataclass, replace
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
+from tyrefem.brief import Brief
 from tyrefem.cache import Cache
 from tyrefem.errors import InputError
 from tyrefem.inputs.drive_table import as_written
@@ -22,7 +23,7 @@ _WORN: Cache[Section] = Cache(size=32)
 
 
 @dataclass(frozen=True, eq=False)
-class StudyParts:
+class StudyParts(Brief):
     """A study's data with file and folder, and what was read from them.
 
     ``new_section`` is the section before wear, ``section`` the section as the study's effects wear it. ``temperatures``
