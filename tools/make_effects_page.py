@@ -12,7 +12,7 @@ from typing import Any
 
 import tyrefem as tf
 from tyrefem.effects import Effect, catalogue
-from tyrefem.effects.description import COLUMNS, by_family, equation, example, parameter_rows, ports
+from tyrefem.effects.description import by_family, equation, parameter_rows, ports
 from tyrefem.effects.effect import PORTS
 from tyrefem.output import atomic_path
 
@@ -43,35 +43,41 @@ CHOICES = {"swapped-channels": {"sensor": "crown-inner", "other": "sidewall-inne
 INTRODUCTION = """\
 # Effects
 
-What a model of a rolling tyre may lack, one class per effect. This page is written by `tools/make_effects_page.py`
-from the classes.
+What a model of a rolling tyre may lack, one class per effect. A study takes an effect as an entry of `[[effects]]`;
+a [diagnosis](diagnosis.md) fits them all.
 
-An effect is added to a study as an entry of `[[effects]]`; `tyrefem list effects` and `tyrefem show effect NAME`
-print what is below.
+```sh
+tyrefem list effects
+tyrefem show effect hot-road              # equation, source, parameters, an entry to copy
+python tools/make_effects_page.py         # writes this page and its pictures from the classes
+```
+
+![What a road 10 K warmer changes in the readings](pictures/effect-hot-road.png)
 
 ```toml
 [[effects]]
 name = "hot-road"
 warmer_by = "10 delta_degC"
 from = "diagnosis of run-1.csv"          # optional: where the value comes from
-sd = { warmer_by = "2 delta_degC" }      # optional: its standard deviation; said, used by nobody
+sd = { warmer_by = "2 delta_degC" }      # optional: its standard deviation, for reports only
 ```
 
-- Every quantity is (base + sum of addends) x product of factors, so the order in the file does not matter; films take
+- Every quantity is (base + sum of addends) x product of factors. The order in the file does not matter. Films take
   resistances in series last.
-- An effect whose amplitudes are all at the value "not there" is left out: the run is then the same to the bit.
-- *allowed* are the bounds of physics; beyond them a value is refused. *prior sd* is the standard deviation of what is
-  known before any data: the size that the effect typically has where it is present. A *shape* parameter says how an
-  effect looks; it does nothing while the amplitude is null.
+- An effect whose amplitudes are all 0 is left out: the run is the same to the bit.
+- A value beyond the *allowed* bounds of physics is refused.
+- *Prior sd* is the standard deviation of what is known before any data: the effect's typical size where it is present.
+- A *shape* parameter says how an effect looks. It does nothing while the amplitude is 0.
 - An effect that has no meaning in a study (camber on a half section) is refused with the reason.
 - A source that begins with "estimate" is an engineer's judgement, not a measurement.
 
-**Signatures.** Each picture shows what the effect, at one prior sd, changes in the readings of the study
-`example-validation` (22x5.5 8PR, 2700 lbf, 83 psi, 20 mph for 600 s, then 600 s at rest), computed with the effect
-less computed without, unless the caption says otherwise. Where the largest change is below the 0.5 K noise of a
-reading, thermocouples at these places cannot see the effect.
+Each picture shows what the effect, at one prior sd, changes in the readings of `example-validation` (22x5.5 8PR,
+2700 lbf, 83 psi, 20 mph for 600 s, then 600 s at rest), unless it says otherwise. A thermocouple whose reading changes
+by less than its 0.5 K noise cannot see the effect.
 
-**An effect of your own** is a Python file in a folder that `TYREFEM_EFFECTS` names (several folders as in `PATH`):
+## An effect of your own
+
+An effect is a Python file in a folder that `TYREFEM_EFFECTS` names (several folders as in `PATH`):
 
 ```python
 from typing import Annotated, ClassVar
@@ -94,54 +100,61 @@ class Lamp(Effect):
         return self.shine
 ```
 
-`Prior` takes unit, meaning, prior sd, lower and upper bound; the method is one of the ports of
+`Prior` takes unit, meaning, prior sd, lower and upper bound. The method is one of the ports of
 `tyrefem.effects.Effect`, whose docstrings give arguments and units:
 PORTS
-What a port may ask of its `tyre` (speed, places, load cases, section) is listed with units in
-`tyrefem/effects/tyre.py`. A choice (a sensor, a side) is a field with `Field(description=..., examples=[...])`.
+`tyrefem/effects/tyre.py` lists what a port may ask of its `tyre` (speed, places, load cases, section). A choice
+(a sensor, a side) is a field with `Field(description=..., examples=[...])`.
 
-`of_drive: ClassVar[bool] = True` says that what the effect does to films, surrounding temperatures and the rim depends
-on time through the drive alone (speed, load, pressure): constant where the drive is. Reduced models then ask for it
-once per phase. Leave it away where the method uses `t` itself.
+Set `of_drive: ClassVar[bool] = True` where films, surrounding temperatures and the rim depend on time through the
+drive alone (speed, load, pressure). Reduced models then evaluate the effect once per phase. Leave it away where the
+method uses `t` itself.
 """
 
 
 def _shown(effect: type[Effect]) -> bool:
-    """Effects that a diagnosis may name; corrections of base numbers are described in docs/diagnosis.md."""
+    """Effects that a diagnosis may name; corrections of base numbers are described in docs/method/diagnosis.md."""
     return effect.__module__.startswith("tyrefem.") and not effect.calibration
 
 
 def page() -> str:
     """The text of docs/effects.md."""
-    effects = {name: one for name, one in catalogue().items() if _shown(one)}
-    families = by_family(effects)
+    families = by_family({name: effect for name, effect in catalogue().items() if _shown(effect)})
     names = textwrap.fill(", ".join(f"`{port.name}`" for port in PORTS) + ".", 119)
-    parts = [INTRODUCTION.replace("PORTS", names), "## Catalogue\n", "| effect | family | what it is |\n|---|---|---|"]
+    parts = [INTRODUCTION.replace("PORTS", names)]
     for family, members in families.items():
-        parts += [f"| [{one.name}](#{one.name}) | {family} | {one.sentence} |" for one in members]
-    for members in families.values():
-        parts += [_entry(one) for one in members]
-    return "\n".join(parts) + "\n"
+        parts += [f"## Family: {family}\n", *(_entry(effect) for effect in members)]
+    return "\n".join(parts)
 
 
 def _entry(effect: type[Effect]) -> str:
     where = DRAWN_FOR.get(effect.name, ({}, ""))[1]
-    rows = [f"| {' | '.join(COLUMNS)} |", "|" + "---|" * len(COLUMNS)]
-    rows += [
-        f"| `{row[0]}` | {' | '.join(cell.replace('|', '/') for cell in row[1:])} |" for row in parameter_rows(effect)
-    ]
     return "\n".join(
         [
-            f"\n## {effect.name}\n",
+            f"### {effect.name}\n",
             f"{effect.sentence}\n",
             f"    {equation(effect)}\n",
-            f"Enters as {ports(effect)}. Source: {effect.source}.\n",
-            *rows,
-            f"\n```toml\n{example(effect)}\n```\n",
-            f"![Change of the readings over time](pictures/effect-{effect.name}.png)",
-            *([f"\nDrawn {where}."] if where else []),
+            *(f"- `{name}`: {text}." for name, text in _parameters(effect).items()),
+            f"\nEnters as {ports(effect)}. Source: {effect.source}.\n",
+            f"![Signature](pictures/effect-{effect.name}.png)\n",
+            *([f"Drawn {where}.\n"] if where else []),
         ]
     )
+
+
+def _parameters(effect: type[Effect]) -> dict[str, str]:
+    """Meaning, bounds and prior of every parameter, the choices after them."""
+    texts = {}
+    for parameter in effect.parameters():
+        prior = parameter.prior
+        low, _, unit = prior.text(prior.low).partition(" ")
+        high = prior.text(prior.high)
+        bounds = f"{low if high.endswith(unit) else prior.text(prior.low)} to {high}"
+        start = prior.null if prior.start is None else prior.start
+        kind = "" if prior.amplitude else f"shape, starts at {prior.text(start)}; "
+        texts[parameter.name] = f"{prior.meaning}; {kind}{bounds}, prior sd {prior.text(prior.scale)}"
+    choices = {row[0]: row for row in parameter_rows(effect) if row[0] not in texts}
+    return texts | {name: "; ".join(filter(None, (row[1], row[3]))) for name, row in choices.items()}
 
 
 def _study(name: str) -> tf.Study:

@@ -77,7 +77,7 @@ def compare(
     InputError : a campaign; no measured runs; the table cannot be read, a column is no sensor, no measured time is
         within the simulated span.
 
-    Source: ASME V&V 20-2009; equations and simplifications in docs/validation.md.
+    Source: ASME V&V 20-2009; equations and simplifications in docs/method/validation.md.
     """
     NEEDS.check(study, table)
     if not 0.0 < k < 100.0:

@@ -1,0 +1,223 @@
+"""Draw the pictures of docs/ that no command draws (run from the root).
+
+`python tools/draw_docs_pictures.py [NAME ...]`: all of them, or some: modes, reduced-error, realtime-drive,
+realtime-step, realtime-certificate, cost, installed. Each takes less than a minute. The other pictures are those of the
+commands that stand above them, of benchmarks/ and of tools/make_effects_page.py.
+"""
+
+from __future__ import annotations
+
+import io
+import os
+import sys
+import tempfile
+import time
+from collections.abc import Callable
+from pathlib import Path
+from typing import TYPE_CHECKING, Any
+
+os.environ.setdefault("OMP_NUM_THREADS", "1")
+os.environ.setdefault("OPENBLAS_NUM_THREADS", "1")
+
+import numpy as np
+
+import tyrefem as tf
+from tyrefem.output import atomic_path
+from tyrefem.reports.figures.style import FONT, QUIET, Label, add_axes, figure, line_ends, line_style, png, tidy
+
+if TYPE_CHECKING:
+    from matplotlib.axes import Axes
+    from matplotlib.figure import Figure
+
+PICTURES = Path("docs/pictures")
+STUDY = "nasa-22x5.5-8pr"
+BOX = {"drive.speed": ("10 mph", "30 mph"), "drive.load": ("2000 lbf", "3500 lbf")}
+COARSE = {"mesh.size": "6 mm"}
+
+
+def _axes(x: str, y: str, width: float = 5.6) -> tuple[Figure, Axes]:
+    drawn = figure(width + 2.0, 3.2)
+    axes = add_axes(drawn, 0.75, 0.5, width - 0.5, 2.5)
+    axes.set_xlabel(x, fontsize=FONT)
+    axes.set_ylabel(y, fontsize=FONT)
+    tidy(axes)
+    return drawn, axes
+
+
+def _surrogate() -> Any:
+    from tyrefem.reduced.surrogate import surrogate
+    from tyrefem.variants.plan import plan_of
+
+    return surrogate(plan_of(tf.study(STUDY).replace(COARSE), BOX, sample="sobol", count=256))
+
+
+def modes() -> Figure:
+    """The first four POD modes of a reduced model on the half section."""
+    from tyrefem.reports.figures.cells import triangles
+
+    model = _surrogate().model
+    points = np.asarray(model.operators.points) * 1e3
+    cells, _ = triangles(model.operators)
+    drawn = figure(7.6, 3.0)
+    for number in range(4):
+        axes = add_axes(drawn, 0.1 + 1.88 * number, 0.1, 1.7, 2.5)
+        values = model.V[:, number] / np.abs(model.V[:, number]).max()
+        axes.tripcolor(points[1], points[0], cells, values, cmap="RdBu_r", vmin=-1, vmax=1, shading="gouraud")
+        axes.set_aspect("equal")
+        axes.set_axis_off()
+        axes.set_title(f"mode {number + 1} of {model.size}", fontsize=FONT)
+    return drawn
+
+
+def reduced_error() -> Figure:
+    """Reduced readings less those of full runs, at four places of the box that training has not seen."""
+    from tyrefem.reduced.answers import reduced_outcomes
+
+    trained = _surrogate()
+    places = [("12 mph", "3300 lbf"), ("17 mph", "2300 lbf"), ("23 mph", "3000 lbf"), ("28 mph", "2600 lbf")]
+    studies = [trained.model.base.study.replace({"drive.speed": v, "drive.load": load}) for v, load in places]
+    drawn, axes = _axes("time [s]", "largest error of the sensors [mK]")
+    labels = []
+    for number, variant in reduced_outcomes(trained.model, studies):
+        full = tf.study(STUDY).replace({**COARSE, "drive.speed": places[number][0], "drive.load": places[number][1]})
+        expected, table = full.run().readings, variant.result.readings
+        sensors = list(full.card.sensors)
+        error = 1e3 * (table[sensors] - expected[sensors]).abs().max(axis=1).to_numpy()
+        style = line_style(number)
+        axes.plot(expected["time_s"], error, lw=1.2, **style)
+        labels.append(Label(", ".join(places[number]), 600.0, float(error[-1]), color=style["color"]))
+    axes.set_ylim(0)
+    axes.set_xlim(0, 600)
+    line_ends(axes, labels, room=1.7)
+    return drawn
+
+
+def _model(folder: str) -> Any:
+    from tyrefem.realtime.certificate import export
+    from tyrefem.realtime.tyre import RealTimeTyre
+
+    path = Path(folder) / "tyre.npz"
+    export(tf.study(STUDY).replace(COARSE), path)
+    return RealTimeTyre(path)
+
+
+def realtime_drive() -> Figure:
+    """Outputs of the exported model in a drive whose speed and road jump."""
+    from tyrefem.realtime.tyre import Inputs
+
+    with tempfile.TemporaryDirectory() as folder:
+        tyre = _model(folder)
+    tyre.reset(20.0)
+    rows = []
+    for second in range(900):
+        speed, road = (9.0, 30.0) if second < 300 else (12.0, 55.0) if second < 600 else (0.0, 30.0)
+        rows.append(tyre.step(1.0, Inputs(speed, 12e3, 572e3, 25.0, road)).copy())
+    drawn, axes = _axes("time [s]", "temperature [°C]")
+    table, labels = np.array(rows), []
+    for column, name in enumerate(tyre.names):
+        if tyre.units[column] == "degC":
+            style = {"color": QUIET, "ls": "-"} if name == "contained-air" else line_style(column)
+            axes.plot(1 + np.arange(900), table[:, column], lw=1.2, **style)
+            labels.append(Label(name, 900.0, float(table[-1, column]), color=style["color"]))
+    for start, text in ((0, "9 m/s, road 30 °C"), (300, "12 m/s, road 55 °C"), (600, "standing")):
+        axes.text(start + 10, axes.get_ylim()[1], text, fontsize=FONT, color=QUIET)
+        axes.axvline(start, color=QUIET, lw=0.6)
+    axes.set_xlim(0, 900)
+    line_ends(axes, labels, room=1.7)
+    return drawn
+
+
+def realtime_step() -> Figure:
+    """The decay of a mode over a step: exp(-z), and the error of what one inverse makes of it."""
+    from tyrefem.realtime.tyre import GAMMA, PHI
+
+    z = np.logspace(-3, 4, 800)
+    rational = 1 - z * sum(b / (1 + GAMMA * z) ** (j + 1) for j, b in enumerate(PHI))
+    drawn, axes = _axes("rate of the mode × step, z", "decay over a step")
+    axes.semilogx(z, np.exp(-z), lw=1.2, **line_style(0))
+    axes.semilogx(z, 1e3 * (rational - np.exp(-z)), lw=1.2, **line_style(1))
+    ends = [Label("exp(-z)", 1e4, 0.03, color=line_style(0)["color"])]
+    line_ends(axes, [*ends, Label("1000 × error", 1e4, -0.03, color=line_style(1)["color"])], room=1.7)
+    return drawn
+
+
+def realtime_certificate() -> Figure:
+    """Largest error of every temperature against fresh full runs."""
+    with tempfile.TemporaryDirectory() as folder:
+        certificate = _model(folder).about["certificate"]
+    drawn, axes = _axes("largest error against fresh full runs [K]", "")
+    names = [name for name in certificate["steady"] if name != "rolling_resistance"][::-1]
+    rows = np.arange(len(names))
+    for shift, kind, label in ((0.2, "steady", "steady inputs"), (-0.2, "driven", "steps and ramps")):
+        axes.barh(rows + shift, [certificate[kind][name] for name in names], 0.36, label=label)
+    axes.axvline(certificate["tolerance"], color=QUIET, ls="--", lw=0.8)
+    axes.set_yticks(rows, names)
+    axes.set_position((0.2, 0.16, 0.62, 0.78))
+    axes.legend(fontsize=FONT, frameon=False)
+    return drawn
+
+
+def cost() -> Figure:
+    """Processor seconds of a run over the unknowns of its mesh, and what was estimated before."""
+    from tyrefem.simulation.estimate import RunEstimate
+
+    unknowns, seconds, expected = [], [], []
+    for size in (8.0, 6.0, 4.0, 3.0, 2.0, 1.5, 1.0):
+        study = tf.study(STUDY).replace({"mesh.size": f"{size} mm"})
+        began = time.process_time()
+        study.run()
+        seconds.append(time.process_time() - began)
+        unknowns.append(RunEstimate.of(study).unknowns)
+        expected.append(RunEstimate.of(study).total.time)
+    drawn, axes = _axes("unknowns", "processor time [s]")
+    axes.loglog(unknowns, seconds, marker="o", lw=1.2, ms=4, **line_style(0))
+    axes.loglog(unknowns, expected, lw=1.2, **line_style(1))
+    for axis, ticks in ((axes.xaxis, (1000, 3000, 10_000, 30_000)), (axes.yaxis, (0.1, 0.3, 1, 3, 10))):
+        axis.set_ticks([], minor=True)
+        axis.set_ticks(ticks, [f"{tick:,}" for tick in ticks])
+    labels = [("measured", seconds, 0), ("estimated before", expected, 1)]
+    line_ends(axes, [Label(n, unknowns[-1], v[-1], color=line_style(i)["color"]) for n, v, i in labels], room=1.7)
+    return drawn
+
+
+def installed() -> Figure:
+    """Size of every package of the default installation."""
+    import importlib.metadata as metadata
+    import tomllib
+
+    from packaging.requirements import Requirement
+
+    wanted = tomllib.loads(Path("pyproject.toml").read_text(encoding="utf-8"))["project"]["dependencies"]
+    names = [*(Requirement(text).name for text in wanted), "vtk"]
+    files = {name: metadata.distribution(name).files or [] for name in names}
+    sizes = {name: sum(file.size or 0 for file in listed) / 1e6 for name, listed in files.items()}
+    drawn, axes = _axes("installed size [MB]", "")
+    ordered = sorted(sizes, key=lambda name: sizes[name])
+    axes.barh(ordered, [sizes[name] for name in ordered], color=line_style(0)["color"])
+    axes.set_xscale("log")
+    axes.set_xlim(0.01)
+    axes.set_position((0.2, 0.16, 0.7, 0.8))
+    axes.tick_params(axis="y", labelsize=FONT - 2)
+    return drawn
+
+
+DRAWN: dict[str, Callable[[], Figure]] = {
+    "modes": modes, "reduced-error": reduced_error, "realtime-drive": realtime_drive, "realtime-step": realtime_step,
+    "realtime-certificate": realtime_certificate, "cost": cost, "installed": installed,
+}  # fmt: skip
+
+
+def main() -> None:
+    """Draw the pictures that are named, or all."""
+    from PIL import Image
+
+    for name in sys.argv[1:] or DRAWN:
+        image = Image.open(io.BytesIO(png(DRAWN[name]()))).convert("RGB")
+        few = image.quantize(colors=96, method=Image.Quantize.MAXCOVERAGE, dither=Image.Dither.NONE)
+        with atomic_path(PICTURES / f"{name}.png") as temporary:
+            few.save(temporary, format="PNG", optimize=True)
+        print(name, flush=True)
+
+
+if __name__ == "__main__":
+    main()
