@@ -71,7 +71,7 @@ def main() -> None:
     full, walls, cpus = [], [], []
     for number in chosen:
         clock = Clock()
-        full.append(perform(plan.task(number))["answers"])
+        full.append(perform(plan.task(number)).answers)
         wall, cpu = clock.read()
         walls.append(wall)
         cpus.append(cpu)
@@ -93,7 +93,7 @@ def main() -> None:
     clock = Clock()
     for first in range(0, options.variants, PIECE):
         task = ReducedTask(plan.variants[first : first + PIECE], plan.time_to)
-        reduced += [outcome["answers"] for outcome in perform_reduced(task, packed)["outcomes"]]
+        reduced += [outcome.answers for outcome in perform_reduced(task, packed)]
     answered, total = clock.read(), whole.read()
 
     errors = [temperature_error(reduced[number], answers) for number, answers in zip(chosen, full, strict=True)]

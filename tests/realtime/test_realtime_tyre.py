@@ -232,7 +232,7 @@ def test_rolling_to_rest_has_no_drag_of_rounding(exported):
     low = [0.1 + 0.2, 1.0e4, 5.5e5, 20.0, 20.0]
     # Three steps of a tenth: the ramp ends at some 1e-17 m/s and not at rest.
     course = Course(np.array([0.0, 30.0]), np.array([low]), np.array([[0.1 + 0.2 - 0.3, *low[1:]]]), 20.0)
-    found = sit(Exam(bundle(exported.study), course, 1.0, 4))["answers"]["rolling_resistance"]
+    found = sit(Exam(bundle(exported.study), course, 1.0, 4)).answers["rolling_resistance"]
     assert course.last[0, 0] > 0
     assert found[-1] == 0.0
     assert 5.0 < found[1:-1].max() < 1000.0

@@ -23,6 +23,7 @@ from tyrefem.simulation.simulate import output_times
 from tyrefem.sweep.sweep import Sweep, sweep
 from tyrefem.variants.answers import answers
 from tyrefem.variants.execution import SweepSettings
+from tyrefem.variants.outcomes import Answered
 from tyrefem.variants.plan import Plan, plan_of
 from tyrefem.variants.task import perform
 
@@ -60,8 +61,8 @@ def test_fresh_full_runs_are_met_within_the_tolerance(found: Surrogate, plan: Pl
     assert found.certificate.good
     packed = pack(found.model, plan.packed)
     for number in (3, 29):
-        reduced = perform_reduced(ReducedTask([plan.variants[number]], plan.time_to), packed)["outcomes"][0]["answers"]
-        full = perform(plan.task(number))["answers"]
+        reduced = perform_reduced(ReducedTask([plan.variants[number]], plan.time_to), packed)[0].answers
+        full = perform(plan.task(number)).answers
         assert set(reduced) == set(full)
         assert temperature_error(reduced, full) < 0.01
         assert reduced["rolling_resistance_N"] == pytest.approx(full["rolling_resistance_N"], rel=1e-3)
@@ -92,7 +93,7 @@ def test_a_reduced_budget_closes(variants: list[Variant]) -> None:
 
 def test_variants_do_not_depend_on_their_company(found: Surrogate, plan: Plan) -> None:
     studies = [plan.study.replace(plan.variants[number]) for number in (0, 9, 11)]
-    together, alone = found.answers(studies)[1]["answers"], found.answers(studies[1:2])[0]["answers"]
+    together, alone = found.answers(studies)[1].answers, found.answers(studies[1:2])[0].answers
     assert temperature_error(together, alone) < 1e-3
 
 
@@ -107,13 +108,13 @@ def test_a_sweep_says_how_large_the_error_may_be(plan: Plan) -> None:
 
 def test_outside_its_box_it_is_not_asked(found: Surrogate, tyre: Study) -> None:
     inside = tyre.replace({"drive.speed": "20 mph", "drive.load": "2500 lbf"})
-    assert "answers" in found.answers([inside])[0]
+    assert isinstance(found.answers([inside])[0], Answered)
     for key, value in (("drive.speed", "40 mph"), ("drive.load", "1000 lbf")):
-        refused = found.answers([inside.replace({key: value})])[0]["not_reducible"]
+        refused = found.answers([inside.replace({key: value})])[0].reason
         assert key in refused
         assert "box" in refused
     # What the box does not vary at all is as the study has it.
-    other = found.answers([inside.replace({"drive.ambient": "5 degC"})])[0]["not_reducible"]
+    other = found.answers([inside.replace({"drive.ambient": "5 degC"})])[0].reason
     assert "drive.ambient" in other
 
 
@@ -199,7 +200,7 @@ def test_a_full_section_is_its_half_twice(tyre: Study) -> None:
     plan = plan_of(whole, {"drive.ambient": ("15 degC", "25 degC")}, sample="sobol", count=12)
     found = surrogate(plan, tolerance=0.02)
     both = whole.replace({"drive.ambient": "18 degC"})
-    reduced = found.answers([both])[0]["answers"]
+    reduced = found.answers([both])[0].answers
     half = answers(run(both.replace({"mesh.section": "half"})))
     assert reduced["hottest_degC"] == pytest.approx(half["hottest_degC"], abs=0.05)
     assert reduced["heat_J"] == pytest.approx(half["heat_J"], rel=2e-3)
@@ -224,7 +225,7 @@ def test_a_model_travels_as_arrays(found: Surrogate, plan: Plan) -> None:
     import pickle
 
     packed = pickle.loads(pickle.dumps(pack(found.model, plan.packed)))
-    there = perform_reduced(ReducedTask([plan.variants[1]], None), packed)["outcomes"][0]["answers"]
-    here = found.answers([plan.study.replace(plan.variants[1])])[0]["answers"]
+    there = perform_reduced(ReducedTask([plan.variants[1]], None), packed)[0].answers
+    here = found.answers([plan.study.replace(plan.variants[1])])[0].answers
     assert temperature_error(there, here) < 1e-9
     assert json.dumps(there)

@@ -38,7 +38,7 @@ def test_studies_with_effects_are_met(effects: list[dict[str, object]]) -> None:
     tyre = study("nasa-22x5.5-8pr", {**SHORT, "effects": effects})
     found = surrogate(plan_of(tyre, SPEEDS, sample="sobol", count=12), tolerance=0.02)
     fresh = tyre.replace({"drive.speed": "21.3 mph"})
-    reduced, full = found.answers([fresh])[0]["answers"], answers(run(fresh))
+    reduced, full = found.answers([fresh])[0].answers, answers(run(fresh))
     plain = answers(run(fresh.replace({"effects": []})))
     assert temperature_error(plain, full) > 0.5
     assert temperature_error(reduced, full) < 0.02
@@ -56,9 +56,9 @@ def test_an_effect_changes_nothing_for_those_beside_it(plain: Study) -> None:
     # Marched side by side, each has its own windows' sources: tables where the cycle alone heats, calls where not.
     together = reduced_answers(found.model, [plain, acted, plain], None)
     alone = [reduced_answers(found.model, [one], None)[0] for one in (plain, acted)]
-    first, second, third = (one["answers"] for one in together)
+    first, second, third = (one.answers for one in together)
     assert temperature_error(first, third) < 1e-9
-    for one, other in ((first, alone[0]["answers"]), (second, alone[1]["answers"])):
+    for one, other in ((first, alone[0].answers), (second, alone[1].answers)):
         assert temperature_error(one, other) < 5e-3
     assert temperature_error(first, second) > 0.5
 
@@ -90,5 +90,5 @@ def test_tan_delta_over_frequency_is_met() -> None:
         plan_of(passenger, {"drive.speed": ("60 km/h", "110 km/h")}, sample="sobol", count=12), tolerance=0.02
     )
     fresh = passenger.replace({"drive.speed": "93 km/h"})
-    reduced, full = found.answers([fresh])[0]["answers"], answers(run(fresh))
+    reduced, full = found.answers([fresh])[0].answers, answers(run(fresh))
     assert temperature_error(reduced, full) < 0.02

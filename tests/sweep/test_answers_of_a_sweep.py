@@ -30,6 +30,7 @@ from tyrefem.sweep.tornado import Tornado, tornado_plan
 from tyrefem.variants.answers import TIME_TO, answer_names
 from tyrefem.variants.card import EnvelopeCard, LimitCard, OptimiseCard
 from tyrefem.variants.execution import Execution
+from tyrefem.variants.outcomes import Answered, Failed
 from tyrefem.variants.plan import Plan, plan_of
 from tyrefem.variants.samples import drawn
 from tyrefem.variants.varied import Varied
@@ -129,7 +130,7 @@ class Formula:
             # The study as it is changes nothing.
             value = self.formula(numbers) if numbers else 99.0
             found = {self.answer: value, "gas_pressure_Pa": numbers[0] if numbers else 0.0}
-            yield place, {"answers": found} if math.isfinite(value) else {"failure": "burst"}
+            yield place, Answered(found) if math.isfinite(value) else Failed("burst")
 
 
 def ishigami(numbers: list[float]) -> float:

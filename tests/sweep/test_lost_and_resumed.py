@@ -19,8 +19,8 @@ import pytest
 from tyrefem import study
 from tyrefem.sweep.sweep import Sweep, sweep
 from tyrefem.variants.dask_cluster import Dask
+from tyrefem.variants.outcomes import Outcome
 from tyrefem.variants.plan import Plan, plan_of
-from tyrefem.variants.schedulers import Outcome
 from tyrefem.variants.store import NAME
 
 COARSE = {"mesh.size": "12 mm", "numerics.tolerance": "0.5 K", "drive.duration": "120 s"}
@@ -96,7 +96,7 @@ def test_a_sweep_killed_with_9_resumes_and_its_workers_are_gone(tmp_path: Path, 
     assert sorted(line["variant"] for line in lines) == list(range(8))
     for line in lines:
         assert line["answers"]["hottest_degC"] == pytest.approx(
-            whole.outcomes[line["variant"]]["answers"]["hottest_degC"], abs=1e-9
+            whole.outcomes[line["variant"]].answers["hottest_degC"], abs=1e-9
         )
 
 
@@ -170,9 +170,9 @@ def test_a_cluster_that_loses_a_worker_answers_every_variant_as_one_process_does
     assert found.complete
     assert not found.failed
     for number, outcome in whole.outcomes.items():
-        for name, value in outcome["answers"].items():
+        for name, value in outcome.answers.items():
             same = pytest.approx(value, rel=1e-9, abs=1e-9, nan_ok=True) if isinstance(value, float) else value
-            assert found.outcomes[number]["answers"][name] == same
+            assert found.outcomes[number].answers[name] == same
 
 
 def test_a_lost_scheduler_costs_only_what_was_running(

@@ -15,6 +15,7 @@ from tyrefem.errors import InputError
 from tyrefem.sweep.sweep import sweep
 from tyrefem.variants.dask_cluster import Dask
 from tyrefem.variants.execution import SweepSettings
+from tyrefem.variants.outcomes import Failed
 from tyrefem.variants.plan import plan_of
 from tyrefem.variants.schedulers import Here, Local
 
@@ -79,8 +80,8 @@ def test_a_process_that_is_killed_costs_nothing(tmp_path: Path) -> None:
 
 def test_a_task_that_kills_its_process_is_named_and_the_others_go_on() -> None:
     found = dict(Local(2).outcomes(always_dies, list(range(6))))
-    assert "died" in found[2]["failure"]
-    assert {n for n, one in found.items() if "answers" in one} == {0, 1, 3, 4, 5}
+    assert "died" in found[2].reason
+    assert {n for n, one in found.items() if not isinstance(one, Failed)} == {0, 1, 3, 4, 5}
 
 
 def test_no_scheduler_there_is_one_clear_error() -> None:
@@ -94,11 +95,11 @@ class Tearing:
     def __init__(self) -> None:
         self.lost = 0
 
-    def outcomes(self, work: Any, tasks: Sequence[Any], common: Any = None) -> Iterator[tuple[int, dict[str, Any]]]:
+    def outcomes(self, work: Any, tasks: Sequence[Any], common: Any = None) -> Iterator[tuple[int, Any]]:
         for place, task in enumerate(tasks):
             torn = isinstance(task, list)
             self.lost += torn
-            yield place, {"failure": "died"} if torn else work(task)
+            yield place, Failed("died") if torn else work(task)
 
 
 def test_variants_of_a_lost_piece_are_tried_one_by_one() -> None:

@@ -122,9 +122,9 @@ def test_variants_that_bend_alike_share_mesh_and_strain_cycle() -> None:
     alone = {n: coarse.replace(plan.variants[n]).run().history.maximum.temperature for n in (1, 5)}
     # Back and forth between the sections, as tasks of other processes in between leave them.
     order = (0, 3, 1, 4, 2, 5)
-    found = {n: perform(plan.task(n))["answers"]["hottest_degC"] for n in order}
+    found = {n: perform(plan.task(n)).answers["hottest_degC"] for n in order}
     assert {n: found[n] for n in alone} == pytest.approx(alone, abs=1e-9)
-    tyres = task._recent.tyres
+    tyres = task.recent_tyres.tyres
     assert len(tyres) == task.REMEMBERED
     assert len({id(tyre.schedule) for tyre in tyres}) == 2
     assert len({id(tyre.mesh) for tyre in tyres}) == 2

@@ -25,6 +25,7 @@ from tyrefem.reduced.pod import modes
 from tyrefem.reduced.training import weight
 from tyrefem.simulation.rolling_tyre import RollingTyre
 from tyrefem.simulation.surroundings import GAS, RIM
+from tyrefem.variants.outcomes import NotReducible
 
 Array = NDArray[np.float64]
 Readings = dict[str, Array]
@@ -144,7 +145,7 @@ class ReducedDrive:
             for numbers, part in side_by_side(self.model, tyres, tolerance, together):
                 if isinstance(part, Marched):
                     found.append((numbers, part))
-                elif "not_reducible" in part:
+                elif isinstance(part, NotReducible):
                     refused += numbers
         return found, refused
 

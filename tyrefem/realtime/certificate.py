@@ -31,8 +31,11 @@ from tyrefem.requirements import Requirements
 from tyrefem.simulation.estimate import RunEstimate
 from tyrefem.simulation.rolling_tyre import RollingTyre
 from tyrefem.simulation.run import run
+from tyrefem.variants.outcomes import Failed
 from tyrefem.variants.schedulers import Here, Local, Scheduler
 from tyrefem.variants.task import Bundle, bundle, unpacked
+
+Array = NDArray[np.float64]
 
 
 @dataclass(frozen=True, eq=False)
@@ -67,18 +70,40 @@ class RealTimeCertificate:
     tables: Mapping[str, float]
 
 
-_last = threading.local()
+@dataclass(frozen=True, eq=False)
+class ExamRun:
+    """What a full run of an exam's drive says.
+
+    Parameters
+    ----------
+    snapshots : what it teaches. hot : nodes that are the hottest at some time. times : of its readings, (n,) s.
+    answers : output -> (n,) degC, or N.
+    """
+
+    snapshots: Snapshots
+    hot: NDArray[np.intp]
+    times: Array
+    answers: Mapping[str, Array]
 
 
-def sit(exam: Exam) -> dict[str, Any]:
-    """Done in a worker: ``{"snapshots", "hot", "times", "answers"}`` or ``{"failure"}``."""
+class LastTyre(threading.local):
+    """The tyre that a thread ran last, from which the next run takes what is the same; every thread has its own."""
+
+    tyre: RollingTyre | None = None
+
+
+_last = LastTyre()
+
+
+def sit(exam: Exam) -> ExamRun | Failed:
+    """Done in a worker: run the drive of an exam in full."""
     from tyrefem.conduction import SolverError
 
     try:
         study = exam.course.study(unpacked(exam.packed), exam.every)
-        result = run(study, like=getattr(_last, "tyre", None))
+        result = run(study, like=_last.tyre)
     except (InputError, SolverError) as error:
-        return {"failure": str(error)}
+        return Failed(str(error))
     _last.tyre = result.tyre
     readings, values = result.readings, np.asarray(result.history.values)
     columns = {name: readings[name].to_numpy() for name in readings.columns if name != "time_s"}
@@ -86,18 +111,14 @@ def sit(exam: Exam) -> dict[str, Any]:
     power = result.heat_budget.power("generated")
     # A ramp to rest may end at a speed of rounding.
     resistance = np.divide(power, speed, out=np.zeros_like(power), where=speed >= STANDSTILL)
-    return {
-        "snapshots": snapshots(result, exam.fields),
-        "hot": np.unique(values.argmax(axis=1)),
-        "times": result.times,
-        "answers": columns | {"hottest": values.max(axis=1), "rolling_resistance": resistance},
-    }
+    answers = columns | {"hottest": values.max(axis=1), "rolling_resistance": resistance}
+    return ExamRun(snapshots(result, exam.fields), np.unique(values.argmax(axis=1)), result.times, answers)
 
 
-def differences(tyre: RealTimeTyre, course: Course, full: Mapping[str, Any], step: float = 1.0) -> dict[str, float]:
+def differences(tyre: RealTimeTyre, course: Course, full: ExamRun, step: float = 1.0) -> dict[str, float]:
     """Output -> largest difference to a full run, at its readings on whole steps, K or N."""
     tyre.reset(course.initial)
-    times, answers = full["times"], full["answers"]
+    times, answers = full.times, full.answers
     due = {round(float(t) / step): i for i, t in enumerate(times) if abs(t / step - round(t / step)) < 1e-6 and t > 0}
     worst = dict.fromkeys(answers, 0.0)
     for number in range(1, max(due) + 1):
@@ -122,9 +143,6 @@ def certificate(
     return RealTimeCertificate(
         kinds[0], kinds[1], worst, tolerance, (half, len(errors) - half), trained, duration, tables
     )
-
-
-Array = NDArray[np.float64]
 
 
 #: What a real-time model needs of a study.
@@ -241,25 +259,25 @@ class _Tool:
         seconds = RUNS * run.march.time / workers + CYCLES * run.mechanics.time + STEPPING * self.horizon
         estimate.warn_of(seconds, f"training and certifying a real-time model of {self.study.name}")
 
-    def full(self, courses: Sequence[Course], what: str) -> list[dict[str, Any]]:
+    def full(self, courses: Sequence[Course], what: str) -> list[ExamRun]:
         """Full runs of drives."""
         exams = [Exam(self.packed, course, self.every, self.settings.fineness.fields) for course in courses]
-        outcomes: dict[int, dict[str, Any]] = {}
+        runs: dict[int, ExamRun] = {}
         for place, outcome in self.scheduler.outcomes(sit, exams):
-            if "failure" in outcome:
-                raise InputError(f"a full run failed: {outcome['failure']}")
-            outcomes[place] = outcome
-            self.tick(what, len(outcomes), len(exams))
-        return [outcomes[place] for place in range(len(exams))]
+            if isinstance(outcome, Failed):
+                raise InputError(f"a full run failed: {outcome.reason}")
+            runs[place] = outcome
+            self.tick(what, len(runs), len(exams))
+        return [runs[place] for place in range(len(exams))]
 
-    def model(self, learnt: Sequence[Mapping[str, Any]]) -> dict[str, Any]:
+    def model(self, learnt: Sequence[ExamRun]) -> dict[str, Any]:
         """Arrays of a model of what was learnt."""
-        taught: list[Snapshots] = [one["snapshots"] for one in learnt]
+        taught = [run.snapshots for run in learnt]
         none = np.zeros((0, taught[0].fields.shape[1]))
         self.reduced = trained(
             self.base, [*taught, Snapshots(none, self._sources(taught))], choice=self.settings.fineness
         )
-        hot = np.unique(np.concatenate([one["hot"] for one in learnt]))
+        hot = np.unique(np.concatenate([run.hot for run in learnt]))
         return arrays_of(self.reduced, self.probe, self.tables, hot)
 
     def _sources(self, taught: Sequence[Snapshots]) -> Array:

@@ -12,11 +12,12 @@ from numpy.typing import NDArray
 from tyrefem.brief import Brief
 from tyrefem.inputs.changes import all_changed, value_at
 from tyrefem.inputs.study import StudyData
-from tyrefem.reduced.answers import reduced_answers
+from tyrefem.reduced.answers import ReducedOutcome, reduced_answers
 from tyrefem.reduced.model import NotReducibleError, ReducedModel
 from tyrefem.reduced.training import ReducedFineness
-from tyrefem.reduced.training_rounds import Packed, School, Tick, pack
+from tyrefem.reduced.training_rounds import Learnt, Packed, School, Tick, check_reducible, pack
 from tyrefem.variants.execution import SweepSettings
+from tyrefem.variants.outcomes import Answered, NotReducible
 from tyrefem.variants.plan import Plan
 from tyrefem.variants.samples import changes_at
 from tyrefem.variants.schedulers import Here, Scheduler
@@ -88,11 +89,11 @@ class Surrogate(Brief):
         """To be sent to other processes; ``base`` is the study it was made for."""
         return pack(self.model, base)
 
-    def answers(self, studies: Sequence[StudyData]) -> list[dict[str, Any]]:
-        """``{"answers"}`` of studies, marched side by side; ``{"not_reducible": why}`` of one that is outside the box,
-        or differs in something that the box does not vary."""
+    def answers(self, studies: Sequence[StudyData]) -> list[ReducedOutcome]:
+        """What becomes of studies, marched side by side; one is `NotReducible` outside the box, or where it differs in
+        something that the box does not vary."""
         reasons = [outside(study, self.model.base.study, self.varied) for study in studies]
-        found: list[dict[str, Any]] = [{"not_reducible": why} for why in reasons]
+        found: list[ReducedOutcome] = [NotReducible(why) for why in reasons]
         inside = [number for number, why in enumerate(reasons) if not why]
         outcomes = reduced_answers(self.model, [studies[number] for number in inside], self.time_to)
         for number, outcome in zip(inside, outcomes, strict=True):
@@ -166,11 +167,12 @@ def surrogate(
         known = len(lesson.learnt)
         full = lesson.run(places, min(plan.study.tolerance, max(tolerance, FINEST)), "certifying", asked=True)
         reduced = reduced_answers(model, [plan.study.replace(lesson.variant(one)) for one in places], plan.time_to)
-        refused = next((one["not_reducible"] for one in reduced if "not_reducible" in one), None)
-        if refused is not None:
-            raise NotReducibleError(refused)
-        both = [pair for pair in zip(reduced, full, strict=True) if all("answers" in one for one in pair)]
-        pairs = [(a["answers"], b["answers"]) for a, b in both]
+        check_reducible(reduced)
+        pairs = [
+            (mine.answers, theirs.answers)
+            for mine, theirs in zip(reduced, full, strict=True)
+            if isinstance(mine, Answered) and isinstance(theirs, Learnt)
+        ]
         if not pairs:
             raise NotReducibleError("no run to certify with succeeded")
         certificate = certified(pairs, tolerance, known, lesson.amended)

@@ -8,14 +8,15 @@ from __future__ import annotations
 import functools
 import hashlib
 from collections.abc import Callable, Mapping, Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, field
 from typing import Any
 
 import numpy as np
 from numpy.typing import NDArray
 
+from tyrefem.cache import Cache
 from tyrefem.errors import InputError
-from tyrefem.reduced.answers import reduced_answers, side_by_side
+from tyrefem.reduced.answers import ReducedOutcome, reduced_answers, side_by_side
 from tyrefem.reduced.model import NotReducibleError, ReducedModel
 from tyrefem.reduced.residual import TIME_TOLERANCE as CORRECTED_TO
 from tyrefem.reduced.residual import correction
@@ -23,10 +24,11 @@ from tyrefem.reduced.training import ReducedFineness, Snapshots, snapshots, trai
 from tyrefem.simulation.rolling_tyre import RollingTyre
 from tyrefem.simulation.run import run
 from tyrefem.variants.answers import answers
+from tyrefem.variants.outcomes import Failed, NotReducible
 from tyrefem.variants.plan import Plan
 from tyrefem.variants.samples import changes_at
-from tyrefem.variants.schedulers import Scheduler
-from tyrefem.variants.task import Bundle, Task
+from tyrefem.variants.schedulers import Result, Scheduler
+from tyrefem.variants.task import Bundle, Task, unpacked
 
 Array = NDArray[np.float64]
 
@@ -53,27 +55,20 @@ class Packed:
 
     def unpacked(self) -> ReducedModel:
         """The model again, once per process."""
-        if self.digest not in _MODELS:
-            _MODELS.clear()
-            _MODELS[self.digest] = ReducedModel(
-                base_of(self.base), self.V, self.samples, self.nodes_from_samples, self.hot
-            )
-        return _MODELS[self.digest]
+        return _models.get(
+            self.digest,
+            lambda: ReducedModel(base_of(self.base), self.V, self.samples, self.nodes_from_samples, self.hot),
+        )
 
 
 def base_of(packed: Bundle) -> RollingTyre:
     """The tyre of a study, whose mesh and operators serve all its variants; once per process."""
-    if packed.digest not in _BASES:
-        from tyrefem.variants.task import unpacked
-
-        remember(packed, RollingTyre(unpacked(packed)))
-    return _BASES[packed.digest]
+    return _bases.get(packed.digest, lambda: RollingTyre(unpacked(packed)))
 
 
 def remember(packed: Bundle, base: RollingTyre) -> None:
-    """Let this tyre be the one that `base_of` gives here."""
-    _BASES.clear()
-    _BASES[packed.digest] = base
+    """Let `base_of` give this tyre here, unless it has one of the same study."""
+    _bases.get(packed.digest, lambda: base)
 
 
 def pack(model: ReducedModel, base: Bundle) -> Packed:
@@ -81,8 +76,10 @@ def pack(model: ReducedModel, base: Bundle) -> Packed:
     return Packed(base, model.V, model.samples, model.nodes_from_samples, model.hot)
 
 
-_MODELS: dict[str, ReducedModel] = {}
-_BASES: dict[str, RollingTyre] = {}
+#: Models and tyres that a process keeps: those of two sweeps at once, on threads of one worker.
+KEPT = 2
+_models: Cache[ReducedModel] = Cache(KEPT)
+_bases: Cache[RollingTyre] = Cache(KEPT)
 
 
 @dataclass(frozen=True, eq=False)
@@ -93,20 +90,19 @@ class ReducedTask:
     time_to: float | None = None
 
 
-def perform_reduced(task: ReducedTask, packed: Packed) -> dict[str, Any]:
-    """``{"outcomes": [...]}``, one per variant: ``answers``, ``failure`` or ``not_reducible``."""
+def perform_reduced(task: ReducedTask, packed: Packed) -> tuple[ReducedOutcome, ...]:
+    """Done in a worker: what becomes of every variant, in their order."""
     model = packed.unpacked()
-    found: list[dict[str, Any]] = [{} for _ in task.changes]
+    outcomes: dict[int, ReducedOutcome] = {}
     studies, places = [], []
     for place, changes in enumerate(task.changes):
         try:
             studies.append(model.base.study.replace(changes))
             places.append(place)
         except InputError as error:
-            found[place] = {"failure": str(error)}
-    for place, outcome in zip(places, reduced_answers(model, studies, task.time_to), strict=True):
-        found[place] = outcome
-    return {"outcomes": found}
+            outcomes[place] = Failed(str(error))
+    outcomes |= dict(zip(places, reduced_answers(model, studies, task.time_to), strict=True))
+    return tuple(outcomes[place] for place in range(len(task.changes)))
 
 
 Tick = Callable[[str, int, int], None]
@@ -143,19 +139,27 @@ class Lesson:
     asked: bool
 
 
-def learn(lesson: Lesson) -> dict[str, Any]:
-    """Done in a worker: ``{"snapshots", "answers"}`` or ``{"failure"}``."""
+@dataclass(frozen=True, eq=False)
+class Learnt:
+    """What a full run teaches, and its answers; none where none are wanted."""
+
+    snapshots: Snapshots
+    answers: Mapping[str, Any] = field(default_factory=dict)
+
+
+def learn(lesson: Lesson) -> Learnt | Failed:
+    """Done in a worker: run a variant in full."""
     from tyrefem.conduction import SolverError
 
     task, base = lesson.task, base_of(lesson.task.packed)
     try:
         study = base.study.replace(task.changes)
         if not lesson.asked:
-            return {"snapshots": training_run(RollingTyre(study, base), lesson.time_tolerance)}
+            return Learnt(training_run(RollingTyre(study, base), lesson.time_tolerance))
         result = run(study.replace({"numerics.tolerance": f"{lesson.time_tolerance:.6g} delta_degC"}), like=base)
-        return {"snapshots": snapshots(result, lesson.fields), "answers": answers(result, task.time_to)}
+        return Learnt(snapshots(result, lesson.fields), answers(result, task.time_to))
     except (InputError, SolverError) as error:
-        return {"failure": str(error)}
+        return Failed(str(error))
 
 
 @dataclass(frozen=True, eq=False)
@@ -166,28 +170,43 @@ class Amendment:
     shares: Sequence[float]
 
 
-def amend(work: Amendment, packed: Packed) -> dict[str, Any]:
-    """Done in a worker: ``{"each"}``: ``{"snapshots", "correction"}``, ``{"failure"}`` or ``{"not_reducible"}``."""
-    model, base = packed.unpacked(), packed.unpacked().base
-    found: list[dict[str, Any]] = [{} for _ in work.changes]
+@dataclass(frozen=True, eq=False)
+class Corrected:
+    """What the full model makes of a reduced run, and by how much at most, K."""
+
+    snapshots: Snapshots
+    largest: float
+
+
+def amend(work: Amendment, packed: Packed) -> tuple[Corrected | Failed | NotReducible, ...]:
+    """Done in a worker: correct reduced runs of variants, in their order."""
+    model = packed.unpacked()
+    base = model.base
+    outcomes: dict[int, Corrected | Failed | NotReducible] = {}
     tyres: dict[int, RollingTyre] = {}
     for number, changes in enumerate(work.changes):
         try:
             tyres[number] = RollingTyre(base.study.replace(changes), base)
         except InputError as error:
-            found[number] = {"failure": str(error)}
+            outcomes[number] = Failed(str(error))
     numbers = list(tyres)
     try:
         for places, part in side_by_side(model, list(tyres.values()), CORRECTED_TO):
             for place, number in enumerate(numbers[one] for one in places):
-                if isinstance(part, dict):
-                    found[number] = part
+                if isinstance(part, Failed | NotReducible):
+                    outcomes[number] = part
                 else:
-                    snapshots, largest = correction(part, place, work.shares[number])
-                    found[number] = {"snapshots": snapshots, "correction": largest}
+                    outcomes[number] = Corrected(*correction(part, place, work.shares[number]))
     except InputError as error:
-        found = [one or {"failure": str(error)} for one in found]
-    return {"each": found}
+        outcomes = {number: Failed(str(error)) for number in numbers} | outcomes
+    return tuple(outcomes[number] for number in range(len(work.changes)))
+
+
+def check_reducible(outcomes: Sequence[object]) -> None:
+    """Raise `NotReducibleError` where a reduced model cannot follow one of the variants."""
+    for outcome in outcomes:
+        if isinstance(outcome, NotReducible):
+            raise NotReducibleError(outcome.reason)
 
 
 class School:
@@ -212,8 +231,8 @@ class School:
         """Changes at a place of the unit box."""
         return changes_at(self.plan.varied, place)
 
-    def run(self, places: Sequence[Array], time_tolerance: float, what: str, asked: bool) -> list[dict[str, Any]]:
-        """Outcomes of full runs; their snapshots are learnt."""
+    def run(self, places: Sequence[Array], time_tolerance: float, what: str, asked: bool) -> list[Learnt | Failed]:
+        """What full runs teach, in their order; their snapshots are learnt."""
         lessons = [
             Lesson(
                 Task(n, self.plan.packed, self.variant(place), self.plan.time_to),
@@ -223,11 +242,13 @@ class School:
             )
             for n, place in enumerate(places)
         ]
-        found = self._done(learn, lessons, what)
-        if all("failure" in one for one in found):
-            raise NotReducibleError(f"no run for {what} succeeded: {found[0]['failure']}")
-        self.learnt += [one["snapshots"] for one in found if "snapshots" in one]
-        return found
+        outcomes = self._done(learn, lessons, what)
+        learnt = [outcome for outcome in outcomes if isinstance(outcome, Learnt)]
+        failed = [outcome for outcome in outcomes if isinstance(outcome, Failed)]
+        if failed and not learnt:
+            raise NotReducibleError(f"no run for {what} succeeded: {failed[0].reason}")
+        self.learnt += [outcome.snapshots for outcome in learnt]
+        return outcomes
 
     def rounds(self, most: int, enough: float) -> ReducedModel:
         """A model corrected at fresh places until corrections are small."""
@@ -241,20 +262,19 @@ class School:
             work = [Amendment(changes[n : n + TOGETHER], shares[n : n + TOGETHER]) for n in firsts]
             parts = self._done(amend, work, "correcting", packed)
             # A part that failed as a whole, as where its process died, teaches nothing.
-            found = [one for part in parts for one in part.get("each", [part])]
-            refused = next((one["not_reducible"] for one in found if "not_reducible" in one), None)
-            if refused is not None:
-                raise NotReducibleError(refused)
-            self.learnt += [one["snapshots"] for one in found if "snapshots" in one]
-            self.amended += len(found)
-            if max((one["correction"] for one in found if "correction" in one), default=0.0) <= enough:
+            outcomes = [outcome for part in parts for outcome in ((part,) if isinstance(part, Failed) else part)]
+            check_reducible(outcomes)
+            corrected = [outcome for outcome in outcomes if isinstance(outcome, Corrected)]
+            self.learnt += [outcome.snapshots for outcome in corrected]
+            self.amended += len(outcomes)
+            if max((outcome.largest for outcome in corrected), default=0.0) <= enough:
                 break
         return trained(self.base, self.learnt, self.choice)
 
     def _done(
-        self, work: Callable[..., dict[str, Any]], tasks: Sequence[Any], what: str, common: Any = None
-    ) -> list[dict[str, Any]]:
-        outcomes: dict[int, dict[str, Any]] = {}
+        self, work: Callable[..., Result], tasks: Sequence[Any], what: str, common: Any = None
+    ) -> list[Result | Failed]:
+        outcomes: dict[int, Result | Failed] = {}
         for place, outcome in self.scheduler.outcomes(work, tasks, common):
             outcomes[place] = outcome
             self.tick(what, len(outcomes), len(tasks))

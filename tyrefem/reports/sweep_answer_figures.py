@@ -14,6 +14,7 @@ from tyrefem.sweep.optimum import Optimum
 from tyrefem.sweep.sobol_indices import Indices
 from tyrefem.sweep.tornado import Tornado
 from tyrefem.variants.answer_units import difference_unit, name_of, shown
+from tyrefem.variants.outcomes import Answered
 
 if TYPE_CHECKING:
     import pandas as pd
@@ -122,8 +123,8 @@ def search(found: Optimum) -> Figure:
     axes.plot(order[~fine], table[found.answer][~fine], "x", ms=3.5, color="#b0b0b0", label="breaks a limit")
     axes.plot(order[fine], table[found.answer][fine], "o", ms=3, color=PALETTE[0], label="keeps the limits")
     axes.step(order, table["best_so_far"], where="post", color=PALETTE[1], lw=1.5, label="best so far")
-    if "answers" in found.nominal:
-        nominal = float(found.nominal["answers"][found.answer])
+    if isinstance(found.nominal, Answered):
+        nominal = float(found.nominal.answers[found.answer])
         axes.axhline(nominal, color=QUIET, lw=0.9, ls="--", label="the study as it is")
     axes.set_xlabel("variants evaluated", fontsize=FONT)
     axes.set_ylabel(label(found.answer), fontsize=FONT)

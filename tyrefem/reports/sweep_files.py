@@ -93,12 +93,15 @@ def summarised(found: DesignData) -> dict[str, Any]:
 
 def of_sample(found: Sweep) -> dict[str, Any]:
     """The variants of the sample and who answered them."""
-    by = [one.get("by", "failed") for one in found.outcomes.values()]
     certificate = found.certificate
     return {
         **found.plan.how,
         "variants": len(found.plan.variants),
-        "finished": {how: by.count(how) for how in ("full", "reduced", "failed")},
+        "finished": {
+            "full": len(found.answered) - found.reduced,
+            "reduced": found.reduced,
+            "failed": len(found.outcomes) - len(found.answered),
+        },
         "reduced_model": None
         if certificate is None
         else {
@@ -133,9 +136,8 @@ def how_answered(found: Sweep) -> str:
     told = f"{len(found.outcomes)} of {len(found.plan.variants)} variants in {found.seconds:.1f} s"
     told += f", {found.taken_up} of them taken up" if found.taken_up else ""
     if certificate is not None:
-        reduced = sum(one.get("by") == "reduced" for one in found.outcomes.values())
         told += (
-            f"; {reduced} by a reduced model from {certificate.trained_on - certificate.amended} runs"
+            f"; {found.reduced} by a reduced model from {certificate.trained_on - certificate.amended} runs"
             f" and {certificate.amended} corrections, within {certificate.worst:.2g} K of"
             f" {certificate.cases} fresh full runs"
         )

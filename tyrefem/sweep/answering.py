@@ -15,6 +15,7 @@ from typing import TYPE_CHECKING, Any, Self
 from tyrefem.estimates import work as estimate
 from tyrefem.simulation.estimate import RunEstimate
 from tyrefem.variants.execution import Execution
+from tyrefem.variants.outcomes import Failed, NotReducible, Outcome, outcome_of
 from tyrefem.variants.plan import Plan
 from tyrefem.variants.schedulers import Here, Local
 from tyrefem.variants.store import Name, Store
@@ -22,9 +23,6 @@ from tyrefem.variants.task import Task, perform, perform_all
 
 if TYPE_CHECKING:
     from tyrefem.reduced.surrogate import Surrogate, SurrogateCertificate
-
-Outcome = dict[str, Any]
-
 
 #: Fewer variants than this per number that varies are run in full: training would cost as much.
 WORTH_TRAINING = 12
@@ -42,7 +40,7 @@ class Answering:
     plan : the study, what varies (the box of a reduced model) and the time to a temperature.
     how : see `Execution`. variants : number -> changes. digest : of what the folder may hold the outcomes of.
 
-    ``outcomes``: number -> ``{"answers": ..., "by": "full" | "reduced"}`` or ``{"failure": ...}``.
+    ``outcomes``: number -> `Answered` or `Failed`.
     ``certificate``: of the reduced model. ``reduced``: does it answer? ``why_full``: why there is none.
     ``taken_up``: how many the folder had.
     """
@@ -86,7 +84,7 @@ class Answering:
         """Let a variant have the outcome that the folder has."""
         known = None if self._store is None else self._store.done.get(self.name(number))
         if known is not None:
-            self.outcomes[number] = {key: value for key, value in known.items() if key != "variant"}
+            self.outcomes[number] = outcome_of(known)
 
     def train(self, expected: int) -> None:
         """Let a reduced model answer, if asked for and worth it, and certified within the tolerance.
@@ -158,16 +156,15 @@ class Answering:
         where, size = self.how.where, min(max(len(left) // self.how.settings.single, 1), most)
         if size == 1:
             for place, outcome in where.outcomes(perform, [self._task(n) for n in left]):
-                yield self._keep({left[place]: _by(outcome, "full")})
+                yield self._keep({left[place]: outcome})
             return
         pieces = [left[first : first + size] for first in range(0, len(left), size)]
         lost: list[int] = []
-        for place, outcome in where.outcomes(perform_all, [[self._task(n) for n in piece] for piece in pieces]):
-            if "outcomes" in outcome:
-                both = zip(pieces[place], outcome["outcomes"], strict=True)
-                yield self._keep({n: _by(one, "full") for n, one in both})
-            else:
+        for place, outcomes in where.outcomes(perform_all, [[self._task(n) for n in piece] for piece in pieces]):
+            if isinstance(outcomes, Failed):
                 lost += pieces[place]
+            else:
+                yield self._keep(dict(zip(pieces[place], outcomes, strict=True)))
         if lost:
             # One of them took its worker down: the others are not to suffer for it.
             yield from self._run(lost, 1)
@@ -179,7 +176,7 @@ class Answering:
         """Take outcomes into memory and onto disk."""
         self.outcomes.update(found)
         if self._store is not None:
-            self._store.add({self.name(n): outcome for n, outcome in found.items()})
+            self._store.add({self.name(n): outcome.entry for n, outcome in found.items()})
         return len(self.outcomes)
 
 
@@ -192,13 +189,12 @@ def by_model(
     packed, piece = trained.packed(plan.packed), how.settings.piece
     firsts = range(0, len(variants), piece)
     tasks = [ReducedTask(list(variants[first : first + piece]), plan.time_to) for first in firsts]
-    for number, outcome in how.where.outcomes(perform_reduced, tasks, packed):
-        found = enumerate(outcome.get("outcomes", ()), firsts[number])
-        yield {place: _by(one, "reduced") for place, one in found if "not_reducible" not in one}
-
-
-def _by(outcome: Outcome, how: str) -> Outcome:
-    return outcome if "failure" in outcome else {**outcome, "by": how}
+    for number, outcomes in how.where.outcomes(perform_reduced, tasks, packed):
+        if isinstance(outcomes, Failed):
+            yield {}
+            continue
+        numbered = enumerate(outcomes, firsts[number])
+        yield {place: outcome for place, outcome in numbered if not isinstance(outcome, NotReducible)}
 
 
 def _certificate(noted: Mapping[str, Any] | None) -> SurrogateCertificate | None:

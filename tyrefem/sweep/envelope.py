@@ -21,6 +21,7 @@ from tyrefem.variants.answer_units import name_of, shown
 from tyrefem.variants.answers import check_answer
 from tyrefem.variants.card import EnvelopeCard
 from tyrefem.variants.execution import Execution, Said
+from tyrefem.variants.outcomes import Failed, Outcome
 from tyrefem.variants.plan import Plan, sensible
 from tyrefem.variants.varied import Varied
 
@@ -121,13 +122,13 @@ class SpeedSearch:
         """Speed found; NaN: none."""
         return self._speed
 
-    def take(self, outcome: Mapping[str, Any], answer: str) -> None:
+    def take(self, outcome: Outcome, answer: str) -> None:
         """An outcome at `next`."""
         speed = self.next
-        if "failure" in outcome:
-            self.failure, self.settled, self._speed = outcome["failure"], True, math.nan
+        if isinstance(outcome, Failed):
+            self.failure, self.settled, self._speed = outcome.reason, True, math.nan
             return
-        value = float(outcome["answers"][answer])
+        value = float(outcome.answers[answer])
         if math.isnan(self.at_low):
             self.at_low = value
             if value >= self.limit:
@@ -259,7 +260,7 @@ def envelope(study: StudyData, card: EnvelopeCard, how: Execution | None = None,
             found = asked([operating(pairs[n], f"{searches[n].next:.6g} m/s") for n in waiting])
             for n, outcome in zip(waiting, found, strict=True):
                 searches[n].take(outcome, card.answer)
-                by[n] = outcome.get("by", "")
+                by[n] = "" if isinstance(outcome, Failed) else outcome.by
     error = {"reduced": asked.certificate.worst if asked.certificate else math.nan, "full": 0.0}
     rows = [
         {

@@ -20,6 +20,7 @@ from tyrefem.variants.answer_units import difference_unit, name_of, shown
 from tyrefem.variants.answers import NEVER, check_answer
 from tyrefem.variants.card import LimitCard, OptimiseCard
 from tyrefem.variants.execution import Execution, Said
+from tyrefem.variants.outcomes import Answered, Failed, Outcome
 from tyrefem.variants.plan import Plan
 from tyrefem.variants.samples import grid
 from tyrefem.variants.varied import Varied
@@ -28,7 +29,6 @@ if TYPE_CHECKING:
     import pandas as pd
 
 Array = NDArray[np.float64]
-Outcome = Mapping[str, Any]
 
 
 #: The search ends when the population's answers differ by this share of their mean.
@@ -52,7 +52,7 @@ def best_known(known: Sweep | None, card: OptimiseCard) -> list[Array]:
     if known is None:
         return []
     plan = known.plan
-    fine = [n for n, one in known.outcomes.items() if "answers" in one and violation(one, plan.limits) == 0]
+    fine = [n for n, outcome in known.answered.items() if violation(outcome, plan.limits) == 0]
     order = sorted(fine, key=lambda n: (objective(known.outcomes[n], card), n))
     return [np.array([_place(one, plan.variants[n][one.key]) for one in plan.varied]) for n in order[:MOST_KNOWN]]
 
@@ -115,9 +115,9 @@ def _variant(varied: Sequence[Varied], x: Array) -> dict[str, Any]:
 
 def objective(outcome: Outcome, card: OptimiseCard) -> float:
     """What is minimised; a time never reached is the longest, a failure the worst."""
-    if "answers" not in outcome:
+    if isinstance(outcome, Failed):
         return math.inf
-    value = float(outcome["answers"][card.answer])
+    value = float(outcome.answers[card.answer])
     value = NEVER if math.isnan(value) else value
     return value if card.minimise else -value
 
@@ -127,16 +127,16 @@ def violation(outcome: Outcome, limits: Mapping[str, LimitCard], margins: Mappin
 
     ``margins``: answer -> what a reduced model's may be wrong by; its answers have to keep the limits by that much.
 
-    >>> violation({"answers": {"hottest_degC": 99.0}}, {"hottest_degC": LimitCard(below=90.0)})
+    >>> violation(Answered({"hottest_degC": 99.0}), {"hottest_degC": LimitCard(below=90.0)})
     0.1
     """
-    if "answers" not in outcome:
+    if isinstance(outcome, Failed):
         return FAILED if limits else 0.0
     total = 0.0
     for name, limit in limits.items():
-        value = float(outcome["answers"][name])
+        value = float(outcome.answers[name])
         value = NEVER if math.isnan(value) else value
-        margin = (margins or {}).get(name, 0.0) if outcome.get("by") == "reduced" else 0.0
+        margin = (margins or {}).get(name, 0.0) if outcome.by == "reduced" else 0.0
         total += 0.0 if limit.below is None else _beyond(value + margin, limit.below)
         total += 0.0 if limit.above is None else _beyond(margin - value, -limit.above)
     return total
@@ -204,7 +204,7 @@ class Optimum:
         asked = (
             f"{'Smallest' if self.card.minimise else 'Largest'} {name_of(self.answer)}{limits and f' with {limits}'}"
         )
-        failed = sum("failure" in one for one in self.swept.outcomes.values())
+        failed = len(self.swept.outcomes) - len(self.swept.answered)
         tried = f"{len(self.swept.outcomes)} different variants evaluated" + (f", {failed} failed" if failed else "")
         if self.best is None:
             return [f"{asked}: no variant keeps the limits ({tried})."]
@@ -213,8 +213,8 @@ class Optimum:
         if others:
             values = ", ".join(f"{name_of(name)} {shown(name, self.full[name])}" for name in others)
             told.append(f"There: {values}.")
-        if "answers" in self.nominal:
-            before = float(self.nominal["answers"][self.answer])
+        if isinstance(self.nominal, Answered):
+            before = float(self.nominal.answers[self.answer])
             gained = f"{self.full[self.answer] - before:+.3g} {difference_unit(self.answer)}".strip()
             broken = violation(self.nominal, plan.limits) > 0
             breaks = " but breaks a limit" if broken else ""
@@ -234,7 +234,7 @@ class Optimum:
             "limits": {name: limit.model_dump(exclude_none=True) for name, limit in self.swept.plan.limits.items()},
             "changes": self.changes,
             "answers": dict(self.full),
-            "as_it_is": dict(self.nominal),
+            "as_it_is": self.nominal.entry,
             "evaluated": len(self.swept.outcomes),
             "exhaustive": self.exhaustive,
             "ended": self.ended,
@@ -307,9 +307,11 @@ def words_of(limits: Mapping[str, LimitCard]) -> str:
 def _verified(asked: Asked, card: OptimiseCard) -> tuple[int | None, Mapping[str, Any]]:
     """The most promising variant whose full run keeps the limits, and what that run answers."""
     limits = asked.plan.limits
-    fine = [n for n, one in asked.outcomes.items() if "answers" in one and violation(one, limits, asked.margins) == 0]
-    for n in sorted(fine, key=lambda n: (objective(asked.outcomes[n], card), n))[:CANDIDATES]:
+    outcomes = asked.outcomes
+    answered = [n for n, outcome in outcomes.items() if isinstance(outcome, Answered)]
+    fine = [n for n in answered if violation(outcomes[n], limits, asked.margins) == 0]
+    for n in sorted(fine, key=lambda n: (objective(outcomes[n], card), n))[:CANDIDATES]:
         (full,) = asked([asked.variants[n]], full=True)
-        if "answers" in full and violation(full, limits) == 0:
-            return n, full["answers"]
+        if isinstance(full, Answered) and violation(full, limits) == 0:
+            return n, full.answers
     return None, {}

@@ -11,6 +11,7 @@ import numpy as np
 from tyrefem.errors import InputError
 from tyrefem.sweep.sweep import Sweep
 from tyrefem.variants.answer_units import name_of
+from tyrefem.variants.outcomes import answer_of
 from tyrefem.variants.samples import problem
 
 if TYPE_CHECKING:
@@ -36,7 +37,7 @@ def indices(swept: Sweep, answer: str) -> pd.DataFrame:
     plan = swept.plan
     if plan.how.get("sample") != "saltelli":
         raise InputError("Sobol indices need sample = 'saltelli'", field="sample")
-    values = [swept.outcomes.get(n, {}).get("answers", {}).get(answer) for n in range(len(plan.variants))]
+    values = [answer_of(swept.outcomes.get(n), answer) for n in range(len(plan.variants))]
     missing = sum(value is None or value != value for value in values)
     if missing:
         raise InputError(f"{missing} of {len(values)} variants have no '{answer}'; Sobol indices need them all")

@@ -15,6 +15,7 @@ from tyrefem.errors import InputError, nearest
 from tyrefem.sweep.answering import Answering
 from tyrefem.variants.dask_cluster import ClusterLostError
 from tyrefem.variants.execution import Execution, Said
+from tyrefem.variants.outcomes import Answered, Failed, Outcome
 from tyrefem.variants.plan import Plan
 
 if TYPE_CHECKING:
@@ -29,13 +30,13 @@ class Sweep(Brief):
 
     Parameters
     ----------
-    plan : the variants. outcomes : number -> ``{"answers": ..., "by": "full" | "reduced"}`` or ``{"failure": ...}``.
+    plan : the variants. outcomes : number -> `Answered` or `Failed`.
     certificate : of the reduced model; None: every answer is that of a full run. why_full : why none was used.
     seconds : wall time. taken_up : how many were finished before. interrupted : why some were not run; empty: all were.
     """
 
     plan: Plan
-    outcomes: dict[int, dict[str, Any]]
+    outcomes: Mapping[int, Outcome]
     certificate: SurrogateCertificate | None = None
     why_full: str = ""
     seconds: float = 0.0
@@ -46,7 +47,7 @@ class Sweep(Brief):
         return f"of {self.plan.study.name}"
 
     def _facts(self) -> Mapping[str, Any]:
-        reduced = sum(one.get("by") == "reduced" for one in self.outcomes.values())
+        reduced = self.reduced
         return {
             "varied": self.plan.keys,
             "variants": f"{len(self.outcomes)} of {len(self.plan.variants)} finished, {len(self.failed)} failed",
@@ -77,11 +78,11 @@ class Sweep(Brief):
         return table.assign(by=last["by"], error_K=last["error_K"], feasible=feasible, failure=last["failure"])
 
     def _row(self, number: int) -> dict[str, Any]:
-        outcome = self.outcomes[number]
-        by = outcome.get("by", "")
-        error = self.certificate.worst if by == "reduced" and self.certificate else 0.0
-        found = self.plan.row(number) | dict(outcome.get("answers", {}))
-        return found | {"by": by, "error_K": error if by else None, "failure": outcome.get("failure", "")}
+        outcome, values = self.outcomes[number], self.plan.row(number)
+        if isinstance(outcome, Failed):
+            return values | {"by": "", "error_K": None, "failure": outcome.reason}
+        error = self.certificate.worst if outcome.by == "reduced" and self.certificate else 0.0
+        return values | dict(outcome.answers) | {"by": outcome.by, "error_K": error, "failure": ""}
 
     def _kept(self, table: pd.DataFrame) -> Any:
         kept = np.ones(len(table), dtype=bool)
@@ -99,12 +100,23 @@ class Sweep(Brief):
     @functools.cached_property
     def answers(self) -> list[str]:
         """Names of the answers."""
-        return list(dict.fromkeys(name for one in self.outcomes.values() for name in one.get("answers", {})))
+        return list(dict.fromkeys(name for outcome in self.answered.values() for name in outcome.answers))
+
+    @functools.cached_property
+    def answered(self) -> dict[int, Answered]:
+        """Number -> the answers of a variant that has some."""
+        return {number: outcome for number, outcome in self.outcomes.items() if isinstance(outcome, Answered)}
+
+    @property
+    def reduced(self) -> int:
+        """How many variants the reduced model answered."""
+        return sum(outcome.by == "reduced" for outcome in self.answered.values())
 
     @property
     def failed(self) -> dict[str, str]:
         """Variant -> why it has no answers."""
-        return {self.plan.names[n]: one["failure"] for n, one in sorted(self.outcomes.items()) if "failure" in one}
+        outcomes = sorted(self.outcomes.items())
+        return {self.plan.names[n]: outcome.reason for n, outcome in outcomes if isinstance(outcome, Failed)}
 
     @property
     def complete(self) -> bool:

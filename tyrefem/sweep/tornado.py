@@ -13,6 +13,7 @@ from tyrefem.inputs.study import StudyData
 from tyrefem.inputs.uncertain_numbers import UncertainNumber, left_out, uncertain_number
 from tyrefem.sweep.sweep import Sweep
 from tyrefem.variants.answer_units import difference_unit, name_of, shown
+from tyrefem.variants.outcomes import Failed, answer_of
 from tyrefem.variants.plan import Plan, sensible
 from tyrefem.variants.varied import DIGITS
 
@@ -116,11 +117,12 @@ class Tornado:
         return table[table["answer"] == answer].drop(columns="answer").reset_index(drop=True)
 
     def _value(self, n: int, answer: str) -> float:
-        found = self.swept.outcomes.get(n, {}).get("answers", {}).get(answer)
+        found = answer_of(self.swept.outcomes.get(n), answer)
         return math.nan if found is None else float(found)
 
     def _failure(self, n: int) -> str:
-        return str(self.swept.outcomes.get(n, {"failure": "not run"}).get("failure", ""))
+        outcome = self.swept.outcomes.get(n, Failed("not run"))
+        return outcome.reason if isinstance(outcome, Failed) else ""
 
     @property
     def words(self) -> list[str]:

@@ -4,11 +4,12 @@ from __future__ import annotations
 
 import itertools
 import time
-from collections.abc import Iterator, Sequence
+from collections.abc import Callable, Iterator, Sequence
 from typing import Any
 
 from tyrefem.errors import InputError, MissingLibraryError
-from tyrefem.variants.schedulers import AHEAD, Outcome, Work
+from tyrefem.variants.outcomes import Failed
+from tyrefem.variants.schedulers import AHEAD, Result
 
 #: So often a task of a cluster is run again after its worker was lost.
 RETRIES = 3
@@ -92,7 +93,9 @@ class Dask:
         if self._own:
             self.client.close()
 
-    def outcomes(self, work: Work, tasks: Sequence[Any], common: Any = None) -> Iterator[tuple[int, Outcome]]:
+    def outcomes(
+        self, work: Callable[..., Result], tasks: Sequence[Any], common: Any = None
+    ) -> Iterator[tuple[int, Result | Failed]]:
         """Outcomes as they come."""
         from distributed import as_completed
 
@@ -119,7 +122,7 @@ class Dask:
                 if future.status == "finished":
                     yield place, result
                 elif future.status == "error":
-                    yield place, {"failure": f"lost by the cluster: {_reason(result)}"}
+                    yield place, Failed(f"lost by the cluster: {_reason(result)}")
                 else:
                     raise ClusterLostError(f"the Dask scheduler at {self.address} gave up its tasks ({future.status})")
         finally:

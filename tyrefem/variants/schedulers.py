@@ -2,34 +2,38 @@
 
 from __future__ import annotations
 
-import functools
+import hashlib
 import pickle
 import tempfile
 from collections import deque
 from collections.abc import Callable, Iterator, Sequence
 from contextlib import ExitStack, contextmanager
 from pathlib import Path
-from typing import TYPE_CHECKING, Any, Protocol
+from typing import TYPE_CHECKING, Any, Protocol, TypeVar
 
+from tyrefem.cache import Cache
 from tyrefem.processes import processes
+from tyrefem.variants.outcomes import Failed
 
 if TYPE_CHECKING:
-    from concurrent.futures import Executor
+    from concurrent.futures import Executor, Future
 
-Outcome = dict[str, Any]
-Work = Callable[..., Outcome]
+Result = TypeVar("Result")
 #: Tasks in flight per worker: enough to keep it busy, few enough that memory and a lost worker cost little.
 AHEAD = 4
 
 
 class Scheduler(Protocol):
-    """Runs ``work(task)`` for every task; yields (place of the task, outcome) in the order they are finished.
+    """Runs ``work(task)`` for every task; yields (place of the task, result) in the order they are finished.
 
-    With ``common``, something large that all tasks need, ``work(task, common)``: it travels once per worker.
-    One that runs several tasks at a time may say so by ``workers``.
+    The result of a task that took its worker down with it is `Failed`. With ``common``, something large that all tasks
+    need, ``work(task, common)``: it travels once per worker. One that runs several tasks at a time may say so by
+    ``workers``.
     """
 
-    def outcomes(self, work: Work, tasks: Sequence[Any], common: Any = None) -> Iterator[tuple[int, Outcome]]:
+    def outcomes(
+        self, work: Callable[..., Result], tasks: Sequence[Any], common: Any = None
+    ) -> Iterator[tuple[int, Result | Failed]]:
         """Outcomes as they come."""
         ...
 
@@ -39,7 +43,9 @@ class Here:
 
     workers = 1
 
-    def outcomes(self, work: Work, tasks: Sequence[Any], common: Any = None) -> Iterator[tuple[int, Outcome]]:
+    def outcomes(
+        self, work: Callable[..., Result], tasks: Sequence[Any], common: Any = None
+    ) -> Iterator[tuple[int, Result | Failed]]:
         """Outcomes in the order of the tasks."""
         for place, task in enumerate(tasks):
             yield place, work(task) if common is None else work(task, common)
@@ -65,14 +71,16 @@ class Local:
         if kept is not None:
             kept.__exit__(*raised)
 
-    def outcomes(self, work: Work, tasks: Sequence[Any], common: Any = None) -> Iterator[tuple[int, Outcome]]:
+    def outcomes(
+        self, work: Callable[..., Result], tasks: Sequence[Any], common: Any = None
+    ) -> Iterator[tuple[int, Result | Failed]]:
         """Outcomes as they come."""
         from concurrent.futures.process import BrokenProcessPool
 
         left = dict.fromkeys(range(len(tasks)))
         with _filed(common) as file:
             while left:
-                running: dict[Any, int] = {}
+                running: dict[Future[Result], int] = {}
                 try:
                     for place, outcome in self._together(work, tasks, list(left), running, file):
                         del left[place]
@@ -85,8 +93,13 @@ class Local:
                         yield place, _alone(work, tasks[place], file)
 
     def _together(
-        self, work: Work, tasks: Sequence[Any], places: list[int], running: dict[Any, int], file: str | None
-    ) -> Iterator[tuple[int, Outcome]]:
+        self,
+        work: Callable[..., Result],
+        tasks: Sequence[Any],
+        places: list[int],
+        running: dict[Future[Result], int],
+        file: str | None,
+    ) -> Iterator[tuple[int, Result]]:
         from concurrent.futures import FIRST_COMPLETED, wait
 
         waiting = deque(places)
@@ -116,33 +129,35 @@ class Local:
             self._kept.close()
 
 
-def _alone(work: Work, task: Any, file: str | None) -> Outcome:
+def _alone(work: Callable[..., Result], task: Any, file: str | None) -> Result | Failed:
     from concurrent.futures.process import BrokenProcessPool
 
     with processes(1) as pool:
         try:
-            outcome: Outcome = pool.submit(_worked, work, task, file).result()
+            return pool.submit(_worked, work, task, file).result()
         except BrokenProcessPool:
-            return {"failure": "its process died, alone too (out of memory?)"}
-    return outcome
+            return Failed("its process died, alone too (out of memory?)")
 
 
 @contextmanager
 def _filed(common: Any) -> Iterator[str | None]:
-    """A file from which processes of this machine read what is common to all tasks."""
+    """A file from which processes of this machine read what is common to all tasks; its name tells its content."""
     if common is None:
         yield None
         return
     with tempfile.TemporaryDirectory(prefix="tyrefem-") as folder:
-        path = Path(folder) / "common"
-        path.write_bytes(pickle.dumps(common))
+        content = pickle.dumps(common)
+        path = Path(folder) / hashlib.sha256(content).hexdigest()
+        path.write_bytes(content)
         yield str(path)
 
 
-def _worked(work: Work, task: Any, file: str | None) -> Outcome:
-    return work(task) if file is None else work(task, _read(file))
+#: What is common to the tasks that a process works on, by its digest.
+_common: Cache[Any] = Cache(1)
 
 
-@functools.lru_cache(maxsize=1)
-def _read(file: str) -> Any:
-    return pickle.loads(Path(file).read_bytes())
+def _worked(work: Callable[..., Result], task: Any, file: str | None) -> Result:
+    if file is None:
+        return work(task)
+    path = Path(file)
+    return work(task, _common.get(path.name, lambda: pickle.loads(path.read_bytes())))

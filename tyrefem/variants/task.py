@@ -6,12 +6,12 @@ One variant's work, done in a worker: build the study, run it, answer.
 from __future__ import annotations
 
 import copy
-import functools
 import gc
 import hashlib
 import json
 import tempfile
 import threading
+import uuid
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 from pathlib import Path
@@ -19,8 +19,10 @@ from typing import TYPE_CHECKING, Any
 
 import tyrefem
 from tyrefem import library
+from tyrefem.cache import Cache
 from tyrefem.errors import InputError
 from tyrefem.inputs.study import StudyData
+from tyrefem.variants.outcomes import Answered, Failed, Outcome
 
 if TYPE_CHECKING:
     from tyrefem.simulation.rolling_tyre import RollingTyre
@@ -62,7 +64,10 @@ class Bundle:
         if self.version != tyrefem.__version__:
             raise VersionError(f"asked by tyrefem {self.version}, but this worker has {tyrefem.__version__}")
         for name, content in self.files.items():
-            (folder / name).write_bytes(content)
+            # Another thread may be reading the same file.
+            temporary = folder / f"{name}-{uuid.uuid4().hex}"
+            temporary.write_bytes(content)
+            temporary.replace(folder / name)
         return StudyData(self.name, self.data, None, folder)
 
 
@@ -109,21 +114,9 @@ def _kept(path: Path, files: dict[str, bytes]) -> str:
     return name
 
 
-class Unpacked:
-    """Bundles that this process has unpacked, by digest: a worker keeps its studies, meshes and operators."""
-
-    def __init__(self) -> None:
-        self._studies: dict[str, StudyData] = {}
-        self._folders: list[tempfile.TemporaryDirectory[str]] = []
-
-    def study(self, packed: Bundle) -> StudyData:
-        """The study of a bundle, unpacked once."""
-        digest = packed.digest
-        if digest not in self._studies:
-            folder = tempfile.TemporaryDirectory(prefix="tyrefem-")
-            self._folders.append(folder)
-            self._studies[digest] = packed.unpacked(Path(folder.name))
-        return self._studies[digest]
+#: Studies that a process keeps unpacked.
+UNPACKED = 16
+_studies: Cache[StudyData] = Cache(UNPACKED)
 
 
 @dataclass(frozen=True)
@@ -141,26 +134,59 @@ class Task:
     time_to: float | None = None
 
 
-@functools.cache
-def _shelf() -> Unpacked:
-    """Of this process."""
-    return Unpacked()
-
-
 def unpacked(packed: Bundle) -> StudyData:
-    """The study of a bundle, unpacked once in this process."""
-    return _shelf().study(packed)
+    """The study of a bundle, unpacked once in this process; threads share it.
+
+    Raises
+    ------
+    VersionError : another version of the package has packed it.
+    """
+    return _studies.get(packed.digest, lambda: packed.unpacked(_folder(packed.digest)))
 
 
-#: Tyres that a thread ran last: mesh, operators and strain cycles serve the next variant where they are the same.
+_folder_lock = threading.Lock()
+_folders: list[tempfile.TemporaryDirectory[str]] = []
+
+
+def _folder(digest: str) -> Path:
+    """Where this process keeps the files of a bundle until it ends."""
+    with _folder_lock:
+        if not _folders:
+            _folders.append(tempfile.TemporaryDirectory(prefix="tyrefem-"))
+        folder = Path(_folders[0].name) / digest
+        folder.mkdir(exist_ok=True)
+        return folder
+
+
+#: Tyres that a thread keeps.
 REMEMBERED = 4
-_recent = threading.local()
 
 
-def _most_alike(study: StudyData) -> RollingTyre | None:
-    """The tyre among the last ones from which most can be taken over."""
-    tyres: list[RollingTyre] = _recent.__dict__.setdefault("tyres", [])
-    return max(tyres, key=lambda tyre: _alike(study, tyre.study), default=None)
+class RecentTyres(threading.local):
+    """The tyres that a thread ran last, the latest first; every thread has its own.
+
+    Mesh, operators and strain cycles serve the next variant where they are the same.
+    """
+
+    def __init__(self) -> None:
+        self.tyres: list[RollingTyre] = []
+
+    def most_alike(self, study: StudyData) -> RollingTyre | None:
+        """The tyre from which a study can take over most."""
+        return max(self.tyres, key=lambda tyre: _alike(study, tyre.study), default=None)
+
+    def remember(self, tyre: RollingTyre) -> None:
+        """Keep a tyre; it must not hold those before it alive."""
+        object.__setattr__(tyre, "like", None)
+        forgotten = self.tyres[REMEMBERED - 1 :]
+        self.tyres[:] = [tyre, *self.tyres[: REMEMBERED - 1]]
+        if any(all(old.mesh is not kept.mesh for kept in self.tyres) for old in forgotten):
+            # A mesh that goes takes its operators with it, tens of MB that refer to each other.
+            del forgotten
+            gc.collect()
+
+
+recent_tyres = RecentTyres()
 
 
 def _alike(study: StudyData, other: StudyData) -> tuple[bool, bool, int]:
@@ -170,25 +196,18 @@ def _alike(study: StudyData, other: StudyData) -> tuple[bool, bool, int]:
     return same[0] and same[1], same[2] and same[3], sum(mine[region] == theirs.get(region) for region in mine)
 
 
-def _remember(tyre: RollingTyre) -> None:
-    """Keep a tyre; it must not hold those before it alive."""
-    object.__setattr__(tyre, "like", None)
-    tyres: list[RollingTyre] = _recent.tyres
-    forgotten = tyres[REMEMBERED - 1 :]
-    tyres[:] = [tyre, *tyres[: REMEMBERED - 1]]
-    if any(all(one.mesh is not other.mesh for other in tyres) for one in forgotten):
-        # A mesh that goes takes its operators with it, tens of MB that refer to each other.
-        del forgotten
-        gc.collect()
+def perform_all(tasks: Sequence[Task]) -> tuple[Outcome, ...]:
+    """Outcomes of several variants, one after the other."""
+    return tuple(perform(task) for task in tasks)
 
 
-def perform_all(tasks: Sequence[Task]) -> dict[str, Any]:
-    """``{"outcomes": [...]}``: several variants one after the other."""
-    return {"outcomes": [perform(task) for task in tasks]}
+def perform(task: Task) -> Outcome:
+    """Run one variant in full; its failure must not cost the others.
 
-
-def perform(task: Task) -> dict[str, Any]:
-    """``{"answers": {...}}``, or ``{"failure": reason}``: one variant's failure must not cost the others."""
+    Raises
+    ------
+    VersionError : another version of the package has packed it.
+    """
     from tyrefem.conduction import SolverError
     from tyrefem.errors import InputError
     from tyrefem.simulation.run import run
@@ -196,16 +215,16 @@ def perform(task: Task) -> dict[str, Any]:
 
     try:
         study = unpacked(task.packed).replace(task.changes)
-        before = _most_alike(study)
+        before = recent_tyres.most_alike(study)
         if before is not None:
             study = unpacked(task.packed).replace(task.changes, like=before.study)
         result = run(study, like=before)
-        found = answers(result, task.time_to)
-        _remember(result.tyre)
-        return {"answers": found}
+        outcome = Answered(answers(result, task.time_to))
+        recent_tyres.remember(result.tyre)
+        return outcome
     except (InputError, SolverError) as error:
-        return {"failure": str(error)}
+        return Failed(str(error))
     except VersionError:
         raise
     except Exception as error:  # a defect; it is named as what it is
-        return {"failure": f"defect, please report: {type(error).__name__}: {error}"}
+        return Failed(f"defect, please report: {type(error).__name__}: {error}")
