@@ -297,7 +297,7 @@ def made(monkeypatch: pytest.MonkeyPatch) -> list[Optimist]:
     def by_model(_model: Any, _plan: Any, variants: list[dict[str, str]], _scheduler: Any) -> Any:
         for place, changes in enumerate(variants):
             low = sum(float(value.split()[0]) for value in changes.values()) - 0.5
-            yield {place: {"answers": {"hottest_degC": low, "gas_pressure_Pa": 0.0}, "by": "reduced"}}
+            yield {place: Answered({"hottest_degC": low, "gas_pressure_Pa": 0.0}, "reduced")}
 
     monkeypatch.setattr("tyrefem.reduced.surrogate.surrogate", surrogate)
     monkeypatch.setattr("tyrefem.sweep.answering.by_model", by_model)
@@ -430,7 +430,7 @@ def test_an_empty_sweep_has_an_empty_table(tyre: Study) -> None:
 
 def test_nothing_is_drawn_between_two_cards(tyre: Study) -> None:
     plan = plan_of(tyre, {"materials.tread": ["nasa-tread", "rubber-tread-aircraft"]})
-    found = Responses(Sweep(plan, {n: {"answers": {"hottest_degC": 50.0 + n}, "by": "full"} for n in range(2)}))
+    found = Responses(Sweep(plan, {n: Answered({"hottest_degC": 50.0 + n}) for n in range(2)}))
     ((name, _, picture),) = figures(found)
     assert name.startswith("bars-")
     (line,) = picture.axes[0].get_lines()

@@ -3,9 +3,9 @@
 from __future__ import annotations
 
 import threading
+import time
 from collections.abc import Callable, Iterator, Sequence
 from concurrent.futures import ThreadPoolExecutor, as_completed
-from dataclasses import dataclass
 from typing import Any, TypeVar
 
 import pandas as pd
@@ -61,21 +61,26 @@ def test_two_sweeps_at_once_answer_as_one_after_the_other(reduced: str) -> None:
     assert (at_once[0]["hottest_degC"] != at_once[1]["hottest_degC"]).all()
 
 
-@dataclass(frozen=True)
 class Named:
-    """Stands for a packed study."""
+    """Stands for a packed study; another thread goes on whenever its digest is asked for."""
 
-    digest: str
+    def __init__(self, name: str) -> None:
+        self.name = name
+
+    @property
+    def digest(self) -> str:
+        time.sleep(0)
+        return self.name
 
 
 def test_every_thread_gets_the_tyre_of_its_own_study(monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.setattr(training_rounds, "unpacked", lambda packed: packed)
-    monkeypatch.setattr(training_rounds, "RollingTyre", lambda packed: f"tyre of {packed.digest}")
+    monkeypatch.setattr(training_rounds, "RollingTyre", lambda packed: f"tyre of {packed.name}")
     begin = threading.Barrier(8)
 
     def wrong(number: int) -> int:
         begin.wait()
-        names = [f"study {(number + n) % 8}" for n in range(2000)]
+        names = [f"study {(number + n) % 8}" for n in range(500)]
         return sum(training_rounds.base_of(Named(name)) != f"tyre of {name}" for name in names)  # type: ignore[arg-type]
 
     with ThreadPoolExecutor(8) as pool:
