@@ -141,7 +141,7 @@ def test_truck_tyre_inflates_without_folding() -> None:
     tyre = truck()
     # Least where the ply turns round the bundle's corner: 0.46 at one point of a coarse element.
     assert determinant(tyre.deformation).min() > 0.4
-    assert len(tyre.found.steps) <= 4
+    assert len(tyre.equilibrium.steps) <= 4
     (flange,) = tyre.body.flanges
     assert flange.pressure(tyre.places).max() > 0
     assert -flange.gap(tyre.places).min() < 1e-4

@@ -49,14 +49,14 @@ def laws(side: str) -> dict[str, type[Law]]:
     """
     for module in pkgutil.iter_modules(__path__):
         importlib.import_module(f"{__name__}.{module.name}")
-    found: dict[str, type[Law]] = {}
+    by_name: dict[str, type[Law]] = {}
     stack = list(Law.__subclasses__())
     while stack:
         law = stack.pop()
         stack.extend(law.__subclasses__())
         if law.side == side and "law" in law.model_fields:
-            found[get_args(law.model_fields["law"].annotation)[0]] = law
-    return found
+            by_name[get_args(law.model_fields["law"].annotation)[0]] = law
+    return by_name
 
 
 @dataclass(frozen=True)

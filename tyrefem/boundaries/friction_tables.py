@@ -184,7 +184,7 @@ def _numbers(case: Case, units: dict[str, str], file: Path) -> dict[str, float]:
 
 def _shipped(name: str) -> Path:
     places = [root / library.FOLDERS["study"] / STUDY / name for root in library.roots()]
-    found = next((place for place in places if place.is_file()), None)
-    if found is None:
+    file = next((place for place in places if place.is_file()), None)
+    if file is None:
         raise InputError(f"no file '{STUDY}/{name}' in the library's studies")
-    return found
+    return file

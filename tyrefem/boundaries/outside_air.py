@@ -63,8 +63,8 @@ class AirFilmTable(OutsideAirLaw):
     def warnings(self) -> tuple[InputWarning, ...]:
         """Films of the table that are unlikely."""
         films = enumerate(self._columns()[1])
-        found = [AIR_FILM.warning(film, f"table.{number}") for number, film in films]
-        return super().warnings() + tuple(filter(None, found))
+        unlikely = [AIR_FILM.warning(film, f"table.{number}") for number, film in films]
+        return super().warnings() + tuple(filter(None, unlikely))
 
     def _columns(self) -> tuple[list[float], list[float]]:
         speeds, films = [], []

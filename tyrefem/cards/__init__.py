@@ -74,7 +74,7 @@ class Card(Brief, BaseModel):
         Every field annotated with `Plausible` is held against its range. A subclass whose numbers are more than
         fields adds to these.
         """
-        found = [
+        unlikely = [
             range_.warning(getattr(self, name), key)
             for name, key, range_ in _plausible(type(self))
             if getattr(self, name) is not None
@@ -85,16 +85,16 @@ class Card(Brief, BaseModel):
             for key, card in _cards(field.alias or name, getattr(self, name))
             for warning in card.warnings()
         ]
-        return (*filter(None, found), *below)
+        return (*filter(None, unlikely), *below)
 
-    def checked(self, own: Mapping[str, Any], data: Mapping[str, Any], file: str | Path | None = None) -> Self:
+    def checked(self, before: Mapping[str, Any], data: Mapping[str, Any], file: str | Path | None = None) -> Self:
         """`check` of data, where this card was made of ``own``: tables that the two share are not read again."""
         kept: dict[str, Any] = dict(data)
         for key in type(self).model_fields:
-            if key in own and key in data and own[key] is data[key]:
+            if key in before and key in data and before[key] is data[key]:
                 value = getattr(self, key)
                 cards = list(value.values()) if isinstance(value, dict) else [value]
-                if cards and all(isinstance(one, Card) for one in cards):
+                if cards and all(isinstance(item, Card) for item in cards):
                     kept[key] = value
         return type(self).check(kept, file)
 
@@ -102,12 +102,12 @@ class Card(Brief, BaseModel):
 @functools.cache
 def _plausible(card: type[Card]) -> tuple[tuple[str, str, Plausible], ...]:
     """Name, key in the file and range of the fields that have one."""
-    found = []
+    ranges = []
     for name, field in card.model_fields.items():
         # "Annotated[...] | None" keeps its annotations within the union.
         metadata = [*field.metadata, *(item for part in get_args(field.annotation) for item in get_args(part)[1:])]
-        found += [(name, field.alias or name, item) for item in metadata if isinstance(item, Plausible)]
-    return tuple(found)
+        ranges += [(name, field.alias or name, item) for item in metadata if isinstance(item, Plausible)]
+    return tuple(ranges)
 
 
 def _cards(key: str, value: Any) -> Iterator[tuple[str, Card]]:

@@ -42,7 +42,7 @@ def _of_machine(root: Path) -> float | None:
 
 def _of_groups(root: Path) -> list[float]:
     """What the control groups of this process leave, and those above them."""
-    found: list[float] = []
+    free: list[float] = []
     for line in _text(root / "proc/self/cgroup").splitlines():
         _, _, rest = line.partition(":")
         names, _, path = rest.partition(":")
@@ -54,11 +54,11 @@ def _of_groups(root: Path) -> list[float]:
             continue
         inside = base / path.strip().lstrip("/")
         # In a container its own group is the root, whatever the path says outside.
-        for group in [inside, *[one for one in inside.parents if base in (one, *one.parents)]]:
+        for group in [inside, *[parent for parent in inside.parents if base in (parent, *parent.parents)]]:
             most, now = _number(group / limit), _number(group / used)
             if most is not None and most < NO_LIMIT:
-                found.append(most - (now or 0.0) + _cached(group))
-    return found
+                free.append(most - (now or 0.0) + _cached(group))
+    return free
 
 
 def _cached(group: Path) -> float:

@@ -140,7 +140,7 @@ def refuse(needed: float, free: float, what: str, fits: str = "", workers: int =
     each = "" if workers == 1 else f" for each of {workers} workers"
     remedies = [fits] if fits else []
     remedies += ["fewer workers have more each"] if workers > 1 else []
-    room = "".join(f"; {one}" for one in remedies)
+    room = "".join(f"; {remedy}" for remedy in remedies)
     raise InputError(f"{what}; that takes about {gib(needed)} of memory, and {gib(free)} are free{each}{room}")
 
 

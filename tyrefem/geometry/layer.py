@@ -144,15 +144,15 @@ class Division:
         [('tread', 0.0, 0.02), ('groove', 0.02, 0.03), ('tread', 0.03, 0.1)]
         """
         pieces: list[tuple[str, float]] = []
-        begin, found = 0.0, False
+        begin, matched = 0.0, False
         for part, stop in zip(self.names, self.ends, strict=True):
             if begin - 1e-9 <= start and end < stop - 1e-9:
-                found = True
+                matched = True
                 pieces += [(part, start)] if start > begin + 1e-9 else []
                 pieces.append((name, end))
             pieces.append((part, stop))
             begin = stop
-        if not found:
+        if not matched:
             raise InputError(f"'{name}' from {start:.4g} to {end:.4g} m does not lie within one part of it")
         return Division(tuple(part for part, _ in pieces), tuple(stop for _, stop in pieces))
 

@@ -69,12 +69,14 @@ class Layup:
     def faces(self, s: ArrayLike) -> Array:
         """Distance from the meridian to the inner face, then each layer's outer face: (n_layers + 1, ...) [m]."""
         s = np.asarray(s, dtype=float)
-        return self._stacked(*[np.stack([one.thickness(s) for one in layers]) for layers in self._now_and_built])
+        return self._stacked(*[np.stack([layer.thickness(s) for layer in layers]) for layers in self._now_and_built])
 
     def slopes(self, s: ArrayLike) -> Array:
         """d/ds of `faces`, same shape."""
         s = np.asarray(s, dtype=float)
-        return self._stacked(*[np.stack([one.thickness.slope(s) for one in layers]) for layers in self._now_and_built])
+        return self._stacked(
+            *[np.stack([layer.thickness.slope(s) for layer in layers]) for layers in self._now_and_built]
+        )
 
     @property
     def _now_and_built(self) -> list[tuple[Layer, ...]]:

@@ -66,13 +66,13 @@ def _widths(section: Layered) -> Iterator[InputWarning]:
     rating = section.rating
     if rating is None:
         return
-    for name, rated, own, words in (
+    for name, rated, drawn, words in (
         ("width", rating.width, section.nominal_width, "nominal width"),
         ("diameter", rating.diameter, section.outer_diameter, "outer diameter"),
     ):
-        if not RATED[0] <= rated / own <= RATED[1]:
+        if not RATED[0] <= rated / drawn <= RATED[1]:
             yield InputWarning(
-                f"the rated {name} is {rated * 1e3:.4g} mm and the {words} {own * 1e3:.4g} mm: "
+                f"the rated {name} is {rated * 1e3:.4g} mm and the {words} {drawn * 1e3:.4g} mm: "
                 "check that the ratings are of this tyre",
                 field=f"rating.{name}",
             )

@@ -139,10 +139,10 @@ class Section(Brief, Stated):
     def in_groove(self, s: ArrayLike) -> NDArray[np.bool_]:
         """Whether stations lie across a groove; on its walls they do not."""
         x = np.abs(np.asarray(s, dtype=float))
-        found = np.zeros(x.shape, dtype=bool)
+        inside = np.zeros(x.shape, dtype=bool)
         for start, end in self.grooves:
-            found |= (x > start + 1e-9) & (x < end - 1e-9)
-        return found
+            inside |= (x > start + 1e-9) & (x < end - 1e-9)
+        return inside
 
     @cached_property
     def breaks(self) -> tuple[float, ...]:

@@ -40,6 +40,6 @@ def wall_of(section: Section, size: float) -> Wall:
         s = np.linspace(lowest, section.line.length, STATIONS)[1:-1]
         thickness = section.rubber_thickness(s)
         points = [section.place(s, depth) for depth in (np.zeros_like(s), thickness)]
-        inner, outer = (inside(section, size, *section.locate(one)) for one in points)
+        inner, outer = (inside(section, size, *section.locate(point)) for point in points)
         known[size] = Wall(s, thickness, inner, outer)
     return known[size]

@@ -203,12 +203,12 @@ class RigCard(Card):
     @property
     def thickness(self) -> float:
         """Of all layers, m."""
-        return sum(one.thickness for one in self.layers)
+        return sum(layer.thickness for layer in self.layers)
 
     @model_validator(mode="after")
     def _possible(self) -> RigCard:
         self._patch()
-        names = [one.name for one in self.layers]
+        names = [layer.name for layer in self.layers]
         for number, name in enumerate(names):
             if name in names[:number]:
                 raise InputError(f"two layers are named '{name}'", field=f"layers.{number}.name")
@@ -298,19 +298,19 @@ class Clock:
 
         t = np.asarray(times, dtype=float) - self.phases.idle
         on = self.heating
-        found = np.zeros((t.size, on.size + self.cooling.size))
+        matrix = np.zeros((t.size, on.size + self.cooling.size))
         early, late = t <= 0, t > on[-1]
-        found[early, 0] = 1.0
+        matrix[early, 0] = 1.0
         spline = CubicSpline(np.log1p(on / SCALE), np.eye(on.size))
-        found[~early & ~late, : on.size] = spline(np.log1p(t[~early & ~late] / SCALE))
+        matrix[~early & ~late, : on.size] = spline(np.log1p(t[~early & ~late] / SCALE))
         if self.cooling.size:
             off = np.concatenate([[0.0], self.cooling])
             spline = CubicSpline(np.log1p(off / SCALE), np.eye(off.size))
             after = np.clip(t[late] - on[-1], 0.0, off[-1])
-            found[np.ix_(late, range(on.size - 1, found.shape[1]))] = spline(np.log1p(after / SCALE))
+            matrix[np.ix_(late, range(on.size - 1, matrix.shape[1]))] = spline(np.log1p(after / SCALE))
         else:
-            found[late, -1] = 1.0
-        return found
+            matrix[late, -1] = 1.0
+        return matrix
 
     def lagged(self, values: Array, lag: float) -> Array:
         """First-order lag, exact for readings that are straight between computed times; (n_times, ...)."""
@@ -373,7 +373,7 @@ def tables(card: RigCard, file: Path, given: Iterable[str | Path] = ()) -> list[
     folder = file.parent
     named = [Path(table) for table in given]
     if named:
-        return [folder / one if not one.exists() and (folder / one).is_file() else one for one in named]
+        return [folder / path if not path.exists() and (folder / path).is_file() else path for path in named]
     files = beside(card, file)
     missing = [table.name for table in files if not table.is_file()]
     if len(missing) == len(files):

@@ -70,23 +70,23 @@ class Fitter:
 
     def blocks(self, parameters: Parameters, x: Array, predicted: list[tuple[Array, Array]]) -> tuple[Block, ...]:
         """Residuals and slopes of every series."""
-        found = []
+        blocks = []
         for test, (fields, seen) in zip(self.tests, predicted, strict=True):
             slopes = self.twin.slopes(parameters, x, test.run, test.clock, fields, seen)
-            for one in test.series:
-                column = self.twin.sensors.index(one.sensor)
-                computed = one.matrix @ seen[:, column]
-                rise = np.maximum(one.matrix @ (seen[:, column] - seen[0, column]), 0.0)
-                found.append(Block(one, computed, one.matrix @ slopes[:, column], rise))
-        return tuple(found)
+            for series in test.series:
+                column = self.twin.sensors.index(series.sensor)
+                computed = series.matrix @ seen[:, column]
+                rise = np.maximum(series.matrix @ (seen[:, column] - seen[0, column]), 0.0)
+                blocks.append(Block(series, computed, series.matrix @ slopes[:, column], rise))
+        return tuple(blocks)
 
     def _cost(self, predicted: list[tuple[Array, Array]], x: Array, factors: list[Array]) -> float:
         from scipy.linalg import solve_triangular
 
         total, k = float(x @ x), 0
         for test, (_, seen) in zip(self.tests, predicted, strict=True):
-            for one in test.series:
-                r = one.readings - one.matrix @ seen[:, self.twin.sensors.index(one.sensor)]
+            for series in test.series:
+                r = series.readings - series.matrix @ seen[:, self.twin.sensors.index(series.sensor)]
                 white = solve_triangular(factors[k], r, lower=True, check_finite=False)
                 total, k = total + float(white @ white), k + 1
         return total

@@ -54,27 +54,28 @@ class IdentificationData(Brief):
 
     def _facts(self) -> Mapping[str, Any]:
         rows = {
-            one.name: f"{one.value:.4g} {one.unit} ({one.low:.4g} to {one.high:.4g}), {one.verdict}"
-            for one in self.properties
+            estimate.name: f"{estimate.value:.4g} {estimate.unit} ({estimate.low:.4g} to {estimate.high:.4g}), "
+            f"{estimate.verdict}"
+            for estimate in self.properties
         }
         return {"tests": [test.name for test in self.tests], **rows}
 
     @cached_property
     def by_name(self) -> dict[str, ParameterEstimate]:
         """Name -> estimate."""
-        return {one.name: one for one in self.estimates}
+        return {estimate.name: estimate for estimate in self.estimates}
 
     @property
     def properties(self) -> tuple[ParameterEstimate, ...]:
         """Conductivity and specific heat of every layer."""
-        return tuple(one for one in self.estimates if one.group == PROPERTY)
+        return tuple(estimate for estimate in self.estimates if estimate.group == PROPERTY)
 
     @cached_property
     def table(self) -> pd.DataFrame:
         """One row per parameter: value, 95 % interval, relative sd, prior, how much the readings narrowed it."""
         import pandas as pd
 
-        return pd.DataFrame([one.to_dict() for one in self.estimates])
+        return pd.DataFrame([estimate.to_dict() for estimate in self.estimates])
 
 
 def identify(
@@ -104,11 +105,11 @@ def identify(
     Raises InputError for a card or table that cannot be used.
     """
     card, file = (rig, None) if isinstance(rig, RigCard) else load(rig)
-    found = tuple(tests) or read(card, tables if file is None else beside(card, file, tables), without)
+    heating_tests = tuple(tests) or read(card, tables if file is None else beside(card, file, tables), without)
     # The matrices are too small to share: on a busy machine waiting threads cost many times the work.
     with threadpool_limits(1, user_api="blas"):
-        sensors = tuple(one.sensor for one in found[0].series)
-        fitter = Fitter(Twin(card, sensors, fineness or USUAL), found, progress)
+        sensors = tuple(series.sensor for series in heating_tests[0].series)
+        fitter = Fitter(Twin(card, sensors, fineness or USUAL), heating_tests, progress)
         return _identified(card, file, fitter, linear)
 
 
@@ -116,7 +117,7 @@ def _identified(card: RigCard, file: Path | None, fitter: Fitter, linear: bool) 
     """A rough fit shows which properties need a slope; then fits and weighings in turn, until the choice stands."""
     sensors = fitter.twin.sensors
     every = parameters_of(card, sensors)
-    slopes = {one.name for one in every.free if one.group == SLOPE}
+    slopes = {parameter.name for parameter in every.free if parameter.group == SLOPE}
     if not linear:
         every, slopes = every.without(slopes), set()
     noise = Noise(

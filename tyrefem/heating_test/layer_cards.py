@@ -38,7 +38,7 @@ def bases(card: RigCard, given: Sequence[str]) -> dict[str, str]:
     return chosen
 
 
-def layer_card(found: IdentificationData, layer: str, base: str) -> dict[str, Any]:
+def layer_card(identification: IdentificationData, layer: str, base: str) -> dict[str, Any]:
     """The data of one layer's card: what the rig knows laid over a base card, which gives the rest.
 
     The rig cannot know the loss tangent, the stiffness or the cords: they stay the base card's, with its sources.
@@ -47,19 +47,19 @@ def layer_card(found: IdentificationData, layer: str, base: str) -> dict[str, An
     Raises InputError for an unknown base card.
     """
     data, _, name = library.load("material", base)
-    own = next(one for one in found.card.layers if one.name == layer)
-    tests = ", ".join(f"{test.name} ({test.run.power:g} W)" for test in found.tests)
-    source = f"identified with the laser rig '{found.card.title}' from tests {tests}"
+    rig_layer = next(candidate for candidate in identification.card.layers if candidate.name == layer)
+    tests = ", ".join(f"{test.name} ({test.run.power:g} W)" for test in identification.tests)
+    source = f"identified with the laser rig '{identification.card.title}' from tests {tests}"
     changes = {
         "title": f"{layer}, identified with the laser rig",
         "notes": (
-            f"Conductivity and specific heat: laser rig, at {own.reference_temperature:g} degC where constant. "
+            f"Conductivity and specific heat: laser rig, at {rig_layer.reference_temperature:g} degC where constant. "
             f"The rig cannot know loss tangent, stiffness and cords: they are those of the card '{name}'. "
-            + " ".join(words for words in sentences(found) if layer in words)
+            + " ".join(words for words in sentences(identification) if layer in words)
         ).strip(),
-        "conductivity": _property(found, layer, "conductivity", "W/m/K", source),
-        "density": {"value": f"{own.density.value:.6g} kg/m**3", "source": own.density.source},
-        "specific_heat": _property(found, layer, "specific_heat", "J/kg/K", source),
+        "conductivity": _property(identification, layer, "conductivity", "W/m/K", source),
+        "density": {"value": f"{rig_layer.density.value:.6g} kg/m**3", "source": rig_layer.density.source},
+        "specific_heat": _property(identification, layer, "specific_heat", "J/kg/K", source),
     }
     for key in ("density", "conductivity", "specific_heat"):
         data.get(key, {}).pop("relative_sd", None)
@@ -68,31 +68,31 @@ def layer_card(found: IdentificationData, layer: str, base: str) -> dict[str, An
     return card
 
 
-def _property(found: IdentificationData, layer: str, key: str, unit: str, source: str) -> dict[str, Any]:
-    one = found.by_name[f"{layer}.{key}"]
-    sd = min(one.relative_sd or 0.0, _MOST)
-    words = f"{source}; 95 % interval {one.low:.4g} to {one.high:.4g} {unit}"
-    if one.verdict != "determined":
-        words += f"; {one.verdict} by the readings: mostly the first guess ({_guess(found, layer, key)})"
+def _property(identification: IdentificationData, layer: str, key: str, unit: str, source: str) -> dict[str, Any]:
+    estimate = identification.by_name[f"{layer}.{key}"]
+    sd = min(estimate.relative_sd or 0.0, _MOST)
+    words = f"{source}; 95 % interval {estimate.low:.4g} to {estimate.high:.4g} {unit}"
+    if estimate.verdict != "determined":
+        words += f"; {estimate.verdict} by the readings: mostly the first guess ({_guess(identification, layer, key)})"
     entry: dict[str, Any] = {"source": words, "relative_sd": f"{100 * sd:.2g} %"}
-    own = next(one for one in found.card.layers if one.name == layer)
-    slope = found.fit.values[f"{layer}.{key}_slope"]
+    rig_layer = next(estimate for estimate in identification.card.layers if estimate.name == layer)
+    slope = identification.fit.values[f"{layer}.{key}_slope"]
     if slope == 0.0:
-        return {**entry, "value": f"{one.value:.5g} {unit}"}
-    low = min(test.run.ambient or found.card.surroundings.ambient for test in found.tests)
-    high = max(max(float(block.computed.max()) for block in found.fit.blocks), low + 20.0)
+        return {**entry, "value": f"{estimate.value:.5g} {unit}"}
+    low = min(test.run.ambient or identification.card.surroundings.ambient for test in identification.tests)
+    high = max(max(float(block.computed.max()) for block in identification.fit.blocks), low + 20.0)
     rows = []
     for T in (low, high):
-        factor = min(max(1.0 + slope * (T - own.reference_temperature), 0.2), 5.0)
-        rows.append([f"{T:.5g} degC", f"{one.value * factor:.5g} {unit}"])
+        factor = min(max(1.0 + slope * (T - rig_layer.reference_temperature), 0.2), 5.0)
+        rows.append([f"{T:.5g} degC", f"{estimate.value * factor:.5g} {unit}"])
     return {**entry, "table": rows}
 
 
-def _guess(found: IdentificationData, layer: str, key: str) -> str:
-    own = next(one for one in found.card.layers if one.name == layer)
-    return str(getattr(own, key).source)
+def _guess(identification: IdentificationData, layer: str, key: str) -> str:
+    rig_layer = next(candidate for candidate in identification.card.layers if candidate.name == layer)
+    return str(getattr(rig_layer, key).source)
 
 
-def layer_cards(found: IdentificationData, chosen: Mapping[str, str]) -> dict[str, dict[str, Any]]:
+def layer_cards(identification: IdentificationData, chosen: Mapping[str, str]) -> dict[str, dict[str, Any]]:
     """Layer -> card data for every layer that has a base."""
-    return {layer: layer_card(found, layer, base) for layer, base in chosen.items()}
+    return {layer: layer_card(identification, layer, base) for layer, base in chosen.items()}

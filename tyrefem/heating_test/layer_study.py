@@ -41,15 +41,15 @@ def merged(card: RigCard, count: int) -> RigCard:
     while len(layers) > count:
         pairs = [a.thickness + b.thickness for a, b in pairwise(layers)]
         i = int(np.argmin(pairs))
-        layers[i : i + 2] = [_one(layers[i], layers[i + 1])]
+        layers[i : i + 2] = [_merged(layers[i], layers[i + 1])]
     return card.model_copy(update={"layers": tuple(layers)})
 
 
-def _one(a: Any, b: Any) -> Any:
+def _merged(a: Any, b: Any) -> Any:
     total = a.thickness + b.thickness
     mass = a.thickness * a.density.value + b.thickness * b.density.value
-    heat = sum(one.thickness * one.density.value * one.specific_heat.value for one in (a, b))
-    k = total / sum(one.thickness / one.conductivity.value for one in (a, b))
+    heat = sum(layer.thickness * layer.density.value * layer.specific_heat.value for layer in (a, b))
+    k = total / sum(layer.thickness / layer.conductivity.value for layer in (a, b))
 
     def changed(old: Any, value: float) -> Any:
         return old.model_copy(update={"value": value, "source": f"mean of {a.name} and {b.name}"})
@@ -85,30 +85,30 @@ class LayerStudy:
         import pandas as pd
 
         rows = []
-        for count, found in zip(self.counts, self.fits, strict=True):
-            early, late = _misfits(found)
+        for count, fit in zip(self.counts, self.fits, strict=True):
+            early, late = _misfits(fit)
             rows.append(
                 {
                     "layers": count,
-                    "names": " | ".join(layer.name for layer in found.card.layers),
+                    "names": " | ".join(layer.name for layer in fit.card.layers),
                     "transient_misfit_K": early,
                     "steady_misfit_K": late,
-                    "rms_K": float(np.sqrt(np.mean(np.concatenate([b.residual**2 for b in found.fit.blocks])))),
-                    "model_error": max(found.fit.noise.model.values()),
-                    "log_evidence": found.fit.evidence - self.fits[0].fit.evidence,
-                    "determined": sum(one.verdict == "determined" for one in found.properties),
-                    "properties": len(found.properties),
+                    "rms_K": float(np.sqrt(np.mean(np.concatenate([b.residual**2 for b in fit.fit.blocks])))),
+                    "model_error": max(fit.fit.noise.model.values()),
+                    "log_evidence": fit.fit.evidence - self.fits[0].fit.evidence,
+                    "determined": sum(estimate.verdict == "determined" for estimate in fit.properties),
+                    "properties": len(fit.properties),
                 }
             )
         return pd.DataFrame(rows)
 
 
-def _misfits(found: IdentificationData) -> tuple[float, float]:
+def _misfits(fit: IdentificationData) -> tuple[float, float]:
     """Root of the mean product of neighbouring residuals of all sensors: soon after a switch, and the rest, K."""
-    phases = found.card.phases
+    phases = fit.card.phases
     switches = (phases.idle, phases.idle + phases.heating)
     early, late = [], []
-    for block in found.fit.blocks:
+    for block in fit.fit.blocks:
         t, r = block.series.times[1:], block.residual
         soon = np.any([(t > s) & (t <= s + TRANSIENT) for s in switches], axis=0)
         product = r[1:] * r[:-1]
@@ -127,12 +127,12 @@ def study(
     progress: Callable[[int], None] | None = None,
 ) -> LayerStudy:
     """Fit the tests with each number of layers, properties constant in temperature."""
-    found: dict[int, IdentificationData] = {}
+    by_count: dict[int, IdentificationData] = {}
     for count, fit in fits(card, tests, counts, fineness):
-        found[count] = fit
+        by_count[count] = fit
         if progress:
             progress(count)
-    return LayerStudy(tuple(found), tuple(found.values()))
+    return LayerStudy(tuple(by_count), tuple(by_count.values()))
 
 
 def fits(

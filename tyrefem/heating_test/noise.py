@@ -34,12 +34,12 @@ class Noise:
     model: Mapping[str, float]
     tau: float = 200.0
 
-    def factor(self, one: SensorReadings, rise: Array) -> Array:
+    def factor(self, series: SensorReadings, rise: Array) -> Array:
         """Lower Cholesky factor of the covariance of a series, `rise` (n,) in K."""
-        gap = np.abs(one.times[:, None] - one.times[None, :])
-        g = self.model[one.sensor] * rise
+        gap = np.abs(series.times[:, None] - series.times[None, :])
+        g = self.model[series.sensor] * rise
         covariance = np.outer(g, g) * np.exp(-gap / self.tau)
-        covariance[np.diag_indices_from(covariance)] += self.reading[one.sensor] ** 2 / one.counts
+        covariance[np.diag_indices_from(covariance)] += self.reading[series.sensor] ** 2 / series.counts
         return np.asarray(cholesky(covariance, lower=True, check_finite=False))
 
 
@@ -105,19 +105,19 @@ def log_evidence(eq: Normal, x: Array, kept: Array | None = None) -> float:
 
 def _thinned(block: Block) -> Block:
     """Neighbours averaged to a hundred groups or so: the model's error varies slowly, and covariances cost n^3."""
-    one = block.series
-    size = int(np.ceil(one.times.size / _GROUPS))
+    whole = block.series
+    size = int(np.ceil(whole.times.size / _GROUPS))
     if size == 1:
         return block
-    starts = np.arange(0, one.times.size, size)
-    counts = np.add.reduceat(one.counts, starts)
+    starts = np.arange(0, whole.times.size, size)
+    counts = np.add.reduceat(whole.counts, starts)
 
     def mean(values: Array) -> Array:
-        weights = one.counts if values.ndim == 1 else one.counts[:, None]
+        weights = whole.counts if values.ndim == 1 else whole.counts[:, None]
         total = np.add.reduceat(values * weights, starts)
         return np.asarray(total / (counts if values.ndim == 1 else counts[:, None]))
 
-    series = replace(one, times=mean(one.times), readings=mean(one.readings), counts=counts)
+    series = replace(whole, times=mean(whole.times), readings=mean(whole.readings), counts=counts)
     return Block(series, mean(block.computed), mean(block.slopes), mean(block.rise))
 
 

@@ -78,15 +78,18 @@ class Parameters:
     @property
     def names(self) -> tuple[str, ...]:
         """Of the free ones, in order."""
-        return tuple(one.name for one in self.free)
+        return tuple(parameter.name for parameter in self.free)
 
     def values(self, x: Sequence[float] | Array) -> dict[str, float]:
         """Every number of the rig at coordinates x."""
-        return {**self.held, **{one.name: one.value(float(v)) for one, v in zip(self.free, x, strict=True)}}
+        return {
+            **self.held,
+            **{parameter.name: parameter.value(float(v)) for parameter, v in zip(self.free, x, strict=True)},
+        }
 
     def without(self, names: Sequence[str] | set[str]) -> Parameters:
         """The same, with some parameters held at their centre."""
-        gone = {one.name: one.centre for one in self.free if one.name in names}
+        gone = {parameter.name: parameter.centre for parameter in self.free if parameter.name in names}
         return replace(self, free=tuple(o for o in self.free if o.name not in gone), held={**self.held, **gone})
 
 
@@ -120,7 +123,7 @@ def parameters_of(card: RigCard, sensors: Sequence[str]) -> Parameters:
         listed.append(RigParameter(f"{layer.name}.thickness", "m", "linear", layer.thickness, layer.thickness_sd, RIG))
     seen = {name: card.sensors[name] for name in sensors}
     # One coordinate is enough where every sensor is aimed at the mark: only the distance matters.
-    aside = any(one.aside > 0 for one in seen.values())
+    aside = any(parameter.aside > 0 for parameter in seen.values())
     listed.append(RigParameter("spot_along", "m", "linear", 0.0, laser.placing_sd if aside else 0.0, RIG))
     listed.append(RigParameter("spot_across", "m", "folded" if aside else "rayleigh", 0.0, laser.placing_sd, RIG))
     for name, sensor in seen.items():
@@ -129,8 +132,8 @@ def parameters_of(card: RigCard, sensors: Sequence[str]) -> Parameters:
             spread = sensor.lag_sd if sensor.lag else 0.0
             listed.append(_log(f"{name}.lag", "s", sensor.lag, spread, RIG))
         listed.append(RigParameter(f"{name}.offset", "K", "linear", 0.0, sensor.offset_sd, RIG))
-    free = tuple(one for one in listed if one.spread > 0)
-    return Parameters(free, {one.name: one.centre for one in listed if not one.spread > 0})
+    free = tuple(parameter for parameter in listed if parameter.spread > 0)
+    return Parameters(free, {parameter.name: parameter.centre for parameter in listed if not parameter.spread > 0})
 
 
 def _log(name: str, unit: str, centre: float, relative_sd: float, group: str) -> RigParameter:

@@ -151,7 +151,7 @@ class Patch:
 
     def grid(self, fineness: Fineness | None = None) -> PatchGrid:
         """The mesh; patches of one shape share it."""
-        shape = tuple((one.name, one.thickness) for one in self.layers)
+        shape = tuple((layer.name, layer.thickness) for layer in self.layers)
         return _grid(shape, self.radius, self.curvature, self.spot_radius, fineness or USUAL)
 
     def _face(self, factor: float) -> list[Any]:
@@ -161,7 +161,7 @@ class Patch:
 
     def conduction(self, grid: PatchGrid, *, lit: bool) -> Conduction:
         """The conduction problem with the laser on or off."""
-        regions = {one.name: one.material() for one in self.layers}
+        regions = {layer.name: layer.material() for layer in self.layers}
         boundaries: dict[str, list[Any]] = {"outer": self._face(self.outer_film), "inner": self._face(self.inner_film)}
         if lit:
             where, flux = self.beam(grid)

@@ -76,18 +76,18 @@ def read(card: RigCard, tables: Iterable[str | Path], without: Sequence[str] = (
     wanted = [name for name in card.sensors if name not in without]
     if not wanted:
         raise InputError("no sensor is left", field="--without")
-    found: dict[str, HeatingTest] = {}
+    heating_tests: dict[str, HeatingTest] = {}
     for table in tables:
         for run in read_table(table):
             if run.name not in card.runs:
                 words = f"run '{run.name}' is not in the rig's card{nearest(run.name, card.runs)}"
                 raise InputError(words, file=table)
-            if run.name in found:
+            if run.name in heating_tests:
                 raise InputError(f"run '{run.name}' is given twice", file=table)
-            found[run.name] = matched(card, run, wanted, set(without))
-    if not found:
+            heating_tests[run.name] = matched(card, run, wanted, set(without))
+    if not heating_tests:
         raise InputError("no table of a test is given")
-    return tuple(found[name] for name in card.runs if name in found)
+    return tuple(heating_tests[name] for name in card.runs if name in heating_tests)
 
 
 def matched(card: RigCard, run: MeasuredRun, wanted: Sequence[str], without: Iterable[str] = ()) -> HeatingTest:

@@ -54,7 +54,7 @@ def combinations(slopes: Sequence[str]) -> list[tuple[str, ...]]:
     [(), ('a',), ('b',), ('a', 'b')]
     """
     most = len(slopes) if len(slopes) <= _ALL else 2
-    return [found for n in range(most + 1) for found in itertools.combinations(slopes, n)]
+    return [combination for n in range(most + 1) for combination in itertools.combinations(slopes, n)]
 
 
 def select(parameters: Parameters, eq: Normal, x: Array) -> Selection:
@@ -62,13 +62,13 @@ def select(parameters: Parameters, eq: Normal, x: Array) -> Selection:
 
     The Laplace evidence integrates each slope over its prior, so a slope that explains nothing costs its Occam factor.
     """
-    slopes = [one.name for one in parameters.free if one.group == SLOPE]
+    slopes = [parameter.name for parameter in parameters.free if parameter.group == SLOPE]
     place = {name: i for i, name in enumerate(parameters.names)}
     right = eq.right + eq.matrix @ x
     sets = combinations(slopes)
     logs, means, covariances = [], [], []
-    for found in sets:
-        kept = np.array([i for name, i in place.items() if name not in slopes or name in found])
+    for combination in sets:
+        kept = np.array([i for name, i in place.items() if name not in slopes or name in combination])
         logs.append(log_evidence(eq, x, kept))
         block = np.linalg.inv(np.eye(kept.size) + eq.matrix[np.ix_(kept, kept)])
         mean, covariance = np.zeros(x.size), np.zeros((x.size, x.size))
@@ -81,10 +81,12 @@ def select(parameters: Parameters, eq: Normal, x: Array) -> Selection:
     weight /= weight.sum()
     centre = np.tensordot(weight, np.array(means), 1)
     spread = sum(w * (c + np.outer(m - centre, m - centre)) for w, m, c in zip(weight, means, covariances, strict=True))
-    probable = {n: float(sum(w for w, found in zip(weight, sets, strict=True) if n in found)) for n in slopes}
+    probable = {
+        n: float(sum(w for w, combination in zip(weight, sets, strict=True) if n in combination)) for n in slopes
+    }
     good = [i for i in range(len(sets)) if values[i] > values.max() - MARGIN]
     simplest = min(good, key=lambda i: (len(sets[i]), -values[i]))
-    relative = {found: float(v - values[0]) for found, v in zip(sets, values, strict=True)}
+    relative = {combination: float(v - values[0]) for combination, v in zip(sets, values, strict=True)}
     return Selection(sets[simplest], relative, probable, centre, np.asarray(spread))
 
 

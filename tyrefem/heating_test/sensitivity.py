@@ -37,10 +37,10 @@ class Sensitivity:
 
     def __init__(self, patch: Patch, grid: PatchGrid, names: tuple[str, ...]) -> None:
         self.patch, self.grid, self.ops, self.names = patch, grid, grid.operators, names
-        self.layers = {one.name: (one, self.ops.quadrature(one.name)) for one in patch.layers}
+        self.layers = {layer.name: (layer, self.ops.quadrature(layer.name)) for layer in patch.layers}
         self.faces = {name: self.ops.surface(name) for name in ("outer", "inner")}
         self.films = {"outer": patch.outer_film, "inner": patch.inner_film}
-        self.straight = all(one.conductivity.slope == one.specific_heat.slope == 0 for one in patch.layers)
+        self.straight = all(layer.conductivity.slope == layer.specific_heat.slope == 0 for layer in patch.layers)
         where, flux = patch.beam(grid)
         spot = self.ops.surface(where)
         self.load = np.zeros(self.ops.size)

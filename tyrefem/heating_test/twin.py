@@ -43,15 +43,17 @@ class Twin:
         card = self.card
         layers = tuple(
             PatchLayer(
-                one.name,
-                max(values[f"{one.name}.thickness"], 0.2 * one.thickness),
-                one.density.value,
+                layer.name,
+                max(values[f"{layer.name}.thickness"], 0.2 * layer.thickness),
+                layer.density.value,
                 *(
-                    Property(values[f"{one.name}.{key}"], values[f"{one.name}.{key}_slope"], one.reference_temperature)
+                    Property(
+                        values[f"{layer.name}.{key}"], values[f"{layer.name}.{key}_slope"], layer.reference_temperature
+                    )
                     for key in ("conductivity", "specific_heat")
                 ),
             )
-            for one in card.layers
+            for layer in card.layers
         )
         return Patch(
             layers,
@@ -97,7 +99,9 @@ class Twin:
         """d readings / d coordinates, (computed times, sensors, parameters), about the fields at x."""
         values = parameters.values(x)
         out = np.zeros((*base.shape, len(parameters)))
-        solved = [i for i, one in enumerate(parameters.free) if not _only_seen(one) and not _thickness(one)]
+        solved = [
+            i for i, parameter in enumerate(parameters.free) if not _only_seen(parameter) and not _thickness(parameter)
+        ]
         names = tuple(parameters.free[i].name for i in solved)
         tangent = self._tangent(values, names, run, clock, fields)
         grid = self.grid(values)
@@ -105,15 +109,15 @@ class Twin:
             row = view(name, self.card.sensors[name], grid, values).toarray()[0]
             raw = np.einsum("tup,u->tp", tangent, row)
             for i, slope in zip(solved, clock.lagged(raw, values.get(f"{name}.lag", 0.0)).T, strict=True):
-                one = parameters.free[i]
-                out[:, column, i] = slope * one.spread
-        for i, one in enumerate(parameters.free):
+                parameter = parameters.free[i]
+                out[:, column, i] = slope * parameter.spread
+        for i, parameter in enumerate(parameters.free):
             if i in solved:
                 continue
-            step = 0.05 if _only_seen(one) else 0.2
+            step = 0.05 if _only_seen(parameter) else 0.2
             moved = parameters.values(at(x, i, step))
             back = parameters.values(at(x, i, -step))
-            if _only_seen(one):
+            if _only_seen(parameter):
                 up, down = self.seen(moved, clock, fields), self.seen(back, clock, fields)
             else:
                 up, down = self.readings(moved, run, clock), self.readings(back, run, clock)
@@ -133,9 +137,9 @@ class Twin:
         return np.concatenate([hot, cold[1:]])
 
 
-def _only_seen(one: RigParameter) -> bool:
-    return one.name.rpartition(".")[2] in _VIEWS
+def _only_seen(parameter: RigParameter) -> bool:
+    return parameter.name.rpartition(".")[2] in _VIEWS
 
 
-def _thickness(one: RigParameter) -> bool:
-    return one.name.endswith(".thickness")
+def _thickness(parameter: RigParameter) -> bool:
+    return parameter.name.endswith(".thickness")

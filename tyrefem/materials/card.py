@@ -60,8 +60,8 @@ class Conductivity(Sourced):
     def _tables(self) -> list[PropertyTable]:
         rows = self.table or []
         width = len(rows[0]) if rows and isinstance(rows[0], list) else 2
-        found = columns(rows, ("degC", *[self.UNIT] * (2 if width == 3 else 1)))
-        return [PropertyTable(found[0], values) for values in found[1:]]
+        listed = columns(rows, ("degC", *[self.UNIT] * (2 if width == 3 else 1)))
+        return [PropertyTable(listed[0], values) for values in listed[1:]]
 
     def warnings(self) -> tuple[InputWarning, ...]:
         """Unlikely numbers, those of the table too."""
@@ -194,13 +194,13 @@ class LossTangent(Sourced):
 
     def warnings(self) -> tuple[InputWarning, ...]:
         """Unlikely numbers, those of the table or master curve too."""
-        found = super().warnings()
+        warnings = super().warnings()
         if self.law == "table":
-            return found + self._tabulated.unlikely(LOSS_TANGENT)
+            return warnings + self._tabulated.unlikely(LOSS_TANGENT)
         if self.law == "frequency":
             at_reference = LOSS_TANGENT.warning(float(self(self.at)), "frequency")
-            return found + tuple(filter(None, [at_reference]))
-        return found
+            return warnings + tuple(filter(None, [at_reference]))
+        return warnings
 
     @property
     def uncertain_fields(self) -> tuple[tuple[str, ...], ...]:
@@ -282,7 +282,7 @@ class MaterialCard(Card):
     @property
     def softens(self) -> bool:
         """Does any modulus depend on temperature?"""
-        return any(one is not None and one.softening is not None for one in (self, self.cord, self.cords))
+        return any(part is not None and part.softening is not None for part in (self, self.cord, self.cords))
 
     def warmed(self, temperature: float) -> MaterialCard:
         """The card with the moduli that it has at a temperature, degC."""

@@ -73,10 +73,10 @@ def columns(rows: list[list[Any]], units: tuple[str, ...]) -> list[tuple[float, 
             parsed.append([Unit(unit, gt=None if unit == "degC" else 0)(cell) for cell, unit in pairs])
         except InputError as error:
             raise error.within(field=f"table.{number}") from None
-    found = list(zip(*parsed, strict=True))
-    if any(later <= earlier for earlier, later in zip(found[0], found[0][1:], strict=False)):
+    parsed_columns = list(zip(*parsed, strict=True))
+    if any(later <= earlier for earlier, later in zip(parsed_columns[0], parsed_columns[0][1:], strict=False)):
         raise InputError(f"{FIRST[units[0]]} must rise from row to row, without duplicates", field="table")
-    return found
+    return parsed_columns
 
 
 #: Range in which an exponential law is used, degC; held beyond.

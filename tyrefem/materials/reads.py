@@ -30,23 +30,23 @@ def of_elements(cards: Cards) -> dict[str, tuple[str, ...]]:
     """Compound and cords of every region, as `tyrefem.mechanics.solid.tyre_body` takes them; tan delta where cords
     lose heat too.
     """
-    found: dict[str, list[str]] = {region: [] for region in cards}
+    fields: dict[str, list[str]] = {region: [] for region in cards}
     for region, card in cards.items():
         if card.elasticity is not None:
-            found[region].append("elasticity")
+            fields[region].append("elasticity")
         elif card.shear_modulus is not None:
-            found[region].append("shear_modulus")
-        elif "carcass" in found:
-            found["carcass"].append("shear_modulus")
+            fields[region].append("shear_modulus")
+        elif "carcass" in fields:
+            fields["carcass"].append("shear_modulus")
         if card.cords is not None:
-            found[region].append("cords")
+            fields[region].append("cords")
             if card.cords.loss_tangent:
-                found[region].append("loss_tangent")
+                fields[region].append("loss_tangent")
         elif card.cord is not None and card.cord.ply_shear_modulus is not None:
-            found[region].append("cord")
+            fields[region].append("cord")
         elif region == "bead" and card.youngs_modulus is not None:
-            found[region].append("youngs_modulus")
-    return {region: tuple(dict.fromkeys(tables)) for region, tables in found.items()}
+            fields[region].append("youngs_modulus")
+    return {region: tuple(dict.fromkeys(tables)) for region, tables in fields.items()}
 
 
 def of_given(cards: Cards) -> dict[str, tuple[str, ...]]:

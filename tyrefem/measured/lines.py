@@ -135,10 +135,10 @@ def _cells(line: str, delimiter: str, number: int, path: Path, *, strict: bool =
     if '"' not in line:
         return [cell.strip() for cell in line.split(delimiter)]
     try:
-        found = next(csv.reader([line], delimiter=delimiter, skipinitialspace=True, strict=strict), [])
+        cells = next(csv.reader([line], delimiter=delimiter, skipinitialspace=True, strict=strict), [])
     except csv.Error as error:
         raise InputError(f"line {number}: quotes do not match ({error})", file=path) from None
-    return [cell.strip() for cell in found]
+    return [cell.strip() for cell in cells]
 
 
 def _without_trailing_empty(cells: list[str]) -> list[str]:

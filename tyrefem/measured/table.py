@@ -217,12 +217,12 @@ def _times(
     return {name: times[rows] for name, rows in runs.items()}
 
 
-def _readings(one: Heading, cells: Sequence[str], lines: Lines, file: Path) -> NDArray[np.float64]:
-    shown = lines.heading[one.column]
-    degC = one.to_degC(numbers(cells, lines.numbers, shown, file, gaps=True))
+def _readings(heading: Heading, cells: Sequence[str], lines: Lines, file: Path) -> NDArray[np.float64]:
+    shown = lines.heading[heading.column]
+    degC = heading.to_degC(numbers(cells, lines.numbers, shown, file, gaps=True))
     if not np.isfinite(degC).any():
         raise InputError(f"column '{shown[:60]}' has no reading in any row", file=file)
-    plausible(one, degC, lines.numbers, file)
+    plausible(heading, degC, lines.numbers, file)
     return degC
 
 
@@ -230,12 +230,12 @@ def _rows_of_runs(cells: Sequence[str] | None, lines: Lines, file: Path) -> dict
     """Run -> its rows; a table without a run column is one run, named like the file."""
     if cells is None:
         return {file.stem: np.arange(len(lines.rows))}
-    found: dict[str, list[int]] = {}
+    rows_of: dict[str, list[int]] = {}
     for row, (cell, line) in enumerate(zip(cells, lines.numbers, strict=True)):
         if not cell:
             raise InputError(f"line {line}: the run column is empty", file=file)
-        found.setdefault(cell, []).append(row)
-    return {name: np.array(rows) for name, rows in found.items()}
+        rows_of.setdefault(cell, []).append(row)
+    return {name: np.array(rows) for name, rows in rows_of.items()}
 
 
 def _increasing(times: NDArray[np.float64], lines: list[int], name: str, file: Path) -> None:

@@ -87,8 +87,8 @@ def provider(study: StudyData) -> Callable[[LoadCase], StrainCycle]:
         if deflection <= 0:
             return None
         tyre, known = inflated(pressure), solved.setdefault(pressure, [])
-        less = [one for one in known if one.deflection <= deflection]
-        known.append(flatten(tyre, deflection, max(less, key=lambda one: one.deflection, default=None)))
+        less = [state for state in known if state.deflection <= deflection]
+        known.append(flatten(tyre, deflection, max(less, key=lambda state: state.deflection, default=None)))
         return known[-1]
 
     def cycle(case: LoadCase) -> StrainCycle:

@@ -89,11 +89,11 @@ class PointEnergies:
 
     def moved(self, others: Sequence[tuple[PointEnergies, float]]) -> PointEnergies:
         """U + sum_i w_i (U_i - U) with shares w_i of the way to other cycles at the same points; nowhere below 0."""
-        size = max(len(one.densities) for one in (self, *(other for other, _ in others)))
-        found = _padded(self.densities, size)
+        size = max(len(energies.densities) for energies in (self, *(other for other, _ in others)))
+        densities = _padded(self.densities, size)
         for other, share in others:
-            found = found + share * (_padded(other.densities, size) - _padded(self.densities, size))
-        return PointEnergies(self.zones, self.points, np.maximum(found, 0.0))
+            densities = densities + share * (_padded(other.densities, size) - _padded(self.densities, size))
+        return PointEnergies(self.zones, self.points, np.maximum(densities, 0.0))
 
 
 def _padded(densities: Array, size: int) -> Array:
@@ -130,14 +130,14 @@ class FiniteElements:
     @functools.cached_property
     def settled(self) -> LoadCase:
         """The load case with the footprint's own load, deflection, length, area and rolling radius."""
-        found, case = self.footprint, self.case
-        if found is None:
+        footprint, case = self.footprint, self.case
+        if footprint is None:
             free = PressedContact(0.0, 0.0, float(self.tyre.places[0].max()))
             return replace(case, load=0.0, deflection=0.0, contact=free)
         # A load that was given stays to the last digit.
-        load = found.load if case.by_deflection else case.load
-        contact = PressedContact(found.length, found.area, found.rolling_radius)
-        return replace(case, load=load, deflection=found.deflection, contact=contact)
+        load = footprint.load if case.by_deflection else case.load
+        contact = PressedContact(footprint.length, footprint.area, footprint.rolling_radius)
+        return replace(case, load=load, deflection=footprint.deflection, contact=contact)
 
     @functools.cached_property
     def densities(self) -> Array:

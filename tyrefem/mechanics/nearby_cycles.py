@@ -109,25 +109,25 @@ class NearbyCycles:
                 back |= dict(zip(number.keys, number.written, strict=True))
         if not same_cycles(study.replace(back, self.study), self.study):
             return None
-        own, driven = self.schedule, KnotSolver(study)
+        schedule, driven = self.schedule, KnotSolver(study)
         ways = [(self._ways[key], share) for key, share in moved]
         cases: list[tuple[LoadCase, ...]] = []
         cycles: list[tuple[PointEnergies, ...]] = []
-        for phase, fractions in enumerate(own.knots):
+        for phase, fractions in enumerate(schedule.knots):
             there = [[(way[phase][knot], share) for way, share in ways] for knot in range(len(fractions))]
             cases.append(
                 tuple(
-                    _between(driven.case(phase, fraction), case, [(one[0], share) for one, share in at])
-                    for fraction, case, at in zip(fractions, own.cases[phase], there, strict=True)
+                    _between(driven.case(phase, fraction), case, [(neighbour[0], share) for neighbour, share in at])
+                    for fraction, case, at in zip(fractions, schedule.cases[phase], there, strict=True)
                 )
             )
             cycles.append(
                 tuple(
-                    _energies(cycle).moved([(one[1], share) for one, share in at])
-                    for cycle, at in zip(own.cycles[phase], there, strict=True)
+                    _energies(cycle).moved([(neighbour[1], share) for neighbour, share in at])
+                    for cycle, at in zip(schedule.cycles[phase], there, strict=True)
                 )
             )
-        return CycleSchedule(study.card.drive, own.knots, tuple(cases), tuple(cycles))
+        return CycleSchedule(study.card.drive, schedule.knots, tuple(cases), tuple(cycles))
 
     def _up(self, number: UncertainNumber) -> StudyData:
         return self.study.replace(number.changes(1.0 + number.sd))
@@ -146,11 +146,11 @@ class _Ways(dict[str, list[list[Solved]]]):
 
     def __missing__(self, key: str) -> list[list[Solved]]:
         near = self.near
-        number = next(one for one in near.numbers if one.key == key)
-        solver, own = KnotSolver(near._up(number)), near.schedule
+        number = next(uncertain for uncertain in near.numbers if uncertain.key == key)
+        solver, schedule = KnotSolver(near._up(number)), near.schedule
 
         def solved(phase: int, knot: int) -> Solved:
-            case, like = solver.case(phase, own.knots[phase][knot]), _energies(own.cycles[phase][knot])
+            case, like = solver.case(phase, schedule.knots[phase][knot]), _energies(schedule.cycles[phase][knot])
 
             def solve() -> Solved:
                 cycle = solver.cycle(phase, case)
@@ -159,7 +159,7 @@ class _Ways(dict[str, list[list[Solved]]]):
 
             return near.solved.of(f"{key} {case!r}", like, solve)
 
-        self[key] = [[solved(phase, knot) for knot in range(len(knots))] for phase, knots in enumerate(own.knots)]
+        self[key] = [[solved(phase, knot) for knot in range(len(knots))] for phase, knots in enumerate(schedule.knots)]
         return self[key]
 
 
@@ -194,12 +194,12 @@ def _between(driven: LoadCase, case: LoadCase, others: list[tuple[LoadCase, floa
         return driven
 
     def mean(value: Callable[[LoadCase], float]) -> float:
-        return value(case) + sum(share * (value(one) - value(case)) for one, share in others)
+        return value(case) + sum(share * (value(neighbour) - value(case)) for neighbour, share in others)
 
     contact = PressedContact(
-        mean(lambda one: one.footprint_length), mean(lambda one: one.footprint_area or 0.0),
-        mean(lambda one: one.rolling_radius),
+        mean(lambda neighbour: neighbour.footprint_length), mean(lambda neighbour: neighbour.footprint_area or 0.0),
+        mean(lambda neighbour: neighbour.rolling_radius),
     )  # fmt: skip
     if driven.by_deflection:
-        return replace(driven, load=mean(lambda one: one.load), contact=contact)
-    return replace(driven, deflection=mean(lambda one: one.deflection), contact=contact)
+        return replace(driven, load=mean(lambda neighbour: neighbour.load), contact=contact)
+    return replace(driven, deflection=mean(lambda neighbour: neighbour.deflection), contact=contact)

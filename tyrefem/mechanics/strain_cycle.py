@@ -57,8 +57,8 @@ class StrainCycle(Protocol):
 
 def settled(cycle: StrainCycle, case: LoadCase) -> LoadCase:
     """The load case as its strain cycle has it: with the contact of a provider that presses the tyre itself."""
-    found: LoadCase = getattr(cycle, "settled", case)
-    return found
+    settled_case: LoadCase = getattr(cycle, "settled", case)
+    return settled_case
 
 
 def by_order(harmonics: Array) -> Array:
@@ -75,9 +75,9 @@ def by_order(harmonics: Array) -> Array:
         return np.zeros((1, *np.shape(harmonics)[1:]))
     below = np.floor(place + 1e-9).astype(int)
     above = np.maximum(place - below, 0.0)
-    found = np.zeros((int(np.ceil(place[-1] - 1e-9)) + 1, *np.shape(harmonics)[1:]))
+    energies = np.zeros((int(np.ceil(place[-1] - 1e-9)) + 1, *np.shape(harmonics)[1:]))
     for n, (order, share) in enumerate(zip(below, above, strict=True), start=1):
-        found[order] += (1 - share) * harmonics[n]
+        energies[order] += (1 - share) * harmonics[n]
         if share > 1e-9:
-            found[order + 1] += share * harmonics[n]
-    return found
+            energies[order + 1] += share * harmonics[n]
+    return energies

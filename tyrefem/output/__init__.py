@@ -24,8 +24,8 @@ from tyrefem.interruption import held_back
 
 def versions() -> dict[str, str]:
     """Versions of this package, of Python and of the libraries that decide the numbers."""
-    found = {"tyrefem": tyrefem.__version__, "python": platform.python_version()}
-    return found | {name: importlib.metadata.version(name) for name in ("numpy", "scipy", "scikit-fem", "pint")}
+    packages = {"tyrefem": tyrefem.__version__, "python": platform.python_version()}
+    return packages | {name: importlib.metadata.version(name) for name in ("numpy", "scipy", "scikit-fem", "pint")}
 
 
 #: Start of the names under which files are written until they are complete.

@@ -277,8 +277,8 @@ class ResultsFolder(WriteGuard):
     def _matching(self, names: Iterable[str]) -> list[str]:
         """Files of these names in the folder, and links of these names that lead nowhere."""
         patterns = [name for name in names if name and not Path(name).is_absolute() and ".." not in Path(name).parts]
-        found = {path.relative_to(self.folder).as_posix() for each in patterns for path in self.folder.glob(each)}
-        return sorted(found | {each for each in patterns if os.path.lexists(self.folder / each)})
+        matching = {path.relative_to(self.folder).as_posix() for each in patterns for path in self.folder.glob(each)}
+        return sorted(matching | {each for each in patterns if os.path.lexists(self.folder / each)})
 
     def _name(self, path: Path) -> str | None:
         """A file's name relative to the folder; None: it is elsewhere."""

@@ -43,7 +43,7 @@ def arrays_of(model: ReducedModel, probe: Probe, tables: Tables, hot: Array) -> 
     T = np.eye(n)
     T[:m, :m] = low.T @ turned
     even = np.linalg.solve(T[:m, :m], np.eye(m)[0] / model.V[0, 0])
-    table, law = loss_tables(balance.tyre, [(zone, len(one)) for zone, one in model.samples.items()])
+    table, law = loss_tables(balance.tyre, [(zone, len(points)) for zone, points in model.samples.items()])
     doubled = 2.0 if study.section.half else 1.0
     read, lags = _read(model, study, balance)
     return {
@@ -70,11 +70,11 @@ def arrays_of(model: ReducedModel, probe: Probe, tables: Tables, hot: Array) -> 
 
 def outputs_of(study: StudyData, balance: ReducedBalance) -> list[dict[str, str]]:
     """Name, unit and meaning of every output, in order."""
-    found = [{"name": name, "unit": "degC", "what": f"sensor {name}"} for name in study.sensors]
+    temperatures = [{"name": name, "unit": "degC", "what": f"sensor {name}"} for name in study.sensors]
     if RIM in balance.reservoirs:
-        found.append({"name": RIM, "unit": "degC", "what": "lumped rim"})
+        temperatures.append({"name": RIM, "unit": "degC", "what": "lumped rim"})
     return [
-        *found,
+        *temperatures,
         {"name": GAS, "unit": "degC", "what": "contained air"},
         {"name": "hottest", "unit": "degC", "what": "hottest point of the rubber"},
         {"name": "gas_pressure", "unit": "Pa", "what": "gauge pressure of the contained air"},
@@ -106,7 +106,9 @@ def sampled(model: ReducedModel) -> Array:
     """Numbers of the samples among the nodes of all zones."""
     counts = [len(model.operators.dofs(zone)) for zone in model.zones]
     begins = np.cumsum([0, *counts[:-1]])
-    return np.concatenate([begin + one for begin, one in zip(begins, model.samples.values(), strict=True)]).astype(int)
+    return np.concatenate(
+        [begin + points for begin, points in zip(begins, model.samples.values(), strict=True)]
+    ).astype(int)
 
 
 def _starts(probe: Probe) -> Array:
@@ -120,11 +122,11 @@ def _gas(study: StudyData, tyre: RollingTyre) -> Array:
     law, volume, effects = study.card.boundaries.contained_air, study.section.gas_volume(), tyre.acting
 
     def capacity(pressure: float, temperature: float) -> float | None:
-        found = law.heat_capacity(volume, pressure, temperature)
-        return None if found is None else effects.gas_capacity(found)
+        heat_capacity = law.heat_capacity(volume, pressure, temperature)
+        return None if heat_capacity is None else effects.gas_capacity(heat_capacity)
 
     tried = [(1e5, 20.0), (8e5, 20.0), (3e5, 60.0)]
-    values = [capacity(*one) for one in tried]
+    values = [capacity(*state) for state in tried]
     if values[0] is None:
         return np.zeros(0)
     density = [(pressure + ATMOSPHERE) / (temperature + KELVIN) for pressure, temperature in tried]

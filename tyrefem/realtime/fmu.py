@@ -79,16 +79,16 @@ def description(tyre: RealTimeTyre, guid: str) -> str:
         'initial="calculated" description="number of inputs that were moved to the edge of the box"><Integer/>'
         "</ScalarVariable>"
     )
-    for k, (name, one) in enumerate(zip(variable_names(tyre), tyre.about["outputs"], strict=True)):
-        variables.append(_real(OUTPUT + k, name, "output", one["unit"], one["what"]))
+    for k, (name, output) in enumerate(zip(variable_names(tyre), tyre.about["outputs"], strict=True)):
+        variables.append(_real(OUTPUT + k, name, "output", output["unit"], output["what"]))
     outputs = "".join(f'<Unknown index="{k + 1}"/>' for k in range(len(INPUTS) + 2, len(variables)))
     units = "".join(f"<Unit name={quoteattr(name)}><BaseUnit {base}/></Unit>" for name, base in _UNITS.items())
     certificate = tyre.about.get("certificate", {})
-    said = f"{tyre.about['title']}; largest error against full runs {certificate.get('worst', float('nan')):.3g} K"
+    words = f"{tyre.about['title']}; largest error against full runs {certificate.get('worst', float('nan')):.3g} K"
     now = datetime.now(UTC).strftime("%Y-%m-%dT%H:%M:%SZ")
     return f"""<?xml version="1.0" encoding="UTF-8"?>
 <fmiModelDescription fmiVersion="2.0" modelName={quoteattr(str(tyre.about["study"]))} guid="{guid}"
-  description={quoteattr(said)} generationTool="tyrefem {tyrefem.__version__}" generationDateAndTime="{now}"
+  description={quoteattr(words)} generationTool="tyrefem {tyrefem.__version__}" generationDateAndTime="{now}"
   variableNamingConvention="flat">
 <CoSimulation modelIdentifier="{IDENTIFIER}" canHandleVariableCommunicationStepSize="true" canInterpolateInputs="true"
   canGetAndSetFMUstate="true" canSerializeFMUstate="true" canNotUseMemoryManagementFunctions="true">
@@ -154,7 +154,9 @@ def data_header(tyre: RealTimeTyre, guid: str) -> str:
     m, n = sizes["M"], sizes["N"]
     lines = ["/* Written by tyrefem export: the numbers of one tyre, SI units and degC. */", f'#define GUID "{guid}"']
     lines += [f"#define {name} {value}" for name, value in sizes.items()]
-    lines += [f"#define {name} ({value!r})" for name, value in ((name, float(one)) for name, one in numbers.items())]
+    lines += [
+        f"#define {name} ({value!r})" for name, value in ((name, float(number)) for name, number in numbers.items())
+    ]
     tables = {
         "INPUT_START": [tyre.about["start"][name] for name in INPUTS],
         "BOX": list(tyre.box.values()),
@@ -203,7 +205,7 @@ def _table(name: str, values: Any) -> str:
 def _braced(values: Any) -> str:
     if values.ndim == 1:
         return "{" + ",\n".join(", ".join(map(repr, row)) for row in _lines(values.tolist())) + "}"
-    return "{" + ",\n".join(_braced(one) for one in values) + "}"
+    return "{" + ",\n".join(_braced(value) for value in values) + "}"
 
 
 def _lines(values: list[float], width: int = 8) -> list[list[float]]:
@@ -242,7 +244,7 @@ def write_fmu(model: str | Path, path: str | Path, *, compiler: str | None = Non
         (folder / "modelDescription.xml").write_text(description(tyre, guid), encoding="utf-8")
         (folder / "resources").mkdir()
         (folder / "resources" / "about.json").write_text(json.dumps(tyre.about, indent=1), encoding="utf-8")
-        compiler = compiler or next((one for one in COMPILERS if shutil.which(one)), None)
+        compiler = compiler or next((program for program in COMPILERS if shutil.which(program)), None)
         if compiler is not None:
             _compiled(compiler, folder)
         with atomic_path(path) as temporary, zipfile.ZipFile(temporary, "w", zipfile.ZIP_DEFLATED) as packed:

@@ -66,7 +66,7 @@ def box_of(study: StudyData, given: Mapping[str, tuple[Any, Any]] | None = None)
     """
     from tyrefem.errors import nearest
 
-    found: dict[str, tuple[float, float]] = {}
+    ranges: dict[str, tuple[float, float]] = {}
     for name in given or {}:
         if name not in NAMES:
             raise InputError(f"unknown input '{name}'{nearest(name, NAMES)}")
@@ -74,7 +74,8 @@ def box_of(study: StudyData, given: Mapping[str, tuple[Any, Any]] | None = None)
         if given and name in given:
             try:
                 low, high = (
-                    parse(one, INPUTS[name]) if isinstance(one, str) else float(one) for one in _pair(name, given[name])
+                    parse(limit, INPUTS[name]) if isinstance(limit, str) else float(limit)
+                    for limit in _pair(name, given[name])
                 )
             except InputError as error:
                 raise error if error.field else error.within(field=name) from None
@@ -84,8 +85,8 @@ def box_of(study: StudyData, given: Mapping[str, tuple[Any, Any]] | None = None)
             raise InputError(f"must be from a lower to a higher value, not {low:g} to {high:g}", field=name)
         if name in FACTORS and (low < 0 or (high <= 0 and name != "pressure")):
             raise InputError(f"must be positive, not {low:g} to {high:g} {INPUTS[name]}", field=name)
-        found[name] = low, high
-    return Box(found)
+        ranges[name] = low, high
+    return Box(ranges)
 
 
 def _pair(name: str, given: Any) -> tuple[Any, Any]:
@@ -134,7 +135,7 @@ class Course:
         part = min(int(np.searchsorted(self.ends, (begin + end) / 2, side="right")) - 1, len(self.first) - 1)
         length, change = self.ends[part + 1] - self.ends[part], self.last[part] - self.first[part]
         both = (self.first[part] + change * float(np.clip((t - self.ends[part]) / length, 0, 1)) for t in (begin, end))
-        first, last = (Inputs(*one.tolist()) for one in both)
+        first, last = (Inputs(*values.tolist()) for values in both)
         return first, last
 
     def jumps(self, t: float) -> bool:
@@ -160,17 +161,17 @@ class Course:
 
 
 def _written(first: Sequence[float], last: Sequence[float]) -> dict[str, Any]:
-    found: dict[str, Any] = {}
+    phase: dict[str, Any] = {}
     for name, a, b in zip(NAMES, first, last, strict=True):
         start, end = (f"{value:.12g} {INPUTS[name]}" for value in (a, b))
-        found[name] = start if start == end else {"from": start, "to": end}
-    return found
+        phase[name] = start if start == end else {"from": start, "to": end}
+    return phase
 
 
 def _kept(study: StudyData) -> dict[str, Any]:
     drive = study.data["drive"]
     phases = drive.get("phases", [{}])
-    if any("slip" in key for one in (drive, *phases) for key in one):
+    if any("slip" in key for part in (drive, *phases) for key in part):
         raise InputError("a real-time model knows no slip", field="drive")
     kept = {**{key: drive[key] for key in KEPT if key in drive}}
     for phase in phases:

@@ -161,7 +161,7 @@ class Probe:
         # The box's corners are asked first: a load that the tyre cannot carry is said as such.
         self.at(np.ones(1), np.array([(load, pressure) for load in (low, high) for pressure in (least, most)]))
         axes = {
-            "speed": _axis(*(float(np.sqrt(one)) for one in self.box.ranges["speed"]), count=points.speed),
+            "speed": _axis(*(float(np.sqrt(limit)) for limit in self.box.ranges["speed"]), count=points.speed),
             "bend": _axis(bend(low, most), bend(high, least), count=points.bend),
             "pressure": _axis(least, most, count=points.pressure),
         }

@@ -88,8 +88,8 @@ class RealTimeTyre:
         self.about: dict[str, Any] = about
         self.clamp, self.clamped = clamp, []  # type: bool, list[str]
         self._data = self.arrays = data
-        self.names: list[str] = [one["name"] for one in about["outputs"]]
-        self.units: list[str] = [one["unit"] for one in about["outputs"]]
+        self.names: list[str] = [output["name"] for output in about["outputs"]]
+        self.units: list[str] = [output["unit"] for output in about["outputs"]]
         #: Input -> the range that the model was certified in, SI.
         self.box = {name: (float(low), float(high)) for name, (low, high) in about["box"].items()}
         # Every array is looked up once: a step takes a few dozen microseconds.
@@ -117,8 +117,8 @@ class RealTimeTyre:
         """Everything at one temperature, degC (without: that of the study); the first step fills the tyre."""
         start = float(self.about["initial"] if temperature is None else temperature)
         self.time, self._start, self._filled = 0.0, start, math.nan
-        own = self._data["lumped_start"]
-        self._y = np.concatenate([start * self._data["even"], np.where(np.isnan(own), start, own)])
+        lumped = self._data["lumped_start"]
+        self._y = np.concatenate([start * self._data["even"], np.where(np.isnan(lumped), start, lumped)])
         self._air_start = float(self._y[self._size]) if len(self._data["gas"]) else float(self._data["held"])
         self._late = np.full(len(self._slow), start)
         self._key: tuple[float, ...] = ()
@@ -160,16 +160,16 @@ class RealTimeTyre:
         ------
         ValueError : an input that is no number; one outside the box, unless ``clamp`` is set.
         """
-        found, self.clamped = [], []
+        within, self.clamped = [], []
         for (name, (low, high)), value in zip(self.box.items(), _five(inputs), strict=True):
             near = 1e-9 * max(abs(low), abs(high))
             if not low - near <= value <= high + near:
-                said = f"{name} = {value:g} is outside {low:g} to {high:g} {INPUTS[name]}"
+                message = f"{name} = {value:g} is outside {low:g} to {high:g} {INPUTS[name]}"
                 if not self.clamp or math.isnan(value):
-                    raise ValueError(said)
-                self.clamped.append(said)
-            found.append(min(max(float(value), low), high))
-        return Inputs(*found)
+                    raise ValueError(message)
+                self.clamped.append(message)
+            within.append(min(max(float(value), low), high))
+        return Inputs(*within)
 
     def step(self, dt: float, inputs: Inputs, later: Inputs | None = None) -> Array:
         """Go on by ``dt`` seconds; the `outputs` after it.
@@ -184,8 +184,8 @@ class RealTimeTyre:
         if not 0 < dt < math.inf:
             raise ValueError(f"a step must be positive, not {dt:g} s")
         first = self.checked(inputs)
-        said, last = self.clamped, first if later is None else self.checked(later)
-        self.clamped = list(dict.fromkeys(said + self.clamped)) if later is not None else said
+        clamped, last = self.clamped, first if later is None else self.checked(later)
+        self.clamped = list(dict.fromkeys(clamped + self.clamped)) if later is not None else clamped
         if math.isnan(self._filled):
             self._fill(first.pressure)
         parts = math.ceil(dt / LONGEST - 1e-9)
@@ -263,11 +263,11 @@ class RealTimeTyre:
 
         The last two follow from the inputs of the last step: NaN before the first.
         """
-        found = np.empty(len(self.names))
+        outputs = np.empty(len(self.names))
         seen, inputs = self._rows @ self._y, self._inputs
         read = len(self._read)
-        found[:read] = seen[:read]
-        found[self._slow] = self._late
+        outputs[:read] = seen[:read]
+        outputs[self._slow] = self._late
         air = float(self._y[self._size]) if len(self._data["gas"]) else self._air_start
         pressure = resistance = math.nan
         if inputs is not None:
@@ -275,8 +275,8 @@ class RealTimeTyre:
             resistance = 0.0
             if inputs.speed >= STANDSTILL:
                 resistance = float(self._power @ (self._per_metre * self._loss_tangent(self._y)))
-        found[read:] = air, seen[read:].max(), pressure, resistance
-        return found
+        outputs[read:] = air, seen[read:].max(), pressure, resistance
+        return outputs
 
 
 def _five(inputs: Inputs) -> list[float]:
@@ -292,15 +292,15 @@ class CubicTable:
         self.values = np.ascontiguousarray(values.reshape(len(values), -1))
 
     def __call__(self, *place: float) -> Array:
-        found = self.values
+        values = self.values
         for number, (x, (low, high)) in enumerate(zip(place, self.axes, strict=True)):
             n = self.shape[number]
             if n > 1:
                 u, width = (x - low) / (high - low) * (n - 1), min(4, n)
                 first = min(max(int(u) - 1, 0), n - width)
-                found = lagrange(u - first, width) @ found[first : first + width]
-            found = found.reshape(self.shape[number + 1], -1)
-        return found[:, 0]
+                values = lagrange(u - first, width) @ values[first : first + width]
+            values = values.reshape(self.shape[number + 1], -1)
+        return values[:, 0]
 
 
 def lagrange(u: float, width: int) -> Array:
@@ -328,6 +328,11 @@ def inverse(W: Array) -> Array:
     across = first @ W[:k, k:]
     second = np.linalg.inv(W[k:, k:] - W[k:, :k] @ across)
     corner = across @ second
-    found = np.empty_like(W)
-    found[:k, :k], found[:k, k:], found[k:, :k], found[k:, k:] = first + corner @ across.T, -corner, -corner.T, second
-    return found
+    result = np.empty_like(W)
+    result[:k, :k], result[:k, k:], result[k:, :k], result[k:, k:] = (
+        first + corner @ across.T,
+        -corner,
+        -corner.T,
+        second,
+    )
+    return result

@@ -55,10 +55,10 @@ def gmsh_mesh(section: Section, size: float, cell: str, through: int) -> Any:
     with _LOCK, _gmsh({**_OPTIONS, **_BY_CELL[cell]}) as pygmsh:
         try:
             _draw(pygmsh.geo.Geometry(), half, blocks).generate_mesh(dim=2)
-            found = _extract()
+            raw = _extract()
         except Exception as error:  # gmsh raises plain Exception for whatever it cannot do
             raise InputError(f"gmsh cannot mesh section '{section.name}': {error}", field="mesher") from error
-    mesh = named_from(found, regions=half.regions, boundaries=half.boundaries)
+    mesh = named_from(raw, regions=half.regions, boundaries=half.boundaries)
     return mesh if section.half else mirrored(mesh)
 
 

@@ -38,9 +38,9 @@ def named_mesh(points: Array, elements: Indices, regions: Mapping[str, Indices],
     elements = np.where(clockwise[:, None], elements[:, ::-1], elements)
     kind = skfem.MeshTri if elements.shape[1] == 3 else skfem.MeshQuad
     mesh = kind(np.ascontiguousarray(points.T), np.ascontiguousarray(elements.T), sort_t=False)
-    return mesh.with_subdomains({name: np.sort(np.unique(found)) for name, found in regions.items()}).with_boundaries(
-        {name: find_facets(mesh, new_number[pairs]) for name, pairs in edges.items()}
-    )
+    return mesh.with_subdomains(
+        {name: np.sort(np.unique(numbers)) for name, numbers in regions.items()}
+    ).with_boundaries({name: find_facets(mesh, new_number[pairs]) for name, pairs in edges.items()})
 
 
 def bare_edges(elements: Indices, named: Iterable[Indices]) -> Indices:
@@ -83,7 +83,7 @@ def mirrored(mesh: Any, symmetry: str = "symmetry") -> Any:
     on_plane[facet_nodes(mesh, symmetry).ravel()] = True
     image = np.where(on_plane, np.arange(n), n - 1 + np.cumsum(~on_plane))
     all_points = np.concatenate([points, points[~on_plane] * [1.0, -1.0]])
-    regions = {name: np.concatenate([found, found + len(elements)]) for name, found in mesh.subdomains.items()}
+    regions = {name: np.concatenate([members, members + len(elements)]) for name, members in mesh.subdomains.items()}
     edges = {}
     for name in mesh.boundaries:
         if name != symmetry:
@@ -102,7 +102,7 @@ MARKS = {"region": CORNERS, "boundary": EDGES}
 
 
 def named_from(
-    found: Any,
+    raw: Any,
     *,
     points: NDArray[np.float64] | None = None,
     names: Mapping[str, str] | None = None,
@@ -124,26 +124,26 @@ def named_from(
     InputError : a name is missing (with the nearest one found), an element in no or two regions, a facet of the
         surface in no or two boundaries, cells that are not all triangles or all quadrilaterals.
     """
-    blocks = [index for index, block in enumerate(found.cells) if block.type in CORNERS and len(block.data)]
-    kinds = {CORNERS[found.cells[index].type] for index in blocks}
+    blocks = [index for index, block in enumerate(raw.cells) if block.type in CORNERS and len(block.data)]
+    kinds = {CORNERS[raw.cells[index].type] for index in blocks}
     if len(kinds) != 1:
-        listing = ", ".join(sorted({block.type for block in found.cells})) or "none"
+        listing = ", ".join(sorted({block.type for block in raw.cells})) or "none"
         raise InputError(f"needs cells that are all triangles or all quadrilaterals; found: {listing}")
     corners = kinds.pop()
-    elements = np.concatenate([found.cells[index].data[:, :corners] for index in blocks]).astype(np.int64)
-    starts = dict(zip(blocks, np.cumsum([0, *(len(found.cells[i].data) for i in blocks[:-1])]), strict=True))
+    elements = np.concatenate([raw.cells[index].data[:, :corners] for index in blocks]).astype(np.int64)
+    starts = dict(zip(blocks, np.cumsum([0, *(len(raw.cells[i].data) for i in blocks[:-1])]), strict=True))
     faces: dict[str, list[Indices]] = {}
     edges: dict[str, list[Indices]] = {}
-    for name, block, members in _groups(found):
+    for name, block, members in _groups(raw):
         if len(members) == 0:
             continue
         name = (names or {}).get(name, name)
         if block in starts:
             faces.setdefault(name, []).append(members + starts[block])
-        elif found.cells[block].type in EDGES:
-            edges.setdefault(name, []).append(found.cells[block].data[members, :2].astype(np.int64))
-    _known_names(found, names)
-    points = found.points[:, :2] if points is None else points
+        elif raw.cells[block].type in EDGES:
+            edges.setdefault(name, []).append(raw.cells[block].data[members, :2].astype(np.int64))
+    _known_names(raw, names)
+    points = raw.points[:, :2] if points is None else points
     regions_found = {name: np.unique(np.concatenate(parts)) for name, parts in faces.items()}
     _one_each(regions_found, len(elements), "element", "region")
     _required(regions, regions_found, "region")
@@ -163,7 +163,7 @@ def named_from(
         except ValueError:
             raise InputError(f"lines of boundary '{name}' are not sides of elements") from None
         named[name] = facets[np.isin(facets, surface)]
-    for name, nodes in (getattr(found, "point_sets", None) or {}).items():
+    for name, nodes in (getattr(raw, "point_sets", None) or {}).items():
         name = (names or {}).get(name, name)
         if name not in named:
             here = np.isin(mesh.facets[:, surface], number[np.asarray(nodes, dtype=np.int64)]).all(axis=0)
@@ -175,15 +175,15 @@ def named_from(
     return mesh.with_boundaries(named)
 
 
-def _groups(found: Any) -> Iterable[tuple[str, int, Indices]]:
+def _groups(raw: Any) -> Iterable[tuple[str, int, Indices]]:
     """(name, cell block, members) of every named group of cells."""
     tags = {}
-    for name, (tag, dimension) in ((name, data[:2]) for name, data in found.field_data.items() if len(data) >= 2):
+    for name, (tag, dimension) in ((name, data[:2]) for name, data in raw.field_data.items() if len(data) >= 2):
         tags[int(tag), int(dimension)] = name
-    physical = found.cell_data.get("gmsh:physical")
-    families = found.cell_data.get("cell_tags")
-    sets = {name: parts for name, parts in found.cell_sets.items() if not name.startswith("gmsh:")}
-    for block, cells in enumerate(found.cells):
+    physical = raw.cell_data.get("gmsh:physical")
+    families = raw.cell_data.get("cell_tags")
+    sets = {name: parts for name, parts in raw.cell_sets.items() if not name.startswith("gmsh:")}
+    for block, cells in enumerate(raw.cells):
         dimension = 2 if cells.type in CORNERS else 1
         if physical is not None:
             for (tag, of), name in tags.items():
@@ -193,26 +193,26 @@ def _groups(found: Any) -> Iterable[tuple[str, int, Indices]]:
             for name, parts in sets.items():
                 if parts[block] is not None:
                     yield name, block, np.asarray(parts[block], dtype=np.int64)
-        for family, family_names in (getattr(found, "cell_tags", None) or {}).items():
+        for family, family_names in (getattr(raw, "cell_tags", None) or {}).items():
             for name in family_names if families is not None else ():
                 yield name, block, np.flatnonzero(families[block] == family)
-        for key, data in found.cell_data.items():
+        for key, data in raw.cell_data.items():
             what, _, name = key.partition(":")
             if name and what in MARKS and cells.type in MARKS[what]:
                 yield name, block, np.flatnonzero(np.asarray(data[block]).ravel() == 1)
 
 
-def _known_names(found: Any, names: Mapping[str, str] | None) -> None:
-    known = {name for name, _, _ in _groups(found)} | set(getattr(found, "point_sets", None) or {})
+def _known_names(raw: Any, names: Mapping[str, str] | None) -> None:
+    known = {name for name, _, _ in _groups(raw)} | set(getattr(raw, "point_sets", None) or {})
     for name in names or {}:
         if name not in known:
             raise InputError(f"the file has no group '{name}'{nearest(name, known)}", field="names")
 
 
-def _required(wanted: Iterable[str], found: Mapping[str, Any], what: str) -> None:
+def _required(wanted: Iterable[str], available: Mapping[str, Any], what: str) -> None:
     for name in wanted:
-        if name not in found:
-            hint = nearest(name, found) if found else "; it has no named groups of this kind"
+        if name not in available:
+            hint = nearest(name, available) if available else "; it has no named groups of this kind"
             raise InputError(
                 f"the mesh has no {what} '{name}'{hint.replace('Allowed', 'Found').replace('allowed', 'found')}"
             )

@@ -133,8 +133,10 @@ class TyreMesh(Brief, Stated):
         >>> len(zoned.mesh.subdomains["under the tread"]) < len(zoned.mesh.subdomains["carcass"])
         True
         """
-        found = {name: self.elements_between(start, end, region) for name, (region, start, end) in zones.items()}
-        return replace(self, mesh=self.mesh.with_subdomains(found))
+        zone_elements = {
+            name: self.elements_between(start, end, region) for name, (region, start, end) in zones.items()
+        }
+        return replace(self, mesh=self.mesh.with_subdomains(zone_elements))
 
     @cached_property
     def along_meridian(self) -> PlyDirection:
@@ -246,7 +248,7 @@ def _check_memory(section: Section, mesher: str, size: float, through: int) -> N
         return matrices(expected_nodes(section, size, mesher=mesher, through=through))
 
     def fits(free: float) -> str:
-        coarser = smallest(lambda one: needed(one) <= free, size, section.line.length / 4)
+        coarser = smallest(lambda coarser_size: needed(coarser_size) <= free, size, section.line.length / 4)
         return f"{coarser * 1e3:g} mm or more would fit" if coarser else "fewer elements through every layer would fit"
 
     nodes = expected_nodes(section, size, mesher=mesher, through=through)

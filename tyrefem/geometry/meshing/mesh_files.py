@@ -62,16 +62,16 @@ def read(
         scale = parse(f"1 {unit}", "m")
     except InputError as error:
         raise error.within(field="unit") from None
-    found = _meshio_mesh(path)
+    raw = _meshio_mesh(path)
     columns = list(AXES[axes])
-    points = np.asarray(found.points, dtype=float)
+    points = np.asarray(raw.points, dtype=float)
     if points.shape[1] <= max(columns):
         raise InputError(f"its points have {points.shape[1]} coordinates, too few for axes '{axes}'", file=path)
     points = points[:, columns] * scale
     if not np.isfinite(points).all():
         raise InputError("a coordinate is not a finite number", file=path)
     try:
-        return named_from(found, points=points, names=names, regions=regions, boundaries=boundaries)
+        return named_from(raw, points=points, names=names, regions=regions, boundaries=boundaries)
     except InputError as error:
         raise error.within(file=path) from None
 
@@ -134,18 +134,18 @@ def write(mesh: Any, path: str | Path) -> Path:
         raise InputError("its regions overlap; write the mesh without zones", file=path)
     facets = np.unique(np.concatenate([np.zeros(0, dtype=np.int64), *boundaries.values()]))
     cells = [(cell, mesh.t.T), ("line", mesh.facets[:, facets].T)]
-    members = {("region", name): (found, 0) for name, found in regions.items()}
-    members |= {("boundary", name): (np.searchsorted(facets, found), 1) for name, found in boundaries.items()}
+    members = {("region", name): (numbers, 0) for name, numbers in regions.items()}
+    members |= {("boundary", name): (np.searchsorted(facets, numbers), 1) for name, numbers in boundaries.items()}
     marks = {}
-    for what, (found, block) in members.items():
+    for what, (numbers, block) in members.items():
         marks[what] = [np.zeros(mesh.t.shape[1], dtype=np.int32), np.zeros(len(facets), dtype=np.int32)]
-        marks[what][block][found] = 1
+        marks[what][block][numbers] = 1
     data: dict[str, Any] = {":".join(what): values for what, values in marks.items()}
     field_data = {}
     if path.suffix == ".msh":
         tags = [np.zeros(mesh.t.shape[1], dtype=np.int32), np.zeros(len(facets), dtype=np.int32)]
-        for tag, (what, (found, block)) in enumerate(members.items(), start=1):
-            tags[block][found] = tag
+        for tag, (what, (numbers, block)) in enumerate(members.items(), start=1):
+            tags[block][numbers] = tag
             field_data[what[1]] = np.array([tag, 2 - block])
         data = {"gmsh:physical": tags, "gmsh:geometrical": tags}
     try:
@@ -175,11 +175,11 @@ def _meshio_mesh(path: Path) -> Any:
     if not path.is_file():
         raise InputError("no such mesh file", file=path)
     note_input(path)
-    said = io.StringIO()
+    printed = io.StringIO()
     try:
         # meshio prints what is wrong and ends the process where other libraries raise.
-        with contextlib.redirect_stdout(said), contextlib.redirect_stderr(said):
+        with contextlib.redirect_stdout(printed), contextlib.redirect_stderr(printed):
             return meshio.read(path)
     except (Exception, SystemExit) as error:
-        reason = said.getvalue().strip() or str(error)
+        reason = printed.getvalue().strip() or str(error)
         raise InputError(f"cannot be read as a mesh: {reason:.200}", file=path) from error

@@ -27,10 +27,10 @@ def solved_harmonics(highest: int) -> tuple[int, ...]:
     >>> solved_harmonics(40)[-8:]
     (22, 23, 24, 27, 30, 34, 38, 43)
     """
-    found = list(range(min(highest, ALL_UP_TO) + 1))
-    while found[-1] < highest:
-        found.append(max(found[-1] + 1, round(found[-1] * GROWTH)))
-    return tuple(found)
+    solved = list(range(min(highest, ALL_UP_TO) + 1))
+    while solved[-1] < highest:
+        solved.append(max(solved[-1] + 1, round(solved[-1] * GROWTH)))
+    return tuple(solved)
 
 
 def interpolation(highest: int) -> Array:
@@ -85,8 +85,8 @@ class TreadCompliance(Brief):
     def nodes(self) -> Indices:
         """Node numbers of the tread, from small to large z."""
         elements = self.harmonics.elements
-        found = elements.boundary_nodes(self.harmonics.state.tread)
-        return found[np.argsort(elements.nodes[1, found], kind="stable")]
+        numbers = elements.boundary_nodes(self.harmonics.state.tread)
+        return numbers[np.argsort(elements.nodes[1, numbers], kind="stable")]
 
     @functools.cached_property
     def places(self) -> Array:
@@ -141,8 +141,8 @@ class TreadCompliance(Brief):
     def responses(self, loads: Array) -> Array:
         """(n_harmonics, n_dofs) amplitudes, m, under loads (n_harmonics, n_dofs), N per radian, anywhere."""
         highest = len(loads) - 1
-        weights, found = interpolation(highest), np.zeros_like(loads)
+        weights, displacements = interpolation(highest), np.zeros_like(loads)
         for column, n in enumerate(solved_harmonics(highest)):
             served = np.flatnonzero(weights[:, column])
-            found[served] += weights[served, column, None] * self.harmonics.solve(n, loads[served].T).T
-        return found
+            displacements[served] += weights[served, column, None] * self.harmonics.solve(n, loads[served].T).T
+        return displacements

@@ -135,18 +135,18 @@ class Pressing(TyreOnRoad):
             raise InputError(f"the load must be positive, not {load:g} N", field="load")
         low, high = 0.0, self.bottoming
         deflection = start.deflection if start is not None else 0.02 * high
-        found = self.at_deflection(deflection, harmonics)
+        footprint = self.at_deflection(deflection, harmonics)
         for _ in range(40):
-            if abs(found.load - load) <= 1e-8 * load:
-                return found
-            low, high = (deflection, high) if found.load < load else (low, deflection)
-            step = (load - found.load) / found.stiffness if found.stiffness else high
+            if abs(footprint.load - load) <= 1e-8 * load:
+                return footprint
+            low, high = (deflection, high) if footprint.load < load else (low, deflection)
+            step = (load - footprint.load) / footprint.stiffness if footprint.stiffness else high
             deflection = deflection + step
             if not low < deflection < high:
                 deflection = (low + high) / 2
             if high - low < 1e-9 * self.bottoming and high == self.bottoming:
                 break
-            found = self.at_deflection(deflection, harmonics, found)
+            footprint = self.at_deflection(deflection, harmonics, footprint)
         most = self.at_deflection(self.bottoming * (1 - 1e-9), harmonics).load
         raise InputError(
             f"the tyre cannot carry {load:.5g} N: the crown meets the rim at {most:.5g} N "
@@ -171,15 +171,15 @@ class Pressing(TyreOnRoad):
         before: Footprint | None = None
         for count in LADDER:
             if deflection is not None:
-                found = self.at_deflection(deflection, count)
+                footprint = self.at_deflection(deflection, count)
             else:
                 assert load is not None
-                found = self.at_load(load, count, before)
+                footprint = self.at_load(load, count, before)
             if before is not None:
-                found = found.compared(before)
-                if found.error <= tolerance:
-                    return found
-            before = found
+                footprint = footprint.compared(before)
+                if footprint.error <= tolerance:
+                    return footprint
+            before = footprint
         assert before is not None
         raise InputError(
             f"{LADDER[-1]} harmonics leave an error of {before.error:.2g}, more than the tolerance {tolerance:g}",

@@ -62,8 +62,8 @@ def _greatest(tyre: Inflation, cycle: StrainHarmonics, region: str, layer: CordL
     stretch = layer.stretch(here)
     inflated = layer.tension(here) if known else layer.stress_in_layer(here)
     stiffness = np.asarray(layer.cord_stiffness if known else layer.stiffness)
-    carried = (np.einsum("ij...,j...->i...", here, one) / stretch for one in layer.directions)
-    strains = [cycle.along(one, angles, members) for one in carried]
+    carried = (np.einsum("ij...,j...->i...", here, direction) / stretch for direction in layer.directions)
+    strains = [cycle.along(direction, angles, members) for direction in carried]
     if cycle.footprint.balanced is None:
         slope = (stiffness * np.where(stretch >= 1, 1.0, layer.compression) * stretch)[..., None]
         halves = [inflated[..., None] + slope * strain for strain in strains]

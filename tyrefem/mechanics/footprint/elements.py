@@ -87,8 +87,8 @@ class SectionElements(Rings):
         local = np.asarray(displacement)[self.dofs]
         shape = (*self.radii.shape, 6)
         flat = (len(local), -1, local.shape[1])
-        found = constant.reshape(flat) @ local[:, :, None] + n * (linear.reshape(flat) @ local[:, :, None])
-        return np.moveaxis(found.reshape(shape), -1, 0)
+        strain = constant.reshape(flat) @ local[:, :, None] + n * (linear.reshape(flat) @ local[:, :, None])
+        return np.moveaxis(strain.reshape(shape), -1, 0)
 
     def projected_dilatation(self, n: float, displacement: Array) -> Array:
         """(n_elements, n_points) projected dilatation of harmonic ``n``."""
@@ -141,20 +141,20 @@ class WheelAngles:
     def at_nodes(self, amplitudes: Array) -> tuple[Array, Array]:
         """(n_nodes, m, 3) displacement and its derivative by the angle, of amplitudes (highest + 1, n_dofs)."""
         u = np.asarray(amplitudes).reshape(self.highest + 1, -1, COMPONENTS)
-        found = []
+        samples = []
         for waves in self.waves:
             here = np.empty((u.shape[1], len(self.angles), COMPONENTS))
             for c in range(COMPONENTS):
                 here[..., c] = u[..., c].T @ waves[c].T
-            found.append(here)
-        return found[0], found[1]
+            samples.append(here)
+        return samples[0], samples[1]
 
     def from_nodes(self, value: Array, slope: Array) -> Array:
         """(highest + 1, n_dofs) forces against the amplitudes, of forces against `at_nodes`; adjoint to it."""
-        found = np.empty((self.highest + 1, len(value), COMPONENTS))
+        forces = np.empty((self.highest + 1, len(value), COMPONENTS))
         for c in range(COMPONENTS):
-            found[..., c] = (value[..., c] @ self._back[0][c] + slope[..., c] @ self._back[1][c]).T
-        return found.reshape(self.highest + 1, -1)
+            forces[..., c] = (value[..., c] @ self._back[0][c] + slope[..., c] @ self._back[1][c]).T
+        return forces.reshape(self.highest + 1, -1)
 
     @functools.cached_property
     def _by(self) -> tuple[Array, Array]:
@@ -178,11 +178,11 @@ class WheelAngles:
         e, m = len(nodes), len(self.angles)
         parts = (by @ value[nodes].reshape(e, 9, -1)).reshape(e, 3, -1, m, 3)
         turned = (over_r @ slope[nodes].reshape(e, 9, -1)).reshape(e, -1, m, 3)
-        found = np.empty((*turned.shape, 3))
-        found[..., 0], found[..., 1], found[..., 2] = parts[:, 0], parts[:, 1], turned
-        found[..., 0, 2] -= parts[:, 2, ..., 2]
-        found[..., 2, 2] += parts[:, 2, ..., 0]
-        return found.reshape(*turned.shape[:3], 9)
+        gradient = np.empty((*turned.shape, 3))
+        gradient[..., 0], gradient[..., 1], gradient[..., 2] = parts[:, 0], parts[:, 1], turned
+        gradient[..., 0, 2] -= parts[:, 2, ..., 2]
+        gradient[..., 2, 2] += parts[:, 2, ..., 0]
+        return gradient.reshape(*turned.shape[:3], 9)
 
     def forces(self, stress: Array) -> Array:
         """(highest + 1, n_dofs) forces, N per radian, of a stress (e, q, m, 9) times r dA; adjoint to `gradient`."""

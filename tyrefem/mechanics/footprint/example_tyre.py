@@ -29,9 +29,9 @@ def fibres(stiffness: Array, direction: Array) -> Array:
     """(6, 6, ...) tangent of fibres of stiffness E v (Pa) along unit vectors (3, ...) in (r, z, t), +-t averaged."""
     r, z, t = direction
     d = np.stack([r * r, z * z, t * t, r * z, r * t, z * t])
-    found = stiffness * d[:, None] * d[None, :]
-    found[:4, 4:] = found[4:, :4] = 0.0
-    return np.asarray(found)
+    matrix = stiffness * d[:, None] * d[None, :]
+    matrix[:4, 4:] = matrix[4:, :4] = 0.0
+    return np.asarray(matrix)
 
 
 def stress_free(mesh: Any, shear_modulus: float, bulk_modulus: float, fixed: tuple[str, ...] = ("rim",)) -> Prestressed:

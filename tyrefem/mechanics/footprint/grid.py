@@ -64,14 +64,14 @@ class ContactGrid(Brief):
         """(c, k, c, k) displacement along c of point k = (angle, node) per force at another; both sides."""
         compliance = self.tread.up_to(self.harmonics)
         _, c, m, _, _ = compliance.shape
-        found = np.zeros((c, self.n_angles * m, c, self.n_angles * m))
+        blocks = np.zeros((c, self.n_angles * m, c, self.n_angles * m))
         for to in range(c):
             for of in range(c):
                 loaded = (compliance[:, to, :, of] * self.shares[:, None, None]).reshape(self.harmonics + 1, -1)
                 for j, shape in enumerate(self.shapes[of].T):
                     sums = (self.shapes[to].T * shape) @ loaded
-                    found[to, :, of, j * m : (j + 1) * m] = sums.reshape(self.n_angles * m, m)
-        return found
+                    blocks[to, :, of, j * m : (j + 1) * m] = sums.reshape(self.n_angles * m, m)
+        return blocks
 
     def load_harmonics(self, forces: Array) -> Array:
         """(harmonics + 1, c, m) load amplitudes, N per radian, of forces (c, k) on the tread."""

@@ -78,19 +78,19 @@ class Balance:
             raise InputError("give exactly one of 'deflection' and 'load'")
         self.pressing.check_harmonics(self.harmonics)
         ladder = (*(n for n in LADDER if n < self.harmonics), self.harmonics)
-        moment, found = self._way(deflection, load, ladder[0]), None
+        moment, footprint = self._way(deflection, load, ladder[0]), None
         for count in ladder:
             start = self.motion.refined(moment, count)
             settled = self.motion.settled(start, moment.deflection, self.tolerance, load)
             if settled is None:
                 raise self._stuck(moment, deflection, load, f" with {count} harmonics")
-            moment, before, found = settled, found, self.motion.footprint(settled)
+            moment, before, footprint = settled, footprint, self.motion.footprint(settled)
             if before is not None:
-                found = found.compared(before)
-                if found.error <= tolerance:
+                footprint = footprint.compared(before)
+                if footprint.error <= tolerance:
                     break
-        assert found is not None
-        return replace(found, stiffness=self.motion.stiffness(moment))
+        assert footprint is not None
+        return replace(footprint, stiffness=self.motion.stiffness(moment))
 
     def _way(self, deflection: float | None, load: float | None, harmonics: int) -> DeflectedState:
         """From the free tyre to near a deflection or a load: steps as long as the motion allows."""
@@ -115,17 +115,17 @@ class Balance:
                     f"({now.deflection * 1e3:.4g} mm)",
                     field="load",
                 )
-            found = motion.settled(now, ahead, ON_THE_WAY)
-            if found is None:
+            reached = motion.settled(now, ahead, ON_THE_WAY)
+            if reached is None:
                 step = abs(ahead - now.deflection) / 2
                 if step < SMALLEST * whole:
                     break
                 continue
-            made = found.deflection - now.deflection
-            if load is not None and found.load:
-                steeper = (found.load - now.load) / made if now.load else STIFFENS * found.load / found.deflection
+            made = reached.deflection - now.deflection
+            if load is not None and reached.load:
+                steeper = (reached.load - now.load) / made if now.load else STIFFENS * reached.load / reached.deflection
                 slope = max(steeper, 0.1 * slope)
-            now, step = found, 2 * abs(made)
+            now, step = reached, 2 * abs(made)
             self.path.append((now.deflection, now.load))
         raise self._stuck(now, deflection, load, "")
 

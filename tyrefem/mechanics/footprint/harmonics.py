@@ -181,8 +181,8 @@ class Harmonics(Brief):
             for parts, values in zip(data, (support.data, *2 * [np.zeros(support.nnz)]), strict=True):
                 parts.append(values)
         place = (np.concatenate(rows), np.concatenate(columns))
-        found = [sp.coo_matrix((np.concatenate(parts), place), shape=(n, n)).tocsc() for parts in data]
-        return found[0], found[1], found[2]
+        matrices = [sp.coo_matrix((np.concatenate(parts), place), shape=(n, n)).tocsc() for parts in data]
+        return matrices[0], matrices[1], matrices[2]
 
     def stiffness(self, n: float) -> Any:
         """K_n as a sparse matrix, N/m per radian."""
@@ -193,13 +193,13 @@ class Harmonics(Brief):
     def held(self) -> Indices:
         """Degrees of freedom that are held: all at fixed boundaries, u_z on the mid plane."""
         boundaries, elements = self.state.mesh.boundaries or {}, self.elements
-        found = [np.zeros(0, dtype=np.int64)]
+        dofs = [np.zeros(0, dtype=np.int64)]
         for name in self.state.fixed:
             nodes = elements.boundary_nodes(name)
-            found.append((COMPONENTS * nodes[:, None] + np.arange(COMPONENTS)).ravel())
+            dofs.append((COMPONENTS * nodes[:, None] + np.arange(COMPONENTS)).ravel())
         if self.state.symmetric in boundaries:
-            found.append(COMPONENTS * elements.boundary_nodes(self.state.symmetric) + 1)
-        return np.unique(np.concatenate(found))
+            dofs.append(COMPONENTS * elements.boundary_nodes(self.state.symmetric) + 1)
+        return np.unique(np.concatenate(dofs))
 
     @functools.cached_property
     def free(self) -> Indices:
@@ -222,16 +222,16 @@ class Harmonics(Brief):
         except RuntimeError:
             raise InputError(f"harmonic {n:g} has no stiffness: nothing holds the body") from None
         loads = np.asarray(loads)
-        found = np.zeros_like(loads)
-        found[free] = factor.solve(np.ascontiguousarray(loads[free]))
-        work = np.einsum("i...,i...->...", found, loads)
+        displacements = np.zeros_like(loads)
+        displacements[free] = factor.solve(np.ascontiguousarray(loads[free]))
+        work = np.einsum("i...,i...->...", displacements, loads)
         if (work < 0).any():
             raise InputError(f"the state is not stable: harmonic {n:g} has negative stiffness")
-        size = np.abs(found[free])
+        size = np.abs(displacements[free])
         parts = np.einsum("i...,i...->...", size, abs(reduced) @ size)
         if not (work >= ROUND_OFF * parts).all():
             raise InputError(f"harmonic {n:g} has no stiffness: nothing holds the body")
-        return found
+        return displacements
 
     def _last(self, dofs: Indices) -> Indices:
         """Order of the free degrees of freedom that keeps the factor sparse, with ``dofs`` last; remembered."""

@@ -106,7 +106,7 @@ class LargeMotion:
         motion[:count] = moment.motion[:count]
         old, grid = moment.grid, self._grid(harmonics, moment.deflection)
         per_area = (moment.forces / (np.repeat(old.sides, len(old.tread.nodes)) * old.areas)).reshape(old.n_angles, -1)
-        pressure = np.stack([np.interp(grid.angles, old.angles, one, right=0.0) for one in per_area.T], axis=1)
+        pressure = np.stack([np.interp(grid.angles, old.angles, values, right=0.0) for values in per_area.T], axis=1)
         forces = pressure.ravel() * np.repeat(grid.sides, len(grid.tread.nodes)) * grid.areas
         return replace(moment, motion=motion, grid=grid, forces=forces)
 

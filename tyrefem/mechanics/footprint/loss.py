@@ -61,20 +61,20 @@ class RevolutionLoss(Brief):
         """(n_elements, n_points) tan delta at a frequency, Hz."""
         elements = self.cycle.elements
         temperature = np.broadcast_to(np.asarray(self.temperature, dtype=float), elements.radii.shape)
-        found = np.zeros(elements.radii.shape)
+        tangent = np.zeros(elements.radii.shape)
         for region, law in self.tangents.items():
             members = np.asarray(elements.mesh.subdomains[region])
-            found[members] = law(frequency, temperature[members])
-        return found
+            tangent[members] = law(frequency, temperature[members])
+        return tangent
 
     @functools.cached_property
     def densities(self) -> Array:
         """(harmonics + 1, n_elements, n_points) energy lost per revolution by each harmonic, J/m3."""
         products = self.cycle.storage_products
-        found = np.zeros_like(products)
+        densities = np.zeros_like(products)
         for n in range(1, len(products)):
-            found[n] = n * np.pi * self.tangent(n * self.frequency) * products[n]
-        return found
+            densities[n] = n * np.pi * self.tangent(n * self.frequency) * products[n]
+        return densities
 
     @property
     def density(self) -> Array:
@@ -111,13 +111,13 @@ class RevolutionLoss(Brief):
     @functools.cached_property
     def by_region(self) -> dict[str, float]:
         """Region -> energy lost per revolution, J."""
-        density, found = self.density, {}
+        density, totals = self.density, {}
         for region in self.tangents:
             inside = np.zeros_like(density)
             members = np.asarray(self.cycle.elements.mesh.subdomains[region])
             inside[members] = density[members]
-            found[region] = self.total(inside)
-        return found
+            totals[region] = self.total(inside)
+        return totals
 
     @property
     def energy(self) -> float:

@@ -69,10 +69,10 @@ class LinearFactors:
 
     def solve(self, loads: Array) -> Array:
         """(n, n_dofs) displacements, m, under loads (n, n_dofs), N per radian, of the first n harmonics."""
-        found = np.zeros_like(loads)
+        displacements = np.zeros_like(loads)
         for n, load in enumerate(loads):
-            found[n, self.free] = self.factor(n).solve(load[self.free])
-        return found
+            displacements[n, self.free] = self.factor(n).solve(load[self.free])
+        return displacements
 
     @staticmethod
     def work(forces: Array, motion: Array) -> float:
@@ -99,10 +99,10 @@ class Touching:
         """(k, (highest + 1) c m): how far amplitudes of the tread bring a point into the road."""
         c, k = self.direction.shape
         m, highest = len(self.grid.tread.nodes), self.grid.harmonics
-        angle, node, found = np.arange(k) // m, np.arange(k) % m, np.zeros((k, highest + 1, c, m))
+        angle, node, rows = np.arange(k) // m, np.arange(k) % m, np.zeros((k, highest + 1, c, m))
         for of in range(c):
-            found[np.arange(k), :, of, node] = (self.direction[of] * self.grid.shapes[of][:, angle]).T
-        return found.reshape(k, -1)
+            rows[np.arange(k), :, of, node] = (self.direction[of] * self.grid.shapes[of][:, angle]).T
+        return rows.reshape(k, -1)
 
     @functools.cached_property
     def compliance(self) -> Array:
@@ -127,16 +127,16 @@ class Touching:
 
     def loads(self, forces: Array, points: Any = slice(None)) -> Array:
         """(highest + 1, n_dofs) N per radian of unit forces into the road."""
-        found = np.zeros((self.grid.harmonics + 1, self.factors.pressing.harmonics.elements.n_dofs))
-        found[:, self.factors.tread] = self._loads(forces, points)
-        return found
+        loads = np.zeros((self.grid.harmonics + 1, self.factors.pressing.harmonics.elements.n_dofs))
+        loads[:, self.factors.tread] = self._loads(forces, points)
+        return loads
 
     def moved(self, forces: Array, points: Any = slice(None)) -> Array:
         """(highest + 1, n_dofs) displacements under `loads` in small motions, m."""
-        found = np.zeros((self.grid.harmonics + 1, self.factors.pressing.harmonics.elements.n_dofs))
+        displacements = np.zeros((self.grid.harmonics + 1, self.factors.pressing.harmonics.elements.n_dofs))
         for n, load in enumerate(self._loads(forces, points)):
-            found[n, self.factors.free] = self.factors.under_tread(n) @ load
-        return found
+            displacements[n, self.factors.free] = self.factors.under_tread(n) @ load
+        return displacements
 
 
 @dataclass(frozen=True, eq=False)

@@ -28,8 +28,8 @@ class Tangent:
     def product(self, change: Array) -> Array:
         """(highest + 1, n_dofs) change of the forces for a change (highest + 1, n_dofs) of the motion."""
         round_wheel = self.outside.round
-        found = round_wheel.forces(self.response.product(round_wheel.gradient(change)))
-        return found + self.outside.of_support(change) + self.outside.of_wall(change, self.wall)
+        forces = round_wheel.forces(self.response.product(round_wheel.gradient(change)))
+        return forces + self.outside.of_support(change) + self.outside.of_wall(change, self.wall)
 
 
 @dataclass(frozen=True, eq=False)
@@ -61,9 +61,9 @@ class NonlinearForces:
     def _at_rest(self) -> Array:
         """Forces of the state itself: what bears the rim's reaction."""
         rest = NonlinearForces(self.harmonics, 0, self.law)
-        found = np.zeros((self.highest + 1, self.harmonics.elements.n_dofs))
-        found[0] = rest._total(found[:1], False)[0][0]
-        return found
+        forces = np.zeros((self.highest + 1, self.harmonics.elements.n_dofs))
+        forces[0] = rest._total(forces[:1], False)[0][0]
+        return forces
 
     def at(self, amplitudes: Array) -> Tangent:
         """Forces of displacement amplitudes (highest + 1, n_dofs), N per radian, and their derivative."""
@@ -77,9 +77,9 @@ class NonlinearForces:
     def __call__(self, amplitudes: Array) -> Array:
         """(highest + 1, n_dofs) forces, N per radian, less the linear ones of `Harmonics`."""
         linear = np.stack([self.harmonics.stiffness(n) @ part for n, part in enumerate(amplitudes)])
-        found = self.forces(amplitudes) - linear
-        found[:, self.harmonics.held] = 0.0
-        return np.asarray(found)
+        forces = self.forces(amplitudes) - linear
+        forces[:, self.harmonics.held] = 0.0
+        return np.asarray(forces)
 
     def _total(self, amplitudes: Array, tangent: bool) -> tuple[Array, StressResponse, tuple[Array, Array]]:
         response = self._law.response(self.round.gradient(amplitudes), tangent)

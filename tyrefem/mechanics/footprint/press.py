@@ -135,19 +135,21 @@ class Pressed(Brief):
         """(n, 2) deflection, m, and load, N, from the free tyre on, with as many harmonics as the footprint; in large
         motion those balanced on the way, and the footprint."""
         if self.balanced:
-            before = [one for one in self.path if one[0] < 0.99 * self.footprint.deflection]
+            before = [point for point in self.path if point[0] < 0.99 * self.footprint.deflection]
             return np.array([*before, (self.footprint.deflection, self.footprint.load)])
         last = min(BEYOND * self.footprint.deflection, BEFORE_RIM * self.pressing.bottoming)
         deflections = np.linspace(0.0, last, count + 1)
         # The largest first: its grid of angles serves the others.
-        loads = [self.pressing.at_deflection(float(one), self.footprint.harmonics).load for one in deflections[:0:-1]]
+        loads = [
+            self.pressing.at_deflection(float(point), self.footprint.harmonics).load for point in deflections[:0:-1]
+        ]
         return np.column_stack([deflections, [0.0, *loads[::-1]]])
 
     def summary(self) -> dict[str, Any]:
         """Everything in SI, as the keys say; versions, mesh and tolerance."""
         from tyrefem.output import versions
 
-        found, loss = self.footprint, self.loss
+        footprint, loss = self.footprint, self.loss
         cords = {
             region: {"strain": layer.strain, "stress_Pa": layer.stress, "tension_N": layer.tension}
             for region, layer in self.tyre.cord_tensions.items()
@@ -162,30 +164,30 @@ class Pressed(Brief):
             "width_growth_m": self.tyre.width_growth,
             "cords_least_mean_greatest": cords,
             "bead_tension_N": self.bead_tension,
-            "load_N": found.load,
-            "deflection_m": found.deflection,
+            "load_N": footprint.load,
+            "deflection_m": footprint.deflection,
             "bottoming_deflection_m": self.pressing.bottoming,
             "secant_stiffness_N_m": self.secant_stiffness,
-            "tangent_stiffness_N_m": found.stiffness,
-            "footprint_length_m": found.length,
-            "footprint_width_m": found.width,
-            "footprint_area_m2": found.area,
-            "mean_contact_pressure_Pa": found.mean_pressure,
+            "tangent_stiffness_N_m": footprint.stiffness,
+            "footprint_length_m": footprint.length,
+            "footprint_width_m": footprint.width,
+            "footprint_area_m2": footprint.area,
+            "mean_contact_pressure_Pa": footprint.mean_pressure,
             "peak_contact_pressure_Pa": self.peak_pressure,
-            "loaded_radius_m": found.loaded_radius,
-            "rolling_radius_m": found.rolling_radius,
+            "loaded_radius_m": footprint.loaded_radius,
+            "rolling_radius_m": footprint.rolling_radius,
             "speed_m_s": self.speed,
             "temperature_degC": self.study.card.drive.initial,
             "loss_per_revolution_J": loss.energy if loss else None,
             "rolling_resistance_N": loss.rolling_resistance if loss else None,
             "rolling_resistance_coefficient": loss.coefficient if loss else None,
-            "published": [one.to_dict() for one in self.published],
-            "harmonics": found.harmonics,
-            "error": found.error,
+            "published": [value.to_dict() for value in self.published],
+            "harmonics": footprint.harmonics,
+            "error": footprint.error,
             "balanced": self.balanced,
             "left_out_by_linear_strains": dict(zip(("mean", "greatest", "region"), self.left_out, strict=True)),
             "tolerance": self.tolerance,
-            "unstable_harmonics": list(found.unstable),
+            "unstable_harmonics": list(footprint.unstable),
             "mesh": {**self.mesh.summary(), "nodes_of_nine_node_elements": self.tyre.body.rings.n_nodes},
             "versions": versions(),
         }
@@ -255,10 +257,10 @@ def press(
     tyre = inflate(study, pressure, mesh)
     pressing = Pressing(tyre.state, road)
     if not balanced:
-        found = pressing.solve(load=load, deflection=deflection, tolerance=tolerance)
-        return Pressed(study, mesh, tyre, pressing, found, tolerance)
+        footprint = pressing.solve(load=load, deflection=deflection, tolerance=tolerance)
+        return Pressed(study, mesh, tyre, pressing, footprint, tolerance)
     from tyrefem.mechanics.footprint.harmonic_balance import Balance
 
     balance = Balance(pressing)
-    found = balance.solve(load=load, deflection=deflection, tolerance=tolerance)
-    return Pressed(study, mesh, tyre, pressing, found, tolerance, tuple(balance.path))
+    footprint = balance.solve(load=load, deflection=deflection, tolerance=tolerance)
+    return Pressed(study, mesh, tyre, pressing, footprint, tolerance, tuple(balance.path))

@@ -47,15 +47,15 @@ def mechanical_mesh(study: StudyData, *, large: bool | None = None) -> TyreMesh:
     choice = study.card.mesh
     if choice.file is not None:
         return study.mesh()
-    own = choice.mesher == "gmsh" and choice.cell == "quad"
-    mesher, size = ("gmsh", choice.size) if own else ("mapped", COARSER * choice.size)
+    as_given = choice.mesher == "gmsh" and choice.cell == "quad"
+    mesher, size = ("gmsh", choice.size) if as_given else ("mapped", COARSER * choice.size)
     mechanics = study.card.mechanics
     in_large = mechanics.strain == "fem" and mechanics.motion == "large" if large is None else large
     _check_memory(study, mesher, size, in_large)
     try:
         return meshing.build(study.section, mesher=mesher, size=size, cell="quad", through=1)
     except InputError as error:
-        if own:
+        if as_given:
             raise error.within(field="mesh", file=study.file) from None
         message = f"the mesh of the mechanics, {COARSER:g} times as coarse: {error.message}"
         raise InputError(message, field=f"mesh.{error.field}", file=study.file) from None
@@ -70,7 +70,7 @@ def _check_memory(study: StudyData, mesher: str, size: float, large: bool) -> No
     def fits(free: float) -> str:
         length = study.section.line.length
         coarser = estimate.smallest(
-            lambda one: estimate.mechanics(nodes(one), large=large).memory <= free, size, length / 4
+            lambda nodal_spacing: estimate.mechanics(nodes(nodal_spacing), large=large).memory <= free, size, length / 4
         )
         return f"{coarser / (size / study.card.mesh.size) * 1e3:g} mm or more would fit" if coarser else ""
 

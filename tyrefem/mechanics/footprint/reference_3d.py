@@ -83,22 +83,22 @@ class Hexahedra:
         """Dilatations (e, q, 81) projected on (1, xi, eta) of the section at each angle."""
         functions = self._of_section(np.moveaxis(self._section.linear_functions, -1, 0))
         weights = self._of_section(self._section.weights)
-        found, angle = np.zeros_like(trace), np.asarray(self.basis.X)[2]
+        projected, angle = np.zeros_like(trace), np.asarray(self.basis.X)[2]
         for at in np.unique(angle.round(9)):
             chosen = np.flatnonzero(np.abs(angle - at) < 1e-6)
             values = functions[..., chosen].transpose(1, 2, 0)
             moments = (values * weights[:, chosen, None]).transpose(0, 2, 1) @ trace[:, chosen]
-            found[:, chosen] = values @ moments
-        return found
+            projected[:, chosen] = values @ moments
+        return projected
 
     @functools.cached_property
     def strains(self) -> Array:
         """(n_elements, n_points, 6, 81) strain per degree of freedom."""
         h, value = self._gradients
-        found = np.zeros((*value.shape[:2], 6, 27, COMPONENTS))
+        strains = np.zeros((*value.shape[:2], 6, 27, COMPONENTS))
         for row, (i, j) in enumerate(((0, 0), (1, 1), (2, 2), (0, 1), (0, 2), (1, 2))):
-            found[..., row, :, :] = h[..., i, j, :, :] if i == j else h[..., i, j, :, :] + h[..., j, i, :, :]
-        return found.reshape(*value.shape[:2], 6, -1)
+            strains[..., row, :, :] = h[..., i, j, :, :] if i == j else h[..., i, j, :, :] + h[..., j, i, :, :]
+        return strains.reshape(*value.shape[:2], 6, -1)
 
     @functools.cached_property
     def _gradients(self) -> tuple[Array, Array]:
@@ -107,13 +107,13 @@ class Hexahedra:
         r = np.asarray(basis.global_coordinates())[0]
         value = np.stack([np.broadcast_to(np.asarray(f[0]), r.shape) for f in basis.basis], axis=-1)
         grad = np.stack([np.asarray(f[0].grad) for f in basis.basis], axis=-1)
-        found = np.zeros((*r.shape, 3, 3, 27, COMPONENTS))
+        gradients = np.zeros((*r.shape, 3, 3, 27, COMPONENTS))
         for k in range(COMPONENTS):
-            found[..., k, 0, :, k], found[..., k, 1, :, k] = grad[0], grad[1]
-            found[..., k, 2, :, k] = grad[2] / r[..., None]
-        found[..., 0, 2, :, 2] -= value / r[..., None]
-        found[..., 2, 2, :, 0] += value / r[..., None]
-        return found, value
+            gradients[..., k, 0, :, k], gradients[..., k, 1, :, k] = grad[0], grad[1]
+            gradients[..., k, 2, :, k] = grad[2] / r[..., None]
+        gradients[..., 0, 2, :, 2] -= value / r[..., None]
+        gradients[..., 2, 2, :, 0] += value / r[..., None]
+        return gradients, value
 
     @functools.cached_property
     def dofs(self) -> Indices:
@@ -142,8 +142,8 @@ class Hexahedra:
             local += flat[:, q].reshape(n_elements, 9, size).transpose(0, 2, 1) @ turned.reshape(n_elements, 9, size)
         rows, columns = np.repeat(self.dofs, size, axis=1).ravel(), np.tile(self.dofs, (1, size)).ravel()
         n = COMPONENTS * int(self.basis.N)
-        found = sp.coo_matrix((local.ravel(), (rows, columns)), shape=(n, n)).tocsc()
-        return found + self._follower(n) if self.state.pressure else found
+        stiffness = sp.coo_matrix((local.ravel(), (rows, columns)), shape=(n, n)).tocsc()
+        return stiffness + self._follower(n) if self.state.pressure else stiffness
 
     def _follower(self, n: int) -> Any:
         """Stiffness of the following pressure: second variation of the enclosed volume."""
@@ -228,8 +228,8 @@ class Hexahedra:
 
     def strain(self, displacement: Array) -> tuple[Array, Array]:
         """(3, e, q) places and (6, e, q) strains at the Gauss points."""
-        found = self.strains @ displacement[self.dofs][:, None, :, None]
-        return np.asarray(self.basis.global_coordinates()), np.moveaxis(found[..., 0], -1, 0)
+        strain = self.strains @ displacement[self.dofs][:, None, :, None]
+        return np.asarray(self.basis.global_coordinates()), np.moveaxis(strain[..., 0], -1, 0)
 
 
 def angles_near_contact(near: float = 0.35, fine: int = 8, coarse: int = 7) -> Array:

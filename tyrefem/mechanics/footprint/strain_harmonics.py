@@ -44,13 +44,15 @@ class StrainHarmonics:
     @functools.cached_property
     def amplitudes(self) -> Array:
         """(harmonics + 1, 6, n_elements, n_points) e_n; of Green's strain for a balanced footprint."""
-        found = self.footprint
-        linear = np.stack([self.elements.strain(n, u) for n, u in enumerate(found.amplitudes)])
-        if found.balanced is None:
+        footprint = self.footprint
+        linear = np.stack([self.elements.strain(n, u) for n, u in enumerate(footprint.amplitudes)])
+        if footprint.balanced is None:
             return linear
         from tyrefem.mechanics.footprint.nonlinear import NonlinearForces
 
-        return linear + NonlinearForces(found.pressing.harmonics, found.harmonics).second_strains(found.amplitudes)
+        return linear + NonlinearForces(footprint.pressing.harmonics, footprint.harmonics).second_strains(
+            footprint.amplitudes
+        )
 
     def waves(self, angles: Array) -> Array:
         """(6, harmonics + 1, n_angles): cosine or sine of n t for each component."""
@@ -119,11 +121,11 @@ class StrainHarmonics:
     def storage_products(self) -> Array:
         """(harmonics + 1, n_elements, n_points) e_n : C' : e_n, J/m3."""
         storage = np.moveaxis(self.footprint.pressing.state.storage, (0, 1), (-2, -1))
-        found = np.zeros((len(self.amplitudes), *self.elements.radii.shape))
+        products = np.zeros((len(self.amplitudes), *self.elements.radii.shape))
         for n, amplitude in enumerate(self.amplitudes):
             e = np.moveaxis(amplitude, 0, -1)[..., None]
-            found[n] = ((storage @ e) * e).sum(axis=(-2, -1))
-        return found
+            products[n] = ((storage @ e) * e).sum(axis=(-2, -1))
+        return products
 
     def largest_energy(self, count: int = 180) -> Array:
         """(n_elements, n_points) U = 1/2 de : C' : de at its largest over the angle, J/m3.
@@ -164,12 +166,12 @@ class StrainHarmonics:
         nodes = np.asarray(self.elements.basis.element_dofs).T
         value, turned = (np.einsum("nic,nc->ic", u, wave)[nodes] for wave in (waves, slopes))
         elements = self.elements
-        found = np.zeros((3, 3, *elements.radii.shape))
+        gradient = np.zeros((3, 3, *elements.radii.shape))
         for direction in (0, 1):
-            found[:, direction] = np.einsum("epa,eac->cep", elements.gradients[direction], value)
+            gradient[:, direction] = np.einsum("epa,eac->cep", elements.gradients[direction], value)
         at = np.einsum("pa,eac->cep", elements.values, value)
-        found[:, 2] = np.einsum("pa,eac->cep", elements.values, turned)
-        found[0, 2] -= at[2]
-        found[2, 2] += at[0]
-        found[:, 2] /= elements.radii
-        return found
+        gradient[:, 2] = np.einsum("pa,eac->cep", elements.values, turned)
+        gradient[0, 2] -= at[2]
+        gradient[2, 2] += at[0]
+        gradient[:, 2] /= elements.radii
+        return gradient

@@ -117,10 +117,10 @@ class Body(Brief):
     @functools.cached_property
     def bulk(self) -> Array:
         """(n_elements,) bulk modulus, Pa."""
-        found = np.zeros(self.mesh.t.shape[1])
+        moduli = np.zeros(self.mesh.t.shape[1])
         for name, part in self.parts.items():
-            found[self.mesh.subdomains[name]] = part.compound.bulk_modulus
-        return found
+            moduli[self.mesh.subdomains[name]] = part.compound.bulk_modulus
+        return moduli
 
     @functools.cached_property
     def free(self) -> Indices:
@@ -137,13 +137,13 @@ class Body(Brief):
         """F (3, 3, n_elements, n_points) in (r, z, theta) of displacements (2, n_nodes), m."""
         rings = self.rings
         local = displacement[:, rings.element_nodes]
-        found = np.zeros((3, 3, *rings.weights.shape))
+        f = np.zeros((3, 3, *rings.weights.shape))
         for i in range(2):
             for j in range(2):
-                found[i, j] = (rings.gradients[j] @ local[i][..., None])[..., 0]
-            found[i, i] += 1
-        found[2, 2] = 1 + (local[0] @ rings.values.T) / rings.points[0]
-        return found
+                f[i, j] = (rings.gradients[j] @ local[i][..., None])[..., 0]
+            f[i, i] += 1
+        f[2, 2] = 1 + (local[0] @ rings.values.T) / rings.points[0]
+        return f
 
     def pressure(self, volume: Array) -> Array:
         """(n_elements, n_points) p = kappa (Proj J - 1), Pa, positive in tension."""
@@ -154,15 +154,15 @@ class Body(Brief):
     def _gathered(self, deformation: Array, method: str, axes: tuple[int, ...]) -> tuple[Array, Array]:
         """A quantity of the compounds and of the cords (there weighted 1 and with their loss)."""
         shape = (*axes, *self.rings.weights.shape)
-        found, losing = np.zeros(shape), np.zeros(shape)
+        total, losing = np.zeros(shape), np.zeros(shape)
         for name, part in self.parts.items():
             members = self.mesh.subdomains[name]
             here = deformation[:, :, members]
             rubber = getattr(part.compound, method)(here)
             cords = sum((getattr(layer, method)(here) for layer in part.cords), np.zeros(()))
-            found[..., members, :] = rubber + cords
+            total[..., members, :] = rubber + cords
             losing[..., members, :] = rubber + part.cord_loss * cords
-        return found, losing
+        return total, losing
 
     def energy(self, displacement: Array) -> float:
         """Elastic energy per radian, J."""
@@ -180,18 +180,18 @@ class Body(Brief):
         stress, _, _ = self._stresses(f)
         strains, _ = self._strains(displacement, f)
         local = np.einsum("eqcd,ceq->ed", strains, stress[:4] * self.rings.weights, optimize=True)
-        found = np.zeros(2 * self.rings.n_nodes)
-        np.add.at(found, self._dofs, local)
+        forces = np.zeros(2 * self.rings.n_nodes)
+        np.add.at(forces, self._dofs, local)
         for flange in self.flanges:
-            found -= flange.force(self.rings.nodes + displacement)
-        return found - pressure * self.load(displacement)
+            forces -= flange.force(self.rings.nodes + displacement)
+        return forces - pressure * self.load(displacement)
 
     def load(self, displacement: Array) -> Array:
         """(2 n_nodes,) force of unit pressure in the present place, m2 per radian."""
-        found = np.zeros(2 * self.rings.n_nodes)
+        forces = np.zeros(2 * self.rings.n_nodes)
         force = self.wall.force(self.rings.nodes + displacement)
-        np.add.at(found, _dofs(self.wall.nodes), force.reshape(len(force), -1))
-        return found
+        np.add.at(forces, _dofs(self.wall.nodes), force.reshape(len(force), -1))
+        return forces
 
     def stiffness(self, displacement: Array, pressure: float) -> Any:
         """Derivative of `residual` by the displacement: sparse (2 n_nodes, 2 n_nodes), N/m per radian."""
@@ -212,8 +212,8 @@ class Body(Brief):
         columns = np.concatenate([np.tile(dofs, (1, size)).ravel(), np.tile(wall, (1, 6)).ravel()])
         data = np.concatenate([matrix.ravel(), follower.ravel()])
         n = 2 * self.rings.n_nodes
-        found = sp.coo_matrix((data, (rows, columns)), shape=(n, n)).tocsc()
-        return found + self._support(displacement, 2) if self.flanges else found
+        assembled = sp.coo_matrix((data, (rows, columns)), shape=(n, n)).tocsc()
+        return assembled + self._support(displacement, 2) if self.flanges else assembled
 
     def _support(self, displacement: Array, components: int) -> Any:
         """Stiffness of the flanges: sparse, ``components`` at each node."""
@@ -234,9 +234,9 @@ class Body(Brief):
 
     def _tangent(self, f: Array, p: Array, volume: Array) -> tuple[Array, Array]:
         """J c without the bulk stiffness, and the part of it that dissipates."""
-        found, losing = self._gathered(f, "tangent", (6, 6))
+        tangent, losing = self._gathered(f, "tangent", (6, 6))
         ones = over(outer(UNIT, UNIT) - 2 * SYMMETRIC_UNIT, p.shape)
-        return found + p * volume * ones, losing
+        return tangent + p * volume * ones, losing
 
     def _strains(self, displacement: Array, f: Array) -> tuple[Array, Array]:
         """Matrix (n_elements, n_points, 4, 18) from displacements to e_rr, e_zz, e_tt, g_rz; present gradients."""
@@ -244,12 +244,12 @@ class Body(Brief):
         by_r, by_z = self.rings.gradients
         r = (f[1, 1][..., None] * by_r - f[1, 0][..., None] * by_z) / plane[..., None]
         z = (f[0, 0][..., None] * by_z - f[0, 1][..., None] * by_r) / plane[..., None]
-        found = np.zeros((*plane.shape, 4, 9, 2))
-        found[..., 0, :, 0] = r
-        found[..., 1, :, 1] = z
-        found[..., 2, :, 0] = self.rings.values / (self.rings.points[0] * f[2, 2])[..., None]
-        found[..., 3, :, 0], found[..., 3, :, 1] = z, r
-        return found.reshape(*plane.shape, 4, 18), np.stack([r, z])
+        strains = np.zeros((*plane.shape, 4, 9, 2))
+        strains[..., 0, :, 0] = r
+        strains[..., 1, :, 1] = z
+        strains[..., 2, :, 0] = self.rings.values / (self.rings.points[0] * f[2, 2])[..., None]
+        strains[..., 3, :, 0], strains[..., 3, :, 1] = z, r
+        return strains.reshape(*plane.shape, 4, 18), np.stack([r, z])
 
     def _dilatation_stiffness(self, strains: Array, volume: Array) -> Array:
         """kappa Proj(J div v) Proj(J div u)."""
@@ -264,10 +264,10 @@ class Body(Brief):
         plane = r.transpose(0, 2, 1) @ along_r + z.transpose(0, 2, 1) @ along_z
         over_r = self.rings.values / (self.rings.points[0] * f[2, 2])[..., None]
         hoop = over_r.transpose(0, 2, 1) @ (stress[2][..., None] * over_r)
-        found = np.zeros((len(plane), 9, 2, 9, 2))
-        found[:, :, 0, :, 0] = plane + hoop
-        found[:, :, 1, :, 1] = plane
-        return found.reshape(-1, 18, 18)
+        blocks = np.zeros((len(plane), 9, 2, 9, 2))
+        blocks[:, :, 0, :, 0] = plane + hoop
+        blocks[:, :, 1, :, 1] = plane
+        return blocks.reshape(-1, 18, 18)
 
     # -- results -----------------------------------------------------------------------------------------------------
 

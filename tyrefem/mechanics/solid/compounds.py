@@ -81,16 +81,16 @@ class Compound:
         ones = outer(unit, unit)
         six = components(b)
         mixed = outer(six, unit)
-        found = slope * (-(mixed + mixed.swapaxes(0, 1)) / 3 + first / 9 * ones + first / 3 * fourth)
+        tangent = slope * (-(mixed + mixed.swapaxes(0, 1)) / 3 + first / 9 * ones + first / 3 * fourth)
         if self.c20 or self.c30:
             g1 = six - first / 3 * unit
-            found = found + curvature * outer(g1, g1)
+            tangent = tangent + curvature * outer(g1, g1)
         if self.c01:
             a = first * six - components(b2)
             mixed = outer(a, unit)
             h2 = outer(six, six) - box(b) - 2 / 3 * (mixed + mixed.swapaxes(0, 1))
-            found = found + self.c01 * (h2 + 4 / 9 * second * ones + 2 / 3 * second * fourth)
-        return np.asarray(4 * found)
+            tangent = tangent + self.c01 * (h2 + 4 / 9 * second * ones + 2 / 3 * second * fourth)
+        return np.asarray(4 * tangent)
 
     def _slopes(self, first: Array) -> tuple[Array, Array]:
         x = first - 3

@@ -110,8 +110,8 @@ class CordLayer:
         return energy, slope, curvature
 
     def _carried(self, deformation: Array) -> tuple[Array, Array]:
-        one, other = (np.einsum("ij...,j...->i...", deformation, d) for d in self.directions)
-        return one, other
+        first, second = (np.einsum("ij...,j...->i...", deformation, d) for d in self.directions)
+        return first, second
 
 
 def lifted_angle(angle: float, radius: float, at: Array) -> Array:

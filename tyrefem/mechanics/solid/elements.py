@@ -128,8 +128,8 @@ class Rings:
 
     def region_of(self, element: int) -> str:
         """Name of the region that holds an element."""
-        found = [name for name, members in (self.mesh.subdomains or {}).items() if element in members]
-        return found[0] if found else "no region"
+        regions = [name for name, members in (self.mesh.subdomains or {}).items() if element in members]
+        return regions[0] if regions else "no region"
 
 
 def edge_functions(count: int) -> tuple[Array, Array, Array]:
@@ -173,15 +173,15 @@ class PressedWall:
         """(n_edges, 3, 2, 3, 2) derivative of `force` by the places of the nodes, m per radian."""
         (r, dr, dz), values, slopes, weights = self._along(places)
         signed = -self.outwards[:, None] * weights
-        found = np.zeros((len(r), 3, 2, 3, 2))
+        blocks = np.zeros((len(r), 3, 2, 3, 2))
 
         def integral(factor: Array, other: Array) -> Array:
             return np.einsum("fq,qa,qb->fab", signed * factor, values, other)
 
-        found[:, :, 0, :, 0] = integral(dz, values)
-        found[:, :, 0, :, 1] = integral(r, slopes)
-        found[:, :, 1, :, 0] = -integral(dr, values) - integral(r, slopes)
-        return found
+        blocks[:, :, 0, :, 0] = integral(dz, values)
+        blocks[:, :, 0, :, 1] = integral(r, slopes)
+        blocks[:, :, 1, :, 0] = -integral(dr, values) - integral(r, slopes)
+        return blocks
 
     def _along(self, places: Array) -> tuple[tuple[Array, Array, Array], Array, Array, Array]:
         values, slopes, weights = edge_functions(3)
@@ -204,9 +204,9 @@ def components(tensor: Array) -> Array:
     return np.asarray(tensor[FIRST, SECOND])
 
 
-def outer(one: Array, other: Array) -> Array:
+def outer(left: Array, right: Array) -> Array:
     """(6, 6, ...) dyad of two tensors (6, ...)."""
-    return np.asarray(one[:, None] * other[None])
+    return np.asarray(left[:, None] * right[None])
 
 
 def box(b: Array) -> Array:

@@ -47,11 +47,11 @@ class StressResponse:
 
     def product(self, change: Array) -> Array:
         """(e, q, m, 9) change of the stress for a change (e, q, m, 9) of the gradient."""
-        found = (self.tangent @ change[..., None])[..., 0]
+        product = (self.tangent @ change[..., None])[..., 0]
         dilatation = np.einsum("eqmc,eqmc->eqm", self.volume, change)
         moments = self.bulk @ (self.functions.transpose(0, 2, 1) @ dilatation)
-        found += self.volume * (self.functions @ moments)[..., None]
-        return np.asarray(found)
+        product += self.volume * (self.functions @ moments)[..., None]
+        return np.asarray(product)
 
 
 class FiniteLaw(Protocol):
@@ -64,19 +64,19 @@ class FiniteLaw(Protocol):
 
 def _deformation(gradient: Array) -> Array:
     """(3, 3, e, q, m) F = 1 + H."""
-    found = np.moveaxis(gradient.reshape(*gradient.shape[:3], 3, 3), (-2, -1), (0, 1))
-    return np.asarray(found + over(np.eye(3), gradient.shape[:3]))
+    f = np.moveaxis(gradient.reshape(*gradient.shape[:3], 3, 3), (-2, -1), (0, 1))
+    return np.asarray(f + over(np.eye(3), gradient.shape[:3]))
 
 
 def _inverse(f: Array) -> Array:
     """(3, 3, ...) inverse by cofactors."""
-    found = np.empty_like(f)
+    inverse = np.empty_like(f)
     for i in range(3):
         for j in range(3):
             a, b, c, d = (i + 1) % 3, (i + 2) % 3, (j + 1) % 3, (j + 2) % 3
-            found[j, i] = f[a, c] * f[b, d] - f[a, d] * f[b, c]
-    found /= (f[0] * found[:, 0]).sum(axis=0)
-    return found
+            inverse[j, i] = f[a, c] * f[b, d] - f[a, d] * f[b, c]
+    inverse /= (f[0] * inverse[:, 0]).sum(axis=0)
+    return inverse
 
 
 def _points(tensors: Array, axes: int) -> Array:
@@ -86,10 +86,10 @@ def _points(tensors: Array, axes: int) -> Array:
 
 def _tangent(strains: Array, stiffness: Array, initial: Array) -> Array:
     """(e, q, m, 9, 9) B' c B + 1 S of B (e, q, m, 6, 9), c (e, q, m or 1, 6, 6), S (e, q, m, 3, 3)."""
-    found = strains.swapaxes(-1, -2) @ (stiffness @ strains)
+    tangent = strains.swapaxes(-1, -2) @ (stiffness @ strains)
     for k in range(3):
-        found[..., 3 * k : 3 * k + 3, 3 * k : 3 * k + 3] += initial
-    return np.asarray(found)
+        tangent[..., 3 * k : 3 * k + 3, 3 * k : 3 * k + 3] += initial
+    return np.asarray(tangent)
 
 
 @dataclass(frozen=True, eq=False)
@@ -159,37 +159,37 @@ class BodyLaw:
     @functools.cached_property
     def _parts(self) -> dict[str, RegionMaterial]:
         """The parts, with values at the points ready for one more axis, that of the angles."""
-        found = {}
+        parts = {}
         for name, part in self.parts.items():
             layers = [
                 replace(
-                    one,
-                    angle=one.angle[..., None],
-                    meridian=one.meridian[..., None],
-                    stiffness=one.stiffness[..., None],
+                    layer,
+                    angle=layer.angle[..., None],
+                    meridian=layer.meridian[..., None],
+                    stiffness=layer.stiffness[..., None],
                 )
-                for one in part.cords
+                for layer in part.cords
             ]
-            found[name] = replace(part, cords=tuple(layers))
-        return found
+            parts[name] = replace(part, cords=tuple(layers))
+        return parts
 
     def _gathered(self, deformation: Array, method: str, axes: tuple[int, ...]) -> Array:
-        found = np.empty((*axes, *deformation.shape[2:]))
+        gathered = np.empty((*axes, *deformation.shape[2:]))
         for name, part in self._parts.items():
             members = self.members[name]
             here = deformation[:, :, members]
             total = getattr(part.compound, method)(here)
             for layer in part.cords:
                 total = total + getattr(layer, method)(here)
-            found[..., members, :, :] = total
-        return found
+            gathered[..., members, :, :] = total
+        return gathered
 
     def response(self, gradient: Array, tangent: bool = True) -> StressResponse:
         """P = tau F^-T, A = F^-1 (J c + tau 1) F^-T."""
         rings, size = self.rings, gradient.shape[2]
         functions, weights = rings.linear_functions, rings.weights[..., None]
         stress, volume = np.empty(gradient.shape), np.empty(gradient.shape)
-        found = np.empty((*gradient.shape, 9) if tangent else 0)
+        tangents = np.empty((*gradient.shape, 9) if tangent else 0)
         for k in range(0, size, CHUNK):
             part = slice(k, k + CHUNK)
             f = _deformation(gradient[:, :, part])
@@ -210,5 +210,7 @@ class BodyLaw:
                     strains[..., row, 3 * i : 3 * i + 3] += inverse[..., m]
                     if i != m:
                         strains[..., row, 3 * m : 3 * m + 3] += inverse[..., i]
-                found[:, :, part] = _tangent(strains, _points(c * weights, 2), inverse @ tau @ inverse.swapaxes(-1, -2))
-        return StressResponse(stress, found, volume, functions, self._bulk)
+                tangents[:, :, part] = _tangent(
+                    strains, _points(c * weights, 2), inverse @ tau @ inverse.swapaxes(-1, -2)
+                )
+        return StressResponse(stress, tangents, volume, functions, self._bulk)

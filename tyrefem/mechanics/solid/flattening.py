@@ -95,11 +95,11 @@ class Flattened:
     def strain(self) -> Array:
         """(6, n_elements, n_points) Green's strain from the inflated place, (f'f - 1)/2 with engineering shears."""
         before, after = self.tyre.deformation, self.tyre.body.deformation(self.displacement)
-        first, last = (np.moveaxis(one, (0, 1), (-2, -1)) for one in (before, after))
+        first, last = (np.moveaxis(gradient, (0, 1), (-2, -1)) for gradient in (before, after))
         f = last @ np.linalg.inv(first)
         e = (np.swapaxes(f, -1, -2) @ f - np.eye(3)) / 2
-        found = [e[..., 0, 0], e[..., 1, 1], e[..., 2, 2], 2 * e[..., 0, 1], 2 * e[..., 0, 2], 2 * e[..., 1, 2]]
-        return np.stack(found)
+        components = [e[..., 0, 0], e[..., 1, 1], e[..., 2, 2], 2 * e[..., 0, 1], 2 * e[..., 0, 2], 2 * e[..., 1, 2]]
+        return np.stack(components)
 
 
 def reach(tyre: Inflation, touching: str = "road") -> float:
@@ -168,13 +168,13 @@ def flatten(
         guess = now.displacement + share * (now.displacement - before.displacement)
         try:
             try:
-                found, forces, history = equilibrium_inside(
+                displacement, forces, history = equilibrium_inside(
                     tyre.body, tyre.pressure, nodes, guess, now.forces, free - aim, choice
                 )
             except StuckError:
                 if not share:
                     raise
-                found, forces, history = equilibrium_inside(
+                displacement, forces, history = equilibrium_inside(
                     tyre.body, tyre.pressure, nodes, now.displacement, now.forces, free - aim, choice
                 )
         except StuckError as stuck:
@@ -188,6 +188,6 @@ def flatten(
             continue
         steps.append(aim)
         residuals.append(history)
-        before, now = now, Flattened(tyre, aim, found, forces, touching, tuple(steps), tuple(residuals))
+        before, now = now, Flattened(tyre, aim, displacement, forces, touching, tuple(steps), tuple(residuals))
         step *= 1.5 if len(history) <= 8 else 1.0
     return now

@@ -40,18 +40,18 @@ class Inflation(Brief):
     """
 
     body: Body
-    found: Equilibrium
+    equilibrium: Equilibrium
     half: bool = True
 
     @property
     def pressure(self) -> float:
         """Gauge pressure, Pa."""
-        return self.found.pressure
+        return self.equilibrium.pressure
 
     @property
     def displacement(self) -> Array:
         """(2, n_nodes) u_r, u_z of all nodes, m."""
-        return self.found.displacement
+        return self.equilibrium.displacement
 
     @property
     def places(self) -> Array:
@@ -88,15 +88,15 @@ class Inflation(Brief):
     @functools.cached_property
     def cord_tensions(self) -> dict[str, LayerTension]:
         """Region -> stretch and tension of its cords."""
-        found = {}
+        tensions = {}
         for region, part in self.body.parts.items():
             members = self.body.mesh.subdomains[region]
             here, weights = self.deformation[:, :, members], self.body.rings.weights[members]
             for layer in part.cords:
                 tension = None if layer.cord_stiffness is None else _spread(layer.tension(here), weights)
                 strain, stress = _spread(layer.stretch(here) - 1, weights), layer.stress_in_layer(here)
-                found[region] = LayerTension(region, strain, _spread(stress, weights), tension)
-        return found
+                tensions[region] = LayerTension(region, strain, _spread(stress, weights), tension)
+        return tensions
 
     @property
     def bead_tension(self) -> float:
@@ -118,15 +118,15 @@ class Inflation(Brief):
 
     def summary(self) -> dict[str, float]:
         """Growth, m; bead tension, N; Newton steps."""
-        found = {
+        values = {
             "pressure_Pa": self.pressure,
             "radius_growth_m": self.radius_growth,
             "width_growth_m": self.width_growth,
-            "load_steps": float(len(self.found.steps)),
-            "newton_iterations": float(sum(len(history) - 1 for history in self.found.residuals)),
+            "load_steps": float(len(self.equilibrium.steps)),
+            "newton_iterations": float(sum(len(history) - 1 for history in self.equilibrium.residuals)),
         }
         bead = self.body.parts.get("bead")
-        return {**found, "bead_tension_N": self.bead_tension} if bead and bead.cords else found
+        return {**values, "bead_tension_N": self.bead_tension} if bead and bead.cords else values
 
 
 def _spread(values: Array, weights: Array) -> tuple[float, float, float]:
@@ -173,7 +173,7 @@ def inflate(
         from tyrefem.mechanics.solid import thermal
 
         warmed = thermal.warm(body, temperature, thermal.expansions(study))
-        found = thermal.relaxed(warmed, equilibrium(body, pressure, choice))
+        state = thermal.relaxed(warmed, equilibrium(body, pressure, choice))
     except InputError as error:
         raise error if error.file else InputError(error.message, field=error.field, file=study.file) from None
-    return Inflation(warmed, found, study.section.half)
+    return Inflation(warmed, state, study.section.half)

@@ -70,11 +70,11 @@ def equilibrium(body: Body, pressure: float, choice: NewtonChoice | None = None)
         guess = now + (now - before) * (aim - reached) / last if last else now
         try:
             try:
-                found, history = _newton(body, guess, aim * pressure, choice)
+                displacement, history = _newton(body, guess, aim * pressure, choice)
             except _StuckError:
                 if not last:
                     raise
-                found, history = _newton(body, now, aim * pressure, choice)
+                displacement, history = _newton(body, now, aim * pressure, choice)
         except _StuckError as stuck:
             step = (aim - reached) / 2
             if step < choice.smallest_step:
@@ -84,7 +84,7 @@ def equilibrium(body: Body, pressure: float, choice: NewtonChoice | None = None)
                     field="pressure",
                 ) from None
             continue
-        before, now, last, reached = now, found, aim - reached, aim
+        before, now, last, reached = now, displacement, aim - reached, aim
         steps.append(aim)
         residuals.append(history)
         step *= 2.0 if len(history) <= EASY else 1.0

@@ -84,9 +84,9 @@ class Flange:
         _, normal, _ = self._at(places)
         values, weights = self._functions
         local = np.einsum("cfq,fq,qa->fac", normal, self.pressure(places) * weights, values)
-        found = np.zeros(2 * self.rings.n_nodes)
-        np.add.at(found, (2 * self.nodes[:, :, None] + np.arange(2)).ravel(), local.ravel())
-        return found
+        force = np.zeros(2 * self.rings.n_nodes)
+        np.add.at(force, (2 * self.nodes[:, :, None] + np.arange(2)).ravel(), local.ravel())
+        return force
 
     def stiffness_matrix(self, places: Array, components: int = 2) -> Any:
         """Derivative of - `force` by the places: sparse (components n_nodes, components n_nodes), N/m per radian.

@@ -85,10 +85,10 @@ class WarmBody(Body):
     @functools.cached_property
     def bulk(self) -> Array:
         """(n_elements,) bulk modulus over the volume of the cold state, Pa."""
-        found = np.zeros(self.mesh.t.shape[1])
+        moduli = np.zeros(self.mesh.t.shape[1])
         for name, part in self.parts.items():
-            found[self.mesh.subdomains[name]] = part.compound.bulk_modulus
-        return np.asarray(found * (self.thermal**3).mean(axis=1))
+            moduli[self.mesh.subdomains[name]] = part.compound.bulk_modulus
+        return np.asarray(moduli * (self.thermal**3).mean(axis=1))
 
     def pressure(self, volume: Array) -> Array:
         """(n_elements, n_points) of J: what times J is the mean Kirchhoff stress, Pa."""
@@ -108,10 +108,10 @@ class WarmBody(Body):
             return 1 + share * (thermal - 1)
 
         parts = {}
-        for name, one in self.parts.items():
-            compound = replace(one.compound, thermal=part(one.compound.thermal))  # type: ignore[call-arg, attr-defined]
-            cords = tuple(replace(layer, thermal=part(layer.thermal)) for layer in one.cords)  # type: ignore[call-arg, attr-defined]
-            parts[name] = replace(one, compound=compound, cords=cords)
+        for name, cold in self.parts.items():
+            compound = replace(cold.compound, thermal=part(cold.compound.thermal))  # type: ignore[call-arg, attr-defined]
+            cords = tuple(replace(layer, thermal=part(layer.thermal)) for layer in cold.cords)  # type: ignore[call-arg, attr-defined]
+            parts[name] = replace(cold, compound=compound, cords=cords)
         return replace(self, parts=parts, thermal=part(self.thermal))
 
     def _dilatation_stiffness(self, strains: Array, volume: Array) -> Array:
@@ -119,8 +119,8 @@ class WarmBody(Body):
 
     def state(self, displacement: Array, pressure: float) -> Prestressed:
         """What a small further motion sees of the present place."""
-        found = super().state(displacement, pressure)
-        return replace(found, bulk=found.bulk / self.thermal**6, law=None)
+        state = super().state(displacement, pressure)
+        return replace(state, bulk=state.bulk / self.thermal**6, law=None)
 
 
 def expansions(study: StudyData) -> dict[str, Expansion]:
@@ -130,15 +130,15 @@ def expansions(study: StudyData) -> dict[str, Expansion]:
     ------
     InputError : none does.
     """
-    cards = {region: card.expansion for region, card in study.materials.items()}
-    found = {
-        region: Expansion(one.coefficient, one.cords, one.stress_free)
-        for region, one in cards.items()
-        if one is not None
+    written = {region: card.expansion for region, card in study.materials.items()}
+    given = {
+        region: Expansion(expansion.coefficient, expansion.cords, expansion.stress_free)
+        for region, expansion in written.items()
+        if expansion is not None
     }
-    if not found:
+    if not given:
         raise InputError("no material card gives 'expansion'", field="materials", file=study.file)
-    return found
+    return given
 
 
 def warm(body: Body, temperature: Any, expansions: Mapping[str, Expansion]) -> WarmBody:
@@ -178,7 +178,7 @@ def warm(body: Body, temperature: Any, expansions: Mapping[str, Expansion]) -> W
 
 
 def _fields(of: Any) -> dict[str, Any]:
-    return {one.name: getattr(of, one.name) for one in fields(of)}
+    return {field.name: getattr(of, field.name) for field in fields(of)}
 
 
 #: First and smallest share of the heating in one step of `relaxed`.
@@ -197,12 +197,12 @@ def relaxed(
     InputError : no balance was found; says at which share of the heating.
     """
     cold = cold or Equilibrium(np.zeros((2, body.rings.n_nodes)), 0.0, (), ())
-    found = cold.displacement
+    displacement = cold.displacement
     reached, step = 0.0, FIRST_STEP
     steps, histories = list(cold.steps), list(cold.residuals)
     while reached < 1:
         aim = min(1.0, reached + step)
-        guess, history = _balanced(body.heated(aim), found, cold.pressure, tolerance, iterations)
+        guess, history = _balanced(body.heated(aim), displacement, cold.pressure, tolerance, iterations)
         if not history[-1] <= tolerance:
             step /= 2
             if step < SMALLEST_STEP:
@@ -210,10 +210,10 @@ def relaxed(
                     f"no balance of the warm body beyond {reached:.1%} of its heating", field="temperature"
                 )
             continue
-        found, reached, step = guess, aim, 2 * step
+        displacement, reached, step = guess, aim, 2 * step
         steps.append(aim)
         histories.append(history)
-    return Equilibrium(found, cold.pressure, tuple(steps), tuple(histories))
+    return Equilibrium(displacement, cold.pressure, tuple(steps), tuple(histories))
 
 
 def _balanced(
@@ -222,20 +222,20 @@ def _balanced(
     """Displacement, and the forces out of balance over the first ones."""
     from scipy.sparse.linalg import splu
 
-    found, free = start, body.free
-    residual = body.residual(found, pressure)[free]
+    displacement, free = start, body.free
+    residual = body.residual(displacement, pressure)[free]
     first = float(np.linalg.norm(residual))
     history = [1.0 if first else 0.0]
     while history[-1] > tolerance and len(history) <= iterations:
         step = np.zeros(2 * body.rings.n_nodes)
-        step[free] = splu(body.stiffness(found, pressure)[free][:, free].tocsc()).solve(-residual)
+        step[free] = splu(body.stiffness(displacement, pressure)[free][:, free].tocsc()).solve(-residual)
         move, share = step.reshape(-1, 2).T, 1.0
         while True:
-            residual = body.residual(found + share * move, pressure)[free]
+            residual = body.residual(displacement + share * move, pressure)[free]
             now = float(np.linalg.norm(residual)) / first
             if now < history[-1] or share < SMALLEST_STEP:
                 break
             share /= 2
-        found = found + share * move
+        displacement = displacement + share * move
         history.append(now)
-    return found, tuple(history)
+    return displacement, tuple(history)

@@ -74,8 +74,8 @@ class _Reader:
         cords = getattr(card, "cords", None)
         compound = self.compound(card)
         if cords is not None:
-            own = getattr(cords, "loss_tangent", None) or 0.0
-            ratio = own / max(float(card.loss_tangent(LOSS_TEMPERATURE)), 1e-12)
+            cord_loss = getattr(cords, "loss_tangent", None) or 0.0
+            ratio = cord_loss / max(float(card.loss_tangent(LOSS_TEMPERATURE)), 1e-12)
             return RegionMaterial(compound, (self._limited(self.layer(region, cords), compound),), ratio)
         layer = self.bias_plies(region, card) or self.bead_wire(region, card)
         return RegionMaterial(compound, (self._limited(layer, compound),) if layer else ())
