@@ -6,6 +6,7 @@ The classes that they stand on are data; each verb is one line that calls the ro
 from __future__ import annotations
 
 from collections.abc import Callable, Iterable, Mapping, Sequence
+from dataclasses import fields
 from functools import cached_property
 from pathlib import Path
 from typing import TYPE_CHECKING, Any, TypeVar
@@ -26,11 +27,9 @@ if TYPE_CHECKING:
 Data = TypeVar("Data")
 
 
-def with_verbs(kind: type[Data], data: Any) -> Data:
-    """The same data as an object of ``kind``, a class with verbs that stands on the data's own."""
-    found = object.__new__(kind)
-    found.__dict__.update(data.__dict__)
-    return found
+def with_verbs(kind: type[Data], data: Any, **changes: Any) -> Data:
+    """The same data, some of its fields changed, as an object of ``kind``: a class with verbs on the data's own."""
+    return kind(**({field.name: getattr(data, field.name) for field in fields(data)} | changes))
 
 
 class Result(result.ResultData):
@@ -97,10 +96,7 @@ class Diagnosis(diagnosis.Diagnosis):
     @classmethod
     def of(cls, data: diagnosis.Diagnosis) -> Diagnosis:
         """The same diagnosis, and every further look at the same data, with verbs."""
-        verbal = with_verbs(cls, data)
-        if data.again is not None:
-            verbal.__dict__["again"] = cls.of(data.again)
-        return verbal
+        return with_verbs(cls, data, again=None if data.again is None else cls.of(data.again))
 
     def to_dict(self) -> dict[str, Any]:
         """What `verdict.json` holds."""

@@ -6,6 +6,7 @@ import dataclasses
 import pickle
 from dataclasses import dataclass
 from pathlib import Path
+from typing import Any
 
 import pytest
 
@@ -45,10 +46,9 @@ def test_verbs_take_the_data_as_they_are() -> None:
 
 
 def test_every_further_look_of_a_diagnosis_has_verbs() -> None:
-    second = object.__new__(diagnosis_data.Diagnosis)
-    second.__dict__["again"] = None
-    first = object.__new__(diagnosis_data.Diagnosis)
-    first.__dict__["again"] = second
+    others: Any = [None] * (len(dataclasses.fields(diagnosis_data.Diagnosis)) - 1)
+    second = diagnosis_data.Diagnosis(*others)
+    first = diagnosis_data.Diagnosis(*others, again=second)
     looks = Diagnosis.of(first).looks
     assert [type(look) for look in looks] == [Diagnosis, Diagnosis]
     assert first.again is second

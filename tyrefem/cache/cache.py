@@ -6,6 +6,7 @@ from collections import OrderedDict
 from collections.abc import Callable, Hashable
 from threading import Lock
 from typing import Any, Generic, TypeVar
+from weakref import WeakValueDictionary
 
 Value = TypeVar("Value")
 
@@ -22,7 +23,9 @@ class Cache(Generic[Value]):
 
     Parameters
     ----------
-    size : greatest number of values.
+    size : greatest number of values that the cache keeps.
+    shared : find also the values that the cache no longer keeps, as long as something else holds them. Such values
+        must take weak references.
 
     Raises
     ------
@@ -37,36 +40,58 @@ class Cache(Generic[Value]):
     False
     """
 
-    def __init__(self, size: int) -> None:
+    def __init__(self, size: int, *, shared: bool = False) -> None:
         if size < 1:
             raise ValueError(f"a cache holds one value or more, not {size}")
         self.size = size
         #: How often a value was there, and how often it had to be computed.
         self.hits = self.misses = 0
         self._values: OrderedDict[Hashable, Value] = OrderedDict()
+        self._held: WeakValueDictionary[Hashable, Value] | None = WeakValueDictionary() if shared else None
         self._lock = Lock()
 
     def get(self, key: Hashable, compute: Callable[[], Value]) -> Value:
         """The value of a key, computed if it is not there; the least recently used value then makes room."""
         with self._lock:
-            if key in self._values:
+            known = self._find(key)
+            if known is not None:
                 self.hits += 1
-                self._values.move_to_end(key)
-                return self._values[key]
+                return known[0]
             self.misses += 1
         value = compute()
         with self._lock:
-            value = self._values.setdefault(key, value)
-            self._values.move_to_end(key)
-            while len(self._values) > self.size:
-                self._values.popitem(last=False)
-        return value
+            known = self._find(key)
+            return self._keep(key, value) if known is None else known[0]
+
+    def put(self, key: Hashable, value: Value) -> None:
+        """Let this be the value of a key."""
+        with self._lock:
+            self._keep(key, value)
 
     def clear(self) -> None:
         """Forget all values and counts."""
         with self._lock:
             self._values.clear()
+            if self._held is not None:
+                self._held.clear()
             self.hits = self.misses = 0
+
+    def _find(self, key: Hashable) -> tuple[Value] | None:
+        """The value of a key, now the most recently used; the caller has the lock."""
+        if key in self._values:
+            self._values.move_to_end(key)
+            return (self._values[key],)
+        held = None if self._held is None else self._held.get(key)
+        return None if held is None else (self._keep(key, held),)
+
+    def _keep(self, key: Hashable, value: Value) -> Value:
+        self._values[key] = value
+        self._values.move_to_end(key)
+        if self._held is not None:
+            self._held[key] = value
+        while len(self._values) > self.size:
+            self._values.popitem(last=False)
+        return value
 
     def __len__(self) -> int:
         return len(self._values)
@@ -75,7 +100,11 @@ class Cache(Generic[Value]):
         return key in self._values
 
     def __reduce__(self) -> tuple[Any, ...]:
-        return type(self), (self.size,)
+        return _empty, (self.size, self._held is not None)
 
     def __repr__(self) -> str:
         return f"Cache of {len(self)} values, {self.size} at most ({self.hits} hits, {self.misses} misses)"
+
+
+def _empty(size: int, shared: bool) -> Cache[Any]:
+    return Cache(size, shared=shared)

@@ -2,15 +2,14 @@
 
 from __future__ import annotations
 
-from collections import OrderedDict
 from collections.abc import Callable
 from typing import Any
-from weakref import WeakValueDictionary
 
 import numpy as np
 from numpy.typing import NDArray
 from scipy.sparse import csr_matrix, hstack
 
+from tyrefem.cache import Cache, fingerprint
 from tyrefem.conduction.equation import conduction, storage
 from tyrefem.conduction.function_space import FunctionSpace
 from tyrefem.conduction.linear_solver import Ordering
@@ -18,9 +17,12 @@ from tyrefem.conduction.quadrature import Quadrature, Surface
 
 Array = NDArray[Any]
 
-#: The latest; and all that are still held by anyone, however many meshes came since.
-_RECENT: OrderedDict[tuple[int, str, bool], Operators] = OrderedDict()
-_ALIVE: WeakValueDictionary[tuple[int, str, bool], Operators] = WeakValueDictionary()
+#: Operators by mesh, element and symmetry: the latest, and all that a problem still holds. Some MB to some 100 MB each.
+_OPERATORS: Cache[Operators] = Cache(size=6, shared=True)
+#: Operators and quadratures that one mesh keeps: about seven for each of at most a few dozen regions and boundaries.
+KEPT = 512
+#: Sets of points that one mesh keeps located.
+POINT_SETS = 8
 
 
 class Operators(FunctionSpace):
@@ -40,7 +42,9 @@ class Operators(FunctionSpace):
 
     def __init__(self, mesh: Any, element: str = "P1", axisymmetric: bool = True) -> None:
         super().__init__(mesh, element, axisymmetric)
-        self.remembered: dict[Any, Any] = {}
+        self._assembled: Cache[Any] = Cache(size=KEPT)
+        #: Points in this mesh, by their fingerprint; see `tyrefem.conduction.points.located`.
+        self.located: Cache[Any] = Cache(size=POINT_SETS)
 
     def __reduce__(self) -> tuple[Any, ...]:
         """Another process assembles them again: that takes less time than sending them."""
@@ -51,9 +55,7 @@ class Operators(FunctionSpace):
         return f"Operators ({self.element}, {shape}, {self.size} unknowns)"
 
     def _once(self, key: Any, make: Callable[[], Any]) -> Any:
-        if key not in self.remembered:
-            self.remembered[key] = make()
-        return self.remembered[key]
+        return self._assembled.get(key, make)
 
     def mean_weight(self) -> Array:
         """Weights (n,) whose product with the unknowns is the volume mean."""
@@ -146,19 +148,22 @@ class Operators(FunctionSpace):
 
 
 def operators_of(mesh: Any, element: str = "P1", axisymmetric: bool = True) -> Operators:
-    """The operators of a mesh, shared by every problem on the same mesh object.
+    """The operators of a mesh, shared by every problem on an equal mesh.
 
     >>> import skfem
-    >>> mesh = skfem.MeshTri().refined(2)
-    >>> operators_of(mesh, "P1", False) is operators_of(mesh, "P1", False)
+    >>> operators_of(skfem.MeshTri().refined(2), "P1", False) is operators_of(skfem.MeshTri().refined(2), "P1", False)
     True
     """
-    key = (id(mesh), element, axisymmetric)
-    found = _ALIVE.get(key)
-    if found is None or found.mesh is not mesh:
-        found = _ALIVE[key] = Operators(mesh, element, axisymmetric)
-    _RECENT[key] = found
-    _RECENT.move_to_end(key)
-    while len(_RECENT) > 6:
-        _RECENT.popitem(last=False)
-    return found
+    key = (_content(mesh), element, axisymmetric)
+    return _OPERATORS.get(key, lambda: Operators(mesh, element, axisymmetric))
+
+
+def _content(mesh: Any) -> tuple[Any, ...]:
+    """All that operators depend on: the mesh's kind, its nodes and elements, its named parts with their sides."""
+    parts = [
+        (name, fingerprint(numbers, getattr(numbers, "ori", np.zeros(0))))
+        for named in (mesh.subdomains, mesh.boundaries)
+        for name, numbers in (named or {}).items()
+    ]
+    count = len(mesh.subdomains or {})
+    return type(mesh), fingerprint(mesh.doflocs, mesh.t), count, *parts

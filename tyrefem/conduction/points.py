@@ -8,6 +8,7 @@ import numpy as np
 from numpy.typing import ArrayLike, NDArray
 from scipy.sparse import csr_matrix
 
+from tyrefem.cache import fingerprint
 from tyrefem.conduction.operators import Operators
 from tyrefem.errors import InputError
 
@@ -128,10 +129,5 @@ def distance(ops: Operators, point: Array) -> float:
 def located(ops: Operators, points: ArrayLike) -> Located:
     """The located points, remembered on the operators for the latest few sets."""
     array = as_points(points)
-    store = ops.remembered.setdefault("located", {})
-    key = array.tobytes()
-    if key not in store:
-        if len(store) >= 8:
-            store.pop(next(iter(store)))
-        store[key] = Located(ops, array)
-    return store[key]
+    place: Located = ops.located.get(fingerprint(array), lambda: Located(ops, array))
+    return place

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import functools
 from dataclasses import dataclass
 
 import numpy as np
@@ -32,14 +33,12 @@ def inside(section: Section, size: float, s: Array, depth: Array) -> Array:
     return np.asarray(section.place(*section.clamp(s, depth, size**2 / 0.1)))
 
 
+@functools.lru_cache(maxsize=32)
 def wall_of(section: Section, size: float) -> Wall:
-    """The wall of a section on a mesh of a size (m); found once."""
-    known: dict[float, Wall] = section.__dict__.setdefault("_walls", {})
-    if size not in known:
-        lowest = 0.0 if section.half else -section.line.length
-        s = np.linspace(lowest, section.line.length, STATIONS)[1:-1]
-        thickness = section.rubber_thickness(s)
-        points = [section.place(s, depth) for depth in (np.zeros_like(s), thickness)]
-        inner, outer = (inside(section, size, *section.locate(point)) for point in points)
-        known[size] = Wall(s, thickness, inner, outer)
-    return known[size]
+    """The wall of a section on a mesh of a size (m); remembered for the 32 latest."""
+    lowest = 0.0 if section.half else -section.line.length
+    s = np.linspace(lowest, section.line.length, STATIONS)[1:-1]
+    thickness = section.rubber_thickness(s)
+    surfaces = [section.place(s, depth) for depth in (np.zeros_like(s), thickness)]
+    inner, outer = (inside(section, size, *section.locate(surface)) for surface in surfaces)
+    return Wall(s, thickness, inner, outer)

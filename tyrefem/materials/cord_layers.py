@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import functools
 import math
 from collections.abc import Mapping
 from typing import TYPE_CHECKING
@@ -69,8 +70,11 @@ def masses(section: Section, materials: Mapping[str, MaterialCard], temperature:
 
     The tread counts as drawn, without grooves.
     """
-    volumes: dict[str, float] = section.__dict__.setdefault("_whole_volumes", {})
-    if not volumes:
-        whole = section.as_full()
-        volumes |= {region: whole.volume(region) for region in whole.regions}
-    return {region: volume * materials[region].density.at(temperature) for region, volume in volumes.items()}
+    return {region: volume * materials[region].density.at(temperature) for region, volume in _whole_volumes(section)}
+
+
+@functools.lru_cache(maxsize=32)
+def _whole_volumes(section: Section) -> tuple[tuple[str, float], ...]:
+    """(region, volume) of the whole tyre, m3; remembered for the 32 latest sections, which studies share."""
+    whole = section.as_full()
+    return tuple((region, whole.volume(region)) for region in whole.regions)

@@ -9,15 +9,19 @@ from __future__ import annotations
 import functools
 import math
 from dataclasses import dataclass
-from typing import Any
+from typing import TYPE_CHECKING, Any
 
 import numpy as np
 from numpy.typing import NDArray
 
+from tyrefem.cache import Cache, fingerprint
 from tyrefem.errors import InputError
 from tyrefem.inputs.loading import LoadCase
 from tyrefem.mechanics.arc_geometry import BiasPlies, DeflectedArcs, deflected_sidewall, sidewall_arc
 from tyrefem.mechanics.strain_cycle import Zone
+
+if TYPE_CHECKING:
+    from tyrefem.geometry import Section
 
 Array = NDArray[np.float64]
 #: sqrt(2) exp(-1/2): steepest slope of the Gaussian that the hoop force is assumed to follow (D2, D3).
@@ -88,29 +92,28 @@ class PliesAt:
     poisson: Array
 
 
-def plies_at(section: Any, plies: BiasPlies, radius: Array) -> PliesAt:
-    """The plies at radii; remembered for arrays that come back."""
-    known = section.__dict__.setdefault("_arc_plies_at", {})
-    found: PliesAt | None = known.get((plies, id(radius)))
-    if found is None or found.radius is not radius:
-        if len(known) >= REMEMBERED:
-            known.clear()
-        found = PliesAt(radius, plies.circumferential(radius), plies.meridional(radius), plies.poisson(radius))
-        known[plies, id(radius)] = found
-    return found
+#: Places of points, by section, part of it and points; plies, by their material and radii. All load cases and all
+#: variants on one section and mesh share them: a section of two arcs has four zones with nodes.
+_PLACES: Cache[Places] = Cache(size=32)
+_PLIES: Cache[PliesAt] = Cache(size=32)
 
 
-#: Sets of points of which a section keeps the places.
-REMEMBERED = 32
+def plies_at(plies: BiasPlies, radius: Array) -> PliesAt:
+    """The plies at radii (n,), m; remembered for the 32 latest."""
+
+    def compute() -> PliesAt:
+        return PliesAt(radius, plies.circumferential(radius), plies.meridional(radius), plies.poisson(radius))
+
+    return _PLIES.get((plies, fingerprint(radius)), compute)
 
 
-def places(section: Any, at_crown: bool, points: Array) -> Places:
-    """The places of points of the crown or the sidewall; remembered for arrays that come back."""
-    known = section.__dict__.setdefault("_arc_places", {})
-    found: Places | None = known.get((at_crown, id(points)))
-    if found is not None and found.points is points:
-        return found
-    line = section.line
+def places(section: Section, at_crown: bool, points: Array) -> Places:
+    """The places of points (2, n) of the crown or the sidewall; remembered for the 32 latest."""
+    return _PLACES.get((section, at_crown, fingerprint(points)), lambda: _places(section, at_crown, points))
+
+
+def _places(section: Section, at_crown: bool, points: Array) -> Places:
+    line: Any = section.line
     s, depth = section.locate(points.T)
     s = np.minimum(np.abs(s), line.length)
     y = np.asarray(section.midline_offset(s, depth))
@@ -121,11 +124,29 @@ def places(section: Any, at_crown: bool, points: Array) -> Places:
         # A half section's points, or the mirrored half's: either way the side with z >= 0.
         offset = np.sum((np.abs(points.T) - line.position(s)) * line.normal(s), axis=1)
     thickness = np.asarray(section.thickness("carcass", s))
-    found = Places(points, s, y, thickness, line.position(s)[:, 0], fraction, offset)
-    if len(known) >= REMEMBERED:
-        known.clear()
-    known[at_crown, id(points)] = found
-    return found
+    return Places(points, s, y, thickness, line.position(s)[:, 0], fraction, offset)
+
+
+@functools.lru_cache(maxsize=32)
+def sidewall_compliance(section: Section, plies: BiasPlies) -> tuple[float, Array, Array]:
+    """Mean of 1/(h_c E_phi) over the sidewall, m/N; s and the integral of cot^2 from the crown to it, m.
+
+    The same for all load cases; remembered for the 32 latest.
+    """
+    line: Any = section.line
+    side = np.linspace(line.shoulder_s, line.length, 101)
+    stiffness = section.thickness("carcass", side) * plies.meridional(line.position(side)[:, 0])
+    compliance = float(np.trapezoid(1 / stiffness, side) / (line.length - line.shoulder_s))
+    s = np.linspace(0.0, line.length, 401)
+    cot2 = plies.cot2(line.position(s)[:, 0])
+    integral = np.concatenate([[0.0], np.cumsum((cot2[1:] + cot2[:-1]) / 2 * np.diff(s))])
+    return compliance, s, integral
+
+
+@functools.lru_cache(maxsize=32)
+def bead_area(section: Section) -> float:
+    """Area of the region of one bead, m2; remembered for the 32 latest sections."""
+    return float(section.area("bead")) / (1 if section.half else 2)
 
 
 @dataclass(frozen=True, eq=False)
@@ -184,9 +205,6 @@ class Arcs:
         line = self.section.line
         return deflected_sidewall(line, self._deflection, self._of_plies[0], self.case.pressure)
 
-    def _carcass_thickness(self, s: Array) -> Array:
-        return np.asarray(self.section.thickness("carcass", s))
-
     # -- membrane forces ---------------------------------------------------------------------------------------
 
     def _membrane_change(self, inflated_radius: Array, deflected_radius: Array) -> Array:
@@ -204,21 +222,7 @@ class Arcs:
 
     @property
     def _of_plies(self) -> tuple[float, Array, Array]:
-        """Mean of 1/(h_c E_phi) over the sidewall, and s and the integral of cot^2 from the crown to it: the same for
-        all load cases."""
-        known: dict[Any, tuple[float, Array, Array]] = self.section.__dict__.setdefault("_arc_plies", {})
-        plies, line = self.stiffness.carcass, self.section.line
-        if plies not in known:
-            side = np.linspace(line.shoulder_s, line.length, 101)
-            stiffness = self._carcass_thickness(side) * plies.meridional(line.position(side)[:, 0])
-            compliance = float(np.trapezoid(1 / stiffness, side) / (line.length - line.shoulder_s))
-            s = np.linspace(0.0, line.length, 401)
-            cot2 = plies.cot2(line.position(s)[:, 0])
-            integral = np.concatenate([[0.0], np.cumsum((cot2[1:] + cot2[:-1]) / 2 * np.diff(s))])
-            if len(known) >= REMEMBERED:
-                known.clear()
-            known[plies] = compliance, s, integral
-        return known[plies]
+        return sidewall_compliance(self.section, self.stiffness.carcass)
 
     def _shear_force(self, s: Array, membrane_change: Array) -> Array:
         """N = (0.858/w) (N_phi,A - N_phi,B) int cot^2(alpha) ds from the crown (D5)."""
@@ -269,14 +273,14 @@ class Arcs:
         if self.case.deflection <= 0:
             return np.zeros(points.shape[1])
         if zone == "V":
-            return np.full(points.shape[1], self.bead_energy / self._bead_area)
+            return np.full(points.shape[1], self.bead_energy / bead_area(self.section))
         strains = self.strains(zone, points)
         if zone in ("I", "III"):
             return self._carcass_energy(strains)
         return self._rubber_energy(zone, strains)
 
     def _plies(self, radius: Array) -> PliesAt:
-        return plies_at(self.section, self.stiffness.carcass, radius)
+        return plies_at(self.stiffness.carcass, radius)
 
     def _carcass_energy(self, strains: Strains) -> Array:
         plies = self._plies(strains.radius)
@@ -313,10 +317,3 @@ class Arcs:
     def bead_energy(self) -> float:
         """Energy change of one bead bundle, J per metre of its length (19)."""
         return 0.5 * self.bead_tension_change**2 / (self.stiffness.bead_wire_area * self.stiffness.bead_modulus)
-
-    @functools.cached_property
-    def _bead_area(self) -> float:
-        known: dict[str, float] = self.section.__dict__.setdefault("_arc_bead", {})
-        if "area" not in known:
-            known["area"] = float(self.section.area("bead")) / (1 if self.section.half else 2)
-        return known["area"]

@@ -5,7 +5,7 @@ from __future__ import annotations
 import functools
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass
-from typing import Any
+from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
@@ -22,8 +22,13 @@ from tyrefem.mechanics.arcs import Arcs, ArcStiffness
 from tyrefem.mechanics.given import Given
 from tyrefem.mechanics.strain_cycle import StrainCycle, settled
 
+if TYPE_CHECKING:
+    from tyrefem.geometry import Section
+
 #: Times of which a schedule keeps what it has worked out.
 REMEMBERED = 512
+#: (phase, knot, weight) of load cases that are mixed.
+Weights = tuple[tuple[int, int, float], ...]
 
 
 @dataclass(frozen=True, eq=False)
@@ -38,27 +43,14 @@ class CycleSchedule(Brief, Stated):
     cases: tuple[tuple[LoadCase, ...], ...]
     cycles: tuple[tuple[StrainCycle, ...], ...]
 
-    def weights(self, time: float) -> list[tuple[int, int, float]]:
+    def weights(self, time: float) -> Weights:
         """(phase, knot, weight) of the load cases that make up a time."""
-        # Remembered, as every zone and film asks for the same times.
-        if time not in self._remembered:
-            if len(self._remembered) >= REMEMBERED:
-                self._remembered.clear()
-            self._remembered[time] = self._weights(time)
-        return self._remembered[time]
+        return self._weights(time)
 
     @functools.cached_property
-    def _remembered(self) -> dict[float, list[tuple[int, int, float]]]:
-        return {}
-
-    def _weights(self, time: float) -> list[tuple[int, int, float]]:
-        phase, fraction = self.drive.locate(time)
-        knots = self.knots[phase]
-        if len(knots) == 1:
-            return [(phase, 0, 1.0)]
-        right = int(np.clip(np.searchsorted(knots, fraction), 1, len(knots) - 1))
-        share = (fraction - knots[right - 1]) / (knots[right] - knots[right - 1])
-        return [(phase, right - 1, 1 - share), (phase, right, share)]
+    def _weights(self) -> Callable[[float], Weights]:
+        """`weights` of the latest times: every zone and film asks for the same ones."""
+        return functools.lru_cache(REMEMBERED)(functools.partial(_weights, self.drive, self.knots))
 
     def mean(self, quantity: Callable[[LoadCase], float], time: float) -> float:
         """A quantity of the load case at a time, e.g. its deflection."""
@@ -85,6 +77,16 @@ class CycleSchedule(Brief, Stated):
 
 def _rolling_radius(case: LoadCase) -> float:
     return case.rolling_radius
+
+
+def _weights(drive: Drive, knots: tuple[tuple[float, ...], ...], time: float) -> Weights:
+    phase, fraction = drive.locate(time)
+    at = knots[phase]
+    if len(at) == 1:
+        return ((phase, 0, 1.0),)
+    right = int(np.clip(np.searchsorted(at, fraction), 1, len(at) - 1))
+    share = (fraction - at[right - 1]) / (at[right] - at[right - 1])
+    return (phase, right - 1, 1 - share), (phase, right, share)
 
 
 def warming_knots(count: int) -> Sequence[float]:
@@ -140,18 +142,20 @@ def stiffness(study: StudyData) -> ArcStiffness:
     angle = rating.cord_angle or cord.crown_angle
     if not angle:
         raise InputError("neither the section nor the carcass card gives the crown cord angle", field="section")
-    # Once per section: variants of a study share it.
-    crown_radius = section.__dict__.get("_crown_radius")
-    if crown_radius is None:
-        crown_radius = section.__dict__["_crown_radius"] = float(section.line.position(np.zeros(1))[0, 0])
     return ArcStiffness(
-        BiasPlies(_modulus(study, "carcass", "shear_modulus"), angle, crown_radius, mechanics.poisson_term),
+        BiasPlies(_modulus(study, "carcass", "shear_modulus"), angle, _crown_radius(section), mechanics.poisson_term),
         cord.ply_shear_modulus if mechanics.membrane_shear else np.inf,
         _modulus(study, "tread", "shear_modulus"),
         _modulus(study, "sidewall", "shear_modulus"),
         _modulus(study, "bead", "youngs_modulus"),
         rating.bead_area,
     )
+
+
+@functools.lru_cache(maxsize=32)
+def _crown_radius(section: Section) -> float:
+    """Distance of the meridian from the wheel's axis at the crown, m; remembered for the 32 latest sections."""
+    return float(section.line.position(np.zeros(1))[0, 0])
 
 
 def _modulus(study: StudyData, region: str, name: str) -> float:
@@ -196,7 +200,7 @@ def check_cases(study: StudyData) -> None:
 
 def same_cycles(study: StudyData, other: StudyData) -> bool:
     """Do two studies have the same strain cycles? Section, drive, mechanics, what the law reads of the cards, mesh."""
-    if study.section is not other.section:
+    if study.section != other.section:
         return False
     if any(study.data.get(table) != other.data.get(table) for table in ("drive", "mechanics")):
         return False

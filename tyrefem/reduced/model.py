@@ -11,6 +11,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from tyrefem.brief import Brief
+from tyrefem.cache import Cache, fingerprint
 from tyrefem.conduction.operators import Operators
 from tyrefem.conduction.points import located
 from tyrefem.errors import InputError
@@ -145,27 +146,28 @@ class ReducedModel(Brief):
         return wall.s, wall.thickness, inner, outer
 
     def rows(self, points: Array) -> Array:
-        """(k, m): modes at points (k, 2) in (r, z), m; found once."""
-        key = np.asarray(points, dtype=float).tobytes()
-        if key not in self._rows:
-            if len(self._rows) > 64:
-                self._rows.clear()
-            self._rows[key] = np.asarray(located(self.operators, points).value() @ self.V)
-        return self._rows[key]
+        """(k, m): modes at points (k, 2) in (r, z), m; remembered for the 64 latest sets of points."""
+        array = np.asarray(points, dtype=float)
+        return self._rows.get(fingerprint(array), lambda: np.asarray(located(self.operators, array).value() @ self.V))
 
     @functools.cached_property
-    def _rows(self) -> dict[bytes, Array]:
-        return {}
+    def _rows(self) -> Cache[Array]:
+        return Cache(size=64)
 
     @functools.cached_property
-    def node_places(self) -> dict[tuple[float, float], tuple[float, float]]:
-        """(r, z) -> (s, depth), m, of nodes that were asked for."""
-        return {}
+    def node_places(self) -> Cache[tuple[float, float]]:
+        """(s, depth), m, of nodes at (r, z) where peaks were."""
+        return Cache(size=4096)
 
     @functools.cached_property
-    def places(self) -> dict[Any, Array]:
-        """Stated places of sensors -> where they are in the mesh."""
-        return {}
+    def sensor_places(self) -> Cache[Array]:
+        """Where sensors are in the mesh, by their stated places."""
+        return Cache(size=64)
+
+    @functools.cached_property
+    def stage_matrices(self) -> Cache[Any]:
+        """Factored matrices of the study that the model was made for, by phase and step; see `reduced.residual`."""
+        return Cache(size=8)
 
     @functools.cached_property
     def watched(self) -> Array:

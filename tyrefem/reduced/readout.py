@@ -11,6 +11,7 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
+from tyrefem.cache import Cache, fingerprint
 from tyrefem.conduction.budget import Budget
 from tyrefem.conduction.field import Peak
 from tyrefem.reduced.budget import end_budgets
@@ -53,12 +54,19 @@ class Readout:
 
     def at(self, points: Array) -> Array:
         """(n_times, B, k) degC at points (k, 2) in (r, z), m."""
-        return self._at(np.asarray(points, dtype=float).tobytes(), len(points))
+        return self._fields.get(
+            fingerprint(points), lambda: np.asarray(self.modes @ self.marched.batch.model.rows(points).T)
+        )
 
-    @functools.cache  # noqa: B019 - lives as long as the batch
-    def _at(self, key: bytes, count: int) -> Array:
-        points = np.frombuffer(key).reshape(count, 2)
-        return self.modes @ self.marched.batch.model.rows(points).T
+    @functools.cached_property
+    def _fields(self) -> Cache[Array]:
+        """Temperatures at sets of points: the sensors of the latest variants."""
+        return Cache(size=16)
+
+    @functools.cached_property
+    def _heats(self) -> Cache[Any]:
+        """Heat and power of all variants, by name and number of the time; about as many as readings."""
+        return Cache(size=1024)
 
     @functools.cached_property
     def wall(self) -> Array:
@@ -144,25 +152,33 @@ class Readout:
             found[region] = _peak(model.operators.points, float(own[i, j]), int(dofs[j]), float(self.looked[i]))
         return _with_tyre(found)
 
-    @functools.cache  # noqa: B019 - lives as long as the batch
     def generated(self, i: int) -> tuple[Array, Array]:
         """Heat of hysteresis (B,) of the section until ``times[i]``, J, and then, W."""
-        zones = len(self.marched.batch.model.zones)
-        energy = self.marched.energy_until(float(self.times[i]))
-        return energy[:, :zones].sum(axis=1), self.powers(i)[:, :zones].sum(axis=1)
 
-    @functools.cache  # noqa: B019 - lives as long as the batch
+        def compute() -> tuple[Array, Array]:
+            zones = len(self.marched.batch.model.zones)
+            energy = self.marched.energy_until(float(self.times[i]))
+            return energy[:, :zones].sum(axis=1), self.powers(i)[:, :zones].sum(axis=1)
+
+        heat: tuple[Array, Array] = self._heats.get(("generated", i), compute)
+        return heat
+
     def powers(self, i: int) -> Array:
         """(B, n_entries) W at ``times[i]``."""
-        return self.marched.powers(float(self.times[i]), self.states[i])
+        return np.asarray(
+            self._heats.get(("powers", i), lambda: self.marched.powers(float(self.times[i]), self.states[i]))
+        )
 
-    @functools.cache  # noqa: B019 - lives as long as the batch
     def cold_power(self, i: int) -> Array:
         """(B,) W of hysteresis of the section just before ``times[i]``, all of it at the initial temperature."""
-        batch = self.marched.batch
-        start = np.stack([one.start for one in batch.balances])[:, : batch.model.size, None]
-        q = batch.heat([just_before(self.times, i)], start)
-        return (batch.model.power @ q)[:, :, 0].sum(axis=1)
+
+        def compute() -> Array:
+            batch = self.marched.batch
+            start = np.stack([balance.start for balance in batch.balances])[:, : batch.model.size, None]
+            q = batch.heat([just_before(self.times, i)], start)
+            return np.asarray((batch.model.power @ q)[:, :, 0].sum(axis=1))
+
+        return np.asarray(self._heats.get(("cold power", i), compute))
 
     @functools.cached_property
     def end_budgets(self) -> Budget:
@@ -172,11 +188,13 @@ class Readout:
             self.marched.batch.balances, self.states[-1], self.end_slopes[0], self.powers(last), self.marched.energy
         )
 
-    @functools.cache  # noqa: B019 - lives as long as the batch
     def end_budget(self, names: tuple[Any, bool, Any]) -> HeatBudget:
         """The same of the whole tyre: (titles of the zones, half section?, names of added conditions)."""
         titles, half, added = names
-        return whole_tyre(self.end_budgets, dict(titles), half, dict(added))
+        budget: HeatBudget = self._heats.get(
+            ("end budget", names), lambda: whole_tyre(self.end_budgets, dict(titles), half, dict(added))
+        )
+        return budget
 
     @functools.cached_property
     def end_slopes(self) -> Array:

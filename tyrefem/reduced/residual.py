@@ -24,8 +24,8 @@ Array = NDArray[np.float64]
 PARTS, MIDDLE = np.array([0.02, 0.1, 0.3, 0.6, 1.0]), 0.3
 #: The first field of a phase is one of its first s: a surface answers within seconds, however long the phase lasts.
 EARLY, EARLIER = 15.0, 4.0
-#: Factored matrices kept; error of a correction that is left over to the next, and solves for it at most.
-KEPT, LEFT, ITERATIONS = 8, 0.1, 8
+#: Error of a correction that is left over to the next, and solves for it at most.
+LEFT, ITERATIONS = 0.1, 8
 #: K, of the time integration of what is corrected.
 TIME_TOLERANCE = 0.2
 
@@ -92,9 +92,9 @@ def correction(marched: Marched, place: int, share: float, early: float = EARLY)
 
 
 def nearby(model: ReducedModel, number: int, share: float) -> StageMatrix:
-    """The factored matrix of the study that the model was made for, in one of its phases; kept with its operators."""
-    kept = model.operators.remembered.setdefault("nearby", {})
-    if (number, share) not in kept:
+    """The factored matrix of the study that the model was made for, in one of its phases; kept with the model."""
+
+    def factored() -> StageMatrix:
         base = model.base
         ends = [*base.drive.starts, base.drive.end]
         span = ends[number + 1] - ends[number]
@@ -102,11 +102,10 @@ def nearby(model: ReducedModel, number: int, share: float) -> StageMatrix:
         full = balance_of(model.operators, base.bodies, base.boundaries, base.sources, balance.reservoirs)
         even = State(np.full(len(model.V), base.drive.initial), balance.start[model.size :])
         full.freeze(ends[number] + MIDDLE * span * (1 - 1e-9), even)
-        if len(kept) >= KEPT:
-            kept.pop(next(iter(kept)))
-        kept[number, share] = StageMatrix(full, share * span / GAMMA)
-    found: StageMatrix = kept[number, share]
-    return found
+        return StageMatrix(full, share * span / GAMMA)
+
+    matrix: StageMatrix = model.stage_matrices.get((number, share), factored)
+    return matrix
 
 
 def solved(full: HeatBalance, near: StageMatrix, tau: float, right: Array, lumped: Array) -> Array:

@@ -73,11 +73,12 @@ class Variant:
 
     def place_of(self, peak: Peak) -> tuple[float, float]:
         """(s, depth) of a peak, m."""
-        known = self.readout.marched.batch.model.node_places
-        if peak.point not in known:
+
+        def located() -> tuple[float, float]:
             s, depth = self.study.section.locate(np.array([peak.point]))
-            known[peak.point] = float(s[0]), float(depth[0])
-        return known[peak.point]
+            return float(s[0]), float(depth[0])
+
+        return self.readout.marched.batch.model.node_places.get((self.study.section, peak.point), located)
 
     @functools.cached_property
     def recorded(self) -> dict[str, Array]:
@@ -85,12 +86,11 @@ class Variant:
         places = true_places(self.study)
         if not places:
             return {}
-        model = self.readout.marched.batch.model
-        key = tuple(places.values())
-        if key not in model.places:
-            section = self.study.section
-            model.places[key] = inside(section, self.tyre.mesh.size, *section.locate(np.array(key)))
-        return recorded(self.study, self.times, self.readout.at(model.places[key])[:, self.number])
+        model, section, stated = self.readout.marched.batch.model, self.study.section, tuple(places.values())
+        built_in = model.sensor_places.get(
+            (section, stated), lambda: inside(section, self.tyre.mesh.size, *section.locate(np.array(stated)))
+        )
+        return recorded(self.study, self.times, self.readout.at(built_in)[:, self.number])
 
     @property
     def gas_temperature(self) -> Array:

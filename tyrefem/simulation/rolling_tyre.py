@@ -55,7 +55,7 @@ class RollingTyre(Surroundings):
         if "mechanics" in tables and self.cycles is not self.like.cycles:
             return False
         return (
-            own.section is other.section
+            own.section == other.section
             and all(own.data.get(table) == other.data.get(table) for table in tables)
             and self.acting.at(*ports) == self.like.acting.at(*ports)
         )
@@ -84,7 +84,7 @@ class RollingTyre(Surroundings):
         if self.like is not None:
             study, other = self.study, self.like.study
             if (
-                study.section is other.section
+                study.section == other.section
                 and study.card.mesh == other.card.mesh
                 and zones == self.like.schedule.zones
             ):

@@ -10,6 +10,7 @@ from numpy.typing import NDArray
 
 from tyrefem.boundaries import Contact
 from tyrefem.boundaries.road_film import propagation_depth
+from tyrefem.cache import Cache, fingerprint
 from tyrefem.effects.combined import Acting
 from tyrefem.inputs.drive import Drive
 from tyrefem.inputs.motion import WheelMotion
@@ -57,18 +58,17 @@ class Surroundings:
         return {one.name: str(one.region) for one in self.schedule.zones}
 
     def places(self, x: Array) -> tuple[Array, Array]:
-        """|s| along the meridian and depth of points x (2, n), m; remembered for arrays that come back."""
-        kept = self._places.get(id(x))
-        if kept is None or kept[0] is not x:
+        """|s| along the meridian and depth of points x (2, n), m; remembered for the 32 latest sets of points."""
+
+        def compute() -> tuple[Array, Array]:
             s, depth = self.study.section.locate(np.asarray(x).T)
-            if len(self._places) > 32:
-                self._places.clear()
-            kept = self._places[id(x)] = (x, np.abs(s), depth)
-        return kept[1:]
+            return np.abs(s), depth
+
+        return self._places.get(fingerprint(x), compute)
 
     @functools.cached_property
-    def _places(self) -> dict[int, tuple[Array, Array, Array]]:
-        return {}
+    def _places(self) -> Cache[tuple[Array, Array]]:
+        return Cache(size=32)
 
     def ambient(self, t: float) -> float:
         """Ambient temperature, degC."""

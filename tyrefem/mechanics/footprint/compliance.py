@@ -9,6 +9,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from tyrefem.brief import Brief
+from tyrefem.cache import Cache
 from tyrefem.errors import InputError, nearest
 from tyrefem.mechanics.footprint.elements import COMPONENTS
 from tyrefem.mechanics.footprint.harmonics import Harmonics
@@ -63,7 +64,8 @@ class TreadCompliance(Brief):
     """
 
     harmonics: Harmonics
-    _solved: dict[int, Array] = field(default_factory=dict, init=False, repr=False)
+    #: Compliance of solved harmonics: more than `solved_harmonics` of any footprint.
+    _solved: Cache[Array] = field(default_factory=lambda: Cache(size=128), init=False, repr=False)
 
     def __post_init__(self) -> None:
         state = self.harmonics.state
@@ -122,10 +124,12 @@ class TreadCompliance(Brief):
 
     def solved(self, n: int) -> Array:
         """(c, m, c, m) compliance of a solved harmonic; remembered."""
-        if n not in self._solved:
+
+        def compute() -> Array:
             matrix = self.harmonics.compliance(n, self.dofs.ravel())
-            self._solved[n] = matrix.reshape(*self.dofs.shape, *self.dofs.shape)
-        return self._solved[n]
+            return matrix.reshape(*self.dofs.shape, *self.dofs.shape)
+
+        return self._solved.get(n, compute)
 
     def up_to(self, highest: int) -> Array:
         """(highest + 1, c, m, c, m) compliance of all harmonics."""

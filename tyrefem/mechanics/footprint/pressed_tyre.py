@@ -4,13 +4,12 @@ from __future__ import annotations
 
 import functools
 import hashlib
-from collections import OrderedDict
 from collections.abc import Callable, Hashable
-from dataclasses import dataclass, field
+from dataclasses import dataclass
 from pathlib import Path
-from threading import Lock
 from typing import TYPE_CHECKING, Any
 
+from tyrefem.cache import Cache
 from tyrefem.errors import InputError
 from tyrefem.estimates import work as estimate
 from tyrefem.geometry import meshing
@@ -140,51 +139,14 @@ class PressedTyre:
         return pressed
 
 
-@dataclass
-class Remembered:
-    """The last `TYRES` tyres of this process, keyed by value: all that their finite elements depend on.
-
-    A run whose study differs in other numbers (conductivity, films, sensors) finds its tyre here, solved.
-    """
-
-    tyres: OrderedDict[Hashable, PressedTyre] = field(default_factory=OrderedDict)
-    lock: Lock = field(default_factory=Lock)
-
-    def of(self, study: StudyData) -> PressedTyre:
-        """The tyre of a study, made if it is not among them."""
-        key = inputs(study)
-        with self.lock:
-            tyre = self.tyres.pop(key, None) or PressedTyre(study)
-            self.tyres[key] = tyre
-            while len(self.tyres) > TYRES:
-                self.tyres.popitem(last=False)
-        return tyre
-
-    def clear(self) -> None:
-        """Forget all of them."""
-        with self.lock:
-            self.tyres.clear()
-
-
-REMEMBERED_TYRES = Remembered()
+#: The latest tyres, by all that their finite elements depend on. A run whose study differs in other numbers
+#: (conductivity, films, sensors) finds its tyre here, solved.
+REMEMBERED_TYRES: Cache[PressedTyre] = Cache(size=TYRES)
 
 
 def pressed_tyre(study: StudyData) -> PressedTyre:
     """The tyre of a study: a remembered one, if all that its finite elements depend on is the same."""
-    return REMEMBERED_TYRES.of(study)
-
-
-@dataclass(frozen=True)
-class _Same:
-    """Equal to itself alone; kept alive, so that its place is not another's."""
-
-    thing: Any
-
-    def __eq__(self, other: object) -> bool:
-        return isinstance(other, _Same) and self.thing is other.thing
-
-    def __hash__(self) -> int:
-        return id(self.thing)
+    return REMEMBERED_TYRES.get(inputs(study), lambda: PressedTyre(study))
 
 
 def inputs(study: StudyData) -> Hashable:
@@ -198,4 +160,4 @@ def inputs(study: StudyData) -> Hashable:
         path = (study.folder or Path()) / choice.file
         content = hashlib.sha256(path.read_bytes()).hexdigest() if path.is_file() else ""
     read = values_read("fem", study.materials)
-    return _Same(study.section), repr(choice), content, repr(read)
+    return study.section, repr(choice), content, repr(read)

@@ -5,8 +5,10 @@ from __future__ import annotations
 from collections.abc import Callable
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
-from weakref import WeakKeyDictionary
 
+import numpy as np
+
+from tyrefem.cache import Cache, fingerprint
 from tyrefem.output import atomic_path
 
 if TYPE_CHECKING:
@@ -17,7 +19,8 @@ PICTURES = (
     "temperature.png", "temperature-hottest.png", "histories.png", "sliding.png", "heat-budget.png", "heat-source.png",
     "strain-cycle.png", "mesh.png",
 )  # fmt: skip
-_DRAWN: WeakKeyDictionary[Any, dict[str, bytes]] = WeakKeyDictionary()
+#: Pictures of the latest results, for the page and the files; about 1 MB each.
+_DRAWN: Cache[dict[str, bytes]] = Cache(size=4)
 
 
 def _figures(result: ResultData) -> dict[str, Callable[[], Any]]:
@@ -46,16 +49,21 @@ def _figures(result: ResultData) -> dict[str, Callable[[], Any]]:
 
 
 def pictures(result: ResultData) -> dict[str, bytes]:
-    """File name -> PNG of the standard pictures of a run; drawn once per result.
+    """File name -> PNG of the standard pictures of a run; those of the 4 latest results are remembered.
 
     ``temperature`` at the end, and at the hottest moment where that is earlier; ``histories``; ``heat-budget``;
     ``heat-source``; ``strain-cycle``; ``mesh``; with slip ``sliding``.
     """
     from tyrefem.reports.figures.style import png
 
-    if result not in _DRAWN:
-        _DRAWN[result] = {name: png(draw()) for name, draw in _figures(result).items()}
-    return _DRAWN[result]
+    return _DRAWN.get(_content(result), lambda: {name: png(draw()) for name, draw in _figures(result).items()})
+
+
+def _content(result: ResultData) -> tuple[Any, ...]:
+    """All that the pictures show: the study with its cards, the mesh, the temperatures."""
+    study, mesh = result.study, result.tyre.mesh.mesh
+    arrays = (mesh.p, mesh.t, result.times, result.field_times, np.asarray(result.history.values))
+    return study.name, study.section, repr(study.data), repr(study.material_data), fingerprint(*arrays)
 
 
 def write_pictures(result: ResultData, folder: Path) -> list[Path]:
