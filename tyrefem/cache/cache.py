@@ -63,11 +63,6 @@ class Cache(Generic[Value]):
             known = self._find(key)
             return self._keep(key, value) if known is None else known[0]
 
-    def put(self, key: Hashable, value: Value) -> None:
-        """Let this be the value of a key."""
-        with self._lock:
-            self._keep(key, value)
-
     def clear(self) -> None:
         """Forget all values and counts."""
         with self._lock:
