@@ -12,7 +12,7 @@ from typing import Any
 
 import tyrefem as tf
 from tyrefem.effects import Effect, catalogue
-from tyrefem.effects.description import by_family, equation, parameter_rows, ports
+from tyrefem.effects.description import by_family, equation, parameter_rows
 from tyrefem.effects.effect import PORTS
 from tyrefem.output import atomic_path
 
@@ -62,22 +62,19 @@ from = "diagnosis of run-1.csv"          # optional: where the value comes from
 sd = { warmer_by = "2 delta_degC" }      # optional: its standard deviation, for reports only
 ```
 
-- Every quantity is (base + sum of addends) x product of factors. The order in the file does not matter. Films take
-  resistances in series last.
-- An effect whose amplitudes are all 0 is left out: the run is the same to the bit.
-- A value beyond the *allowed* bounds of physics is refused.
-- *Prior sd* is the standard deviation of what is known before any data: the effect's typical size where it is present.
-- A *shape* parameter says how an effect looks. It does nothing while the amplitude is 0.
-- An effect that has no meaning in a study (camber on a half section) is refused with the reason.
-- A source that begins with "estimate" is an engineer's judgement, not a measurement.
+Every quantity is (base + sum of addends) x product of factors, in any order of the file. Films take resistances in
+series last. An effect whose amplitudes are all 0 is left out: the run is the same to the bit. Refused, with the reason,
+are values beyond the bounds of physics and effects without meaning in a study (camber on a half section).
 
-Each picture shows what the effect, at one prior sd, changes in the readings of `example-validation` (22x5.5 8PR,
-2700 lbf, 83 psi, 20 mph for 600 s, then 600 s at rest), unless it says otherwise. A thermocouple whose reading changes
-by less than its 0.5 K noise cannot see the effect.
+Below, each parameter has its bounds and *prior sd*: its standard deviation before any data, the effect's typical size.
+A *shape* says how an effect looks and does nothing while the amplitude is 0. An "estimate" is an engineer's judgement,
+not a measurement. Pictures show what the effect, at one prior sd, changes in the readings of `example-validation`
+(22x5.5 8PR, 2700 lbf, 83 psi, 20 mph for 600 s, then 600 s at rest), unless stated. Below its 0.5 K noise a
+thermocouple cannot see the effect.
 
 ## An effect of your own
 
-An effect is a Python file in a folder that `TYREFEM_EFFECTS` names (several folders as in `PATH`):
+A Python file in a folder that `TYREFEM_EFFECTS` names (several as in `PATH`):
 
 ```python
 from typing import Annotated, ClassVar
@@ -103,12 +100,11 @@ class Lamp(Effect):
 `Prior` takes unit, meaning, prior sd, lower and upper bound. The method is one of the ports of
 `tyrefem.effects.Effect`, whose docstrings give arguments and units:
 PORTS
-`tyrefem/effects/tyre.py` lists what a port may ask of its `tyre` (speed, places, load cases, section). A choice
-(a sensor, a side) is a field with `Field(description=..., examples=[...])`.
+`tyrefem/effects/tyre.py` lists what a port may ask of its `tyre`. A choice (a sensor, a side) is a field with
+`Field(description=..., examples=[...])`.
 
 Set `of_drive: ClassVar[bool] = True` where films, surrounding temperatures and the rim depend on time through the
-drive alone (speed, load, pressure). Reduced models then evaluate the effect once per phase. Leave it away where the
-method uses `t` itself.
+drive alone: reduced models then evaluate the effect once per phase.
 """
 
 
@@ -135,7 +131,7 @@ def _entry(effect: type[Effect]) -> str:
             f"{effect.sentence}\n",
             f"    {equation(effect)}\n",
             *(f"- `{name}`: {text}." for name, text in _parameters(effect).items()),
-            f"\nEnters as {ports(effect)}. Source: {effect.source}.\n",
+            f"\nSource: {effect.source}.\n",
             f"![Signature](pictures/effect-{effect.name}.png)\n",
             *([f"Drawn {where}.\n"] if where else []),
         ]
