@@ -12,7 +12,7 @@ import importlib
 import pkgutil
 from collections.abc import Mapping
 from dataclasses import dataclass
-from typing import Any, ClassVar, get_args
+from typing import TYPE_CHECKING, Any, ClassVar, get_args
 
 from pydantic import GetCoreSchemaHandler
 from pydantic_core import CoreSchema, core_schema
@@ -28,6 +28,8 @@ class Law(Card):
     """A boundary law. Subclasses name their ``side`` and carry ``law: Literal["name"]``."""
 
     side: ClassVar[str] = ""
+    if TYPE_CHECKING:
+        law: str
 
 
 @dataclass(frozen=True)

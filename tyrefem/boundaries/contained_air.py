@@ -32,6 +32,16 @@ class ContainedAirLaw(Law):
         """The gas's temperature at the start of a drive whose initial temperature is given, degC."""
         return initial if self.initial is None else self.initial
 
+    @property
+    def held_at(self) -> float:
+        """Temperature of a gas without a heat capacity, degC. A law that holds the gas overrides it.
+
+        Raises
+        ------
+        NotImplementedError : the gas has a heat capacity; its temperature is that of a run.
+        """
+        raise NotImplementedError(f"the contained air's law '{self.law}' does not hold its temperature")
+
     @abstractmethod
     def heat_capacity(self, volume: float, pressure: float, temperature: float) -> float | None:
         """J/K of a volume (m3) filled to a gauge pressure (Pa) at a temperature (degC); None: it stays as it is."""
@@ -67,6 +77,11 @@ class Held(ContainedAirLaw):
 
     law: Literal["held"]
     temperature: Temperature
+
+    @property
+    def held_at(self) -> float:
+        """The given temperature, degC."""
+        return self.temperature
 
     def start(self, initial: float) -> float:
         """Where it is held, degC."""

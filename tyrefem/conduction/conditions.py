@@ -5,7 +5,7 @@ from __future__ import annotations
 import math
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass
-from typing import Any
+from typing import Any, TypeGuard
 
 from tyrefem.errors import InputError
 
@@ -14,7 +14,7 @@ OfSpaceTime = Number | Callable[..., Any]
 OfTemperature = Number | Callable[..., Any]
 
 
-def is_number(value: object) -> bool:
+def is_number(value: object) -> TypeGuard[float]:
     """True for anything that converts to a plain float (numpy scalars and 0-d arrays included)."""
     if isinstance(value, str) or callable(value):
         return False
@@ -31,7 +31,7 @@ def _check(value: object, field: str, low: float = -math.inf, high: float = math
         return
     if not is_number(value):
         raise InputError(f"must be a number or a function, not {value!r}", field=field)
-    number = float(value)  # type: ignore[arg-type]
+    number = float(value)
     if not math.isfinite(number) or not low <= number <= high:
         raise InputError(f"must be finite and from {low:g} to {high:g}, not {number!r}", field=field)
 

@@ -100,7 +100,7 @@ def read(study: StudyData, grid: Array, at_sensors: Array | None, lumped: dict[s
     """
     found = dict(lumped) if at_sensors is None else recorded(study, grid, at_sensors) | lumped
     if GAS not in found:
-        held = study.card.boundaries.contained_air.temperature  # type: ignore[attr-defined]
+        held = study.card.boundaries.contained_air.held_at
         found[GAS] = np.full(len(grid), held)
     return found
 

@@ -32,5 +32,5 @@ class BrakeHeat(Effect):
     @classmethod
     def refusal(cls, study: StudyOfTyre) -> str | None:
         """A lumped rim finds its own temperature."""
-        lumped = study.card.boundaries.rim.law == "lumped"  # type: ignore[attr-defined]
+        lumped = study.card.boundaries.rim.law == "lumped"
         return "the rim is lumped and finds its own temperature; use 'brake-power'" if lumped else None

@@ -36,5 +36,5 @@ class GasMass(Effect):
     @classmethod
     def refusal(cls, study: StudyOfTyre) -> str | None:
         """Where the air is not the report's."""
-        law = study.card.boundaries.contained_air.law  # type: ignore[attr-defined]
+        law = study.card.boundaries.contained_air.law
         return None if law == "report" else f"the contained air's law is '{law}', not 'report'"

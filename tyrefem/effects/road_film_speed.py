@@ -30,5 +30,5 @@ class RoadFilmSpeed(Effect):
     @classmethod
     def refusal(cls, study: StudyOfTyre) -> str | None:
         """A law that has the speed in it already."""
-        law = study.card.boundaries.road.law  # type: ignore[attr-defined]
+        law = study.card.boundaries.road.law
         return None if law == "constant" else f"the road's law '{law}' has the speed in it already"

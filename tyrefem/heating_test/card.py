@@ -119,7 +119,7 @@ class PatchCard(Card):
         return sum(0.5 / r for r in (self.circumferential_radius, self.lateral_radius) if r is not None)
 
 
-class Phases(Card):
+class HeatingPhases(Card):
     """Laser off, on, off."""
 
     idle: Annotated[float, Unit("s", ge=0, le=1e5)]
@@ -191,7 +191,7 @@ class RigCard(Card):
     notes: str = ""
     laser: Laser
     patch: PatchCard
-    phases: Phases
+    phases: HeatingPhases
     surroundings: SurroundingsCard
     layers: Annotated[tuple[RigLayerCard, ...], Field(min_length=1, max_length=8)]
     sensors: Annotated[dict[str, SensorCard], Field(min_length=1)]
@@ -272,7 +272,7 @@ class Clock:
     heating, cooling : times since the switch, s; cooling is empty where the test ends before.
     """
 
-    phases: Phases
+    phases: HeatingPhases
     end: float
 
     @cached_property

@@ -126,13 +126,13 @@ def _gas(study: StudyData, tyre: RollingTyre) -> Array:
         return None if heat_capacity is None else effects.gas_capacity(heat_capacity)
 
     tried = [(1e5, 20.0), (8e5, 20.0), (3e5, 60.0)]
-    values = [capacity(*state) for state in tried]
-    if values[0] is None:
+    values = [value for value in (capacity(*state) for state in tried) if value is not None]
+    if not values:
         return np.zeros(0)
     density = [(pressure + ATMOSPHERE) / (temperature + KELVIN) for pressure, temperature in tried]
-    slope = (values[1] - values[0]) / (density[1] - density[0])  # type: ignore[operator]
+    slope = (values[1] - values[0]) / (density[1] - density[0])
     base = values[0] - slope * density[0]
-    if abs(base + slope * density[2] - values[2]) > 1e-6 * values[2]:  # type: ignore[operator]
+    if abs(base + slope * density[2] - values[2]) > 1e-6 * values[2]:
         raise InputError("the heat capacity of the contained air is not that of an ideal gas", field="contained_air")
     return np.array([base, slope])
 

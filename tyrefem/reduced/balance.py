@@ -51,6 +51,11 @@ class ReducedBalance:
             self.start[m + i] = initial if own is None else own
 
     @functools.cached_property
+    def capacities(self) -> Array:
+        """Heat capacities of the reservoirs, (m,) J/K: constant, as `reduced_balance` has checked."""
+        return np.array([reservoir.heat_capacity for reservoir in self.reservoirs.values()], dtype=float)
+
+    @functools.cached_property
     def M(self) -> Array:
         """(n, n) J/K."""
         return matrices_of([self])[0][0]
@@ -110,7 +115,7 @@ def reduced_balance(model: ReducedModel, tyre: RollingTyre) -> ReducedBalance:
             films.append((side, number, condition))
     reservoirs = tyre._reservoirs()
     for name, reservoir in reservoirs.items():
-        if not is_number(reservoir.heat_capacity) or not float(reservoir.heat_capacity) > 0:  # type: ignore[arg-type]
+        if not is_number(reservoir.heat_capacity) or not float(reservoir.heat_capacity) > 0:
             raise NotReducibleError(f"heat capacity of '{name}' is none, or depends on temperature")
     return ReducedBalance(model, tyre, bodies, films, reservoirs)
 
@@ -121,7 +126,7 @@ def _constant(region: str, body: Material) -> tuple[float, float, float]:
     if callable(k) or not is_number(body.heat_capacity):
         raise NotReducibleError(f"conductivity or heat capacity of '{region}' depends on temperature")
     along, across = k if isinstance(k, tuple | list) else (k, k)
-    return float(along), float(across), float(body.heat_capacity)  # type: ignore[arg-type]
+    return float(along), float(across), float(body.heat_capacity)
 
 
 def matrices_of(balances: Sequence[ReducedBalance]) -> tuple[Array, Array]:
@@ -134,8 +139,8 @@ def matrices_of(balances: Sequence[ReducedBalance]) -> tuple[Array, Array]:
     masses, pairs = model.stacked
     M[:, :m, :m] = np.tensordot(of_bodies[:, :, 2], masses, axes=1)
     K[:, :m, :m] = np.tensordot(of_bodies[:, :, :2], pairs, axes=2)
-    for i, name in enumerate(first.reservoirs):
-        M[:, m + i, m + i] = [float(one.reservoirs[name].heat_capacity) for one in balances]  # type: ignore[arg-type]
+    for i in range(len(first.reservoirs)):
+        M[:, m + i, m + i] = [one.capacities[i] for one in balances]
     return M, K
 
 

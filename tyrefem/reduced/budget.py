@@ -67,8 +67,7 @@ def budget(
     rows = np.array([balance.bodies[region][2] * model.stored_row[region] for region in balance.bodies])
     stored = (states[:, :m] - balance.start[:m]) @ rows.T
     storing = slopes[:, :m] @ rows.T
-    heat = np.array([float(one.heat_capacity) for one in balance.reservoirs.values()])  # type: ignore[arg-type]
-    held = (states[:, m:] - balance.start[m:]) * heat
+    held = (states[:, m:] - balance.start[m:]) * balance.capacities
     return _tallied(balance, times, energies, powers, stored, storing, held)
 
 
@@ -79,7 +78,7 @@ def end_budgets(
     first, m = balances[0], balances[0].model.size
     rows = np.array([first.model.stored_row[region] for region in first.bodies])
     capacity = np.array([[body[2] for body in one.bodies.values()] for one in balances])
-    held = np.array([[float(each.heat_capacity) for each in one.reservoirs.values()] for one in balances])  # type: ignore[arg-type]
+    held = np.array([each.capacities for each in balances])
     start = np.array([one.start for one in balances])
     stored, storing = (capacity * (each[:, :m] @ rows.T) for each in (states - start, slopes))
     kept = held * (states - start)[:, m:]

@@ -98,7 +98,7 @@ class Variant:
         found = self.readout.reservoirs(self.number).get(GAS)
         if found is not None:
             return found
-        return np.full(len(self.times), self.study.card.boundaries.contained_air.temperature)  # type: ignore[attr-defined]
+        return np.full(len(self.times), self.study.card.boundaries.contained_air.held_at)
 
     @property
     def rim_temperature(self) -> Array | None:

@@ -35,7 +35,7 @@ if TYPE_CHECKING:
     from matplotlib.axes import Axes
     from matplotlib.figure import Figure
 
-    from tyrefem.heating_test.card import Phases, RigCard
+    from tyrefem.heating_test.card import HeatingPhases, RigCard
     from tyrefem.heating_test.grid import PatchGrid
     from tyrefem.heating_test.identification import IdentificationData
     from tyrefem.heating_test.layer_study import LayerStudy
@@ -55,7 +55,7 @@ def pictures(found: IdentificationData) -> dict[str, bytes]:
     return drawn
 
 
-def bands(phases: Phases) -> list[tuple[str, float, float]]:
+def bands(phases: HeatingPhases) -> list[tuple[str, float, float]]:
     """The phases in minutes, for shading."""
     ends = np.cumsum([0.0, phases.idle, phases.heating, phases.cooling]) / 60
     named = zip(("idle", "heating", "cooling"), ends, ends[1:], strict=False)
@@ -189,7 +189,7 @@ def _correlated(r: float) -> str:
 
 
 def histories(
-    phases: Phases, runs: Mapping[str, tuple[Array, Array]], sensors: Sequence[str], powers: Mapping[str, float]
+    phases: HeatingPhases, runs: Mapping[str, tuple[Array, Array]], sensors: Sequence[str], powers: Mapping[str, float]
 ) -> Figure:
     """Simulated readings of every run, one panel per sensor; runs: name -> (times, (times, sensors))."""
     drawn = figure(3.4 * len(sensors) + 0.3, 3.3 + TITLE)

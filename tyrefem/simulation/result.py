@@ -163,7 +163,7 @@ class ResultData(Brief):
         """Contained-air temperature, (n_times,) degC."""
         if GAS in self.history.reservoirs:
             return np.asarray(self.history.reservoirs[GAS])
-        return np.full(len(self.times), self.study.card.boundaries.contained_air.temperature)  # type: ignore[attr-defined]
+        return np.full(len(self.times), self.study.card.boundaries.contained_air.held_at)
 
     @functools.cached_property
     def gas_pressure(self) -> Array:

@@ -134,7 +134,7 @@ class RollingTyre(Surroundings):
     def _films(self) -> dict[str, list[Any]]:
         """Side -> its films, and what slip adds."""
         laws = self.study.card.boundaries
-        gas = GAS if self._gas_capacity is not None else laws.contained_air.temperature  # type: ignore[attr-defined]
+        gas = GAS if self._gas_capacity is not None else laws.contained_air.held_at
 
         rim = RIM if isinstance(laws.rim, LumpedRim) else _of_time(self.rim_temperature)
         air = _of_time(self.ambient)

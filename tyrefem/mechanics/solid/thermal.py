@@ -5,7 +5,7 @@ from __future__ import annotations
 import functools
 from collections.abc import Mapping
 from dataclasses import dataclass, field, fields, replace
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING, Any, cast
 
 import numpy as np
 from numpy.typing import NDArray
@@ -104,15 +104,14 @@ class WarmBody(Body):
     def heated(self, share: float) -> WarmBody:
         """The body at a share of its thermal strain."""
 
-        def part(thermal: Any) -> Any:
-            return 1 + share * (thermal - 1)
+        def at_share(warm: Any) -> Any:
+            return replace(warm, thermal=1 + share * (warm.thermal - 1))
 
-        parts = {}
-        for name, cold in self.parts.items():
-            compound = replace(cold.compound, thermal=part(cold.compound.thermal))  # type: ignore[call-arg, attr-defined]
-            cords = tuple(replace(layer, thermal=part(layer.thermal)) for layer in cold.cords)  # type: ignore[call-arg, attr-defined]
-            parts[name] = replace(cold, compound=compound, cords=cords)
-        return replace(self, parts=parts, thermal=part(self.thermal))
+        parts = {
+            name: replace(part, compound=at_share(part.compound), cords=tuple(map(at_share, part.cords)))
+            for name, part in self.parts.items()
+        }
+        return cast("WarmBody", replace(at_share(self), parts=parts))
 
     def _dilatation_stiffness(self, strains: Array, volume: Array) -> Array:
         return super()._dilatation_stiffness(strains, volume / self.thermal**3)
