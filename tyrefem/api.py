@@ -15,6 +15,7 @@ from tyrefem.compare import comparison
 from tyrefem.diagnose import diagnosis
 from tyrefem.heating_test import identification
 from tyrefem.inputs import study as studies
+from tyrefem.mechanics.strain_laws import strain_law
 from tyrefem.simulation import result
 from tyrefem.sweep import campaign, design
 
@@ -22,6 +23,7 @@ if TYPE_CHECKING:
     from tyrefem.heating_test.card import RigCard
     from tyrefem.heating_test.grid import Fineness
     from tyrefem.heating_test.readings import HeatingTest
+    from tyrefem.inputs.study import StudyParts
     from tyrefem.measured.cases import Case
 
 Data = TypeVar("Data")
@@ -167,6 +169,11 @@ class Study(studies.StudyData):
     >>> f"{coarse.run().peaks['tyre'].temperature:.0f} degC"
     '36 degC'
     """
+
+    def __post_init__(self, like: studies.StudyData | None, built: StudyParts | None) -> None:
+        super().__post_init__(like, built)
+        # The data's room cannot know the strain laws; people are told here that there is none of that name.
+        strain_law(self)
 
     def run(self, progress: Callable[[float], None] | None = None, *, partial: bool = False) -> Result:
         """Simulate the drive. ``progress`` is called with the time (s) after every step.

@@ -9,8 +9,6 @@ from pathlib import Path
 import pytest
 
 TESTS = Path(__file__).resolve().parents[1]
-#: Folders that are being freed of it.
-WAITING = ("diagnose", "compare")
 
 
 def is_constant(name: object) -> bool:
@@ -96,7 +94,7 @@ def test_outside_failures_may_be_simulated(line: str) -> None:
 
 
 def test_no_test_sets_a_constant_of_the_package() -> None:
-    files = [file for file in sorted(TESTS.rglob("*.py")) if file.parent.name not in WAITING]
+    files = sorted(TESTS.rglob("*.py"))
     assert len(files) > 100
     found = {str(file.relative_to(TESTS)): patched(file.read_text(encoding="utf-8")) for file in files}
     assert {name: places for name, places in found.items() if places} == {}

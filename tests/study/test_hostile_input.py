@@ -192,3 +192,9 @@ def test_changes_by_dotted_name(place, value):
 @given(st.text(max_size=30), WRONG)
 def test_changes_by_any_text(key, value):
     understood_or_refused(lambda changes: tf.study("nasa-22x5.5-8pr").replace(changes), {key: value})
+
+
+@pytest.mark.parametrize("made", [tf.study, lambda name, changes: tf.study(name).replace(changes)])
+def test_an_unknown_strain_law_says_the_nearest(made):
+    with pytest.raises(tf.InputError, match=r"mechanics\.strain: unknown strain law 'barel'; did you mean 'barrel'"):
+        made("nasa-22x5.5-8pr", {"mechanics.strain": "barel"})

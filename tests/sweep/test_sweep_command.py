@@ -215,5 +215,5 @@ def test_the_reference_in_the_documentation_is_a_sweep_file(tmp_path: Path) -> N
     (tmp_path / "sweep.toml").write_text(reference, encoding="utf-8")
     wanted = loaded(str(tmp_path))
     assert len(wanted.plan.variants) == 4 * 5 * 2 * 3
-    assert wanted.tornado is not None
+    assert [question.key for question in wanted.further] == ["tornado", "envelope"]
     assert "an envelope of 4 loads and pressures" in wanted.words

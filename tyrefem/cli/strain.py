@@ -54,12 +54,13 @@ def strain(
     """Run a study by every strain law: strain energy by region and temperatures side by side."""
     from tyrefem.api import study as load_study
     from tyrefem.output import atomic_folder, write_json
-    from tyrefem.simulation.law_comparison import LAWS, NEEDS, compare_laws
+    from tyrefem.simulation.law_comparison import NEEDS, compare_laws, compared_laws
 
-    wanted = tuple(dict.fromkeys(law or LAWS))
+    known = compared_laws()
+    wanted = tuple(dict.fromkeys(law or known))
     for one in wanted:
-        if one not in LAWS:
-            raise InputError(f"no strain law '{one}' to compare{nearest(one, LAWS)}", field="--law")
+        if one not in known:
+            raise InputError(f"no strain law '{one}' to compare{nearest(one, known)}", field="--law")
     chosen = load_study(study, settings(changes), case)
     NEEDS.check(chosen)
     warn(chosen.warnings)

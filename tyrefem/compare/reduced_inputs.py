@@ -12,7 +12,8 @@ from tyrefem.compare.interface import Computed
 from tyrefem.compare.runs import Key, Runs, Work
 from tyrefem.errors import InputError
 from tyrefem.inputs.study import StudyData
-from tyrefem.mechanics.cycle_schedule import BY_ELEMENTS, same_cycles
+from tyrefem.mechanics.cycle_schedule import same_cycles
+from tyrefem.mechanics.strain_laws import strain_law
 from tyrefem.reduced.answers import outcomes_of
 from tyrefem.reduced.model import NotReducibleError, ReducedModel
 from tyrefem.reduced.residual import EARLY, corrected
@@ -58,7 +59,7 @@ def followed(studies: Mapping[Key, StudyData]) -> dict[Key, StudyData]:
     return {
         (drive, name): study
         for (drive, name), study in studies.items()
-        if study.card.mechanics.strain not in BY_ELEMENTS or name is None or same_cycles(study, studies[drive, None])
+        if not strain_law(study).by_elements or name is None or same_cycles(study, studies[drive, None])
     }
 
 

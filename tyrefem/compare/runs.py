@@ -18,7 +18,8 @@ from tyrefem.compare.interface import Computed, arrays_of, computed_from, comput
 from tyrefem.errors import InputError
 from tyrefem.inputs.study import StudyData
 from tyrefem.inputs.uncertain_numbers import uncertain_number
-from tyrefem.mechanics.cycle_schedule import BY_ELEMENTS, CycleSchedule, same_cycles
+from tyrefem.mechanics.cycle_schedule import CycleSchedule, same_cycles
+from tyrefem.mechanics.strain_laws import strain_law
 from tyrefem.output import versions
 from tyrefem.reduced.training import Snapshots, snapshots
 from tyrefem.simulation.result import ResultData
@@ -112,8 +113,8 @@ def driven(packed: Bundle) -> tuple[Computed, Snapshots, CycleSchedule | None]:
 
 
 def _dear(result: ResultData) -> CycleSchedule | None:
-    mechanics = result.study.card.mechanics
-    return result.tyre.schedule if mechanics.strain in BY_ELEMENTS and mechanics.feedback is None else None
+    dear = strain_law(result.study).by_elements and result.study.card.mechanics.feedback is None
+    return result.tyre.schedule if dear else None
 
 
 def taught(work: Work) -> tuple[Computed, Snapshots]:
@@ -200,7 +201,7 @@ class Runs:
 
     @property
     def _by_elements(self) -> bool:
-        return self.studies[self.drives[0], None].card.mechanics.strain in BY_ELEMENTS
+        return strain_law(self.studies[self.drives[0], None]).by_elements
 
     @functools.cached_property
     def _moved(self) -> int:

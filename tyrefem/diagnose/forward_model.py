@@ -22,8 +22,8 @@ from tyrefem.diagnose.settings import DEFAULT, DiagnosisSettings
 from tyrefem.diagnose.unknowns import Unknown, with_values
 from tyrefem.errors import InputError
 from tyrefem.inputs.study import StudyData
-from tyrefem.mechanics.cycle_schedule import BY_ELEMENTS
 from tyrefem.mechanics.nearby_cycles import NearbyCycles, SolvedCycles
+from tyrefem.mechanics.strain_laws import strain_law
 from tyrefem.reduced.model import NotReducibleError
 from tyrefem.simulation.rolling_tyre import RollingTyre
 from tyrefem.simulation.run import run
@@ -113,7 +113,7 @@ class Bench(Brief):
 
     def nearby(self, driven: StudyData) -> NearbyCycles | None:
         """Strain cycles near those of the coarse study at a trial's drive; None where each costs next to nothing."""
-        if driven.card.mechanics.strain not in BY_ELEMENTS:
+        if not strain_law(driven).by_elements:
             return None
         return NearbyCycles(driven, self._solved)
 

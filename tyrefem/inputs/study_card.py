@@ -130,7 +130,7 @@ class Mechanics(Card):
     temperatures act back on the strain cycle; without this table they do not.
     """
 
-    strain: Literal["arcs", "barrel", "fem", "given"] = "arcs"
+    strain: Text = "arcs"
     energy: GivenEnergy | None = None
     load_law: Annotated[TrR64 | VerticalStiffness, Field(discriminator="law")] = TrR64()
     footprint: Annotated[FootprintLaw, Field(discriminator="law")] = TR_R_64

@@ -10,7 +10,7 @@ from typing import TYPE_CHECKING, Any, Protocol
 from tyrefem.cards import Card
 from tyrefem.errors import InputError
 from tyrefem.inputs.changes import scaled, value_at
-from tyrefem.materials.reads import READS, STIFFNESS
+from tyrefem.materials.reads import STIFFNESS, tables_read
 
 if TYPE_CHECKING:
     from tyrefem.inputs.study_card import StudyCard
@@ -229,7 +229,7 @@ def _idle(study: StudyOfCards, regions: list[str], within: str) -> str:
     if softens and law == "given":
         energy = mechanics.energy
         return "" if energy is not None and energy.temperature is not None else "mechanics.energy has no temperature"
-    reads = READS[law](study.materials)
+    reads = tables_read(law, study.materials)
     stiff = set(STIFFNESS) if table == "softening" else {table} & set(STIFFNESS)
     if stiff and not any(stiff & set(reads.get(region, ())) for region in regions):
         return f"the strain law '{law}' does not read them"

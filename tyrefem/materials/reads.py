@@ -54,7 +54,12 @@ def of_given(cards: Cards) -> dict[str, tuple[str, ...]]:
     return {}
 
 
-#: Strain law -> region -> tables that it reads.
+def of_all(cards: Cards) -> dict[str, tuple[str, ...]]:
+    """Everything: of a law that says nothing of what it reads."""
+    return {region: tuple(type(card).model_fields) for region, card in cards.items()}
+
+
+#: Strain law -> region -> tables that it reads; one that is not here may read all.
 READS: dict[str, Callable[[Cards], dict[str, tuple[str, ...]]]] = {
     "arcs": of_arcs,
     "barrel": of_elements,
@@ -63,8 +68,12 @@ READS: dict[str, Callable[[Cards], dict[str, tuple[str, ...]]]] = {
 }
 
 
+def tables_read(law: str, cards: Cards) -> dict[str, tuple[str, ...]]:
+    """Region -> tables of its card that a strain law reads."""
+    return READS.get(law, of_all)(cards)
+
+
 def values_read(law: str, cards: Cards) -> dict[str, tuple[Any, ...]]:
     """Region -> what a strain law reads of its card: two studies with the same have the same strain cycles."""
-    return {
-        region: tuple(getattr(cards[region], table) for table in tables) for region, tables in READS[law](cards).items()
-    }
+    reads = tables_read(law, cards)
+    return {region: tuple(getattr(cards[region], table) for table in tables) for region, tables in reads.items()}

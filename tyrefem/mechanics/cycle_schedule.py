@@ -18,9 +18,9 @@ from tyrefem.inputs.motion import WheelMotion
 from tyrefem.inputs.study import StudyData
 from tyrefem.materials.reads import ARCS, values_read
 from tyrefem.mechanics.arc_geometry import BiasPlies
-from tyrefem.mechanics.arcs import Arcs, ArcStiffness
-from tyrefem.mechanics.given import Given
+from tyrefem.mechanics.arcs import ArcStiffness
 from tyrefem.mechanics.strain_cycle import StrainCycle, settled
+from tyrefem.mechanics.strain_laws import strain_law
 
 if TYPE_CHECKING:
     from tyrefem.geometry import Section
@@ -110,14 +110,6 @@ def ramp_knots(changes: bool, count: int = 9) -> Sequence[float]:
 ARC_REGIONS = tuple(ARCS)
 
 
-#: Strain laws that take seconds for every load case.
-BY_ELEMENTS = ("barrel", "fem")
-
-
-#: Those of them that press the tyre on its road: load, deflection and footprint are their own, not the study's laws'.
-PRESSES = ("fem",)
-
-
 def stiffness(study: StudyData) -> ArcStiffness:
     """What the strain energy of the arcs needs of the cards, SI.
 
@@ -190,7 +182,7 @@ def check_cases(study: StudyData) -> None:
     ------
     InputError : names the phase.
     """
-    solver, cheap = KnotSolver(study), study.card.mechanics.strain not in BY_ELEMENTS
+    solver, cheap = KnotSolver(study), not strain_law(study).by_elements
     for number, phase in enumerate(study.card.drive.phases):
         for fraction in ramp_knots(phase.changes_load):
             case = solver.case(number, fraction)
@@ -204,10 +196,10 @@ def same_cycles(study: StudyData, other: StudyData) -> bool:
         return False
     if any(study.data.get(table) != other.data.get(table) for table in ("drive", "mechanics")):
         return False
-    law = study.card.mechanics.strain
-    if law in BY_ELEMENTS and study.card.mesh != other.card.mesh:
+    law = strain_law(study)
+    if law.by_elements and study.card.mesh != other.card.mesh:
         return False
-    return values_read(law, study.materials) == values_read(law, other.materials)
+    return values_read(law.name, study.materials) == values_read(law.name, other.materials)
 
 
 def rated_case(study: StudyData) -> LoadCase:
@@ -221,12 +213,12 @@ def rated_case(study: StudyData) -> LoadCase:
     if rating is None:
         raise InputError("the rated deflection needs the section's [rating]", field="section.rating", file=study.file)
     radius, footprint = study.section.outer_diameter / 2, mechanics.footprint
-    law = None if mechanics.strain in PRESSES else mechanics.load_law
+    law = None if strain_law(study).presses else mechanics.load_law
     case = load_case(law, rating, outer_radius=radius, pressure=rating.pressure, load=rating.load, footprint=footprint)
     if law is not None:
         return case
     try:
-        return settled(_provider(study)(case), case)
+        return settled(strain_law(study).provider(study)(case), case)
     except InputError as error:
         raise error.within(field="section.rating", file=study.file) from None
 
@@ -237,12 +229,13 @@ class KnotSolver:
     def __init__(self, study: StudyData) -> None:
         _check_footprint(study)
         self.study = study
-        if study.card.mechanics.strain not in BY_ELEMENTS:
+        if not strain_law(study).by_elements:
             _ = self._cycle
 
     @functools.cached_property
     def _cycle(self) -> Callable[[LoadCase], StrainCycle]:
-        return _provider(self.study)
+        provider: Callable[[LoadCase], StrainCycle] = strain_law(self.study).provider(self.study)
+        return provider
 
     def case(self, number: int, fraction: float, pressure_ratio: float = 1.0) -> LoadCase:
         """The load case at a fraction of a phase as driven; ``pressure_ratio``: absolute pressure over the drive's.
@@ -274,41 +267,6 @@ class KnotSolver:
         return self.study.as_written(error.within(field=f"drive.phases.{name}", file=self.study.file))
 
 
-def _provider(study: StudyData) -> Callable[[LoadCase], StrainCycle]:
-    """The study's strain law: from a load case to its strain cycle."""
-    if study.card.mechanics.strain == "given":
-        return _given(study)
-    if study.card.mechanics.strain == "fem":
-        from tyrefem.mechanics import finite_elements as fem
-
-        return fem.provider(study)
-    if study.card.mechanics.strain == "barrel":
-        from tyrefem.mechanics import barrel
-
-        return barrel.provider(study)
-    moduli = stiffness(study)
-    return lambda case: _cycle(study, moduli, case)
-
-
-def _given(study: StudyData) -> Callable[[LoadCase], StrainCycle]:
-    section, energy = study.section, study.card.mechanics.energy
-    assert energy is not None
-    if section.rating is None:
-        raise InputError("the strain law 'given' needs the section's [rating]", field="section.rating")
-    deflection = study.card.mechanics.load_law.deflection(energy.load, energy.pressure, section.rating)
-    softened = _softened(study, energy.temperature)
-    return lambda case: Given(section, energy.regions, deflection, case, softened)
-
-
-def _softened(study: StudyData, given: float | None) -> dict[str, float]:
-    """Region -> modulus of its compound over that at the temperature where its energy was given."""
-    warm = study.temperatures
-    if warm is None or given is None:
-        return {}
-    laws = {region: card.softening for region, card in study.materials.items()}
-    return {region: law(warm[region]) / law(given) for region, law in laws.items() if law is not None}
-
-
 def _check_footprint(study: StudyData) -> None:
     law, diameter = study.card.mechanics.footprint, study.section.outer_diameter
     if isinstance(law, GivenFootprint) and law.length >= diameter:
@@ -316,16 +274,6 @@ def _check_footprint(study: StudyData) -> None:
             f"{law.length * 1e3:.4g} mm is too long; must be less than the tyre's diameter, {diameter * 1e3:.4g} mm"
         )
         raise InputError(message, field="mechanics.footprint.length", file=study.file)
-
-
-def _cycle(study: StudyData, moduli: ArcStiffness, case: LoadCase) -> Arcs:
-    cycle = Arcs(study.section, moduli, case)
-    try:
-        _ = cycle.deflected if case.deflection > 0 else None
-    except InputError as error:
-        given = f"{case.load:.4g} N at {case.pressure / 1e3:.4g} kPa: {error.message}"
-        raise InputError(given, field=error.field) from None
-    return cycle
 
 
 def _load_case(study: StudyData, number: int, fraction: float, pressure_ratio: float = 1.0) -> LoadCase:
@@ -336,7 +284,7 @@ def _load_case(study: StudyData, number: int, fraction: float, pressure_ratio: f
     pressure = pressure + (pressure + ATMOSPHERE) * (pressure_ratio - 1)
     mechanics = study.card.mechanics
     return load_case(
-        None if mechanics.strain in PRESSES else mechanics.load_law,
+        None if strain_law(study).presses else mechanics.load_law,
         section.rating,
         outer_radius=section.outer_diameter / 2,
         pressure=pressure,

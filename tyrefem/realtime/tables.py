@@ -11,6 +11,7 @@ from numpy.typing import NDArray
 
 from tyrefem.errors import InputError
 from tyrefem.inputs.study import StudyData
+from tyrefem.mechanics.strain_laws import strain_law
 from tyrefem.realtime.inputs import NAMES, Box, Course
 from tyrefem.realtime.settings import COSTLY, TablePoints
 from tyrefem.realtime.tyre import STANDSTILL, CubicTable
@@ -147,7 +148,7 @@ class Probe:
         ------
         InputError : a load that the tyre cannot carry at a pressure of the box; films that change with time.
         """
-        costly = self.study.card.mechanics.strain in ("fem", "barrel")
+        costly = strain_law(self.study).by_elements
         points = self.points or (COSTLY if costly else TablePoints())
         low, high = self.box.ranges["load"]
         least, most = self.box.ranges["pressure"]

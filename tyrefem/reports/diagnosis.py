@@ -18,8 +18,8 @@ from tyrefem.diagnose.unknowns import Unknown
 from tyrefem.diagnose.verdict import CONFOUNDED, IDENTIFIED, NO_GAP, UNEXPLAINED
 from tyrefem.inputs.changes import value_at
 from tyrefem.inputs.uncertain_numbers import left_out
-from tyrefem.mechanics.cycle_schedule import BY_ELEMENTS
 from tyrefem.mechanics.nearby_cycles import NearbyCycles
+from tyrefem.mechanics.strain_laws import strain_law
 from tyrefem.output import atomic_folder, write_json
 from tyrefem.reports.diagnosis_figures import pictures
 
@@ -216,7 +216,7 @@ def _offers(d: Diagnosis, kind: str, what: str, at: str) -> list[dict[str, Any]]
 
 def _linear(d: Diagnosis) -> list[str]:
     """What the fits take for the strain cycles of finite elements."""
-    if d.original.card.mechanics.strain not in BY_ELEMENTS:
+    if not strain_law(d.original).by_elements:
         return []
     count = len(NearbyCycles(d.original).numbers)
     return [

@@ -12,7 +12,7 @@ from collections.abc import Iterator, Mapping
 from typing import TYPE_CHECKING, Any
 
 from tyrefem.inputs.uncertain_numbers import stated_deviations
-from tyrefem.mechanics.cycle_schedule import PRESSES
+from tyrefem.mechanics.strain_laws import strain_law
 from tyrefem.quantity import Unit
 from tyrefem.reports.words import number
 
@@ -137,7 +137,7 @@ def mechanics_rows(study: StudyData) -> list[list[str]]:
     rows = [
         ["strain cycle", mechanics.strain],
         _load(study)
-        if mechanics.strain in PRESSES
+        if strain_law(study).presses
         else ["load and deflection", "; ".join([str(law.law), *_numbers(law)])],
         ["loss convention", mechanics.loss_convention],
         *_feedback(mechanics),
@@ -266,18 +266,6 @@ BESIDE = ("tread-slip", "yaw", "camber", "worn-tread", "brake-heat", "brake-powe
 FREE = {
     "Free, straight rolling": "No slip, steering, camber, braking or wear: no heat from sliding in the footprint.",
 }
-FEM = (
-    "A small deflection about the inflated tyre",
-    "The section is inflated in large displacement and pressed on the road by Fourier harmonics of small motion about "
-    "that state: without friction, and with too much load at a large deflection. Nothing of it is compared with a "
-    "measured tyre.",
-)
-BARREL = (
-    "Every meridian deflected alike, by finite elements",
-    "The section is inflated in large displacement and the whole tyre pressed inside a rigid cylinder, as the report "
-    "assumes: each hoop is shortened, none is bent flat. Nothing of it is compared with a measured tyre.",
-)
-BY_ELEMENTS = {"fem": FEM, "barrel": BARREL}
 SLIDING = {
     "Friction even over the footprint": "All of the footprint slides at one speed under one pressure. Its heat divides "
     "between tread and road as they conduct; wear, water, tread gaps, camber and the strain of braking and cornering "
@@ -304,8 +292,8 @@ def assumptions(study: StudyData, estimates: list[str]) -> list[tuple[str, str]]
     given = mechanics.energy if mechanics.strain == "given" else None
     if given is not None:
         always[0] = ("Strain energy given, not computed", f"{GIVEN} Their source: {given.source}.")
-    if mechanics.strain in BY_ELEMENTS:
-        always[0] = BY_ELEMENTS[mechanics.strain]
+    if any(strain_law(study).assumption):
+        always[0] = strain_law(study).assumption
     if mechanics.feedback is not None:
         always[-1] = ("Feedback of temperature on the strain cycle", _feedback_assumptions(mechanics.feedback))
     if slip is FREE and any(effect.name in BESIDE for effect in study.effects):
@@ -326,7 +314,7 @@ def assumptions(study: StudyData, estimates: list[str]) -> list[tuple[str, str]]
     if study.effects:
         added = "; ".join(dict.fromkeys(f"{one.name}: {one.sentence.rstrip('.')}" for one in study.effects))
         found.append(("Effects beside the base model", f"{added}. Each says in the study where its values come from."))
-    presses = mechanics.strain in PRESSES
+    presses = strain_law(study).presses
     if mechanics.load_law.law == "tr-r-64" and not presses:
         memory = "The load-deflection formula is quoted from memory of NASA TR R-64; a measured stiffness is better."
         found.append(("Load and deflection from memory", memory))
@@ -339,7 +327,7 @@ def assumptions(study: StudyData, estimates: list[str]) -> list[tuple[str, str]]
         if study.measured
         else "No measured temperatures belong to this study."
     )
-    if mechanics.strain in BY_ELEMENTS:
+    if strain_law(study).by_elements:
         return [*found, ("Validation", f"The strain cycle by finite elements is verified, not validated. {measured}")]
     if given is not None:
         return [*found, ("Validation", f"The strain energy is given, so nothing of it is validated. {measured}")]

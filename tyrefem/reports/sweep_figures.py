@@ -44,13 +44,15 @@ MOST_MAPS, MOST_CURVES = 3, 4
 def figures(answer: object) -> Iterator[tuple[str, str, Figure]]:
     """Pictures of an answer: file name without ending, caption, picture.
 
-    A new kind of answer registers its function here, beside the code that draws it.
+    A new kind of answer registers its function here, beside the code that draws it, or says ``drawn = False``.
 
     Raises
     ------
     TypeError : no function is registered for this kind of answer.
     """
-    raise TypeError(f"no pictures are registered for {type(answer).__name__}")
+    if getattr(answer, "drawn", True):
+        raise TypeError(f"no pictures are registered for {type(answer).__name__}")
+    return iter(())
 
 
 @figures.register(Responses)

@@ -9,6 +9,7 @@ from typing import TYPE_CHECKING, Any
 from tyrefem.output import atomic_path, versions, write_json
 from tyrefem.reports.sweep import FILES as LIST
 from tyrefem.reports.sweep import clear, earlier, write_page
+from tyrefem.sweep.question import sweep_questions
 from tyrefem.sweep.sweep import Sweep
 from tyrefem.variants.store import NAME as VARIANTS
 
@@ -19,9 +20,9 @@ if TYPE_CHECKING:
 
 PAGE = "sweep.html"
 #: Answers that have tables, and the files that `save` may write.
-PARTS = ("sweep", "pareto", "indices", "tornado", "optimum", "envelope")
-PICTURES = ("map-*.png", "curves-*.png", "bars-*.png", "pareto*.png", "indices-*.png", "tornado-*.png", "optimum.png",
-            "envelope.png")  # fmt: skip
+PARTS = ("sweep", "pareto", "indices", "optimum", *sweep_questions())
+PICTURES = ("map-*.png", "curves-*.png", "bars-*.png", "pareto*.png", "indices-*.png", "optimum.png",
+            *(f"{key}*.png" for key in sweep_questions()))  # fmt: skip
 FILES = (
     *(f"{name}.{kind}" for name in PARTS for kind in ("csv", "parquet")),
     "errors.csv",

@@ -13,6 +13,7 @@ from tyrefem.estimates.work import Estimate
 from tyrefem.geometry.meshing.expected import QUADRATIC, expected_nodes
 from tyrefem.mechanics.cycle_schedule import ramp_knots
 from tyrefem.mechanics.footprint.pressed_tyre import COARSER
+from tyrefem.mechanics.strain_laws import strain_law
 
 if TYPE_CHECKING:
     from tyrefem.inputs.study import StudyData
@@ -22,8 +23,6 @@ if TYPE_CHECKING:
 USUAL_RUNS = 5
 #: Readings that a phase with slip has beside those asked for, at most.
 SLIP_READINGS = 24
-#: Strain laws that inflate the tyre by finite elements.
-INFLATED = ("fem", "barrel")
 
 
 @dataclass(frozen=True, eq=False)
@@ -58,7 +57,7 @@ class RunEstimate:
     def mechanics(self) -> Estimate:
         """Of the strain cycles."""
         card = self.study.card
-        if card.mechanics.strain not in INFLATED or self.mesh.file is not None:
+        if not strain_law(self.study).by_elements or self.mesh.file is not None:
             return Estimate()
         loads, pressures = set(), set()
         for phase in card.drive.phases:

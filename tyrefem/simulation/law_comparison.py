@@ -12,6 +12,7 @@ from numpy.typing import NDArray
 from tyrefem.errors import InputError
 from tyrefem.mechanics.finite_elements import GaussPoints
 from tyrefem.mechanics.strain_cycle import StrainCycle, Zone
+from tyrefem.mechanics.strain_laws import strain_laws
 from tyrefem.requirements import Requirements
 from tyrefem.simulation.run import run
 
@@ -24,8 +25,6 @@ if TYPE_CHECKING:
     from tyrefem.simulation.result import ResultData
 
 Array = NDArray[np.float64]
-#: The laws that find a tyre's strain cycle, in the order of the columns.
-LAWS = ("arcs", "barrel", "fem")
 TOTAL = "whole tyre"
 #: What a comparison of strain laws needs of a study.
 NEEDS = Requirements("a comparison of strain laws")
@@ -216,7 +215,12 @@ class LawComparison:
         }
 
 
-def compare_laws(study: StudyData | str, laws: tuple[str, ...] = LAWS) -> LawComparison:
+def compared_laws() -> tuple[str, ...]:
+    """The laws that find a tyre's strain cycle without further inputs, in the order of the columns."""
+    return tuple(name for name, law in strain_laws().items() if law.compared)
+
+
+def compare_laws(study: StudyData | str, laws: tuple[str, ...] | None = None) -> LawComparison:
     """Run a study by several strain laws, everything else alike, tan delta included.
 
     The arcs are left out beside others where the section has none. A law that has no answer is kept in ``refused``
@@ -238,6 +242,7 @@ def compare_laws(study: StudyData | str, laws: tuple[str, ...] = LAWS) -> LawCom
     NEEDS.check(chosen)
     outcomes, refused = [], {}
     last: InputError | None = None
+    laws = laws or compared_laws()
     for law in laws:
         if law == "arcs" and len(laws) > 1 and not _has_arcs(chosen):
             continue

@@ -6,7 +6,7 @@ What a sweep file asks of a study, checked before anything runs.
 from __future__ import annotations
 
 from collections.abc import Mapping
-from dataclasses import dataclass, fields
+from dataclasses import dataclass, field, fields
 from pathlib import Path
 from typing import TYPE_CHECKING, Any, Unpack
 
@@ -14,14 +14,15 @@ from tyrefem.brief import Brief
 from tyrefem.errors import InputError, nearest
 from tyrefem.inputs.study import StudyData
 from tyrefem.requirements import Requirements
-from tyrefem.sweep.envelope import Envelope, checked_pairs, envelope
+from tyrefem.sweep.envelope import Envelope
 from tyrefem.sweep.optimum import Optimum, optimum
 from tyrefem.sweep.pareto import ParetoFront
 from tyrefem.sweep.part import DesignPart
+from tyrefem.sweep.question import SweepQuestion, further_apart, questions_of, sweep_questions
 from tyrefem.sweep.responses import Responses, judged
 from tyrefem.sweep.sobol_indices import Indices
 from tyrefem.sweep.sweep import Sweep, sweep
-from tyrefem.sweep.tornado import Tornado, tornado_plan
+from tyrefem.sweep.tornado import Tornado
 from tyrefem.variants.answers import check_answer
 from tyrefem.variants.card import SweepCard
 from tyrefem.variants.dask_cluster import ClusterLostError
@@ -39,15 +40,15 @@ class DesignData(Brief):
     Parameters
     ----------
     study, card : what was asked. swept : the variants of the sample; None: none were asked for.
-    tornado, optimum, envelope : the answers asked for, else None. interrupted : why some were not reached; empty: none.
+    optimum : the answer, else None. answers : key of a question -> its answer. interrupted : why some were not
+        reached; empty: none.
     """
 
     study: StudyData
     card: SweepCard
     swept: Sweep | None
-    tornado: Tornado | None = None
     optimum: Optimum | None = None
-    envelope: Envelope | None = None
+    answers: Mapping[str, DesignPart] = field(default_factory=dict)
     interrupted: str = ""
 
     def _title(self) -> str:
@@ -67,8 +68,20 @@ class DesignData(Brief):
         if self.swept is not None and self.swept.outcomes:
             found.append(Responses(self.swept, self.card.answers))
             found.append(ParetoFront(self.swept, dict(self.card.pareto)))
-        found += [one for one in (self.indices, self.tornado, self.envelope) if one is not None]
-        return tuple(found)
+        found += [] if self.indices is None else [self.indices]
+        return (*found, *self.answers.values())
+
+    @property
+    def tornado(self) -> Tornado | None:
+        """Which tolerance matters, if asked for."""
+        answer = self.answers.get(Tornado.name)
+        return answer if isinstance(answer, Tornado) else None
+
+    @property
+    def envelope(self) -> Envelope | None:
+        """The safe operating envelope, if asked for."""
+        answer = self.answers.get(Envelope.name)
+        return answer if isinstance(answer, Envelope) else None
 
     @property
     def table(self) -> pd.DataFrame:
@@ -114,13 +127,13 @@ class Questions:
 
     Parameters
     ----------
-    plan : the variants of the sample, maybe none, with what varies. tornado : variants of the tolerances.
+    plan : the variants of the sample, maybe none, with what varies. further : questions with a table of their own.
     """
 
     study: StudyData
     card: SweepCard
     plan: Plan
-    tornado: Plan | None
+    further: tuple[SweepQuestion, ...] = ()
 
     @property
     def words(self) -> str:
@@ -128,10 +141,7 @@ class Questions:
         parts = [f"{len(self.plan.variants)} variants"] if self.card.sampled else []
         if self.card.optimise is not None:
             parts.append(f"an optimum of {self.card.optimise.answer} by {self.card.optimise.runs} variants at most")
-        if self.tornado is not None:
-            parts.append(f"a tornado of {(len(self.tornado.variants) - 1) // 2} tolerances")
-        if self.card.envelope is not None:
-            parts.append(f"an envelope of {len(checked_pairs(self.study, self.card.envelope))} loads and pressures")
+        parts += [question.words for question in self.further]
         return f"{', '.join(parts)}; study {self.study.name}"
 
     def answered(self, how: Execution | None = None, **said: Unpack[Said]) -> DesignData:
@@ -140,25 +150,24 @@ class Questions:
         A `Local` scheduler used as a context manager keeps its processes from one question to the next.
         """
         card, how = self.card, (how or Execution()).given(said)
-        swept = tornado = best = safe = None
+        swept = best = None
+        answers: dict[str, DesignPart] = {}
         interrupted = ""
         try:
             if card.sampled:
                 swept = sweep(self.plan, how)
                 interrupted = swept.interrupted
-            if self.tornado is not None and not interrupted:
-                moved = sweep(self.tornado, how.within(Tornado.name), reduced="never")
-                answers = card.answers or tuple(judged(moved)) or ("hottest_degC",)
-                tornado, interrupted = Tornado(moved, answers), moved.interrupted
             if card.optimise is not None and not interrupted:
                 best = optimum(self.plan, card.optimise, how.within(Optimum.name), known=swept)
-            if card.envelope is not None and not interrupted:
-                safe = envelope(self.study, card.envelope, how.within(Envelope.name))
+            for question in self.further:
+                if not interrupted:
+                    answers[question.key] = question.answered(how.within(question.key))
+                    interrupted = getattr(answers[question.key], "interrupted", "")
         except KeyboardInterrupt:
             interrupted = "interrupted"
         except ClusterLostError as error:
             interrupted = str(error)
-        return DesignData(self.study, card, swept, tornado, best, safe, interrupted)
+        return DesignData(self.study, card, swept, best, answers, interrupted)
 
 
 def questions(study: StudyData, card: SweepCard, near: Path | None = None) -> Questions:
@@ -170,10 +179,6 @@ def questions(study: StudyData, card: SweepCard, near: Path | None = None) -> Qu
     """
     NEEDS.check(study)
     plan = planned(study, card, near)
-    try:
-        tornado = None if card.tornado is None else tornado_plan(study, card.tornado.tolerances, card.time_to)
-    except InputError as error:
-        raise error if error.file else error.within(field="tornado") from None
     if card.optimise is not None:
         if not plan.varied:
             raise InputError("searches within [vary], and a list has none: its best are on the front", field="optimise")
@@ -181,9 +186,7 @@ def questions(study: StudyData, card: SweepCard, near: Path | None = None) -> Qu
             check_answer(card.optimise.answer, study, card.time_to)
         except InputError as error:
             raise error.within(field="optimise") from None
-    if card.envelope is not None:
-        checked_pairs(study, card.envelope)
-    return Questions(study, card, plan, tornado)
+    return Questions(study, card, plan, questions_of(study, card))
 
 
 def asked_of(study: StudyData, vary: Mapping[str, Any] | None = None, **options: Any) -> DesignData:
@@ -193,8 +196,8 @@ def asked_of(study: StudyData, vary: Mapping[str, Any] | None = None, **options:
     ------
     InputError : a name that is neither a key of a sweep file nor a field of `Execution`; as of `questions`.
     """
-    known = [field.name for field in fields(Execution)]
-    allowed = [*known, *SweepCard.model_fields]
+    known = [each.name for each in fields(Execution)]
+    allowed = [*known, *SweepCard.model_fields, *sweep_questions()]
     for name in options:
         if name not in allowed:
             raise InputError(f"nothing is called '{name}' here{nearest(name, allowed)}", field="sweep")
@@ -204,7 +207,7 @@ def asked_of(study: StudyData, vary: Mapping[str, Any] | None = None, **options:
     how = Execution(**run)
     if options.get("case") is not None:
         study = study.case(options["case"])
-    return questions(study, card_of(study, vary, **options)).answered(how)
+    return questions(study, card_of(study, vary, **further_apart(options))).answered(how)
 
 
 def loaded(name: str, changes: Mapping[str, Any] | None = None, **said: Any) -> Questions:
@@ -223,7 +226,7 @@ def loaded(name: str, changes: Mapping[str, Any] | None = None, **said: Any) -> 
     for key, value in said.items():
         both = isinstance(value, Mapping) and isinstance(data.get(key), Mapping)
         data[key] = {**data[key], **value} if both else value
-    card = SweepCard.check(data, path)
+    card = SweepCard.check(further_apart(data), path)
     try:
         return questions(card.load_study(path.parent, changes), card, path.parent)
     except InputError as error:

@@ -10,16 +10,17 @@ from __future__ import annotations
 import math
 from collections.abc import Mapping
 from dataclasses import dataclass
-from typing import TYPE_CHECKING, Any, Unpack
+from typing import TYPE_CHECKING, Any, ClassVar, Unpack
 
 from tyrefem.errors import InputError
 from tyrefem.inputs.changes import scaled, value_at
 from tyrefem.inputs.study import StudyData
 from tyrefem.quantity import parse
 from tyrefem.sweep.answering import Asked
+from tyrefem.sweep.question import SweepQuestion
 from tyrefem.variants.answer_units import name_of, shown
 from tyrefem.variants.answers import check_answer
-from tyrefem.variants.card import EnvelopeCard
+from tyrefem.variants.card import EnvelopeCard, SweepCard
 from tyrefem.variants.execution import Execution, Said
 from tyrefem.variants.outcomes import Failed, Outcome
 from tyrefem.variants.plan import Plan, sensible
@@ -292,3 +293,23 @@ def _box(sizes: list[tuple[float, float]], low: float, high: float) -> tuple[Var
         if min(values) < max(values):
             found.append(Varied(key, unit, low=min(values), high=max(values)))
     return tuple(found)
+
+
+class EnvelopeQuestion(SweepQuestion):
+    """``[envelope]``: the largest speed that keeps the tyre below a limit, over loads and pressures."""
+
+    key: ClassVar[str] = Envelope.name
+    table: ClassVar[type[EnvelopeCard]] = EnvelopeCard
+    place: ClassVar[int] = 2
+
+    def __init__(self, study: StudyData, table: EnvelopeCard, card: SweepCard) -> None:
+        self.study, self.limits, self.pairs = study, table, checked_pairs(study, table)
+
+    @property
+    def words(self) -> str:
+        """How many loads and pressures."""
+        return f"an envelope of {len(self.pairs)} loads and pressures"
+
+    def answered(self, how: Execution) -> Envelope:
+        """See `envelope`."""
+        return envelope(self.study, self.limits, how)

@@ -9,7 +9,8 @@ if TYPE_CHECKING:
 class DesignPart(Protocol):
     """One answer: a table and words. Its folder of finished variants and its files have its ``name``.
 
-    Its pictures are what is registered for its class with `tyrefem.reports.sweep_figures.figures`.
+    Its pictures are what is registered for its class with `tyrefem.reports.sweep_figures.figures`; a class that sets
+    ``drawn = False`` has none.
     """
 
     name: str

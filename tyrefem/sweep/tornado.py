@@ -6,13 +6,17 @@ import functools
 import math
 from collections.abc import Mapping
 from dataclasses import dataclass
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING, Any, ClassVar
 
 from tyrefem.errors import InputError
 from tyrefem.inputs.study import StudyData
 from tyrefem.inputs.uncertain_numbers import UncertainNumber, left_out, uncertain_number
-from tyrefem.sweep.sweep import Sweep
+from tyrefem.sweep.question import SweepQuestion
+from tyrefem.sweep.responses import judged
+from tyrefem.sweep.sweep import Sweep, sweep
 from tyrefem.variants.answer_units import difference_unit, name_of, shown
+from tyrefem.variants.card import SweepCard, TornadoCard
+from tyrefem.variants.execution import Execution
 from tyrefem.variants.outcomes import Failed, answer_of
 from tyrefem.variants.plan import Plan, sensible
 from tyrefem.variants.varied import DIGITS
@@ -111,6 +115,11 @@ class Tornado:
             ["_order", "range"], ascending=[True, False], ignore_index=True
         ).drop(columns="_order")  # fmt: skip
 
+    @property
+    def interrupted(self) -> str:
+        """Why some variants were not run; empty: all were."""
+        return self.swept.interrupted
+
     def of(self, answer: str) -> pd.DataFrame:
         """The rows of one answer, widest first."""
         table = self.table
@@ -151,3 +160,24 @@ class Tornado:
     def to_dict(self) -> dict[str, Any]:
         """JSON-ready."""
         return {"rows": self.table.to_dict("records"), "failures": self.swept.failed, "words": self.words}
+
+
+class TornadoQuestion(SweepQuestion):
+    """``[tornado]``: every uncertain number alone, less and more by its tolerance."""
+
+    key: ClassVar[str] = Tornado.name
+    table: ClassVar[type[TornadoCard]] = TornadoCard
+    place: ClassVar[int] = 1
+
+    def __init__(self, study: StudyData, table: TornadoCard, card: SweepCard) -> None:
+        self.plan, self.answers = tornado_plan(study, table.tolerances, card.time_to), card.answers
+
+    @property
+    def words(self) -> str:
+        """How many tolerances."""
+        return f"a tornado of {(len(self.plan.variants) - 1) // 2} tolerances"
+
+    def answered(self, how: Execution) -> Tornado:
+        """By full runs: so few variants do not pay for a reduced model."""
+        swept = sweep(self.plan, how, reduced="never")
+        return Tornado(swept, self.answers or tuple(judged(swept)) or ("hottest_degC",))

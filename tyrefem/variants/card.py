@@ -137,7 +137,7 @@ class SweepCard(Card):
     time_to : temperature whose first reaching is an answer (``time_to_limit_s``).
     answers : what is drawn and judged; by default temperature and rolling resistance (and time to the limit).
     pareto : answer -> "min" or "max"; by default temperature, rolling resistance and mass, all "min".
-    tornado, optimise, envelope : further questions.
+    tornado, optimise, envelope : further questions; ``further``: tables of others, by name (`tyrefem.sweep.question`).
     """
 
     kind: ClassVar[str] = "sweep"
@@ -158,6 +158,7 @@ class SweepCard(Card):
     tornado: TornadoCard | None = None
     optimise: OptimiseCard | None = None
     envelope: EnvelopeCard | None = None
+    further: dict[str, dict[str, Any]] = Field(default_factory=dict)
 
     @field_validator("vary", mode="before")
     @classmethod
@@ -209,7 +210,7 @@ class SweepCard(Card):
                 raise InputError("sample = 'list' takes its values from 'cases' alone", field="vary")
         elif self.cases is not None:
             raise InputError("goes with sample = 'list'", field="cases")
-        elif not self.varies and (self.sample or self.optimise or not (self.tornado or self.envelope)):
+        elif not self.varies and (self.sample or self.optimise or not (self.tornado or self.envelope or self.further)):
             raise InputError("nothing varies; e.g. \"drive.speed\" = { from = '10 mph', to = '40 mph' }", field="vary")
         if self.chosen in ("grid", "list"):
             if self.count is not None:

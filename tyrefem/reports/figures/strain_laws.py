@@ -7,6 +7,7 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 from numpy.typing import NDArray
 
+from tyrefem.mechanics.strain_laws import strain_laws
 from tyrefem.reports.figures.style import (
     ENERGY_MAP,
     FONT,
@@ -31,7 +32,6 @@ if TYPE_CHECKING:
     from tyrefem.simulation.law_comparison import LawComparison, LawOutcome
 
 Array = NDArray[np.float64]
-TITLES = {"arcs": "arcs", "barrel": "barrel FEM", "fem": "footprint FEM"}
 #: Share of the section's area that the colour scale spans; what is above has the last colour.
 SPANNED = 0.96
 
@@ -62,7 +62,9 @@ def strain_laws_figure(found: LawComparison) -> Figure:
         section_axes(axes)
         if number:
             axes.set_ylabel("")
-        axes.set_title(f"{TITLES[outcome.law]}, D = {outcome.deflection * 1e3:.1f} mm", fontsize=FONT, loc="left")
+        axes.set_title(
+            f"{strain_laws()[outcome.law].title}, D = {outcome.deflection * 1e3:.1f} mm", fontsize=FONT, loc="left"
+        )
     bar_axes = add_axes(drawn, width - 0.85, 2.65, 0.16, tall)
     bar = drawn.colorbar(image, cax=bar_axes, extend="max" if peak > 1.001 * top else "neither")
     bar.set_label(f"U [{unit}], peak {peak / factor:{digits(peak / factor)}}", fontsize=FONT)
@@ -108,7 +110,13 @@ def _bars(axes: Axes, found: LawComparison) -> None:
         energies = [found.energies[outcome.law][name] for name in names]
         total = sum(energies)
         colour = PALETTE[number]
-        axes.bar(at, energies, 0.9 * step, color=colour, label=f"{TITLES[outcome.law]}: {total:{digits(total)}} J")
+        axes.bar(
+            at,
+            energies,
+            0.9 * step,
+            color=colour,
+            label=f"{strain_laws()[outcome.law].title}: {total:{digits(total)}} J",
+        )
         heating = [found.heating[outcome.law][name] for name in names]
         if not np.allclose(heating, energies):
             words = f"U that heats, all harmonics: {sum(heating):{digits(sum(heating))}} J"

@@ -1,0 +1,34 @@
+"""``mechanics.strain = "fem"``: the footprint by finite elements."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from typing import TYPE_CHECKING, ClassVar
+
+from tyrefem.inputs.loading import LoadCase
+from tyrefem.inputs.study import StudyData
+from tyrefem.mechanics.strain_laws import StrainLaw
+
+if TYPE_CHECKING:
+    from tyrefem.mechanics.finite_elements import FiniteElements
+
+
+class FootprintByElements(StrainLaw):
+    """The tyre inflated in large displacement, and pressed on the road by Fourier harmonics."""
+
+    name: ClassVar[str] = "fem"
+    title: ClassVar[str] = "footprint FEM"
+    by_elements: ClassVar[bool] = True
+    presses: ClassVar[bool] = True
+    assumption: ClassVar[tuple[str, str]] = (
+        "A small deflection about the inflated tyre",
+        "The section is inflated in large displacement and pressed on the road by Fourier harmonics of small motion "
+        "about that state: without friction, and with too much load at a large deflection. Nothing of it is compared "
+        "with a measured tyre.",
+    )
+
+    def provider(self, study: StudyData) -> Callable[[LoadCase], FiniteElements]:
+        """As `tyrefem.mechanics.finite_elements.provider`."""
+        from tyrefem.mechanics.finite_elements import provider
+
+        return provider(study)
