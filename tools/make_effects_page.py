@@ -27,6 +27,7 @@ LUMPED = {"boundaries.rim": {"law": "lumped", "mass": "9 kg", "cooling": "2 W/K"
 #: What an effect needs beside the study to be drawn: changes, and these in words.
 DRAWN_FOR: dict[str, tuple[dict[str, Any], str]] = {
     "bead-contact-resistance": (BEAD, "with a thermocouple in the bead"),
+    "brake-disc": (BEAD | LUMPED, "with a thermocouple in the bead and a lumped rim of 9 kg"),
     "brake-heat": (BEAD, "with a thermocouple in the bead"),
     "brake-power": (BEAD | LUMPED, "with a thermocouple in the bead and a lumped rim of 9 kg"),
     "camber": (LEFT, "on the full section, with a thermocouple in the other shoulder"),
@@ -105,6 +106,52 @@ PORTS
 
 Set `of_drive: ClassVar[bool] = True` where films, surrounding temperatures and the rim depend on time through the
 drive alone: reduced models then evaluate the effect once per phase.
+
+## An effect with a state of its own
+
+Wear, water on the tread, a warm brake disc: an effect declares `states` with unit and scale, gives their rates per
+second in `state_rates`, and its ports read them with `tyre.state(self, name, t)`:
+
+```python
+from math import exp
+from typing import Annotated, ClassVar
+
+from tyrefem.effects import Effect, EffectState, Prior
+
+
+class DryingTread(Effect):
+    \"\"\"L dw/dt = -2.8 h wet(w) (T_tread - T_air) off the road;  h of the tread -> h (1 + 2.8 wet(w)).\"\"\"
+
+    name: ClassVar[str] = "drying-tread"
+    family: ClassVar[str] = "boundary"
+    sentence: ClassVar[str] = "Water that a puddle left on the tread cools it until it is dry."
+    source: ClassVar[str] = "Lewis relation as of 'wet-road', L = 2.45e6 J/kg; estimate: wet above 10 um of water"
+    states: ClassVar = {"water": EffectState("kg/m**2", "water on the tread", scale=1e-3)}
+
+    puddle: Annotated[float, Prior("kg/m**2", "water at the start", 0.05, 0.0, 1.0)] = 0.0
+
+    def initial_states(self, tyre):
+        return {"water": self.puddle}
+
+    def state_rates(self, tyre, t, state, temperatures):
+        film = tyre.study.card.boundaries.outside_air.film(tyre.speed(t)) * (1 - tyre.road_fraction(t))
+        warmer = temperatures.surface("road") - tyre.ambient(t)
+        return {"water": -2.8 * film * self.wet(state["water"]) * warmer / 2.45e6}
+
+    def film_factor(self, tyre, film, t):
+        return 1 + 2.8 * self.wet(tyre.state(self, "water", t)) if film == "tread_air" else 1.0
+
+    @staticmethod
+    def wet(water):
+        return 1 - exp(-max(water, 0.0) / 0.01)
+```
+
+- A state is a number, or an array with one value per place: what `initial_states` returns says its shape (default 0).
+- States and temperatures are unknowns of the same equations. One error-controlled step of third order takes both: the
+  error of a state stays below the study's tolerance times `scale`, the change that matters as much as 1 K.
+- `temperatures` gives `surface("road")`, `region("tread")`, `at(points)` and `reservoir("contained-air")` in degC.
+- `result.states` holds every state over time with its unit; `summary.json` has start, end, least and largest value.
+- A diagnosis simulates such an effect in full. Reduced and real-time models refuse it and say so.
 """
 
 

@@ -44,6 +44,10 @@ CASES = {
     "ambient-drift": Case({"sidewall-outer": 1, "shoulder-outer": 1, "contained-air": 1}),
     "bead-contact-resistance": Case({"bead": -1}, {"drive.rim_temperature": "90 degC"}),
     "belt-edge-shear": Case({"shoulder-inner": 1, "shoulder-outer": 1}),
+    "brake-disc": Case(
+        {"rim": 1, "bead": 1},
+        {"boundaries.rim": {"law": "lumped", "mass": "9 kg", "cooling": "2 W/K", "air": "0.5 W/K"}},
+    ),
     "brake-heat": Case({"bead": 1}),
     "brake-power": Case(
         {"rim": 1, "bead": 1},

@@ -8,6 +8,7 @@ import tomllib
 from pathlib import Path
 from types import ModuleType
 
+import numpy as np
 import pytest
 
 import tyrefem as tf
@@ -48,8 +49,36 @@ def test_the_example_of_the_page_can_be_put_into_a_study(name: str, tool: Module
     assert effect.name == name
 
 
-def test_the_page_s_own_effect_loads(tmp_path: Path, tool: ModuleType, monkeypatch: pytest.MonkeyPatch) -> None:
-    (code,) = re.findall(r"```python\n(.*?)```", tool.page(), re.DOTALL)
-    (tmp_path / "lamp.py").write_text(code, encoding="utf-8")
+@pytest.fixture
+def own(tmp_path: Path, tool: ModuleType, monkeypatch: pytest.MonkeyPatch) -> None:
+    """The page's own effects in a user's folder."""
+    codes = re.findall(r"```python\n(.*?)```", tool.page(), re.DOTALL)
+    for number, code in enumerate(codes):
+        (tmp_path / f"own_{number}.py").write_text(code, encoding="utf-8")
     monkeypatch.setenv("TYREFEM_EFFECTS", str(tmp_path))
+
+
+def test_the_page_s_own_effects_load(own: None) -> None:
     assert catalogue()["lamp"].ports() == ("flux",)
+    assert catalogue()["drying-tread"].ports() == ("film_factor",)
+
+
+def test_the_page_s_drying_tread_dries_and_cools(own: None) -> None:
+    """Heat that evaporates the water is what the tread loses more than without the wet film."""
+    coarse = {"mesh.size": "8 mm", "mesh.element": "P1", "drive.initial": "80 degC", "drive.ambient": "20 degC"}
+    study = tf.study("example-validation").replace(coarse)
+    wet, dry = (
+        study.replace({"effects": [{"name": "drying-tread", "puddle": f"{w} kg/m**2"}]}).run() for w in (0.05, 0)
+    )
+    water = wet.states["drying-tread water"].values
+    assert water[0] == 0.05
+    assert (np.diff(water) <= 0).all()
+    assert water[-1] < 0.005
+    assert dry.states == {}
+    cooler = (dry.readings - wet.readings)["crown-middle"]
+    assert cooler.max() > 0.1
+    # A cooler tyre loses less everywhere else: the surplus is positive and below the latent heat.
+    tread = wet.tyre.problem.operators.surface("road")
+    latent = 2 * 2.45e6 * (water[0] - water[-1]) * tread.area
+    surplus = wet.heat_budget.total("lost") - dry.heat_budget.total("lost")
+    assert 0 < surplus < latent

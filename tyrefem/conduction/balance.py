@@ -7,6 +7,7 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
+from tyrefem.conduction.added_states import AddedStates, StateRates
 from tyrefem.conduction.capacity import GAUSS, Capacity
 from tyrefem.conduction.conditions import Material, Reservoir
 from tyrefem.conduction.datum import Datum
@@ -37,6 +38,7 @@ class HeatBalance(System):
         loads: list[tuple[tuple[str, str, int], Load]],
         fixed: list[tuple[tuple[str, str, int], Surface, Datum]],
         reservoirs: dict[str, Reservoir],
+        added: AddedStates | None = None,
     ) -> None:
         self.ops = ops
         self.capacities = {name: Capacity(ops, name, material) for name, material in regions.items()}
@@ -57,26 +59,32 @@ class HeatBalance(System):
             for data, value in zip(ops.conduction(name, material.direction), pair, strict=True):
                 stiffness += float(value) * data
         acting: list[Load] = [*self.loads, *self.conduction]
-        super().__init__(ops, list(self.capacities.values()), stiffness, acting, reservoirs, len(self.entries))
+        if added is not None:
+            acting.append(StateRates(ops, added, list(reservoirs)))
+        super().__init__(ops, list(self.capacities.values()), stiffness, acting, reservoirs, len(self.entries), added)
         if not self.variable_capacity:
             self._capacity_rows = np.array([c.row for c in self.capacities.values()])
         moving = self.moving
         sources = [load for load in moving if isinstance(load, SourceLoad)]
         together = [Sources(ops, sources)] if sources else []
         self.moving = [*together, *(load for load in moving if not isinstance(load, SourceLoad))]
-        self._timed = [load for load in self.loads if load.timed]
+        self._timed = [load for load in acting if load.timed]
         self._linear = [load for load in self.loads if type(load).linear_power is not Load.linear_power]
         self._watched = [load for load in self.acting if type(load).stale is not Load.stale]
         heat = [r.heat_capacity for r in reservoirs.values()]
         self.massless = np.array([i for i, c in enumerate(heat) if not callable(c) and float(c) == 0.0], dtype=int)
         self.massive = np.array([i for i in range(len(heat)) if i not in self.massless], dtype=int)
+        #: Unknowns of g that follow a rate in time, added states too.
+        self.rated = np.array([i for i in range(self.m) if i not in self.massless], dtype=int)
         self.variable_reservoirs = any(callable(c) for c in heat)
 
     def reservoir_stored(self, before: Array, after: Array) -> Array:
         """Heat taken up by every reservoir between two temperatures, J."""
+        count = len(self.reservoirs)
+        before, after = before[:count], after[:count]
         if not self.variable_reservoirs:
-            return self.reservoir_capacity(after) * (after - before)
-        mean = sum(w / 2 * self.reservoir_capacity(before + (x + 1) / 2 * (after - before)) for x, w in GAUSS)
+            return self.reservoir_capacity(after)[:count] * (after - before)
+        mean = sum(w / 2 * self.reservoir_capacity(before + (x + 1) / 2 * (after - before))[:count] for x, w in GAUSS)
         return np.asarray(mean * (after - before))
 
     def freeze(self, t: float, y: State) -> None:
@@ -88,6 +96,7 @@ class HeatBalance(System):
 
     def stale(self, t: float, y: State) -> bool:
         """Whether the frozen linear part should be renewed."""
+        self.show(y.g)
         if any(load.stale(t, y) for load in self._watched):
             return True
         if self.variable_reservoirs and np.any(np.abs(self.reservoir_capacity(y.g) / self.C - 1) > 0.2):
@@ -115,6 +124,7 @@ class HeatBalance(System):
         """Set the massless reservoirs in `g` to the temperatures that balance them."""
         if not self.massless.size:
             return
+        self.show(g)
         m = len(self.reservoirs)
         D, p = np.zeros((m, m)), np.zeros(m)
         for load in self.loads:

@@ -24,6 +24,10 @@ class Datum:
         self._time: float | None = None
         self._latest: Any = None
 
+    def forget(self) -> None:
+        """Ask the function again at the next use, whatever the time."""
+        self._time = None
+
     def __call__(self, t: float) -> Any:
         if self.constant:
             return self._value

@@ -12,6 +12,8 @@ an unknown more, with the heat capacity C_g in J/K and
 
     C_g dT_g/dt = sum_films int h (T - T_g) dA + sum_j G_j (T_j - T_g) + P_g,      G_j in W/K, P_g in W.
 
+States that are no temperatures (wear, water) follow dz/dt = rate(t, z, T) and stand in g after the reservoirs.
+
 With T = sum_j u_j(t) phi_j(x) and v = phi_i this is the `System` that every solver of this package steps or solves:
 
     M du/dt = -S u + B g + G(t, u, g),        M_ij = int C phi_i phi_j dV,    S_ij = int k grad phi_i . grad phi_j dV
@@ -36,7 +38,7 @@ from skfem.helpers import dot, grad
 
 from tyrefem.conduction.conditions import Reservoir
 from tyrefem.conduction.function_space import FunctionSpace
-from tyrefem.conduction.terms import Boundary, Load, State, Storage
+from tyrefem.conduction.terms import Added, Boundary, Load, State, Storage
 
 Array = NDArray[Any]
 
@@ -67,7 +69,7 @@ class System:
     space : the function space; all operators lie on its pattern of `nnz` values.
     regions : the heat capacities. stiffness : (nnz,) int k grad v . grad T dV of constant conductivities.
     acting : everything else. reservoirs : name -> `Reservoir`.
-    lines : lines of the ledger of powers.
+    lines : lines of the ledger of powers. added : states that follow rates, in g after the reservoirs.
     """
 
     def __init__(
@@ -78,14 +80,18 @@ class System:
         acting: Sequence[Load],
         reservoirs: Mapping[str, Reservoir],
         lines: int,
+        added: Added | None = None,
     ) -> None:
         self.space, self.regions, self.K0, self.acting = space, regions, stiffness, acting
-        self.reservoirs, self.m, self.lines, self.version = reservoirs, len(reservoirs), lines, 0
+        self.reservoirs, self.lines, self.version, self.added = reservoirs, lines, 0, added
+        self.m = len(reservoirs) + (0 if added is None else added.initial.size)
+        self._shown: Array | None = None
         self.variable_capacity = not all(region.constant for region in regions)
         self.moving = [load for load in acting if not load.static]
 
     def assemble(self, t: float, y: State) -> None:
         """Take M, S, B, C and D at a state: numbers on the common pattern, no integral is evaluated again."""
+        self.show(y.g)
         if self.variable_capacity or not self.version:
             self.M_data = self.mass(y.u)
             self.M = self.space.matrix(self.M_data)
@@ -104,9 +110,21 @@ class System:
         return np.sum([region.mass(u) for region in self.regions], axis=0)
 
     def reservoir_capacity(self, g: Array) -> Array:
-        """C of every reservoir at its temperature, J/K."""
+        """C of every reservoir at its temperature, J/K; 1 for added states."""
         heat = [r.heat_capacity for r in self.reservoirs.values()]
-        return np.array([float(c(T)) if callable(c) else float(c) for c, T in zip(heat, g, strict=True)])
+        C = [float(c(T)) if callable(c) else float(c) for c, T in zip(heat, g, strict=False)]
+        return np.array(C + [1.0] * (self.m - len(heat)))
+
+    def show(self, g: Array) -> None:
+        """Let the loads see the added states of g; every evaluation of a load comes after this."""
+        if self.added is None:
+            return
+        z = g[len(self.reservoirs) :] * self.added.scale
+        self.added.show(z)
+        if self._shown is None or not np.array_equal(z, self._shown):
+            self._shown = z
+            for load in self.acting:
+                load.forget()
 
     def add_conduction(self, values: Array) -> None:
         """Add int k grad v . grad T dV of a region."""
@@ -133,9 +151,9 @@ class System:
         """Zeros for G (n,), Gg (m,) and the power of every line of the ledger."""
         return np.zeros(self.space.size), np.zeros(self.m), np.zeros(self.lines)
 
-    @staticmethod
-    def add(total: tuple[Array, Array, Array], t: float, y: State, loads: Iterable[Load]) -> None:
+    def add(self, total: tuple[Array, Array, Array], t: float, y: State, loads: Iterable[Load]) -> None:
         """Add what the linear part leaves out of loads to (G, Gg, powers)."""
+        self.show(y.g)
         G, Gg, P = total
         for load in loads:
             power = load.remainder(t, y, G, Gg)

@@ -6,7 +6,7 @@ Temperatures and heat of a transient run at the requested times.
 from __future__ import annotations
 
 from collections.abc import Mapping
-from dataclasses import dataclass
+from dataclasses import dataclass, field
 from typing import Any
 
 import numpy as np
@@ -127,6 +127,7 @@ class History(Brief):
     budget : the heat budget at `times`.
     maximum : hottest point over all accepted steps and requested times; region_maximum : the same by region.
     steps : what it cost; interrupted : True if the run was stopped before its last time.
+    states : (n_times, k) the problem's `AddedStates`.
     """
 
     operators: Operators
@@ -139,6 +140,7 @@ class History(Brief):
     region_maximum: Mapping[str, Peak]
     steps: Steps
     interrupted: bool = False
+    states: Array = field(default_factory=lambda: np.zeros((0, 0)))
 
     def _facts(self) -> Mapping[str, Any]:
         peak, end = self.maximum, self.values[-1]

@@ -9,6 +9,7 @@ import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
 from tyrefem.brief import lines
+from tyrefem.conduction.added_states import AddedStates
 from tyrefem.conduction.balance import HeatBalance
 from tyrefem.conduction.budget import Tally
 from tyrefem.conduction.conditions import (
@@ -49,6 +50,7 @@ class Conduction:
     axisymmetric : coordinates (r, z) and the full ring; otherwise planar, one metre deep.
     element : "P1" or "P2".
     reservoirs : name -> `Reservoir`, coupled by films whose sink is that name.
+    states : unknowns beside the temperatures that follow rates.
 
     Raises InputError for names, materials or conditions that do not fit the mesh.
 
@@ -77,11 +79,12 @@ class Conduction:
         axisymmetric: bool = True,
         element: str = "P1",
         reservoirs: Mapping[str, Reservoir] | None = None,
+        states: AddedStates | None = None,
     ) -> None:
         _check_memory(mesh, element)
         self.operators = operators_of(mesh, element, axisymmetric)
         self.regions, self.sources = dict(regions), dict(sources or {})
-        self.reservoirs = dict(reservoirs or {})
+        self.reservoirs, self.states = dict(reservoirs or {}), states
         self.boundaries: dict[str, list[Any]] = {
             name: list(c) if isinstance(c, (list, tuple)) else [c] for name, c in (boundaries or {}).items()
         }
@@ -114,7 +117,7 @@ class Conduction:
         return self.operators.nodes(subdomain)
 
     def _balance(self) -> HeatBalance:
-        return balance_of(self.operators, self.regions, self.boundaries, self.sources, self.reservoirs)
+        return balance_of(self.operators, self.regions, self.boundaries, self.sources, self.reservoirs, self.states)
 
     def _initial(self, balance: HeatBalance, initial: Any, t: float, given: Mapping[str, float] | None) -> State:
         size = self.operators.size
@@ -134,6 +137,8 @@ class Conduction:
         for i, (name, reservoir) in enumerate(self.reservoirs.items()):
             own = reservoir.initial if reservoir.initial is not None else float(weight @ u)
             g[i] = {name: own, **before, **(given or {})}[name]
+        if self.states is not None:
+            g = np.concatenate([g, self.states.initial / self.states.scale])
         y = State(u, g)
         balance.settle(t, y.u, y.g)
         return y
@@ -148,6 +153,8 @@ class Conduction:
 
         Raises InputError if nothing fixes the temperature level, SolverError without convergence.
         """
+        if self.states is not None:
+            raise InputError("states that follow a rate have a transient only", field="states")
         balance = self._balance()
         outside = self._held_reservoirs()
         if not anchored(balance, outside, time):
@@ -265,6 +272,7 @@ class Conduction:
             region_maximum=dict(zip(self.regions, peaks[1:], strict=True)),
             steps=Steps(run.accepted, run.rejected, run.matrices.factorisations, run.matrices.solves),
             interrupted=interrupted,
+            states=np.zeros((done, 0)) if self.states is None else gas[:, len(names) :] * self.states.scale,
         )
 
 

@@ -31,6 +31,10 @@ class ExchangeLoad(Load):
         self.h0 = self.conductance(t)
         linear.add_conductance(self.h0, self.owner, self.partner)
 
+    def forget(self) -> None:
+        self.conductance.forget()
+        self.other.forget()
+
     def stale(self, t: float, y: State) -> bool:
         h = self.conductance(t)
         return abs(h - self.h0) > STALE * max(h, self.h0)
@@ -57,6 +61,9 @@ class PowerLoad(Load):
         self.owner, self.power = owner, Datum(power, np.zeros((2, 1)), field)
         self.static = self.power.constant
         self.timed = not self.static
+
+    def forget(self) -> None:
+        self.power.forget()
 
     def remainder(self, t: float, y: State, G: Array, Gg: Array) -> float:
         power = self.power(t)

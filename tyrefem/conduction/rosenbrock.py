@@ -82,8 +82,12 @@ class StageMatrix:
         if self.m:
             border = gh * b.B
             self.border_fixed = border[fixed]
-            self.E = self.factor.solve(border[free])
-            self.solves += self.m
+            # Added states exchange no heat with the body: their columns are zero.
+            used = np.flatnonzero(border.any(axis=0))
+            self.E = np.zeros((free.size, self.m))
+            if used.size:
+                self.E[:, used] = self.factor.solve(border[np.ix_(free, used)])
+            self.solves += used.size
             self.schur = np.diag(b.C) + gh * b.D - border[free].T @ self.E
 
     def solve(self, ru: Array, rg: Array, k_fixed: Array, ku: Array, kg: Array) -> None:
@@ -187,7 +191,7 @@ class Step:
                 ru = b.M @ rate - b.S @ W.u + b.B @ W.g
             else:
                 ru = G - b.S @ V.u
-                if b.reservoirs:
+                if b.m:
                     ru += b.B @ V.g
             rg = Gg + b.B.T @ V.u - b.D @ V.g
             if b.variable_reservoirs:
@@ -215,8 +219,8 @@ class Step:
             self.P[i] = P
         difference = h * ((WEIGHT - EMBEDDED) @ ku)
         error = float(np.max(np.abs(difference[b.fixed.free]), initial=0.0))
-        if b.massive.size:
-            error = max(error, float(np.max(np.abs(h * ((WEIGHT - EMBEDDED) @ kg))[b.massive])))
+        if b.rated.size:
+            error = max(error, float(np.max(np.abs(h * ((WEIGHT - EMBEDDED) @ kg))[b.rated])))
         return error if np.isfinite(error) else np.inf
 
     def _rate(self, t: float, U: State, G: Array, border: Array, before: float, dt: float) -> Array:

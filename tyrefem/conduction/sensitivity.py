@@ -109,6 +109,8 @@ def tangents(
     """
     ops = base.operators
     for one in perturbed:
+        if base.states is not None or one.problem.states is not None:
+            raise InputError("states that follow a rate have no tangents: simulate again", field="states")
         if one.problem.operators is not ops:
             raise InputError("a perturbed problem must be on the base problem's own mesh", field="perturbed")
     with one_thread():

@@ -7,6 +7,7 @@ from typing import Any
 
 import numpy as np
 
+from tyrefem.conduction.added_states import AddedStates
 from tyrefem.conduction.balance import HeatBalance
 from tyrefem.conduction.conditions import Condition, Convection, Film, Fixed, Flux, Material, Radiation, Reservoir
 from tyrefem.conduction.datum import Datum
@@ -26,6 +27,7 @@ def balance_of(
     boundaries: Mapping[str, Sequence[Condition]],
     sources: Mapping[str, Any],
     reservoirs: Mapping[str, Reservoir],
+    states: AddedStates | None = None,
 ) -> HeatBalance:
     """The heat balance of a stated problem; InputError names what does not fit the mesh."""
     numbers = {name: i for i, name in enumerate(reservoirs)}
@@ -64,7 +66,7 @@ def balance_of(
     for name, reservoir in reservoirs.items():
         for index, load in reservoir_loads(numbers[name], name, reservoir, numbers):
             loads.append((("reservoir", name, index), load))
-    return HeatBalance(ops, dict(regions), loads, fixed, dict(reservoirs))
+    return HeatBalance(ops, dict(regions), loads, fixed, dict(reservoirs), states)
 
 
 def check_partition(ops: Operators, regions: Mapping[str, Material]) -> None:

@@ -35,6 +35,10 @@ class FilmLoad(Load):
         self.row = linear.add_film(self.s, self.h0, self.reservoir)
         self.total = float(self.row.sum())
 
+    def forget(self) -> None:
+        self.h.forget()
+        self.sink.forget()
+
     def stale(self, t: float, y: State) -> bool:
         if self.h.constant:
             return False
@@ -84,6 +88,9 @@ class FluxLoad(Load):
         self.static = self._given.constant and not flux.of_temperature
         self.timed = not self.static
 
+    def forget(self) -> None:
+        self._given.forget()
+
     @property
     def of_temperature(self) -> bool:
         """Does it depend on the surface's temperature?"""
@@ -116,6 +123,9 @@ class RadiationLoad(Load):
         self.s, self.factor = surface, STEFAN_BOLTZMANN * float(radiation.emissivity)
         self.surroundings = Datum(radiation.surroundings, surface.x, f"{field}.surroundings", low=-273.15)
         self.timed = not self.surroundings.constant
+
+    def forget(self) -> None:
+        self.surroundings.forget()
 
     def slopes(self, t: float, y: State) -> Array:
         """Quadrature values of -dq/dT."""

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from abc import ABC, abstractmethod
+from collections.abc import Callable
 from typing import Any, Protocol
 
 from numpy.typing import NDArray
@@ -32,6 +33,25 @@ class Storage(Protocol):
 
     def mass(self, u: Array) -> Array:
         """Operator values of int C v T dV at the temperatures u."""
+        ...
+
+
+class Added(Protocol):
+    """States beside the temperatures: `tyrefem.conduction.added_states.AddedStates`."""
+
+    @property
+    def initial(self) -> Array:
+        """(k,) at the start."""
+        ...
+
+    @property
+    def scale(self) -> Array:
+        """(k,) changes that matter as much as 1 K."""
+        ...
+
+    @property
+    def show(self) -> Callable[[Array], None]:
+        """What is called with the states before loads are evaluated."""
         ...
 
 
@@ -88,6 +108,9 @@ class Load(ABC):
     def linear_power(self, y: State) -> float:
         """Power of the frozen linear part, W into the body."""
         return 0.0
+
+    def forget(self) -> None:  # noqa: B027 - most remember nothing
+        """Forget data that are remembered for a time: the added states have changed."""
 
     def jacobian(self, t: float, y: State) -> csr_matrix | None:
         """d(remainder)/du (n, n) at the state of the freeze, where it is not zero."""

@@ -49,7 +49,7 @@ class Integration:
         self.gas: list[Array] = []
         self.energy = np.zeros(len(balance.entries))
         self.stored = np.zeros(len(balance.capacities))
-        self.kept = np.zeros(y.g.size)
+        self.kept = np.zeros(len(balance.reservoirs))
         regions = [None, *(c.dofs for c in balance.capacities.values())]
         self._regions = regions
         self._low = float(times[0])

@@ -251,10 +251,11 @@ class Bench(Brief):
                 again[column] = base.as_measured_by(study)
                 continue
             tyre = RollingTyre(study, base.tyre)
-            if tyre.mesh is base.tyre.mesh:
+            # States that an effect keeps are unknowns that the base solution does not have.
+            if tyre.mesh is base.tyre.mesh and tyre.states is None and base.tyre.states is None:
                 columns.append(column)
                 perturbed.append(Perturbed(tyre.problem, one.step, tyre.drive.initial))
             else:
-                again[column] = lean(study, every=base.every)
+                again[column] = lean(study, base.tyre if tyre.mesh is base.tyre.mesh else None, every=base.every)
         found = tangents(base.tyre.problem, base.times, base.values, base.reservoirs, perturbed) if perturbed else None
         return Varied(base, tuple(unknowns), again, columns, found)

@@ -22,10 +22,11 @@ from pydantic import GetCoreSchemaHandler
 from pydantic_core import CoreSchema, core_schema
 
 from tyrefem.effects.effect import Effect, Parameter, Prior
+from tyrefem.effects.state import EffectState
 from tyrefem.errors import InputError, nearest
 from tyrefem.output import note_input
 
-__all__ = ["Effect", "EffectOf", "Parameter", "Prior", "catalogue"]
+__all__ = ["Effect", "EffectOf", "EffectState", "Parameter", "Prior", "catalogue"]
 
 
 @functools.cache

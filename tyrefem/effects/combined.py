@@ -43,6 +43,11 @@ class Acting:
         """Does any effect touch a film?"""
         return bool(self.at("film_factor", "film_addend", "film_resistance"))
 
+    @functools.cached_property
+    def with_states(self) -> tuple[Effect, ...]:
+        """The effects that keep states through a run."""
+        return tuple(one for one in self.effects if one.states)
+
     @property
     def follows_drive(self) -> bool:
         """Do films, sinks and the rim's power depend on time through the drive alone?"""

@@ -14,6 +14,7 @@ from pydantic_core import CoreSchema, core_schema
 
 from tyrefem.cards import Card, Text
 from tyrefem.effects.port import port, ports_of
+from tyrefem.effects.state import EffectState, TemperaturesOfTyre, Values
 from tyrefem.effects.tyre import StudyOfTyre, Tyre
 from tyrefem.errors import InputError, nearest
 from tyrefem.quantity import Unit, convert
@@ -113,6 +114,8 @@ class Effect(Card):
     calibration: ClassVar[bool] = False
     #: What it does to films, sinks and the rim depends on time through the drive alone: constant where the drive is.
     of_drive: ClassVar[bool] = False
+    #: States that the effect keeps through a run, by name; its ports read them by ``tyre.state(self, name, t)``.
+    states: ClassVar[Mapping[str, EffectState]] = {}
     #: Boundaries that the ports `flux` and `radiation` may use.
     surfaces: ClassVar[tuple[str, ...]] = SURFACES
 
@@ -175,6 +178,20 @@ class Effect(Card):
     def variants(cls, study: StudyOfTyre) -> tuple[Mapping[str, str], ...]:
         """The choices (a sensor's name, say) to try in a study, one mapping each."""
         return ({},)
+
+    # -- states ------------------------------------------------------------------------------------------------------
+
+    def initial_states(self, tyre: Tyre) -> Values:
+        """State -> its value at the start of the drive: a number, or (n,) with one value per place."""
+        return dict.fromkeys(self.states, 0.0)
+
+    def state_rates(self, tyre: Tyre, t: float, state: Values, temperatures: TemperaturesOfTyre) -> Values:
+        """State -> d(state)/dt, per second, shaped as the state, at time t (s).
+
+        The states are unknowns of the same equations as the temperatures: one error-controlled step of third order
+        takes both, so that the rate may be any smooth function of ``state`` and ``temperatures``.
+        """
+        return dict.fromkeys(self.states, 0.0)
 
     # -- ports: heat and conduction ----------------------------------------------------------------------------------
 
@@ -286,6 +303,11 @@ def _complaint(cls: type[Effect]) -> str | None:
             return f"needs '{said}'"
     if cls.family not in FAMILIES:
         return f"unknown family '{cls.family}'{nearest(cls.family, FAMILIES)}"
+    if cls.states and cls.state_rates is Effect.state_rates:
+        return f"declares states ({', '.join(cls.states)}), but no 'state_rates'"
+    for name, state in cls.states.items():
+        if not state.scale > 0:
+            return f"state '{name}' needs a positive scale"
     if not cls.ports():
         return f"overrides no port; allowed: {', '.join(port.name for port in PORTS)}"
     for name, field in cls.model_fields.items():

@@ -56,6 +56,9 @@ class Tyre(Protocol):
     def ambient(self, t: float) -> float:
         """Ambient temperature at time t (s), degC, with the effects on it."""
 
+    def state(self, effect: object, name: str, t: float) -> float | Array:
+        """A state of an effect at time t (s): ``tyre.state(self, "water", t)``."""
+
     def road_fraction(self, t: float) -> float:
         """Part of the time that the section is on the road, 0 to 1, at time t (s)."""
 

@@ -100,10 +100,14 @@ def reduced_balance(model: ReducedModel, tyre: RollingTyre) -> ReducedBalance:
 
     Raises
     ------
-    NotReducibleError : another mesh, properties that depend on temperature, fluxes, radiation, sliding.
+    NotReducibleError : another mesh, properties that depend on temperature, fluxes, radiation, sliding,
+        states of effects.
     """
     if tyre.study.card.mechanics.feedback is not None and tyre.cycles is None:
         raise NotReducibleError("strain cycles that follow the temperature")
+    if tyre.acting.with_states:
+        names = ", ".join(f"'{one.name}'" for one in tyre.acting.with_states)
+        raise NotReducibleError(f"states that effects keep through a run: {names}")
     if tyre.mesh is not model.base.mesh:
         raise NotReducibleError("another mesh: geometry, strain zones or [mesh] differ")
     bodies = {region: _constant(region, body) for region, body in tyre.bodies.items()}

@@ -61,6 +61,7 @@ def summary(result: ResultData) -> dict[str, Any]:
             "temperature_degC": float(result.gas_temperature[-1]),
             "gauge_pressure_Pa": float(result.gas_pressure[-1]),
         },
+        **({} if not result.states else {"states": _states(result)}),
         "sensors": {
             name: {"end_degC": float(readings[name].iloc[-1]), "max_degC": float(readings[name].max())}
             for name in study.sensors
@@ -78,6 +79,21 @@ def summary(result: ResultData) -> dict[str, Any]:
         "versions": versions(),
         "random_seed": None,
         "input": dict(study.data),
+    }
+
+
+def _states(result: ResultData) -> dict[str, Any]:
+    """States that effects kept; of one with a value per place the mean at the end."""
+    return {
+        name: {
+            "unit": state.unit,
+            "meaning": state.meaning,
+            "start": float(state.values[0].mean()),
+            "end": float(state.values[-1].mean()),
+            "min": float(state.values.min()),
+            "max": float(state.values.max()),
+        }
+        for name, state in result.states.items()
     }
 
 

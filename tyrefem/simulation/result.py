@@ -16,6 +16,7 @@ from tyrefem.conduction.field import History
 from tyrefem.conduction.points import OutsideMeshError, as_points
 from tyrefem.geometry.meshing.sagitta import snapped
 from tyrefem.geometry.wall import inside, wall_of
+from tyrefem.simulation.effect_states import StateHistory
 from tyrefem.simulation.heat_budget import HeatBudget, whole_tyre
 from tyrefem.simulation.phases import PhaseState, deep_contacts, phase_states
 from tyrefem.simulation.rolling_resistance import RollingResistance, just_before, rolling_reading, rolling_resistance
@@ -40,7 +41,7 @@ CASES_LEFT_OUT = "the study is a campaign: this is its own drive; study.campaign
 
 #: Of a history, what is stored; operators and materials are the problem's.
 KEPT = (
-    "times", "values", "reservoirs", "budget", "maximum", "region_maximum", "steps", "interrupted",
+    "times", "values", "reservoirs", "budget", "maximum", "region_maximum", "steps", "interrupted", "states",
 )  # fmt: skip
 
 
@@ -83,6 +84,7 @@ class ResultData(Brief):
             + (" degC at the end" if self.recorded else "none")
             + (f", and {len(self.recorded) - SHOWN} more" if len(self.recorded) > SHOWN else ""),
             "contained air": f"{self.gas_temperature[-1]:.1f} degC at the end",
+            **{name: f"{np.mean(one.values[-1]):.4g} {one.unit} at the end" for name, one in self.states.items()},
             "rolling resistance": f"{resistance.force:.1f} N, coefficient {resistance.coefficient:.5f}"
             if resistance.phase
             else "it never rolls",
@@ -157,6 +159,11 @@ class ResultData(Brief):
     def rim_temperature(self) -> Array | None:
         """A lumped rim, (n_times,) degC; None where the rim's temperature is given."""
         return np.asarray(self.history.reservoirs[RIM]) if RIM in self.history.reservoirs else None
+
+    @functools.cached_property
+    def states(self) -> dict[str, StateHistory]:
+        """States that effects kept: "effect state" -> unit, meaning and values (n_times,) or (n_times, n)."""
+        return {} if self.tyre.states is None else self.tyre.states.named(np.asarray(self.history.states))
 
     @functools.cached_property
     def gas_temperature(self) -> Array:

@@ -12,6 +12,7 @@ from numpy.typing import NDArray
 
 from tyrefem.boundaries.rim import LumpedRim
 from tyrefem.conduction import Conduction, Film, Material, Reservoir
+from tyrefem.conduction.added_states import AddedStates, BodyTemperatures
 from tyrefem.effects.combined import Source
 from tyrefem.errors import InputError
 from tyrefem.geometry.meshing import TyreMesh
@@ -41,7 +42,9 @@ class RollingTyre(Surroundings):
 
     def __getstate__(self) -> dict[str, Any]:
         """What cannot be found again in no time: the mesh and the strain cycles. The rest is made again on demand."""
-        known: dict[str, Any] = {name: self.__dict__[name] for name in ("mesh", "schedule") if name in self.__dict__}
+        known: dict[str, Any] = {
+            name: self.__dict__[name] for name in ("mesh", "schedule", "states") if name in self.__dict__
+        }
         return {"study": self.study, "like": None, "cycles": self.cycles, **known}
 
     def __repr__(self) -> str:
@@ -49,7 +52,8 @@ class RollingTyre(Surroundings):
 
     def _as_in_like(self, tables: tuple[str, ...], ports: tuple[str, ...]) -> bool:
         """Are these tables of the study, the section, and the effects at these ports those of ``like``?"""
-        if self.like is None:
+        # What a state changes is this tyre's alone: functions of another one read the other's states.
+        if self.like is None or self.states is not None or self.like.states is not None:
             return False
         own, other = self.study, self.like.study
         if "mechanics" in tables and self.cycles is not self.like.cycles:
@@ -136,18 +140,21 @@ class RollingTyre(Surroundings):
         laws = self.study.card.boundaries
         gas = GAS if self._gas_capacity is not None else laws.contained_air.held_at
 
-        rim = RIM if isinstance(laws.rim, LumpedRim) else _of_time(self.rim_temperature)
-        air = _of_time(self.ambient)
+        rim = RIM if isinstance(laws.rim, LumpedRim) else self._of_time(self.rim_temperature)
+        air = self._of_time(self.ambient)
         driven = self.acting.changes_films
         return {
             "road": [
-                Film(_of_time(lambda t: self.road_fraction(t) * self.road_film(t)), _of_time(self.road_temperature)),
-                Film(_of_time(lambda t: (1 - self.road_fraction(t)) * self.tread_air_film(t)), air),
+                Film(
+                    self._of_time(lambda t: self.road_fraction(t) * self.road_film(t)),
+                    self._of_time(self.road_temperature),
+                ),
+                Film(self._of_time(lambda t: (1 - self.road_fraction(t)) * self.tread_air_film(t)), air),
                 *self.sliding.conditions,
             ],
-            "outside_air": [Film(_of_time(self.air_film), air)],
-            "contained_air": [Film(_of_time(self.gas_film) if driven else laws.contained_air.film, gas)],
-            "rim": [Film(_of_time(self.rim_film) if driven else laws.rim.total_film, rim)],
+            "outside_air": [Film(self._of_time(self.air_film), air)],
+            "contained_air": [Film(self._of_time(self.gas_film) if driven else laws.contained_air.film, gas)],
+            "rim": [Film(self._of_time(self.rim_film) if driven else laws.rim.total_film, rim)],
         }
 
     @functools.cached_property
@@ -170,6 +177,24 @@ class RollingTyre(Surroundings):
             power = (lambda t: share * self.acting.rim_power(t)) if self.acting.at("rim_power") else 0.0
             found[RIM] = Reservoir(rim.heat_capacity * share, self.rim_temperature(0.0), tuple(exchanges), power)
         return found
+
+    def _added_states(self) -> AddedStates | None:
+        states = self.states
+        if states is None:
+            return None
+
+        def rate(t: float, z: Array, temperatures: BodyTemperatures) -> Array:
+            return states.rate(self, t, z, temperatures)
+
+        return AddedStates(states.initial, states.scale, rate, states.show)
+
+    def _of_time(self, law: Callable[[float], float]) -> Callable[[Any, float], float]:
+        """A datum f(x, t) that does not vary in space.
+
+        Solvers ask for the same times again, on fixed steps for all: it is remembered, unless a state may change it.
+        """
+        remembered = law if self.states is not None else functools.lru_cache(maxsize=REMEMBERED)(law)
+        return lambda _x, t: remembered(t)
 
     @functools.cached_property
     def hysteresis(self) -> dict[str, HeatSource]:
@@ -223,10 +248,5 @@ class RollingTyre(Surroundings):
             axisymmetric=True,
             element=self.study.card.mesh.element,
             reservoirs=self._reservoirs(),
+            states=self._added_states(),
         )
-
-
-def _of_time(law: Callable[[float], float]) -> Callable[[Any, float], float]:
-    """A datum f(x, t) that does not vary in space; solvers ask for the same times again, on fixed steps for all."""
-    remembered = functools.lru_cache(maxsize=REMEMBERED)(law)
-    return lambda _x, t: remembered(t)

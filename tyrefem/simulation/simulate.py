@@ -24,6 +24,8 @@ def simulate(
         progress=progress,
         partial=partial,
     )
+    if tyre.states is not None:
+        tyre.states.record(history.times, history.states)
     return ResultData(study, tyre, history, fields, clock.perf_counter() - began)
 
 

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import functools
 from dataclasses import dataclass
+from typing import Any
 
 import numpy as np
 from numpy.typing import NDArray
@@ -12,10 +13,13 @@ from tyrefem.boundaries import Contact
 from tyrefem.boundaries.road_film import propagation_depth
 from tyrefem.cache import Cache, fingerprint
 from tyrefem.effects.combined import Acting
+from tyrefem.effects.state import Value
+from tyrefem.errors import InputError
 from tyrefem.inputs.drive import Drive
 from tyrefem.inputs.motion import WheelMotion
 from tyrefem.inputs.study import StudyData
 from tyrefem.mechanics.cycle_schedule import CycleSchedule, cycle_schedule, rated_case
+from tyrefem.simulation.effect_states import EffectStates
 
 GAS, RIM = "contained-air", "rim"
 
@@ -43,6 +47,18 @@ class Surroundings:
     def acting(self) -> Acting:
         """The study's effects, at work on this tyre."""
         return Acting(self, self.study.effects)
+
+    @functools.cached_property
+    def states(self) -> EffectStates | None:
+        """The states of its effects; None where no effect keeps any."""
+        effects = self.acting.with_states
+        return EffectStates(self, effects) if effects else None
+
+    def state(self, effect: Any, name: str, t: float) -> Value:
+        """A state of an effect at a time."""
+        if self.states is None:
+            raise InputError(f"has no state '{name}'", field=f"effects.{effect.name}")
+        return self.states.value(effect, name, t)
 
     @functools.cached_property
     def rated_deflection(self) -> float:

@@ -1,0 +1,134 @@
+"""The states that a tyre's effects keep through a run: their places in one vector, and their values now."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass
+
+import numpy as np
+from numpy.typing import NDArray
+
+from tyrefem.effects import Effect
+from tyrefem.effects.state import EffectState, TemperaturesOfTyre, Value
+from tyrefem.effects.tyre import Tyre
+from tyrefem.errors import InputError
+
+Array = NDArray[np.float64]
+Key = tuple[str, ...]
+
+
+@dataclass(frozen=True)
+class StateHistory:
+    """A state over time: ``values`` (n_times,), or (n_times, n) with one value per place, in ``unit``."""
+
+    unit: str
+    meaning: str
+    values: Array
+
+
+@dataclass(frozen=True)
+class _Place:
+    """Where a state of an effect stands in the vector."""
+
+    effect: Effect
+    name: str
+    state: EffectState
+    part: slice
+    shape: tuple[int, ...]
+
+    @property
+    def label(self) -> str:
+        return " ".join([*_key(self.effect), self.name])
+
+
+def _key(effect: Effect) -> Key:
+    return effect.name, *effect.choice.values()
+
+
+class EffectStates:
+    """States of effects as one vector (k,).
+
+    During a run it shows the states at the time that is computed, after it those of the history.
+
+    Raises
+    ------
+    InputError : an effect's initial states are not those that it declares, or are not finite.
+    """
+
+    def __init__(self, tyre: Tyre, effects: Sequence[Effect]) -> None:
+        self.places: list[_Place] = []
+        initial: list[Array] = []
+        size = 0
+        for effect in effects:
+            given = _checked(effect, effect.initial_states(tyre), "initial_states")
+            for name, state in effect.states.items():
+                value = given[name]
+                self.places.append(_Place(effect, name, state, slice(size, size + value.size), value.shape))
+                initial.append(value.reshape(-1))
+                size += value.size
+        self.initial = np.concatenate(initial) if initial else np.zeros(0)
+        self.scale = np.concatenate([np.full(one.part.stop - one.part.start, one.state.scale) for one in self.places])
+        self._now: Array | None = None
+        self._history: tuple[Array, Array] | None = None
+
+    def rate(self, tyre: Tyre, t: float, z: Array, temperatures: TemperaturesOfTyre) -> Array:
+        """Rates (k,) per second of the states z (k,)."""
+        rates = np.empty(z.size)
+        effects = {_key(one.effect): one.effect for one in self.places}
+        for key, effect in effects.items():
+            mine = [one for one in self.places if _key(one.effect) == key]
+            state = {one.name: self._value(one, z) for one in mine}
+            given = _checked(effect, effect.state_rates(tyre, t, state, temperatures), "state_rates")
+            for one in mine:
+                if given[one.name].shape != one.shape:
+                    words = f"state '{one.name}' has the shape {one.shape}, its rate {given[one.name].shape}"
+                    raise InputError(f"{words}", field=f"effects.{effect.name}.state_rates")
+                rates[one.part] = given[one.name].reshape(-1)
+        return rates
+
+    def show(self, z: Array) -> None:
+        """From now on these are the states."""
+        self._now = z
+
+    def record(self, times: Array, values: Array) -> None:
+        """The run is over: from now on states are those of its history, values (n_times, k)."""
+        self._now, self._history = None, (times, values)
+
+    def value(self, effect: Effect, name: str, t: float) -> Value:
+        """A state at a time: of the step that is computed, else of the history; before a run, the initial one."""
+        place = next((one for one in self.places if one.name == name and _key(one.effect) == _key(effect)), None)
+        if place is None:
+            raise InputError(f"has no state '{name}'", field=f"effects.{effect.name}")
+        if self._now is not None:
+            return self._value(place, self._now)
+        if self._history is None:
+            return self._value(place, self.initial)
+        times, values = self._history
+        return self._value(place, np.array([np.interp(t, times, column) for column in values.T]))
+
+    @staticmethod
+    def _value(place: _Place, z: Array) -> Value:
+        part = z[place.part].reshape(place.shape)
+        return part if part.ndim else float(part)
+
+    def named(self, values: Array) -> dict[str, StateHistory]:
+        """ "effect state" -> its history, from values (n_times, k)."""
+        return {
+            one.label: StateHistory(
+                one.state.unit, one.state.meaning, values[:, one.part].reshape(len(values), *one.shape)
+            )
+            for one in self.places
+        }
+
+
+def _checked(effect: Effect, given: Mapping[str, Value], method: str) -> dict[str, Array]:
+    """What an effect's method returned, by state; arrays () or (n,)."""
+    field = f"effects.{effect.name}.{method}"
+    if not isinstance(given, Mapping) or set(given) != set(effect.states):
+        names = ", ".join(effect.states)
+        raise InputError(f"must return a mapping with {names}, not {given!r:.60}", field=field)
+    values = {name: np.asarray(value, dtype=float) for name, value in given.items()}
+    for name, value in values.items():
+        if value.ndim > 1 or not np.isfinite(value).all():
+            raise InputError(f"'{name}' must be finite, a number or an array (n,), not {value!r:.60}", field=field)
+    return values
