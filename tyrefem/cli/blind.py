@@ -46,16 +46,16 @@ def blind(
     from tyrefem.reports.blind import FILES, save
     from tyrefem.variants.answer_store import PROGRESS
 
-    found = load(study, settings(changes), case)
-    NEEDS.check(found)
-    warn(found.warnings)
-    place = out or Path("results") / f"{found.name}-blind"
+    loaded = load(study, settings(changes), case)
+    NEEDS.check(loaded)
+    warn(loaded.warnings)
+    place = out or Path("results") / f"{loaded.name}-blind"
     with (
         results_folder(place, "blind", FILES, force=force, keeps=["cases/*.json", f"{PROGRESS}/*/*.npz"]) as folder,
-        progress(f"{found.name}: {cases} cases", 1.0, quiet=quiet or as_json) as step,
+        progress(f"{loaded.name}: {cases} cases", 1.0, quiet=quiet or as_json) as step,
     ):
         cores, tick = workers or os.cpu_count() or 1, lambda done: step(done / cases)
-        result = run_blind(found, cases, seed, folder, cores, tick, reduced=reduced)
+        result = run_blind(loaded, cases, seed, folder, cores, tick, reduced=reduced)
         save(result, folder)
     if as_json:
         print_json(result.to_dict())

@@ -36,7 +36,7 @@ def check(
     if not os.path.lexists(path):
         from tyrefem import library
 
-        known = {name: own for kind in reversed(KINDS) for name, own in library.names(kind).items()}
+        known = {name: of_kind for kind in reversed(KINDS) for name, of_kind in library.names(kind).items()}
         if file not in known:
             hint = nearest(file, known)
             raise InputError(f"no such file, and no study, sweep, section or material of that name{hint}", file=file)
@@ -95,20 +95,20 @@ def _card(path: Path) -> str:
     from tyrefem.api import study
     from tyrefem.compare.study_check import check_study
 
-    found = study(str(path.resolve()))
-    if found.is_campaign:
-        campaign = found.campaign()
-        said: list[str] = []
+    checked = study(str(path.resolve()))
+    if checked.is_campaign:
+        campaign = checked.campaign()
+        warned: list[str] = []
         for case in campaign.cases:
             study_of_case = campaign.case_study(case)
             check_study(study_of_case)
-            said += warn(study_of_case.warnings, said)
+            warned += warn(study_of_case.warnings, warned)
         return f"a campaign of {len(campaign.cases)} cases"
-    tables = check_study(found)
-    warn(found.warnings)
+    tables = check_study(checked)
+    warn(checked.warnings)
     return (
-        f"a study of {len(found.card.drive.phases)} phase(s), {found.card.drive.end:g} s, "
-        f"{len(found.sensors)} sensors, {tables} measured run(s)"
+        f"a study of {len(checked.card.drive.phases)} phase(s), {checked.card.drive.end:g} s, "
+        f"{len(checked.sensors)} sensors, {tables} measured run(s)"
     )
 
 

@@ -70,7 +70,7 @@ def _options(
 
 def _register() -> None:
     """Every module of the package that has a ``register`` is a command; ``ORDER`` is its place in the help."""
-    names = [found.name for found in pkgutil.iter_modules([str(Path(__file__).parent)]) if found.name != "commands"]
+    names = [entry.name for entry in pkgutil.iter_modules([str(Path(__file__).parent)]) if entry.name != "commands"]
     modules = [importlib.import_module(f"{__package__}.{name}") for name in names]
     commands = [module for module in modules if hasattr(module, "register")]
     for module in sorted(commands, key=lambda module: module.ORDER):

@@ -13,11 +13,11 @@ from tyrefem.cli.line import fail as fail
 from tyrefem.errors import InputError
 
 
-def warn(warnings: Iterable[object], said: Collection[str] = ()) -> tuple[str, ...]:
+def warn(warnings: Iterable[object], printed: Collection[str] = ()) -> tuple[str, ...]:
     """A line on stderr for every warning that was not said before; all of them as text."""
     lines = tuple(map(str, warnings))
     for line in dict.fromkeys(lines):
-        if line not in said:
+        if line not in printed:
             fail(f"warning: {line}")
     return lines
 

@@ -62,20 +62,20 @@ def compare(
     from tyrefem.reports.comparison import FILES
     from tyrefem.variants.answer_store import PROGRESS, AnswerStore
 
-    found = load(study, settings(changes), case)
-    NEEDS.check(found, table)
-    warn(found.warnings)
-    place = out or Path("results") / f"{found.name}-compare"
-    read = [table] if table else [entry.table for entry in found.measured]
+    loaded = load(study, settings(changes), case)
+    NEEDS.check(loaded, table)
+    warn(loaded.warnings)
+    place = out or Path("results") / f"{loaded.name}-compare"
+    read = [table] if table else [entry.table for entry in loaded.measured]
     quiet, keeps = quiet or as_json, [f"{PROGRESS}/*/*.npz"]
     with results_folder(place, "compare", FILES, inputs=read, force=force, keeps=keeps) as folder:
         store = AnswerStore(folder / PROGRESS)
         with (
             keeping(lambda: store.kept),
-            progress(f"{found.name}: simulations", 1.0, quiet=quiet) as step,
+            progress(f"{loaded.name}: simulations", 1.0, quiet=quiet) as step,
             _side_by_side(workers or (os.cpu_count() or 1 if inputs else 1)) as executor,
         ):
-            comparison = found.compare(
+            comparison = loaded.compare(
                 table,
                 ignore=tuple(ignore or ()),
                 rename=renamed(rename),

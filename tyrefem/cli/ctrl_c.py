@@ -90,12 +90,12 @@ def interruption_in(error: BaseException) -> KeyboardInterrupt | None:
     KeyboardInterrupt()
     """
     each: BaseException | None = error
-    found = None
-    while each is not None and not isinstance(found, Interrupted):
+    interruption = None
+    while each is not None and not isinstance(interruption, Interrupted):
         if isinstance(each, KeyboardInterrupt):
-            found = each
+            interruption = each
         each = each.__cause__ or each.__context__
-    return found
+    return interruption
 
 
 def line_of(interruption: KeyboardInterrupt | None) -> str:

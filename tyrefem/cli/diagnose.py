@@ -61,16 +61,16 @@ def diagnose(
     from tyrefem.reports.diagnosis import FILES
     from tyrefem.variants.answer_store import PROGRESS
 
-    found = load(study, settings(changes), case)
-    NEEDS.check(found, table)
-    warn(found.warnings)
-    place = out or Path("results") / f"{found.name}-diagnosis"
-    read = [table] if table else [entry.table for entry in found.measured]
+    loaded = load(study, settings(changes), case)
+    NEEDS.check(loaded, table)
+    warn(loaded.warnings)
+    place = out or Path("results") / f"{loaded.name}-diagnosis"
+    read = [table] if table else [entry.table for entry in loaded.measured]
     with results_folder(place, "diagnose", FILES, inputs=read, force=force, keeps=[f"{PROGRESS}*/*/*.npz"]) as folder:
         store = ProgressStore(folder / PROGRESS)
         with keeping(lambda: store.kept), stages(quiet=quiet or as_json) as tick:
             tick("reading", 0, 0)
-            diagnosis = found.diagnose(
+            diagnosis = loaded.diagnose(
                 table,
                 ignore=tuple(ignore or ()),
                 rename=renamed(rename),

@@ -115,12 +115,12 @@ def export(
 
             write_fmu(path, files["fmu"])
     if as_json:
-        print_json({**vars(certificate), **{name: str(one) for name, one in files.items()}})
+        print_json({**vars(certificate), **{name: str(file) for name, file in files.items()}})
         return
     for line in words(certificate):
         typer.echo(line)
-    for one in files.values():
-        typer.echo(f"wrote {one} ({one.stat().st_size / 1e3:.0f} kB)")
+    for file in files.values():
+        typer.echo(f"wrote {file} ({file.stat().st_size / 1e3:.0f} kB)")
     if fmu and not has_binary(files["fmu"]):
         fail("no C compiler was found: the FMU holds its source only; the importing tool has to compile it")
 
@@ -144,15 +144,15 @@ def has_binary(path: Path) -> bool:
 
 def words(certificate: RealTimeCertificate) -> list[str]:
     """What a person reads of a certificate."""
-    found = [
+    lines = [
         f"trained on {certificate.trained_on} full runs, certified on {certificate.cases[0]} steady and "
         f"{certificate.cases[1]} changing ones of {certificate.duration:g} s in steps of 1 s: "
         f"largest error {certificate.worst:.3g} K (allowed {certificate.tolerance:g} K)"
     ]
     for kind, errors in (("steady", certificate.steady), ("changing", certificate.driven)):
-        said = ", ".join(f"{name} {one:.2g}" for name, one in errors.items() if name != "rolling_resistance")
-        found.append(f"  {kind}, K: {said}; rolling resistance {errors['rolling_resistance']:.2g} N")
-    return found
+        listed = ", ".join(f"{name} {value:.2g}" for name, value in errors.items() if name != "rolling_resistance")
+        lines.append(f"  {kind}, K: {listed}; rolling resistance {errors['rolling_resistance']:.2g} N")
+    return lines
 
 
 #: Place among the commands.

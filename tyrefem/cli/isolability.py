@@ -47,17 +47,17 @@ def isolability(
     from tyrefem.reports.isolability import picture
     from tyrefem.variants.answer_store import PROGRESS
 
-    found = load(study, settings(changes), case)
-    NEEDS.check(found)
-    warn(found.warnings)
+    loaded = load(study, settings(changes), case)
+    NEEDS.check(loaded)
+    warn(loaded.warnings)
     count = workers or min(os.cpu_count() or 1, 4)
-    place = out or Path("results") / f"{found.name}-isolability"
+    place = out or Path("results") / f"{loaded.name}-isolability"
     with results_folder(place, "isolability", FILES, force=force, keeps=[f"{PROGRESS}/*/*.npz"]) as folder:
         store = ProgressStore(folder / PROGRESS)
         with keeping(lambda: store.kept):
-            with progress(f"{found.name}: sensitivities", 1.0, quiet=quiet or as_json) as step:
+            with progress(f"{loaded.name}: sensitivities", 1.0, quiet=quiet or as_json) as step:
                 result = found_by(
-                    found, workers=count, progress=lambda _what, done, total: step(done / max(total, 1)), store=store
+                    loaded, workers=count, progress=lambda _what, done, total: step(done / max(total, 1)), store=store
                 )
             with atomic_folder(folder) as temporary:
                 result.table.to_csv(temporary / "isolability.csv", index=False, lineterminator="\n")

@@ -69,21 +69,21 @@ def press(
 
     texts = {"pressure": pressure, "load": load, "deflection": deflection, "drum_diameter": drum, "camber": camber}
     given = {name: _read(name, text) for name, text in texts.items() if text is not None}
-    found = load_study(study, settings(changes), case)
-    NEEDS.check(found)
-    warn(found.warnings)
+    loaded = load_study(study, settings(changes), case)
+    NEEDS.check(loaded)
+    warn(loaded.warnings)
     with (
-        results_folder(out or Path("results") / f"{found.name}-press", "press", FILES, force=force) as folder,
-        progress(f"{found.name}: inflated and pressed", quiet=quiet or as_json),
+        results_folder(out or Path("results") / f"{loaded.name}-press", "press", FILES, force=force) as folder,
+        progress(f"{loaded.name}: inflated and pressed", quiet=quiet or as_json),
     ):
         try:
             for place in at or ():
-                read_place(found.section, place)
-            result = pressed_by(found, **given, balanced=balanced)
+                read_place(loaded.section, place)
+            result = pressed_by(loaded, **given, balanced=balanced)
             places = cycle_places(result, at or ())
             curve = result.curve()
         except InputError as error:
-            raise _placed(error, given, found) from None
+            raise _placed(error, given, loaded) from None
         write_files(result, folder, places, curve, pictures=pictures, vtk=vtk)
     if result.footprint.unstable:
         many = ", ".join(map(str, result.footprint.unstable))
@@ -121,7 +121,7 @@ def _placed(error: InputError, given: dict[str, float], study: Study) -> InputEr
 
 
 def _words(result: Pressed) -> str:
-    tyre, found, loss = result.tyre, result.footprint, result.loss
+    tyre, footprint, loss = result.tyre, result.footprint, result.loss
     drum = result.pressing.road.drum_diameter
     road = "flat road" if math.isinf(drum) else f"drum of {drum:.4g} m"
     camber = math.degrees(result.pressing.road.camber)
@@ -140,23 +140,24 @@ def _words(result: Pressed) -> str:
             force = "{:.3g} / {:.3g} / {:.3g} N a cord".format(*layer.tension)
         lines.append(f"  cords of {region:10} {least:.2f} / {mean:.2f} / {greatest:.2f} % (least, mean, most), {force}")
     lines += [
-        f"  {road:19} {found.load:.1f} N at {found.deflection * 1e3:.2f} mm; stiffness "
-        f"{result.secant_stiffness / 1e3:.1f} N/mm secant, {found.stiffness / 1e3:.1f} N/mm tangent{leaning}",
-        f"  footprint           {found.length * 1e3:.1f} mm long, {found.width * 1e3:.1f} mm wide, "
-        f"{found.area * 1e4:.1f} cm2; pressure {found.mean_pressure / 1e3:.0f} kPa mean, "
+        f"  {road:19} {footprint.load:.1f} N at {footprint.deflection * 1e3:.2f} mm; stiffness "
+        f"{result.secant_stiffness / 1e3:.1f} N/mm secant, {footprint.stiffness / 1e3:.1f} N/mm tangent{leaning}",
+        f"  footprint           {footprint.length * 1e3:.1f} mm long, {footprint.width * 1e3:.1f} mm wide, "
+        f"{footprint.area * 1e4:.1f} cm2; pressure {footprint.mean_pressure / 1e3:.0f} kPa mean, "
         f"{result.peak_pressure / 1e3:.0f} kPa peak",
-        f"  rolling radius      {found.rolling_radius * 1e3:.2f} mm (loaded {found.loaded_radius * 1e3:.2f} mm)",
+        f"  rolling radius      {footprint.rolling_radius * 1e3:.2f} mm "
+        f"(loaded {footprint.loaded_radius * 1e3:.2f} mm)",
         "  rolling resistance  the wheel stands"
         if loss is None
         else f"  rolling resistance  {loss.rolling_resistance:.1f} N, coefficient {loss.coefficient:.5f} at "
         f"{result.speed:.4g} m/s and {loss.temperature:.4g} degC",
-        f"  harmonics           {found.harmonics}, error {found.error:.2%} (allowed {result.tolerance:.0%}); "
+        f"  harmonics           {footprint.harmonics}, error {footprint.error:.2%} (allowed {result.tolerance:.0%}); "
         f"{tyre.body.rings.n_nodes} nodes",
         "  motion              {}; linear strains leave out {:.0%} of themselves on average, {:.0%} in the {}".format(
             "large, in balance" if result.balanced else "linear about the inflated tyre", *result.left_out
         ),
     ]
-    lines += [f"  {one.words}" for one in result.published]
+    lines += [f"  {value.words}" for value in result.published]
     return "\n".join(lines)
 
 

@@ -109,14 +109,14 @@ def identify(
                 count += 1
                 step(min(count, total))
 
-            found = rigs.identify(card, tests=tests, linear=not constant, progress=one_more)
-        save(found, folder, base or [])
+            identification = rigs.identify(card, tests=tests, linear=not constant, progress=one_more)
+        save(identification, folder, base or [])
     if as_json:
-        print_json(found.to_dict())
+        print_json(identification.to_dict())
         return
-    for one in found.properties:
-        typer.echo(f"{spoken(one.name):34}{shown(one, 4):42}{one.verdict}")
-    for words in found.words:
+    for estimate in identification.properties:
+        typer.echo(f"{spoken(estimate.name):34}{shown(estimate, 4):42}{estimate.verdict}")
+    for words in identification.words:
         typer.echo(f"- {words}")
     typer.echo(f"results in {folder}; read {folder / 'report.html'}")
     if chosen:
@@ -166,12 +166,12 @@ def layers(
             with held_back():
                 save_layer_table(LayerStudy(tuple(finished), tuple(finished.values())), folder, complete=False)
             raise Interrupted(f"{len(finished)} of {len(counts)} fits are in {folder / 'layers.csv'}") from None
-        found = LayerStudy(tuple(finished), tuple(finished.values()))
-        save_layers(found, folder)
+        comparison = LayerStudy(tuple(finished), tuple(finished.values()))
+        save_layers(comparison, folder)
     if as_json:
-        print_json({"rows": found.table().to_dict("records")})
+        print_json({"rows": comparison.table().to_dict("records")})
         return
-    typer.echo(found.table().to_string(index=False, float_format="%.3g"))
+    typer.echo(comparison.table().to_string(index=False, float_format="%.3g"))
     typer.echo(f"results in {folder}")
 
 

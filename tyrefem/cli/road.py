@@ -148,14 +148,14 @@ def _print_averaging(errors: Sequence[Any]) -> None:
     from tyrefem.reports.figures.road import SMALL, holds_above
 
     typer.echo("FL m, v km/h: mean surface resolved, averaged degC; averaged - resolved K; swing in one contact K")
-    for found in errors:
-        v, length = found.point.speed * 3.6, found.point.footprint_length
+    for error in errors:
+        v, length = error.point.speed * 3.6, error.point.footprint_length
         typer.echo(
-            f"{length:5.2f} {v:7.1f} {found.mean_surface:9.2f} {found.averaged_surface:9.2f} "
-            f"{found.surface_difference:+8.2f} {found.swing:8.2f}"
+            f"{length:5.2f} {v:7.1f} {error.mean_surface:9.2f} {error.averaged_surface:9.2f} "
+            f"{error.surface_difference:+8.2f} {error.swing:8.2f}"
         )
     for length in LENGTHS:
-        above = holds_above([found for found in errors if found.point.footprint_length == length])
+        above = holds_above([error for error in errors if error.point.footprint_length == length])
         where = f"from {above * 3.6:.4g} km/h" if above is not None else "at no speed of the sweep"
         typer.echo(f"footprint {length * 1e3:.0f} mm: averaging holds to {SMALL:g} K {where}")
 

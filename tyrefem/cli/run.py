@@ -51,24 +51,24 @@ def run(
     from tyrefem.reports.run_files import run_files
 
     values = settings(changes)
-    found = load(study, values, case)
-    place = out or Path("results") / found.name
+    loaded = load(study, values, case)
+    place = out or Path("results") / loaded.name
     quiet = quiet or as_json
-    tables = [entry.table for entry in found.measured]
-    if found.is_campaign:
-        campaign = found.campaign()
+    tables = [entry.table for entry in loaded.measured]
+    if loaded.is_campaign:
+        campaign = loaded.campaign()
         _refuse_overlaid(campaign, values)
         with results_folder(place, "run", campaign_files(campaign), inputs=tables, force=force) as folder:
             _campaign(campaign, folder, pictures, vtk, revolved, as_json, quiet)
     else:
-        with results_folder(place, "run", run_files(found), inputs=tables, force=force) as folder:
-            _single(found, folder, pictures, vtk, revolved, as_json, quiet)
+        with results_folder(place, "run", run_files(loaded), inputs=tables, force=force) as folder:
+            _single(loaded, folder, pictures, vtk, revolved, as_json, quiet)
         if as_json:
             print_file(folder / "summary.json")
 
 
 def _single(study: Study, folder: Path, pictures: bool, vtk: bool, revolved: bool, as_json: bool, quiet: bool) -> None:
-    said = warn(study.warnings)
+    warned = warn(study.warnings)
     with progress(study.name, study.card.drive.end, quiet=quiet) as step:
         result = study.run(step, partial=True)
     reached = f"{result.times[-1]:g} s" if result.history.interrupted else ""
@@ -81,7 +81,7 @@ def _single(study: Study, folder: Path, pictures: bool, vtk: bool, revolved: boo
         if pictures:
             result.plot(folder / "pictures")
             result.report(folder / "report.html")
-    warn(() if reached else result.warnings, said)
+    warn(() if reached else result.warnings, warned)
     if not as_json:
         typer.echo(_words(result))
         typer.echo(f"results in {folder}" + (f"; read {folder / 'report.html'}" if pictures else ""))
@@ -112,7 +112,7 @@ def _words(result: Result) -> str:
     ]
     if result.feedback is not None:
         lines.append(f"  feedback            {result.feedback.words}")
-    lines += [f"  {one.words}" for one in of_run(result)]
+    lines += [f"  {value.words}" for value in of_run(result)]
     if result.sliding is not None:
         lines += list(phase_lines(result.sliding))
     return "\n".join(lines)

@@ -137,10 +137,10 @@ def _strain(name: str, values: dict[str, Any], case: str | None) -> tuple[Any, d
     from tyrefem.reports.figures.strain import strain_figure
     from tyrefem.simulation.rolling_tyre import RollingTyre
 
-    found = _single(name, values, case)
-    if found.card.mechanics.strain != "arcs":
+    loaded = _single(name, values, case)
+    if loaded.card.mechanics.strain != "arcs":
         raise InputError('the picture of the strain cycle needs strain = "arcs"', field="mechanics.strain", file=name)
-    largest = RollingTyre(found).schedule.cases[0][-1]
+    largest = RollingTyre(loaded).schedule.cases[0][-1]
     facts = {
         "load_N": largest.load,
         "pressure_Pa": largest.pressure,
@@ -149,7 +149,7 @@ def _strain(name: str, values: dict[str, Any], case: str | None) -> tuple[Any, d
         "footprint_length_m": largest.footprint_length,
         "road_fraction": largest.road_fraction,
     }
-    return strain_figure(found), facts
+    return strain_figure(loaded), facts
 
 
 def _effect(name: str) -> None:
@@ -184,9 +184,9 @@ def _print(kind: str, name: str, values: dict[str, Any], case: str | None) -> No
 
     data: dict[str, Any]
     if kind == "study":
-        found = study(name, values, case)
-        warn(found.warnings)
-        data, path = dict(found.data), found.file
+        shown_study = study(name, values, case)
+        warn(shown_study.warnings)
+        data, path = dict(shown_study.data), shown_study.file
     elif kind == "sweep":
         from tyrefem.sweep.design import loaded
 

@@ -57,7 +57,7 @@ def rise(
     not_negative(**{"--friction": f})
     edge = sliding.exit_rise_of_stress(f * p, v, long, below)
     flux, dwell = sliding.heat_flux(f * p * long, v, long, 1.0), long / v
-    found: dict[str, Any] = {
+    rises: dict[str, Any] = {
         "contact_pressure_Pa": p,
         "heat_flux_W_m2": flux,
         "time_under_pad_s": dwell,
@@ -69,10 +69,10 @@ def rise(
         "heated_depth_m": 2.0 * (below.diffusivity * dwell) ** 0.5,
     }
     if behind is not None:
-        found["rise_behind_K"] = edge * sliding.fall_off(_read("--behind", behind, "m"), long)
+        rises["rise_behind_K"] = edge * sliding.fall_off(_read("--behind", behind, "m"), long)
     if slid is not None:
-        found["share_into_slider"] = sliding.share_into_slider(long, _read("--slid", slid, "m"), top, below)
-    _give(found, as_json)
+        rises["share_into_slider"] = sliding.share_into_slider(long, _read("--slid", slid, "m"), top, below)
+    _give(rises, as_json)
 
 
 @group.command()
@@ -206,11 +206,11 @@ def _contact_pressure(pressure: str | None, load: str | None, breadth: str | Non
     return force / (length * wide)
 
 
-def _give(found: dict[str, Any], as_json: bool) -> None:
+def _give(values: dict[str, Any], as_json: bool) -> None:
     if as_json:
-        print_json(found)
+        print_json(values)
         return
-    for key, value in found.items():
+    for key, value in values.items():
         typer.echo(f"{key:28} {value:.5g}")
 
 

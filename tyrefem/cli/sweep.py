@@ -164,7 +164,7 @@ def sweep(
     from tyrefem.reports.sweep_files import FILES, KEPT, save
     from tyrefem.variants.execution import Execution
 
-    said = asked(
+    given = asked(
         vary=vary, uncertain=uncertain, sample=sample, count=count, seed=seed, cases=cases, limit=limit,
         time_to=time_to, answer=answer, pareto=pareto, indices=indices, tornado=tornado, tolerance_of=tolerance_of,
         minimise=minimise, maximise=maximise, runs=runs, envelope=envelope, loads=loads, pressures=pressures,
@@ -174,32 +174,32 @@ def sweep(
         how = Execution(restart=restart, reduced=reduced, tolerance=parse(tolerance, "delta_degC"))
     except InputError as error:
         raise error if error.field else error.within(field="--tolerance") from None
-    name, wanted = questions(study, said, settings(changes), case)
+    name, wanted = questions(study, given, settings(changes), case)
     warn(wanted.study.warnings)
     with (
         results_folder(out or Path("results") / f"{name}-sweep", "sweep", FILES, force=force, keeps=KEPT) as folder,
         stages(quiet=quiet or as_json) as tick,
     ):
-        found = answered(wanted, how.given({"folder": folder, "progress": tick}), scheduler, workers)
+        design = answered(wanted, how.given({"folder": folder, "progress": tick}), scheduler, workers)
         tick("drawing", 0, 1)
         with keeping(f"finished variants are in {folder}, the same command goes on"):
-            summary = save(found, folder, pictures=pictures)
+            summary = save(design, folder, pictures=pictures)
     if as_json:
         print_file(folder / "summary.json")
     else:
         for line in summary["words"]:
             typer.echo(line)
         typer.echo(f"results in {folder}" + (f"; read {folder / 'sweep.html'}" if pictures else ""))
-    for variant, reason in list(found.failed.items())[:TOLD]:
+    for variant, reason in list(design.failed.items())[:TOLD]:
         fail(f"variant {variant}: {reason}")
-    if len(found.failed) > TOLD:
-        fail(f"... and {len(found.failed) - TOLD} more; all are in {folder / 'sweep.csv'}")
+    if len(design.failed) > TOLD:
+        fail(f"... and {len(design.failed) - TOLD} more; all are in {folder / 'sweep.csv'}")
     kept = f"what is finished is in {folder}, the same command goes on"
-    if found.interrupted == "interrupted":
+    if design.interrupted == "interrupted":
         raise Interrupted(kept)
-    if found.interrupted:
-        raise typer.Exit(fail(f"{found.interrupted}; {kept}", 1))
-    if found.failed:
+    if design.interrupted:
+        raise typer.Exit(fail(f"{design.interrupted}; {kept}", 1))
+    if design.failed:
         raise typer.Exit(1)
 
 

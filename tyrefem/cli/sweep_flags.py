@@ -50,9 +50,9 @@ def asked(
         raise InputError("has a sample of its own: leave --sample and --count out", field="--indices")
     if cases is not None and sample is None:
         sample = "list"
-    tolerances = _once([_tolerance(one) for one in tolerance_of or []], "--tolerance-of")
-    said: dict[str, Any] = {
-        "vary": _once([varied(one) for one in vary or []], "--vary"),
+    tolerances = _once([_tolerance(text) for text in tolerance_of or []], "--tolerance-of")
+    given: dict[str, Any] = {
+        "vary": _once([varied(text) for text in vary or []], "--vary"),
         "uncertain": uncertain,
         "sample": "saltelli" if indices is not None else sample,
         "count": count if indices is None else indices,
@@ -62,14 +62,14 @@ def asked(
         "limits": _limits(limit or []) or None,
         "time_to": time_to,
         "answers": answer or None,
-        "pareto": _once([_aim(one) for one in pareto or []], "--pareto"),
+        "pareto": _once([_aim(text) for text in pareto or []], "--pareto"),
         "tornado": {"tolerances": tolerances or {}} if tornado else None,
         "optimise": _optimise(minimise, maximise, runs, seed),
         "envelope": _envelope(envelope, loads, pressures, speeds),
     }
     if tolerance_of and not tornado:
         raise InputError("goes with --tornado", field="--tolerance-of")
-    return {key: value for key, value in said.items() if value is not None}
+    return {key: value for key, value in given.items() if value is not None}
 
 
 def varied(text: str) -> tuple[str, dict[str, Any]]:
@@ -103,12 +103,12 @@ def varied(text: str) -> tuple[str, dict[str, Any]]:
 
 def _once(pairs: list[tuple[str, Any]], flag: str) -> dict[str, Any] | None:
     """What a flag says of every name; None: nothing."""
-    found: dict[str, Any] = {}
+    by_key: dict[str, Any] = {}
     for key, value in pairs:
-        if key in found:
+        if key in by_key:
             raise InputError(f"'{key}' is given twice", field=flag)
-        found[key] = value
-    return found or None
+        by_key[key] = value
+    return by_key or None
 
 
 def _pair(text: str, flag: str, example: str) -> tuple[str, str]:
@@ -146,14 +146,14 @@ def _bound(text: str, flag: str) -> tuple[str, str, float]:
 
 
 def _limits(texts: list[str]) -> dict[str, dict[str, float]]:
-    found: dict[str, dict[str, float]] = {}
+    limits: dict[str, dict[str, float]] = {}
     for text in texts:
         name, sign, value = _bound(text, "--limit")
         key = "below" if sign == "<" else "above"
-        if key in found.setdefault(name, {}):
+        if key in limits.setdefault(name, {}):
             raise InputError(f"'{name}' is limited twice", field="--limit")
-        found[name][key] = value
-    return found
+        limits[name][key] = value
+    return limits
 
 
 def _aim(text: str) -> tuple[str, str]:
@@ -170,8 +170,8 @@ def _optimise(minimise: str | None, maximise: str | None, runs: int | None, seed
         if runs is not None:
             raise InputError("goes with --minimise or --maximise", field="--runs")
         return None
-    said = {"minimise": minimise, "maximise": maximise, "runs": runs, "seed": seed}
-    return {key: value for key, value in said.items() if value is not None}
+    given = {"minimise": minimise, "maximise": maximise, "runs": runs, "seed": seed}
+    return {key: value for key, value in given.items() if value is not None}
 
 
 def _envelope(text: str | None, loads: str | None, pressures: str | None, speeds: str | None) -> dict[str, Any] | None:
@@ -184,21 +184,21 @@ def _envelope(text: str | None, loads: str | None, pressures: str | None, speeds
     answer, sign, bound = _bound(text, "--envelope")
     if sign != "<":
         raise InputError(f"'{text}' must be ANSWER<VALUE, e.g. 'hottest_degC<110'", field="--envelope")
-    said: dict[str, Any] = {"below": bound, "answer": answer}
+    chosen: dict[str, Any] = {"below": bound, "answer": answer}
     if loads is not None:
-        said["loads"] = _listed(loads, "--loads")
+        chosen["loads"] = _listed(loads, "--loads")
     if pressures is not None:
-        said["pressures"] = _listed(pressures, "--pressures")
+        chosen["pressures"] = _listed(pressures, "--pressures")
     if speeds is not None:
         slow, colon, fast = speeds.partition(":")
         if not colon:
             raise InputError(f"'{speeds}' is not FROM:TO, e.g. '1 m/s:60 m/s'", field="--speeds")
-        said |= {"slowest": slow.strip(), "fastest": fast.strip()}
-    return said
+        chosen |= {"slowest": slow.strip(), "fastest": fast.strip()}
+    return chosen
 
 
 def questions(
-    name: str, said: dict[str, Any], changes: dict[str, Any], case: str | None = None
+    name: str, given: dict[str, Any], changes: dict[str, Any], case: str | None = None
 ) -> tuple[str, Questions]:
     """The questions of a sweep file or a study by name or path, what flags say laid over, and a name for their folder.
 
@@ -217,14 +217,14 @@ def questions(
     path = Path(name)
     is_file = path.suffix == ".toml" and path.is_file() and "study" in read_toml(path)
     if is_file or (path / "sweep.toml").is_file() or name in library.names("sweep"):
-        found = library.find("sweep", name)
-        stem = found.parent.resolve().name if found.name == "sweep.toml" else found.stem
-        return stem, asked.loaded(name, changes, **said, **({} if case is None else {"case": case}))
+        file = library.find("sweep", name)
+        stem = file.parent.resolve().name if file.name == "sweep.toml" else file.stem
+        return stem, asked.loaded(name, changes, **given, **({} if case is None else {"case": case}))
     if path.suffix != ".toml" and os.sep not in name and name not in library.names("study") and not path.is_dir():
         known = [*library.names("study"), *library.names("sweep")]
         raise InputError(f"no study or sweep named '{name}'{nearest(name, known)}")
     study = load(name, changes, case)
-    return study.name, asked.questions(study, SweepCard.check({"study": name, **said}), Path())
+    return study.name, asked.questions(study, SweepCard.check({"study": name, **given}), Path())
 
 
 class _InterruptedError(Exception):
@@ -235,12 +235,12 @@ def answered(wanted: Questions, how: Execution, address: str | None, workers: in
     """The answers, by a Dask cluster at an address or by so many processes; None: one per core."""
     try:
         with _scheduler(address, workers) as where:
-            found = wanted.answered(how, scheduler=where)
-            if found.interrupted:
+            design = wanted.answered(how, scheduler=where)
+            if design.interrupted:
                 raise _InterruptedError
     except _InterruptedError:
         pass
-    return found
+    return design
 
 
 @contextmanager

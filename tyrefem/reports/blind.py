@@ -22,33 +22,33 @@ LINE = 0.21
 FILES = ("blind.json", "blind.png")
 
 
-def save(found: Blind, folder: Path) -> None:
+def save(rates: Blind, folder: Path) -> None:
     """Write ``blind.json`` and ``blind.png``, each complete or not there.
 
     Raises
     ------
     InputError : the folder cannot be written.
     """
-    count = len(found.rows)
+    count = len(rates.rows)
     with keeping(f"{count} of {count} cases are finished; the same command goes on from there"):
-        write_json(found.to_dict(), folder / "blind.json")
+        write_json(rates.to_dict(), folder / "blind.json")
         with atomic_path(folder / "blind.png") as temporary:
-            temporary.write_bytes(png(picture(found)))
+            temporary.write_bytes(png(picture(rates)))
 
 
-def picture(found: Blind) -> Figure:
+def picture(blind: Blind) -> Figure:
     """Three parts: rates; reliability; cases by effect. Intervals of 95 % (Wilson)."""
-    rates = [(name, rate) for name, rate in found.rates.items() if rate.of]
-    effects = found.by_effect
+    rates = [(name, rate) for name, rate in blind.rates.items() if rate.of]
+    effects = blind.by_effect
     left = LINE * max(len(rates), 8)
     below = LINE * len(effects)
     drawn = figure(10.6, TITLE + left + below + 1.6)
     axes = add_axes(drawn, 3.9, below + 1.4, 2.6, left)
     _rates(axes, rates)
-    _reliability(add_axes(drawn, 7.6, below + 1.4 + max(left - 2.6, 0.0), 2.6, min(left, 2.6)), found)
+    _reliability(add_axes(drawn, 7.6, below + 1.4 + max(left - 2.6, 0.0), 2.6, min(left, 2.6)), blind)
     if effects:
         _effects(add_axes(drawn, 3.9, 0.55, 6.3, below), effects)
-    title(drawn, f"Blind test of {found.study}", f"{len(found.rows)} cases, seed {found.seed}; intervals of 95 %")
+    title(drawn, f"Blind test of {blind.study}", f"{len(blind.rows)} cases, seed {blind.seed}; intervals of 95 %")
     return drawn
 
 
@@ -68,12 +68,12 @@ def _rates(axes: Any, rates: Any) -> None:
     tidy(axes)
 
 
-def _reliability(axes: Any, found: Blind) -> None:
+def _reliability(axes: Any, blind: Blind) -> None:
     axes.plot([0.4, 1], [0.4, 1], color=QUIET, lw=0.8, ls="--", label="as stated")
-    for row in found.reliability:
+    for row in blind.reliability:
         axes.plot([row["stated"]] * 2, [row["low"], row["high"]], color=PALETTE[1], lw=2.2, alpha=0.5)
         axes.plot([row["stated"]], [row["rate"]], "o", ms=4.5, color=PALETTE[1])
-    lines = [f"stated {row['stated']:.4g}: {row['right']} of {row['of']}" for row in found.reliability]
+    lines = [f"stated {row['stated']:.4g}: {row['right']} of {row['of']}" for row in blind.reliability]
     axes.text(0.42, 0.12, "\n".join(lines), fontsize=FONT - 1.5, color=QUIET, va="bottom")
     axes.set_xlim(0.4, 1.02)
     axes.set_ylim(0.0, 1.05)

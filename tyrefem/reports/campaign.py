@@ -173,7 +173,7 @@ def bars(done: pd.DataFrame, column: str) -> Figure:
     axes.set_xlim(low - 0.08 * spread, max(values) + 0.16 * spread)
     axes.set_ylim(len(done) - 0.4, -0.6)
     for number, section in enumerate(dict.fromkeys(done["section"])):
-        chosen = [i for i, own in enumerate(done["section"]) if own == section]
+        chosen = [i for i, of_case in enumerate(done["section"]) if of_case == section]
         color: Any = line_style(number)["color"]
         axes.hlines(chosen, *axes.get_xlim(), color=color, lw=0.8, alpha=0.25)
         marker = "os^Dv"[number % 5]

@@ -86,7 +86,7 @@ def page(d: Diagnosis, images: Mapping[str, bytes], *, version: str) -> str:
         where=_where(d),
         corrections=_corrections(d),
         difference=difference(d.original, d.study),
-        reasons=[words.shortened(one) for one in d.judgement.reasons],
+        reasons=[words.shortened(reason) for reason in d.judgement.reasons],
         further=words.next_words(d),
         offered_sensors=_offers(d, "sensors", "place", "run"),
         offered_drives=_offers(d, "drives", "drive", "sensor"),
@@ -100,14 +100,14 @@ def page(d: Diagnosis, images: Mapping[str, bytes], *, version: str) -> str:
 
 def _numbers(d: Diagnosis) -> list[dict[str, str]]:
     """Root mean squares before and after, fitted and held out."""
-    found = []
+    numbers = []
     for held_out, name in ((False, "fitted runs"), (True, "held-out runs")):
         before, after = (d.rms(after=after, held_out=held_out) for after in (False, True))
         if math.isfinite(before):
             value = f"{before:.2f} → {after:.2f} K"
-            found.append({"label": f"rms on {name}", "value": value, "note": "original → amended"})
+            numbers.append({"label": f"rms on {name}", "value": value, "note": "original → amended"})
     note = "what no model can go below"
-    return [*found, {"label": "noise of the readings", "value": f"{d.noise:.2f} K", "note": note}]
+    return [*numbers, {"label": "noise of the readings", "value": f"{d.noise:.2f} K", "note": note}]
 
 
 def _named(d: Diagnosis) -> list[dict[str, Any]]:
@@ -116,13 +116,13 @@ def _named(d: Diagnosis) -> list[dict[str, Any]]:
         return []
     return [
         {
-            "key": one.key,
-            "probability": percent(d.judgement.named.get(one.key, 0.0)),
-            "sentence": one.effect.sentence,
-            "source": one.effect.source,
-            "amounts": words.effect_amounts(one, d.best),
+            "key": member.key,
+            "probability": percent(d.judgement.named.get(member.key, 0.0)),
+            "sentence": member.effect.sentence,
+            "source": member.effect.source,
+            "amounts": words.effect_amounts(member, d.best),
         }
-        for one in d.best.members
+        for member in d.best.members
     ]
 
 
@@ -166,19 +166,19 @@ def _where(d: Diagnosis) -> list[dict[Any, Any]]:
 
 def _corrections(d: Diagnosis) -> list[dict[str, str]]:
     """Base numbers and sensors that the amended study corrects: original -> amended, with standard deviation."""
-    return [_correction(d, one) for one in d.changes if not one.missing]
+    return [_correction(d, change) for change in d.changes if not change.missing]
 
 
-def _correction(d: Diagnosis, one: Change) -> dict[str, str]:
-    unknown = one.unknown
+def _correction(d: Diagnosis, change: Change) -> dict[str, str]:
+    unknown = change.unknown
     if unknown.effect is None:
         new = value_at(d.study.data, unknown.key, d.study.folder)
-        relative = unknown.value(one.x) - 1
+        relative = unknown.value(change.x) - 1
         return {
             "what": unknown.label,
             "original": str(value_at(d.original.data, unknown.key, d.original.folder)),
             "amended": str(new),
-            "change": f"{100 * relative:+z.1f} ± {100 * one.sd:.1f} %",
+            "change": f"{100 * relative:+z.1f} ± {100 * change.sd:.1f} %",
             "prior": f"± {100 * unknown.sd:.0f} %",
         }
     if unknown.effect == "film-scale":
@@ -187,15 +187,15 @@ def _correction(d: Diagnosis, one: Change) -> dict[str, str]:
         return {
             "what": f"film coefficient, {film}",
             "original": "as its law says",
-            "amended": f"times {math.exp(one.x):.3g}",
-            "change": f"{100 * (math.exp(one.x) - 1):+z.1f} ± {100 * one.sd:.1f} %",
+            "amended": f"times {math.exp(change.x):.3g}",
+            "change": f"{100 * (math.exp(change.x) - 1):+z.1f} ± {100 * change.sd:.1f} %",
             "prior": f"± {100 * unknown.sd:.0f} %",
         }
     return {
         "what": f"{', '.join(value for _, value in unknown.choice)}: {words.parameter_name(unknown)}",
         "original": "as stated",
         "amended": "",
-        "change": words.amount(unknown.value(one.x), one.sd, unknown.unit),
+        "change": words.amount(unknown.value(change.x), change.sd, unknown.unit),
         "prior": _prior(unknown),
     }
 
@@ -206,12 +206,12 @@ def _prior(unknown: Unknown) -> str:
 
 def _offers(d: Diagnosis, kind: str, what: str, at: str) -> list[dict[str, Any]]:
     """Sensors or drives that would tell something, with what they change."""
-    found = []
-    for one in d.next_experiment.get(kind, ()):
-        changes = ", ".join(f"{key} = {value}" for key, value in one.get("changes", {}).items())
-        name = f"{one[what]} ({changes})" if changes else one[what]
-        found.append({"what": name, "gain": one["gain"], "largest_K": one["largest_K"], "at": one[at]})
-    return [one for one in found if one["gain"] > TELLS]
+    offers = []
+    for offer in d.next_experiment.get(kind, ()):
+        changes = ", ".join(f"{key} = {value}" for key, value in offer.get("changes", {}).items())
+        name = f"{offer[what]} ({changes})" if changes else offer[what]
+        offers.append({"what": name, "gain": offer["gain"], "largest_K": offer["largest_K"], "at": offer[at]})
+    return [offer for offer in offers if offer["gain"] > TELLS]
 
 
 def _linear(d: Diagnosis) -> list[str]:
@@ -229,7 +229,8 @@ def _assumed(d: Diagnosis) -> list[str]:
     choice = d.original.card.diagnosis
     return [
         f"Probability beforehand that anything is missing: {percent(choice.effects_expected)}, shared by "
-        f"{len({one.name for one in d.candidates})} effects ({len(d.candidates)} with their variants) and their sets.",
+        f"{len({candidate.name for candidate in d.candidates})} effects ({len(d.candidates)} with their variants) "
+        "and their sets.",
         f"Film coefficients are known to {100 * choice.film_sd:.0f} %; base numbers as the cards and the study's "
         "[uncertainty] table state; each sensor's place, lag and offset as its entry states.",
         *(f"Base numbers {line}." for line in left_out(d.original.uncertain_numbers)),

@@ -52,7 +52,7 @@ def pictures(d: Diagnosis) -> dict[str, bytes]:
         while file in drawn:
             file, again = f"histories-{name}-{again}.png", again + 1
         drawn[file] = histories_figure(d, number)
-    return {name: png(one) for name, one in drawn.items()}
+    return {name: png(figure) for name, figure in drawn.items()}
 
 
 # -- rms ---------------------------------------------------------------------------------------------------------------
@@ -95,7 +95,7 @@ def _rms_panel(axes: Axes, part: pd.DataFrame, sensors: list[str], largest: floa
             end = max(row[key], row["noise_K"]) if near else row[key]
             axes.text(end + 0.012 * largest, y + shift, f"{row[key]:.1f}", fontsize=FONT - 2, va="center", color=INK)
         axes.plot([row["noise_K"]] * 2, [y - 0.45, y + 0.45], color=INK, lw=1.0, ls=(0, (2, 1.2)), zorder=4)
-    axes.set_yticks(range(len(sensors)), [short(one, 22) for one in sensors])
+    axes.set_yticks(range(len(sensors)), [short(sensor, 22) for sensor in sensors])
     axes.set_ylim(len(sensors) - 0.4, -0.6)
     axes.set_xlim(0, largest)
     tidy(axes)
@@ -144,12 +144,12 @@ def histories_figure(d: Diagnosis, number: int) -> Figure:
     divisor, unit = time_unit(_last(trial))
     spans = _spans(d, number, trial)
     phases = _phases(d, number, divisor)
-    for place, one in enumerate(trial.series):
+    for place, series in enumerate(trial.series):
         row, column = divmod(place, columns)
         bottom = 0.5 + (rows - 1 - row) * step_y
         lower = add_axes(drawn, left + column * step_x, bottom, wide, low)
         upper = add_axes(drawn, left + column * step_x, bottom + low + 0.08, wide, high)
-        _history(d, number, one, upper, lower, divisor)
+        _history(d, number, series, upper, lower, divisor)
         upper.set_ylim(*spans[0])
         lower.set_ylim(*spans[1])
         make_room(upper, phases)
@@ -172,7 +172,7 @@ def histories_figure(d: Diagnosis, number: int) -> Figure:
 
 def _last(trial: Trial) -> float:
     """Time of the last reading, s."""
-    return max(float(one.times[-1]) for one in trial.series)
+    return max(float(series.times[-1]) for series in trial.series)
 
 
 def _phases(d: Diagnosis, number: int, divisor: float) -> list[Phase]:
@@ -191,17 +191,18 @@ def _spans(d: Diagnosis, number: int, trial: Trial) -> tuple[tuple[float, float]
     values = np.concatenate([trial.measured, d.before[number], d.after[number]])
     left = np.concatenate([trial.measured - d.before[number], trial.measured - d.after[number], [0.5, -0.5]])
     return tuple(  # type: ignore[return-value]
-        (float(one.min() - 0.06 * np.ptp(one)), float(one.max() + 0.06 * np.ptp(one))) for one in (values, left)
+        (float(curve.min() - 0.06 * np.ptp(curve)), float(curve.max() + 0.06 * np.ptp(curve)))
+        for curve in (values, left)
     )
 
 
-def _history(d: Diagnosis, number: int, one: Series, upper: Axes, lower: Axes, divisor: float) -> None:
+def _history(d: Diagnosis, number: int, series: Series, upper: Axes, lower: Axes, divisor: float) -> None:
     trial = d.gap.lab.bench.trials[number]
-    place = trial.parts()[one.sensor]
-    t = one.block_times / divisor
-    step = max(1, math.ceil(len(one.times) / 300))
-    upper.plot(one.times[::step] / divisor, one.measured[::step], ".", color=QUIET, ms=2.6, alpha=0.8, zorder=2)
-    noise = one.noise / np.sqrt(one.sizes)
+    place = trial.parts()[series.sensor]
+    t = series.block_times / divisor
+    step = max(1, math.ceil(len(series.times) / 300))
+    upper.plot(series.times[::step] / divisor, series.measured[::step], ".", color=QUIET, ms=2.6, alpha=0.8, zorder=2)
+    noise = series.noise / np.sqrt(series.sizes)
     lower.fill_between(t, -noise, noise, color=QUIET, alpha=0.2, lw=0, zorder=1)
     lower.axhline(0.0, color=INK, lw=0.6, zorder=1)
     for computed, color in ((d.before[number][place], BEFORE), (d.after[number][place], AFTER)):
@@ -212,7 +213,7 @@ def _history(d: Diagnosis, number: int, one: Series, upper: Axes, lower: Axes, d
         axes.set_xlim(0.0, _last(trial) / divisor)
         if trial.hold_out:
             axes.set_facecolor(HELD_OUT)
-    upper.set_title(short(one.sensor, 34), fontsize=FONT, loc="left", pad=3)
+    upper.set_title(short(series.sensor, 34), fontsize=FONT, loc="left", pad=3)
 
 
 # -- probabilities -----------------------------------------------------------------------------------------------------
@@ -220,7 +221,7 @@ def _history(d: Diagnosis, number: int, one: Series, upper: Axes, lower: Axes, d
 
 def probabilities_figure(d: Diagnosis, most: int = 8) -> Figure:
     """How probable each effect is to be part of the truth, and each set of effects to be the truth."""
-    own = {one.key for one in d.best.members}
+    members = {member.key for member in d.best.members}
     effects = [(_key(row), row["probability"]) for row in candidate_rows(d)[:most]]
     sets = [(" + ".join(row["effects"]) or "no effect", row["probability"]) for row in set_rows(d, most)]
     heights = [0.27 * len(rows) + 0.1 for rows in (effects, sets)]
@@ -233,7 +234,7 @@ def probabilities_figure(d: Diagnosis, most: int = 8) -> Figure:
         (lower, sets, "set of effects: probability that it is the truth"),
     ):
         for y, (name, probability) in enumerate(rows):
-            chosen = name in own or name == best or set(name.split(" + ")) == own
+            chosen = name in members or name == best or set(name.split(" + ")) == members
             axes.barh(y, probability, height=0.7, color=AFTER if chosen else "#b9c0c8")
             axes.text(probability + 0.01, y, percent(probability), fontsize=FONT - 1, va="center", color=INK)
         axes.set_yticks(range(len(rows)), [short(name, 50) for name, _ in rows])

@@ -9,15 +9,15 @@ import numpy as np
 from tyrefem.diagnose.isolability import MARGIN, Isolability
 
 
-def picture(found: Isolability) -> bytes:
+def picture(isolability: Isolability) -> bytes:
     """PNG: nats by which each effect at its usual strength is ahead of each rival; variants of a swap are left out."""
     from matplotlib.backends.backend_agg import FigureCanvasAgg
     from matplotlib.colors import BoundaryNorm
     from matplotlib.figure import Figure
 
-    kept = [i for i, one in enumerate(found.candidates) if one.name != "swapped-channels"]
-    names = [found.candidates[i].key for i in kept]
-    values = found.apart[np.ix_(kept, kept)].copy()
+    kept = [i for i, candidate in enumerate(isolability.candidates) if candidate.name != "swapped-channels"]
+    names = [isolability.candidates[i].key for i in kept]
+    values = isolability.apart[np.ix_(kept, kept)].copy()
     np.fill_diagonal(values, np.nan)
     size = 2.6 + 0.19 * len(names)
     figure = Figure(figsize=(size + 1.2, size), layout="constrained")
@@ -29,7 +29,9 @@ def picture(found: Isolability) -> bytes:
     axes.set_yticks(range(len(names)), names, fontsize=6)
     axes.set_xlabel("rival, fitted to it", fontsize=8)
     axes.set_ylabel("hidden effect, at its usual strength", fontsize=8)
-    axes.set_title(f"{found.study}: lead of the truth over a rival (above {MARGIN:g} nats: told apart)", fontsize=9)
+    axes.set_title(
+        f"{isolability.study}: lead of the truth over a rival (above {MARGIN:g} nats: told apart)", fontsize=9
+    )
     bar = figure.colorbar(image, ax=axes, shrink=0.7, ticks=levels[:-1])
     bar.set_label("lead, nats", fontsize=8)
     bar.ax.tick_params(labelsize=7)

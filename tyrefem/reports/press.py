@@ -133,11 +133,11 @@ class RevolvedTyre:
         nodes, *_ = self._section
         footprint = self.pressed.footprint
         known, tread = footprint.grid.angles, footprint.grid.tread.nodes
-        found = np.zeros((len(self.angles), len(nodes)))
+        pressure = np.zeros((len(self.angles), len(nodes)))
         for column, node in enumerate(tread):
             along = np.interp(np.abs(self.angles), known, footprint.pressure[:, column], right=0.0)
-            found[:, nodes == node] = along[:, None]
-        return found.ravel()
+            pressure[:, nodes == node] = along[:, None]
+        return pressure.ravel()
 
     @cached_property
     def strain_energy(self) -> Array:
@@ -147,21 +147,21 @@ class RevolvedTyre:
         weights = cycle.elements.weights / cycle.elements.weights.sum(axis=1, keepdims=True)
         storage = np.moveaxis(self.pressed.pressing.state.storage, (0, 1), (-2, -1))
         middles = (self.angles + np.append(self.angles[1:], np.pi)) / 2
-        found = np.zeros((len(middles), len(weights)))
+        densities = np.zeros((len(middles), len(weights)))
         for start in range(0, len(middles), AT_ONCE):
             e = cycle.strain(middles[start : start + AT_ONCE]).transpose(1, 2, 0, 3)
             density = 0.5 * ((storage @ e) * e).sum(axis=2)
-            found[start : start + AT_ONCE] = (density * weights[..., None]).sum(axis=1).T
-        return self._of_cells(found)
+            densities[start : start + AT_ONCE] = (density * weights[..., None]).sum(axis=1).T
+        return self._of_cells(densities)
 
     @cached_property
     def loss(self) -> Array | None:
         """(n_cells,) energy lost per revolution, J/m3; None: the wheel stands."""
-        found = self.pressed.loss
-        if found is None:
+        loss = self.pressed.loss
+        if loss is None:
             return None
-        weights = found.cycle.elements.weights
-        mean = (found.density * weights).sum(axis=1) / weights.sum(axis=1)
+        weights = loss.cycle.elements.weights
+        mean = (loss.density * weights).sum(axis=1) / weights.sum(axis=1)
         return self._of_cells(np.broadcast_to(mean, (len(self.angles), len(mean))))
 
     def _of_cells(self, values: Array) -> Array:
@@ -264,32 +264,32 @@ def _tables(
     strains: list[Sequence[Any]] = [
         ["place", "region", "r_m", "z_m", "angle_deg", *(f"e_{name}" for name in COMPONENTS)]
     ]
-    for one in places:
-        history = pressed.cycle.strain(ANGLES, [one.element])[:, 0, one.point]
-        strains += [[one.name, one.region, *one.place, *row] for row in np.column_stack([degrees, history.T])]
-    found: dict[str, Iterable[Sequence[Any]]] = {
+    for place in places:
+        history = pressed.cycle.strain(ANGLES, [place.element])[:, 0, place.point]
+        strains += [[place.name, place.region, *place.place, *row] for row in np.column_stack([degrees, history.T])]
+    tables: dict[str, Iterable[Sequence[Any]]] = {
         "load-deflection": [["deflection_m", "load_N"], *curve],
         "strain-cycle": strains,
     }
     if cords:
         head = ["region", "unit", "r_m", "z_m", "angle_deg", "plus_angle", "minus_angle"]
-        found["cord-tension"] = [head] + [
-            [one.region, one.unit, *one.place, *row]
-            for one in cords
-            for row in np.column_stack([np.degrees(one.angles), one.plus, one.minus])
+        tables["cord-tension"] = [head] + [
+            [place.region, place.unit, *place.place, *row]
+            for place in cords
+            for row in np.column_stack([np.degrees(place.angles), place.plus, place.minus])
         ]
     if pressed.loss is not None:
         orders = np.arange(len(pressed.loss.by_harmonic))
         values = np.column_stack([orders, pressed.loss.stored_by_harmonic, pressed.loss.by_harmonic])[1:]
-        found["harmonics"] = [["harmonic", "energy_J", "loss_per_revolution_J"], *values]
-    return found
+        tables["harmonics"] = [["harmonic", "energy_J", "loss_per_revolution_J"], *values]
+    return tables
 
 
 def _csv(rows: Iterable[Sequence[Any]]) -> str:
     text = io.StringIO()
     writer = csv.writer(text, lineterminator="\n")
     for row in rows:
-        writer.writerow([one if isinstance(one, str) else f"{one:.9g}" for one in row])
+        writer.writerow([cell if isinstance(cell, str) else f"{cell:.9g}" for cell in row])
     return text.getvalue()
 
 
@@ -308,8 +308,8 @@ def _pictures(
     from tyrefem.reports.figures.style import png
 
     elements = pressed.cycle.elements
-    shown = {f"{one.name}, {one.region}": tuple(elements.points[:, one.element, one.point]) for one in places}
-    found = {
+    shown = {f"{place.name}, {place.region}": tuple(elements.points[:, place.element, place.point]) for place in places}
+    figures = {
         "section": inflation_figure(pressed.tyre, pressed.study.name),
         "section-loaded": deformed_figure(pressed.footprint),
         "pressure": pressure_map_figure(pressed.footprint),
@@ -317,7 +317,7 @@ def _pictures(
         "strain-cycle": strain_history_figure(pressed.cycle, shown),
     }
     if cords:
-        found["cord-tension"] = cord_tension_figure(pressed.footprint, cords)
+        figures["cord-tension"] = cord_tension_figure(pressed.footprint, cords)
     if pressed.loss is not None:
-        found["harmonics"] = harmonics_figure(pressed.loss)
-    return {name: png(drawn) for name, drawn in found.items()}
+        figures["harmonics"] = harmonics_figure(pressed.loss)
+    return {name: png(drawn) for name, drawn in figures.items()}

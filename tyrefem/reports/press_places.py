@@ -78,10 +78,10 @@ def cycle_places(pressed: Pressed, wanted: Iterable[str] = ()) -> tuple[CyclePla
 
 
 def _wanted(pressed: Pressed, text: str) -> CyclePlace:
-    found = read_place(pressed.study.section, text)
-    if isinstance(found, str):
-        return _worst(pressed, found, found)
-    r, z = found
+    wanted = read_place(pressed.study.section, text)
+    if isinstance(wanted, str):
+        return _worst(pressed, wanted, wanted)
+    r, z = wanted
     return _nearest(pressed, text.strip(), r, abs(z) if pressed.study.section.half else z)
 
 
@@ -115,10 +115,10 @@ def _usual(pressed: Pressed) -> tuple[CyclePlace, ...]:
     """The edge of the widest belt, and the place of greatest loss."""
     points, subdomains = pressed.tyre.body.rings.points, pressed.tyre.body.mesh.subdomains
     belts = [region for region in pressed.tyre.body.parts if "belt" in region]
-    found = []
+    places = []
     if belts:
         widest = max(belts, key=lambda region: float(points[1][subdomains[region]].max()))
         members = np.asarray(subdomains[widest])
         element, point = np.unravel_index(int(points[1][members].argmax()), points[1][members].shape)
-        found.append(_place(pressed, f"edge of {widest}", int(members[element]), int(point)))
-    return (*found, _worst(pressed, "greatest loss"))
+        places.append(_place(pressed, f"edge of {widest}", int(members[element]), int(point)))
+    return (*places, _worst(pressed, "greatest loss"))

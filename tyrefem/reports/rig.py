@@ -28,7 +28,7 @@ if TYPE_CHECKING:
     from tyrefem.heating_test.simulation import Simulation
 
 
-def page(found: IdentificationData, pictures: Mapping[str, bytes], cards: Mapping[str, Any]) -> str:
+def page(identification: IdentificationData, pictures: Mapping[str, bytes], cards: Mapping[str, Any]) -> str:
     """The page's HTML; ``pictures`` maps file name -> PNG, ``cards`` layer -> material card data."""
     from jinja2 import Environment, FileSystemLoader, StrictUndefined
 
@@ -37,16 +37,16 @@ def page(found: IdentificationData, pictures: Mapping[str, bytes], cards: Mappin
         trim_blocks=True, lstrip_blocks=True,
     )  # fmt: skip
     return environment.get_template("rig.html").render(
-        found=found,
-        sentences=sentences(found),
+        identification=identification,
+        sentences=sentences(identification),
         coverage=COVERAGE,
-        references=references(found.card),
+        references=references(identification.card),
         spoken=spoken,
         pictures={name: base64.b64encode(png).decode("ascii") for name, png in pictures.items()},
         cards=cards,
-        diffusivities=diffusivities(found),
-        ranked=[(", ".join(map(spoken, key)) or "all constant", value) for key, value in ranked(found, 6)],
-        complaint=any(one.verdict != "determined" for one in found.properties),
+        diffusivities=diffusivities(identification),
+        ranked=[(", ".join(map(spoken, key)) or "all constant", value) for key, value in ranked(identification, 6)],
+        complaint=any(estimate.verdict != "determined" for estimate in identification.properties),
     )
 
 
@@ -59,7 +59,7 @@ FILES = ("report.html", "rig.json", "estimates.csv", "residuals.csv", "residuals
 LAYER_FILES = ("layers.csv", "layers.png")
 
 
-def save(found: IdentificationData, folder: str | Path, base: str | Sequence[str] | None = None) -> Path:
+def save(identification: IdentificationData, folder: str | Path, base: str | Sequence[str] | None = None) -> Path:
     """Write an identification: ``report.html``, ``rig.json``, ``summary.json``, CSV tables, PNGs, material cards.
 
     ``base``: the card, or ``LAYER=CARD`` entries, that give what the rig cannot know; without it no card is written.
@@ -68,8 +68,8 @@ def save(found: IdentificationData, folder: str | Path, base: str | Sequence[str
 
     folder = Path(folder)
     given = [base] if isinstance(base, str) else list(base or [])
-    cards = layer_cards(found, bases(found.card, given))
-    data = summary(found)
+    cards = layer_cards(identification, bases(identification.card, given))
+    data = summary(identification)
     data["materials"] = {layer: f"materials/{layer}.toml" for layer in cards}
     with atomic_folder(folder) as place:
         put_json(place / "rig.json", data)
@@ -84,21 +84,21 @@ def save(found: IdentificationData, folder: str | Path, base: str | Sequence[str
             "versions",
         )
         put_json(place / "summary.json", {key: data[key] for key in short})
-        found.table.to_csv(place / "estimates.csv", index=False)
-        _residuals(found).to_csv(place / "residuals.csv", index=False)
+        identification.table.to_csv(place / "estimates.csv", index=False)
+        _residuals(identification).to_csv(place / "residuals.csv", index=False)
         if cards:
             (place / "materials").mkdir()
         for layer, card in cards.items():
             (place / "materials" / f"{layer}.toml").write_text(tomli_w.dumps(card), encoding="utf-8")
     with keeping(f"the tables and cards are in {folder}, the page is not"), atomic_folder(folder) as place:
-        drawn = pictures(found)
+        drawn = pictures(identification)
         for name, content in drawn.items():
             (place / name).write_bytes(content)
-        (place / "report.html").write_text(page(found, drawn, cards), encoding="utf-8")
+        (place / "report.html").write_text(page(identification, drawn, cards), encoding="utf-8")
     return folder
 
 
-def _residuals(found: IdentificationData) -> Any:
+def _residuals(identification: IdentificationData) -> Any:
     import pandas as pd
 
     parts = [
@@ -113,7 +113,7 @@ def _residuals(found: IdentificationData) -> Any:
                 "readings": block.series.counts,
             }
         )
-        for block in found.fit.blocks
+        for block in identification.fit.blocks
     ]
     return pd.concat(parts, ignore_index=True)
 

@@ -44,14 +44,14 @@ if TYPE_CHECKING:
 Array = NDArray[Any]
 
 
-def pictures(found: IdentificationData) -> dict[str, bytes]:
+def pictures(identification: IdentificationData) -> dict[str, bytes]:
     """File name -> PNG: ``residuals-RUN``, ``intervals``, ``correlation``."""
     drawn = {}
-    for test in found.tests:
+    for test in identification.tests:
         name = re.sub(r"[^\w.-]+", "-", test.name).strip("-.") or "run"
-        drawn[f"residuals-{name}.png"] = png(residuals(found, test.name))
-    drawn["intervals.png"] = png(intervals(found))
-    drawn["correlation.png"] = png(correlation(found))
+        drawn[f"residuals-{name}.png"] = png(residuals(identification, test.name))
+    drawn["intervals.png"] = png(intervals(identification))
+    drawn["correlation.png"] = png(correlation(identification))
     return drawn
 
 
@@ -62,13 +62,13 @@ def bands(phases: HeatingPhases) -> list[tuple[str, float, float]]:
     return [(name, float(a), float(b)) for name, a, b in named if b > a]
 
 
-def residuals(found: IdentificationData, run: str) -> Figure:
+def residuals(identification: IdentificationData, run: str) -> Figure:
     """Readings and the computed line of every sensor in one test, and what is left between them."""
-    blocks = [block for block in found.fit.blocks if block.series.test == run]
+    blocks = [block for block in identification.fit.blocks if block.series.test == run]
     columns = len(blocks)
     width = 3.3 * columns + 0.3
     drawn = figure(width, 5.0 + TITLE)
-    power = found.card.runs[run].power
+    power = identification.card.runs[run].power
     title(
         drawn,
         f"Run {run}: {power:g} W",
@@ -77,29 +77,29 @@ def residuals(found: IdentificationData, run: str) -> Figure:
     for number, block in enumerate(blocks):
         left = 0.6 + 3.3 * number
         high, low = add_axes(drawn, left, 2.35, 2.6, 2.45), add_axes(drawn, left, 0.5, 2.6, 1.6)
-        _histories(found, block, high, low)
+        _histories(identification, block, high, low)
         if number == 0:
             high.set_ylabel("temperature [°C]", fontsize=FONT)
             low.set_ylabel("residual [K]", fontsize=FONT)
     return drawn
 
 
-def _histories(found: IdentificationData, block: Block, high: Axes, low: Axes) -> None:
-    one, noise = block.series, found.fit.noise
-    t = one.times / 60
-    shown = bands(found.card.phases)
+def _histories(identification: IdentificationData, block: Block, high: Axes, low: Axes) -> None:
+    series, noise = block.series, identification.fit.noise
+    t = series.times / 60
+    shown = bands(identification.card.phases)
     for axes in (high, low):
         tidy(axes)
         axes.set_xlim(0, shown[-1][2])
-    high.plot(t, one.readings, ".", ms=2.5, color=PALETTE[1])
+    high.plot(t, series.readings, ".", ms=2.5, color=PALETTE[1])
     high.plot(t, block.computed, color=PALETTE[0], lw=1.3)
     rms = float(np.sqrt(np.mean(block.residual**2)))
-    high.set_title(f"{short(one.sensor, 18)}: rms {rms:.2f} K", fontsize=FONT, color=INK, loc="left")
+    high.set_title(f"{short(series.sensor, 18)}: rms {rms:.2f} K", fontsize=FONT, color=INK, loc="left")
     high.set_xticklabels([])
     make_room(high, shown)
     draw_phases(high, shown)
     draw_phases(low, shown, names=False)
-    sd = np.sqrt(noise.reading[one.sensor] ** 2 / one.counts + (noise.model[one.sensor] * block.rise) ** 2)
+    sd = np.sqrt(noise.reading[series.sensor] ** 2 / series.counts + (noise.model[series.sensor] * block.rise) ** 2)
     low.fill_between(t, -1.96 * sd, 1.96 * sd, color="#dddddd", lw=0)
     low.plot(t, block.residual, ".", ms=2.5, color=PALETTE[1])
     low.axhline(0, color=INK, lw=0.7)
@@ -108,30 +108,35 @@ def _histories(found: IdentificationData, block: Block, high: Axes, low: Axes) -
 
 def references(card: RigCard) -> str:
     """The layers' reference temperatures."""
-    return "at " + ", ".join(f"{one.reference_temperature:g} °C ({one.name})" for one in card.layers)
+    return "at " + ", ".join(f"{layer.reference_temperature:g} °C ({layer.name})" for layer in card.layers)
 
 
-def intervals(found: IdentificationData) -> Figure:
+def intervals(identification: IdentificationData) -> Figure:
     """Every property: first guess and identified value with their 95 % intervals, relative to the identified value."""
-    shown = found.properties
+    shown = identification.properties
     drawn = figure(8.2, 0.42 * len(shown) + 0.95 + TITLE)
-    title(drawn, "Identified properties", f"{references(found.card)}; 95 % intervals; grey: first guess")
+    title(drawn, "Identified properties", f"{references(identification.card)}; 95 % intervals; grey: first guess")
     axes = add_axes(drawn, 2.3, 0.55, 3.4, 0.42 * len(shown) + 0.3)
-    for row, one in enumerate(shown):
-        spread = np.log1p(one.prior_sd / one.prior_value) * COVERAGE
-        guess = one.prior_value / one.value
+    for row, estimate in enumerate(shown):
+        spread = np.log1p(estimate.prior_sd / estimate.prior_value) * COVERAGE
+        guess = estimate.prior_value / estimate.value
         axes.plot(guess * np.exp([-spread, spread]), [row + 0.16] * 2, color="#bbbbbb", lw=5, solid_capstyle="butt")
         axes.plot(guess, row + 0.16, "|", color=QUIET, ms=9)
-        color = PALETTE[0] if one.verdict == "determined" else PALETTE[1]
+        color = PALETTE[0] if estimate.verdict == "determined" else PALETTE[1]
         axes.plot(
-            [one.low / one.value, one.high / one.value], [row - 0.14] * 2, color=color, lw=3, solid_capstyle="butt"
+            [estimate.low / estimate.value, estimate.high / estimate.value],
+            [row - 0.14] * 2,
+            color=color,
+            lw=3,
+            solid_capstyle="butt",
         )
         axes.plot(1.0, row - 0.14, "o", color=color, ms=5)
         axes.text(
-            1.03, row, f"{one.value:.4g} {one.unit} ± {COVERAGE * (one.relative_sd or 0):.1%}\n{one.verdict}",
+            1.03, row,
+            f"{estimate.value:.4g} {estimate.unit} ± {COVERAGE * (estimate.relative_sd or 0):.1%}\n{estimate.verdict}",
             fontsize=FONT - 0.5, color=color, va="center", transform=axes.get_yaxis_transform(),
         )  # fmt: skip
-    axes.set_yticks(range(len(shown)), [plain(spoken(one.name)) for one in shown])
+    axes.set_yticks(range(len(shown)), [plain(spoken(estimate.name)) for estimate in shown])
     axes.set_ylim(len(shown) - 0.4, -0.6)
     axes.set_xscale("log")
     ticks = [0.25, 0.5, 0.7, 1.0, 1.4, 2.0, 4.0]
@@ -145,20 +150,20 @@ def intervals(found: IdentificationData) -> Figure:
     return drawn
 
 
-def correlation(found: IdentificationData) -> Figure:
+def correlation(identification: IdentificationData) -> Figure:
     """Correlation of every pair of free parameters; strong ones with their number."""
-    n = len(found.estimates)
+    n = len(identification.estimates)
     size = 0.36 * n
     drawn = figure(size + 3.6, size + 2.6)
     title(drawn, "Correlation of what is uncertain", "after the readings; properties first")
     axes = add_axes(drawn, 2.4, 1.75, size, size)
-    image = axes.imshow(found.correlation, cmap="RdBu_r", vmin=-1, vmax=1)
-    names = [plain(spoken(one.name)) for one in found.estimates]
+    image = axes.imshow(identification.correlation, cmap="RdBu_r", vmin=-1, vmax=1)
+    names = [plain(spoken(estimate.name)) for estimate in identification.estimates]
     axes.set_xticks(range(n), names, rotation=60, ha="right", rotation_mode="anchor", fontsize=FONT - 1)
     axes.set_yticks(range(n), names, fontsize=FONT - 1)
     for i in range(n):
         for j in range(n):
-            r = found.correlation[i, j]
+            r = identification.correlation[i, j]
             if i != j and abs(r) >= 0.3:
                 color = "white" if abs(r) > 0.65 else INK
                 axes.text(
@@ -263,8 +268,10 @@ def layers_figure(done: LayerStudy) -> Figure:
     strongest = max(powers, key=lambda name: powers[name])
     for number, sensor in enumerate(sensors):
         panel = add_axes(drawn, 4.35 + 3.1 * number, 0.5, 2.55, 2.6)
-        for place, (count, found) in enumerate(zip(done.counts, done.fits, strict=True)):
-            block = next(b for b in found.fit.blocks if (b.series.test, b.series.sensor) == (strongest, sensor))
+        for place, (count, identification) in enumerate(zip(done.counts, done.fits, strict=True)):
+            block = next(
+                b for b in identification.fit.blocks if (b.series.test, b.series.sensor) == (strongest, sensor)
+            )
             t, r = (np.convolve(v, np.ones(7) / 7, mode="valid") for v in (block.series.times / 60, block.residual))
             panel.plot(t, r, color=PALETTE[place % len(PALETTE)], lw=1.2, label=f"{count}")
         panel.axhline(0, color=INK, lw=0.6)

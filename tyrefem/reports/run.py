@@ -55,8 +55,8 @@ def sliding_rows(result: ResultData) -> list[list[str]]:
     """One row per phase with slip, as the template's heads say."""
     if result.sliding is None:
         return []
-    found = result.sliding.phases
-    beside = {p.name: "–" if p.half_space_highest is None else f"{p.half_space_highest:.1f}" for p in found}
+    phases = result.sliding.phases
+    beside = {p.name: "–" if p.half_space_highest is None else f"{p.half_space_highest:.1f}" for p in phases}
     return [
         [
             phase.name + (" (locked)" if phase.locked else ""), f"{phase.sliding_speed:.2f}",
@@ -65,7 +65,7 @@ def sliding_rows(result: ResultData) -> list[list[str]]:
             number(phase.friction_work / 1e3), number(phase.tread_heat / 1e3), f"{phase.tread_start:.1f}",
             f"{phase.tread_highest:.1f}", beside[phase.name], f"{phase.exit_edge_highest:.1f}",
         ]
-        for phase in found
+        for phase in phases
     ]  # fmt: skip
 
 
@@ -85,7 +85,7 @@ def content(result: ResultData) -> dict[str, Any]:
         "warnings": result.warnings,
         "sliding": sliding_rows(result),
         "headline": headline(result),
-        "published": [one.cells for one in of_run(result)],
+        "published": [value.cells for value in of_run(result)],
         "sensors": _sensors(result),
         "extremes": _extremes(result),
         "phases": [_phase(result, phase) for phase in result.phases],
@@ -112,8 +112,8 @@ def _interrupted(result: ResultData) -> str:
 
 def headline(result: ResultData) -> list[dict[str, str]]:
     """The numbers that decide: label, value and what belongs to it."""
-    found = summary(result)
-    hot, resistance, air = found["hottest"], found["rolling_resistance"], found["contained_air"]
+    values = summary(result)
+    hot, resistance, air = values["hottest"], values["rolling_resistance"], values["contained_air"]
     budget = result.heat_budget
     cards = [
         {

@@ -56,7 +56,7 @@ def summary(result: ResultData) -> dict[str, Any]:
             "cold_force_N": resistance.cold_force,
             "cold_coefficient": resistance.cold_coefficient,
         },
-        "published": [one.to_dict() for one in of_run(result)],
+        "published": [value.to_dict() for value in of_run(result)],
         "contained_air": {
             "temperature_degC": float(result.gas_temperature[-1]),
             "gauge_pressure_Pa": float(result.gas_pressure[-1]),

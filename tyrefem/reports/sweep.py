@@ -44,7 +44,7 @@ COLUMNS = (
 )  # fmt: skip
 
 
-def write_page(found: DesignData, summary: Mapping[str, Any], folder: Path) -> list[str]:
+def write_page(design: DesignData, summary: Mapping[str, Any], folder: Path) -> list[str]:
     """Write ``sweep.html``, and the pictures as PNG files in ``pictures``; names of these files."""
     from jinja2 import Environment, PackageLoader, StrictUndefined
 
@@ -52,18 +52,18 @@ def write_page(found: DesignData, summary: Mapping[str, Any], folder: Path) -> l
         loader=PackageLoader("tyrefem.reports", "."), autoescape=True, undefined=StrictUndefined, trim_blocks=True,
         lstrip_blocks=True,
     )  # fmt: skip
-    swept = found.swept or (found.optimum.swept if found.optimum is not None else None)
-    parts = [_part(part, folder) for part in found.parts]
+    swept = design.swept or (design.optimum.swept if design.optimum is not None else None)
+    parts = [_part(part, folder) for part in design.parts]
     page = environment.get_template("sweep.html").render(
         title=summary["title"],
-        study=found.study,
-        how="" if found.swept is None else summary["words"][1].strip(),
-        interrupted=found.interrupted,
-        numbers=_numbers(found),
+        study=design.study,
+        how="" if design.swept is None else summary["words"][1].strip(),
+        interrupted=design.interrupted,
+        numbers=_numbers(design),
         parts=parts,
-        variants=None if swept is None else _variants(found, swept),
-        failed=found.failed,
-        assumed=_assumed(found),
+        variants=None if swept is None else _variants(design, swept),
+        failed=design.failed,
+        assumed=_assumed(design),
         versions=summary["versions"],
     )
     with atomic_path(folder / PAGE) as temporary:
@@ -100,15 +100,15 @@ def cell(value: Any, digits: int = 5) -> str:
     return "" if value is None else str(value)
 
 
-def _variants(found: DesignData, swept: Sweep) -> dict[str, Any]:
-    table, certificate = found.table, swept.certificate
+def _variants(design: DesignData, swept: Sweep) -> dict[str, Any]:
+    table, certificate = design.table, swept.certificate
     errors = {} if certificate is None else dict(certificate.errors)
-    wanted = dict.fromkeys((*found.card.answers, *found.card.limits, *COLUMNS))
+    wanted = dict.fromkeys((*design.card.answers, *design.card.limits, *COLUMNS))
     columns = [name for name in wanted if name in table]
-    headings = [one.heading for one in swept.plan.varied] or [key for key in swept.plan.keys if key in table]
-    best = set(found.pareto["variant"]) if found.swept is not None and "hottest_degC" in table else set()
-    if found.swept is None and found.optimum is not None and found.optimum.best is not None:
-        best = {swept.plan.names[found.optimum.best]}
+    headings = [varied.heading for varied in swept.plan.varied] or [key for key in swept.plan.keys if key in table]
+    best = set(design.pareto["variant"]) if design.swept is not None and "hottest_degC" in table else set()
+    if design.swept is None and design.optimum is not None and design.optimum.best is not None:
+        best = {swept.plan.names[design.optimum.best]}
     rows = []
     for row in table.head(ROWS_OF_VARIANTS).to_dict("records"):
         cells = [row["variant"], *(cell(row[name]) for name in headings)]
@@ -123,39 +123,39 @@ def _variants(found: DesignData, swept: Sweep) -> dict[str, Any]:
         "rows": rows,
         "total": len(table),
         "certificate": certificate,
-        "file": "sweep" if found.swept is not None else "optimum",
+        "file": "sweep" if design.swept is not None else "optimum",
     }
 
 
-def _numbers(found: DesignData) -> list[dict[str, str]]:
+def _numbers(design: DesignData) -> list[dict[str, str]]:
     """The few numbers to see first."""
     cards: list[dict[str, str]] = []
-    if found.optimum is not None and found.optimum.best is not None:
-        answer = found.optimum.answer
-        label = f"{'smallest' if found.optimum.card.minimise else 'largest'} {name_of(answer)}"
-        value = shown(answer, found.optimum.full[answer])
-        cards.append({"label": label, "value": value, "note": found.optimum.where})
-    if found.swept is not None and found.swept.outcomes:
+    if design.optimum is not None and design.optimum.best is not None:
+        answer = design.optimum.answer
+        label = f"{'smallest' if design.optimum.card.minimise else 'largest'} {name_of(answer)}"
+        value = shown(answer, design.optimum.full[answer])
+        cards.append({"label": label, "value": value, "note": design.optimum.where})
+    if design.swept is not None and design.swept.outcomes:
         from tyrefem.sweep.responses import extreme, finished, judged
 
-        table = finished(found.swept)
-        for answer in judged(found.swept, found.card.answers)[:3]:
+        table = finished(design.swept)
+        for answer in judged(design.swept, design.card.answers)[:3]:
             low, high = (float(extreme(table, answer, least=least)[answer]) for least in (True, False))
-            certificate = found.swept.certificate
+            certificate = design.swept.certificate
             error = None if certificate is None else certificate.errors.get(answer)
             note = f"over {len(table)} variants" + ("" if error is None else f"; each ± {shown(answer, error, 1)}")
             first = f"{low:.4g}" if high == high else shown(answer, low)
             cards.append({"label": name_of(answer), "value": f"{first} – {shown(answer, high)}", "note": note})
-    if found.tornado is not None:
-        for answer in found.tornado.answers[:2]:
-            rows = found.tornado.of(answer).dropna(subset=["range"])
+    if design.tornado is not None:
+        for answer in design.tornado.answers[:2]:
+            rows = design.tornado.of(answer).dropna(subset=["range"])
             if len(rows):
                 value = f"± {rows.iloc[0]['range'] / 2:.2g} {difference_unit(answer)}".strip()
                 cards.append(
                     {"label": f"{name_of(answer)}: widest tolerance", "value": value, "note": rows.iloc[0]["number"]}
                 )
-    if found.envelope is not None:
-        rated = found.envelope.rating.dropna(subset=["tkph"]).head(2).to_dict("records")
+    if design.envelope is not None:
+        rated = design.envelope.rating.dropna(subset=["tkph"]).head(2).to_dict("records")
         cards += [
             {
                 "label": "safe load × speed",
@@ -167,26 +167,26 @@ def _numbers(found: DesignData) -> list[dict[str, str]]:
     return cards
 
 
-def _assumed(found: DesignData) -> list[str]:
+def _assumed(design: DesignData) -> list[str]:
     """What every reader has to know."""
-    told = [
+    sentences = [
         "Every variant is the whole study with some values changed: what its cards and laws assume holds here too.",
-        f"Time integration to {found.study.tolerance:g} K; mesh of {found.study.card.mesh.size * 1e3:g} mm.",
+        f"Time integration to {design.study.tolerance:g} K; mesh of {design.study.card.mesh.size * 1e3:g} mm.",
     ]
-    if found.indices is not None:
-        told.append("Sobol indices: numbers uniform in their ranges and independent of each other.")
-    if found.tornado is not None:
-        told.append(
+    if design.indices is not None:
+        sentences.append("Sobol indices: numbers uniform in their ranges and independent of each other.")
+    if design.tornado is not None:
+        sentences.append(
             "Tornado: one standard deviation each unless given; together: independent, the answer linear in them."
         )
-    if found.envelope is not None:
-        told.append(
+    if design.envelope is not None:
+        sentences.append(
             "Envelope: the answer must rise with speed. Load times speed in t km/h is what earth-mover tyres are"
             " rated by, here of this model, ambient temperature and length of drive: no maker's rating."
         )
-    if found.optimum is not None and not found.optimum.exhaustive:
-        told.append("Optimum: a search with a seed, no proof that there is none better.")
-    return told
+    if design.optimum is not None and not design.optimum.exhaustive:
+        sentences.append("Optimum: a search with a seed, no proof that there is none better.")
+    return sentences
 
 
 #: `summary.json` lists the other files under this name; nothing that is not like one of ours is ever removed.
@@ -205,10 +205,10 @@ QUESTION = ("study", "asked", "input", "versions")
 def earlier(folder: Path) -> dict[str, Any]:
     """The summary that a folder has; empty: none, or not of a sweep."""
     try:
-        found = json.loads((folder / "summary.json").read_text(encoding="utf-8"))
+        data = json.loads((folder / "summary.json").read_text(encoding="utf-8"))
     except (OSError, ValueError):
         return {}
-    return found if isinstance(found, dict) and isinstance(found.get(FILES), list) else {}
+    return data if isinstance(data, dict) and isinstance(data.get(FILES), list) else {}
 
 
 def clear(folder: Path, before: Mapping[str, Any], summary: Mapping[str, Any], written: Sequence[str]) -> list[str]:
@@ -238,6 +238,6 @@ def clear(folder: Path, before: Mapping[str, Any], summary: Mapping[str, Any], w
 
 def _results(summary: Mapping[str, Any]) -> dict[str, Any]:
     """A summary without what differs each time that the same is written."""
-    found = {key: value for key, value in summary.items() if key not in NOT_RESULTS}
-    sample = {key: value for key, value in found.pop("sample", {}).items() if key not in ("seconds", "taken_up")}
-    return found | {"sample": sample}
+    results = {key: value for key, value in summary.items() if key not in NOT_RESULTS}
+    sample = {key: value for key, value in results.pop("sample", {}).items() if key not in ("seconds", "taken_up")}
+    return results | {"sample": sample}

@@ -56,9 +56,9 @@ def _envelope(answer: Envelope) -> Iterator[tuple[str, str, Figure]]:
         yield "envelope", "Below each curve the tyre keeps the limit; grey: equal load times speed", envelope(answer)
 
 
-def tornado(found: Tornado, answer: str) -> Figure:
+def tornado(tornado_data: Tornado, answer: str) -> Figure:
     """Bars of how far each number alone moves an answer."""
-    rows = found.of(answer).dropna(subset=["range"])
+    rows = tornado_data.of(answer).dropna(subset=["range"])
     # What hardly moves it would only push the others together.
     table = rows[rows["range"] > 0.01 * rows["range"].max()].head(MOST).iloc[::-1]
     high = BAR * max(len(table), 2) + 0.1
@@ -113,36 +113,36 @@ def indices(table: pd.DataFrame, answer: str) -> Figure:
     return drawn
 
 
-def search(found: Optimum) -> Figure:
+def search(optimum: Optimum) -> Figure:
     """The answer of every evaluated variant in its order, and the best so far."""
-    table = found.table[found.table["failure"] == ""]
+    table = optimum.table[optimum.table["failure"] == ""]
     drawn = figure(7.2, 4.0 + TITLE)
     axes = add_axes(drawn, 1.0, 0.62, 5.9, 3.1)
     order = table.index.to_numpy() + 1
     fine = table["feasible"].to_numpy(dtype=bool)
-    axes.plot(order[~fine], table[found.answer][~fine], "x", ms=3.5, color="#b0b0b0", label="breaks a limit")
-    axes.plot(order[fine], table[found.answer][fine], "o", ms=3, color=PALETTE[0], label="keeps the limits")
+    axes.plot(order[~fine], table[optimum.answer][~fine], "x", ms=3.5, color="#b0b0b0", label="breaks a limit")
+    axes.plot(order[fine], table[optimum.answer][fine], "o", ms=3, color=PALETTE[0], label="keeps the limits")
     axes.step(order, table["best_so_far"], where="post", color=PALETTE[1], lw=1.5, label="best so far")
-    if isinstance(found.nominal, Answered):
-        nominal = float(found.nominal.answers[found.answer])
+    if isinstance(optimum.nominal, Answered):
+        nominal = float(optimum.nominal.answers[optimum.answer])
         axes.axhline(nominal, color=QUIET, lw=0.9, ls="--", label="the study as it is")
     axes.set_xlabel("variants evaluated", fontsize=FONT)
-    axes.set_ylabel(label(found.answer), fontsize=FONT)
+    axes.set_ylabel(label(optimum.answer), fontsize=FONT)
     axes.legend(fontsize=FONT - 1, frameon=True, framealpha=0.9)
     tidy(axes)
     best = (
         "no variant keeps the limits"
-        if found.best is None
-        else f"best: {shown(found.answer, found.full[found.answer])}"
+        if optimum.best is None
+        else f"best: {shown(optimum.answer, optimum.full[optimum.answer])}"
     )
-    word = "Smallest" if found.card.minimise else "Largest"
-    title(drawn, f"{word} {name_of(found.answer)}", best)
+    word = "Smallest" if optimum.card.minimise else "Largest"
+    title(drawn, f"{word} {name_of(optimum.answer)}", best)
     return drawn
 
 
-def envelope(found: Envelope) -> Figure:
+def envelope(result: Envelope) -> Figure:
     """The largest speed over load, a curve per pressure; grey curves of equal load x speed."""
-    table = found.table
+    table = result.table
     drawn = figure(7.4, 4.4 + TITLE)
     axes = add_axes(drawn, 0.9, 0.62, 5.5, 3.5)
     for number, (pressure, rows) in enumerate(table.groupby("pressure", sort=False)):
@@ -178,12 +178,12 @@ def envelope(found: Envelope) -> Figure:
     axes.set_ylabel("largest speed [km/h]", fontsize=FONT)
     axes.legend(fontsize=FONT - 1, frameon=True, framealpha=0.9, title="cold pressure", title_fontsize=FONT - 1)
     tidy(axes)
-    limit = shown(found.card.answer, found.card.below)
+    limit = shown(result.card.answer, result.card.below)
     open_ended = "; triangle: not reached at the fastest" if not table["at_limit"].all() else ""
     title(
         drawn,
-        f"Where the {name_of(found.card.answer)} stays below {limit}",
-        f"{found.study.name}, {found.study.card.drive.end:g} s{open_ended}",
+        f"Where the {name_of(result.card.answer)} stays below {limit}",
+        f"{result.study.name}, {result.study.card.drive.end:g} s{open_ended}",
     )
     return drawn
 

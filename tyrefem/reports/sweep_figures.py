@@ -102,10 +102,12 @@ def axis(heading: str) -> str:
     )
 
 
-def curves(found: Sweep, x: str, answer: str) -> Figure:
+def curves(sweep: Sweep, x: str, answer: str) -> Figure:
     """An answer over one number: a line per combination of the others where they are few, else points and means."""
-    table = finished(found)
-    others = [one.heading for one in found.plan.varied if one.heading != x and table[one.heading].nunique() > 1]
+    table = finished(sweep)
+    others = [
+        varied.heading for varied in sweep.plan.varied if varied.heading != x and table[varied.heading].nunique() > 1
+    ]
     groups = list(table.groupby(others, sort=False)) if others else [((), table)]
     lines = len(groups) <= MOST_LINES and all(len(group) > 1 for _, group in groups)
     beside = lines and bool(others)
@@ -125,11 +127,11 @@ def curves(found: Sweep, x: str, answer: str) -> Figure:
             )  # fmt: skip
     else:
         _points(axes, table, x, answer)
-    _limits(axes, found, answer)
+    _limits(axes, sweep, answer)
     axes.set_xlabel(axis(x), fontsize=FONT)
     axes.set_ylabel(label(answer), fontsize=FONT)
     tidy(axes)
-    title(drawn, f"{name_of(answer).capitalize()} over {short(x)}", found.plan.study.name)
+    title(drawn, f"{name_of(answer).capitalize()} over {short(x)}", sweep.plan.study.name)
     return drawn
 
 
@@ -149,9 +151,9 @@ def _points(axes: Any, table: pd.DataFrame, x: str, answer: str) -> None:
     axes.legend(fontsize=FONT - 1, frameon=False)
 
 
-def response_map(found: Sweep, x: str, y: str, answer: str) -> Figure:
+def response_map(sweep: Sweep, x: str, y: str, answer: str) -> Figure:
     """An answer over two numbers, mean over the others: contours of a grid, coloured points of any other sample."""
-    table = finished(found)
+    table = finished(sweep)
     drawn = figure(6.9, 4.6 + TITLE)
     axes = add_axes(drawn, 0.95, 0.62, 4.5, 3.8)
     bar = add_axes(drawn, 5.65, 0.62, 0.16, 3.8)
@@ -161,12 +163,12 @@ def response_map(found: Sweep, x: str, y: str, answer: str) -> Figure:
     if regular:
         shown: Any = axes.contourf(grid.columns, grid.index, grid.to_numpy(), levels=16, cmap=colours)
         axes.contour(grid.columns, grid.index, grid.to_numpy(), levels=16, colors="white", linewidths=0.35, alpha=0.7)
-        _boundary(axes, found, grid, answer)
+        _boundary(axes, sweep, grid, answer)
         axes.margins(0)
     else:
         shown = axes.scatter(table[x], table[y], c=table[answer], s=16, cmap=colours)
         outside = table[~table["feasible"]]
-        if found.plan.limits and len(outside):
+        if sweep.plan.limits and len(outside):
             axes.plot(outside[x], outside[y], "x", ms=4, color=QUIET, label="breaks a limit")
             axes.legend(fontsize=FONT - 1, frameon=True, loc="lower left", bbox_to_anchor=(0.0, 1.0))
     colorbar = drawn.colorbar(shown, cax=bar)
@@ -175,18 +177,21 @@ def response_map(found: Sweep, x: str, y: str, answer: str) -> Figure:
     axes.set_xlabel(axis(x), fontsize=FONT)
     axes.set_ylabel(axis(y), fontsize=FONT)
     tidy(axes, grid=False)
-    fixed = len([one for one in found.plan.varied if one.heading in table and table[one.heading].nunique() > 1]) <= 2
+    fixed = (
+        len([varied for varied in sweep.plan.varied if varied.heading in table and table[varied.heading].nunique() > 1])
+        <= 2
+    )
     title(
         drawn,
         name_of(answer).capitalize(),
-        found.plan.study.name + ("" if fixed else ", mean over the other numbers" if regular else ""),
+        sweep.plan.study.name + ("" if fixed else ", mean over the other numbers" if regular else ""),
     )
     return drawn
 
 
-def _boundary(axes: Any, found: Sweep, grid: pd.DataFrame, answer: str) -> None:
+def _boundary(axes: Any, sweep: Sweep, grid: pd.DataFrame, answer: str) -> None:
     """Where the answer meets its limit."""
-    limit = found.plan.limits.get(answer)
+    limit = sweep.plan.limits.get(answer)
     for value in () if limit is None else (limit.below, limit.above):
         if value is not None and grid.to_numpy().min() < value < grid.to_numpy().max():
             line = axes.contour(
@@ -195,9 +200,9 @@ def _boundary(axes: Any, found: Sweep, grid: pd.DataFrame, answer: str) -> None:
             axes.clabel(line, fmt=f"limit {value:g}", fontsize=FONT - 1)
 
 
-def pareto(found: Sweep, best: pd.DataFrame, x: str, y: str) -> Figure:
+def pareto(sweep: Sweep, best: pd.DataFrame, x: str, y: str) -> Figure:
     """All variants in two answers, those on the front filled."""
-    table = finished(found)
+    table = finished(sweep)
     drawn = figure(6.9, 4.4 + TITLE)
     axes = add_axes(drawn, 1.0, 0.62, 5.5, 3.5)
     feasible = table[table["feasible"]]
@@ -214,7 +219,7 @@ def pareto(found: Sweep, best: pd.DataFrame, x: str, y: str) -> Figure:
                 plain(str(name)), (a, b), xytext=(5, 5 if number % 2 else -10), textcoords="offset points",
                 fontsize=FONT - 1.5, color=PALETTE[1],
             )  # fmt: skip
-    _limits(axes, found, y)
+    _limits(axes, sweep, y)
     axes.set_xlabel(label(x), fontsize=FONT)
     axes.set_ylabel(label(y), fontsize=FONT)
     axes.legend(fontsize=FONT - 1, frameon=False)
@@ -227,9 +232,9 @@ def pareto(found: Sweep, best: pd.DataFrame, x: str, y: str) -> Figure:
     return drawn
 
 
-def _limits(axes: Any, found: Sweep, answer: str) -> None:
+def _limits(axes: Any, sweep: Sweep, answer: str) -> None:
     """Lines; a limit that is far from all variants would press them together, and is only named at that end."""
-    limit = found.plan.limits.get(answer)
+    limit = sweep.plan.limits.get(answer)
     low, high = axes.dataLim.intervaly
     words: dict[str, Any] = {"fontsize": FONT - 1.5, "color": BROKEN}
     for value in () if limit is None else (limit.below, limit.above):

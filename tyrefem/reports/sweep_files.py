@@ -33,20 +33,20 @@ FILES = (
 KEPT = (VARIANTS, *(f"{name}/{VARIANTS}" for name in PARTS))
 
 
-def save(found: DesignData, folder: Path, *, pictures: bool = True) -> dict[str, Any]:
+def save(design: DesignData, folder: Path, *, pictures: bool = True) -> dict[str, Any]:
     """Write ``NAME.csv`` and ``.parquet`` of every part, ``summary.json`` and the page; returns the summary.
 
     ``errors.csv`` is there where a reduced model answered: the largest error of every answer in fresh full runs.
     What was written here before for another question is removed, by the list in its summary.
     """
     before, written = earlier(folder), []
-    for part in found.parts:
+    for part in design.parts:
         written += write_table(part.table, folder, part.name)
-    if found.swept is not None and found.swept.certificate is not None:
-        written += write_errors(found.swept, folder)
-    summary = summarised(found)
+    if design.swept is not None and design.swept.certificate is not None:
+        written += write_errors(design.swept, folder)
+    summary = summarised(design)
     if pictures:
-        written += write_page(found, summary, folder)
+        written += write_page(design, summary, folder)
     summary[LIST] = clear(folder, before, summary, written)
     write_json(summary, folder / "summary.json")
     return summary
@@ -61,47 +61,47 @@ def write_table(table: pd.DataFrame, folder: Path, name: str) -> list[str]:
     return [f"{name}.csv", f"{name}.parquet"]
 
 
-def write_errors(found: Sweep, folder: Path) -> list[str]:
+def write_errors(sweep: Sweep, folder: Path) -> list[str]:
     """What the reduced model's answers may be wrong by, as found on fresh full runs; name of the file."""
     import pandas as pd
 
-    assert found.certificate is not None
-    errors = pd.DataFrame({"answer": list(found.certificate.errors), "error": list(found.certificate.errors.values())})
+    assert sweep.certificate is not None
+    errors = pd.DataFrame({"answer": list(sweep.certificate.errors), "error": list(sweep.certificate.errors.values())})
     with atomic_path(folder / "errors.csv") as temporary:
         errors.to_csv(temporary, index=False, float_format="%.3g")
     return ["errors.csv"]
 
 
-def summarised(found: DesignData) -> dict[str, Any]:
+def summarised(design: DesignData) -> dict[str, Any]:
     """What `summary.json` holds: how the variants were chosen and answered, every answer, versions, words."""
-    study, card = found.study, found.card
+    study, card = design.study, design.card
     return {
         "study": study.name,
         "title": card.title or study.title,
-        "complete": not found.interrupted and (found.swept is None or found.swept.complete),
+        "complete": not design.interrupted and (design.swept is None or design.swept.complete),
         "asked": card.model_dump(exclude_none=True, by_alias=True),
-        **({} if found.swept is None else {"sample": of_sample(found.swept)}),
-        **{part.name: part.to_dict() for part in found.parts},
-        "failures": found.failed,
+        **({} if design.swept is None else {"sample": of_sample(design.swept)}),
+        **{part.name: part.to_dict() for part in design.parts},
+        "failures": design.failed,
         "tolerance_K": study.tolerance,
         "mesh": study.card.mesh.model_dump(),
         "versions": versions() | {"SALib": importlib.metadata.version("SALib")},
         "random_seed": card.seed,
         "input": dict(study.data),
-        "words": spoken(found),
+        "words": spoken(design),
     }
 
 
-def of_sample(found: Sweep) -> dict[str, Any]:
+def of_sample(sweep: Sweep) -> dict[str, Any]:
     """The variants of the sample and who answered them."""
-    certificate = found.certificate
+    certificate = sweep.certificate
     return {
-        **found.plan.how,
-        "variants": len(found.plan.variants),
+        **sweep.plan.how,
+        "variants": len(sweep.plan.variants),
         "finished": {
-            "full": len(found.answered) - found.reduced,
-            "reduced": found.reduced,
-            "failed": len(found.outcomes) - len(found.answered),
+            "full": len(sweep.answered) - sweep.reduced,
+            "reduced": sweep.reduced,
+            "failed": len(sweep.outcomes) - len(sweep.answered),
         },
         "reduced_model": None
         if certificate is None
@@ -113,35 +113,35 @@ def of_sample(found: Sweep) -> dict[str, Any]:
             "corrections": certificate.amended,
             "largest_errors": dict(certificate.errors),
         },
-        "why_full_runs": found.why_full,
-        "seconds": found.seconds,
-        "taken_up": found.taken_up,
+        "why_full_runs": sweep.why_full,
+        "seconds": sweep.seconds,
+        "taken_up": sweep.taken_up,
     }
 
 
-def spoken(found: DesignData) -> list[str]:
+def spoken(design: DesignData) -> list[str]:
     """A few lines for people: title, how the variants were answered, every answer under its heading."""
-    lines = [found.card.title or found.study.title]
-    if found.swept is not None:
-        lines.append(f"  {how_answered(found.swept)}")
-    for part in found.parts:
+    lines = [design.card.title or design.study.title]
+    if design.swept is not None:
+        lines.append(f"  {how_answered(design.swept)}")
+    for part in design.parts:
         if part.words:
             lines.append(f"{part.heading}:")
             lines += [f"  {line}" for line in part.words]
     return lines
 
 
-def how_answered(found: Sweep) -> str:
+def how_answered(sweep: Sweep) -> str:
     """How many variants, in which time, by what."""
-    certificate = found.certificate
-    told = f"{len(found.outcomes)} of {len(found.plan.variants)} variants in {found.seconds:.1f} s"
-    told += f", {found.taken_up} of them taken up" if found.taken_up else ""
+    certificate = sweep.certificate
+    words = f"{len(sweep.outcomes)} of {len(sweep.plan.variants)} variants in {sweep.seconds:.1f} s"
+    words += f", {sweep.taken_up} of them taken up" if sweep.taken_up else ""
     if certificate is not None:
-        told += (
-            f"; {found.reduced} by a reduced model from {certificate.trained_on - certificate.amended} runs"
+        words += (
+            f"; {sweep.reduced} by a reduced model from {certificate.trained_on - certificate.amended} runs"
             f" and {certificate.amended} corrections, within {certificate.worst:.2g} K of"
             f" {certificate.cases} fresh full runs"
         )
-    elif found.outcomes:
-        told += "; all by full runs" + (f" ({found.why_full})" if found.why_full else "")
-    return told
+    elif sweep.outcomes:
+        words += "; all by full runs" + (f" ({sweep.why_full})" if sweep.why_full else "")
+    return words

@@ -33,19 +33,19 @@ def _figures(result: ResultData) -> dict[str, Callable[[], Any]]:
     from tyrefem.reports.figures.strain import cycle_figure
     from tyrefem.reports.figures.temperature import temperature_figure
 
-    found: dict[str, Callable[[], Any]] = {"temperature.png": lambda: temperature_figure(result)}
+    drawings: dict[str, Callable[[], Any]] = {"temperature.png": lambda: temperature_figure(result)}
     hottest, sliding = result.history.maximum, result.sliding
     if hottest.time < result.times[-1] and hottest.temperature > float(result.history.values[-1].max()) + 0.1:
-        found["temperature-hottest.png"] = lambda: temperature_figure(result, hottest.time)
-    found |= {
+        drawings["temperature-hottest.png"] = lambda: temperature_figure(result, hottest.time)
+    drawings |= {
         "histories.png": lambda: histories_figure(result),
         **({"sliding.png": lambda: sliding_figure(sliding)} if sliding is not None else {}),
         "heat-budget.png": lambda: budget_figure(result),
         "heat-source.png": lambda: heat_source_figure(result),
     }
     if hasattr(result.tyre.schedule.cycles[0][0], "inflated"):
-        found["strain-cycle.png"] = lambda: cycle_figure(result.study, result.tyre.schedule)
-    return found | {"mesh.png": lambda: mesh_figure(result.tyre.mesh)}
+        drawings["strain-cycle.png"] = lambda: cycle_figure(result.study, result.tyre.schedule)
+    return drawings | {"mesh.png": lambda: mesh_figure(result.tyre.mesh)}
 
 
 def pictures(result: ResultData) -> dict[str, bytes]:

@@ -148,7 +148,7 @@ def draw_outlines(axes: Axes, section: Section, *, color: str = INK, width: floa
 
 def region_labels(section: Section) -> list[Label]:
     """Names of the regions at the middle of their longest piece on the left side, from crown to bead."""
-    found = []
+    labels = []
     for region in section.regions:
         piece = max((p for p in section.pieces if p.region == region), key=lambda p: p.end - p.start)
         # Away from the piece's middle where a neighbour in another layer has its own.
@@ -156,8 +156,8 @@ def region_labels(section: Section) -> list[Label]:
         faces = section.interfaces(s)
         depth = float((faces[piece.layer] + faces[piece.layer + 1]) / 2 - faces[0])
         x, y = millimetres(section.place(s, depth))
-        found.append(Label(plain(region), -float(x), float(y)))
-    return sorted(found, key=lambda label: -label.y)
+        labels.append(Label(plain(region), -float(x), float(y)))
+    return sorted(labels, key=lambda label: -label.y)
 
 
 def sensor_labels(

@@ -47,23 +47,24 @@ Array = NDArray[np.float64]
 LABELS = {"rr": "e_rr", "zz": "e_zz", "tt": "e_θθ", "rz": "γ_rz", "rt": "γ_rθ", "zt": "γ_zθ"}
 
 
-def described(found: Footprint) -> str:
+def described(footprint: Footprint) -> str:
     """Load, deflection, pressure, road and number of harmonics in a line."""
-    road = found.pressing.road
+    road = footprint.pressing.road
     drum = "flat road" if math.isinf(road.drum_diameter) else f"drum Ø {road.drum_diameter:.3g} m"
     camber = f", camber {math.degrees(road.camber):.3g}°" if road.camber else ""
     return (
-        f"{found.load / 1e3:.3f} kN at {found.deflection * 1e3:.1f} mm, {found.pressing.state.pressure / 1e3:.0f} kPa, "
-        f"{drum}{camber}, {found.harmonics} harmonics"
+        f"{footprint.load / 1e3:.3f} kN at {footprint.deflection * 1e3:.1f} mm, "
+        f"{footprint.pressing.state.pressure / 1e3:.0f} kPa, "
+        f"{drum}{camber}, {footprint.harmonics} harmonics"
     )
 
 
-def pressure_map_figure(found: Footprint) -> Figure:
+def pressure_map_figure(footprint: Footprint) -> Figure:
     """Contact pressure over the footprint, both sides, and along its two middle lines."""
     from matplotlib.ticker import MaxNLocator
 
     drawn = figure(10.4, 4.4 + TITLE)
-    x, z, pressure = pressure_map(found)
+    x, z, pressure = pressure_map(footprint)
     scale, unit = si(float(np.median(pressure[pressure > 0])) if pressure.any() else 0.0, "Pa")
     axes = add_axes(drawn, 0.75, 0.55, 4.3, 3.7)
     # Pressure peaks at the tread's edge: the colours serve what lies below the highest 3 % of the contact.
@@ -72,7 +73,7 @@ def pressure_map_figure(found: Footprint) -> Figure:
     filled = axes.contourf(x * 1e3, z * 1e3, pressure / scale, levels=levels, cmap=ENERGY_MAP, extend="max")
     axes.contour(x * 1e3, z * 1e3, pressure / scale, levels=[1e-6 * levels[-1]], colors=INK, linewidths=0.8)
     axes.set_aspect("equal", adjustable="box")
-    reach = 0.65e3 * found.length + 5
+    reach = 0.65e3 * footprint.length + 5
     axes.set_xlim(-reach, reach)
     axes.set_xlabel("along the road x [mm]", fontsize=FONT)
     axes.set_ylabel("across z [mm]", fontsize=FONT)
@@ -87,7 +88,7 @@ def pressure_map_figure(found: Footprint) -> Figure:
     near = np.abs(x) * 1e3 <= reach
     along.plot(x[near] * 1e3, pressure[middle, near] / scale, "o-", ms=2.5, lw=1.2, color=PALETTE[0])
     across.plot(z * 1e3, pressure[:, ahead] / scale, "o-", ms=2.5, lw=1.2, color=PALETTE[1])
-    inflation = found.pressing.state.pressure
+    inflation = footprint.pressing.state.pressure
     for panel, name in (
         (along, "x [mm] at the middle of the tread"),
         (across, "z [mm] at the middle of the footprint"),
@@ -100,24 +101,25 @@ def pressure_map_figure(found: Footprint) -> Figure:
         tidy(panel)
     title(
         drawn, "Contact pressure",
-        f"{described(found)}: {found.length * 1e3:.0f} × {found.width * 1e3:.0f} mm, {found.area * 1e4:.0f} cm², mean "
-        f"{found.mean_pressure / 1e3:.0f} kPa; dashed: inflation",
+        f"{described(footprint)}: {footprint.length * 1e3:.0f} × {footprint.width * 1e3:.0f} mm, "
+        f"{footprint.area * 1e4:.0f} cm², mean "
+        f"{footprint.mean_pressure / 1e3:.0f} kPa; dashed: inflation",
     )  # fmt: skip
     return drawn
 
 
-def pressure_map(found: Footprint) -> tuple[Array, Array, Array]:
+def pressure_map(footprint: Footprint) -> tuple[Array, Array, Array]:
     """x (a,), z (b,) in m and pressure (b, a) in Pa over the whole footprint, mirrored where only half was solved;
     zero in the tread's grooves."""
-    angles, (r, z) = found.grid.angles, found.grid.tread.places
+    angles, (r, z) = footprint.grid.angles, footprint.grid.tread.places
     x = np.concatenate([-angles[:0:-1], angles]) * float(r.mean())
-    pressure = np.concatenate([found.pressure[:0:-1], found.pressure]).T
-    if found.pressing.tread.half:
+    pressure = np.concatenate([footprint.pressure[:0:-1], footprint.pressure]).T
+    if footprint.pressing.tread.half:
         keep = z > 1e-9
         z, pressure = np.concatenate([-z[keep][::-1], z]), np.vstack([pressure[keep][::-1], pressure])
     edge = 1e-6
-    for low, high in found.grid.tread.grooves:
-        for start, end in {(low, high), (-high, -low)} if found.pressing.tread.half else {(low, high)}:
+    for low, high in footprint.grid.tread.grooves:
+        for start, end in {(low, high), (-high, -low)} if footprint.pressing.tread.half else {(low, high)}:
             at = np.array([start + edge, end - edge])
             z, pressure = np.concatenate([z, at]), np.vstack([pressure, np.zeros((2, len(x)))])
     order = np.argsort(z, kind="stable")
@@ -183,13 +185,13 @@ def harmonics_figure(loss: RevolutionLoss) -> Figure:
     return drawn
 
 
-def deformed_figure(found: Footprint, angles: tuple[float, ...] = (0.0, 0.2, math.pi)) -> Figure:
+def deformed_figure(footprint: Footprint, angles: tuple[float, ...] = (0.0, 0.2, math.pi)) -> Figure:
     """The section at angles from the middle of the footprint (deformed, coloured outlines) over the inflated one."""
     from matplotlib.collections import LineCollection
 
-    elements = found.pressing.harmonics.elements
-    mesh, n = elements.mesh, np.arange(found.harmonics + 1)
-    u = found.amplitudes.reshape(len(n), -1, 3)
+    elements = footprint.pressing.harmonics.elements
+    mesh, n = elements.mesh, np.arange(footprint.harmonics + 1)
+    u = footprint.amplitudes.reshape(len(n), -1, 3)
     vertices = elements.basis.nodal_dofs[0]
     outline = mesh.facets[:, mesh.boundary_facets()].T
     shapes = [elements.nodes[:, vertices]]
@@ -197,7 +199,7 @@ def deformed_figure(found: Footprint, angles: tuple[float, ...] = (0.0, 0.2, mat
         shapes.append(shapes[0] + np.tensordot(np.cos(n * angle), u[:, vertices, :2], axes=1).T)
     everything = np.concatenate(shapes, axis=1) * 1e3
     (low_r, low_z), (high_r, high_z) = everything.min(axis=1) - 3, everything.max(axis=1) + 3
-    tall = 4.0 if found.pressing.tread.half else 3.2
+    tall = 4.0 if footprint.pressing.tread.half else 3.2
     wide = (high_z - low_z) * tall / (high_r - low_r)
     drawn = figure(max(wide + 2.7, 6.4), tall + 0.65 + TITLE)
     axes = add_axes(drawn, 0.8, 0.6, wide, tall)
@@ -210,7 +212,7 @@ def deformed_figure(found: Footprint, angles: tuple[float, ...] = (0.0, 0.2, mat
     axes.set_xlim(low_z, high_z)
     axes.set_ylim(low_r, high_r)
     axes.legend(fontsize=FONT, frameon=False, loc="upper left", bbox_to_anchor=(1.02, 1.0))
-    title(drawn, "Section before and under load", described(found))
+    title(drawn, "Section before and under load", described(footprint))
     return drawn
 
 
@@ -230,26 +232,26 @@ def _cells(axes: Axes, mesh: Any, values: Array) -> Any:
 PANEL = 1.95
 
 
-def cord_tension_figure(found: Footprint, cords: Sequence[CordCycle]) -> Figure:
+def cord_tension_figure(footprint: Footprint, cords: Sequence[CordCycle]) -> Figure:
     """One panel for each layer of cords: both directions of the cords, and the tension of the inflated tyre."""
     rows = (len(cords) + 1) // 2
     drawn = figure(10.4, 0.35 + PANEL * rows + TITLE)
     height = float(drawn.get_size_inches()[1])
-    for number, one in enumerate(cords):
+    for number, layer in enumerate(cords):
         row, column = divmod(number, 2)
         axes = add_axes(drawn, 0.75 + 5.1 * column, height - TITLE - PANEL * (row + 1) + 0.35, 4.2, PANEL - 0.65)
-        largest = float(np.abs(np.concatenate([one.plus, one.minus])).max())
-        scale, unit = si(largest, one.unit)
-        degrees = np.degrees(one.angles)
-        crossed = not np.allclose(one.plus, one.minus, rtol=0, atol=1e-3 * largest)
-        axes.plot(degrees, one.plus / scale, color=PALETTE[0], lw=1.4, label="+angle" if crossed else "cords")
+        largest = float(np.abs(np.concatenate([layer.plus, layer.minus])).max())
+        scale, unit = si(largest, layer.unit)
+        degrees = np.degrees(layer.angles)
+        crossed = not np.allclose(layer.plus, layer.minus, rtol=0, atol=1e-3 * largest)
+        axes.plot(degrees, layer.plus / scale, color=PALETTE[0], lw=1.4, label="+angle" if crossed else "cords")
         if crossed:
-            axes.plot(degrees, one.minus / scale, color=PALETTE[1], lw=1.2, ls=(0, (5, 1.5)), label="−angle")
-        axes.axhline(one.inflated / scale, color=QUIET, lw=0.9, ls=(0, (1.2, 1.2)), label="inflated")
+            axes.plot(degrees, layer.minus / scale, color=PALETTE[1], lw=1.2, ls=(0, (5, 1.5)), label="−angle")
+        axes.axhline(layer.inflated / scale, color=QUIET, lw=0.9, ls=(0, (1.2, 1.2)), label="inflated")
         axes.axhline(0.0, color=INK, lw=0.5)
-        r, z = (1e3 * x for x in one.place)
-        what = "cord" if one.unit == "N" else "layer"
-        axes.set_title(f"{one.region} (r {r:.0f}, z {z:.0f} mm)", fontsize=FONT, loc="left", color=INK)
+        r, z = (1e3 * x for x in layer.place)
+        what = "cord" if layer.unit == "N" else "layer"
+        axes.set_title(f"{layer.region} (r {r:.0f}, z {z:.0f} mm)", fontsize=FONT, loc="left", color=INK)
         axes.set_ylabel(f"{what} [{unit}]", fontsize=FONT)
         axes.set_xlim(-180, 180)
         axes.set_xticks(range(-180, 181, 60))
@@ -257,7 +259,7 @@ def cord_tension_figure(found: Footprint, cords: Sequence[CordCycle]) -> Figure:
         axes.legend(fontsize=FONT - 1.5, frameon=False, loc="lower right", bbox_to_anchor=(1.0, 0.97), ncols=3)
         if number >= len(cords) - 2:
             axes.set_xlabel("angle from the middle of the footprint [°]", fontsize=FONT)
-    title(drawn, "Cord tension round the wheel, where it is greatest in each layer", described(found))
+    title(drawn, "Cord tension round the wheel, where it is greatest in each layer", described(footprint))
     return drawn
 
 
@@ -296,15 +298,15 @@ def load_deflection_figure(pressed: Pressed, curve: Array) -> Figure:
     """Load over deflection, (n, 2) in m and N, with the footprint's own point and its tangent."""
     drawn = figure(6.4, 3.9 + TITLE)
     axes = add_axes(drawn, 0.8, 0.6, 5.3, 3.2)
-    found = pressed.footprint
+    footprint = pressed.footprint
     deflection, load = curve.T
     axes.plot(deflection * 1e3, load / 1e3, "o-", ms=3, lw=1.4, color=PALETTE[0], label="load")
-    ends = found.deflection + np.array([-0.3, 0.2]) * found.deflection
-    tangent = found.load + found.stiffness * (ends - found.deflection)
-    words = f"tangent {found.stiffness / 1e3:.0f} N/mm"
+    ends = footprint.deflection + np.array([-0.3, 0.2]) * footprint.deflection
+    tangent = footprint.load + footprint.stiffness * (ends - footprint.deflection)
+    words = f"tangent {footprint.stiffness / 1e3:.0f} N/mm"
     axes.plot(ends * 1e3, tangent / 1e3, color=PALETTE[1], lw=1.2, ls=(0, (5, 1.5)), label=words)
-    words = f"{found.load / 1e3:.3g} kN at {found.deflection * 1e3:.1f} mm"
-    axes.plot(found.deflection * 1e3, found.load / 1e3, "s", color=PALETTE[1], ms=6, label=words)
+    words = f"{footprint.load / 1e3:.3g} kN at {footprint.deflection * 1e3:.1f} mm"
+    axes.plot(footprint.deflection * 1e3, footprint.load / 1e3, "s", color=PALETTE[1], ms=6, label=words)
     axes.set_xlim(left=0)
     axes.set_ylim(bottom=0)
     axes.set_xlabel("deflection [mm]", fontsize=FONT)
@@ -313,7 +315,7 @@ def load_deflection_figure(pressed: Pressed, curve: Array) -> Figure:
     axes.legend(fontsize=FONT, frameon=False)
     title(
         drawn, f"{pressed.study.name}: load over deflection",
-        f"{pressed.tyre.pressure / 1e3:.0f} kPa, {found.harmonics} harmonics; "
+        f"{pressed.tyre.pressure / 1e3:.0f} kPa, {footprint.harmonics} harmonics; "
         f"secant {pressed.secant_stiffness / 1e3:.0f} N/mm",
     )  # fmt: skip
     return drawn
@@ -329,7 +331,7 @@ def _curves(places: Array, tyre: Inflation) -> Array:
 def _outline(mesh: Any, cells: Array) -> list[Array]:
     """Edges of the body's boundary, three points each."""
     on_boundary = np.isin(mesh.t2f, mesh.boundary_facets())
-    found = []
+    edges = []
     for side, element in zip(*np.nonzero(on_boundary), strict=True):
-        found.append(cells[element, [2 * side, 2 * side + 1, (2 * side + 2) % 8]])
-    return found
+        edges.append(cells[element, [2 * side, 2 * side + 1, (2 * side + 2) % 8]])
+    return edges

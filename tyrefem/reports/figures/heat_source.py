@@ -41,7 +41,7 @@ def zone_heat(result: ResultData, i: int) -> list[ZoneHeat]:
     t = float(result.times[i]) * (1 - 1e-12)
     sources = result.heat_source(i)
     powers = result.heat_budget.powers
-    found = []
+    heats = []
     for zone in result.tyre.schedule.zones:
         corners, _ = triangles(operators, operators.elements(zone.name))
         numbers = np.full(operators.size, -1)
@@ -49,8 +49,8 @@ def zone_heat(result: ResultData, i: int) -> list[ZoneHeat]:
         nodes, source = sources[zone.name]
         energy = result.tyre.hysteresis[zone.name].energy_density(nodes, t)
         power = float(powers["generated", zone.title][i])
-        found.append(ZoneHeat(zone.name, zone.title, nodes, numbers[corners], energy, source, power))
-    return found
+        heats.append(ZoneHeat(zone.name, zone.title, nodes, numbers[corners], energy, source, power))
+    return heats
 
 
 def heat_source_figure(result: ResultData) -> Figure:

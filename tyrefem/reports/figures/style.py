@@ -211,9 +211,9 @@ def spread(wanted: ArrayLike, gap: float) -> Array:
                 blocks[-1][1] + count,
             ]
     values = np.concatenate([np.full(int(count), mean) for mean, count in blocks]) if blocks else np.empty(0)
-    found = np.empty(len(wanted))
-    found[order] = values + gap * np.arange(len(wanted))
-    return found
+    spread_values = np.empty(len(wanted))
+    spread_values[order] = values + gap * np.arange(len(wanted))
+    return spread_values
 
 
 def column(
