@@ -58,9 +58,9 @@ def strain(
 
     known = compared_laws()
     wanted = tuple(dict.fromkeys(law or known))
-    for one in wanted:
-        if one not in known:
-            raise InputError(f"no strain law '{one}' to compare{nearest(one, known)}", field="--law")
+    for law_name in wanted:
+        if law_name not in known:
+            raise InputError(f"no strain law '{law_name}' to compare{nearest(law_name, known)}", field="--law")
     chosen = load_study(study, settings(changes), case)
     NEEDS.check(chosen)
     warn(chosen.warnings)
@@ -68,47 +68,49 @@ def strain(
         results_folder(out or Path("results") / f"{chosen.name}-strain", "strain", FILES, force=force) as folder,
         progress(f"{chosen.name}: {', '.join(wanted)}", quiet=quiet or as_json),
     ):
-        found = compare_laws(chosen, wanted)
-        summary = found.summary()
+        comparison = compare_laws(chosen, wanted)
+        summary = comparison.summary()
         with atomic_folder(folder) as temporary:
             write_json(summary, temporary / "strain.json")
-            found.table().to_csv(temporary / "strain.csv", index=False)
-            (temporary / "strain.png").write_bytes(_picture(found))
-    for refused, why in found.refused.items():
+            comparison.table().to_csv(temporary / "strain.csv", index=False)
+            (temporary / "strain.png").write_bytes(_picture(comparison))
+    for refused, why in comparison.refused.items():
         fail(f"warning: the strain law '{refused}' has no answer: {why}")
     if as_json:
         print_json(summary)
         return
-    _print(found)
+    _print(comparison)
     typer.echo(f"results in {folder}")
 
 
-def _picture(found: LawComparison) -> bytes:
+def _picture(comparison: LawComparison) -> bytes:
     from tyrefem.reports.figures.strain_laws import strain_laws_figure
     from tyrefem.reports.figures.style import png
 
-    return png(strain_laws_figure(found))
+    return png(strain_laws_figure(comparison))
 
 
-def _print(found: LawComparison) -> None:
+def _print(comparison: LawComparison) -> None:
     from rich.console import Console
     from rich.table import Table
 
-    titles = {part.name: part.name if part.name == part.title else f"{part.name} {part.title}" for part in found.parts}
-    laws = [outcome.law for outcome in found.outcomes]
-    table = Table(title=found.study.title, title_justify="left", title_style="bold")
+    titles = {
+        part.name: part.name if part.name == part.title else f"{part.name} {part.title}" for part in comparison.parts
+    }
+    laws = [outcome.law for outcome in comparison.outcomes]
+    table = Table(title=comparison.study.title, title_justify="left", title_style="bold")
     table.add_column("")
-    for one in laws:
-        table.add_column(one, justify="right")
+    for law in laws:
+        table.add_column(law, justify="right")
     before = "deflection"
-    for row in found.table().to_dict("records"):
+    for row in comparison.table().to_dict("records"):
         heading, factor = KINDS[row["kind"]]
         if row["kind"] != before:
             before = row["kind"]
             table.add_section()
             table.add_row(f"[bold]{heading}[/bold]")
         name = "deflection, mm" if row["kind"] == "deflection" else titles.get(row["name"], row["name"])
-        table.add_row(name, *(f"{factor * row[one]:.2f}" for one in laws))
+        table.add_row(name, *(f"{factor * row[law]:.2f}" for law in laws))
     Console(highlight=False).print(table)
 
 

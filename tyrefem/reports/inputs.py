@@ -87,7 +87,7 @@ def _loss(loss: LossTangent) -> str:
 
 
 def _cord_softening(card: MaterialCard) -> Softening | None:
-    return next((one.softening for one in (card.cord, card.cords) if one is not None and one.softening), None)
+    return next((part.softening for part in (card.cord, card.cords) if part is not None and part.softening), None)
 
 
 def _softening(law: Softening) -> str:
@@ -179,16 +179,18 @@ def effect_rows(study: StudyData) -> list[list[str]]:
     rows = []
     for effect in study.effects:
         values = [f"{name} {text}" for name, text in effect.choice.items()]
-        for one in effect.parameters():
-            sd = f" ± {effect.sd[one.name]}" if one.name in effect.sd else ""
-            values.append(f"{one.name.replace('_', ' ')} {one.prior.text(getattr(effect, one.name))}{sd}")
+        for parameter in effect.parameters():
+            sd = f" ± {effect.sd[parameter.name]}" if parameter.name in effect.sd else ""
+            values.append(
+                f"{parameter.name.replace('_', ' ')} {parameter.prior.text(getattr(effect, parameter.name))}{sd}"
+            )
         rows.append([effect.name, effect.sentence, "; ".join(values), effect.provenance or "the study"])
     return rows
 
 
 def _numbers(card: Card) -> list[str]:
     """Every field with its unit; those the study leaves at their defaults say so."""
-    found = []
+    numbers = []
     for name, info in type(card).model_fields.items():
         value = getattr(card, name)
         if name == "law" or value is None:
@@ -199,8 +201,8 @@ def _numbers(card: Card) -> list[str]:
         else:
             text = f"table of {len(value)} rows" if isinstance(value, list) else str(value)
         default = "" if name in card.model_fields_set else " (default)"
-        found.append(f"{name.replace('_', ' ')} {text}{default}")
-    return found
+        numbers.append(f"{name.replace('_', ' ')} {text}{default}")
+    return numbers
 
 
 def _unit(parts: list[Any]) -> str:
@@ -208,9 +210,9 @@ def _unit(parts: list[Any]) -> str:
     for part in parts:
         if isinstance(part, Unit):
             return "" if part.unit == "1" else part.unit.replace("delta_degC", "K").replace("degC", "°C")
-        found = _unit(list(typing.get_args(part)))
-        if found:
-            return found
+        unit = _unit(list(typing.get_args(part)))
+        if unit:
+            return unit
     return ""
 
 
@@ -298,7 +300,7 @@ def assumptions(study: StudyData, estimates: list[str]) -> list[tuple[str, str]]
         always[-1] = ("Feedback of temperature on the strain cycle", _feedback_assumptions(mechanics.feedback))
     if slip is FREE and any(effect.name in BESIDE for effect in study.effects):
         slip = {name: f"{text} What the study's effects add stands beside this." for name, text in FREE.items()}
-    found = [always[0], *slip.items(), *locked.items(), *always[1:]]
+    stated = [always[0], *slip.items(), *locked.items(), *always[1:]]
     over_frequency = [region for region, card in study.materials.items() if card.loss_tangent.frequency is not None]
     laws = "depends on temperature, not on frequency"
     if over_frequency:
@@ -310,32 +312,34 @@ def assumptions(study: StudyData, estimates: list[str]) -> list[tuple[str, str]]
     every = f"Every harmonic of the strain round the wheel loses π tan δ of its energy per cycle; tan δ {laws}."
     harmonics = ("Loss of every harmonic", every)
     by_harmonic = mechanics.strain == "fem" and mechanics.revolution == "harmonics"
-    found.insert(1, harmonics if by_harmonic else ("One loss cycle per revolution", cycle))
+    stated.insert(1, harmonics if by_harmonic else ("One loss cycle per revolution", cycle))
     if study.effects:
-        added = "; ".join(dict.fromkeys(f"{one.name}: {one.sentence.rstrip('.')}" for one in study.effects))
-        found.append(("Effects beside the base model", f"{added}. Each says in the study where its values come from."))
+        added = "; ".join(
+            dict.fromkeys(f"{added_effect.name}: {added_effect.sentence.rstrip('.')}" for added_effect in study.effects)
+        )
+        stated.append(("Effects beside the base model", f"{added}. Each says in the study where its values come from."))
     presses = strain_law(study).presses
     if mechanics.load_law.law == "tr-r-64" and not presses:
         memory = "The load-deflection formula is quoted from memory of NASA TR R-64; a measured stiffness is better."
-        found.append(("Load and deflection from memory", memory))
+        stated.append(("Load and deflection from memory", memory))
     if mechanics.footprint.law == "tr-r-64" and not presses:
-        found.append(("Footprint from memory", "The footprint's length is that of NASA TR R-64, quoted from memory."))
+        stated.append(("Footprint from memory", "The footprint's length is that of NASA TR R-64, quoted from memory."))
     if estimates:
-        found.append(("Estimated material numbers", f"Marked in the table of materials: {'; '.join(estimates)}."))
+        stated.append(("Estimated material numbers", f"Marked in the table of materials: {'; '.join(estimates)}."))
     measured = (
         "This study names measured tables; the comparison with them is a report of its own."
         if study.measured
         else "No measured temperatures belong to this study."
     )
     if strain_law(study).by_elements:
-        return [*found, ("Validation", f"The strain cycle by finite elements is verified, not validated. {measured}")]
+        return [*stated, ("Validation", f"The strain cycle by finite elements is verified, not validated. {measured}")]
     if given is not None:
-        return [*found, ("Validation", f"The strain energy is given, so nothing of it is validated. {measured}")]
+        return [*stated, ("Validation", f"The strain energy is given, so nothing of it is validated. {measured}")]
     scan = (
         "The model follows Clark & Dodge (1980), whose measured temperature curves are illegible in the scan, so it "
         f"has not been validated against them. {measured}"
     )
-    return [*found, ("Validation", scan)]
+    return [*stated, ("Validation", scan)]
 
 
 def _feedback_assumptions(choice: Feedback) -> str:

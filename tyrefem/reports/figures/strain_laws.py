@@ -36,23 +36,23 @@ Array = NDArray[np.float64]
 SPANNED = 0.96
 
 
-def strain_laws_figure(found: LawComparison) -> Figure:
+def strain_laws_figure(comparison: LawComparison) -> Figure:
     """Above: strain energy density of each law, one colour scale; below: energy by part, what heats dotted."""
-    maps = [_map(found, outcome) for outcome in found.outcomes]
-    spread = np.concatenate([_by_area(one) for one in maps])
+    maps = [_map(comparison, outcome) for outcome in comparison.outcomes]
+    spread = np.concatenate([_by_area(law_map) for law_map in maps])
     top = float(np.quantile(spread, SPANNED))
-    peak = max(float(values.max()) for one in maps for _, _, values in one)
+    peak = max(float(values.max()) for law_map in maps for _, _, values in law_map)
     factor, unit = si(top, "J/m³")
-    x, y = millimetres(np.concatenate([points.T for one in maps for points, _, _ in one]))
+    x, y = millimetres(np.concatenate([points.T for law_map in maps for points, _, _ in law_map]))
     low, high, left, right = y.min() - 4, y.max() + 4, x.min() - 3, x.max() + 3
     tall = 3.4
     wide = max(tall * (right - left) / (high - low), 2.3)
     width = 0.75 + len(maps) * (wide + 0.55) + 0.8
     drawn = figure(width, tall + 2.95 + TITLE)
     image: Any = None
-    for number, (outcome, one) in enumerate(zip(found.outcomes, maps, strict=True)):
+    for number, (outcome, law_map) in enumerate(zip(comparison.outcomes, maps, strict=True)):
         axes = add_axes(drawn, 0.75 + number * (wide + 0.55), 2.65, wide, tall)
-        for points, corners, values in one:
+        for points, corners, values in law_map:
             image = axes.tripcolor(
                 *millimetres(points.T), corners, values / factor, shading="gouraud", cmap=ENERGY_MAP, vmin=0.0,
                 vmax=top / factor, rasterized=True,
@@ -69,19 +69,19 @@ def strain_laws_figure(found: LawComparison) -> Figure:
     bar = drawn.colorbar(image, cax=bar_axes, extend="max" if peak > 1.001 * top else "neither")
     bar.set_label(f"U [{unit}], peak {peak / factor:{digits(peak / factor)}}", fontsize=FONT)
     bar_axes.tick_params(labelsize=FONT, colors=INK)
-    _bars(add_axes(drawn, 0.75, 0.4, width - 0.95, 1.4), found)
-    case = found.case
+    _bars(add_axes(drawn, 0.75, 0.4, width - 0.95, 1.4), comparison)
+    case = comparison.case
     title(
-        drawn, f"{found.study.name}: strain energy by strain law",
+        drawn, f"{comparison.study.name}: strain energy by strain law",
         f"{case.load / 1e3:.4g} kN at {case.pressure / 1e3:.4g} kPa; largest change of strain within a revolution",
     )  # fmt: skip
     return drawn
 
 
-def _map(found: LawComparison, outcome: LawOutcome) -> list[tuple[Array, Any, Array]]:
+def _map(comparison: LawComparison, outcome: LawOutcome) -> list[tuple[Array, Any, Array]]:
     """Points (2, n), triangles and U of every part, from the part's side of its borders, on z >= 0."""
-    mesh, pieces = found.mesh.mesh, []
-    for part in found.parts:
+    mesh, pieces = comparison.mesh.mesh, []
+    for part in comparison.parts:
         cells = mesh.t[:, mesh.subdomains[part.name]]
         cells = cells[:, mesh.p[1, cells].mean(axis=0) >= 0]
         numbers, corners = np.unique(cells, return_inverse=True)
@@ -94,20 +94,20 @@ def _map(found: LawComparison, outcome: LawOutcome) -> list[tuple[Array, Any, Ar
 
 def _by_area(pieces: list[tuple[Array, Any, Array]]) -> Array:
     """Mean U of the triangles, each as often as it has tenths of a mm2."""
-    found = []
+    repeated = []
     for points, corners, values in pieces:
         r, z = points[:, corners.T]
         area = np.abs((r[1] - r[0]) * (z[2] - z[0]) - (r[2] - r[0]) * (z[1] - z[0])) / 2
-        found.append(np.repeat(values[corners].mean(axis=1), np.ceil(area / 1e-7).astype(int)))
-    return np.concatenate(found)
+        repeated.append(np.repeat(values[corners].mean(axis=1), np.ceil(area / 1e-7).astype(int)))
+    return np.concatenate(repeated)
 
 
-def _bars(axes: Axes, found: LawComparison) -> None:
-    names = [part.name for part in found.parts]
-    places, step = np.arange(len(names)), 0.8 / len(found.outcomes)
-    for number, outcome in enumerate(found.outcomes):
-        at = places + (number - (len(found.outcomes) - 1) / 2) * step
-        energies = [found.energies[outcome.law][name] for name in names]
+def _bars(axes: Axes, comparison: LawComparison) -> None:
+    names = [part.name for part in comparison.parts]
+    places, step = np.arange(len(names)), 0.8 / len(comparison.outcomes)
+    for number, outcome in enumerate(comparison.outcomes):
+        at = places + (number - (len(comparison.outcomes) - 1) / 2) * step
+        energies = [comparison.energies[outcome.law][name] for name in names]
         total = sum(energies)
         colour = PALETTE[number]
         axes.bar(
@@ -117,11 +117,11 @@ def _bars(axes: Axes, found: LawComparison) -> None:
             color=colour,
             label=f"{strain_laws()[outcome.law].title}: {total:{digits(total)}} J",
         )
-        heating = [found.heating[outcome.law][name] for name in names]
+        heating = [comparison.heating[outcome.law][name] for name in names]
         if not np.allclose(heating, energies):
             words = f"U that heats, all harmonics: {sum(heating):{digits(sum(heating))}} J"
             axes.bar(at, heating, 0.9 * step, fill=False, ec=INK, ls=":", lw=1.1, label=words)
-    labels = [part.name if part.name == part.title else f"{part.name}: {part.title}" for part in found.parts]
+    labels = [part.name if part.name == part.title else f"{part.name}: {part.title}" for part in comparison.parts]
     axes.set_xticks(places, [short(label, 28) for label in labels])
     if len(names) > 6:
         axes.tick_params(axis="x", rotation=25)
