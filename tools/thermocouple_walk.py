@@ -1,0 +1,129 @@
+"""Follow a thermocouple through a real diagnosis: from its column in a CSV file to the verdict.
+
+One reading is a number that no other reading is. A module is on the walk where one of its functions hands on the text
+of the file with it, an array, table or object that has it, or what is made of the readings: the classes of `MADE_OF`.
+A search fits again and again; what counts is that everything is handed on forwards: to a module that stands later on
+the walk, never back. `tyrefem.diagnose.workflow` calls the others in turn and makes the diagnosis of what they give,
+so that it stands behind them.
+"""
+
+from __future__ import annotations
+
+import tempfile
+from collections.abc import Iterable, Mapping
+from dataclasses import dataclass
+from graphlib import TopologicalSorter
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+from hand_overs import Call, Follower, Step, parts
+
+STUDY = "nasa-22x5.5-8pr"
+CHANGES = {"mesh.size": "12 mm", "drive.duration": "120 s"}
+#: Candidates of the diagnosis: few, as each costs a simulation.
+CANDIDATES = ("sun", "sensor-offset")
+SENSORS = ("crown-inner", "crown-middle")
+#: The reading, degC, and its number in the first column.
+READING, NUMBER = 26.871337, 4
+#: Classes of what is made of the readings.
+MADE_OF = ("Gap", "Explained", "Judgement", "Diagnosis")
+#: Longer lists are not looked into: no list of objects that hold readings is as long.
+LONG = 200
+
+
+@dataclass(frozen=True)
+class ThermocoupleWalk:
+    """Steps in their order, and from which module to which something was handed."""
+
+    steps: tuple[Step, ...]
+    hand_overs: frozenset[tuple[str, str]]
+
+    @property
+    def modules(self) -> tuple[str, ...]:
+        """Every module on the walk, each behind all that hand anything to it; else in the order of the first steps.
+
+        Raises
+        ------
+        graphlib.CycleError : something is handed back to a module from which it has come.
+        """
+        first = list(dict.fromkeys(step.module for step in self.steps))
+        order = TopologicalSorter({module: self._givers(module) & set(first) for module in first})
+        order.prepare()
+        modules: list[str] = []
+        while order.is_active():
+            ready = sorted(order.get_ready(), key=first.index)
+            modules += ready
+            order.done(*ready)
+        return tuple(modules)
+
+    def _givers(self, module: str) -> set[str]:
+        return {giver for giver, taker in self.hand_overs if taker == module}
+
+    def form(self, module: str) -> str:
+        """What a module hands on: the form of its last step."""
+        return [step.form for step in self.steps if step.module == module][-1]
+
+
+class ReadingFollower(Follower):
+    """Follows the reading, and to which module each function gives it."""
+
+    def __init__(self) -> None:
+        super().__init__(holds_reading)
+        self.hand_overs: set[tuple[str, str]] = set()
+
+    def returned(self, call: Call, taker: Call, value: Any) -> None:
+        """As of `Follower`."""
+        count = len(self.steps)
+        super().returned(call, taker, value)
+        if len(self.steps) > count and taker.module.startswith("tyrefem.") and taker.module != call.module:
+            self.hand_overs.add((call.module, taker.module))
+
+
+def holds_reading(value: Any) -> bool:
+    """Is it the reading, something that has it, or something made of the readings?"""
+    return _holds(value, depth=2)
+
+
+def _holds(value: Any, depth: int) -> bool:
+    if value is None or isinstance(value, bool | int):
+        return False
+    if type(value).__name__ in MADE_OF:
+        return True
+    if isinstance(value, str):
+        return f"{READING}" in value
+    if isinstance(value, float):
+        return bool(abs(value - READING) < 1e-9)
+    if hasattr(value, "to_numpy"):
+        value = value.to_numpy()
+    if isinstance(value, np.ndarray):
+        return value.dtype.kind == "f" and bool(np.any(np.abs(value - READING) < 1e-9))
+    inside: Iterable[Any] = ()
+    if isinstance(value, Mapping):
+        inside = value.values() if len(value) < LONG else ()
+    elif isinstance(value, list | tuple):
+        inside = value if len(value) < LONG else ()
+    elif depth > 0:
+        depth, inside = depth - 1, parts(value)
+    return any(_holds(part, depth) for part in inside)
+
+
+def thermocouple_walk() -> ThermocoupleWalk:
+    """Write a table as a logger would, diagnose the study with it, and follow the reading."""
+    import pandas as pd
+
+    import tyrefem as tf
+    from tyrefem.effects import catalogue
+
+    excluded = [name for name in catalogue() if name not in CANDIDATES]
+    study = tf.study(STUDY, CHANGES | {"diagnosis.exclude": excluded})
+    computed = study.run().readings
+    times = np.arange(5.0, 120.0, 10.0)
+    columns = {f"{name} [degC]": np.interp(times, computed["time_s"], computed[name]) for name in SENSORS}
+    columns[f"{SENSORS[0]} [degC]"][NUMBER] = READING
+    with tempfile.TemporaryDirectory() as folder:
+        file = Path(folder) / "run.csv"
+        pd.DataFrame({"time [s]": times, **columns}).to_csv(file, index=False)
+        with ReadingFollower() as follower:
+            study.diagnose(file, largest=1, looks=1)
+    return ThermocoupleWalk(tuple(follower.steps), frozenset(follower.hand_overs))
