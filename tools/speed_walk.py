@@ -12,6 +12,7 @@ import re
 import tempfile
 from collections.abc import Mapping
 from dataclasses import dataclass
+from itertools import pairwise
 from pathlib import Path
 from typing import Any
 
@@ -85,6 +86,6 @@ def speed_walks() -> SpeedWalks:
         with SpeedFollower() as follower:
             tf.study(file).run()
     ends = [0, *(count for count, _ in follower.arrivals)]
-    steps = [tuple(follower.steps[start:end]) for start, end in zip(ends, ends[1:], strict=False)]
+    steps = [tuple(follower.steps[start:end]) for start, end in pairwise(ends)]
     walks = [Walk(part, module) for part, (_, module) in zip(steps, follower.arrivals, strict=True)]
     return SpeedWalks(walks[0], tuple(walks[1:]), tuple(sorted(follower.asking - {DOOR})))

@@ -51,10 +51,12 @@ class ThermocoupleWalk:
         order = TopologicalSorter({module: self._givers(module) & set(first) for module in first})
         order.prepare()
         modules: list[str] = []
+        ready: set[str] = set()
         while order.is_active():
-            ready = sorted(order.get_ready(), key=first.index)
-            modules += ready
-            order.done(*ready)
+            ready |= set(order.get_ready())
+            modules.append(min(ready, key=first.index))
+            ready.discard(modules[-1])
+            order.done(modules[-1])
         return tuple(modules)
 
     def _givers(self, module: str) -> set[str]:

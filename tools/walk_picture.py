@@ -9,7 +9,7 @@ from xml.sax.saxutils import escape
 from hand_overs import room
 
 #: Sizes in pixels: of a floor, of the column with the rooms' names, of the picture, and above the floors.
-FLOOR, NAMES, WIDTH, TOP = 38, 250, 1240, 64
+FLOOR, NAMES, WIDTH, TOP = 40, 220, 1400, 64
 INK, QUIET, LINES = "#222222", "#6b6b6b", "#d9d9d9"
 FONT = "font-family='Helvetica, Arial, sans-serif'"
 
@@ -55,7 +55,7 @@ def _floors(floors: Sequence[Sequence[str]]) -> list[str]:
 
 def _trail(trail: Trail, place: dict[str, float], left: float, width: float) -> list[str]:
     count = len(trail.modules)
-    xs = [left + 12 + number * (width - 24) / max(count - 1, 1) for number in range(count)]
+    xs = [left + 30 + number * (width - 60) / max(count - 1, 1) for number in range(count)]
     ys = [place[room(module)] for module in trail.modules]
     points = " ".join(f"{x:.1f},{y:.1f}" for x, y in zip(xs, ys, strict=True))
     drawn = [
@@ -64,12 +64,12 @@ def _trail(trail: Trail, place: dict[str, float], left: float, width: float) -> 
     ]
     for number, (module, x, y) in enumerate(zip(trail.modules, xs, ys, strict=True)):
         name = module.removeprefix("tyrefem.").partition(".")[2] or room(module)
-        # Names of the last steps stand to the left of their dot, so that none leaves the picture.
-        side = ("end", -14.0) if number >= count - 2 else ("start", 14.0)
+        # Neighbours on one floor have their names above and below.
+        down = 24 if number % 2 else -14
         drawn += [
             f"<circle cx='{x:.1f}' cy='{y:.1f}' r='10' fill='{trail.colour}'/>",
             _text(x, y + 4, f"{number + 1}", 11, "white", anchor="middle", weight="bold"),
-            _text(x + side[1], y + 4, name, 12, trail.colour, anchor=side[0], halo=True),
+            _text(x, y + down, name, 12, trail.colour, anchor="middle", halo=True),
         ]
     return drawn
 

@@ -32,7 +32,7 @@ def purpose(module: str) -> str:
     path = ROOT / Path(*module.split("."))
     file = path.with_suffix(".py") if path.with_suffix(".py").is_file() else path / "__init__.py"
     docstring = ast.get_docstring(ast.parse(file.read_text(encoding="utf-8"))) or ""
-    return " ".join(docstring.split("\n\n")[0].split())
+    return " ".join(docstring.split("\n\n")[0].split()).replace("``", "`")
 
 
 def table(modules: Sequence[str], form: Callable[[str], str]) -> str:
