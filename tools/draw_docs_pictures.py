@@ -72,6 +72,7 @@ def modes() -> Figure:
 def reduced_error() -> Figure:
     """Reduced readings less those of full runs, at four places of the box that training has not seen."""
     from tyrefem.reduced.answers import reduced_outcomes
+    from tyrefem.reduced.variant import Variant
 
     trained = _surrogate()
     places = [("12 mph", "3300 lbf"), ("17 mph", "2300 lbf"), ("23 mph", "3000 lbf"), ("28 mph", "2600 lbf")]
@@ -79,6 +80,7 @@ def reduced_error() -> Figure:
     drawn, axes = _axes("time [s]", "largest error of the sensors [mK]")
     labels = []
     for number, variant in reduced_outcomes(trained.model, studies):
+        assert isinstance(variant, Variant)
         full = tf.study(STUDY).replace({**COARSE, "drive.speed": places[number][0], "drive.load": places[number][1]})
         expected, table = full.run().readings, variant.result.readings
         sensors = list(full.card.sensors)

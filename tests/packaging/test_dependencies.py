@@ -51,8 +51,11 @@ def test_default_installation_is_free_of_the_gpl() -> None:
 
 def test_documentation_names_every_dependency() -> None:
     text = (CHECKOUT / "docs/dependencies.md").read_text(encoding="utf-8")
-    rows = {tuple(cell.strip() for cell in line.split("|")[1:-1]) for line in text.splitlines() if line.count("|") == 5}
-    written = {row[0]: row[3] for row in rows if row[0] not in ("Package", "---")}
+    default, _, rest = text.partition("## Extras")
+    extras, _, _ = rest.partition("## What comes with them")
+    written = dict.fromkeys(re.findall(r"^\| ([a-z][\w-]*) \|", default, re.MULTILINE), "-")
+    for name, extra in re.findall(r"^\| ([a-z][\w-]*) \|.*\| ([\w, ]+) \|$", extras, re.MULTILINE):
+        written[name] = f"{written[name]}, {extra}" if name in written else extra
     wanted = dict.fromkeys(named(PROJECT["dependencies"]), "-")
     for extra in EXTRAS:
         for name in named(EXTRAS[extra]):

@@ -20,7 +20,7 @@ BEGINNING = re.compile(r"# .+\n\n([A-Z`](?:[^\n]+\n)+)\n```sh\n(?:(?!```).*\n)+`
 PICTURE = re.compile(r"!\[([^\]]+)\]\(([^)\s]+)\)")
 LINK = re.compile(r"\[[^\]]*\]\(([^)\s]+)\)")
 #: typer brings a click of its own, or not.
-USAGE_ERROR = typer.BadParameter.__mro__[1]
+USAGE_ERROR: type[Exception] = typer.BadParameter.__mro__[1]
 BETWEEN = {"&&", "||", ";", "|"}
 
 
