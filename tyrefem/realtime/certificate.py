@@ -122,11 +122,11 @@ def differences(tyre: RealTimeTyre, course: Course, full: ExamRun, step: float =
     due = {round(float(t) / step): i for i, t in enumerate(times) if abs(t / step - round(t / step)) < 1e-6 and t > 0}
     worst = dict.fromkeys(answers, 0.0)
     for number in range(1, max(due) + 1):
-        found = tyre.step(step, *course.inputs((number - 1) * step, number * step))
+        outputs = tyre.step(step, *course.inputs((number - 1) * step, number * step))
         if number not in due:
             continue
         i = due[number]
-        for name, value in zip(tyre.names, found, strict=True):
+        for name, value in zip(tyre.names, outputs, strict=True):
             # At a jump the heat of the full run is that before it, its speed that after it.
             if name in answers and (name != "rolling_resistance" or not course.jumps(number * step)):
                 worst[name] = max(worst[name], abs(float(value) - float(answers[name][i])))
@@ -138,7 +138,9 @@ def certificate(
 ) -> RealTimeCertificate:
     """Of errors of steady drives, the first half, and of changing ones."""
     half = len(errors) // 2
-    kinds = [{name: max(one[name] for one in part) for name in part[0]} for part in (errors[:half], errors[half:])]
+    kinds = [
+        {name: max(course[name] for course in part) for name in part[0]} for part in (errors[:half], errors[half:])
+    ]
     worst = max(error for kind in kinds for name, error in kind.items() if name != "rolling_resistance")
     return RealTimeCertificate(
         kinds[0], kinds[1], worst, tolerance, (half, len(errors) - half), trained, duration, tables
@@ -210,15 +212,17 @@ def export(
         about = tool.about()
         with tempfile.TemporaryDirectory() as folder:
             tyre = RealTimeTyre(write(Path(folder) / "tyre.npz", arrays, about))
-        errors = [differences(tyre, course, one) for course, one in zip(fresh, full, strict=True)]
-        found = certificate(errors, tolerance, len(learnt), horizon, between)
-        if found.worst <= tolerance:
-            write(path, arrays, {**about, "certificate": vars(found)})
-            return found
+        errors = [differences(tyre, course, history) for course, history in zip(fresh, full, strict=True)]
+        checked = certificate(errors, tolerance, len(learnt), horizon, between)
+        if checked.worst <= tolerance:
+            write(path, arrays, {**about, "certificate": vars(checked)})
+            return checked
         learnt += full
-    name, error = max(((n, e) for one in errors for n, e in one.items() if n != "rolling_resistance"), key=_second)
+    name, error = max(
+        ((n, e) for history in errors for n, e in history.items() if n != "rolling_resistance"), key=_second
+    )
     raise NotReducibleError(
-        f"after {found.trained_on} full runs fresh ones still differ by {error:.3g} K at '{name}'; allowed: "
+        f"after {checked.trained_on} full runs fresh ones still differ by {error:.3g} K at '{name}'; allowed: "
         f"{tolerance:g} K: a smaller box or a larger tolerance"
     )
 
@@ -282,22 +286,22 @@ class _Tool:
 
     def _sources(self, taught: Sequence[Snapshots]) -> Array:
         """Heat sources at all loads and pressures of the tables, at a cold, a middling and a hot field."""
-        ends = np.array([one.fields[-1] for one in taught])
+        ends = np.array([lesson.fields[-1] for lesson in taught])
         order = np.argsort(ends.max(axis=1))
-        ops, found = self.base.problem.operators, []
+        ops, sources = self.base.problem.operators, []
         for field in ends[[order[0], order[len(order) // 2], order[-1]]]:
             laws = [source.loss_tangent(field[ops.dofs(zone)]) for zone, source in self.base.hysteresis.items()]
-            found.append(self.tables.heat.reshape(-1, self.tables.heat.shape[-1]) * np.concatenate(laws))
-        return np.vstack(found)
+            sources.append(self.tables.heat.reshape(-1, self.tables.heat.shape[-1]) * np.concatenate(laws))
+        return np.vstack(sources)
 
     def _start(self) -> dict[str, float]:
         """The study's inputs at its start, within the box."""
-        phase, found = self.study.card.drive.phases[0], {}
+        phase, start = self.study.card.drive.phases[0], {}
         for name in NAMES:
             low, high = self.box.ranges[name]
             ramp = getattr(phase, name) or (phase.ambient if name == "road_temperature" else None)
-            found[name] = min(max((low + high) / 2 if ramp is None else ramp.start, low), high)
-        return found
+            start[name] = min(max((low + high) / 2 if ramp is None else ramp.start, low), high)
+        return start
 
     def about(self) -> dict[str, Any]:
         """What the file says of itself."""

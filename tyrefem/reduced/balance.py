@@ -47,8 +47,8 @@ class ReducedBalance:
         # The first mode is even: V a = initial.
         self.start[0] = initial / model.V[0, 0]
         for i, name in enumerate(names):
-            own = reservoirs[name].initial
-            self.start[m + i] = initial if own is None else own
+            initial_of = reservoirs[name].initial
+            self.start[m + i] = initial if initial_of is None else initial_of
 
     @functools.cached_property
     def capacities(self) -> Array:
@@ -77,8 +77,8 @@ class ReducedBalance:
 
     def coefficients(self, t: float) -> tuple[Array, Array]:
         """(films and conductances, their sinks) at a time."""
-        h = np.array([_value(one[0], t) for one in self.data])
-        sinks = np.array([0.0 if isinstance(one[1], str) else _value(one[1], t) for one in self.data])
+        h = np.array([_value(film[0], t) for film in self.data])
+        sinks = np.array([0.0 if isinstance(film[1], str) else _value(film[1], t) for film in self.data])
         return h, sinks
 
     def source(self, t: float, a: Array) -> Array:
@@ -92,7 +92,7 @@ class ReducedBalance:
 
     def powers(self, t: float) -> list[float]:
         """W put into every reservoir from outside."""
-        return [_value(_timed(one.power), t) for one in self.reservoirs.values()]
+        return [_value(_timed(reservoir.power), t) for reservoir in self.reservoirs.values()]
 
 
 def reduced_balance(model: ReducedModel, tyre: RollingTyre) -> ReducedBalance:
@@ -106,7 +106,7 @@ def reduced_balance(model: ReducedModel, tyre: RollingTyre) -> ReducedBalance:
     if tyre.study.card.mechanics.feedback is not None and tyre.cycles is None:
         raise NotReducibleError("strain cycles that follow the temperature")
     if tyre.acting.with_states:
-        names = ", ".join(f"'{one.name}'" for one in tyre.acting.with_states)
+        names = ", ".join(f"'{effect.name}'" for effect in tyre.acting.with_states)
         raise NotReducibleError(f"states that effects keep through a run: {names}")
     if tyre.mesh is not model.base.mesh:
         raise NotReducibleError("another mesh: geometry, strain zones or [mesh] differ")
@@ -139,12 +139,12 @@ def matrices_of(balances: Sequence[ReducedBalance]) -> tuple[Array, Array]:
     model, m, regions = first.model, first.model.size, list(first.model.mass)
     n = m + len(first.reservoirs)
     M, K = np.zeros((len(balances), n, n)), np.zeros((len(balances), n, n))
-    of_bodies = np.array([[one.bodies[region] for region in regions] for one in balances])
+    of_bodies = np.array([[balance.bodies[region] for region in regions] for balance in balances])
     masses, pairs = model.stacked
     M[:, :m, :m] = np.tensordot(of_bodies[:, :, 2], masses, axes=1)
     K[:, :m, :m] = np.tensordot(of_bodies[:, :, :2], pairs, axes=2)
     for i in range(len(first.reservoirs)):
-        M[:, m + i, m + i] = [one.capacities[i] for one in balances]
+        M[:, m + i, m + i] = [balance.capacities[i] for balance in balances]
     return M, K
 
 

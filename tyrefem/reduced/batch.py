@@ -53,9 +53,9 @@ class Batch:
 
     def outside(self, t: float) -> BoundaryData:
         """What acts from outside at a time."""
-        pairs = [one.coefficients(t) for one in self.balances]
+        pairs = [balance.coefficients(t) for balance in self.balances]
         films, sinks = (np.array(each) for each in zip(*pairs, strict=True))
-        powers = np.array([one.powers(t) for one in self.balances]).reshape(len(films), -1)
+        powers = np.array([balance.powers(t) for balance in self.balances]).reshape(len(films), -1)
         constant = (films * sinks) @ self.balances[0].loads
         constant[:, self.model.size :] += powers
         return BoundaryData(t, films, sinks, powers, constant)

@@ -40,23 +40,23 @@ class Ledger:
             exchanged = exchanged + (films - frozen[:, :, None]) * (at.rows @ y)
         parts = [
             self.b.model.power @ q,
-            *(np.broadcast_to(one, (*one.shape[:2], count)) for one in (exchanged, powers)),
+            *(np.broadcast_to(terms, (*terms.shape[:2], count)) for terms in (exchanged, powers)),
         ]
         return np.concatenate(parts, axis=1)
 
     def frozen(self, films: Array, y: Array) -> Array:
         """(B, width, k) W, or J, of frozen films (B, n_exchanges) with states, or their integrals, y (B, n, k)."""
-        found = np.zeros((len(y), self.width, y.shape[2]))
+        flows = np.zeros((len(y), self.width, y.shape[2]))
         first = len(self.b.model.zones)
-        found[:, first : first + films.shape[1]] = films[:, :, None] * (self.at.rows @ y)
-        return found
+        flows[:, first : first + films.shape[1]] = films[:, :, None] * (self.at.rows @ y)
+        return flows
 
     def entries(self) -> list[tuple[str, str, int]]:
         names = list(self.b.reservoirs)
-        found = [("source", zone, 0) for zone in self.b.model.zones]
-        found += [("boundary", side, number) for side, number, _ in self.b.films]
-        found += [("reservoir", name, i) for name in names for i, _ in enumerate(self.b.reservoirs[name].exchanges)]
-        return found + [("reservoir", name, -1) for name in names]
+        entries = [("source", zone, 0) for zone in self.b.model.zones]
+        entries += [("boundary", side, number) for side, number, _ in self.b.films]
+        entries += [("reservoir", name, i) for name in names for i, _ in enumerate(self.b.reservoirs[name].exchanges)]
+        return entries + [("reservoir", name, -1) for name in names]
 
 
 def budget(
@@ -77,9 +77,9 @@ def end_budgets(
     """The budget of variants (B, ...) at the end of their drive: each stands where a `Budget` has a time."""
     first, m = balances[0], balances[0].model.size
     rows = np.array([first.model.stored_row[region] for region in first.bodies])
-    capacity = np.array([[body[2] for body in one.bodies.values()] for one in balances])
+    capacity = np.array([[body[2] for body in balance.bodies.values()] for balance in balances])
     held = np.array([each.capacities for each in balances])
-    start = np.array([one.start for one in balances])
+    start = np.array([balance.start for balance in balances])
     stored, storing = (capacity * (each[:, :m] @ rows.T) for each in (states - start, slopes))
     kept = held * (states - start)[:, m:]
     return _tallied(first, np.zeros(len(balances)), energies, powers, stored, storing, kept)
@@ -101,27 +101,27 @@ def _tallied(
 
 
 def history(
-    balance: ReducedBalance, times: Array, states: Array, found: Budget, looked: tuple[Array, Array], steps: int
+    balance: ReducedBalance, times: Array, states: Array, budget_of_run: Budget, looked: tuple[Array, Array], steps: int
 ) -> History:
     """The history of states (n_times, n) at times (s), with its budget; ``looked``: times and states of the peaks."""
     model, m = balance.model, balance.model.size
     ops, (when, seen) = model.operators, looked
-    own = seen[:, :m] @ model.V.T
+    fields = seen[:, :m] @ model.V.T
     return History(
         operators=ops,
         materials=balance.tyre.bodies,
         times=times,
         values=states[:, :m] @ model.V.T,
         reservoirs={name: states[:, m + i] for i, name in enumerate(balance.reservoirs)},
-        budget=found,
-        maximum=_peak(ops.points, when, own, None),
-        region_maximum={region: _peak(ops.points, when, own, ops.dofs(region)) for region in balance.bodies},
+        budget=budget_of_run,
+        maximum=_peak(ops.points, when, fields, None),
+        region_maximum={region: _peak(ops.points, when, fields, ops.dofs(region)) for region in balance.bodies},
         steps=Steps(steps, 0, 0, 2 * steps),
     )
 
 
 def _peak(points: Array, times: Array, values: Array, dofs: Array | None) -> Peak:
-    own = values if dofs is None else values[:, dofs]
-    i, j = np.unravel_index(int(np.argmax(own)), own.shape)
+    seen = values if dofs is None else values[:, dofs]
+    i, j = np.unravel_index(int(np.argmax(seen)), seen.shape)
     node = int(j) if dofs is None else int(dofs[j])
-    return Peak(float(own[i, j]), (float(points[0, node]), float(points[1, node])), float(times[i]))
+    return Peak(float(seen[i, j]), (float(points[0, node]), float(points[1, node])), float(times[i]))

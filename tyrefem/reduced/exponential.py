@@ -51,27 +51,27 @@ def responses(x: Array, theta: Array, count: int) -> tuple[Array, Array]:
     x = np.broadcast_to(x[..., None], theta.shape)
     decay = x * theta
     stiff = decay > UPWARDS
-    E, found = np.empty(decay.shape), np.empty((count, *decay.shape))
+    E, integrals = np.empty(decay.shape), np.empty((count, *decay.shape))
     if stiff.any():
-        E[stiff], found[:, stiff] = _upwards(x[stiff], decay[stiff], theta[stiff], count)
+        E[stiff], integrals[:, stiff] = _upwards(x[stiff], decay[stiff], theta[stiff], count)
     calm = ~stiff
     if calm.any():
-        E[calm], found[:, calm] = _downwards(x[calm], theta[calm], count)
-    return E, found
+        E[calm], integrals[:, calm] = _downwards(x[calm], theta[calm], count)
+    return E, integrals
 
 
 def _upwards(x: Array, decay: Array, theta: Array, count: int) -> tuple[Array, Array]:
-    E, found, power = np.exp(-decay), np.empty((count, len(x))), np.ones_like(theta)
-    found[0] = (1 - E) / x
+    E, integrals, power = np.exp(-decay), np.empty((count, len(x))), np.ones_like(theta)
+    integrals[0] = (1 - E) / x
     for j in range(1, count):
         power = power * theta
-        found[j] = (power - j * found[j - 1]) / x
-    return E, found
+        integrals[j] = (power - j * integrals[j - 1]) / x
+    return E, integrals
 
 
 def _downwards(x: Array, theta: Array, count: int) -> tuple[Array, Array]:
     """From an end that is nearly right; every step damps what is wrong with it."""
-    top, found = count + MORE, np.empty((count, len(x)))
+    top, integrals = count + MORE, np.empty((count, len(x)))
     powers = [np.ones_like(theta), theta]
     for j in range(2, top + 2):
         powers.append(powers[j // 2] * powers[j - j // 2])
@@ -79,8 +79,8 @@ def _downwards(x: Array, theta: Array, count: int) -> tuple[Array, Array]:
     for j in range(top, 0, -1):
         below = (powers[j] - x * below) / j
         if j <= count:
-            found[j - 1] = below
-    return 1 - x * found[0], found
+            integrals[j - 1] = below
+    return 1 - x * integrals[0], integrals
 
 
 def relaxed(x: Array, start: Array, heat: Array, theta: Array, *, integral: bool = True) -> tuple[Array, Array]:
@@ -208,7 +208,7 @@ class Marched:
     @functools.cached_property
     def _energies(self) -> Array:
         """(n_windows + 1, B, n_entries) J from the start to the start of every window, and to the end."""
-        each = np.array([one.energies(np.ones(1), self.batch)[:, :, 0] for one in self.windows])
+        each = np.array([window.energies(np.ones(1), self.batch)[:, :, 0] for window in self.windows])
         return np.concatenate([np.zeros_like(each[:1]), np.cumsum(each, axis=0)])
 
     @property
@@ -216,19 +216,21 @@ class Marched:
         """(B, n_entries) J over the whole drive."""
         return np.asarray(self._energies[-1])
 
-    def _each(self, times: Array, found: Callable[[int, Array], Array]) -> Array:
+    def _each(self, times: Array, of_window: Callable[[int, Array], Array]) -> Array:
         """Something (B, ?, k) of all windows, by times (n_times, B, ?); the end of a window belongs to it."""
-        starts, lengths = (np.array([getattr(one, name) for one in self.windows]) for name in ("time", "length"))
+        starts, lengths = (
+            np.array([getattr(window_of, name) for window_of in self.windows]) for name in ("time", "length")
+        )
         number = np.maximum(np.searchsorted(starts, times - 1e-9, side="right") - 1, 0)
         part = np.clip((times - starts[number]) / lengths[number], 0.0, 1.0)
-        together = [found(int(window), part[number == window]) for window in np.unique(number)]
+        together = [of_window(int(window), part[number == window]) for window in np.unique(number)]
         return np.concatenate(together, axis=2).transpose(2, 0, 1)
 
     def looked(self, times: Array) -> Array:
         """Times (s) at which peaks are looked for: readings, and points of the windows where those are far apart."""
-        own = np.concatenate([one.time + NODES[1:] * one.length for one in self.windows])
-        apart = np.abs(own[:, None] - times).min(axis=1) > FAR * (times[-1] - times[0])
-        return np.unique(np.round(np.concatenate([times, own[apart]]), 9))
+        nodes = np.concatenate([window.time + NODES[1:] * window.length for window in self.windows])
+        apart = np.abs(nodes[:, None] - times).min(axis=1) > FAR * (times[-1] - times[0])
+        return np.unique(np.round(np.concatenate([times, nodes[apart]]), 9))
 
     def states(self, times: Array) -> Array:
         """(n_times, B, n) at increasing times: modes, then reservoirs."""
@@ -249,7 +251,7 @@ class Marched:
 
     def powers(self, time: float, states: Array) -> Array:
         """(B, n_entries) W at a time and its states (B, n); a phase's end belongs to it."""
-        starts = np.array([one.time for one in self.windows])
+        starts = np.array([each.time for each in self.windows])
         window = self.windows[max(int(np.searchsorted(starts, time - 1e-9, side="right")) - 1, 0)]
         low, high = window.inside
         t = min(max(time, low), high)
@@ -259,7 +261,7 @@ class Marched:
 
     def energy_until(self, time: float) -> Array:
         """(B, n_entries) J from the start to a time: at hand at the ends of windows."""
-        ends = np.append([one.time for one in self.windows], self.windows[-1].time + self.windows[-1].length)
+        ends = np.append([window.time for window in self.windows], self.windows[-1].time + self.windows[-1].length)
         nearest = int(np.argmin(np.abs(ends - time)))
         if abs(ends[nearest] - time) < 1e-9:
             return np.asarray(self._energies[nearest])
@@ -275,11 +277,11 @@ class Marched:
         if key not in self._known:
             self._known.clear()
             states = self.states(times)
-            powers = np.array([self.powers(float(t), one) for t, one in zip(times, states, strict=True)])
+            powers = np.array([self.powers(float(t), state) for t, state in zip(times, states, strict=True)])
             seen = self.states(self.looked(times))
             self._known[key] = states, self.slopes(times), powers, self.energies(times), seen
-        states, slopes, powers, energies, seen = (one[:, variant] for one in self._known[key])
-        found = budget(self.batch.balances[variant], times, states, slopes, powers, energies)
+        states, slopes, powers, energies, seen = (state[:, variant] for state in self._known[key])
+        heat_budget = budget(self.batch.balances[variant], times, states, slopes, powers, energies)
         return history(
-            self.batch.balances[variant], times, states, found, (self.looked(times), seen), len(self.windows)
+            self.batch.balances[variant], times, states, heat_budget, (self.looked(times), seen), len(self.windows)
         )

@@ -32,12 +32,12 @@ def march(batch: Batch) -> Marched:
     ------
     InputError : the windows vanish.
     """
-    drive, y = batch.balances[0].tyre.drive, np.stack([one.start for one in batch.balances])
+    drive, y = batch.balances[0].tyre.drive, np.stack([each.start for each in batch.balances])
     windows: list[Window] = []
     knots = batch.balances[0].tyre.schedule.knots
     for number, (start, end) in enumerate(pairwise([*drive.starts, drive.end])):
         # Between load cases the heat is linear in time: no window may reach over one.
-        kinks = [start + (end - start) * one for one in knots[number] if 0 < one < 1]
+        kinks = [start + (end - start) * share for share in knots[number] if 0 < share < 1]
         for first, last in pairwise([start, *kinks, end]):
             phase = _MarchedPhase(batch, number, first, last, y)
             windows += phase.run()
@@ -52,7 +52,7 @@ class _MarchedPhase:
         inside = max(1e-10 * (end - start), 4 * np.spacing(max(abs(start), abs(end))))
         self.batch, self.start, self.end, self.y = batch, start, end, y
         self.low, self.high = start + inside, end - inside
-        self.steady = all(steady(one, number) for one in batch.balances)
+        self.steady = all(steady(balance, number) for balance in batch.balances)
         self._freeze(batch.outside(self.low))
 
     def _freeze(self, moment: BoundaryData) -> None:
@@ -72,7 +72,7 @@ class _MarchedPhase:
 
     def run(self) -> list[Window]:
         """Windows with error control; the largest error over all variants counts."""
-        span, t, found = self.end - self.start, self.start, []
+        span, t, windows = self.end - self.start, self.start, []
         h = FIRST * span
         while t < self.end:
             left = self.end - t
@@ -85,12 +85,12 @@ class _MarchedPhase:
                     raise InputError(f"the time steps of the reduced model vanished at t = {t:.6g} s")
                 h *= max(SHRINK, 0.8 * (self.batch.tolerance / error) ** (1 / len(NODES)))
                 continue
-            found.append(window)
+            windows.append(window)
             self.y = window.end
             self.going = h, window.heat @ (np.arange(len(NODES)) / h)
             t = self.end if h == left else t + h
             h *= min(GROWTH, 0.8 * (self.batch.tolerance / max(error, 1e-12)) ** (1 / len(NODES)))
-        return found
+        return windows
 
     def _seen(self, t: float) -> float:
         return min(max(t, self.low), self.high)
@@ -104,9 +104,9 @@ class _MarchedPhase:
         """A window by sweeps, and its error: what the highest power of time adds, and what the last sweep changed."""
         batch, count = self.batch, len(NODES)
         seen = [self._seen(t + c * h) for c in NODES]
-        moments = [self.frozen] if self.steady else [batch.outside(one) for one in seen]
+        moments = [self.frozen] if self.steady else [batch.outside(moment) for moment in seen]
         films, sinks, powers, constant = (
-            np.stack([getattr(one, name) for one in moments], axis=-1)
+            np.stack([getattr(moment, name) for moment in moments], axis=-1)
             for name in ("films", "sinks", "powers", "constant")
         )
         apart = None if self.steady else films - self.frozen.films[:, :, None]

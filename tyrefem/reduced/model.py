@@ -99,7 +99,7 @@ class ReducedModel(Brief):
         ops, along = self.operators, self.base.mesh.along_meridian
         return {
             region: tuple(  # type: ignore[misc]
-                self._projected(one, ops.dofs(region)) for one in ops.conduction(region, body.direction or along)
+                self._projected(matrix, ops.dofs(region)) for matrix in ops.conduction(region, body.direction or along)
             )
             for region, body in self.base.bodies.items()
         }
@@ -112,7 +112,7 @@ class ReducedModel(Brief):
     @functools.cached_property
     def surfaces(self) -> dict[str, tuple[Array, Array, float]]:
         """Side -> R (m, m), r (m,) and area (m2), for a film of 1 W/m2/K."""
-        ops, found = self.operators, {}
+        ops, surfaces = self.operators, {}
         for side in self.base.boundaries:
             surface = ops.surface(side)
             data = np.zeros(ops.nnz)
@@ -120,8 +120,8 @@ class ReducedModel(Brief):
             np.add.at(data, where, value)
             row = np.zeros(ops.size)
             row[surface.dofs] = surface.load(1.0)
-            found[side] = (self._projected(data, surface.dofs), row @ self.V, float(row.sum()))
-        return found
+            surfaces[side] = (self._projected(data, surface.dofs), row @ self.V, float(row.sum()))
+        return surfaces
 
     @functools.cached_property
     def regions(self) -> dict[str, NDArray[np.intp]]:
@@ -192,7 +192,7 @@ class ReducedModel(Brief):
     @functools.cached_property
     def sample_slices(self) -> dict[str, slice]:
         """Zone -> its part of all samples."""
-        ends = np.cumsum([0, *(len(one) for one in self.samples.values())])
+        ends = np.cumsum([0, *(len(nodes) for nodes in self.samples.values())])
         return {zone: slice(int(a), int(b)) for zone, a, b in zip(self.zones, ends[:-1], ends[1:], strict=True)}
 
     @functools.cached_property
@@ -209,10 +209,10 @@ class ReducedModel(Brief):
     @functools.cached_property
     def load(self) -> Array:
         """(m, n_samples): heat into the modes of the sources at the samples."""
-        found = np.zeros((self.size, self.nodes_from_samples.shape[1]))
+        loads = np.zeros((self.size, self.nodes_from_samples.shape[1]))
         for zone, rows in self._zone_rows.items():
-            found += (self.operators.source(zone).T @ self.V).T @ self.nodes_from_samples[rows]
-        return found
+            loads += (self.operators.source(zone).T @ self.V).T @ self.nodes_from_samples[rows]
+        return loads
 
     @functools.cached_property
     def power(self) -> Array:

@@ -33,9 +33,9 @@ def modes(snapshots: Array, weight: Array, tolerance: float, most: int) -> Array
     left_out = np.sqrt(np.append(np.cumsum(values[::-1])[::-1], 0.0) / len(snapshots))
     count = min(int(np.argmax(left_out <= tolerance)), most - 1)
     count = min(count, int((values > 1e-13 * max(values[0], 1e-300)).sum()))
-    found = (left[:, :count].T @ rest) / root / np.sqrt(values[:count])[:, None]
+    coefficients = (left[:, :count].T @ rest) / root / np.sqrt(values[:count])[:, None]
     # What is even stays exactly the first mode.
-    rest = found * root
+    rest = coefficients * root
     return np.column_stack(
         [even / np.linalg.norm(root), orthonormal((rest - np.outer(rest @ root, root)).T) / root[:, None]]
     )

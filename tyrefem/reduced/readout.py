@@ -90,7 +90,7 @@ class Readout:
     def peaks(self) -> list[dict[str, Peak]]:
         """Of every variant: ``tyre`` and every region -> its highest temperature, with place and time."""
         model, count = self.marched.batch.model, self.states.shape[1]
-        modes, when, found = self._seen[:, :, : model.size], {}, {}
+        modes, when, hottest = self._seen[:, :, : model.size], {}, {}
         each, posts = np.arange(count), self._posts
         at_posts = modes[posts].astype(np.float32).transpose(1, 0, 2).reshape(-1, model.size)
         missed: set[int] = set()
@@ -100,21 +100,21 @@ class Readout:
             light = rows.T.astype(np.float32)
             first = (at_posts @ light).max(axis=1).reshape(count, -1)
             near = first >= first.max(axis=1, keepdims=True) - BETWEEN
-            own, times = np.nonzero(near[:, :-1] | near[:, 1:])
-            own, times = _between(own, posts[times], posts[times + 1])
-            rough = (modes[times, own].astype(np.float32) @ light).max(axis=1)
-            highest_of = np.maximum.reduceat(rough, np.searchsorted(own, each))
-            kept = rough >= highest_of[own] - ROUGH
-            own, times = own[kept], times[kept]
-            values = modes[times, own] @ rows.T
-            node, firsts = values.argmax(axis=1), np.searchsorted(own, each)
-            highest = values[np.arange(len(own)), node]
-            best = np.array([a + highest[a:b].argmax() for a, b in pairwise([*firsts, len(own)])])
+            variant, times = np.nonzero(near[:, :-1] | near[:, 1:])
+            variant, times = _between(variant, posts[times], posts[times + 1])
+            rough = (modes[times, variant].astype(np.float32) @ light).max(axis=1)
+            highest_of = np.maximum.reduceat(rough, np.searchsorted(variant, each))
+            kept = rough >= highest_of[variant] - ROUGH
+            variant, times = variant[kept], times[kept]
+            values = modes[times, variant] @ rows.T
+            node, firsts = values.argmax(axis=1), np.searchsorted(variant, each)
+            highest = values[np.arange(len(variant)), node]
+            best = np.array([a + highest[a:b].argmax() for a, b in pairwise([*firsts, len(variant)])])
             when[region] = times[best]
-            found[region] = highest[best], np.asarray(hot)[node[best]]
+            hottest[region] = highest[best], np.asarray(hot)[node[best]]
             # All nodes at these times: is any hotter than those that were looked at?
             most = (model.region_rows[region] @ modes[when[region], each].T).max(axis=0)
-            missed |= set(np.flatnonzero(most > found[region][0] + 1e-9).tolist())
+            missed |= set(np.flatnonzero(most > hottest[region][0] + 1e-9).tolist())
         points, peaks = model.operators.points, []
         for b in range(count):
             if b in missed:
@@ -124,7 +124,7 @@ class Readout:
                 _with_tyre(
                     {
                         region: _peak(points, float(T[b]), int(node[b]), float(self.looked[when[region][b]]))
-                        for region, (T, node) in found.items()
+                        for region, (T, node) in hottest.items()
                     }
                 )
             )
@@ -137,7 +137,7 @@ class Readout:
         Between two of them temperatures change smoothly.
         """
         windows = self.marched.windows
-        nodes = np.concatenate([one.time + NODES * one.length for one in windows])
+        nodes = np.concatenate([window.time + NODES * window.length for window in windows])
         right = np.clip(np.searchsorted(self.looked, nodes), 1, len(self.looked) - 1)
         left_is_nearer = nodes - self.looked[right - 1] < self.looked[right] - nodes
         return np.unique(np.concatenate([[0, len(self.looked) - 1], right - left_is_nearer]))
@@ -145,12 +145,12 @@ class Readout:
     def _searched(self, variant: int) -> dict[str, Peak]:
         """Over all nodes and times."""
         model = self.marched.batch.model
-        values, found = self._seen[:, variant, : model.size] @ model.V.T, {}
+        values, peaks = self._seen[:, variant, : model.size] @ model.V.T, {}
         for region, dofs in model.regions.items():
-            own = values[:, dofs]
-            i, j = np.unravel_index(int(np.argmax(own)), own.shape)
-            found[region] = _peak(model.operators.points, float(own[i, j]), int(dofs[j]), float(self.looked[i]))
-        return _with_tyre(found)
+            of_region = values[:, dofs]
+            i, j = np.unravel_index(int(np.argmax(of_region)), of_region.shape)
+            peaks[region] = _peak(model.operators.points, float(of_region[i, j]), int(dofs[j]), float(self.looked[i]))
+        return _with_tyre(peaks)
 
     def generated(self, i: int) -> tuple[Array, Array]:
         """Heat of hysteresis (B,) of the section until ``times[i]``, J, and then, W."""
@@ -209,7 +209,7 @@ class Readout:
 
 
 def _between(
-    own: NDArray[np.intp], first: NDArray[np.intp], last: NDArray[np.intp]
+    variant: NDArray[np.intp], first: NDArray[np.intp], last: NDArray[np.intp]
 ) -> tuple[NDArray[np.intp], NDArray[np.intp]]:
     """Every (variant, time) from ``first`` to ``last``, each once, in order.
 
@@ -217,14 +217,14 @@ def _between(
     (array([0, 0, 0, 0, 1, 1]), array([0, 1, 2, 3, 1, 2]))
     """
     counts = last - first + 1
-    variants = np.repeat(own, counts)
+    variants = np.repeat(variant, counts)
     times = np.arange(counts.sum()) - np.repeat(np.cumsum(counts) - counts, counts) + np.repeat(first, counts)
     pairs = np.unique(variants * (int(last.max()) + 1) + times)
     return pairs // (int(last.max()) + 1), pairs % (int(last.max()) + 1)
 
 
 def _with_tyre(peaks: dict[str, Peak]) -> dict[str, Peak]:
-    return {"tyre": max(peaks.values(), key=lambda one: one.temperature)} | peaks
+    return {"tyre": max(peaks.values(), key=lambda peak: peak.temperature)} | peaks
 
 
 def _peak(points: Array, temperature: float, node: int, time: float) -> Peak:

@@ -40,10 +40,10 @@ def parts(span: float, early: float = EARLY) -> Array:
     >>> parts(10_800.0)[:3] * 10_800.0
     array([ 13.5,  54. , 216. ])
     """
-    found = list(PARTS)
-    while found[0] * span > early:
-        found.insert(0, found[0] / EARLIER)
-    return np.array(found)
+    ends = list(PARTS)
+    while ends[0] * span > early:
+        ends.insert(0, ends[0] / EARLIER)
+    return np.array(ends)
 
 
 def corrected(model: ReducedModel, tyre: RollingTyre, share: float, early: float = EARLY) -> tuple[Snapshots, float]:
@@ -118,8 +118,8 @@ def solved(full: HeatBalance, near: StageMatrix, tau: float, right: Array, lumpe
 
     def times(x: Array) -> Array:
         u, g = x[:n], x[n:]
-        own = full.M @ u + tau * (full.S @ u - full.B @ g)
-        return np.concatenate([own, full.C[:, None] * g + tau * (full.D @ g - full.B.T @ u)])
+        product = full.M @ u + tau * (full.S @ u - full.B @ g)
+        return np.concatenate([product, full.C[:, None] * g + tau * (full.D @ g - full.B.T @ u)])
 
     r = np.concatenate([right, lumped])
     # Every unknown by its own heat capacity and conductance: a measure of what is left that costs no solve.
@@ -142,8 +142,8 @@ def solved(full: HeatBalance, near: StageMatrix, tau: float, right: Array, lumpe
 
 def _by(matrix: StageMatrix, right: Array, n: int) -> Array:
     """Solve a factored matrix, the reservoirs bordering it, for columns."""
-    found = matrix.factor.solve(np.asfortranarray(right[:n]))
+    solution = matrix.factor.solve(np.asfortranarray(right[:n]))
     if not matrix.m:
-        return np.asarray(found)
+        return np.asarray(solution)
     g = np.linalg.solve(matrix.schur, right[n:] + matrix.E.T @ right[:n])
-    return np.concatenate([found + matrix.E @ g, g])
+    return np.concatenate([solution + matrix.E @ g, g])

@@ -17,7 +17,7 @@ COLD, HOT, FINE = -60.0, 400.0, 0.25
 
 def is_plain(balance: ReducedBalance) -> bool:
     """Is every source the strain cycle's alone, with a tan delta that knows no frequency?"""
-    return all(type(one) is HeatSource and one.over_frequency is None for one in balance.tyre.sources.values())
+    return all(type(source) is HeatSource and source.over_frequency is None for source in balance.tyre.sources.values())
 
 
 class SampledHeat:
@@ -28,7 +28,7 @@ class SampledHeat:
 
     def __init__(self, balances: Sequence[ReducedBalance]) -> None:
         self.balances = balances
-        self.rows = [row for row, one in enumerate(balances) if is_plain(one)]
+        self.rows = [row for row, balance in enumerate(balances) if is_plain(balance)]
         self.others = [row for row in range(len(balances)) if row not in self.rows]
         self.tabled = TabledHeat([balances[row] for row in self.rows]) if self.rows else None
 
@@ -36,13 +36,13 @@ class SampledHeat:
         """(B, n_samples, k) sources of modes a (B, m, k) at times of one phase, seen from inside it."""
         if self.tabled is not None and not self.others:
             return self.tabled(times, a)
-        found = np.empty((len(a), len(self.balances[0].model.at_samples), a.shape[2]))
+        heat = np.empty((len(a), len(self.balances[0].model.at_samples), a.shape[2]))
         if self.tabled is not None:
-            found[self.rows] = self.tabled(times, a[self.rows])
+            heat[self.rows] = self.tabled(times, a[self.rows])
         for row in self.others:
             for column, t in enumerate(times):
-                found[row, :, column] = self.balances[row].source(t, a[row, :, column])
-        return found
+                heat[row, :, column] = self.balances[row].source(t, a[row, :, column])
+        return heat
 
 
 class TabledHeat:
@@ -96,8 +96,8 @@ class TabledHeat:
         phase, _ = drive.locate(times[0])
         if self._phase != phase:
             self._phase = phase
-            self._energies = np.array([_energies(one, phase) for one in self.balances])
-            same = all(_same_speed(one, phase) for one in self.balances)
+            self._energies = np.array([_energies(balance, phase) for balance in self.balances])
+            same = all(_same_speed(balance, phase) for balance in self.balances)
             self._steady = same and self._energies.shape[1] == 1
             self._known: dict[tuple[float, ...], Array] = {}
         if self._steady:
@@ -106,14 +106,16 @@ class TabledHeat:
         if key not in self._known:
             if len(self._known) > 4:
                 self._known.clear()
-            rates = np.array([[one.tyre.motion(t).revolutions_per_second for t in times] for one in self.balances])
+            rates = np.array(
+                [[balance.tyre.motion(t).revolutions_per_second for t in times] for balance in self.balances]
+            )
             shares = np.zeros((self._energies.shape[1], len(times)))
             for column, t in enumerate(times):
                 for _, knot, weight in schedule.weights(t):
                     shares[knot, column] = weight
             self._known[key] = rates[:, None, :] * np.tensordot(self._energies, shares, axes=(1, 0))
-        found = self._known[key]
-        return found if found.any() else None
+        losses = self._known[key]
+        return losses if losses.any() else None
 
 
 def _same_speed(balance: ReducedBalance, phase: int) -> bool:
@@ -123,14 +125,14 @@ def _same_speed(balance: ReducedBalance, phase: int) -> bool:
 def _energies(balance: ReducedBalance, phase: int) -> Array:
     """(n_knots, n_samples) J/m3 lost per revolution, per unit of tan delta."""
     tyre, model = balance.tyre, balance.model
-    found = np.zeros((len(tyre.schedule.knots[phase]), model.at_samples.shape[0]))
+    energies = np.zeros((len(tyre.schedule.knots[phase]), model.at_samples.shape[0]))
     if tyre.drive.phases[phase].stands:
-        return found
-    for row, cycle in zip(found, tyre.schedule.cycles[phase], strict=True):
+        return energies
+    for row, cycle in zip(energies, tyre.schedule.cycles[phase], strict=True):
         for zone, part in model.sample_slices.items():
             if part.start == part.stop:
                 continue
             row[part] = tyre.hysteresis[zone].lost_per_revolution * cycle.energy_density(
                 zone, model.sample_points[zone]
             )
-    return found
+    return energies

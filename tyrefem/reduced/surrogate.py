@@ -78,11 +78,12 @@ class Surrogate(Brief):
         return self.model._title()
 
     def _facts(self) -> Mapping[str, Any]:
-        one = self.certificate
+        certificate = self.certificate
         return {
             **self.model._facts(),
             "varied": [each.key for each in self.varied],
-            "certificate": f"{one.worst:.2g} K on {one.cases} fresh full runs, {one.tolerance:g} K wanted",
+            "certificate": f"{certificate.worst:.2g} K on {certificate.cases} fresh full runs, "
+            f"{certificate.tolerance:g} K wanted",
         }
 
     def packed(self, base: Bundle) -> Packed:
@@ -93,22 +94,22 @@ class Surrogate(Brief):
         """What becomes of studies, marched side by side; one is `NotReducible` outside the box, or where it differs in
         something that the box does not vary."""
         reasons = [outside(study, self.model.base.study, self.varied) for study in studies]
-        found: list[ReducedOutcome] = [NotReducible(why) for why in reasons]
+        answered: list[ReducedOutcome] = [NotReducible(why) for why in reasons]
         inside = [number for number, why in enumerate(reasons) if not why]
         outcomes = reduced_answers(self.model, [studies[number] for number in inside], self.time_to)
         for number, outcome in zip(inside, outcomes, strict=True):
-            found[number] = outcome
-        return found
+            answered[number] = outcome
+        return answered
 
 
 def outside(study: StudyData, base: StudyData, varied: Sequence[Varied]) -> str:
     """Why a study is not in a box about another; empty: it is."""
-    for one in varied:
-        value = value_at(study.data, one.key, study.folder)
-        if not one.contains(value):
-            return f"'{one.key}' = {value!r} is outside the box of the reduced model"
-        if not one.together(value, {key: value_at(study.data, key, study.folder) for key, _ in one.also}):
-            return f"'{one.also[0][0]}' does not follow '{one.key}', as it did for the reduced model"
+    for number in varied:
+        value = value_at(study.data, number.key, study.folder)
+        if not number.contains(value):
+            return f"'{number.key}' = {value!r} is outside the box of the reduced model"
+        if not number.together(value, {key: value_at(study.data, key, study.folder) for key, _ in number.also}):
+            return f"'{number.also[0][0]}' does not follow '{number.key}', as it did for the reduced model"
     same = changes_at(varied, [0.5] * len(varied))
     mine, theirs = (all_changed(each.data, same) for each in (study, base))
     for key in dict.fromkeys([*mine, *theirs]):
@@ -125,9 +126,11 @@ def _keys(mine: Mapping[str, Any], theirs: Mapping[str, Any], key: str) -> list[
     return [k for k in dict.fromkeys([*first, *second]) if first.get(k) != second.get(k)]
 
 
-def temperature_error(one: Mapping[str, Any], other: Mapping[str, Any]) -> float:
+def temperature_error(first: Mapping[str, Any], second: Mapping[str, Any]) -> float:
     """Largest difference of two variants' temperature answers, K."""
-    return max((abs(one[name] - other[name]) for name in one if name.endswith("_degC") and name in other), default=0.0)
+    return max(
+        (abs(first[name] - second[name]) for name in first if name.endswith("_degC") and name in second), default=0.0
+    )
 
 
 def surrogate(
@@ -159,14 +162,14 @@ def surrogate(
     lesson = School(plan, scheduler or Here(), choice or ReducedFineness.of(tolerance), tick, seed)
     # Two opposite corners: the rest of the box is learnt from residuals.
     places = [np.zeros(len(plan.varied)), np.ones(len(plan.varied))]
-    lesson.run(places, COARSER * max(tolerance, FINEST), "training", asked=False)
+    lesson.run(places, COARSER * max(tolerance, FINEST), "training", with_answers=False)
     certificate: SurrogateCertificate | None = None
     for trial in range(settings.trials):
         model = lesson.rounds(1 if trial else settings.rounds, ENOUGH * tolerance)
         places = lesson.fresh(settings.fresh)
         known = len(lesson.learnt)
-        full = lesson.run(places, min(plan.study.tolerance, max(tolerance, FINEST)), "certifying", asked=True)
-        reduced = reduced_answers(model, [plan.study.replace(lesson.variant(one)) for one in places], plan.time_to)
+        full = lesson.run(places, min(plan.study.tolerance, max(tolerance, FINEST)), "certifying", with_answers=True)
+        reduced = reduced_answers(model, [plan.study.replace(lesson.variant(place)) for place in places], plan.time_to)
         check_reducible(reduced)
         pairs = [
             (mine.answers, theirs.answers)
@@ -199,8 +202,8 @@ def check_varied(plan: Plan) -> None:
     """Raise `NotReducibleError` where what a plan varies cannot be followed on one mesh."""
     if not plan.varied:
         raise NotReducibleError("variants from a list have no box to train in")
-    for one in plan.varied:
-        if one.key.split(".")[0] in ("section", "mesh", "output", "numerics"):
-            raise NotReducibleError(f"'{one.key}' changes the mesh or the numbers' precision")
+    for number in plan.varied:
+        if number.key.split(".")[0] in ("section", "mesh", "output", "numerics"):
+            raise NotReducibleError(f"'{number.key}' changes the mesh or the numbers' precision")
     if plan.study.card.mechanics.feedback is not None:
         raise NotReducibleError("strain cycles that follow the temperature")

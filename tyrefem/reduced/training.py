@@ -98,10 +98,10 @@ def trained(base: RollingTyre, learnt: Sequence[Snapshots], choice: ReducedFinen
     """A reduced model on a tyre's mesh, from what variants on that mesh have taught."""
     choice = choice or ReducedFineness()
     ops = base.problem.operators
-    fields = np.vstack([one.fields for one in learnt])
+    fields = np.vstack([snapshot.fields for snapshot in learnt])
     hot = hot_nodes(base, learnt)
     V = modes(fields, weight(base, hot), choice.modes_tolerance, choice.most_modes)
-    heats = np.vstack([one.sources for one in learnt])
+    heats = np.vstack([snapshot.sources for snapshot in learnt])
     largest = np.abs(heats).max(axis=1)
     # All of a like size: a slow variant's sources are to be met as well as a fast one's.
     heats = heats[largest > 0] / largest[largest > 0][:, None] if largest.any() else heats[:1] + 1.0
@@ -120,23 +120,23 @@ def weight(base: RollingTyre, hot: Mapping[str, NDArray[np.intp]]) -> Array:
     A bead is small, but its hottest place is asked for.
     """
     ops = base.problem.operators
-    found, ones = np.zeros(ops.size), np.ones(ops.size)
+    weights, ones = np.zeros(ops.size), np.ones(ops.size)
     for region in base.bodies:
-        own = ops.matrix(ops.mass(region)) @ ones
-        found += own / own.sum()
-        found[hot[region]] += 1 / len(hot[region])
-    return found / found.sum()
+        of_region = ops.matrix(ops.mass(region)) @ ones
+        weights += of_region / of_region.sum()
+        weights[hot[region]] += 1 / len(hot[region])
+    return weights / weights.sum()
 
 
 def hot_nodes(base: RollingTyre, learnt: Sequence[Snapshots]) -> dict[str, NDArray[np.intp]]:
     """Region -> the nodes that came near its highest temperature in any field."""
     ops = base.problem.operators
-    fields, found = np.vstack([one.fields for one in learnt]), {}
+    fields, hot = np.vstack([snapshot.fields for snapshot in learnt]), {}
     for region in base.bodies:
         dofs = ops.dofs(region)
-        own = fields[:, dofs]
-        most, least = own.max(axis=1, keepdims=True), own.min(axis=1, keepdims=True)
-        near = own >= most - NEAR * (most - least)
+        of_region = fields[:, dofs]
+        most, least = of_region.max(axis=1, keepdims=True), of_region.min(axis=1, keepdims=True)
+        near = of_region >= most - NEAR * (most - least)
         # A field that is even says nothing.
-        found[region] = dofs[near[(most - least)[:, 0] > EVEN].any(axis=0)] if ((most - least) > EVEN).any() else dofs
-    return found
+        hot[region] = dofs[near[(most - least)[:, 0] > EVEN].any(axis=0)] if ((most - least) > EVEN).any() else dofs
+    return hot

@@ -130,13 +130,13 @@ class Lesson:
 
     Parameters
     ----------
-    fields : temperature fields taken of it. time_tolerance : K, of the run. asked : whether answers are wanted.
+    fields : temperature fields taken of it. time_tolerance : K, of the run. with_answers : whether answers are wanted.
     """
 
     task: Task
     fields: int
     time_tolerance: float
-    asked: bool
+    with_answers: bool
 
 
 @dataclass(frozen=True, eq=False)
@@ -154,7 +154,7 @@ def learn(lesson: Lesson) -> Learnt | Failed:
     task, base = lesson.task, base_of(lesson.task.packed)
     try:
         study = base.study.replace(task.changes)
-        if not lesson.asked:
+        if not lesson.with_answers:
             return Learnt(training_run(RollingTyre(study, base), lesson.time_tolerance))
         result = run(study.replace({"numerics.tolerance": f"{lesson.time_tolerance:.6g} delta_degC"}), like=base)
         return Learnt(snapshots(result, lesson.fields), answers(result, task.time_to))
@@ -192,7 +192,7 @@ def amend(work: Amendment, packed: Packed) -> tuple[Corrected | Failed | NotRedu
     numbers = list(tyres)
     try:
         for places, part in side_by_side(model, list(tyres.values()), CORRECTED_TO):
-            for place, number in enumerate(numbers[one] for one in places):
+            for place, number in enumerate(numbers[task] for task in places):
                 if isinstance(part, Failed | NotReducible):
                     outcomes[number] = part
                 else:
@@ -231,14 +231,16 @@ class School:
         """Changes at a place of the unit box."""
         return changes_at(self.plan.varied, place)
 
-    def run(self, places: Sequence[Array], time_tolerance: float, what: str, asked: bool) -> list[Learnt | Failed]:
+    def run(
+        self, places: Sequence[Array], time_tolerance: float, what: str, with_answers: bool
+    ) -> list[Learnt | Failed]:
         """What full runs teach, in their order; their snapshots are learnt."""
         lessons = [
             Lesson(
                 Task(n, self.plan.packed, self.variant(place), self.plan.time_to),
                 self.choice.fields,
                 time_tolerance,
-                asked,
+                with_answers,
             )
             for n, place in enumerate(places)
         ]
@@ -255,8 +257,8 @@ class School:
         for _ in range(most):
             model = trained(self.base, self.learnt, self.choice)
             packed = pack(model, self.plan.packed)
-            places = [np.clip(0.5 + STRETCH * (one - 0.5), 0.0, 1.0) for one in self.fresh(self.round)]
-            changes = [self.variant(one) for one in places]
+            places = [np.clip(0.5 + STRETCH * (place - 0.5), 0.0, 1.0) for place in self.fresh(self.round)]
+            changes = [self.variant(place) for place in places]
             shares = [HORIZONS[n % len(HORIZONS)] for n in range(len(places))]
             firsts = range(0, len(places), TOGETHER)
             work = [Amendment(changes[n : n + TOGETHER], shares[n : n + TOGETHER]) for n in firsts]

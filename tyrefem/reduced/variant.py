@@ -95,9 +95,9 @@ class Variant:
     @property
     def gas_temperature(self) -> Array:
         """Contained air, (n_times,) degC."""
-        found = self.readout.reservoirs(self.number).get(GAS)
-        if found is not None:
-            return found
+        history = self.readout.reservoirs(self.number).get(GAS)
+        if history is not None:
+            return history
         return np.full(len(self.times), self.study.card.boundaries.contained_air.held_at)
 
     @property
@@ -150,12 +150,14 @@ class Variant:
         """The heat budget of the whole tyre at the end alone."""
         titles = {zone.name: zone.title for zone in self.tyre.schedule.zones}
         key = tuple(titles.items()), self.study.section.half, tuple(self.tyre.condition_names.items())
-        together, own = self.readout.end_budget(key), slice(self.number, self.number + 1)
+        together, of_variant = self.readout.end_budget(key), slice(self.number, self.number + 1)
         energies, powers = (
-            {name: series[own] for name, series in each.items()} for each in (together.energies, together.powers)
+            {name: series[of_variant] for name, series in each.items()} for each in (together.energies, together.powers)
         )
         section = self.readout.end_budgets
-        worst = max(abs(float(one[self.number])) for one in (section.residual, *section.reservoir_residual.values()))
+        worst = max(
+            abs(float(residual[self.number])) for residual in (section.residual, *section.reservoir_residual.values())
+        )
         throughput = float(section.throughput[self.number])
         imbalance = worst / throughput if throughput > 0 else worst
-        return HeatBudget(self.times[-1:], energies, powers, together.residual[own], imbalance)
+        return HeatBudget(self.times[-1:], energies, powers, together.residual[of_variant], imbalance)
