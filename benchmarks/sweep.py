@@ -26,7 +26,7 @@ import time
 import tyrefem
 from tyrefem.reduced.surrogate import surrogate, temperature_error
 from tyrefem.reduced.training_rounds import ReducedTask, pack, perform_reduced
-from tyrefem.sweep.answering import PIECE
+from tyrefem.variants.execution import SweepSettings
 from tyrefem.variants.plan import plan_of
 from tyrefem.variants.task import perform
 
@@ -91,8 +91,9 @@ def main() -> None:
     packed = pack(found.model, plan.packed)
     reduced: list[dict[str, object]] = []
     clock = Clock()
-    for first in range(0, options.variants, PIECE):
-        task = ReducedTask(plan.variants[first : first + PIECE], plan.time_to)
+    piece = SweepSettings().piece
+    for first in range(0, options.variants, piece):
+        task = ReducedTask(plan.variants[first : first + piece], plan.time_to)
         reduced += [outcome.answers for outcome in perform_reduced(task, packed)]
     answered, total = clock.read(), whole.read()
 

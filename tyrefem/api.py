@@ -23,7 +23,7 @@ if TYPE_CHECKING:
     from tyrefem.heating_test.card import RigCard
     from tyrefem.heating_test.grid import Fineness
     from tyrefem.heating_test.readings import HeatingTest
-    from tyrefem.inputs.study import StudyParts
+    from tyrefem.inputs.study_parts import StudyParts
     from tyrefem.measured.cases import Case
 
 Data = TypeVar("Data")

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import gc
 import json
 
 import numpy as np
@@ -55,6 +56,17 @@ def variants(found: Surrogate, plan: Plan) -> list[Variant]:
     outcomes = [one for _, one in reduced_outcomes(found.model, studies)]
     assert all(isinstance(one, Variant) for one in outcomes)
     return outcomes  # type: ignore[return-value]
+
+
+def test_a_batch_that_is_answered_is_forgotten(found: Surrogate, plan: Plan) -> None:
+    packed, task = pack(found.model, plan.packed), ReducedTask(plan.variants[:3], plan.time_to)
+
+    def readouts() -> int:
+        perform_reduced(task, packed)
+        gc.collect()
+        return sum(type(thing) is Readout for thing in gc.get_objects())
+
+    assert readouts() == readouts() == readouts()
 
 
 def test_fresh_full_runs_are_met_within_the_tolerance(found: Surrogate, plan: Plan) -> None:

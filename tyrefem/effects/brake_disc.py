@@ -51,5 +51,5 @@ class BrakeDisc(Effect):
     @classmethod
     def refusal(cls, study: StudyOfTyre) -> str | None:
         """Only a lumped rim takes up heat."""
-        lumped = study.card.boundaries.rim.law == "lumped"  # type: ignore[attr-defined]
+        lumped = study.card.boundaries.rim.law == "lumped"
         return None if lumped else "only a lumped rim takes up heat; use 'brake-heat'"
