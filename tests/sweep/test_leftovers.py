@@ -68,7 +68,7 @@ def test_an_unfinished_sweep_takes_nothing_of_its_own_question_away(
     def interrupted(*_: object, **__: object) -> None:
         raise KeyboardInterrupt
 
-    monkeypatch.setattr("tyrefem.sweep.design.sweep", interrupted)
+    monkeypatch.setattr("tyrefem.sweep.tornado.sweep", interrupted)
     command = ["sweep", TYRE, *TORNADO, *QUICK, "--out", str(tmp_path)]
     assert main(command) == 130
     assert {name: (tmp_path / name).read_bytes() for name in OURS} == {name: tornado[name] for name in OURS}

@@ -247,7 +247,7 @@ def _phase(run: SlidingRun, number: int, numbers: Numbers, series: pd.DataFrame)
     seconds = series.time_s.to_numpy()
     hottest, fastest = int(series.exit_edge_degC.argmax()), int(series.sliding_speed_m_s.argmax())
     energies = run.heat_budget.energies
-    energy = sum((one for (kind, _), one in energies.items() if kind == "sliding"), np.zeros(1))
+    energy = sum((heat for (kind, _), heat in energies.items() if kind == "sliding"), np.zeros(1))
     heat = float(energy[numbers[-1]] - energy[numbers[0]])
     middle = float(seconds[0] + seconds[-1]) / 2
     k, capacity = tyre.tread
