@@ -1,6 +1,7 @@
 """Write docs/effects.md from the catalogue, and the picture of every effect's signature (run from the root).
 
-`python tools/make_effects_page.py` writes both; with `--text` the page alone, without running any study.
+`python tools/make_effects_page.py` writes both; with names of effects the page and only their pictures, with `--text`
+the page alone.
 """
 
 from __future__ import annotations
@@ -14,33 +15,12 @@ import tyrefem as tf
 from tyrefem.effects import Effect, catalogue
 from tyrefem.effects.description import by_family, equation, parameter_rows
 from tyrefem.effects.effect import PORTS
+from tyrefem.effects.signature import STUDY
 from tyrefem.output import atomic_path
 
 PAGE = Path("docs/effects.md")
 PICTURES = Path("docs/pictures")
-STUDY = "example-validation"
 DRAWING = {"mesh.size": "4 mm", "numerics.tolerance": "0.02 delta_degC", "output": {"every": "10 s", "fields": 2}}
-BEAD = {"sensors.bead": {"s": "5.6 in", "depth": "0.3 in"}}
-LEFT = {"mesh.section": "full", "sensors.shoulder-left": {"s": "-2.00 in", "depth": "0.07 in"}}
-FAST = {"drive.phases.rolling.speed": "30 m/s"}
-LUMPED = {"boundaries.rim": {"law": "lumped", "mass": "9 kg", "cooling": "2 W/K", "air": "0.5 W/K"}}
-#: What an effect needs beside the study to be drawn: changes, and these in words.
-DRAWN_FOR: dict[str, tuple[dict[str, Any], str]] = {
-    "bead-contact-resistance": (BEAD, "with a thermocouple in the bead"),
-    "brake-disc": (BEAD | LUMPED, "with a thermocouple in the bead and a lumped rim of 9 kg"),
-    "brake-heat": (BEAD, "with a thermocouple in the bead"),
-    "brake-power": (BEAD | LUMPED, "with a thermocouple in the bead and a lumped rim of 9 kg"),
-    "camber": (LEFT, "on the full section, with a thermocouple in the other shoulder"),
-    "gas-mass": ({"boundaries.contained_air": {"law": "report"}}, "with the report's air"),
-    "loss-speed-exponent": (FAST, "at 30 m/s"),
-    "outside-film-speed": (FAST, "at 30 m/s"),
-    "road-film-speed": (FAST, "at 30 m/s"),
-    "standing-wave": ({"drive.phases.rolling.speed": "55 m/s"}, "at 55 m/s"),
-    "under-inflation-flexing": ({"drive.load": "4000 lbf"}, "at 4000 lbf"),
-    "yaw": (LEFT, "on the full section, with a thermocouple in the other shoulder"),
-}
-CHOICES = {"swapped-channels": {"sensor": "crown-inner", "other": "sidewall-inner"}}
-
 INTRODUCTION = """\
 # Effects
 
@@ -171,7 +151,7 @@ def page() -> str:
 
 
 def _entry(effect: type[Effect]) -> str:
-    where = DRAWN_FOR.get(effect.name, ({}, ""))[1]
+    where = effect.signature.words
     return "\n".join(
         [
             f"### {effect.name}\n",
@@ -200,8 +180,8 @@ def _parameters(effect: type[Effect]) -> dict[str, str]:
     return texts | {name: "; ".join(filter(None, (row[1], row[3]))) for name, row in choices.items()}
 
 
-def _study(name: str) -> tf.Study:
-    return tf.study(STUDY).replace({**DRAWING, **DRAWN_FOR.get(name, ({}, ""))[0]})
+def _study(effect: type[Effect]) -> tf.Study:
+    return tf.study(STUDY).replace({**DRAWING, **effect.signature.changes})
 
 
 def draw(effect: type[Effect], base: tf.Result) -> None:
@@ -209,8 +189,8 @@ def draw(effect: type[Effect], base: tf.Result) -> None:
     from tyrefem.reports.figures.phases import draw_phases, make_room
     from tyrefem.reports.figures.style import FONT, QUIET, Label, add_axes, figure, line_ends, line_style, png, tidy
 
-    study = _study(effect.name)
-    choice = CHOICES.get(effect.name, effect.variants(study)[-1] if effect.name == "yaw" else effect.variants(study)[0])
+    study = _study(effect)
+    choice = effect.signature.choice or effect.variants(study)[0]
     values = {
         one.name: one.prior.text(one.prior.null + one.prior.scale, 12)
         for one in effect.parameters()
@@ -256,10 +236,13 @@ def main() -> None:
     """Write the page, and the pictures unless only the text is asked for."""
     if "--text" not in sys.argv:
         bases: dict[str, tf.Result] = {}
+        names = sys.argv[1:]
         for effect in filter(_shown, catalogue().values()):
-            changes = repr(DRAWN_FOR.get(effect.name, ({}, ""))[0])
+            if names and effect.name not in names:
+                continue
+            changes = repr(effect.signature.changes)
             if changes not in bases:
-                bases[changes] = _study(effect.name).run()
+                bases[changes] = _study(effect).run()
             draw(effect, bases[changes])
             print(effect.name, flush=True)
     with atomic_path(PAGE) as temporary:

@@ -162,7 +162,10 @@ def record_effect(name: str, tree: Path, folder: Path) -> Entry:
 
     text = run_command(f"show effect {name}", tree, folder).stdout
     table = tomllib.loads(text[text.index("[[effects]]") :])["effects"]
-    for study, needed in EFFECT_STUDIES:
+    from tyrefem.effects import catalogue
+    from tyrefem.effects.signature import STUDY
+
+    for study, needed in (*EFFECT_STUDIES, (STUDY, dict(catalogue()[name].signature.changes))):
         try:
             return record_run(tf.study(study).replace({"mesh.size": "10 mm", "effects": table} | needed).run())
         except tf.InputError:

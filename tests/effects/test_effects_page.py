@@ -42,8 +42,8 @@ def test_every_effect_has_a_picture_and_every_picture_an_effect(tool: ModuleType
 
 
 @pytest.mark.parametrize("name", sorted(catalogue()))
-def test_the_example_of_the_page_can_be_put_into_a_study(name: str, tool: ModuleType) -> None:
-    changes = tool.DRAWN_FOR.get(name, ({}, ""))[0]
+def test_the_example_of_the_page_can_be_put_into_a_study(name: str) -> None:
+    changes = catalogue()[name].signature.changes
     entries = tomllib.loads(example(catalogue()[name]))["effects"]
     (effect,) = tf.study("example-validation").replace({**changes, "effects": entries}).effects
     assert effect.name == name

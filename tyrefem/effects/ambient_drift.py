@@ -5,6 +5,7 @@ from __future__ import annotations
 from typing import Annotated, ClassVar
 
 from tyrefem.effects.effect import Effect, Prior
+from tyrefem.effects.signature import Signature
 from tyrefem.effects.tyre import Tyre
 
 
@@ -15,6 +16,7 @@ class AmbientDrift(Effect):
     family: ClassVar[str] = "boundary"
     sentence: ClassVar[str] = "The ambient temperature drifts during the run."
     source: ClassVar[str] = "estimate: a test hall or a summer morning drifts by some kelvins per hour"
+    signature: ClassVar[Signature] = Signature(signs={"sidewall-outer": 1, "shoulder-outer": 1, "contained-air": 1})
 
     rate: Annotated[
         float,

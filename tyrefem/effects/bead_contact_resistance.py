@@ -5,6 +5,7 @@ from __future__ import annotations
 from typing import Annotated, ClassVar
 
 from tyrefem.effects.effect import Effect, Prior
+from tyrefem.effects.signature import Signature
 from tyrefem.effects.tyre import Tyre
 
 
@@ -18,6 +19,11 @@ class BeadContactResistance(Effect):
     source: ClassVar[str] = (
         "Clark & Dodge 1980, appendix I: the contact resistance is unknown and neglected; estimate: 1e-4 to "
         "1e-3 m2 K/W for rubber pressed on metal, 0.04 for 1 mm of still air"
+    )
+    signature: ClassVar[Signature] = Signature(
+        changes={"sensors.bead": {"s": "5.6 in", "depth": "0.3 in"}, "drive.rim_temperature": "90 degC"},
+        words="with a thermocouple in the bead and the rim at 90 °C",
+        signs={"bead": -1},
     )
 
     resistance: Annotated[float, Prior("m**2*K/W", "thermal resistance between bead and rim", 1e-3, 0.0, 0.1)] = 0.0

@@ -8,6 +8,7 @@ import numpy as np
 
 from tyrefem.effects._shared import deflection_ratio, no_carcass
 from tyrefem.effects.effect import Array, Effect, Factor, Prior
+from tyrefem.effects.signature import Signature
 from tyrefem.effects.tyre import StudyOfTyre, Tyre
 
 
@@ -27,6 +28,7 @@ class BeltEdgeShear(Effect):
         "0.1 and an interply shear strain gamma of 0.17, within the 0.1 to 0.2 of textbooks on belt edges; "
         "extent 8 mm along and 2.5 mm across"
     )
+    signature: ClassVar[Signature] = Signature(signs={"shoulder-inner": 1, "shoulder-outer": 1})
 
     #: Extent (standard deviations) along the meridian and across the plies, m; centre over the shoulder's station.
     ALONG: ClassVar[float] = 8e-3

@@ -6,6 +6,7 @@ from collections.abc import Mapping
 from typing import Annotated, ClassVar
 
 from tyrefem.effects.effect import Effect, Prior
+from tyrefem.effects.signature import Signature
 from tyrefem.effects.state import EffectState, TemperaturesOfTyre, Values
 from tyrefem.effects.tyre import StudyOfTyre, Tyre
 
@@ -23,6 +24,15 @@ class BrakeDisc(Effect):
     source: ClassVar[str] = (
         "Limpert, Brake Design and Safety, 2nd ed., 1999, chapter 3: a disc of one temperature, m c dT/dt = q - h A T; "
         "estimate: 8 kg of cast iron with 0.2 m2 at 25 W/m2/K, half as much into the rim through hat and bolts"
+    )
+    free_rolling: ClassVar[bool] = False
+    signature: ClassVar[Signature] = Signature(
+        changes={
+            "sensors.bead": {"s": "5.6 in", "depth": "0.3 in"},
+            "boundaries.rim": {"law": "lumped", "mass": "9 kg", "cooling": "2 W/K", "air": "0.5 W/K"},
+        },
+        words="with a thermocouple in the bead and a lumped rim of 9 kg",
+        signs={"rim": 1, "bead": 1},
     )
     states: ClassVar[Mapping[str, EffectState]] = {
         "disc": EffectState("delta_degC", "what braking warms the disc by"),

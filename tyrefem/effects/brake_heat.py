@@ -6,6 +6,7 @@ import math
 from typing import Annotated, ClassVar
 
 from tyrefem.effects.effect import Effect, Prior
+from tyrefem.effects.signature import Signature
 from tyrefem.effects.tyre import StudyOfTyre, Tyre
 
 
@@ -18,6 +19,12 @@ class BrakeHeat(Effect):
     source: ClassVar[str] = (
         "estimate: wheels of braked runs get 20 to 100 K hotter than ambient within some minutes, and stay so "
         "for many more"
+    )
+    free_rolling: ClassVar[bool] = False
+    signature: ClassVar[Signature] = Signature(
+        changes={"sensors.bead": {"s": "5.6 in", "depth": "0.3 in"}},
+        words="with a thermocouple in the bead",
+        signs={"bead": 1},
     )
 
     warmer_by: Annotated[float, Prior("delta_degC", "warming of the rim in the end", 30.0, 0.0, 300.0)] = 0.0

@@ -9,6 +9,7 @@ import numpy as np
 
 from tyrefem.effects._shared import half_width, needs_full
 from tyrefem.effects.effect import Array, Effect, Factor, Prior
+from tyrefem.effects.signature import Signature
 from tyrefem.effects.tyre import StudyOfTyre, Tyre
 
 
@@ -21,6 +22,12 @@ class Camber(Effect):
     source: ClassVar[str] = (
         "estimate: each side deflects by D + z_s tan(angle), and strain energy goes with the square of the "
         "deflection; alignment is good to a degree or two"
+    )
+    free_rolling: ClassVar[bool] = False
+    signature: ClassVar[Signature] = Signature(
+        changes={"mesh.section": "full", "sensors.shoulder-left": {"s": "-2.00 in", "depth": "0.07 in"}},
+        words="on the full section, with a thermocouple in the other shoulder",
+        signs={"shoulder-inner": 1, "sidewall-inner": 1, "shoulder-left": -1},
     )
 
     angle: Annotated[

@@ -5,6 +5,7 @@ from __future__ import annotations
 from typing import Annotated, ClassVar
 
 from tyrefem.effects.effect import Effect, Prior
+from tyrefem.effects.signature import Signature
 
 
 class ClockOffset(Effect):
@@ -14,6 +15,9 @@ class ClockOffset(Effect):
     family: ClassVar[str] = "measurement"
     sentence: ClassVar[str] = "The logger's time zero is not the start of the drive."
     source: ClassVar[str] = "estimate: loggers started by hand are some ten seconds off"
+    signature: ClassVar[Signature] = Signature(
+        changes={"drive.phases.rolling.duration": "600 s"}, signs={"crown-inner": 1, "sidewall-outer": 1}
+    )
 
     late: Annotated[float, Prior("s", "what the logger calls t was measured at t + late", 20.0, -300.0, 300.0)] = 0.0
 

@@ -6,6 +6,7 @@ from typing import Annotated, ClassVar
 
 from tyrefem.effects._shared import no_carcass
 from tyrefem.effects.effect import Array, Effect, Factor, Prior
+from tyrefem.effects.signature import Signature
 from tyrefem.effects.tyre import StudyOfTyre, Tyre
 
 
@@ -19,6 +20,7 @@ class CordConduction(Effect):
         "estimate: rubber 0.2 W/m/K; nylon and polyester cords 0.2 to 1 along the fibre (gain below 1), "
         "aramid 3 to 4, steel about 50 (gain 5 to 30 at 2 to 10 % by volume)"
     )
+    signature: ClassVar[Signature] = Signature(signs={"crown-inner": -1, "shoulder-inner": -1})
 
     gain: Annotated[float, Prior("1", "relative rise of the conductivity along the plies", 1.0, 0.0, 40.0)] = 0.0
 

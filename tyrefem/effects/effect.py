@@ -14,6 +14,7 @@ from pydantic_core import CoreSchema, core_schema
 
 from tyrefem.cards import Card, Text
 from tyrefem.effects.port import port, ports_of
+from tyrefem.effects.signature import Signature
 from tyrefem.effects.state import EffectState, TemperaturesOfTyre, Values
 from tyrefem.effects.tyre import StudyOfTyre, Tyre
 from tyrefem.errors import InputError, nearest
@@ -110,6 +111,10 @@ class Effect(Card):
     sentence: ClassVar[str] = ""
     source: ClassVar[str] = ""
     family: ClassVar[str] = ""
+    #: What shows it, for its picture and its tests.
+    signature: ClassVar[Signature] = Signature()
+    #: Does it leave the tyre rolling freely and straight, unworn? Else a report says that this stands beside the model.
+    free_rolling: ClassVar[bool] = True
     #: A correction of a base number: fitted along in a diagnosis, never named as missing.
     calibration: ClassVar[bool] = False
     #: What it does to films, sinks and the rim depends on time through the drive alone: constant where the drive is.

@@ -6,6 +6,7 @@ from typing import Annotated, ClassVar
 
 from tyrefem.boundaries.contained_air import Gas
 from tyrefem.effects.effect import Effect, Prior
+from tyrefem.effects.signature import Signature
 from tyrefem.effects.tyre import StudyOfTyre, Tyre
 
 
@@ -18,6 +19,11 @@ class GasMass(Effect):
     source: ClassVar[str] = (
         "Clark & Dodge 1980, appendix I takes 0.0013 g/cm3 whatever the pressure; the ideal gas law at 83 psi "
         "gauge gives 6.6 times as much"
+    )
+    signature: ClassVar[Signature] = Signature(
+        changes={"boundaries.contained_air": {"law": "report"}},
+        words="with the report's air",
+        signs={"contained-air": -1},
     )
 
     fraction: Annotated[

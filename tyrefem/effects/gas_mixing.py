@@ -6,6 +6,7 @@ from typing import Annotated, ClassVar
 
 from tyrefem.effects._shared import REFERENCE_SPEED
 from tyrefem.effects.effect import Effect, Prior
+from tyrefem.effects.signature import Signature
 from tyrefem.effects.tyre import Tyre
 
 
@@ -20,6 +21,7 @@ class GasMixing(Effect):
         "Clark & Dodge 1980, appendix I: 4.18 W/m2/K at any speed; estimate: forced convection in a turning "
         "cavity of this size reaches 10 to 30 W/m2/K at 10 m/s"
     )
+    signature: ClassVar[Signature] = Signature(signs={"contained-air": 1, "crown-inner": -1})
 
     gain: Annotated[float, Prior("1", "relative rise of the film at 10 m/s", 2.0, 0.0, 20.0)] = 0.0
 

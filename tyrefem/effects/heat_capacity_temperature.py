@@ -6,6 +6,7 @@ from typing import Annotated, ClassVar
 
 from tyrefem.effects._shared import above_25
 from tyrefem.effects.effect import Array, Effect, Factor, Prior
+from tyrefem.effects.signature import Signature
 from tyrefem.effects.tyre import Tyre
 
 
@@ -18,6 +19,7 @@ class HeatCapacityTemperature(Effect):
     source: ClassVar[str] = (
         "estimate: specific heat of rubbers above their glass transition rises by 0.15 to 0.35 % per kelvin"
     )
+    signature: ClassVar[Signature] = Signature(signs={"crown-inner": -1, "shoulder-inner": -1})
 
     slope: Annotated[float, Prior("1/delta_degC", "relative rise of rho c per kelvin", 2.5e-3, 0.0, 8e-3)] = 0.0
 

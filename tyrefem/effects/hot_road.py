@@ -5,6 +5,7 @@ from __future__ import annotations
 from typing import Annotated, ClassVar
 
 from tyrefem.effects.effect import Effect, Prior
+from tyrefem.effects.signature import Signature
 from tyrefem.effects.tyre import Tyre
 
 
@@ -19,6 +20,7 @@ class HotRoad(Effect):
         "estimate: summer asphalt is 20 to 30 K above the air (handbook range); Cattani et al. 2023 keep the road's "
         "temperature as an input of its own"
     )
+    signature: ClassVar[Signature] = Signature(signs={"shoulder-outer": 1, "crown-middle": 1})
 
     warmer_by: Annotated[float, Prior("delta_degC", "road above its stated temperature", 10.0, -30.0, 60.0)] = 0.0
 

@@ -6,6 +6,7 @@ from typing import Annotated, ClassVar
 
 from tyrefem.effects._shared import speed_ratio
 from tyrefem.effects.effect import Array, Effect, Factor, Prior
+from tyrefem.effects.signature import Signature
 from tyrefem.effects.tyre import Tyre
 
 
@@ -18,6 +19,11 @@ class LossSpeedExponent(Effect):
     source: ClassVar[str] = (
         "estimate: tan(delta) of filled rubber above its glass transition rises by 10 to 50 % per decade of "
         "frequency (exponent 0.04 to 0.18)"
+    )
+    signature: ClassVar[Signature] = Signature(
+        changes={"drive.phases.rolling.speed": "30 m/s"},
+        words="at 30 m/s",
+        signs={"crown-inner": 1, "sidewall-inner": 1},
     )
 
     exponent: Annotated[float, Prior("1", "exponent of speed in the loss per revolution", 0.15, 0.0, 1.0)] = 0.0

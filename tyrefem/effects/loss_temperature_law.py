@@ -8,6 +8,7 @@ import numpy as np
 
 from tyrefem.effects._shared import above_25
 from tyrefem.effects.effect import Array, Effect, Factor, Prior
+from tyrefem.effects.signature import Signature
 from tyrefem.effects.tyre import Tyre
 
 
@@ -21,6 +22,7 @@ class LossTemperatureLaw(Effect):
         "Clark & Dodge 1980, table 3, note 5 gives a rate of 0.0148 1/K for all compounds; estimate: between "
         "compounds the rate spreads by a third of that"
     )
+    signature: ClassVar[Signature] = Signature(signs={"crown-inner": -1, "shoulder-inner": -1})
 
     rate: Annotated[float, Prior("1/delta_degC", "added to the rate at which tan delta falls", 0.005, -0.02, 0.03)] = (
         0.0

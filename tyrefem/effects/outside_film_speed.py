@@ -6,6 +6,7 @@ from typing import Annotated, ClassVar
 
 from tyrefem.effects._shared import speed_ratio
 from tyrefem.effects.effect import Effect, Prior
+from tyrefem.effects.signature import Signature
 from tyrefem.effects.tyre import Tyre
 
 
@@ -20,6 +21,9 @@ class OutsideFilmSpeed(Effect):
         "Clark & Dodge 1980, appendix I: 5.44 + 1.674 v; estimate: turbulent flow over a disc or plate gives "
         "v^0.8, a spinning wheel in a well less, hence an exponent about -0.2 beside the linear law and 0.8 "
         "beside a constant film"
+    )
+    signature: ClassVar[Signature] = Signature(
+        changes={"drive.phases.rolling.speed": "30 m/s"}, words="at 30 m/s", signs={"sidewall-outer": -1}
     )
 
     #: Film of still air, W/m2/K (Clark & Dodge 1980, appendix I): what speed has no part in.

@@ -6,6 +6,7 @@ from typing import Annotated, ClassVar
 
 from tyrefem.effects.effect import Array, Effect, Factor, Prior
 from tyrefem.effects.leak import deflection_change, no_load
+from tyrefem.effects.signature import Signature
 from tyrefem.effects.tyre import StudyOfTyre, Tyre
 
 
@@ -19,6 +20,7 @@ class PressureLoss(Effect):
         "estimate: a slow leak loses up to 1 bar in an hour (28 Pa/s); strain energy of the carcass and "
         "sidewall goes with the square of the deflection"
     )
+    signature: ClassVar[Signature] = Signature(signs={"crown-inner": 1, "sidewall-inner": 1})
 
     rate: Annotated[
         float, Prior("Pa/s", "gauge pressure lost per time, from the start", 30.0, 0.0, 1000.0, written="kPa/min")

@@ -7,6 +7,7 @@ from typing import Annotated, ClassVar
 
 from tyrefem.effects.effect import Array, Effect, Factor, Prior
 from tyrefem.effects.leak import deflection_change, no_load
+from tyrefem.effects.signature import Signature
 from tyrefem.effects.tyre import StudyOfTyre, Tyre
 
 
@@ -22,6 +23,7 @@ class PressureRise(Effect):
         "estimate: at constant volume 45 K of warming raise the absolute pressure by 15 %; strain energy of "
         "the carcass and sidewall goes with the square of the deflection"
     )
+    signature: ClassVar[Signature] = Signature(signs={"crown-inner": -1, "sidewall-inner": -1})
 
     rise: Annotated[float, Prior("1", "rise of the gauge pressure over the drive's, in the end", 0.15, 0.0, 0.8)] = 0.0
     lag: Annotated[

@@ -7,6 +7,7 @@ from typing import Annotated, ClassVar
 from tyrefem.cards.plausible import EMISSIVITY
 from tyrefem.conduction import Radiation
 from tyrefem.effects.effect import Effect, Prior
+from tyrefem.effects.signature import Signature
 from tyrefem.effects.tyre import Tyre
 
 
@@ -20,6 +21,7 @@ class RadiationToAmbient(Effect):
         "Allouis et al. 2016: emissivity 0.95 of tread and liner; surroundings at ambient temperature. The "
         "films of Clark & Dodge 1980 do not say that they include it"
     )
+    signature: ClassVar[Signature] = Signature(signs={"sidewall-outer": -1, "shoulder-outer": -1})
 
     surfaces: ClassVar[tuple[str, ...]] = ("road", "outside_air")
 

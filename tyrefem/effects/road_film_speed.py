@@ -6,6 +6,7 @@ from typing import Annotated, ClassVar
 
 from tyrefem.effects._shared import speed_ratio
 from tyrefem.effects.effect import Effect, Prior
+from tyrefem.effects.signature import Signature
 from tyrefem.effects.tyre import StudyOfTyre, Tyre
 
 
@@ -19,6 +20,14 @@ class RoadFilmSpeed(Effect):
     source: ClassVar[str] = (
         "Cattani et al. 2023, eq 12: H_c = sqrt(lambda C v / FL), an exponent of 0.5, where Clark & Dodge "
         "1980 have one film for all speeds"
+    )
+    signature: ClassVar[Signature] = Signature(
+        changes={
+            "drive.phases.rolling.speed": "30 m/s",
+            "boundaries.road": {"law": "constant", "coefficient": "500 W/m**2/K"},
+        },
+        words="at 30 m/s with a constant road film of 500 W/m²/K",
+        signs={"surface": -1},
     )
 
     exponent: Annotated[float, Prior("1", "exponent of speed in the road film", 0.5, 0.0, 1.5)] = 0.0

@@ -6,6 +6,7 @@ from typing import Annotated, ClassVar
 
 from tyrefem.effects._shared import OfSensor
 from tyrefem.effects.effect import Prior
+from tyrefem.effects.signature import Signature
 
 
 class SensorLag(OfSensor):
@@ -18,6 +19,7 @@ class SensorLag(OfSensor):
         "estimate: 1 to 5 s for a bare junction in rubber, up to a minute for a sheathed one or one in a "
         "drilled and badly filled hole"
     )
+    signature: ClassVar[Signature] = Signature(choice={"sensor": "crown-inner"}, signs={"crown-inner": -1})
 
     slower_by: Annotated[float, Prior("s", "added to the sensor's time constant", 15.0, 0.0, 300.0)] = 0.0
 

@@ -6,6 +6,7 @@ from typing import Annotated, ClassVar
 
 from tyrefem.effects._shared import OfSensor
 from tyrefem.effects.effect import Prior
+from tyrefem.effects.signature import Signature
 
 
 class SensorMisplaced(OfSensor):
@@ -17,6 +18,7 @@ class SensorMisplaced(OfSensor):
     source: ClassVar[str] = (
         "estimate: a drilled hole ends within 1 mm of its mark; a slipped or mistaken thermocouple is 3 to 5 mm off"
     )
+    signature: ClassVar[Signature] = Signature(choice={"sensor": "crown-inner"}, signs={"crown-inner": -1})
 
     along: Annotated[float, Prior("m", "along the meridian, towards the bead", 4e-3, -0.02, 0.02, written="mm")] = 0.0
     deeper: Annotated[

@@ -6,6 +6,7 @@ from typing import Annotated, ClassVar
 
 from tyrefem.effects._shared import OfSensor
 from tyrefem.effects.effect import Prior
+from tyrefem.effects.signature import Signature
 
 
 class SensorOffset(OfSensor):
@@ -17,6 +18,7 @@ class SensorOffset(OfSensor):
     source: ClassVar[str] = (
         "estimate: class 1 type K is good to 1.5 K (IEC 60584-1); a bad cold junction or connector adds some kelvins"
     )
+    signature: ClassVar[Signature] = Signature(choice={"sensor": "crown-inner"}, signs={"crown-inner": 1})
 
     too_high: Annotated[float, Prior("delta_degC", "what the sensor shows too much", 4.0, -30.0, 30.0)] = 0.0
 

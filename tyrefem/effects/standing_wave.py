@@ -7,6 +7,7 @@ from typing import Annotated, ClassVar
 import numpy as np
 
 from tyrefem.effects.effect import Array, Effect, Factor, Prior
+from tyrefem.effects.signature import Signature
 from tyrefem.effects.tyre import Tyre
 
 
@@ -22,6 +23,11 @@ class StandingWave(Effect):
         "estimate: waves run round a membrane at sqrt(p r / (rho h)), 90 m/s for the 22x5.5 at 83 psi and 50 "
         "to 60 m/s for a passenger tyre; onset over a tenth of the critical speed and a heat that trebles at "
         "1.5 times the critical speed are judgements"
+    )
+    signature: ClassVar[Signature] = Signature(
+        changes={"drive.phases.rolling.speed": "55 m/s"},
+        words="at 55 m/s",
+        signs={"crown-inner": 1, "shoulder-inner": 1},
     )
 
     #: Width of the onset over the critical speed.

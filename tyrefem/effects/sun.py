@@ -5,6 +5,7 @@ from __future__ import annotations
 from typing import Annotated, ClassVar
 
 from tyrefem.effects.effect import Array, Effect, Factor, Prior
+from tyrefem.effects.signature import Signature
 from tyrefem.effects.tyre import Tyre
 
 
@@ -18,6 +19,7 @@ class Sun(Effect):
         "estimate: up to 1000 W/m2 at the ground, 0.93 absorbed by black rubber, and a turning tyre shows the "
         "sun a sixth of its outer surface on average"
     )
+    signature: ClassVar[Signature] = Signature(signs={"sidewall-outer": 1, "shoulder-outer": 1})
 
     surfaces: ClassVar[tuple[str, ...]] = ("road", "outside_air")
 

@@ -10,6 +10,7 @@ from pydantic import Field
 
 from tyrefem.cards import Text
 from tyrefem.effects.effect import Effect
+from tyrefem.effects.signature import Signature
 from tyrefem.effects.tyre import StudyOfTyre
 from tyrefem.errors import nearest
 
@@ -21,6 +22,9 @@ class SwappedChannels(Effect):
     family: ClassVar[str] = "measurement"
     sentence: ClassVar[str] = "Two thermocouples are plugged into each other's channels."
     source: ClassVar[str] = "estimate: the commonest mistake at the patch panel of a rig with many thermocouples"
+    signature: ClassVar[Signature] = Signature(
+        choice={"sensor": "crown-inner", "other": "sidewall-inner"}, signs={"crown-inner": -1, "sidewall-inner": 1}
+    )
 
     sensor: Annotated[Text, Field(description="name of the sensor", examples=["crown-inner"])]
     other: Annotated[Text, Field(description="name of the other sensor", examples=["crown-middle"])]

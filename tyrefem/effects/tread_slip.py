@@ -6,6 +6,7 @@ from typing import Annotated, ClassVar
 
 from tyrefem.effects._shared import sliding_flux
 from tyrefem.effects.effect import Array, Effect, Factor, Prior
+from tyrefem.effects.signature import Signature
 from tyrefem.effects.tyre import Tyre
 
 
@@ -22,6 +23,8 @@ class TreadSlip(Effect):
         "the effusivities. estimate: mu = 0.8, contact pressure = inflation pressure, road of dense asphalt "
         "(1732 J/m2/K/s^0.5); free rolling scrubs by 0.1 to 1 %"
     )
+    free_rolling: ClassVar[bool] = False
+    signature: ClassVar[Signature] = Signature(signs={"surface": 1, "shoulder-outer": 1})
 
     slip: Annotated[float, Prior("1", "sliding speed over the tyre's speed", 0.01, 0.0, 0.2)] = 0.0
 

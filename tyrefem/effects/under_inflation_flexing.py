@@ -6,6 +6,7 @@ from typing import Annotated, ClassVar
 
 from tyrefem.effects._shared import beyond_shoulder, deflection_ratio
 from tyrefem.effects.effect import Array, Effect, Factor, Prior
+from tyrefem.effects.signature import Signature
 from tyrefem.effects.tyre import Tyre
 
 
@@ -21,6 +22,9 @@ class UnderInflationFlexing(Effect):
         "Clark & Dodge 1980, summary: when the tyre is seriously under-inflated the theory predicts a lower "
         "temperature rise than is observed. estimate: linear in the excess deflection, local to shoulder and "
         "sidewall, about doubled heat at twice the rated deflection"
+    )
+    signature: ClassVar[Signature] = Signature(
+        changes={"drive.load": "4000 lbf"}, words="at 4000 lbf", signs={"shoulder-inner": 1, "sidewall-inner": 1}
     )
 
     gain: Annotated[

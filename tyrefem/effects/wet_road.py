@@ -5,6 +5,7 @@ from __future__ import annotations
 from typing import Annotated, ClassVar
 
 from tyrefem.effects.effect import Effect, Prior
+from tyrefem.effects.signature import Signature
 from tyrefem.effects.tyre import Tyre
 
 
@@ -21,6 +22,11 @@ class WetRoad(Effect):
         "estimate: water fills the gaps of the road texture and about doubles H_c (film_gain 1); on the wet "
         "tread evaporation adds 2.8 times the dry film, by the Lewis relation L/c_p dw/dT with 1.2e-3 1/K at "
         "25 degC"
+    )
+    signature: ClassVar[Signature] = Signature(
+        changes={"boundaries.road": {"law": "constant", "coefficient": "500 W/m**2/K"}},
+        words="with a constant road film of 500 W/m²/K",
+        signs={"surface": -1},
     )
 
     #: Evaporation over convection, per kelvin of a wet surface: 2.45e6/1005 J/kg over J/kg/K times dw/dT = 1.16e-3 1/K.

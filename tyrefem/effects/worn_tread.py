@@ -5,6 +5,7 @@ from __future__ import annotations
 from typing import TYPE_CHECKING, Annotated, ClassVar
 
 from tyrefem.effects.effect import Effect, Prior
+from tyrefem.effects.signature import Signature
 from tyrefem.effects.tyre import StudyOfTyre
 
 if TYPE_CHECKING:
@@ -20,6 +21,15 @@ class WornTread(Effect):
     source: ClassVar[str] = (
         "estimate: tyres are tested anywhere between new and worn to the base of the grooves, about half of "
         "the tread layer"
+    )
+    free_rolling: ClassVar[bool] = False
+    signature: ClassVar[Signature] = Signature(
+        changes={
+            "sensors.surface": {"s": "0.30 in", "depth": "0.55 in"},
+            "sensors.shoulder-edge": {"s": "1.80 in", "depth": "0.40 in"},
+        },
+        words="with two more thermocouples in the tread",
+        signs={"shoulder-outer": -1, "shoulder-edge": -1},
     )
 
     fraction: Annotated[float, Prior("1", "part of the tread layer's thickness that is gone", 0.25, 0.0, 0.8)] = 0.0

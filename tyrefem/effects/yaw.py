@@ -10,6 +10,7 @@ from pydantic import Field
 
 from tyrefem.effects._shared import half_width, needs_full, sliding_flux
 from tyrefem.effects.effect import Array, Effect, Factor, Prior
+from tyrefem.effects.signature import Signature
 from tyrefem.effects.tyre import StudyOfTyre, Tyre
 
 
@@ -25,6 +26,13 @@ class Yaw(Effect):
         "Roberts, Temperature rise when rubber slides, eqs 2 and 5, as for tread-slip; estimate: friction "
         "rises linearly from one shoulder to the other; a slip angle of 1 degree slides by 1.7 % of the speed "
         "where it slides fully"
+    )
+    free_rolling: ClassVar[bool] = False
+    signature: ClassVar[Signature] = Signature(
+        changes={"mesh.section": "full", "sensors.shoulder-left": {"s": "-2.00 in", "depth": "0.07 in"}},
+        words="on the full section, with a thermocouple in the other shoulder",
+        choice={"side": "right"},
+        signs={"shoulder-edge": 1},
     )
 
     surfaces: ClassVar[tuple[str, ...]] = ("road",)

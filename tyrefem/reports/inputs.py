@@ -263,8 +263,6 @@ ALWAYS = {
 }
 
 
-#: Effects that are exceptions to free, straight rolling of a new tyre.
-BESIDE = ("tread-slip", "yaw", "camber", "worn-tread", "brake-heat", "brake-power")
 FREE = {
     "Free, straight rolling": "No slip, steering, camber, braking or wear: no heat from sliding in the footprint.",
 }
@@ -298,7 +296,7 @@ def assumptions(study: StudyData, estimates: list[str]) -> list[tuple[str, str]]
         always[0] = strain_law(study).assumption
     if mechanics.feedback is not None:
         always[-1] = ("Feedback of temperature on the strain cycle", _feedback_assumptions(mechanics.feedback))
-    if slip is FREE and any(effect.name in BESIDE for effect in study.effects):
+    if slip is FREE and not all(effect.free_rolling for effect in study.effects):
         slip = {name: f"{text} What the study's effects add stands beside this." for name, text in FREE.items()}
     stated = [always[0], *slip.items(), *locked.items(), *always[1:]]
     over_frequency = [region for region, card in study.materials.items() if card.loss_tangent.frequency is not None]
