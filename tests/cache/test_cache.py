@@ -5,12 +5,14 @@ from __future__ import annotations
 import pickle
 import threading
 import time
+from collections.abc import Callable, Hashable
 from concurrent.futures import ThreadPoolExecutor
+from typing import Any
 
 import numpy as np
 import pytest
 
-from tyrefem.cache import Cache, fingerprint
+from tyrefem.cache import Cache, Content, fingerprint
 
 
 def test_the_least_recently_used_value_makes_room() -> None:
@@ -86,13 +88,25 @@ def test_a_pickled_cache_comes_back_empty() -> None:
     assert (back.size, len(back)) == (7, 0)
 
 
-def test_equal_arrays_have_one_fingerprint_and_others_another() -> None:
-    numbers = np.linspace(0.0, 1.0, 12)
+@pytest.mark.parametrize("of", [fingerprint, Content.of], ids=["fingerprint", "content"])
+def test_equal_arrays_have_one_key_and_others_another(of: Callable[[Any], Hashable]) -> None:
+    numbers = np.linspace(0.0, 1.0, 120)
     same = numbers.copy()
-    assert fingerprint(numbers) == fingerprint(same) == fingerprint(np.stack([same, same], axis=1)[:, 0])
-    others = [
-        numbers.reshape(3, 4), numbers.astype(np.float32), np.nextafter(numbers, 2.0), numbers[:-1],
-        np.zeros(0),
-    ]  # fmt: skip
-    assert len({fingerprint(numbers), *map(fingerprint, others)}) == 1 + len(others)
+    assert of(numbers) == of(same) == of(np.stack([same, same], axis=1)[:, 0])
+    assert hash(of(numbers)) == hash(of(same))
+    middle = numbers.copy()
+    middle[60] = np.nextafter(middle[60], 2.0)
+    others = [numbers.reshape(3, 40), numbers.astype(np.float32), middle, numbers[:-1], np.zeros(0), numbers[::-1]]
+    assert len({of(numbers), *map(of, others)}) == 1 + len(others)
+
+
+def test_a_fingerprint_tells_where_an_array_ends() -> None:
+    numbers = np.linspace(0.0, 1.0, 12)
     assert fingerprint(numbers[:6], numbers[6:]) != fingerprint(numbers)
+
+
+def test_a_key_keeps_the_numbers_that_it_was_made_of() -> None:
+    numbers = np.zeros(3)
+    key = Content.of(numbers)
+    numbers[1] = 1.0
+    assert key == Content.of(np.zeros(3))

@@ -9,6 +9,7 @@ object. `tests/architecture/test_caches.py` checks these rules.
 """
 
 from tyrefem.cache.cache import Cache
+from tyrefem.cache.content import Content
 from tyrefem.cache.fingerprint import fingerprint
 
-__all__ = ["Cache", "fingerprint"]
+__all__ = ["Cache", "Content", "fingerprint"]

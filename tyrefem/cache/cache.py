@@ -14,8 +14,9 @@ Value = TypeVar("Value")
 class Cache(Generic[Value]):
     """The most recently used values of a computation, at most ``size`` of them.
 
-    A key is a hashable value that holds all that the computation depends on. Arrays and meshes enter a key by their
-    `fingerprint`. Never use ``id(...)`` in a key: the memory of an object that is gone serves another one.
+    A key is a hashable value that holds all that the computation depends on. Arrays enter a key by their `Content`,
+    what is large by its `fingerprint`. Never use ``id(...)`` in a key: the memory of an object that is gone serves
+    another one.
 
     Threads share a cache safely. The lock is free during a computation, so a computation may use the cache itself.
     Two threads may compute one value at the same time; both get the value that was stored first. A pickled cache comes

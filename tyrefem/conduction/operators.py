@@ -43,7 +43,7 @@ class Operators(FunctionSpace):
     def __init__(self, mesh: Any, element: str = "P1", axisymmetric: bool = True) -> None:
         super().__init__(mesh, element, axisymmetric)
         self._assembled: Cache[Any] = Cache(size=KEPT)
-        #: Points in this mesh, by their fingerprint; see `tyrefem.conduction.points.located`.
+        #: Points in this mesh, by their content; see `tyrefem.conduction.points.located`.
         self.located: Cache[Any] = Cache(size=POINT_SETS)
 
     def __reduce__(self) -> tuple[Any, ...]:

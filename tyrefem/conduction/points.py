@@ -8,7 +8,7 @@ import numpy as np
 from numpy.typing import ArrayLike, NDArray
 from scipy.sparse import csr_matrix
 
-from tyrefem.cache import fingerprint
+from tyrefem.cache import Content
 from tyrefem.conduction.operators import Operators
 from tyrefem.errors import InputError
 
@@ -129,5 +129,5 @@ def distance(ops: Operators, point: Array) -> float:
 def located(ops: Operators, points: ArrayLike) -> Located:
     """The located points, remembered on the operators for the latest few sets."""
     array = as_points(points)
-    place: Located = ops.located.get(fingerprint(array), lambda: Located(ops, array))
+    place: Located = ops.located.get(Content.of(array), lambda: Located(ops, array))
     return place

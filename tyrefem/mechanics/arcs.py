@@ -14,7 +14,7 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 from numpy.typing import NDArray
 
-from tyrefem.cache import Cache, fingerprint
+from tyrefem.cache import Cache, Content
 from tyrefem.errors import InputError
 from tyrefem.inputs.loading import LoadCase
 from tyrefem.mechanics.arc_geometry import BiasPlies, DeflectedArcs, deflected_sidewall, sidewall_arc
@@ -104,12 +104,12 @@ def plies_at(plies: BiasPlies, radius: Array) -> PliesAt:
     def compute() -> PliesAt:
         return PliesAt(radius, plies.circumferential(radius), plies.meridional(radius), plies.poisson(radius))
 
-    return _PLIES.get((plies, fingerprint(radius)), compute)
+    return _PLIES.get((plies, Content.of(radius)), compute)
 
 
 def places(section: Section, at_crown: bool, points: Array) -> Places:
     """The places of points (2, n) of the crown or the sidewall; remembered for the 32 latest."""
-    return _PLACES.get((section, at_crown, fingerprint(points)), lambda: _places(section, at_crown, points))
+    return _PLACES.get((section, at_crown, Content.of(points)), lambda: _places(section, at_crown, points))
 
 
 def _places(section: Section, at_crown: bool, points: Array) -> Places:

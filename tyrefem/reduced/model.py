@@ -11,7 +11,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from tyrefem.brief import Brief
-from tyrefem.cache import Cache, fingerprint
+from tyrefem.cache import Cache, Content
 from tyrefem.conduction.operators import Operators
 from tyrefem.conduction.points import located
 from tyrefem.errors import InputError
@@ -148,7 +148,7 @@ class ReducedModel(Brief):
     def rows(self, points: Array) -> Array:
         """(k, m): modes at points (k, 2) in (r, z), m; remembered for the 64 latest sets of points."""
         array = np.asarray(points, dtype=float)
-        return self._rows.get(fingerprint(array), lambda: np.asarray(located(self.operators, array).value() @ self.V))
+        return self._rows.get(Content.of(array), lambda: np.asarray(located(self.operators, array).value() @ self.V))
 
     @functools.cached_property
     def _rows(self) -> Cache[Array]:

@@ -11,7 +11,7 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
-from tyrefem.cache import Cache, fingerprint
+from tyrefem.cache import Cache, Content
 from tyrefem.conduction.budget import Budget
 from tyrefem.conduction.field import Peak
 from tyrefem.reduced.budget import end_budgets
@@ -55,7 +55,7 @@ class Readout:
     def at(self, points: Array) -> Array:
         """(n_times, B, k) degC at points (k, 2) in (r, z), m."""
         return self._fields.get(
-            fingerprint(points), lambda: np.asarray(self.modes @ self.marched.batch.model.rows(points).T)
+            Content.of(points), lambda: np.asarray(self.modes @ self.marched.batch.model.rows(points).T)
         )
 
     @functools.cached_property

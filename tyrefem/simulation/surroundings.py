@@ -11,7 +11,7 @@ from numpy.typing import NDArray
 
 from tyrefem.boundaries import Contact
 from tyrefem.boundaries.road_film import propagation_depth
-from tyrefem.cache import Cache, fingerprint
+from tyrefem.cache import Cache, Content
 from tyrefem.effects.combined import Acting
 from tyrefem.effects.state import Value
 from tyrefem.errors import InputError
@@ -80,7 +80,7 @@ class Surroundings:
             s, depth = self.study.section.locate(np.asarray(x).T)
             return np.abs(s), depth
 
-        return self._places.get(fingerprint(x), compute)
+        return self._places.get(Content.of(x), compute)
 
     @functools.cached_property
     def _places(self) -> Cache[tuple[Array, Array]]:
