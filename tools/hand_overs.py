@@ -17,11 +17,12 @@ from pydantic import BaseModel
 
 @dataclass(frozen=True)
 class Step:
-    """One hand-over: a function of a module returned the value in a form: table, number, name of a class."""
+    """One hand-over: a function of a module returned the value in a form (see `form`) to a function of ``taker``."""
 
     module: str
     function: str
     form: str
+    taker: str
 
 
 @dataclass(frozen=True)
@@ -38,9 +39,13 @@ class Walk:
         return tuple(name for name, before in zip(modules, ["", *modules], strict=False) if name != before)
 
     def form(self, module: str) -> str:
-        """What a module hands on: the form of its last step."""
-        forms = [step.form for step in self.steps if step.module == module]
-        return forms[-1] if forms else ""
+        """What a module hands on to another one at last."""
+        return last_form(self.steps, module)
+
+
+def last_form(steps: Iterable[Step], module: str) -> str:
+    """The form of a module's last step to another module; empty for a module without one."""
+    return next((step.form for step in reversed(tuple(steps)) if step.module == module != step.taker), "")
 
 
 @dataclass
@@ -81,11 +86,11 @@ class Follower:
         elif self.holds(value):
             taker.handed = True
             if not self._read_or_checked(call.frame, value):
-                self.note(call, form(value))
+                self.note(call, taker, form(value, self.holds))
 
-    def note(self, call: Call, form: str) -> None:
+    def note(self, call: Call, taker: Call, form: str) -> None:
         """Add a step."""
-        self.steps.append(Step(call.module, call.frame.f_code.co_qualname, form))
+        self.steps.append(Step(call.module, call.frame.f_code.co_qualname, form, taker.module))
 
     def _read_or_checked(self, frame: FrameType, value: Any) -> bool:
         code = frame.f_code
@@ -94,11 +99,15 @@ class Follower:
         return (is_method and self.holds(arguments[0])) or any(argument is value for argument in arguments)
 
 
-def form(value: Any) -> str:
-    """What an object is called in a walk."""
+def form(value: Any, holds: Callable[[Any], bool]) -> str:
+    """What an object is called in a walk: text, table, number, array, or its class; of a list what is in it."""
     if isinstance(value, float | str):
         return "number" if isinstance(value, float) else "text"
-    return "table" if isinstance(value, dict | list | tuple) else type(value).__name__
+    if isinstance(value, dict | list | tuple):
+        entries = value.values() if isinstance(value, dict) else value
+        inner = next(form(entry, holds) for entry in entries if holds(entry))
+        return "table" if inner == "text" else inner
+    return {"ndarray": "array"}.get(type(value).__name__, type(value).__name__)
 
 
 def parts(value: Any) -> Iterable[Any]:

@@ -53,7 +53,7 @@ class SpeedFollower(Follower):
         if call.handed and isinstance(value, np.ndarray):
             taker.handed = True
             if room(taker.module) == "conduction" != room(call.module):
-                self.note(call, "W/m3")
+                self.note(call, taker, "W/m3")
                 self.arrivals.append((len(self.steps), taker.module))
 
 

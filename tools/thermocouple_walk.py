@@ -17,7 +17,7 @@ from pathlib import Path
 from typing import Any
 
 import numpy as np
-from hand_overs import Call, Follower, Step, parts
+from hand_overs import Follower, Step, last_form, parts
 
 STUDY = "nasa-22x5.5-8pr"
 CHANGES = {"mesh.size": "12 mm", "drive.duration": "120 s"}
@@ -27,17 +27,27 @@ SENSORS = ("crown-inner", "crown-middle")
 #: The reading, degC, and its number in the first column.
 READING, NUMBER = 26.871337, 4
 #: Classes of what is made of the readings.
-MADE_OF = ("Gap", "Explained", "Judgement", "Diagnosis")
+MADE_OF = (
+    "Gap",
+    "Explained",
+    "Residuals",
+    "FittedSet",
+    "ScoredSet",
+    "RankedSet",
+    "Ranking",
+    "Judgement",
+    "DiagnosisData",
+    "Diagnosis",
+)
 #: Longer lists are not looked into: no list of objects that hold readings is as long.
 LONG = 200
 
 
 @dataclass(frozen=True)
 class ThermocoupleWalk:
-    """Steps in their order, and from which module to which something was handed."""
+    """Steps in their order."""
 
     steps: tuple[Step, ...]
-    hand_overs: frozenset[tuple[str, str]]
 
     @property
     def modules(self) -> tuple[str, ...]:
@@ -60,26 +70,11 @@ class ThermocoupleWalk:
         return tuple(modules)
 
     def _givers(self, module: str) -> set[str]:
-        return {giver for giver, taker in self.hand_overs if taker == module}
+        return {step.module for step in self.steps if step.taker == module != step.module}
 
     def form(self, module: str) -> str:
-        """What a module hands on: the form of its last step."""
-        return [step.form for step in self.steps if step.module == module][-1]
-
-
-class ReadingFollower(Follower):
-    """Follows the reading, and to which module each function gives it."""
-
-    def __init__(self) -> None:
-        super().__init__(holds_reading)
-        self.hand_overs: set[tuple[str, str]] = set()
-
-    def returned(self, call: Call, taker: Call, value: Any) -> None:
-        """As of `Follower`."""
-        count = len(self.steps)
-        super().returned(call, taker, value)
-        if len(self.steps) > count and taker.module.startswith("tyrefem.") and taker.module != call.module:
-            self.hand_overs.add((call.module, taker.module))
+        """What a module hands on to another one at last."""
+        return last_form(self.steps, module)
 
 
 def holds_reading(value: Any) -> bool:
@@ -90,7 +85,7 @@ def holds_reading(value: Any) -> bool:
 def _holds(value: Any, depth: int) -> bool:
     if value is None or isinstance(value, bool | int):
         return False
-    if type(value).__name__ in MADE_OF:
+    if type(value).__name__ in MADE_OF and type(value).__module__.startswith("tyrefem."):
         return True
     if isinstance(value, str):
         return f"{READING}" in value
@@ -126,6 +121,6 @@ def thermocouple_walk() -> ThermocoupleWalk:
     with tempfile.TemporaryDirectory() as folder:
         file = Path(folder) / "run.csv"
         pd.DataFrame({"time [s]": times, **columns}).to_csv(file, index=False)
-        with ReadingFollower() as follower:
+        with Follower(holds_reading) as follower:
             study.diagnose(file, largest=1, looks=1)
-    return ThermocoupleWalk(tuple(follower.steps), frozenset(follower.hand_overs))
+    return ThermocoupleWalk(tuple(follower.steps))

@@ -65,8 +65,9 @@ def page(text: str, parts: dict[str, str]) -> str:
 
 def layers() -> list[str]:
     """The floors, from the top: the contract in pyproject.toml."""
-    contracts = tomllib.loads((ROOT / "pyproject.toml").read_text(encoding="utf-8"))["tool"]["importlinter"]
-    return next(list(one["layers"]) for one in contracts["contracts"] if one["type"] == "layers")
+    tool = tomllib.loads((ROOT / "pyproject.toml").read_text(encoding="utf-8"))["tool"]
+    contracts = tool["importlinter"]["contracts"]
+    return next(list(contract["layers"]) for contract in contracts if contract["type"] == "layers")
 
 
 def drawing(speed: SpeedWalks, thermocouple: ThermocoupleWalk) -> str:

@@ -4,13 +4,15 @@ from __future__ import annotations
 
 import ast
 import graphlib
-import importlib
-import sys
 from collections.abc import Iterator
+from itertools import pairwise
 from pathlib import Path
-from types import ModuleType
 
 import pytest
+import walks
+from hand_overs import Step, Walk
+from speed_walk import SPEED, SpeedFollower, SpeedWalks, speed_walks
+from thermocouple_walk import ThermocoupleWalk, thermocouple_walk
 
 ROOT = Path(__file__).resolve().parents[2]
 #: Modules on a walk at most.
@@ -21,21 +23,13 @@ MOTION = {"speed", "slip_speed", "slip_ratio", "slip_angle"}
 
 
 @pytest.fixture(scope="module")
-def tools() -> Iterator[ModuleType]:
-    """The module `tools/walks.py`; the folder of tools is no package."""
-    sys.path.insert(0, str(ROOT / "tools"))
-    yield importlib.import_module("walks")
-    sys.path.remove(str(ROOT / "tools"))
+def speed() -> SpeedWalks:
+    return speed_walks()
 
 
 @pytest.fixture(scope="module")
-def speed(tools):
-    return tools.speed_walks()
-
-
-@pytest.fixture(scope="module")
-def thermocouple(tools):
-    return tools.thermocouple_walk()
+def thermocouple() -> ThermocoupleWalk:
+    return thermocouple_walk()
 
 
 def test_speed_enters_at_most_nine_modules_none_twice(speed) -> None:
@@ -60,37 +54,40 @@ def test_a_thermocouple_enters_at_most_twelve_modules_forwards_only(thermocouple
     assert 5 < len(modules) <= MOST_OF_A_THERMOCOUPLE
 
 
-def test_the_page_and_its_picture_are_what_the_code_does(tools, speed, thermocouple) -> None:
-    text = tools.PAGE.read_text(encoding="utf-8")
-    assert tools.page(text, tools.parts(speed, thermocouple)) == text, "run tools/walks.py"
-    assert tools.PICTURE.read_text(encoding="utf-8") == tools.drawing(speed, thermocouple), "run tools/walks.py"
+def test_the_page_and_its_picture_are_what_the_code_does(speed, thermocouple) -> None:
+    text = walks.PAGE.read_text(encoding="utf-8")
+    assert walks.page(text, walks.parts(speed, thermocouple)) == text, "run tools/walks.py"
+    assert walks.PICTURE.read_text(encoding="utf-8") == walks.drawing(speed, thermocouple), "run tools/walks.py"
 
 
-def test_a_module_entered_twice_is_seen(tools) -> None:
-    overs = importlib.import_module("hand_overs")
-    steps = tuple(overs.Step(name, "f", "number") for name in ("cards", "drive", "quantity", "quantity", "drive"))
-    assert overs.Walk(steps, "conduction").visits == ("cards", "drive", "quantity", "drive", "conduction")
+def steps_through(*modules: str) -> tuple[Step, ...]:
+    """Steps from each module to the next."""
+    return tuple(Step(giver, "f", "number", taker) for giver, taker in pairwise(modules))
 
 
-def test_a_hand_over_backwards_is_seen(tools) -> None:
-    overs, readings = (importlib.import_module(name) for name in ("hand_overs", "thermocouple_walk"))
-    steps = tuple(overs.Step(name, "f", "table") for name in ("table", "runs", "fit", "runs"))
-    forwards = {("table", "runs"), ("runs", "fit")}
-    assert readings.ThermocoupleWalk(steps, frozenset(forwards)).modules == ("table", "runs", "fit")
+def test_a_module_entered_twice_is_seen() -> None:
+    steps = steps_through("cards", "drive", "quantity", "quantity", "drive", "conduction")
+    assert Walk(steps, "conduction").visits == ("cards", "drive", "quantity", "drive", "conduction")
+
+
+def test_a_hand_over_backwards_is_seen() -> None:
+    forwards = steps_through("table", "runs", "fit", "workflow")
+    # A module that is called first stands behind those that it takes from.
+    early = (*steps_through("workflow", "workflow"), *forwards, *steps_through("workflow", "api"))
+    assert ThermocoupleWalk(early).modules == ("table", "runs", "fit", "workflow")
     with pytest.raises(graphlib.CycleError):
-        _ = readings.ThermocoupleWalk(steps, frozenset(forwards | {("fit", "runs")})).modules
+        _ = ThermocoupleWalk((*forwards, *steps_through("workflow", "runs"))).modules
 
 
-def test_a_function_that_hands_on_is_told_from_a_check_and_from_reading(tools) -> None:
-    walk = importlib.import_module("speed_walk")
-    module: dict[str, object] = {"__name__": "tyrefem.toy", "SPEED": walk.SPEED}
+def test_a_function_that_hands_on_is_told_from_a_check_and_from_reading() -> None:
+    module: dict[str, object] = {"__name__": "tyrefem.toy", "SPEED": SPEED}
     exec(  # the follower looks at the module that a function stands in
         "def made():\n    return [SPEED]\n"
         "def checked(table):\n    return table\n"
         "def other():\n    return SPEED + 1.0\n",
         module,
     )
-    with walk.SpeedFollower() as follower:
+    with SpeedFollower() as follower:
         table = module["made"]()  # type: ignore[operator]
         module["checked"](table)  # type: ignore[operator]
         module["other"]()  # type: ignore[operator]
@@ -125,9 +122,9 @@ def test_a_second_door_is_seen(text: str) -> None:
 
 def test_nobody_else_reads_the_drive_s_speed() -> None:
     folder = ROOT / "tyrefem"
-    found = {
+    places = {
         path.relative_to(folder).as_posix(): list(reads_motion(path.read_text(encoding="utf-8")))
         for path in folder.rglob("*.py")
     }
-    assert found["inputs/motion.py"]
-    assert not {name: places for name, places in found.items() if places and name not in READERS}
+    assert places["inputs/motion.py"]
+    assert not {name: read for name, read in places.items() if read and name not in READERS}
