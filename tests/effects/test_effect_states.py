@@ -175,8 +175,23 @@ def test_the_fixed_steps_of_a_fit_take_states_along(result) -> None:
 def test_reduced_models_refuse_states() -> None:
     tyre = RollingTyre(braked(DISC))
     model = ReducedModel(tyre, np.ones((tyre.problem.operators.size, 1)), {}, np.zeros((0, 0)))
-    with pytest.raises(NotReducibleError, match="states that effects keep through a run: 'brake-disc'"):
+    with pytest.raises(NotReducibleError, match="states of their own, which no reduced model follows: 'brake-disc'"):
         reduced_balance(model, tyre)
+
+
+def test_a_diagnosis_names_an_effect_with_a_state(tmp_path: Path) -> None:
+    """A disc that goes on warming the rim at rest is told from a brake that only heats while the wheel turns."""
+    rim = {"law": "lumped", "mass": "9 kg", "cooling": "2 W/K", "air": "0.5 W/K"}
+    phases = {"drive.phases.rolling.duration": "300 s", "drive.phases.cooling.duration": "400 s"}
+    study = tf.study("example-validation").replace({**COARSE, **phases, "boundaries.rim": rim, "diagnosis": {}})
+    readings = study.replace({"output.every": "10 s", "effects": [DISC | {"power": "1500 W"}]}).run().readings
+    noise = np.random.default_rng(1).normal(0.0, 0.2, readings.shape)
+    noise[:, 0] = 0.0
+    table = (readings + noise).rename(columns=lambda name: "time [s]" if name == "time_s" else f"{name} [degC]")
+    table.to_csv(tmp_path / "measured.csv", index=False)
+    diagnosis = study.diagnose(tmp_path / "measured.csv", largest=1, looks=1, rerun=False)
+    assert diagnosis.verdict == "identified"
+    assert [effect.name for effect in diagnosis.study.effects if not effect.calibration] == ["brake-disc"]
 
 
 @pytest.mark.parametrize(

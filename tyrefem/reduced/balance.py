@@ -107,7 +107,7 @@ def reduced_balance(model: ReducedModel, tyre: RollingTyre) -> ReducedBalance:
         raise NotReducibleError("strain cycles that follow the temperature")
     if tyre.acting.with_states:
         names = ", ".join(f"'{effect.name}'" for effect in tyre.acting.with_states)
-        raise NotReducibleError(f"states that effects keep through a run: {names}")
+        raise NotReducibleError(f"effects with states of their own, which no reduced model follows: {names}")
     if tyre.mesh is not model.base.mesh:
         raise NotReducibleError("another mesh: geometry, strain zones or [mesh] differ")
     bodies = {region: _constant(region, body) for region, body in tyre.bodies.items()}
