@@ -191,7 +191,9 @@ def test_a_diagnosis_names_an_effect_with_a_state(tmp_path: Path) -> None:
     table.to_csv(tmp_path / "measured.csv", index=False)
     diagnosis = study.diagnose(tmp_path / "measured.csv", largest=1, looks=1, rerun=False)
     assert diagnosis.verdict == "identified"
-    assert [effect.name for effect in diagnosis.study.effects if not effect.calibration] == ["brake-disc"]
+    names = {effect.name for effect in diagnosis.study.effects}
+    assert "brake-disc" in names
+    assert not names & {"brake-power", "brake-heat", "gas-mixing", "bead-contact-resistance"}
 
 
 @pytest.mark.parametrize(
