@@ -8,8 +8,9 @@ import skfem
 
 from tyrefem.conduction import Conduction, Film, Flux, Material, Reservoir
 from tyrefem.conduction.added_states import AddedStates
-from tyrefem.conduction.rosenbrock import StageMatrices, Step
+from tyrefem.conduction.rosenbrock import Step
 from tyrefem.conduction.sensitivity import Perturbed, tangents
+from tyrefem.conduction.stage_matrix import StageMatrices
 from tyrefem.conduction.terms import State
 from tyrefem.errors import InputError
 

@@ -7,7 +7,8 @@ import pytest
 import skfem
 
 from tyrefem.conduction import Conduction, Film, Fixed, Flux, Material, Radiation, Reservoir
-from tyrefem.conduction.rosenbrock import ALPHA, DENSE, EMBEDDED, GAMMA, LOWER, NODE, SHIFT, WEIGHT, StageMatrices, Step
+from tyrefem.conduction.rosenbrock import ALPHA, DENSE, EMBEDDED, LOWER, NODE, SHIFT, WEIGHT, Step
+from tyrefem.conduction.stage_matrix import GAMMA, StageMatrices
 from tyrefem.conduction.statement import balance_of
 from tyrefem.conduction.terms import State
 

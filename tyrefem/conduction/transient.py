@@ -13,7 +13,8 @@ from tyrefem.conduction.balance import HeatBalance
 from tyrefem.conduction.budget import Tally
 from tyrefem.conduction.errors import SolverError
 from tyrefem.conduction.field import Peak
-from tyrefem.conduction.rosenbrock import StageMatrices, Step
+from tyrefem.conduction.rosenbrock import Step
+from tyrefem.conduction.stage_matrix import StageMatrices
 from tyrefem.conduction.terms import State
 
 Array = NDArray[Any]

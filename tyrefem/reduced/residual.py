@@ -8,7 +8,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from tyrefem.conduction.balance import HeatBalance
-from tyrefem.conduction.rosenbrock import GAMMA, StageMatrix
+from tyrefem.conduction.stage_matrix import GAMMA, StageMatrix
 from tyrefem.conduction.statement import balance_of
 from tyrefem.conduction.terms import State
 from tyrefem.reduced.balance import reduced_balance
