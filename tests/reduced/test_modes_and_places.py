@@ -52,3 +52,13 @@ def test_a_mode_relaxes_as_its_equation_says(x: float) -> None:
     # What is stored is what came in less what decayed: budgets close by this.
     came = heat @ (1 / (powers + 1))
     assert z[0, -1] - start == pytest.approx(came - x * whole[0, -1], abs=1e-12)
+
+
+def test_the_sign_of_a_mode_does_not_hang_on_rounding() -> None:
+    rng = np.random.default_rng(5)
+    weight = rng.uniform(0.5, 2.0, 40)
+    fields = rng.standard_normal((6, 4)) @ rng.standard_normal((4, 40))
+    V = modes(fields, weight, 1e-6, 20)
+    turned = modes(fields[:, ::-1] * (1 + 1e-13), weight[::-1], 1e-6, 20)[::-1]
+    assert V.shape[1] > 3
+    assert turned == pytest.approx(V, abs=1e-8)

@@ -30,6 +30,8 @@ def modes(snapshots: Array, weight: Array, tolerance: float, most: int) -> Array
     values, left = np.linalg.eigh(rest @ rest.T)
     order = np.argsort(values)[::-1]
     values, left = np.maximum(values[order], 0.0), left[:, order]
+    # A mode's sign is free: the snapshot that it takes the largest part of has it positively, whatever the rounding.
+    left = left * np.sign(left[np.argmax(np.abs(left), axis=0), np.arange(left.shape[1])])
     left_out = np.sqrt(np.append(np.cumsum(values[::-1])[::-1], 0.0) / len(snapshots))
     count = min(int(np.argmax(left_out <= tolerance)), most - 1)
     count = min(count, int((values > 1e-13 * max(values[0], 1e-300)).sum()))
@@ -68,6 +70,8 @@ def places(fields: Array, tolerance: float, most: int, spare: float = 1.5) -> tu
     values, left = np.linalg.eigh(fields @ fields.T)
     order = np.argsort(values)[::-1]
     values, left = np.maximum(values[order], 0.0), left[:, order]
+    # A mode's sign is free: the snapshot that it takes the largest part of has it positively, whatever the rounding.
+    left = left * np.sign(left[np.argmax(np.abs(left), axis=0), np.arange(left.shape[1])])
     left_out = np.sqrt(np.append(np.cumsum(values[::-1])[::-1], 0.0) / max(values.sum(), 1e-300))
     count = max(min(int(np.argmax(left_out <= tolerance)), most), 1)
     count = min(count, int((values > 1e-13 * values[0]).sum()))

@@ -147,8 +147,8 @@ class Answering:
             self._make()
         if self._model is not None and not full and numbers:
             variants = [self.variants[n] for n in numbers]
-            for found in by_model(self._model, self.plan, variants, self.how):
-                yield self._keep({numbers[place]: outcome for place, outcome in found.items()})
+            for by_place in by_model(self._model, self.plan, variants, self.how):
+                yield self._keep({numbers[place]: outcome for place, outcome in by_place.items()})
         yield from self._run([n for n in numbers if n not in self.outcomes], self.how.settings.piece)
 
     def _run(self, left: Sequence[int], most: int) -> Iterator[int]:
@@ -172,11 +172,11 @@ class Answering:
     def _task(self, number: int) -> Task:
         return Task(number, self.plan.packed, self.variants[number], self.plan.time_to)
 
-    def _keep(self, found: Mapping[int, Outcome]) -> int:
+    def _keep(self, outcomes: Mapping[int, Outcome]) -> int:
         """Take outcomes into memory and onto disk."""
-        self.outcomes.update(found)
+        self.outcomes.update(outcomes)
         if self._store is not None:
-            self._store.add({self.name(n): outcome.entry for n, outcome in found.items()})
+            self._store.add({self.name(n): outcome.entry for n, outcome in outcomes.items()})
         return len(self.outcomes)
 
 
@@ -203,7 +203,7 @@ def _certificate(noted: Mapping[str, Any] | None) -> SurrogateCertificate | None
     return None if noted is None else SurrogateCertificate(**noted)
 
 
-class Asked(Answering):
+class Evaluator(Answering):
     """Answers of variants of one study, by what they change.
 
     Parameters
@@ -217,7 +217,7 @@ class Asked(Answering):
     at_most = "up to "
 
     def __init__(self, plan: Plan, how: Execution) -> None:
-        boxes = [dataclasses.asdict(one) for one in plan.varied]
+        boxes = [dataclasses.asdict(varied) for varied in plan.varied]
         text = json.dumps([plan.packed.digest, boxes, plan.time_to], sort_keys=True, default=str)
         super().__init__(plan, how, [], hashlib.sha256(text.encode()).hexdigest()[:16])
         self._number: dict[str, int] = {}
@@ -229,7 +229,7 @@ class Asked(Answering):
 
     def __call__(self, variants: Sequence[Mapping[str, Any]], *, full: bool = False) -> list[Outcome]:
         """Outcomes of some variants, in their order; ``full``: none by the reduced model."""
-        numbers = [self._numbered(one, full) for one in variants]
+        numbers = [self._numbered(changes, full) for changes in variants]
         missing = [n for n in dict.fromkeys(numbers) if n not in self.outcomes]
         for _ in self.answer(missing, full=full):
             pass

@@ -26,7 +26,7 @@ from tyrefem.sweep.tornado import Tornado
 from tyrefem.variants.answers import check_answer
 from tyrefem.variants.card import SweepCard
 from tyrefem.variants.dask_cluster import ClusterLostError
-from tyrefem.variants.execution import Execution, Said
+from tyrefem.variants.execution import Execution, ExecutionOptions
 from tyrefem.variants.plan import Plan, card_of, planned
 
 if TYPE_CHECKING:
@@ -56,20 +56,20 @@ class DesignData(Brief):
 
     def _facts(self) -> Mapping[str, Any]:
         swept = {} if self.swept is None else self.swept._facts()
-        told = {part.name: next(iter(part.words), "nothing to tell") for part in self.parts}
-        return {**swept, **told, **({"interrupted": self.interrupted} if self.interrupted else {})}
+        sentences = {part.name: next(iter(part.words), "nothing to tell") for part in self.parts}
+        return {**swept, **sentences, **({"interrupted": self.interrupted} if self.interrupted else {})}
 
     @property
     def parts(self) -> tuple[DesignPart, ...]:
         """All answers, in the order in which they are told."""
-        found: list[DesignPart] = []
+        parts: list[DesignPart] = []
         if self.optimum is not None:
-            found.append(self.optimum)
+            parts.append(self.optimum)
         if self.swept is not None and self.swept.outcomes:
-            found.append(Responses(self.swept, self.card.answers))
-            found.append(ParetoFront(self.swept, dict(self.card.pareto)))
-        found += [] if self.indices is None else [self.indices]
-        return (*found, *self.answers.values())
+            parts.append(Responses(self.swept, self.card.answers))
+            parts.append(ParetoFront(self.swept, dict(self.card.pareto)))
+        parts += [] if self.indices is None else [self.indices]
+        return (*parts, *self.answers.values())
 
     @property
     def tornado(self) -> Tornado | None:
@@ -144,12 +144,12 @@ class Questions:
         parts += [question.words for question in self.further]
         return f"{', '.join(parts)}; study {self.study.name}"
 
-    def answered(self, how: Execution | None = None, **said: Unpack[Said]) -> DesignData:
+    def answered(self, how: Execution | None = None, **options: Unpack[ExecutionOptions]) -> DesignData:
         """Run what is needed; parameters as of `tyrefem.sweep.sweep.sweep`. Ctrl-C keeps what is finished.
 
         A `Local` scheduler used as a context manager keeps its processes from one question to the next.
         """
-        card, how = self.card, (how or Execution()).given(said)
+        card, how = self.card, (how or Execution()).given(options)
         swept = best = None
         answers: dict[str, DesignPart] = {}
         interrupted = ""
@@ -210,7 +210,7 @@ def asked_of(study: StudyData, vary: Mapping[str, Any] | None = None, **options:
     return questions(study, card_of(study, vary, **further_apart(options))).answered(how)
 
 
-def loaded(name: str, changes: Mapping[str, Any] | None = None, **said: Any) -> Questions:
+def loaded(name: str, changes: Mapping[str, Any] | None = None, **options: Any) -> Questions:
     """The questions of a sweep file by name or path, the study's values changed by dotted names.
 
     ``said``: keys of the file said otherwise; tables (``vary``, ``limits``) are laid over the file's.
@@ -223,7 +223,7 @@ def loaded(name: str, changes: Mapping[str, Any] | None = None, **said: Any) -> 
 
     path = library.find("sweep", name)
     data = read_toml(path)
-    for key, value in said.items():
+    for key, value in options.items():
         both = isinstance(value, Mapping) and isinstance(data.get(key), Mapping)
         data[key] = {**data[key], **value} if both else value
     card = SweepCard.check(further_apart(data), path)

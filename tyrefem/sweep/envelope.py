@@ -16,12 +16,12 @@ from tyrefem.errors import InputError
 from tyrefem.inputs.changes import scaled, value_at
 from tyrefem.inputs.study import StudyData
 from tyrefem.quantity import parse
-from tyrefem.sweep.answering import Asked
+from tyrefem.sweep.answering import Evaluator
 from tyrefem.sweep.question import SweepQuestion
 from tyrefem.variants.answer_units import name_of, shown
 from tyrefem.variants.answers import check_answer
 from tyrefem.variants.card import EnvelopeCard, SweepCard
-from tyrefem.variants.execution import Execution, Said
+from tyrefem.variants.execution import Execution, ExecutionOptions
 from tyrefem.variants.outcomes import Failed, Outcome
 from tyrefem.variants.plan import Plan, sensible
 from tyrefem.variants.varied import Varied
@@ -198,18 +198,18 @@ class Envelope:
         """The answer in sentences."""
         answer, end = self.card.answer, self.study.card.drive.end
         kept = f"stays below {shown(answer, self.card.below)} in a drive of {end:g} s"
-        told = [f"The {name_of(answer)} {kept} up to these speeds:"]
+        sentences = [f"The {name_of(answer)} {kept} up to these speeds:"]
         for pressure, rows in self.table.groupby("pressure", sort=False):
-            told.append(f"at {pressure}: {', '.join(map(_speed_words, rows.to_dict('records')))}.")
+            sentences.append(f"at {pressure}: {', '.join(map(_speed_words, rows.to_dict('records')))}.")
         safe = self.rating.dropna(subset=["tkph"]).to_dict("records")
         rated = [f"{row['tkph']:.0f} t km/h at {row['pressure']}" for row in safe]
         if rated:
-            told.append(f"Load times speed that is safe at every one of these loads: {', '.join(rated)}.")
+            sentences.append(f"Load times speed that is safe at every one of these loads: {', '.join(rated)}.")
         by = f"{self.runs} full runs"
         if self.certificate is not None:
             by = f"{self.runs} variants by a reduced model, temperatures good to {self.certificate.worst:.2g} K"
-        told.append(f"Found by {by}.")
-        return told
+        sentences.append(f"Found by {by}.")
+        return sentences
 
     def to_dict(self) -> dict[str, Any]:
         """JSON-ready."""
@@ -232,7 +232,9 @@ def _speed_words(row: Mapping[Any, Any]) -> str:
     return f"{row['speed_m_s'] * 3.6:.0f} km/h{beyond} with {row['load']}"
 
 
-def envelope(study: StudyData, card: EnvelopeCard, how: Execution | None = None, **said: Unpack[Said]) -> Envelope:
+def envelope(
+    study: StudyData, card: EnvelopeCard, how: Execution | None = None, **options: Unpack[ExecutionOptions]
+) -> Envelope:
     """The largest speed at which an answer stays below a limit, for every load and pressure.
 
     The answer must rise with speed. All pairs are searched at once: each round runs one speed of every pair that is not
@@ -249,50 +251,50 @@ def envelope(study: StudyData, card: EnvelopeCard, how: Execution | None = None,
     sizes = [(parse(load, "N"), parse(pressure, "Pa")) for load, pressure in pairs]
     searches = [SpeedSearch(low, high, card.below) for _ in pairs]
     plan = Plan(study, _box(sizes, low, high), (), (), {}, None, {"sample": "envelope"})
-    how = (how or Execution()).given(said)
+    how = (how or Execution()).given(options)
     by: list[str] = [""] * len(pairs)
-    with Asked(plan, how) as asked:
-        asked.train(EXPECTED * len(pairs))
+    with Evaluator(plan, how) as evaluate:
+        evaluate.train(EXPECTED * len(pairs))
         for _ in range(ROUNDS):
-            waiting = [n for n, one in enumerate(searches) if not one.settled]
+            waiting = [n for n, search in enumerate(searches) if not search.settled]
             how.tick("envelope", len(searches) - len(waiting), len(searches))
             if not waiting:
                 break
-            found = asked([operating(pairs[n], f"{searches[n].next:.6g} m/s") for n in waiting])
-            for n, outcome in zip(waiting, found, strict=True):
+            outcomes = evaluate([operating(pairs[n], f"{searches[n].next:.6g} m/s") for n in waiting])
+            for n, outcome in zip(waiting, outcomes, strict=True):
                 searches[n].take(outcome, card.answer)
                 by[n] = "" if isinstance(outcome, Failed) else outcome.by
-    error = {"reduced": asked.certificate.worst if asked.certificate else math.nan, "full": 0.0}
+    error = {"reduced": evaluate.certificate.worst if evaluate.certificate else math.nan, "full": 0.0}
     rows = [
         {
             "load": load,
             "pressure": pressure,
             "load_N": newton,
             "pressure_Pa": pascal,
-            "speed_m_s": one.speed,
-            "speed_km_h": one.speed * 3.6,
-            "at_limit": one.bracketed,
-            card.answer: one.value,
-            "tkph": newton / 9806.65 * one.speed * 3.6,
+            "speed_m_s": search.speed,
+            "speed_km_h": search.speed * 3.6,
+            "at_limit": search.bracketed,
+            card.answer: search.value,
+            "tkph": newton / 9806.65 * search.speed * 3.6,
             "by": how,
             "error_K": error.get(how, math.nan),
-            "failure": one.failure,
+            "failure": search.failure,
         }
-        for (load, pressure), (newton, pascal), one, how in zip(pairs, sizes, searches, by, strict=True)
+        for (load, pressure), (newton, pascal), search, how in zip(pairs, sizes, searches, by, strict=True)
     ]
-    return Envelope(study, card, pd.DataFrame(rows), len(asked.outcomes), asked.certificate, asked.why_full)
+    return Envelope(study, card, pd.DataFrame(rows), len(evaluate.outcomes), evaluate.certificate, evaluate.why_full)
 
 
 def _box(sizes: list[tuple[float, float]], low: float, high: float) -> tuple[Varied, ...]:
     """What a reduced model would have to cover."""
-    found = [Varied("drive.speed", "m/s", low=low, high=high)]
+    box = [Varied("drive.speed", "m/s", low=low, high=high)]
     for key, unit, values in (
         ("drive.load", "N", [a for a, _ in sizes]),
         ("drive.pressure", "Pa", [b for _, b in sizes]),
     ):
         if min(values) < max(values):
-            found.append(Varied(key, unit, low=min(values), high=max(values)))
-    return tuple(found)
+            box.append(Varied(key, unit, low=min(values), high=max(values)))
+    return tuple(box)
 
 
 class EnvelopeQuestion(SweepQuestion):

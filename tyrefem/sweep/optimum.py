@@ -14,12 +14,12 @@ from typing import TYPE_CHECKING, Any, Unpack
 import numpy as np
 from numpy.typing import NDArray
 
-from tyrefem.sweep.answering import Asked
+from tyrefem.sweep.answering import Evaluator
 from tyrefem.sweep.sweep import Sweep
 from tyrefem.variants.answer_units import difference_unit, name_of, shown
 from tyrefem.variants.answers import NEVER, check_answer
 from tyrefem.variants.card import LimitCard, OptimiseCard
-from tyrefem.variants.execution import Execution, Said
+from tyrefem.variants.execution import Execution, ExecutionOptions
 from tyrefem.variants.outcomes import Answered, Failed, Outcome
 from tyrefem.variants.plan import Plan
 from tyrefem.variants.samples import grid
@@ -54,43 +54,49 @@ def best_known(known: Sweep | None, card: OptimiseCard) -> list[Array]:
     plan = known.plan
     fine = [n for n, outcome in known.answered.items() if violation(outcome, plan.limits) == 0]
     order = sorted(fine, key=lambda n: (objective(known.outcomes[n], card), n))
-    return [np.array([_place(one, plan.variants[n][one.key]) for one in plan.varied]) for n in order[:MOST_KNOWN]]
+    return [
+        np.array([_place(number, plan.variants[n][number.key]) for number in plan.varied]) for n in order[:MOST_KNOWN]
+    ]
 
 
-def _place(one: Varied, value: Any) -> float:
+def _place(varied: Varied, value: Any) -> float:
     """The coordinate of a value in the search: its number in a list, or its place between both ends."""
-    if one.values:
-        return float(one.values.index(value))
-    number = float(one.of(value))
-    return math.log(number / one.low, one.high / one.low) if one.log else (number - one.low) / (one.high - one.low)
+    if varied.values:
+        return float(varied.values.index(value))
+    number = float(varied.of(value))
+    return (
+        math.log(number / varied.low, varied.high / varied.low)
+        if varied.log
+        else (number - varied.low) / (varied.high - varied.low)
+    )
 
 
-def evolve(asked: Asked, card: OptimiseCard, tick: Callable[[str, int, int], None], known: list[Array]) -> str:
+def evolve(evaluate: Evaluator, card: OptimiseCard, tick: Callable[[str, int, int], None], known: list[Array]) -> str:
     """Ask for generations until they are alike or `card.runs` are used up; why it ended, in words."""
     from scipy.optimize import NonlinearConstraint, differential_evolution
     from scipy.stats import qmc
 
-    varied, limits = asked.plan.varied, asked.plan.limits
-    most = np.array([len(one.values) - 1.0 if one.values else 1.0 for one in varied])
-    whole = np.array([bool(one.values) for one in varied])
+    varied, limits = evaluate.plan.varied, evaluate.plan.limits
+    most = np.array([len(varied_number.values) - 1.0 if varied_number.values else 1.0 for varied_number in varied])
+    whole = np.array([bool(varied_number.values) for varied_number in varied])
     count = int(np.clip(card.runs // 10, 8, 10 * len(varied)))
 
     def outcomes(x: Array) -> list[Any]:
-        return asked([_variant(varied, column) for column in np.atleast_2d(x.T)])
+        return evaluate([_variant(varied, column) for column in np.atleast_2d(x.T)])
 
     def aim(x: Array) -> Array:
-        tick("optimum", min(len(asked.outcomes), card.runs), card.runs)
-        return np.array([objective(one, card) for one in outcomes(x)])
+        tick("optimum", min(len(evaluate.outcomes), card.runs), card.runs)
+        return np.array([objective(outcome, card) for outcome in outcomes(x)])
 
     def broken(x: Array) -> Array:
-        return np.array([[violation(one, limits, asked.margins) for one in outcomes(x)]])
+        return np.array([[violation(outcome, limits, evaluate.margins) for outcome in outcomes(x)]])
 
     first = qmc.LatinHypercube(len(varied), seed=np.random.default_rng(card.seed)).random(count) * most
     for number, place in enumerate(known[: count // 3]):
         first[number] = place
     # A search takes steps that leave the box for misses: with a rim of clipped places its edges are reached.
     rim = np.where(whole, 0.0, RIM)
-    found = differential_evolution(
+    search = differential_evolution(
         aim,
         list(zip(-rim, most + rim, strict=True)),
         integrality=whole,
@@ -103,14 +109,16 @@ def evolve(asked: Asked, card: OptimiseCard, tick: Callable[[str, int, int], Non
         updating="deferred",
         vectorized=True,
     )
-    return "the search had converged" if found.success else f"the search ended at its {card.runs} trials"
+    return "the search had converged" if search.success else f"the search ended at its {card.runs} trials"
 
 
 def _variant(varied: Sequence[Varied], x: Array) -> dict[str, Any]:
-    found: dict[str, Any] = {}
-    for one, u in zip(varied, x, strict=True):
-        found |= one.changes(one.values[round(float(u))] if one.values else one.at(float(np.clip(u, 0.0, 1.0))))
-    return found
+    changes: dict[str, Any] = {}
+    for number, u in zip(varied, x, strict=True):
+        changes |= number.changes(
+            number.values[round(float(u))] if number.values else number.at(float(np.clip(u, 0.0, 1.0)))
+        )
+    return changes
 
 
 def objective(outcome: Outcome, card: OptimiseCard) -> float:
@@ -201,31 +209,31 @@ class Optimum:
     def words(self) -> list[str]:
         """The answer in sentences."""
         plan, limits = self.swept.plan, words_of(self.swept.plan.limits)
-        asked = (
+        heading = (
             f"{'Smallest' if self.card.minimise else 'Largest'} {name_of(self.answer)}{limits and f' with {limits}'}"
         )
         failed = len(self.swept.outcomes) - len(self.swept.answered)
         tried = f"{len(self.swept.outcomes)} different variants evaluated" + (f", {failed} failed" if failed else "")
         if self.best is None:
-            return [f"{asked}: no variant keeps the limits ({tried})."]
-        told = [f"{asked}: {shown(self.answer, self.full[self.answer])} at {self.where}, by a full run."]
+            return [f"{heading}: no variant keeps the limits ({tried})."]
+        sentences = [f"{heading}: {shown(self.answer, self.full[self.answer])} at {self.where}, by a full run."]
         others = [name for name in plan.limits if name != self.answer]
         if others:
             values = ", ".join(f"{name_of(name)} {shown(name, self.full[name])}" for name in others)
-            told.append(f"There: {values}.")
+            sentences.append(f"There: {values}.")
         if isinstance(self.nominal, Answered):
             before = float(self.nominal.answers[self.answer])
             gained = f"{self.full[self.answer] - before:+.3g} {difference_unit(self.answer)}".strip()
             broken = violation(self.nominal, plan.limits) > 0
             breaks = " but breaks a limit" if broken else ""
-            told.append(f"The study as it is has {shown(self.answer, before)}{breaks}: {gained} by the optimum.")
-        told.append(f"{tried}; {'every combination was tried' if self.exhaustive else self.ended}.")
+            sentences.append(f"The study as it is has {shown(self.answer, before)}{breaks}: {gained} by the optimum.")
+        sentences.append(f"{tried}; {'every combination was tried' if self.exhaustive else self.ended}.")
         certificate = self.swept.certificate
         if certificate is not None:
             stated = certificate.errors.get(self.answer)
             error = "" if stated is None else f"; {name_of(self.answer)} to ±{shown(self.answer, stated, 2)}"
-            told.append(f"The search used a reduced model, good to {certificate.worst:.2g} K{error}.")
-        return told
+            sentences.append(f"The search used a reduced model, good to {certificate.worst:.2g} K{error}.")
+        return sentences
 
     def to_dict(self) -> dict[str, Any]:
         """JSON-ready."""
@@ -244,7 +252,12 @@ class Optimum:
 
 
 def optimum(
-    plan: Plan, card: OptimiseCard, how: Execution | None = None, *, known: Sweep | None = None, **said: Unpack[Said]
+    plan: Plan,
+    card: OptimiseCard,
+    how: Execution | None = None,
+    *,
+    known: Sweep | None = None,
+    **options: Unpack[ExecutionOptions],
 ) -> Optimum:
     """Search by differential evolution (Storn & Price 1997; scipy), listed values as whole numbers.
 
@@ -263,20 +276,23 @@ def optimum(
     """
     for name in (card.answer, *plan.limits):
         check_answer(name, plan.study, plan.time_to)
-    how = (how or Execution()).given(said)
-    with Asked(plan, how) as asked:
-        nominal = Asked(plan, Execution(how.scheduler))([{}])[0]
-        asked.train(card.runs)
+    how = (how or Execution()).given(options)
+    with Evaluator(plan, how) as evaluate:
+        nominal = Evaluator(plan, Execution(how.scheduler))([{}])[0]
+        evaluate.train(card.runs)
         exhaustive = (
-            all(one.values for one in plan.varied) and math.prod(len(one.values) for one in plan.varied) <= card.runs
+            all(number.values for number in plan.varied)
+            and math.prod(len(number.values) for number in plan.varied) <= card.runs
         )
         if exhaustive:
-            asked(grid(plan.varied))
+            evaluate(grid(plan.varied))
             ended = ""
         else:
-            ended = evolve(asked, card, how.tick, best_known(known, card))
-        best, full = _verified(asked, card)
-    swept = Sweep(asked.table_plan, asked.outcomes, asked.certificate, asked.why_full, taken_up=asked.taken_up)
+            ended = evolve(evaluate, card, how.tick, best_known(known, card))
+        best, full = _verified(evaluate, card)
+    swept = Sweep(
+        evaluate.table_plan, evaluate.outcomes, evaluate.certificate, evaluate.why_full, taken_up=evaluate.taken_up
+    )
     return Optimum(swept, card, best, full, nominal, exhaustive, ended)
 
 
@@ -297,21 +313,21 @@ def words_of(limits: Mapping[str, LimitCard]) -> str:
     >>> words_of({"hottest_degC": LimitCard(below=90.0)})
     'highest temperature < 90 °C'
     """
-    told = []
+    parts = []
     for name, limit in limits.items():
-        told += [f"{name_of(name)} < {shown(name, limit.below)}"] if limit.below is not None else []
-        told += [f"{name_of(name)} > {shown(name, limit.above)}"] if limit.above is not None else []
-    return " and ".join(told)
+        parts += [f"{name_of(name)} < {shown(name, limit.below)}"] if limit.below is not None else []
+        parts += [f"{name_of(name)} > {shown(name, limit.above)}"] if limit.above is not None else []
+    return " and ".join(parts)
 
 
-def _verified(asked: Asked, card: OptimiseCard) -> tuple[int | None, Mapping[str, Any]]:
+def _verified(evaluate: Evaluator, card: OptimiseCard) -> tuple[int | None, Mapping[str, Any]]:
     """The most promising variant whose full run keeps the limits, and what that run answers."""
-    limits = asked.plan.limits
-    outcomes = asked.outcomes
+    limits = evaluate.plan.limits
+    outcomes = evaluate.outcomes
     answered = [n for n, outcome in outcomes.items() if isinstance(outcome, Answered)]
-    fine = [n for n in answered if violation(outcomes[n], limits, asked.margins) == 0]
+    fine = [n for n in answered if violation(outcomes[n], limits, evaluate.margins) == 0]
     for n in sorted(fine, key=lambda n: (objective(outcomes[n], card), n))[:CANDIDATES]:
-        (full,) = asked([asked.variants[n]], full=True)
+        (full,) = evaluate([evaluate.variants[n]], full=True)
         if isinstance(full, Answered) and violation(full, limits) == 0:
             return n, full.answers
     return None, {}

@@ -28,15 +28,15 @@ def undominated(values: Array) -> NDArray[np.bool_]:
     >>> undominated(np.array([[1.0, 2.0], [2.0, 1.0], [2.0, 2.0]])).tolist()
     [True, True, False]
     """
-    found = np.zeros(len(values), dtype=np.bool_)
+    kept = np.zeros(len(values), dtype=np.bool_)
     best = np.empty((0, values.shape[1]))
     # Sorted, a row can only be beaten by one before it: the front so far is all it has to be held against.
     for i in np.lexsort(values.T[::-1]):
         worse = (best <= values[i]).all(axis=1)
         if not (worse & (best < values[i]).any(axis=1)).any():
-            found[i] = True
+            kept[i] = True
             best = np.vstack([best, values[i]])
-    return found
+    return kept
 
 
 def usual_aims(table: pd.DataFrame) -> dict[str, str]:
@@ -100,15 +100,15 @@ class ParetoFront:
             return []
         feasible = int(self.swept.table["feasible"].sum())
         together = ", ".join(("" if aim == "min" else "large ") + name_of(name) for name, aim in aims.items())
-        told = [f"{len(table)} of {feasible} variants are beaten by none in {together} together."]
+        sentences = [f"{len(table)} of {feasible} variants are beaten by none in {together} together."]
         best: dict[str, tuple[Mapping[str, Any], list[str]]] = {}
         for name, aim in aims.items():
             row = extreme(table, name, least=aim == "min")
             best.setdefault(str(row["variant"]), (row, []))[1].append(name)
         for row, names in best.values():
             values = ", ".join(f"{name_of(name)} {shown(name, row[name])}" for name in aims)
-            told.append(f"Best in {' and '.join(map(name_of, names))}: {named(self.swept, row)}; {values}.")
-        return told
+            sentences.append(f"Best in {' and '.join(map(name_of, names))}: {named(self.swept, row)}; {values}.")
+        return sentences
 
     def to_dict(self) -> dict[str, Any]:
         """JSON-ready."""

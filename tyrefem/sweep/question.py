@@ -87,14 +87,14 @@ def questions_of(study: StudyData, card: SweepCard) -> tuple[SweepQuestion, ...]
     for key in card.further:
         if key not in known:
             raise InputError(f"unknown question '{key}'{nearest(key, known)}", field="further")
-    asked = []
+    questions = []
     for key, question in known.items():
         table = card.further.get(key, getattr(card, key, None))
         if table is None:
             continue
         try:
-            asked.append(question(study, question.table.check(table), card))
+            questions.append(question(study, question.table.check(table), card))
         except InputError as error:
             placed = error.file or (error.field or "").split(".")[0] == key
             raise error if placed else error.within(field=key) from None
-    return tuple(asked)
+    return tuple(questions)

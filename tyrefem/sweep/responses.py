@@ -21,29 +21,29 @@ USUAL = ("hottest_degC", "rolling_resistance_coefficient")
 MOST_LEVELS = 12
 
 
-def judged(found: Sweep, wanted: tuple[str, ...] = ()) -> list[str]:
+def judged(sweep: Sweep, wanted: tuple[str, ...] = ()) -> list[str]:
     """Answers that are drawn and judged: those wanted, else the usual ones; only such that vary."""
-    table = finished(found)
-    names = wanted or (*USUAL, *([TIME_TO] if found.plan.time_to is not None else []))
+    table = finished(sweep)
+    names = wanted or (*USUAL, *([TIME_TO] if sweep.plan.time_to is not None else []))
     return [name for name in names if name in table and table[name].nunique() > 1]
 
 
-def finished(found: Sweep) -> pd.DataFrame:
+def finished(sweep: Sweep) -> pd.DataFrame:
     """The rows that have answers."""
-    return found.table[found.table["failure"] == ""]
+    return sweep.table[sweep.table["failure"] == ""]
 
 
-def numeric(found: Sweep) -> list[str]:
+def numeric(sweep: Sweep) -> list[str]:
     """Headings of the varied numbers that make an axis."""
-    table = found.table
+    table = sweep.table
     return [
-        one.heading
-        for one in found.plan.varied
-        if one.heading in table and table[one.heading].dtype.kind in "if" and table[one.heading].nunique() > 1
+        varied.heading
+        for varied in sweep.plan.varied
+        if varied.heading in table and table[varied.heading].dtype.kind in "if" and table[varied.heading].nunique() > 1
     ]
 
 
-def main_effects(found: Sweep, answer: str) -> pd.DataFrame:
+def main_effects(sweep: Sweep, answer: str) -> pd.DataFrame:
     """How far each varied number moves an answer on average over the others; the strongest first.
 
     Columns ``number``, ``low``, ``high`` (its ends; of a card or word the values with the lowest and highest mean) and
@@ -52,11 +52,11 @@ def main_effects(found: Sweep, answer: str) -> pd.DataFrame:
     """
     import pandas as pd
 
-    table, rows = finished(found).dropna(subset=[answer]), []
-    lines = [name for name in numeric(found) if table[name].nunique() > MOST_LEVELS]
+    table, rows = finished(sweep).dropna(subset=[answer]), []
+    lines = [name for name in numeric(sweep) if table[name].nunique() > MOST_LEVELS]
     slopes = _slopes(table, lines, answer)
-    for one in found.plan.varied:
-        name = one.heading
+    for varied in sweep.plan.varied:
+        name = varied.heading
         if name not in table or table[name].nunique() < 2:
             continue
         if name in slopes:
@@ -65,7 +65,7 @@ def main_effects(found: Sweep, answer: str) -> pd.DataFrame:
             continue
         means = table.groupby(name)[answer].mean()
         values = means.to_numpy(dtype=float)
-        first, last = (0, -1) if name in numeric(found) else (int(values.argmin()), int(values.argmax()))
+        first, last = (0, -1) if name in numeric(sweep) else (int(values.argmin()), int(values.argmax()))
         effect = float(values[last] - values[first])
         rows.append({"number": name, "low": means.index[first], "high": means.index[last], "effect": effect})
     effects = pd.DataFrame(rows, columns=["number", "low", "high", "effect"])
@@ -79,31 +79,31 @@ def _slopes(table: pd.DataFrame, names: list[str], answer: str) -> dict[str, flo
     x = table[names].to_numpy(dtype=float)
     scaled = (x - x.mean(axis=0)) / x.std(axis=0)
     values = table[answer].to_numpy(dtype=float)
-    found, *_ = np.linalg.lstsq(np.column_stack([np.ones(len(x)), scaled]), values, rcond=None)
-    return dict(zip(names, (found[1:] / x.std(axis=0)).tolist(), strict=True))
+    solution, *_ = np.linalg.lstsq(np.column_stack([np.ones(len(x)), scaled]), values, rcond=None)
+    return dict(zip(names, (solution[1:] / x.std(axis=0)).tolist(), strict=True))
 
 
-def words(found: Sweep, wanted: tuple[str, ...] = ()) -> list[str]:
+def words(sweep: Sweep, wanted: tuple[str, ...] = ()) -> list[str]:
     """The answer in sentences: range of every judged answer, where, and what moves it."""
-    told = []
-    table = finished(found)
+    sentences = []
+    table = finished(sweep)
     keeping = int(table["feasible"].sum())
-    if found.plan.limits and len(table):
-        told.append(f"{keeping or 'None'} of {len(table)} variants keep{'' if keeping else 's'} the limits.")
-    which = "" if not found.plan.limits else " of those" if keeping else " of all"
-    for answer in judged(found, wanted):
+    if sweep.plan.limits and len(table):
+        sentences.append(f"{keeping or 'None'} of {len(table)} variants keep{'' if keeping else 's'} the limits.")
+    which = "" if not sweep.plan.limits else " of those" if keeping else " of all"
+    for answer in judged(sweep, wanted):
         kept = table[table["feasible"]] if keeping else table
         low, high = extreme(kept, answer, least=True), extreme(kept, answer, least=False)
-        ends = [f"{shown(answer, one[answer])} ({named(found, one)})" for one in (low, high)]
+        ends = [f"{shown(answer, end[answer])} ({named(sweep, end)})" for end in (low, high)]
         span = shown(answer, low[answer]) if low["variant"] == high["variant"] else f"from {ends[0]} to {ends[1]}"
-        told.append(f"{capital(name_of(answer))}{which}: {span}.")
-        effects = main_effects(found, answer)
+        sentences.append(f"{capital(name_of(answer))}{which}: {span}.")
+        effects = main_effects(sweep, answer)
         if len(effects):
             unit = difference_unit(answer)
             moved = "; ".join(_moved(row, unit) for row in effects.to_dict("records"))
             some = ", where it is reached" if table[answer].isna().any() else ""
-            told.append(f"What moves the {name_of(answer)}, on average over the others{some}: {moved}.")
-    return told
+            sentences.append(f"What moves the {name_of(answer)}, on average over the others{some}: {moved}.")
+    return sentences
 
 
 def _moved(row: Mapping[Any, Any], unit: str) -> str:
@@ -118,9 +118,9 @@ def extreme(table: pd.DataFrame, answer: str, *, least: bool) -> Mapping[str, An
     return {str(name): value for name, value in table.iloc[place].items()}
 
 
-def named(found: Sweep, row: Any) -> str:
+def named(sweep: Sweep, row: Any) -> str:
     """A variant with what it changes."""
-    headings = [one.heading for one in found.plan.varied]
+    headings = [varied.heading for varied in sweep.plan.varied]
     values = ", ".join(f"{short(name)} {_value(row[name])}{_unit(name)}" for name in headings if name in row)
     return f"variant {row['variant']}: {values}" if values else f"variant {row['variant']}"
 
@@ -166,7 +166,7 @@ class Responses:
 
     def to_dict(self) -> dict[str, Any]:
         """JSON-ready."""
-        found = {
+        main = {
             answer: main_effects(self.swept, answer).to_dict("records") for answer in judged(self.swept, self.wanted)
         }
-        return {"main_effects": found, "words": self.words}
+        return {"main_effects": main, "words": self.words}

@@ -42,21 +42,21 @@ def indices(swept: Sweep, answer: str) -> pd.DataFrame:
     if missing:
         raise InputError(f"{missing} of {len(values)} variants have no '{answer}'; Sobol indices need them all")
     y = np.array(values, dtype=float)
-    names = [one.key for one in plan.varied]
+    names = [varied.key for varied in plan.varied]
     if np.ptp(y) == 0:
         nothing = np.zeros(len(names))
-        found = dict.fromkeys(("S1", "S1_conf", "ST", "ST_conf"), nothing)
+        analysis = dict.fromkeys(("S1", "S1_conf", "ST", "ST_conf"), nothing)
     else:
-        found = sobol.analyze(
+        analysis = sobol.analyze(
             problem(plan.varied), y, calc_second_order=False, seed=plan.how["seed"], print_to_console=False
         )
     table = pd.DataFrame(
         {
             "number": names,
-            "first": found["S1"],
-            "first_95": found["S1_conf"],
-            "total": found["ST"],
-            "total_95": found["ST_conf"],
+            "first": analysis["S1"],
+            "first_95": analysis["S1_conf"],
+            "total": analysis["ST"],
+            "total_95": analysis["ST_conf"],
         }
     )
     return table.sort_values("total", ascending=False, ignore_index=True)
@@ -74,49 +74,49 @@ class Indices:
 
     @functools.cached_property
     def _found(self) -> dict[str, pd.DataFrame | str]:
-        found: dict[str, pd.DataFrame | str] = {}
+        results: dict[str, pd.DataFrame | str] = {}
         for answer in self.answers:
             try:
-                found[answer] = indices(self.swept, answer)
+                results[answer] = indices(self.swept, answer)
             except InputError as error:
-                found[answer] = error.message
-        return found
+                results[answer] = error.message
+        return results
 
     @property
     def tables(self) -> dict[str, pd.DataFrame]:
         """Answer -> its indices, of those that could be estimated."""
-        return {answer: one for answer, one in self._found.items() if not isinstance(one, str)}
+        return {answer: result for answer, result in self._found.items() if not isinstance(result, str)}
 
     @functools.cached_property
     def table(self) -> pd.DataFrame:
         """All of them, the answer in the first column."""
         import pandas as pd
 
-        parts = [one.assign(answer=answer) for answer, one in self.tables.items()]
+        parts = [part.assign(answer=answer) for answer, part in self.tables.items()]
         columns = ["answer", "number", "first", "first_95", "total", "total_95"]
         return pd.concat(parts, ignore_index=True)[columns] if parts else pd.DataFrame(columns=columns)
 
     @property
     def words(self) -> list[str]:
         """The answer in sentences."""
-        told = []
-        for answer, one in self._found.items():
-            if isinstance(one, str):
-                told.append(f"No Sobol indices of the {name_of(answer)}: {one}.")
+        sentences = []
+        for answer, result in self._found.items():
+            if isinstance(result, str):
+                sentences.append(f"No Sobol indices of the {name_of(answer)}: {result}.")
                 continue
             shares = ", ".join(
                 f"{row['number']} {100 * row['total']:.0f} % (±{100 * row['total_95']:.0f})"
-                for row in one.head(4).to_dict("records")
+                for row in result.head(4).to_dict("records")
             )
-            wide = float(one["total_95"].max())
-            alone = 100 * float(one["first"].sum())
-            told.append(
+            wide = float(result["total_95"].max())
+            alone = 100 * float(result["first"].sum())
+            sentences.append(
                 f"Variance of the {name_of(answer)}, with all that each number takes part in: {shares}. Numbers acting"
                 f" alone make {alone:.0f} % of it."
             )
             if wide > WIDE:
-                told.append(f"Intervals of up to ±{100 * wide:.0f} % are wide: take a larger base.")
-        return told
+                sentences.append(f"Intervals of up to ±{100 * wide:.0f} % are wide: take a larger base.")
+        return sentences
 
     def to_dict(self) -> dict[str, Any]:
         """JSON-ready."""

@@ -14,7 +14,7 @@ from tyrefem.brief import Brief
 from tyrefem.errors import InputError, nearest
 from tyrefem.sweep.answering import Answering
 from tyrefem.variants.dask_cluster import ClusterLostError
-from tyrefem.variants.execution import Execution, Said
+from tyrefem.variants.execution import Execution, ExecutionOptions
 from tyrefem.variants.outcomes import Answered, Failed, Outcome
 from tyrefem.variants.plan import Plan
 
@@ -124,7 +124,7 @@ class Sweep(Brief):
         return len(self.outcomes) == len(self.plan.variants)
 
 
-def sweep(plan: Plan, how: Execution | None = None, **said: Unpack[Said]) -> Sweep:
+def sweep(plan: Plan, how: Execution | None = None, **options: Unpack[ExecutionOptions]) -> Sweep:
     """Answer every variant that is not finished yet.
 
     Parameters
@@ -139,7 +139,7 @@ def sweep(plan: Plan, how: Execution | None = None, **said: Unpack[Said]) -> Swe
     InputError : the folder holds another sweep; ``always``, and no reduced model could be certified.
     """
     began, interrupted, numbers = time.perf_counter(), "", range(len(plan.variants))
-    how = (how or Execution()).given(said)
+    how = (how or Execution()).given(options)
     work = Answering(plan, how, plan.variants, plan.digest)
     try:
         with work:

@@ -33,15 +33,15 @@ def tolerances(study: StudyData, only: Mapping[str, float] | None = None) -> tup
     ------
     InputError : none stated; a name that the study has not.
     """
-    found = [number for number in study.uncertain_numbers if not number.idle]
+    uncertain = [number for number in study.uncertain_numbers if not number.idle]
     if only:
-        found = [uncertain_number(study, key, part) for key, part in only.items()]
-    if not found:
+        uncertain = [uncertain_number(study, key, part) for key, part in only.items()]
+    if not uncertain:
         raise InputError(
             "no tolerances: neither cards (relative_sd) nor [uncertainty] state any; give --tolerance KEY=5%",
             file=study.file,
         )
-    return tuple(found)
+    return tuple(uncertain)
 
 
 def tornado_plan(study: StudyData, given: Mapping[str, float] | None = None, time_to: float | None = None) -> Plan:
@@ -126,8 +126,8 @@ class Tornado:
         return table[table["answer"] == answer].drop(columns="answer").reset_index(drop=True)
 
     def _value(self, n: int, answer: str) -> float:
-        found = answer_of(self.swept.outcomes.get(n), answer)
-        return math.nan if found is None else float(found)
+        value = answer_of(self.swept.outcomes.get(n), answer)
+        return math.nan if value is None else float(value)
 
     def _failure(self, n: int) -> str:
         outcome = self.swept.outcomes.get(n, Failed("not run"))
@@ -136,7 +136,7 @@ class Tornado:
     @property
     def words(self) -> list[str]:
         """The answer in sentences."""
-        told = []
+        sentences = []
         for answer in self.answers:
             rows = self.of(answer).dropna(subset=["range"]).to_dict("records")
             if not rows:
@@ -144,18 +144,18 @@ class Tornado:
             unit, first = difference_unit(answer), rows[0]
             together = math.sqrt(sum((row["range"] / 2) ** 2 for row in rows))
             others = [f"{row['number']} (±{row['range'] / 2:.2g})" for row in rows[1:3] if row["range"] > 0]
-            told += [
+            sentences += [
                 f"The {name_of(answer)}, {shown(answer, first['nominal'])} as it is, is moved most by "
                 + f"{first['number']}: ±{first['range'] / 2:.2g} {unit}".rstrip()
                 + f" for ±{100 * first['tolerance']:.3g} %"
-                + "".join(f", then {one}" for one in others)
+                + "".join(f", then {clause}" for clause in others)
                 + "."
             ]
             if len(rows) > 1:
-                told.append(f"All {len(rows)} together, if independent: ±{together:.2g} {unit}".rstrip() + ".")
+                sentences.append(f"All {len(rows)} together, if independent: ±{together:.2g} {unit}".rstrip() + ".")
         failed = self.swept.failed
-        told += [f"{one[0].upper()}{one[1:]}." for one in self.swept.plan.how["left_out"]]
-        return told + ([f"{len(failed)} of {len(self.swept.plan.variants)} runs failed."] if failed else [])
+        sentences += [f"{clause[0].upper()}{clause[1:]}." for clause in self.swept.plan.how["left_out"]]
+        return sentences + ([f"{len(failed)} of {len(self.swept.plan.variants)} runs failed."] if failed else [])
 
     def to_dict(self) -> dict[str, Any]:
         """JSON-ready."""

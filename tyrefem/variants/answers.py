@@ -60,10 +60,10 @@ def answers(result: FinishedRun, time_to: float | None = None) -> Answers:
     ----------
     time_to : temperature, degC, whose first reaching anywhere in the tyre is asked for.
     """
-    found: Answers = {}
+    values: Answers = {}
     for function, _ in _FUNCTIONS:
-        found |= function(result, time_to)
-    return found
+        values |= function(result, time_to)
+    return values
 
 
 def answer_names(study: StudyData, time_to: float | None = None) -> list[str]:
@@ -73,14 +73,14 @@ def answer_names(study: StudyData, time_to: float | None = None) -> list[str]:
     >>> answer_names(tyrefem.study("nasa-22x5.5-8pr"))[:3]
     ['hottest_degC', 'hottest_s_m', 'hottest_depth_m']
     """
-    found = [name for _, names in _FUNCTIONS for name in names(study)]
-    return found if time_to is not None else [name for name in found if name != TIME_TO]
+    all_names = [name for _, names in _FUNCTIONS for name in names(study)]
+    return all_names if time_to is not None else [name for name in all_names if name != TIME_TO]
 
 
 def check_answer(name: str, study: StudyData, time_to: float | None = None) -> None:
     """Raise `InputError`, with the nearest name, for an answer that a study has not."""
     known = answer_names(study, time_to)
-    if not any(fnmatch.fnmatchcase(name, one) for one in known):
+    if not any(fnmatch.fnmatchcase(name, pattern) for pattern in known):
         hint = "; it needs a temperature to be reached: 'time_to'" if name == TIME_TO else nearest(name, known)
         raise InputError(f"no answer '{name}'{hint}")
 
@@ -102,7 +102,7 @@ def hottest(result: FinishedRun, _: float | None) -> Answers:
         "hottest_s_m": along,
         "hottest_depth_m": depth,
         "hottest_time_s": float(peak.time),
-        **{f"{region}_max_degC": float(one.temperature) for region, one in peaks.items()},
+        **{f"{region}_max_degC": float(region_peak.temperature) for region, region_peak in peaks.items()},
     }
 
 
@@ -123,12 +123,12 @@ def sensors(result: FinishedRun, _: float | None) -> Answers:
 )
 def gas(result: FinishedRun, _: float | None) -> Answers:
     """Contained air at the end; a lumped rim."""
-    found = {
+    values = {
         f"{GAS}_degC": float(result.gas_temperature[-1]),
         "gas_pressure_Pa": result.pressure_at(len(result.times) - 1),
     }
     rim = result.rim_temperature
-    return found if rim is None else found | {f"{RIM}_degC": float(rim[-1])}
+    return values if rim is None else values | {f"{RIM}_degC": float(rim[-1])}
 
 
 @answer(lambda _: ["gradient_K_m", "gradient_s_m"])
@@ -144,11 +144,11 @@ def gradient(result: FinishedRun, _: float | None) -> Answers:
 )
 def resistance(result: FinishedRun, _: float | None) -> Answers:
     """Rolling resistance of hysteresis, warm and cold."""
-    found = result.rolling_resistance
+    resistance = result.rolling_resistance
     return {
-        "rolling_resistance_N": found.force,
-        "rolling_resistance_coefficient": found.coefficient,
-        "rolling_resistance_coefficient_cold": found.cold_coefficient,
+        "rolling_resistance_N": resistance.force,
+        "rolling_resistance_coefficient": resistance.coefficient,
+        "rolling_resistance_coefficient_cold": resistance.cold_coefficient,
     }
 
 
@@ -165,12 +165,12 @@ def shares(result: FinishedRun, _: float | None) -> Answers:
     """Parts of the heat budget over all heat that came into the rubber."""
     budget = result.end_budget
     made = budget.made
-    found = {
+    values = {
         f"{kind}_{name}_share": float(series[-1]) / made if made > 0 else float("nan")
         for (kind, name), series in budget.energies.items()
         if kind in ("lost", "stored")
     }
-    return found | {"heat_J": made}
+    return values | {"heat_J": made}
 
 
 @answer(lambda _: ["mass_kg"])

@@ -102,9 +102,9 @@ class OptimiseCard(Card):
     @property
     def answer(self) -> str:
         """What is looked at."""
-        found = self.minimise or self.maximise
-        assert found is not None
-        return found
+        answer = self.minimise or self.maximise
+        assert answer is not None
+        return answer
 
 
 class EnvelopeCard(Card):
@@ -164,10 +164,10 @@ class SweepCard(Card):
     @classmethod
     def _quoted(cls, data: Any) -> Any:
         """TOML reads ``drive.speed = {...}`` as nested tables: both spellings are one name; a list is its values."""
-        found = flat(data) if isinstance(data, dict) else data
-        if not isinstance(found, dict):
-            return found
-        return {key: {"values": value} if isinstance(value, list) else value for key, value in found.items()}
+        table = flat(data) if isinstance(data, dict) else data
+        if not isinstance(table, dict):
+            return table
+        return {key: {"values": value} if isinstance(value, list) else value for key, value in table.items()}
 
     @field_validator("change")
     @classmethod
@@ -228,11 +228,11 @@ def flat(data: dict[str, Any], before: str = "") -> dict[str, Any]:
     {'drive.speed': {'from': '1 m/s', 'to': '2 m/s'}}
     """
     known = {"values", "from", "to", "factor", "levels", "scale"}
-    found: dict[str, Any] = {}
+    flattened: dict[str, Any] = {}
     for key, value in data.items():
         name = f"{before}.{key}" if before else key
         if isinstance(value, dict) and value and not known & set(value):
-            found |= flat(value, name)
+            flattened |= flat(value, name)
         else:
-            found[name] = value
-    return found
+            flattened[name] = value
+    return flattened

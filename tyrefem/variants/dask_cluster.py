@@ -77,8 +77,8 @@ class Dask:
 
             return str(import_module("tyrefem").__version__) if find_spec("tyrefem") else ""
 
-        found = self.client.run(installed)
-        wrong = {worker: version for worker, version in found.items() if version != tyrefem.__version__}
+        versions = self.client.run(installed)
+        wrong = {worker: version for worker, version in versions.items() if version != tyrefem.__version__}
         if wrong:
             worker, version = next(iter(wrong.items()))
             self.close()
@@ -103,12 +103,12 @@ class Dask:
         waiting = iter(enumerate(tasks))
         places: dict[str, int] = {}
         going = as_completed(loop=self.client.loop, with_results=True, raise_errors=False)
-        asked, most = -TOP_UP, 0
+        counted_at, most = -TOP_UP, 0
         try:
             while True:
-                if time.monotonic() - asked > TOP_UP:
+                if time.monotonic() - counted_at > TOP_UP:
                     # Workers may have come or gone.
-                    asked, most = time.monotonic(), AHEAD * max(self._threads(), 1)
+                    counted_at, most = time.monotonic(), AHEAD * max(self._threads(), 1)
                 for place, task in itertools.islice(waiting, max(most - len(places), 0)):
                     future = self.client.submit(work, task, *shared, pure=False, retries=RETRIES)
                     places[future.key] = place
@@ -144,16 +144,16 @@ class Dask:
     def _wait(self, going: Any) -> None:
         """Until a task is finished."""
         seen = time.monotonic()
-        asked = seen
+        checked_at = seen
         while not going.has_ready():
             time.sleep(POLL)
-            if time.monotonic() - asked > TOP_UP:
-                asked = time.monotonic()
+            if time.monotonic() - checked_at > TOP_UP:
+                checked_at = time.monotonic()
                 if self._threads():
-                    seen = asked
-                elif asked - seen > self.patience:
+                    seen = checked_at
+                elif checked_at - seen > self.patience:
                     raise ClusterLostError(
-                        f"the Dask scheduler at {self.address} has had no worker for {asked - seen:.0f} s"
+                        f"the Dask scheduler at {self.address} has had no worker for {checked_at - seen:.0f} s"
                     )
 
 

@@ -44,7 +44,7 @@ class SweepSettings:
                 raise InputError(f"must be at least 1, not {number}", field=f"settings.{name}")
 
 
-class Said(TypedDict, total=False):
+class ExecutionOptions(TypedDict, total=False):
     """Fields of an `Execution` by name."""
 
     scheduler: Scheduler | None
@@ -90,9 +90,9 @@ class Execution:
         if not self.tolerance > 0:
             raise InputError(f"must be positive, not {self.tolerance:g} K", field="tolerance")
 
-    def given(self, said: Said) -> Execution:
+    def given(self, options: ExecutionOptions) -> Execution:
         """The same, with what is said otherwise."""
-        return dataclasses.replace(self, **said) if said else self
+        return dataclasses.replace(self, **options) if options else self
 
     def within(self, name: str) -> Execution:
         """The same for one of several questions: it keeps its variants in a folder of its own."""

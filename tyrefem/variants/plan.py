@@ -55,7 +55,7 @@ class Plan:
     @property
     def keys(self) -> list[str]:
         """Dotted names that any variant changes, in order."""
-        return list(dict.fromkeys(key for one in self.variants for key in one))
+        return list(dict.fromkeys(key for variant in self.variants for key in variant))
 
     def task(self, number: int) -> Task:
         """The work of a variant."""
@@ -63,8 +63,8 @@ class Plan:
 
     def row(self, number: int) -> dict[str, Any]:
         """What a table shows of a variant: its name and the values that it has."""
-        by_key, changes = {one.key: one for one in self.varied}, self.variants[number]
-        beside = {key for one in self.varied for key, _ in one.also}
+        by_key, changes = {varied_number.key: varied_number for varied_number in self.varied}, self.variants[number]
+        beside = {key for varied_number in self.varied for key, _ in varied_number.also}
         shown = {
             (by_key[key].heading if key in by_key else key): (by_key[key].of(value) if key in by_key else value)
             for key, value in changes.items()
@@ -85,7 +85,7 @@ def planned(study: StudyData, card: SweepCard, near: Path | None = None) -> Plan
         try:
             check_answer(name, study, card.time_to)
         except InputError as error:
-            table = next(one for one in ("limits", "answers", "pareto") if name in getattr(card, one))
+            table = next(part for part in ("limits", "answers", "pareto") if name in getattr(card, part))
             raise error.within(field=table) from None
     names: Sequence[str]
     if card.chosen == "list":
@@ -94,16 +94,16 @@ def planned(study: StudyData, card: SweepCard, near: Path | None = None) -> Plan
         variants, names = listed(path)
         chosen: tuple[Varied, ...] = ()
         try:
-            sensible(study, [(f"variant '{name}'", one) for name, one in zip(names, variants, strict=True)])
+            sensible(study, [(f"variant '{name}'", part) for name, part in zip(names, variants, strict=True)])
         except InputError as error:
             raise error if error.file else error.within(file=path) from None
     else:
-        chosen = tuple(varied(study, key, one) for key, one in _outer_first(card.vary).items())
+        chosen = tuple(varied(study, key, part) for key, part in _outer_first(card.vary).items())
         if card.uncertain is not None:
             chosen += _beside(chosen, uncertain(study, card.uncertain))
         if card.sampled:
             size_of(chosen, card.chosen, card.count)
-        sensible(study, [("", one.changes(value)) for one in chosen for value in one.ends])
+        sensible(study, [("", part.changes(value)) for part in chosen for value in part.ends])
         if not card.sampled:
             variants = []
         elif card.chosen == "grid":
@@ -117,7 +117,7 @@ def planned(study: StudyData, card: SweepCard, near: Path | None = None) -> Plan
     seed = card.seed if card.chosen in ("latin-hypercube", "sobol", "saltelli") else None
     how: dict[str, Any] = {"sample": card.chosen if card.sampled else None, "count": len(variants), "seed": seed}
     if card.uncertain is not None:
-        also = {one.key: [key for key, _ in one.also] for one in chosen if one.also}
+        also = {part.key: [key for key, _ in part.also] for part in chosen if part.also}
         how |= {"uncertain": card.uncertain, "also": also, "left_out": left_out(study.uncertain_numbers)}
     return Plan(study, chosen, tuple(variants), tuple(names), dict(card.limits), card.time_to, how)
 
@@ -129,15 +129,15 @@ def _beside(chosen: Sequence[Varied], numbers: Sequence[Varied]) -> tuple[Varied
     ------
     InputError : the card of one of them is swapped.
     """
-    named = {one.key for one in chosen}
-    found = tuple(one for one in numbers if not named & {one.key, *(key for key, _ in one.also)})
-    for one in found:
-        for key in (one.key, *(key for key, _ in one.also)):
+    named = {number.key for number in chosen}
+    beside = tuple(number for number in numbers if not named & {number.key, *(key for key, _ in number.also)})
+    for number in beside:
+        for key in (number.key, *(key for key, _ in number.also)):
             outer = next((name for name in named if key.startswith(f"{name}.")), None)
             if outer is not None:
                 message = f"the numbers of '{outer}', which is swapped, have no one value to vary about ('{key}')"
                 raise InputError(message, field="uncertain")
-    return found
+    return beside
 
 
 def _outer_first(vary: Mapping[str, VaryCard]) -> dict[str, VaryCard]:
@@ -151,7 +151,7 @@ def _outer_first(vary: Mapping[str, VaryCard]) -> dict[str, VaryCard]:
     return dict(sorted(vary.items(), key=lambda entry: entry[0].count(".")))
 
 
-def card_of(study: StudyData, vary: Mapping[str, Any] | None = None, **said: Any) -> SweepCard:
+def card_of(study: StudyData, vary: Mapping[str, Any] | None = None, **options: Any) -> SweepCard:
     """A sweep file's content from Python.
 
     ``vary``: e.g. ``{"drive.speed": ("10 mph", "40 mph"), "materials.tread": ["soft", "hard"]}``.
@@ -159,7 +159,7 @@ def card_of(study: StudyData, vary: Mapping[str, Any] | None = None, **said: Any
     A pair (tuple) is a range, a third entry its levels, a list its values, a mapping what a sweep file would say.
     ``said``: every other key of a sweep file; None: not said.
     """
-    data = {key: value for key, value in said.items() if value is not None}
+    data = {key: value for key, value in options.items() if value is not None}
     if vary:
         data["vary"] = {key: _vary(value) for key, value in vary.items()}
     if "cases" in data:
@@ -167,9 +167,9 @@ def card_of(study: StudyData, vary: Mapping[str, Any] | None = None, **said: Any
     return SweepCard.check({"study": study.name, **data})
 
 
-def plan_of(study: StudyData, vary: Mapping[str, Any], **said: Any) -> Plan:
+def plan_of(study: StudyData, vary: Mapping[str, Any], **options: Any) -> Plan:
     """The variants of `card_of`."""
-    return planned(study, card_of(study, vary, **said))
+    return planned(study, card_of(study, vary, **options))
 
 
 def _vary(value: Any) -> Any:

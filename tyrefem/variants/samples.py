@@ -27,13 +27,15 @@ def size_of(varied: Sequence[Varied], sample: str, count: int | None) -> int:
     (128, 256)
     """
     if sample == "grid":
-        found = math.prod(len(one.values) or one.levels for one in varied)
-        check_size(found, len(varied), "the grid", "vary")
-        return found
+        count_of_variants = math.prod(len(number.values) or number.levels for number in varied)
+        check_size(count_of_variants, len(varied), "the grid", "vary")
+        return count_of_variants
     assert count is not None
-    found = {"sobol": 1 << (count - 1).bit_length(), "saltelli": count * (len(varied) + 2)}.get(sample, count)
-    check_size(found, len(varied), f"sample = '{sample}'", "count")
-    return found
+    count_of_variants = {"sobol": 1 << (count - 1).bit_length(), "saltelli": count * (len(varied) + 2)}.get(
+        sample, count
+    )
+    check_size(count_of_variants, len(varied), f"sample = '{sample}'", "count")
+    return count_of_variants
 
 
 def check_size(count: int, numbers: int, what: str, field: str) -> None:
@@ -60,14 +62,14 @@ def grid(varied: Sequence[Varied]) -> list[dict[str, Any]]:
     >>> grid([Varied("a", values=(1, 2)), Varied("b", values=("x",))])
     [{'a': 1, 'b': 'x'}, {'a': 2, 'b': 'x'}]
     """
-    return [_changes(varied, values) for values in itertools.product(*(one.grid for one in varied))]
+    return [_changes(varied, values) for values in itertools.product(*(number.grid for number in varied))]
 
 
 def _changes(varied: Sequence[Varied], values: Sequence[Any]) -> dict[str, Any]:
-    found: dict[str, Any] = {}
-    for one, value in zip(varied, values, strict=True):
-        found |= one.changes(value)
-    return found
+    changes: dict[str, Any] = {}
+    for number, value in zip(varied, values, strict=True):
+        changes |= number.changes(value)
+    return changes
 
 
 def places(varied: Sequence[Varied], sample: str, count: int, seed: int) -> Array:
@@ -94,7 +96,7 @@ def places(varied: Sequence[Varied], sample: str, count: int, seed: int) -> Arra
 
 def problem(varied: Sequence[Varied]) -> dict[str, Any]:
     """What SALib wants to know: names and bounds (the unit cube: `Varied.at` takes it from there)."""
-    return {"num_vars": len(varied), "names": [one.key for one in varied], "bounds": [[0.0, 1.0]] * len(varied)}
+    return {"num_vars": len(varied), "names": [number.key for number in varied], "bounds": [[0.0, 1.0]] * len(varied)}
 
 
 def drawn(varied: Sequence[Varied], sample: str, count: int, seed: int) -> list[dict[str, Any]]:
@@ -104,7 +106,7 @@ def drawn(varied: Sequence[Varied], sample: str, count: int, seed: int) -> list[
 
 def changes_at(varied: Sequence[Varied], place: Sequence[float] | Array) -> dict[str, Any]:
     """Changes of the study at a place of the unit cube."""
-    return _changes(varied, [one.at(float(u)) for one, u in zip(varied, place, strict=True)])
+    return _changes(varied, [number.at(float(u)) for number, u in zip(varied, place, strict=True)])
 
 
 def listed(path: Path) -> tuple[list[dict[str, Any]], list[str]]:
@@ -116,12 +118,12 @@ def listed(path: Path) -> tuple[list[dict[str, Any]], list[str]]:
     """
     from tyrefem.measured.cases import read_cases
 
-    found = read_cases(path)
-    keys = list(dict.fromkeys(key for case in found for key in case.changes))
-    check_size(len(found), len(keys), path.name, "cases")
-    changes, names = [dict(case.changes) for case in found], [case.name for case in found]
-    columns = {key: alike([one.get(key) for one in changes]) for key in keys}
-    plain = [{key: columns[key][place] for key in one} for place, one in enumerate(changes)]
+    cases = read_cases(path)
+    keys = list(dict.fromkeys(key for case in cases for key in case.changes))
+    check_size(len(cases), len(keys), path.name, "cases")
+    changes, names = [dict(case.changes) for case in cases], [case.name for case in cases]
+    columns = {key: alike([changes_of_case.get(key) for changes_of_case in changes]) for key in keys}
+    plain = [{key: columns[key][place] for key in changes_of_case} for place, changes_of_case in enumerate(changes)]
     try:
         without_repeats(plain, names)
     except InputError as error:

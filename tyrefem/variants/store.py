@@ -80,8 +80,8 @@ class Store:
             return 0
         try:
             first, *others = [json.loads(line, object_pairs_hook=_shared) for line in lines]
-            found = {one["variant"]: one for one in others if "note" not in one}
-            notes = {str(one["note"]): one["value"] for one in others if "note" in one}
+            done = {entry["variant"]: entry for entry in others if "note" not in entry}
+            notes = {str(entry["note"]): entry["value"] for entry in others if "note" in entry}
         except (ValueError, KeyError, TypeError):
             raise InputError("is not a file of finished variants", file=self.path) from None
         if first.get("plan") != self.digest:
@@ -90,12 +90,12 @@ class Store:
                 " --out, or begin anew with --restart",
                 file=self.path,
             )
-        self.done, self.notes = found, notes
+        self.done, self.notes = done, notes
         return whole
 
-    def add(self, found: Mapping[Name, Mapping[str, Any]]) -> None:
+    def add(self, outcomes: Mapping[Name, Mapping[str, Any]]) -> None:
         """Keep the outcomes of some variants; a second one of the same variant is left out."""
-        entries = {n: {"variant": n, **outcome} for n, outcome in found.items() if n not in self.done}
+        entries = {n: {"variant": n, **outcome} for n, outcome in outcomes.items() if n not in self.done}
         self._write(*entries.values())
         self.done |= entries
 

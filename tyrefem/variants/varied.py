@@ -56,12 +56,14 @@ class Varied:
         if not self.also:
             return {self.key: value}
         factor = _ratio(value, self.nominal)
-        return {self.key: value, **{key: scaled(own, factor, DIGITS) for key, own in self.also}}
+        return {self.key: value, **{key: scaled(nominal_value, factor, DIGITS) for key, nominal_value in self.also}}
 
     def together(self, value: Any, others: Mapping[str, Any]) -> bool:
         """Do other names have the factor that a value of this has?"""
         factor = _ratio(value, self.nominal) if self.also else 1.0
-        return all(math.isclose(_ratio(others[key], own), factor, rel_tol=1e-6) for key, own in self.also)
+        return all(
+            math.isclose(_ratio(others[key], nominal_value), factor, rel_tol=1e-6) for key, nominal_value in self.also
+        )
 
     @property
     def heading(self) -> str:
@@ -168,7 +170,7 @@ def uncertain(study: StudyData, deviations: float) -> list[Varied]:
     ------
     InputError : none is stated; a range that reaches zero.
     """
-    found = []
+    varied_numbers = []
     for number in study.uncertain_numbers:
         if number.idle:
             continue
@@ -178,19 +180,19 @@ def uncertain(study: StudyData, deviations: float) -> list[Varied]:
             raise InputError(message, field="uncertain")
         pairs = zip(number.keys, number.written, strict=True)
         (key, nominal), *also = pairs
-        found.append(Varied(key, "", (), 1 - reach, 1 + reach, nominal=nominal, also=tuple(also)))
-    if not found:
+        varied_numbers.append(Varied(key, "", (), 1 - reach, 1 + reach, nominal=nominal, also=tuple(also)))
+    if not varied_numbers:
         raise InputError("neither cards (relative_sd) nor [uncertainty] state a standard deviation", field="uncertain")
-    return found
+    return varied_numbers
 
 
 def _listed(key: str, values: list[Any]) -> Varied:
     amounts = [_AMOUNT.match(value) if isinstance(value, str) else None for value in values]
     units = {match[2] for match in amounts if match}
     same = alike(values)
-    for number, one in enumerate(same):
-        if one in same[:number]:
-            first, again = values[same.index(one)], values[number]
+    for number, item in enumerate(same):
+        if item in same[:number]:
+            first, again = values[same.index(item)], values[number]
             raise InputError(f"{again!r} is given twice" + ("" if first == again else f": it is {first!r}"))
     unit = units.pop() if len(units) == 1 and all(amounts) else ""
     return Varied(key, unit, tuple(values), levels=len(values))
@@ -204,13 +206,13 @@ def alike(values: Sequence[Any]) -> list[Any]:
     """
     amounts = [_AMOUNT.match(value) if isinstance(value, str) else None for value in values]
     unit = next((match[2] for match in amounts if match), "") or "1"
-    found = []
+    converted = []
     for value, match in zip(values, amounts, strict=True):
         try:
-            found.append(float(f"{parse(value, unit):.12g}") if match else value)
+            converted.append(float(f"{parse(value, unit):.12g}") if match else value)
         except InputError:
-            found.append(value)
-    return found
+            converted.append(value)
+    return converted
 
 
 def _amount(value: Any) -> tuple[float, str]:
