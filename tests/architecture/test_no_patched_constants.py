@@ -8,6 +8,8 @@ from pathlib import Path
 
 import pytest
 
+pytestmark = pytest.mark.fast
+
 TESTS = Path(__file__).resolve().parents[1]
 
 

@@ -10,6 +10,8 @@ from tyrefem.errors import InputError
 from tyrefem.quantity import parse
 from tyrefem.simulation.rolling_tyre import RollingTyre
 
+pytestmark = pytest.mark.fast
+
 
 def law(side, name, **numbers):
     return LawOf(side, name)({"law": name, **numbers})

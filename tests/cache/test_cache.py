@@ -14,6 +14,8 @@ import pytest
 
 from tyrefem.cache import Cache, Content, fingerprint
 
+pytestmark = pytest.mark.fast
+
 
 def test_the_least_recently_used_value_makes_room() -> None:
     cache = Cache[str](size=3)

@@ -10,6 +10,8 @@ import tyrefem as tf
 from tyrefem.errors import InputError
 from tyrefem.measured.cases import read_cases
 
+pytestmark = pytest.mark.fast
+
 
 def read(folder: Path, text: str | bytes) -> dict[str, dict[str, str]]:
     path = folder / "cases.csv"

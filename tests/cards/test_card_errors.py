@@ -11,6 +11,8 @@ from tyrefem.cards import merged, read_toml
 from tyrefem.errors import InputError
 from tyrefem.materials.card import MaterialCard, material
 
+pytestmark = pytest.mark.fast
+
 
 @pytest.fixture
 def tread():

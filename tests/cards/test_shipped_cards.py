@@ -12,6 +12,8 @@ from tyrefem.cards import read_toml
 from tyrefem.geometry import load as section
 from tyrefem.materials.card import material
 
+pytestmark = pytest.mark.fast
+
 MATERIALS = sorted(library.names("material"))
 SECTIONS = sorted(library.names("section"))
 #: Numbers that have no unit by nature.

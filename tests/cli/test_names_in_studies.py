@@ -11,6 +11,8 @@ import pytest
 from tyrefem import library
 from tyrefem.cli import main
 
+pytestmark = pytest.mark.fast
+
 
 @pytest.fixture
 def written(here: Path) -> Callable[..., str]:

@@ -14,6 +14,8 @@ import tyrefem as tf
 from tyrefem import library
 from tyrefem.cli import main
 
+pytestmark = pytest.mark.fast
+
 
 @pytest.fixture
 def own(here: Path) -> Path:

@@ -14,6 +14,8 @@ from tyrefem.compare import compare
 from tyrefem.errors import InputError
 from tyrefem.measured import MeasuredRun
 
+pytestmark = pytest.mark.fast
+
 TIMES = np.arange(0.0, 1201.0, 20.0)
 LOGGER = {"crown": "T1", "shoulder": "T2"}
 

@@ -15,6 +15,8 @@ from tyrefem.compare.uncertainty import WITHIN, effective_number
 from tyrefem.errors import InputError
 from tyrefem.measured import MeasuredRun
 
+pytestmark = pytest.mark.fast
+
 EVERY_10 = np.arange(0.0, 1201.0, 10.0)
 
 

@@ -8,6 +8,8 @@ from scipy.linalg import cholesky_banded
 
 from tyrefem.conduction.linear_solver import BlockFactor
 
+pytestmark = pytest.mark.fast
+
 
 @pytest.mark.parametrize(("size", "width"), [(10, 3), (24, 24), (100, 1), (131, 30), (240, 40)])
 def test_solution_leaves_no_residual(size: int, width: int) -> None:

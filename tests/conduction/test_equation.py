@@ -11,6 +11,8 @@ from tyrefem.conduction import Conduction, Convection, Film, Flux, Material, Rad
 from tyrefem.conduction.equation import System
 from tyrefem.conduction.terms import State
 
+pytestmark = pytest.mark.fast
+
 WIDTH, DEPTH = 0.05, 0.02
 K, C, H, GAS = (0.5, 0.2), 2e6, 30.0, 12.0
 

@@ -8,6 +8,8 @@ import skfem
 
 from tyrefem.conduction import Conduction, Film, Fixed, Flux, Material, Radiation, Reservoir
 
+pytestmark = pytest.mark.fast
+
 TREAD = Material(conductivity=0.25, heat_capacity=2e6)
 CARCASS = Material(conductivity=(0.4, 0.2), heat_capacity=2.1e6)
 

@@ -9,6 +9,8 @@ import skfem
 from tyrefem.conduction import Conduction, Film, Fixed, Material, Reservoir
 from tyrefem.errors import InputError
 
+pytestmark = pytest.mark.fast
+
 STEEL = Material(conductivity=50.0, heat_capacity=4e6)
 
 

@@ -8,6 +8,8 @@ import skfem
 
 from tyrefem.conduction import Conduction, Film, Material, Reservoir
 
+pytestmark = pytest.mark.fast
+
 
 def history(h, sink):
     mesh = skfem.MeshTri().refined(3).with_boundaries({"edge": lambda x: x[0] < 1e-9})

@@ -13,6 +13,8 @@ from tyrefem.materials.card import material
 from tyrefem.materials.cord_layers import masses, region_thickness
 from tyrefem.materials.elasticity import Cords, MooneyRivlin, NeoHookean, Yeoh
 
+pytestmark = pytest.mark.fast
+
 STEEL, POLYESTER, NYLON, HYBRID = 7850.0, 1380.0, 1140.0, 1290.0
 #: Card -> (tyre, region, density of a filament, share of the cord's round outline that filaments fill).
 PLIES = {

@@ -9,6 +9,8 @@ from hidden import study
 
 from tyrefem.cli import main
 
+pytestmark = pytest.mark.fast
+
 TABLES = {
     "no such sensor": ("time [s],crown-outr [degC]\n0,25\n60,30\n", "crown-outer"),
     "a word in a cell": ("time [s],crown-outer [degC]\n0,25\n60,hot\n", "hot"),

@@ -10,6 +10,8 @@ from scipy.stats import multivariate_normal, norm
 
 from tyrefem.diagnose.evidence import fit
 
+pytestmark = pytest.mark.fast
+
 FREE = np.array([-np.inf]), np.array([np.inf])
 
 

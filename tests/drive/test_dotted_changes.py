@@ -9,6 +9,8 @@ import pytest
 import tyrefem as tf
 from tyrefem.inputs.changes import changed, scaled, value_at
 
+pytestmark = pytest.mark.fast
+
 PHASES = {"drive": {"load": "1 kN", "phases": [{"name": "a", "load": "2 kN"}, {"name": "b", "deflection": "1 mm"}]}}
 
 

@@ -7,6 +7,8 @@ import pytest
 from tyrefem.errors import InputError
 from tyrefem.inputs.drive import Drive
 
+pytestmark = pytest.mark.fast
+
 STEADY = {"speed": "36 km/h", "load": "12 kN", "pressure": "5 bar", "duration": "600 s"}
 
 

@@ -15,6 +15,8 @@ from tyrefem.effects.description import example, parameter_rows, ports
 from tyrefem.effects.effect import PORTS
 from tyrefem.reports.inputs import effect_rows
 
+pytestmark = pytest.mark.fast
+
 OWN = '''
 """A lamp beside the tyre."""
 

@@ -15,6 +15,8 @@ from tyrefem.simulation.rolling_tyre import RollingTyre
 from tyrefem.simulation.sensors import lagged, recorded, true_places
 from tyrefem.simulation.surroundings import GAS
 
+pytestmark = pytest.mark.fast
+
 
 def tyre(effects: list[dict] | None = None, name: str = "example-validation", **changes: object) -> RollingTyre:
     """A coarse study with effects, ready to be asked for films and sources. ``drive__load`` is ``drive.load``."""

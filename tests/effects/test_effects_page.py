@@ -15,6 +15,8 @@ import tyrefem as tf
 from tyrefem.effects import catalogue
 from tyrefem.effects.description import example
 
+pytestmark = pytest.mark.fast
+
 ROOT = Path(__file__).parents[2]
 
 

@@ -5,7 +5,11 @@ from __future__ import annotations
 import ast
 from pathlib import Path
 
+import pytest
+
 import tyrefem
+
+pytestmark = pytest.mark.fast
 
 ROOT = Path(tyrefem.__file__).parent
 MODULES = {

@@ -10,6 +10,8 @@ import pytest
 
 from tyrefem.estimates.memory import UNKNOWN, free_memory
 
+pytestmark = pytest.mark.fast
+
 MEMINFO = "MemTotal:       16777216 kB\nMemFree:  1000 kB\nMemAvailable:    8388608 kB\n"
 GIB = 2**30
 

@@ -17,6 +17,8 @@ from tyrefem.simulation import feedback
 from tyrefem.simulation.rolling_tyre import RollingTyre
 from tyrefem.simulation.warm_cycles import Warmth
 
+pytestmark = pytest.mark.fast
+
 FINE = {"tolerance": "0.01 delta_degC"}
 BIAS = {"mesh.size": "8 mm", "mesh.element": "P1", "drive.duration": "300 s", "output.every": "30 s"}
 

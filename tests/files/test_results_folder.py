@@ -12,6 +12,8 @@ from tyrefem.errors import InputError
 from tyrefem.output import atomic_folder, atomic_path, note_input, reading, write_json
 from tyrefem.output.folder import results_folder
 
+pytestmark = pytest.mark.fast
+
 NAMES = ("readings.csv", "report.html", "pictures/*.png")
 
 

@@ -18,6 +18,8 @@ from tyrefem.mechanics.footprint.contact import Pressing
 from tyrefem.mechanics.footprint.example_tyre import PlainTyre, stress_free
 from tyrefem.mechanics.footprint.road import Road
 
+pytestmark = pytest.mark.fast
+
 
 @pytest.fixture(scope="module")
 def tyre() -> Pressing:

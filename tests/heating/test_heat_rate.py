@@ -14,6 +14,8 @@ from tyrefem.inputs.loading import TrR64
 from tyrefem.mechanics.cycle_schedule import ramp_knots
 from tyrefem.simulation.rolling_tyre import RollingTyre
 
+pytestmark = pytest.mark.fast
+
 CONSTANT = {f"materials.{r}.loss_tangent.law": "constant" for r in ("carcass", "tread", "sidewall", "bead")}
 COARSE = {"mesh.size": "4 mm", "mesh.element": "P1", **CONSTANT}
 

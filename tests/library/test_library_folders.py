@@ -9,6 +9,8 @@ import pytest
 from tyrefem import library
 from tyrefem.errors import InputError
 
+pytestmark = pytest.mark.fast
+
 
 @pytest.fixture(autouse=True)
 def here(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> Path:

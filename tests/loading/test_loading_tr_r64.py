@@ -13,6 +13,8 @@ from tyrefem.errors import InputError
 from tyrefem.geometry import load as section
 from tyrefem.inputs.loading import LoadCase, TrR64, VerticalStiffness, load_case
 
+pytestmark = pytest.mark.fast
+
 INCH, PSI, LBF = 0.0254, 6894.757293168361, 4.4482216152605
 
 

@@ -13,6 +13,8 @@ from tyrefem.errors import InputError
 from tyrefem.materials.card import MaterialCard, material
 from tyrefem.materials.loss_tangent import Prony, Shift
 
+pytestmark = pytest.mark.fast
+
 WLF = {"c1": 8.86, "c2": "101.6 delta_degC", "reference": "20 degC"}
 SERIES = [["1.2 MPa", "10 us"], ["0.5 MPa", "1 ms"], ["0.2 MPa", "0.1 s"]]
 PRONY = {"law": "prony", "equilibrium": "1.5 MPa", "series": SERIES, "shift": WLF, "source": "test"}

@@ -11,6 +11,8 @@ from tyrefem import library
 from tyrefem.errors import InputError
 from tyrefem.materials.card import MaterialCard
 
+pytestmark = pytest.mark.fast
+
 
 def card(**changes):
     data = copy.deepcopy(library.load("material", "nasa-tread")[0])

@@ -11,6 +11,8 @@ import pytest
 from tyrefem.errors import InputError
 from tyrefem.measured import read_table
 
+pytestmark = pytest.mark.fast
+
 HOUR = 3600.0
 
 

@@ -12,6 +12,8 @@ from tyrefem.errors import InputError
 from tyrefem.geometry import Section, load
 from tyrefem.geometry.meshing import TyreMesh, build, read, read_for, write
 
+pytestmark = pytest.mark.fast
+
 
 @pytest.fixture(scope="module")
 def section() -> Section:

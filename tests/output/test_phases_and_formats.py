@@ -17,6 +17,8 @@ from tyrefem.reports.figures.road import sliding_figure
 from tyrefem.reports.figures.style import add_axes, figure, picture, title
 from tyrefem.reports.figures.temperature import temperature_figure
 
+pytestmark = pytest.mark.fast
+
 
 @pytest.fixture(scope="module")
 def skid() -> tf.Result:

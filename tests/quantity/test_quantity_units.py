@@ -11,6 +11,8 @@ from hypothesis import strategies as st
 from tyrefem.errors import InputError
 from tyrefem.quantity import Unit, convert, parse
 
+pytestmark = pytest.mark.fast
+
 PAIRS = {
     "m": ("in", "mm", "ft"),
     "m/s": ("mph", "km/h", "ft/s"),

@@ -17,6 +17,8 @@ from tyrefem.realtime.inputs import box_of
 from tyrefem.realtime.settings import ExportSettings, TablePoints
 from tyrefem.realtime.tyre import INPUTS, Inputs, RealTimeTyre
 
+pytestmark = pytest.mark.fast
+
 STUDY = "nasa-22x5.5-8pr"
 
 

@@ -9,6 +9,8 @@ from scipy.integrate import solve_ivp
 from tyrefem.reduced.exponential import relaxed, responses
 from tyrefem.reduced.pod import modes, places
 
+pytestmark = pytest.mark.fast
+
 
 def test_modes_keep_what_they_are_asked_to_keep() -> None:
     rng = np.random.default_rng(3)

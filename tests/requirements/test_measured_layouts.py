@@ -17,6 +17,8 @@ from tyrefem.diagnose.next_experiment import drive_gain
 from tyrefem.diagnose.unknowns import candidates
 from tyrefem.errors import InputError
 
+pytestmark = pytest.mark.fast
+
 ALL_HELD_OUT = ({**FITTED, "hold_out": True}, HELD_OUT)
 
 

@@ -8,6 +8,8 @@ import pytest
 import tyrefem as tf
 from tyrefem.geometry.meshing.sagitta import sagitta
 
+pytestmark = pytest.mark.fast
+
 
 @pytest.fixture(scope="module")
 def result() -> tf.Result:

@@ -11,6 +11,8 @@ from tyrefem.conduction import Conduction, Convection, Film, Fixed, Material
 from tyrefem.errors import InputError
 from tyrefem.rig import air, natural_film, nusselt
 
+pytestmark = pytest.mark.fast
+
 #: Air at 1 atm (Incropera & DeWitt, table A.4): T in K, k in W/m/K, nu in m2/s, Pr.
 TABLE = [(300.0, 0.0263, 15.89e-6, 0.707), (400.0, 0.0338, 26.41e-6, 0.690), (500.0, 0.0407, 38.79e-6, 0.684)]
 

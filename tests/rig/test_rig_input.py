@@ -12,6 +12,8 @@ from tyrefem.errors import InputError
 from tyrefem.heating_test.card import find, tables
 from tyrefem.rig import load, read
 
+pytestmark = pytest.mark.fast
+
 CARD = find("trtlab").read_text(encoding="utf-8")
 TABLE = "time [s],outer [degC],inner [degC],interface [degC]\n" + "".join(
     f"{t},{22 + t / 10},{22 + t / 200},{22 + t / 100}\n" for t in range(0, 400, 10)

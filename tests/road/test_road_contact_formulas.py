@@ -16,6 +16,8 @@ from tyrefem.conduction import Conduction, Material
 from tyrefem.errors import InputError
 from tyrefem.library import names, shipped
 
+pytestmark = pytest.mark.fast
+
 FOLDER = shipped() / "studies" / "cattani-road"
 RUBBER = (0.25, 2e6)
 

@@ -9,6 +9,8 @@ import ring_section
 from tyrefem.geometry import Section, SectionCard, build, load
 from tyrefem.geometry.outlines import face, stations
 
+pytestmark = pytest.mark.fast
+
 
 @pytest.fixture
 def ring() -> Section:

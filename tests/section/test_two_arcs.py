@@ -8,6 +8,8 @@ import pytest
 from tyrefem.errors import InputError
 from tyrefem.geometry import TwoArcs, load
 
+pytestmark = pytest.mark.fast
+
 INCH = 0.0254
 # Tables H1 and H2: YS of the inner nodes and R of each row, crown to bead [in].
 INNER_YS = {

@@ -15,6 +15,8 @@ from tyrefem.boundaries.skid import Passage, half_space_surface
 from tyrefem.conduction import Conduction, Film, Flux, Material
 from tyrefem.errors import InputError
 
+pytestmark = pytest.mark.fast
+
 LENGTH, SPEED = 0.15, 20.0
 
 

@@ -13,6 +13,8 @@ from tyrefem.boundaries import friction_names as sliding
 from tyrefem.boundaries.friction_names import ICE, RUBBER, TEAK, Solid
 from tyrefem.errors import InputError
 
+pytestmark = pytest.mark.fast
+
 SIZE = st.floats(1e-3, 1e3)
 
 

@@ -11,6 +11,8 @@ from tyrefem.errors import InputError
 from tyrefem.inputs.drive import Drive
 from tyrefem.inputs.motion import Motion, motion_at
 
+pytestmark = pytest.mark.fast
+
 STEADY = {"speed": "36 km/h", "load": "12 kN", "pressure": "5 bar", "duration": "10 s"}
 
 

@@ -10,6 +10,8 @@ from tyrefem.mechanics.solid.compounds import Compound, mooney_rivlin, neo_hooke
 from tyrefem.mechanics.solid.cords import CordLayer, lifted_angle, lifted_ends
 from tyrefem.mechanics.solid.elements import SYMMETRIC_UNIT, UNIT
 
+pytestmark = pytest.mark.fast
+
 LAWS = {"neo-hookean": neo_hookean(1e6), "mooney-rivlin": mooney_rivlin(3e5, 2e5), "yeoh": yeoh(5e5, -5e4, 2e4)}
 RANDOM = np.random.default_rng(3)
 GRADIENT = np.eye(3)[..., None] + 0.3 * RANDOM.uniform(-1, 1, (3, 3, 5))

@@ -12,6 +12,8 @@ from tyrefem.errors import InputError
 from tyrefem.geometry.meridian import TwoArcs
 from tyrefem.mechanics.arc_geometry import deflected_sidewall, sidewall_arc
 
+pytestmark = pytest.mark.fast
+
 
 @pytest.fixture(params=NAMES)
 def cycle(request):

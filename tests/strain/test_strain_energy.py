@@ -10,6 +10,8 @@ import numpy as np
 import pytest
 from arcs_of import INCH, NAMES, PSI, at, nodes, shipped
 
+pytestmark = pytest.mark.fast
+
 # 22x5.5 8PR in in and lbf/in2, as fitted to table H1 of Clark & Dodge (1980).
 YM, RC, R1, LENGTH, XC, W = 10.337, 3.482, 1.961, 5.82, 0.75 * 2.75, 5.5
 G, GPT, CA = 335.0, 2e4, 0.75

@@ -8,6 +8,8 @@ from nasa_runs import end, run
 
 from tyrefem.simulation.sensors import lagged
 
+pytestmark = pytest.mark.fast
+
 
 def test_1_the_gradient_reverses_between_sidewall_and_tread_at_full_pressure():
     """12PR at 261 psi: the sidewall is hotter inside, while the tread rubber is hotter than the carcass under it."""

@@ -8,6 +8,8 @@ import pytest
 import tyrefem as tf
 from tyrefem.simulation.sensors import lagged
 
+pytestmark = pytest.mark.fast
+
 QUICK = {"mesh.size": "4 mm", "mesh.element": "P1", "drive.duration": "60 s"}
 
 

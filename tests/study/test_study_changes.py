@@ -11,6 +11,8 @@ import pytest
 import tyrefem as tf
 from tyrefem.variants.plan import plan_of
 
+pytestmark = pytest.mark.fast
+
 QUICK = {"mesh.size": "4 mm", "mesh.element": "P1", "drive.duration": "60 s"}
 
 

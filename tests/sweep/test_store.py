@@ -9,6 +9,8 @@ import pytest
 from tyrefem.errors import InputError
 from tyrefem.variants.store import NAME, Store
 
+pytestmark = pytest.mark.fast
+
 
 def test_what_was_added_is_there_again(tmp_path: Path) -> None:
     with Store(tmp_path, "plan") as store:

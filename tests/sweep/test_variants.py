@@ -19,6 +19,8 @@ from tyrefem.variants.plan import plan_of, planned
 from tyrefem.variants.task import perform
 from tyrefem.variants.varied import Varied
 
+pytestmark = pytest.mark.fast
+
 
 @pytest.fixture(scope="module")
 def tyre() -> Study:

@@ -7,6 +7,8 @@ from pathlib import Path
 import pytest
 from mutations import Mutation, StaleMutationError, check, main, read_mutations
 
+pytestmark = pytest.mark.fast
+
 ROOT = Path(__file__).parents[2]
 MUTATIONS = read_mutations()
 

@@ -8,6 +8,8 @@ from types import ModuleType
 
 import pytest
 
+pytestmark = pytest.mark.fast
+
 TOOLS = Path(__file__).parents[2] / "tools"
 RUN = {"run one": {"exit code": 0, "hottest": 79.5577929796, "region": "tread"}}
 

@@ -8,6 +8,8 @@ import skfem
 
 from tyrefem.conduction import Conduction, Fixed, Material, Radiation
 
+pytestmark = pytest.mark.fast
+
 
 def bar(n: int, cls: type = skfem.MeshTri):
     mesh = cls.init_tensor(np.linspace(0.0, 0.1, n + 1), np.linspace(0.0, 0.01, 3))
