@@ -15,8 +15,9 @@ import time
 
 import tyrefem as tf
 from tyrefem.compare.experiment import experiments
-from tyrefem.diagnose.evaluations import laboratory
-from tyrefem.diagnose.forward_model import Bench
+from tyrefem.diagnose.candidates import catalogue_candidates
+from tyrefem.diagnose.evaluations import evaluating
+from tyrefem.diagnose.forward_model import ForwardModel
 from tyrefem.diagnose.runs import trial
 from tyrefem.diagnose.sensitivities import responses, unknowns_of
 from tyrefem.diagnose.workflow import diagnose
@@ -30,20 +31,20 @@ def main() -> None:
     parser.add_argument("--workers", type=int, default=os.cpu_count() or 1)
     given = parser.parse_args()
     study = tf.study(given.study)
-    bench = Bench(study, tuple(trial(one, study) for one in experiments(study)))
-    unknowns, nuisance = unknowns_of(study, [*study.sensors, GAS])
+    model = ForwardModel(study, tuple(trial(one, study).sampling for one in experiments(study)))
+    unknowns, nuisance = unknowns_of(study, [*study.sensors, GAS], catalogue_candidates(study))
     began = time.perf_counter()
-    bench.driven(study, 0).run()
+    model.driven(study, 0).run()
     one_run = time.perf_counter() - began
     began = time.perf_counter()
-    with laboratory(bench, given.workers) as lab:
-        known = responses(lab, unknowns)
+    with evaluating(model, given.workers) as evaluations:
+        known = responses(evaluations, unknowns)
     sensitivities = time.perf_counter() - began
     began = time.perf_counter()
     found = diagnose(study, workers=given.workers, known=known, looks=1)
     rest = time.perf_counter() - began
-    again = one_run * len(bench.trials) * sum(not one.measures for one in unknowns) / given.workers
-    print(f"{len(bench.trials)} runs, {len(study.sensors) + 1} histories, {len(found.candidates)} candidates, "
+    again = one_run * len(model.drives) * sum(not one.measures for one in unknowns) / given.workers
+    print(f"{len(model.drives)} runs, {len(study.sensors) + 1} histories, {len(found.candidates)} candidates, "
           f"{len(unknowns)} unknowns, {nuisance} of them in every model")  # fmt: skip
     print(f"sensitivities {sensitivities:.1f} s (by simulating again: about {again:.0f} s)")
     print(f"search, fits, amended study {rest:.1f} s: {found.verdict}, {found.judgement.best.key}")

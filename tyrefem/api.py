@@ -92,11 +92,11 @@ class Comparison(comparison.Comparison):
         return save(self, folder)
 
 
-class Diagnosis(diagnosis.Diagnosis):
+class Diagnosis(diagnosis.DiagnosisData):
     """What a diagnosis says, with `to_dict` and `save`."""
 
     @classmethod
-    def of(cls, data: diagnosis.Diagnosis) -> Diagnosis:
+    def of(cls, data: diagnosis.DiagnosisData) -> Diagnosis:
         """The same diagnosis, and every further look at the same data, with verbs."""
         return with_verbs(cls, data, again=None if data.again is None else cls.of(data.again))
 

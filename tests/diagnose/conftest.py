@@ -10,7 +10,7 @@ import pytest
 from hidden import FINISHED, WARMER, Case, measure, study
 
 from tyrefem.diagnose.evaluations import ProgressStore
-from tyrefem.diagnose.forward_model import Bench
+from tyrefem.diagnose.forward_model import ForwardModel
 
 
 @pytest.fixture(scope="session")
@@ -20,11 +20,11 @@ def case(tmp_path_factory: pytest.TempPathFactory) -> Case:
     owner = study(folder / "study")
     measure(owner, [{"name": "hot-road", "warmer_by": f"{WARMER} delta_degC"}])
     computed: list[int] = []
-    response = Bench.response
+    response = ForwardModel.response
 
-    def spied(bench: Bench, number: int, unknowns: Any) -> Any:
+    def spied(model: ForwardModel, number: int, unknowns: Any) -> Any:
         computed.append(number)
-        return response(bench, number, unknowns)
+        return response(model, number, unknowns)
 
     def interrupted(what: str, done: int, total: int) -> None:
         if what == "sensitivities" and done == FINISHED:
@@ -32,7 +32,7 @@ def case(tmp_path_factory: pytest.TempPathFactory) -> Case:
 
     store = ProgressStore(folder / "progress")
     with pytest.MonkeyPatch.context() as patch:
-        patch.setattr(Bench, "response", spied)
+        patch.setattr(ForwardModel, "response", spied)
         with pytest.raises(KeyboardInterrupt):
             owner.diagnose(largest=1, looks=2, store=store, progress=interrupted)
         first = len(computed)

@@ -11,7 +11,7 @@ import pandas as pd
 import tomli_w
 
 import tyrefem as tf
-from tyrefem.diagnose import Diagnosis
+from tyrefem.diagnose import DiagnosisData
 from tyrefem.effects import catalogue
 
 #: Few rivals make a short test: all of them heat or cool the tread, or move a reading.
@@ -32,7 +32,7 @@ class Case:
     """A diagnosis, its folder, the trials whose sensitivities each of the two tries computed, and what was kept."""
 
     study: tf.Study
-    diagnosis: Diagnosis
+    diagnosis: DiagnosisData
     folder: Path
     first: list[int]
     second: list[int]

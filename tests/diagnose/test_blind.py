@@ -11,7 +11,7 @@ import pytest
 import tyrefem as tf
 from tyrefem.diagnose import blind_rates
 from tyrefem.diagnose.blind import KINDS, cases
-from tyrefem.diagnose.blind_rates import Blind, Rate
+from tyrefem.diagnose.blind_rates import Blind, BlindTest, Rate
 from tyrefem.diagnose.synthetic import backward
 from tyrefem.reports import blind as blind_picture
 from tyrefem.simulation.rolling_tyre import RollingTyre
@@ -88,14 +88,14 @@ def test_rates_count_what_they_say() -> None:
 def test_finished_cases_are_not_run_again(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
     study, ran = tf.study("hidden-effect"), []
 
-    def case(number: int, count: int, seed: int) -> dict[str, Any]:
+    def case(test: BlindTest, number: int) -> dict[str, Any]:
         ran.append(number)
         if len(ran) == 3:
             raise KeyboardInterrupt
         return _row("none", [], "no gap", [])
 
     monkeypatch.setattr(blind_rates, "_case", case)
-    monkeypatch.setattr(blind_rates, "responses", lambda lab, unknowns: ())
+    monkeypatch.setattr(blind_rates, "responses", lambda evaluations, unknowns: ())
     with pytest.raises(KeyboardInterrupt):
         blind_rates.run_blind(study, 4, 7, tmp_path)
     assert not (tmp_path / "blind.json").exists()

@@ -12,7 +12,7 @@ import pytest
 import tyrefem as tf
 from tyrefem.compare.experiment import experiments
 from tyrefem.diagnose.amend import Change, amended
-from tyrefem.diagnose.forward_model import Bench
+from tyrefem.diagnose.forward_model import ForwardModel
 from tyrefem.diagnose.runs import trial
 from tyrefem.diagnose.unknowns import base_unknowns, with_values
 
@@ -51,7 +51,7 @@ def test_fits_solve_no_strain_cycle_for_each_point(tmp_path: Path, monkeypatch: 
     pd.DataFrame({"time [s]": readings["time_s"], "crown-inner [degC]": readings["crown-inner"]}).to_csv(
         tmp_path / "run.csv", index=False
     )
-    bench = Bench(fem, tuple(trial(one, fem) for one in experiments(fem, tmp_path / "run.csv")))
+    model = ForwardModel(fem, tuple(trial(one, fem).sampling for one in experiments(fem, tmp_path / "run.csv")))
     unknowns = base_unknowns(fem)
     stiff, load = (next(one for one in unknowns if one.key == key) for key in (KEY, "drive.load"))
     solved: list[Any] = []
@@ -62,14 +62,14 @@ def test_fits_solve_no_strain_cycle_for_each_point(tmp_path: Path, monkeypatch: 
         return inflate(*given)
 
     monkeypatch.setattr(inflation, "inflate", counted)
-    here = bench.predict(0, {})
+    here = model.predict(0, {})
     rng = np.random.default_rng(1)
     points = [{one: float(rng.normal(0, one.sd)) for one in (stiff, load)} for _ in range(4)]
-    found = [bench.predict(0, point) for point in points]
-    slopes = bench.jacobian(0, (stiff, load), points[0])
+    found = [model.predict(0, point) for point in points]
+    slopes = model.jacobian(0, (stiff, load), points[0])
     # The study's own on the mesh of the fit, and one with each of the two numbers moved (the load needs no inflation).
     assert len(solved) == 2
-    exact = [Bench(with_values(fem, point), bench.trials).predict(0, {}) for point in points[:2]]
+    exact = [ForwardModel(with_values(fem, point), model.drives).predict(0, {}) for point in points[:2]]
     rise = float(here.max() - here.min())
     for one, other in zip(found, exact, strict=False):
         assert float(np.abs(one - other).max()) < 0.01 * rise

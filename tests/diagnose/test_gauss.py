@@ -8,7 +8,7 @@ from scipy.integrate import quad
 from scipy.optimize import minimize
 from scipy.stats import multivariate_normal, norm
 
-from tyrefem.diagnose.evidence import fit
+from tyrefem.diagnose.evidence import posterior
 
 pytestmark = pytest.mark.fast
 
@@ -34,13 +34,13 @@ def test_evidence_of_one_parameter_with_bounds(seed: int, low: float, high: floa
     mass = norm.cdf(high / sd[0]) - norm.cdf(low / sd[0])
     ends = max(low, -12 * sd[0]), min(high, 12 * sd[0])
     wanted, _ = quad(lambda x: _likelihood(J, d, np.array([x])) * norm.pdf(x, scale=sd[0]) / mass, *ends, limit=200)
-    found = fit(J.T @ J, J.T @ d, sd, np.array([low]), np.array([high]))
+    found = posterior(J.T @ J, J.T @ d, sd, np.array([low]), np.array([high]))
     assert found.log_evidence == pytest.approx(np.log(wanted), abs=1e-6)
 
 
 def test_evidence_mean_and_covariance_of_two_parameters() -> None:
     J, d, sd = _problem(7, 2)
-    found = fit(J.T @ J, J.T @ d, sd, *(np.repeat(one, 2) for one in FREE))
+    found = posterior(J.T @ J, J.T @ d, sd, *(np.repeat(one, 2) for one in FREE))
 
     axes = [np.linspace(m - 9 * s, m + 9 * s, 501) for m, s in zip(found.mean, found.sd, strict=True)]
     x = np.stack(np.meshgrid(*axes, indexing="ij"), axis=-1)
@@ -59,7 +59,7 @@ def test_evidence_mean_and_covariance_of_two_parameters() -> None:
 def test_evidence_is_that_of_the_data_themselves() -> None:
     # d ~ N(0, 1 + J S^2 J^T) when x is integrated out.
     J, d, sd = _problem(3, 5)
-    found = fit(J.T @ J, J.T @ d, sd, *(np.repeat(one, 5) for one in FREE))
+    found = posterior(J.T @ J, J.T @ d, sd, *(np.repeat(one, 5) for one in FREE))
     wanted = multivariate_normal(cov=np.eye(len(d)) + (J * sd**2) @ J.T).logpdf(d)
     assert found.log_evidence - d @ d / 2 - len(d) / 2 * np.log(2 * np.pi) == pytest.approx(wanted, abs=1e-9)
 
@@ -68,7 +68,7 @@ def test_evidence_is_that_of_the_data_themselves() -> None:
 def test_a_fit_within_bounds_is_the_best_there(seed: int) -> None:
     J, d, sd = _problem(seed, 3)
     low, high = np.array([0.0, -0.2, -np.inf]), np.array([np.inf, 0.2, 0.1])
-    found = fit(J.T @ J, J.T @ d, sd, low, high)
+    found = posterior(J.T @ J, J.T @ d, sd, low, high)
 
     def misfit(x: np.ndarray) -> float:
         return float(((d - J @ x) ** 2).sum() + ((x / sd) ** 2).sum())
@@ -82,16 +82,16 @@ def test_a_fit_within_bounds_is_the_best_there(seed: int) -> None:
 def test_a_needless_parameter_costs_what_occam_says() -> None:
     # Without any pull from the data: -ln(1 + (sd/sigma)^2)/2.
     gram, sd = np.array([[4.0]]), np.array([3.0])
-    assert fit(gram, np.zeros(1), sd, *FREE).log_evidence == pytest.approx(-np.log(1 + 4 * 9) / 2)
+    assert posterior(gram, np.zeros(1), sd, *FREE).log_evidence == pytest.approx(-np.log(1 + 4 * 9) / 2)
 
 
 @pytest.mark.parametrize("beyond", [0.5, 3.0])
 def test_beyond_says_how_far_the_data_want_a_parameter_off_its_bound(beyond: float) -> None:
     J, _, sd = _problem(2, 3)
-    free = fit(J.T @ J, np.zeros(3), sd, *(np.repeat(one, 3) for one in FREE))
+    free = posterior(J.T @ J, np.zeros(3), sd, *(np.repeat(one, 3) for one in FREE))
     # Data whose best place is so many of its standard deviations above the bound 1 of the first parameter.
     wanted = np.array([1.0 + beyond * free.sd[0], 0.3, -0.2])
     overlap = (J.T @ J + np.diag(sd**-2.0)) @ wanted
     high = np.array([1.0, np.inf, np.inf])
-    found = fit(J.T @ J, overlap, sd, np.full(3, -np.inf), high)
+    found = posterior(J.T @ J, overlap, sd, np.full(3, -np.inf), high)
     np.testing.assert_allclose(found.beyond, [beyond, 0.0, 0.0], rtol=1e-9)

@@ -16,7 +16,7 @@ from hidden import FINISHED, HELD_OUT, NOISE, RUNS, WARMER, Case
 import tyrefem as tf
 from tyrefem.cli import main
 from tyrefem.diagnose.evaluations import ProgressStore, key_of
-from tyrefem.diagnose.forward_model import Bench
+from tyrefem.diagnose.forward_model import ForwardModel
 from tyrefem.diagnose.unknowns import base_unknowns, sensor_unknowns, with_values
 from tyrefem.diagnose.words import verdict_words
 from tyrefem.measured import MeasuredRun
@@ -87,8 +87,8 @@ def test_the_amended_study_runs_as_it_is_and_gives_what_was_shown(case: Case) ->
     assert entry["sd"]["warmer_by"].endswith("delta_degC")
     readings = amended.with_drive(RUNS[HELD_OUT]).run().readings
     number = list(RUNS).index(HELD_OUT)
-    trial = case.diagnosis.gap.lab.bench.trials[number]
-    computed = np.concatenate([one.sampled(readings["time_s"], readings[one.sensor]) for one in trial.series])
+    trial = case.diagnosis.gap.trials[number]
+    computed = np.concatenate([one.sampled(readings["time_s"], readings[one.sensor]) for one in trial.sensors])
     np.testing.assert_allclose(computed, case.diagnosis.after[number], atol=1e-9)
     table = pd.read_csv(case.folder / "histories.csv").query("run == @HELD_OUT")
     np.testing.assert_allclose(table["amended_degC"], computed, atol=1e-9)
@@ -146,14 +146,15 @@ def test_an_interrupted_diagnosis_takes_up_what_was_finished(case: Case) -> None
 
 
 def test_kept_simulations_belong_to_one_study_and_its_data(case: Case) -> None:
-    bench = case.diagnosis.gap.lab.bench
-    other = Bench(case.study.replace({"drive.speed": "21 mph"}), bench.trials)
-    fewer = Bench(case.study, bench.trials[:2])
-    assert len({key_of(one) for one in (bench, other, fewer)}) == 3
-    assert key_of(bench) == key_of(Bench(tf.study(case.study.file), bench.trials))
+    drives = case.diagnosis.gap.sensitivities.drives
+    model = ForwardModel(case.study, drives)
+    other = ForwardModel(case.study.replace({"drive.speed": "21 mph"}), drives)
+    fewer = ForwardModel(case.study, drives[:2])
+    assert len({key_of(one) for one in (model, other, fewer)}) == 3
+    assert key_of(model) == key_of(ForwardModel(tf.study(case.study.file), drives))
     store = ProgressStore(case.kept.with_name("copied"))
     (store.folder / "left-by-another").mkdir(parents=True)
-    assert store.open(bench) == 0
+    assert store.open(model) == 0
     assert list(store.folder.iterdir()) == []
     answer = np.array([1.0, 1 / 3, np.nan])
     store.keep("predict", (0, {}), answer)
@@ -209,13 +210,13 @@ def test_a_second_look_at_the_amended_study_finds_no_gap(case: Case) -> None:
 def test_noise_alone_is_no_gap(case: Case) -> None:
     d, rng = case.diagnosis, np.random.default_rng(5)
     runs = []
-    for number, one in enumerate(d.gap.lab.bench.trials):
+    for number, one in enumerate(d.gap.trials):
         columns = {}
-        for series in one.series:
+        for readings in one.sensors:
             # The study's own prediction at the times of the readings, through the means of its blocks.
-            own = np.interp(series.times, series.block_times, d.before[number][one.parts()[series.sensor]])
-            columns[series.sensor] = own + NOISE * rng.normal(size=len(series.times))
-        runs.append(MeasuredRun(one.name, one.series[0].times, pd.DataFrame(columns)))
+            own = np.interp(readings.times, readings.block_times, d.before[number][one.parts()[readings.sensor]])
+            columns[readings.sensor] = own + NOISE * rng.normal(size=len(readings.times))
+        runs.append(MeasuredRun(one.name, one.sensors[0].times, pd.DataFrame(columns)))
     # The same layout: the responses at hand serve.
     found = case.study.diagnose(runs, largest=1, known=d.gap.responses)
     assert found.verdict == "no gap"
@@ -225,15 +226,15 @@ def test_noise_alone_is_no_gap(case: Case) -> None:
 
 def test_python_can_start_workers_and_they_agree(case: Case) -> None:
     code = (
-        "import sys; import tyrefem as tf; from tyrefem.diagnose.forward_model import Bench\n"
-        "from tyrefem.diagnose.evaluations import laboratory\n"
+        "import sys; import tyrefem as tf; from tyrefem.diagnose.forward_model import ForwardModel\n"
+        "from tyrefem.diagnose.evaluations import evaluating\n"
         "from tyrefem.compare.experiment import experiments; from tyrefem.diagnose.runs import trial\n"
         "if __name__ == '__main__':\n"
         "    study = tf.study(sys.argv[1])\n"
-        "    bench = Bench(study, tuple(trial(one, study) for one in experiments(study)))\n"
-        "    with laboratory(bench, 2) as lab:\n"
-        "        here = [bench.predict(i, {}) for i in (0, 1)]\n"
-        "        there = lab.ask('predict', [(0, {}), (1, {})])\n"
+        "    model = ForwardModel(study, tuple(trial(one, study).sampling for one in experiments(study)))\n"
+        "    with evaluating(model, 2) as evaluations:\n"
+        "        here = [model.predict(i, {}) for i in (0, 1)]\n"
+        "        there = evaluations.of('predict', [(0, {}), (1, {})])\n"
         "    assert all((a == b).all() for a, b in zip(here, there, strict=True))\n"
     )
     script = case.folder.parent / "workers.py"

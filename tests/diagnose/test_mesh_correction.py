@@ -8,7 +8,9 @@ from typing import Any, cast
 import numpy as np
 import pytest
 
-from tyrefem.diagnose.linearised import Gap
+from tyrefem.diagnose.residuals import Residuals
+from tyrefem.diagnose.runs import Trial
+from tyrefem.diagnose.sensitivities import Sensitivities
 
 START = 25.0
 #: A sensor near the surface that hardly warms, in a steep gradient; two inside. Rise, and what the mesh adds, K.
@@ -16,30 +18,29 @@ OWN, ADDED = np.array([3.0, 20.0, 30.0]), np.array([1.4, -0.2, 0.3])
 
 
 @pytest.fixture
-def gap() -> Gap:
-    driven = SimpleNamespace(card=SimpleNamespace(drive=SimpleNamespace(initial=START)))
-    bench = SimpleNamespace(trials=[None], study=None, driven=lambda study, number: driven)
-    lab = cast(Any, SimpleNamespace(bench=bench))
-    return Gap(lab, (), 0, (ADDED,), (START + OWN,), (np.zeros((3, 0)),))
+def residuals() -> Residuals:
+    study = cast(Any, SimpleNamespace(card=SimpleNamespace(drive=SimpleNamespace(initial=START))))
+    known = Sensitivities((), (), 0, (START + OWN,), (ADDED,), (np.zeros((3, 0)),))
+    return Residuals(study, (Trial("run", {}, False, ()),), known)
 
 
-def added(gap: Gap, rise: np.ndarray) -> np.ndarray:
-    return gap.corrected(0, START + rise) - (START + rise)
+def added(residuals: Residuals, rise: np.ndarray) -> np.ndarray:
+    return residuals.corrected(0, START + rise) - (START + rise)
 
 
-def test_it_is_what_it_was_where_nothing_changed(gap: Gap) -> None:
-    np.testing.assert_allclose(added(gap, OWN), ADDED, rtol=1e-12)
+def test_it_is_what_it_was_where_nothing_changed(residuals: Residuals) -> None:
+    np.testing.assert_allclose(added(residuals, OWN), ADDED, rtol=1e-12)
 
 
-def test_it_grows_with_the_heat(gap: Gap) -> None:
-    np.testing.assert_allclose(added(gap, 1.5 * OWN), 1.5 * ADDED, rtol=1e-12)
+def test_it_grows_with_the_heat(residuals: Residuals) -> None:
+    np.testing.assert_allclose(added(residuals, 1.5 * OWN), 1.5 * ADDED, rtol=1e-12)
 
 
-def test_a_warmer_surface_alone_does_not_make_it_larger(gap: Gap) -> None:
+def test_a_warmer_surface_alone_does_not_make_it_larger(residuals: Residuals) -> None:
     # A hot road warms the surface fivefold: the gradient there, and with it what the mesh adds, stays about the same.
-    found = added(gap, OWN + np.array([12.0, 5.0, 3.0]))
+    found = added(residuals, OWN + np.array([12.0, 5.0, 3.0]))
     assert (np.abs(found - ADDED) < 0.3 * np.abs(ADDED)).all()
 
 
-def test_a_tyre_that_cannot_be_stays_one(gap: Gap) -> None:
-    assert np.isnan(gap.corrected(0, np.full(3, np.nan))).all()
+def test_a_tyre_that_cannot_be_stays_one(residuals: Residuals) -> None:
+    assert np.isnan(residuals.corrected(0, np.full(3, np.nan))).all()

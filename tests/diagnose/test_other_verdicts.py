@@ -10,9 +10,9 @@ import numpy as np
 import pytest
 from hidden import Case
 
-from tyrefem.diagnose import Diagnosis
+from tyrefem.diagnose import DiagnosisData
 from tyrefem.diagnose.contenders import contenders, support
-from tyrefem.diagnose.verdict import CONFOUNDED, IDENTIFIED, NO_GAP, UNEXPLAINED, Standing
+from tyrefem.diagnose.verdict import CONFOUNDED, IDENTIFIED, NO_GAP, UNEXPLAINED, RankedSet
 from tyrefem.diagnose.words import verdict_words
 
 NEXT = {
@@ -27,19 +27,19 @@ NEXT = {
 }  # fmt: skip
 
 
-def confounded(d: Diagnosis) -> Diagnosis:
+def confounded(d: DiagnosisData) -> DiagnosisData:
     """As if hot road and sun were 60 : 25, and an idle effect beside the hot road took the rest."""
     by_name = {one.name: one for one in d.candidates}
     hot, sun, idle = by_name["hot-road"], by_name["sun"], by_name["sensor-offset"]
-    fits = {one.members: one.explained for one in d.judgement.standings}
+    fits = {one.members: one.fit for one in d.judgement.ranking}
     sets = [((hot,), 0.6), ((sun,), 0.25), ((hot, idle), 0.14), ((), 0.01)]
     alone = [((one,), 0.0) for one in d.candidates if one not in (hot, sun)]
     found = tuple(
-        Standing(members, float(np.log(probability + 1e-30)), probability, fits.get(members))
+        RankedSet(members, float(np.log(probability + 1e-30)), probability, fits.get(members))
         for members, probability in [*sets, *alone]
     )
     named = {"hot-road": 0.74, "sun": 0.25}
-    judged = replace(d.judgement, verdict=CONFOUNDED, standings=found, credible=found[:3], named=named)
+    judged = replace(d.judgement, verdict=CONFOUNDED, ranking=found, credible=found[:3], named=named)
     return replace(d, judgement=judged, next_experiment=NEXT)
 
 
@@ -67,9 +67,9 @@ def test_confounded_names_the_rivals_and_what_would_decide(case: Case, tmp_path:
 
 def test_unexplained_draws_the_missing_heat_and_names_nothing(case: Case, tmp_path: Path) -> None:
     d = case.diagnosis
-    outside = Standing((), 0.0, 0.97, None, unexplained=True)
+    outside = RankedSet((), 0.0, 0.97, None, outside=True)
     judged = replace(
-        d.judgement, verdict=UNEXPLAINED, standings=(outside, *d.judgement.standings), credible=(outside,), named={}
+        d.judgement, verdict=UNEXPLAINED, standings=(outside, *d.judgement.ranking), credible=(outside,), named={}
     )
     missing = replace(
         d.missing, flux=np.full_like(d.missing.flux, 10.0), flux_sd=np.full_like(d.missing.flux, 50.0),

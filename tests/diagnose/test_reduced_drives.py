@@ -12,15 +12,16 @@ from numpy.typing import NDArray
 
 import tyrefem as tf
 from tyrefem.compare.experiment import experiments
-from tyrefem.diagnose import Diagnosis
-from tyrefem.diagnose.evaluations import Laboratory
-from tyrefem.diagnose.forward_model import FOLLOWED, NOT_FOLLOWED, UNSAID, Bench, Response
+from tyrefem.diagnose import DiagnosisData
+from tyrefem.diagnose.candidates import Candidate, catalogue_candidates
+from tyrefem.diagnose.evaluations import Evaluations
+from tyrefem.diagnose.forward_model import FOLLOWED, NOT_FOLLOWED, UNSAID, DriveResponse, ForwardModel
 from tyrefem.diagnose.multifidelity import Predictions
 from tyrefem.diagnose.reduced_forward import Modes, ReducedDrive
 from tyrefem.diagnose.runs import trial
 from tyrefem.diagnose.sensitivities import responses, unknowns_of
 from tyrefem.diagnose.settings import DEFAULT
-from tyrefem.diagnose.unknowns import Candidate, Unknown, candidates, with_values
+from tyrefem.diagnose.unknowns import Unknown, with_values
 from tyrefem.effects import catalogue
 
 Array = NDArray[np.float64]
@@ -29,20 +30,20 @@ DRIVE = 1
 
 @dataclass(frozen=True)
 class Drives:
-    """The study, its bench, everything that may be unknown, and how every drive responds."""
+    """The study, its forward model, everything that may be unknown, and how every drive responds."""
 
     study: tf.Study
-    bench: Bench
+    model: ForwardModel
     unknowns: tuple[Unknown, ...]
     nuisance: int
-    known: tuple[Response, ...]
+    known: tuple[DriveResponse, ...]
 
     @property
     def modes(self) -> list[Modes]:
         return [one.modes for one in self.known]
 
     def candidate(self, name: str) -> Candidate:
-        return next(one for one in candidates(self.study) if one.name == name)
+        return next(one for one in catalogue_candidates(self.study) if one.name == name)
 
     def drawn(self, seed: int) -> dict[Unknown, float]:
         """Base numbers and sensors drawn from their priors."""
@@ -56,28 +57,28 @@ def drives(tmp_path_factory: pytest.TempPathFactory) -> Drives:
     owner = study(tmp_path_factory.mktemp("reduced"))
     measure(owner, [{"name": "hot-road", "warmer_by": f"{WARMER} delta_degC"}])
     planned = experiments(owner, None, ignore=(), rename=None)
-    bench = Bench(owner, tuple(trial(one, owner) for one in planned))
-    unknowns, nuisance = unknowns_of(owner, set(owner.sensors))
-    return Drives(owner, bench, unknowns, nuisance, responses(Laboratory(bench), unknowns))
+    model = ForwardModel(owner, tuple(trial(one, owner).sampling for one in planned))
+    unknowns, nuisance = unknowns_of(owner, set(owner.sensors), catalogue_candidates(owner))
+    return Drives(owner, model, unknowns, nuisance, responses(Evaluations(model), unknowns))
 
 
 def exact(drives: Drives, values: dict[Unknown, float]) -> Array:
     """Block means by a run on the mesh of the fit with a small time error."""
-    bench = drives.bench
-    close = with_values(bench.driven(bench.coarse, DRIVE), values).replace({"numerics.tolerance": "0.002 delta_degC"})
-    return bench.full(DRIVE, close)
+    model = drives.model
+    close = with_values(model.driven(model.coarse, DRIVE), values).replace({"numerics.tolerance": "0.002 delta_degC"})
+    return model.full(DRIVE, close)
 
 
 @pytest.mark.parametrize("seed", [1, 2])
 def test_base_numbers_and_sensors_change_what_full_runs_say(drives: Drives, seed: int) -> None:
     origin, values = exact(drives, {}), drives.drawn(seed)
     change = exact(drives, values) - origin
-    status, found = drives.bench.reduced(DRIVE, drives.modes[DRIVE], [{}, values])
+    status, found = drives.model.reduced(DRIVE, drives.modes[DRIVE], [{}, values])
     assert status.tolist() == [FOLLOWED, FOLLOWED]
     assert np.abs(change).max() > 1.0
     assert np.abs(found[1] - found[0] - change).max() < 0.02
-    # As it is, the drive reads what the lean simulation says.
-    np.testing.assert_allclose(found[0], drives.bench.predict(DRIVE, {}), atol=1e-12)
+    # As it is, the drive reads what the fixed-step simulation says.
+    np.testing.assert_allclose(found[0], drives.model.predict(DRIVE, {}), atol=1e-12)
 
 
 FOLLOWED_EFFECTS = ("hot-road", "cord-conduction", "gas-mixing", "loss-temperature-law", "pressure-rise", "wet-road")
@@ -86,27 +87,27 @@ FOLLOWED_EFFECTS = ("hot-road", "cord-conduction", "gas-mixing", "loss-temperatu
 @pytest.mark.parametrize("name", FOLLOWED_EFFECTS)
 def test_effects_that_were_never_simulated_are_met(drives: Drives, name: str) -> None:
     open_study = drives.study.replace({"diagnosis.exclude": []})
-    amplitude = next(one for one in candidates(open_study) if one.name == name).amplitudes[0]
+    amplitude = next(one for one in catalogue_candidates(open_study) if one.name == name).amplitudes[0]
     values = {amplitude: 2.0 * amplitude.sd * (1.0 if amplitude.high > 0 else -1.0)}
-    base = drives.bench.base(DRIVE)
+    base = drives.model.base(DRIVE)
     unknowns = (*drives.unknowns, amplitude)
-    own = Modes(drives.bench.response(DRIVE, unknowns)[-1])
+    own = Modes(drives.model.response(DRIVE, unknowns)[-1])
     change = exact(drives, values) - exact(drives, {})
-    status, found = drives.bench.reduced(DRIVE, own, [values])
+    status, found = drives.model.reduced(DRIVE, own, [values])
     assert status.tolist() == [FOLLOWED]
-    lean = drives.bench.predict(DRIVE, values) - drives.bench.blocks(DRIVE, base.grid, base.readings)
-    reduced = found[0] - drives.bench.blocks(DRIVE, base.grid, base.readings)
+    fixed = drives.model.predict(DRIVE, values) - drives.model.blocks(DRIVE, base.grid, base.readings)
+    reduced = found[0] - drives.model.blocks(DRIVE, base.grid, base.readings)
     assert np.abs(change).max() > 0.05
     # No further from the truth than what it stands for, or by a fiftieth of a kelvin.
-    assert np.abs(reduced - change).max() < max(np.abs(lean - change).max(), 0.02)
+    assert np.abs(reduced - change).max() < max(np.abs(fixed - change).max(), 0.02)
 
 
 def test_tangents_are_those_of_simulations(drives: Drives) -> None:
-    bench, at = drives.bench, drives.drawn(3)
+    model, at = drives.model, drives.drawn(3)
     wanted = drives.unknowns[: drives.nuisance]
-    status, found = bench.reduced_jacobian(DRIVE, drives.modes[DRIVE], wanted, at)
+    status, found = model.reduced_jacobian(DRIVE, drives.modes[DRIVE], wanted, at)
     assert status.tolist() == [FOLLOWED]
-    full = bench.jacobian(DRIVE, wanted, at)
+    full = model.jacobian(DRIVE, wanted, at)
     sd = np.array([one.sd for one in wanted])
     assert (np.abs(full * sd).max(axis=0) > 0.5).sum() > 5
     assert np.abs((found - full) * sd).max() < 0.05
@@ -115,39 +116,39 @@ def test_tangents_are_those_of_simulations(drives: Drives) -> None:
 def test_what_no_model_can_follow_or_no_tyre_can_be_is_told_apart(drives: Drives) -> None:
     sun = drives.candidate("sun").amplitudes[0]
     load = next(one for one in drives.unknowns if one.key == "drive.load")
-    status, found = drives.bench.reduced(DRIVE, drives.modes[DRIVE], [{sun: 200.0}, {load: 3.0}, {load: 0.05}])
+    status, found = drives.model.reduced(DRIVE, drives.modes[DRIVE], [{sun: 200.0}, {load: 3.0}, {load: 0.05}])
     assert status.tolist() == [NOT_FOLLOWED, UNSAID, FOLLOWED]
     assert np.isfinite(found).all(axis=1).tolist() == [False, False, True]
     # A step too far says nothing against the model.
-    said = Predictions(Laboratory(drives.bench), drives.modes)
-    assert np.isnan(said.predict([((), {load: 3.0})], [DRIVE])[0][0]).all()
-    said.predict([((), {load: 0.05})], [DRIVE])
-    assert said.certificates[(), DRIVE].good
+    predictions = Predictions(Evaluations(drives.model), drives.modes)
+    assert np.isnan(predictions.predict([((), {load: 3.0})], [DRIVE])[0][0]).all()
+    predictions.predict([((), {load: 0.05})], [DRIVE])
+    assert predictions.certificates[(), DRIVE].good
 
 
 def test_a_set_is_simulated_once_and_then_left_to_the_model(drives: Drives) -> None:
     road = (drives.candidate("hot-road"),)
-    said = Predictions(Laboratory(drives.bench), drives.modes)
+    predictions = Predictions(Evaluations(drives.model), drives.modes)
     points = [{road[0].amplitudes[0]: x} for x in (10.0, 20.0, 30.0)]
     for one in points:
-        said.predict([(road, one)], [DRIVE])
-    assert (said.reduced, said.lean) == (3, 1)
-    certificate = said.certificates[road, DRIVE]
+        predictions.predict([(road, one)], [DRIVE])
+    assert (predictions.reduced, predictions.simulated) == (3, 1)
+    certificate = predictions.certificates[road, DRIVE]
     assert certificate.good
     assert 0 < certificate.error < 0.1
     assert certificate.cases == 1
-    assert said.confirmed(road, points[-1])
-    assert said.certificates[road, DRIVE].cases == 2
+    assert predictions.confirmed(road, points[-1])
+    assert predictions.certificates[road, DRIVE].cases == 2
 
 
 def test_an_effect_that_no_model_follows_stays_with_the_simulation(drives: Drives) -> None:
     sun = (drives.candidate("sun"),)
-    said = Predictions(Laboratory(drives.bench), drives.modes)
+    predictions = Predictions(Evaluations(drives.model), drives.modes)
     point = {sun[0].amplitudes[0]: 300.0}
-    both = [said.predict([(sun, point)], [DRIVE])[0][0] for _ in range(2)]
+    both = [predictions.predict([(sun, point)], [DRIVE])[0][0] for _ in range(2)]
     for one in both:
-        np.testing.assert_array_equal(one, drives.bench.predict(DRIVE, point))
-    assert (said.reduced, said.lean) == (0, 2)
+        np.testing.assert_array_equal(one, drives.model.predict(DRIVE, point))
+    assert (predictions.reduced, predictions.simulated) == (0, 2)
 
 
 def spoiled(modes: Modes) -> Modes:
@@ -156,42 +157,42 @@ def spoiled(modes: Modes) -> Modes:
 
 
 def test_a_model_that_is_off_is_found_out_and_not_used(drives: Drives) -> None:
-    said = Predictions(Laboratory(drives.bench), [spoiled(one) for one in drives.modes])
+    predictions = Predictions(Evaluations(drives.model), [spoiled(one) for one in drives.modes])
     point = drives.drawn(4)
-    found = said.predict([((), point)], [DRIVE])[0][0]
-    assert said.certificates[(), DRIVE].apart > DEFAULT.reduced_allowed
-    np.testing.assert_array_equal(found, drives.bench.predict(DRIVE, point))
+    found = predictions.predict([((), point)], [DRIVE])[0][0]
+    assert predictions.certificates[(), DRIVE].apart > DEFAULT.reduced_allowed
+    np.testing.assert_array_equal(found, drives.model.predict(DRIVE, point))
     wanted = drives.unknowns[:3]
-    J = said.jacobians([((), wanted, point)], [DRIVE])[0][0]
-    np.testing.assert_array_equal(J, drives.bench.jacobian(DRIVE, wanted, point))
+    J = predictions.jacobians([((), wanted, point)], [DRIVE])[0][0]
+    np.testing.assert_array_equal(J, drives.model.jacobian(DRIVE, wanted, point))
 
 
-def diagnosed(drives: Drives, **options: Any) -> Diagnosis:
+def diagnosed(drives: Drives, **options: Any) -> DiagnosisData:
     return drives.study.diagnose(largest=1, looks=1, known=drives.known, rerun=False, **options)
 
 
 @pytest.fixture(scope="module")
-def never(drives: Drives) -> Diagnosis:
+def never(drives: Drives) -> DiagnosisData:
     return diagnosed(drives, reduced="never")
 
 
-def test_the_verdict_is_that_of_simulations_alone(drives: Drives, never: Diagnosis) -> None:
+def test_the_verdict_is_that_of_simulations_alone(drives: Drives, never: DiagnosisData) -> None:
     auto = diagnosed(drives)
     assert auto.verdict == never.verdict == "identified"
     assert [one.key for one in auto.best.members] == [one.key for one in never.best.members] == ["hot-road"]
     for one, x in never.best.values.items():
         assert abs(auto.best.values[one] - x) < 0.15 * max(never.best.sd[one], 1e-9)
     assert auto.judgement.probability == pytest.approx(never.judgement.probability, abs=0.02)
-    said = auto.to_dict()["reduced"]
-    assert said["used"]
-    assert said["points_by_reduced_models"] > said["points_by_lean_simulations"] / 2
-    assert said["worst_whitened"] <= DEFAULT.reduced_allowed
-    assert {one["run"] for one in said["certificates"]} == {"slow", "loaded", "fast"}
+    account = auto.to_dict()["reduced"]
+    assert account["used"]
+    assert account["points_by_reduced_models"] > account["points_by_lean_simulations"] / 2
+    assert account["worst_whitened"] <= DEFAULT.reduced_allowed
+    assert {one["run"] for one in account["certificates"]} == {"slow", "loaded", "fast"}
     assert never.to_dict()["reduced"]["points_by_reduced_models"] == 0
 
 
 def test_where_the_best_fit_is_not_confirmed_everything_is_simulated(
-    drives: Drives, never: Diagnosis, monkeypatch: pytest.MonkeyPatch
+    drives: Drives, never: DiagnosisData, monkeypatch: pytest.MonkeyPatch
 ) -> None:
     monkeypatch.setattr(Predictions, "confirmed", lambda *_: False)
     found = diagnosed(drives)
@@ -207,22 +208,22 @@ def test_a_word_that_is_no_choice_is_refused(drives: Drives) -> None:
 def test_no_modes_where_the_drive_itself_is_not_followed(drives: Drives) -> None:
     radiating = drives.study.replace({"effects": [{"name": "radiation", "emissivity": 0.9}]})
     assert "radiation" in catalogue()
-    bench = Bench(radiating, drives.bench.trials[:1])
-    *_, V = bench.response(0, drives.unknowns[:1])
+    model = ForwardModel(radiating, drives.model.drives[:1])
+    *_, V = model.response(0, drives.unknowns[:1])
     assert V.shape[1] == 0
     one = replace(drives.known[0], modes=Modes(V))
-    said = Predictions(Laboratory(bench), [one.modes])
-    assert np.isfinite(said.predict([((), {})], [0])[0][0]).all()
-    assert (said.reduced, said.lean) == (0, 1)
+    predictions = Predictions(Evaluations(model), [one.modes])
+    assert np.isfinite(predictions.predict([((), {})], [0])[0][0]).all()
+    assert (predictions.reduced, predictions.simulated) == (0, 1)
 
 
 def test_a_drive_that_its_model_cannot_march_is_left_to_simulations(
     drives: Drives, monkeypatch: pytest.MonkeyPatch
 ) -> None:
     monkeypatch.setattr(ReducedDrive, "_marched", lambda self, tyres: ([], []))
-    bench = Bench(drives.study, drives.bench.trials)
-    said = Predictions(Laboratory(bench), drives.modes)
+    model = ForwardModel(drives.study, drives.model.drives)
+    predictions = Predictions(Evaluations(model), drives.modes)
     point = drives.drawn(5)
-    found = said.predict([((), point)], [DRIVE])[0][0]
-    np.testing.assert_array_equal(found, bench.predict(DRIVE, point))
-    assert not said.certificates[(), DRIVE].good
+    found = predictions.predict([((), point)], [DRIVE])[0][0]
+    np.testing.assert_array_equal(found, model.predict(DRIVE, point))
+    assert not predictions.certificates[(), DRIVE].good

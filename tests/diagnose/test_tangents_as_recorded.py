@@ -6,8 +6,9 @@ import numpy as np
 import pytest
 from hidden import Case
 
-from tyrefem.diagnose.forward_model import Bench
-from tyrefem.diagnose.unknowns import Unknown, base_unknowns, candidates
+from tyrefem.diagnose.candidates import catalogue_candidates
+from tyrefem.diagnose.forward_model import ForwardModel
+from tyrefem.diagnose.unknowns import Unknown, base_unknowns
 
 #: Effect -> x of its unknown: where the tangents are taken.
 AT = {
@@ -21,13 +22,13 @@ AT = {
 @pytest.mark.parametrize("present", [list(AT), ["swapped-channels (crown-outer, sidewall-outer)"], ["clock-offset"]])
 def test_tangents_are_the_difference_quotients_of_the_record(case: Case, present: list[str]) -> None:
     study = case.study.replace({"diagnosis.exclude": []})
-    known = {one.key: one.unknowns[0] for one in candidates(study)}
+    known = {one.key: one.unknowns[0] for one in catalogue_candidates(study)}
     at: dict[Unknown, float] = {known[key]: AT[key] for key in present}
-    bench = Bench(study, case.diagnosis.gap.lab.bench.trials)
+    model = ForwardModel(study, tuple(one.sampling for one in case.diagnosis.gap.trials))
     wanted = [one for one in base_unknowns(study) if "tread" in one.key]
     assert wanted
-    found = bench.jacobian(0, wanted, at)
-    quotients = bench.differences(0, wanted, at)
+    found = model.jacobian(0, wanted, at)
+    quotients = model.differences(0, wanted, at)
     scale = np.abs(quotients).max(axis=0)
     assert (scale > 1.0).all(), "K per unit of the logarithm: something to compare"
     assert np.abs(found - quotients).max(axis=0) / scale == pytest.approx(0.0, abs=0.05)

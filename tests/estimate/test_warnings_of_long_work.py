@@ -11,7 +11,7 @@ import pytest
 import tyrefem
 from tyrefem.cli import main
 from tyrefem.diagnose.effort import CASE, check_effort
-from tyrefem.diagnose.forward_model import Bench
+from tyrefem.diagnose.forward_model import ForwardModel
 from tyrefem.diagnose.isolability import planned
 from tyrefem.errors import InputError
 from tyrefem.estimates.work import LongWorkWarning, warn_of
@@ -24,7 +24,7 @@ NASA = "nasa-22x5.5-8pr"
 STOP = "work begins"
 BEGINNINGS = (
     "simulation.run.simulate", "sweep.answering.Answering._make", "sweep.answering.Answering._run",
-    "realtime.certificate.RollingTyre", "diagnose.blind_rates.laboratory", "mechanics.solid.inflation.inflate",
+    "realtime.certificate.RollingTyre", "diagnose.blind_rates.evaluating", "mechanics.solid.inflation.inflate",
 )  # fmt: skip
 
 
@@ -95,7 +95,7 @@ def test_campaigns() -> None:
 
 def test_blind_cases() -> None:
     study = tyrefem.study("hidden-effect")
-    bench = Bench(study, planned(study))
+    bench = ForwardModel(study, planned(study))
     with pytest.warns(LongWorkWarning, match="10,000 blind cases will take about 2 days"):
         check_effort(bench, "10,000 blind cases", 10_000 * CASE, workers=2)
 
@@ -121,8 +121,8 @@ def test_usual_diagnoses_and_campaigns_are_not_long() -> None:
     study = tyrefem.study("hidden-effect")
     with warnings.catch_warnings():
         warnings.simplefilter("error")
-        check_effort(Bench(study, planned(study)), "a diagnosis", 1.0)
-        check_effort(Bench(study, planned(study)), "blind cases", 20 * CASE, workers=2)
+        check_effort(ForwardModel(study, planned(study)), "a diagnosis", 1.0)
+        check_effort(ForwardModel(study, planned(study)), "blind cases", 20 * CASE, workers=2)
         assert next(tyrefem.study("nasa-campaign").campaign().runs())[1] == STOP
 
 

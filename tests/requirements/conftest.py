@@ -8,7 +8,7 @@ from pathlib import Path
 import pytest
 
 from tyrefem.cli import main
-from tyrefem.diagnose.forward_model import Bench
+from tyrefem.diagnose.forward_model import ForwardModel
 
 
 @pytest.fixture(autouse=True)
@@ -43,5 +43,5 @@ def no_simulation(monkeypatch: pytest.MonkeyPatch) -> None:
     def never(*_arguments: object, **_options: object) -> None:
         raise AssertionError("simulated before the study was checked")
 
-    monkeypatch.setattr(Bench, "response", never)
+    monkeypatch.setattr(ForwardModel, "response", never)
     monkeypatch.setattr("tyrefem.simulation.simulate.simulate", never)

@@ -10,10 +10,12 @@ import pytest
 from odd_studies import FITTED, write
 
 import tyrefem as tf
-from tyrefem.diagnose import blind_rates
 from tyrefem.diagnose.blind import cases
 from tyrefem.diagnose.blind_rates import Blind, run_blind
 from tyrefem.reports.blind import picture, save
+
+#: Of the synthetic data.
+COARSE = {"mesh.size": "10 mm"}
 
 
 def _row(held_out: bool, **more: Any) -> dict[str, Any]:
@@ -57,11 +59,9 @@ def test_without_uncertain_numbers_none_is_far_off(here: Path) -> None:
 
 
 def test_a_study_without_sensors_or_runs_is_tested_by_its_contained_air(
-    here: Path, monkeypatch: pytest.MonkeyPatch
+    here: Path,
 ) -> None:
-    monkeypatch.setattr(blind_rates, "own_mesh", lambda: {"mesh.size": "10 mm"})
-    monkeypatch.setattr("tyrefem.diagnose.blind.own_mesh", lambda: {"mesh.size": "10 mm"})
-    found = run_blind(tf.study(write(here / "bare", sensors=False)), 2, 1, here / "out")
+    found = run_blind(tf.study(write(here / "bare", sensors=False)), 2, 1, here / "out", mesh=COARSE)
     assert [row["verdict"] for row in found.rows] != ["failed", "failed"]
     words = " ".join(found.words())
     assert "the contained air is all that is read" in words
@@ -71,8 +71,7 @@ def test_a_study_without_sensors_or_runs_is_tested_by_its_contained_air(
     assert record["notes"] == list(found.notes)
 
 
-def test_one_fitted_run_is_enough(here: Path, monkeypatch: pytest.MonkeyPatch) -> None:
-    monkeypatch.setattr("tyrefem.diagnose.blind.own_mesh", lambda: {"mesh.size": "10 mm"})
-    found = run_blind(tf.study(write(here / "single", measured=[FITTED])), 2, 1, here / "out")
+def test_one_fitted_run_is_enough(here: Path) -> None:
+    found = run_blind(tf.study(write(here / "single", measured=[FITTED])), 2, 1, here / "out", mesh=COARSE)
     assert found.notes == ("No run is held out, so nothing is said of runs that were not fitted.",)
     assert all(row["held_out_rms_K"] == {"before": None, "after": None} for row in found.rows)

@@ -11,10 +11,10 @@ import pytest
 from odd_studies import END, FITTED, HELD_OUT, SENSORS, table, write
 
 import tyrefem as tf
-from tyrefem.diagnose.forward_model import Bench
+from tyrefem.diagnose.candidates import catalogue_candidates
+from tyrefem.diagnose.forward_model import ForwardModel
 from tyrefem.diagnose.isolability import isolability, planned
 from tyrefem.diagnose.next_experiment import drive_gain
-from tyrefem.diagnose.unknowns import candidates
 from tyrefem.errors import InputError
 
 pytestmark = pytest.mark.fast
@@ -80,7 +80,7 @@ def test_a_drive_shorter_than_the_time_between_readings_is_refused(
 
 def test_without_sensors_the_contained_air_alone_is_planned_and_said(here: Path) -> None:
     study = tf.study(write(here / "bare", sensors=False))
-    assert [[one.sensor for one in trial.series] for trial in planned(study)] == [["contained-air"]]
+    assert [[one.sensor for one in trial.sensors] for trial in planned(study)] == [["contained-air"]]
     found = isolability(study)
     assert set(found.table["effect"]) >= {"hot-road", "sun"}
     assert "the contained air is all that is read" in " ".join(found.words())
@@ -88,7 +88,7 @@ def test_without_sensors_the_contained_air_alone_is_planned_and_said(here: Path)
 
 
 def test_where_nothing_is_identifiable_no_runs_are_recommended(here: Path) -> None:
-    # Standing in the shade at ambient temperature: whatever warms a rolling tyre is not there to be seen.
+    # RankedSet in the shade at ambient temperature: whatever warms a rolling tyre is not there to be seen.
     study = tf.study(write(here / "standing", sensors=False, rivals=["tread-slip"], drive={"speed": "0 mph"}))
     found = isolability(study)
     assert not found.table["identifiable_at_usual"].any()
@@ -97,8 +97,8 @@ def test_where_nothing_is_identifiable_no_runs_are_recommended(here: Path) -> No
 
 def test_without_sensors_the_next_drive_is_judged_by_the_contained_air(here: Path) -> None:
     study = tf.study(write(here / "bare", sensors=False, measured=[FITTED]))
-    bench = Bench(study, planned(study))
-    warmer, brighter = ({one.amplitudes[0]: one.amplitudes[0].sd} for one in candidates(study)[:2])
+    bench = ForwardModel(study, planned(study))
+    warmer, brighter = ({one.amplitudes[0]: one.amplitudes[0].sd} for one in catalogue_candidates(study)[:2])
     found = drive_gain(bench, "half the speed", {"speed": 0.5}, warmer, brighter)
     assert found is not None
     assert found["sensor"] == "contained-air"

@@ -11,8 +11,9 @@ import numpy as np
 import pandas as pd
 
 import tyrefem as tf
-from tyrefem.diagnose.blind import Case, measured
-from tyrefem.diagnose.unknowns import base_unknowns, candidates, sensor_unknowns
+from tyrefem.diagnose.blind import BlindCase, measured
+from tyrefem.diagnose.candidates import catalogue_candidates
+from tyrefem.diagnose.unknowns import base_unknowns, sensor_unknowns
 
 HIDDEN, AMPLITUDE = "gas-mixing", 1.6
 SEED = 20261121
@@ -24,13 +25,13 @@ HEADER = (
 )
 
 
-def truth(study: tf.Study) -> Case:
+def truth(study: tf.Study) -> BlindCase:
     """The hidden effect, with base numbers and sensors drawn from their priors."""
     rng = np.random.default_rng(SEED)
     unknowns = (*base_unknowns(study), *sensor_unknowns(study, set(study.sensors)))
     values = {one: float(rng.normal(0.0, 0.7 * one.sd)) for one in unknowns}
-    hidden = next(one for one in candidates(study) if one.name == HIDDEN)
-    return Case(0, SEED, "one", (hidden,), values | {hidden.amplitudes[0]: AMPLITUDE})
+    hidden = next(one for one in catalogue_candidates(study) if one.name == HIDDEN)
+    return BlindCase(0, SEED, "one", (hidden,), values | {hidden.amplitudes[0]: AMPLITUDE})
 
 
 def main() -> None:

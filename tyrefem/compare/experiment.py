@@ -64,7 +64,7 @@ def experiments(
     InputError : no run; an entry names a run that the table lacks; columns that are no sensors of the study; a
         column to rename or to ignore that no table has.
     """
-    given = _Given(dict(rename or {}), tuple(ignore))
+    given = ColumnNames(dict(rename or {}), tuple(ignore))
     entries = list(study.measured) if table is None else []
     runs: list[MeasuredRun] = []
     columns: list[str] = []
@@ -108,7 +108,7 @@ def _is_file(table: Any, file: str | Path) -> bool:
     return isinstance(table, str | Path) and Path(table).absolute() == Path(file).absolute()
 
 
-def _whole(table: Any, given: _Given) -> MeasuredTable:
+def _whole(table: Any, given: ColumnNames) -> MeasuredTable:
     """A file's or a frame's runs."""
     if is_frame(table):
         return frame_table(table, rename=given.rename, ignore=given.ignore)
@@ -125,8 +125,8 @@ def _no_table(table: object) -> InputError:
 
 
 @dataclass(frozen=True)
-class _Given:
-    """What the caller says of all tables: columns to rename and to ignore."""
+class ColumnNames:
+    """What the caller says of all tables: ``rename``, column -> sensor, and columns to ``ignore``."""
 
     rename: Mapping[str, str]
     ignore: tuple[str, ...]
@@ -139,7 +139,7 @@ class _Given:
                 raise no_column(missing, purpose, dict.fromkeys(parts(name)[0] for name in columns))
 
 
-def _table(entry: MeasuredEntry, given: _Given, at_hand: dict[str, MeasuredTable]) -> MeasuredTable:
+def _table(entry: MeasuredEntry, given: ColumnNames, at_hand: dict[str, MeasuredTable]) -> MeasuredTable:
     """An entry's table, read once; its own names of columns must be there, those given for all tables may be."""
     rename, ignore = {**entry.rename, **given.rename}, (*entry.ignore, *given.ignore)
     key = repr((entry.table, entry.time_offset, rename, ignore))

@@ -9,11 +9,11 @@ import importlib
 from typing import TYPE_CHECKING, Any
 
 if TYPE_CHECKING:
-    from tyrefem.diagnose.diagnosis import Diagnosis
+    from tyrefem.diagnose.diagnosis import DiagnosisData
     from tyrefem.diagnose.workflow import diagnose
 
-__all__ = ["Diagnosis", "diagnose"]
-_MODULES = {"Diagnosis": "diagnosis", "diagnose": "workflow"}
+__all__ = ["DiagnosisData", "diagnose"]
+_MODULES = {"DiagnosisData": "diagnosis", "diagnose": "workflow"}
 
 
 def __getattr__(name: str) -> Any:

@@ -9,7 +9,7 @@ from typing import Any
 
 import numpy as np
 
-from tyrefem.diagnose.linearised import Gap
+from tyrefem.diagnose.residuals import Residuals
 from tyrefem.diagnose.unknowns import Unknown, with_values
 from tyrefem.inputs.changes import scaled, value_at
 from tyrefem.inputs.study import StudyData
@@ -27,24 +27,23 @@ class Change:
 
 
 def changes(
-    gap: Gap,
+    residuals: Residuals,
     values: Mapping[Unknown, float],
     sd: Mapping[Unknown, float],
     missing: Iterable[Unknown],
-    runs: Sequence[str],
 ) -> tuple[Change, ...]:
     """What a fit changes: what is ``missing`` first, then the corrections of base numbers and sensors that matter."""
-    fitted = [name for name, one in zip(runs, gap.lab.bench.trials, strict=True) if not one.hold_out]
-    source = f"diagnosis of {gap.lab.bench.study.name}, fitted to {', '.join(fitted)}"
+    fitted = [residuals.trials[number].name for number in residuals.fitted]
+    source = f"diagnosis of {residuals.study.name}, fitted to {', '.join(fitted)}"
     own = set(missing)
     found = []
     for unknown in sorted(values, key=lambda one: one not in own):
         if unknown in own:
             found.append(Change(unknown, values[unknown], sd[unknown], True, source))
             continue
-        column = gap.unknowns.index(unknown)
-        moved = max(float(np.abs(J[:, column] * values[unknown]).max()) for J in gap.jacobians)
-        if moved > gap.settings.negligible:
+        column = residuals.unknowns.index(unknown)
+        moved = max(float(np.abs(J[:, column] * values[unknown]).max()) for J in residuals.sensitivities.jacobians)
+        if moved > residuals.settings.negligible:
             found.append(Change(unknown, values[unknown], sd[unknown], False, source))
     return tuple(found)
 

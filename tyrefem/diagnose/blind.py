@@ -1,26 +1,24 @@
-"""Blind tests: hide effects in made-up data for a study's sensors and runs, and see what the diagnosis says."""
+"""Blind tests: hide effects in synthetic data for a study's sensors and runs, and see what the diagnosis says."""
 
 from __future__ import annotations
 
 import itertools
 import math
-from collections.abc import Sequence
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, field
 from typing import Any
 
 import numpy as np
 from numpy.typing import NDArray
 
-from tyrefem.diagnose.diagnosis import Diagnosis
-from tyrefem.diagnose.evaluations import laboratory
-from tyrefem.diagnose.evidence import Members
-from tyrefem.diagnose.forward_model import Bench, Response
-from tyrefem.diagnose.isolability import MARGIN, margins, planned, rivals_of
-from tyrefem.diagnose.linearised import Gap
-from tyrefem.diagnose.search import Prior
-from tyrefem.diagnose.sensitivities import gap_of
-from tyrefem.diagnose.synthetic import HotRing, Lamp, Logger, own_mesh, record
-from tyrefem.diagnose.unknowns import Candidate, Unknown, base_unknowns, candidates, sensor_unknowns, with_values
+from tyrefem.diagnose.candidates import Candidate, Members, SetPrior, catalogue_candidates
+from tyrefem.diagnose.diagnosis import DiagnosisData
+from tyrefem.diagnose.evaluations import Evaluations, evaluating
+from tyrefem.diagnose.forward_model import DriveResponse, ForwardModel
+from tyrefem.diagnose.isolability import MARGIN, competitors_of, layout_sensitivities, margins, planned
+from tyrefem.diagnose.linear_model import LinearModel
+from tyrefem.diagnose.synthetic import HotRing, Lamp, Logger, record, synthetic_mesh
+from tyrefem.diagnose.unknowns import Unknown, base_unknowns, sensor_unknowns, with_values
 from tyrefem.diagnose.workflow import diagnose
 from tyrefem.effects import Effect
 from tyrefem.inputs.study import StudyData
@@ -32,12 +30,12 @@ KINDS = {"one": 0.55, "two": 0.15, "none": 0.15, "outside": 0.15}
 
 
 @dataclass(frozen=True, eq=False)
-class Case:
+class BlindCase:
     """What is hidden in a case.
 
     Parameters
     ----------
-    number, seed, kind. hidden : the candidates; values : every unknown's true x. stranger : an effect of no catalogue,
+    number, seed, kind. hidden : the candidates; values : every unknown's x. uncatalogued : an effect of no catalogue,
     with the station (m) where it heats. ``loud`` : the sensor that is far out of place in a case of kind "none".
     """
 
@@ -46,23 +44,23 @@ class Case:
     kind: str
     hidden: Members
     values: dict[Unknown, float]
-    stranger: Effect | None = None
+    uncatalogued: Effect | None = None
     station: float = math.nan
     loud: str = ""
 
     @property
     def names(self) -> list[str]:
         """The hidden effects in words."""
-        return [one.key for one in self.hidden] or ([] if self.stranger is None else [type(self.stranger).name])
+        return [one.key for one in self.hidden] or ([] if self.uncatalogued is None else [type(self.uncatalogued).name])
 
 
-def cases(study: StudyData, count: int, seed: int) -> list[Case]:
+def cases(study: StudyData, count: int, seed: int) -> list[BlindCase]:
     """So many cases: kinds in fixed shares, every candidate effect in turn, amplitudes from barely visible to strong.
 
     Variants of an effect (sensors) are drawn; amplitudes are log-uniform from 0.25 to 3 prior standard deviations.
     A study that may lack fewer than two physical effects has one where two are due.
     """
-    found = candidates(study)
+    found = catalogue_candidates(study)
     names = sorted({one.name for one in found})
     physical = [name for name in names if next(one for one in found if one.name == name).effect.family != "measurement"]
     order = np.random.default_rng([seed, 0]).permutation(len(names))
@@ -76,14 +74,14 @@ def cases(study: StudyData, count: int, seed: int) -> list[Case]:
         base = (*base_unknowns(study), *sensor_unknowns(study, set(study.sensors)))
         values = {one: _within(one, rng.normal(0.0, one.sd)) for one in base}
         hidden: list[Candidate] = []
-        stranger, station, loud = None, math.nan, ""
+        uncatalogued, station, loud = None, math.nan, ""
         if kind == "one":
             hidden = [_variant(found, next(turn), rng)]
         elif kind == "two":
             pair = rng.choice(len(physical), 2, replace=False)
             hidden = [_variant(found, physical[i], rng) for i in pair]
         elif kind == "outside":
-            stranger, station = _stranger(study, rng)
+            uncatalogued, station = _uncatalogued(study, rng)
         elif rng.random() < 0.5 and study.uncertainty:
             # Wrong numbers dressed up as physics: one base number at two and a half standard deviations.
             one = base[int(rng.integers(len(study.uncertainty)))]
@@ -96,7 +94,7 @@ def cases(study: StudyData, count: int, seed: int) -> list[Case]:
                     rng.choice([-1.0, 1.0]) if unknown.low < 0 < unknown.high else (1.0 if unknown.high > 0 else -1.0)
                 )
                 values[unknown] = _within(unknown, side * size)
-        result.append(Case(number, seed, kind, tuple(hidden), values, stranger, station, loud))
+        result.append(BlindCase(number, seed, kind, tuple(hidden), values, uncatalogued, station, loud))
     return result
 
 
@@ -120,7 +118,7 @@ def _variant(found: Sequence[Candidate], name: str, rng: np.random.Generator) ->
     return own[int(rng.integers(len(own)))]
 
 
-def _stranger(study: StudyData, rng: np.random.Generator) -> tuple[Effect, float]:
+def _uncatalogued(study: StudyData, rng: np.random.Generator) -> tuple[Effect, float]:
     length = study.section.line.length
     width = rng.uniform(0.12, 0.25) * length
     start = rng.uniform(0.0, length - width)
@@ -148,25 +146,27 @@ def _stranger(study: StudyData, rng: np.random.Generator) -> tuple[Effect, float
     return lamp, start + width / 2
 
 
-def measured(study: StudyData, case: Case, logger: Logger | None = None) -> list[MeasuredRun]:
-    """The data of a case: the truth simulated run by run, and recorded."""
-    logger = logger or Logger()
-    extra = () if case.stranger is None else (case.stranger,)
+def measured(
+    study: StudyData, case: BlindCase, logger: Logger | None = None, mesh: Mapping[str, Any] | None = None
+) -> list[MeasuredRun]:
+    """The data of a case: what is hidden, simulated run by run and recorded; ``mesh``: default `synthetic_mesh`."""
+    logger, mesh = logger or Logger(), synthetic_mesh() if mesh is None else mesh
+    extra = () if case.uncatalogued is None else (case.uncatalogued,)
     runs = []
-    for number, trial in enumerate(planned(study)):
+    for number, drive in enumerate(planned(study)):
         rng = np.random.default_rng([case.seed, case.number + 1, number + 1])
-        driven = study.with_drive(trial.drive) if trial.drive else study
+        driven = study.with_drive(drive.drive) if drive.drive else study
         # A load that is off by 2 % is off in every run, whatever each run's load.
-        truth = with_values(driven, case.values).replace(own_mesh())
-        runs.append(record(truth, trial.name, logger, rng, extra))
+        hidden = with_values(driven, case.values).replace(mesh)
+        runs.append(record(hidden, drive.name, logger, rng, extra))
     return runs
 
 
 @dataclass(frozen=True, eq=False)
-class Outcome:
+class BlindOutcome:
     """What the diagnosis said of a case."""
 
-    case: Case
+    case: BlindCase
     identifiable: bool
     diagnosis: dict[str, Any] = field(default_factory=dict)
 
@@ -184,47 +184,53 @@ class Outcome:
         }
 
 
-def identifiable(gap: Gap, study: StudyData, case: Case) -> bool:
-    """Would the linear model, without noise, put the hidden effects ahead of every rival by the margin?
+def identifiable(evaluations: Evaluations, known: Sequence[DriveResponse], case: BlindCase) -> bool:
+    """Would the linear model, without noise, put the hidden effects ahead of every other explanation by the margin?
 
     Found from the response of the study itself (no data, no diagnosis), simulated at the hidden amplitude.
     """
     if not case.hidden:
         return False
-    own = {one: case.values[one] for member in case.hidden for one in (*member.amplitudes, *member.presence)}
-    bench = gap.lab.bench
+    hidden = {one: case.values[one] for member in case.hidden for one in (*member.amplitudes, *member.presence)}
+    model, sensitive = evaluations.model, layout_sensitivities(evaluations, known)
     signal = np.concatenate(
-        [bench.trials[i].whitened(bench.predict(i, own) - bench.predict(i, {})) for i in gap.fitted]
+        [
+            model.drives[number].whitened(model.predict(number, hidden) - model.predict(number, {}))
+            for number in sensitive.fitted
+        ]
     )
-    found = candidates(study)
-    prior = Prior(found, study.card.diagnosis.effects_expected)
-    linear = gap.linear(gap.fitted)
-    ahead = margins(linear, signal, case.hidden, rivals_of(case.hidden, found), prior)
-    return min(ahead) >= MARGIN
+    found = catalogue_candidates(model.study)
+    prior = SetPrior(found, model.study.card.diagnosis.effects_expected, model.settings.size_shares)
+    linear = LinearModel(sensitive.design(sensitive.fitted), signal)
+    return min(margins(linear, signal, case.hidden, competitors_of(case.hidden, found), prior)) >= MARGIN
 
 
-def run_case(study: StudyData, case: Case, known: Sequence[Response], reduced: str = "auto") -> Outcome:
+def run_case(
+    study: StudyData,
+    case: BlindCase,
+    known: Sequence[DriveResponse],
+    reduced: str = "auto",
+    mesh: Mapping[str, Any] | None = None,
+) -> BlindOutcome:
     """Make the data of a case, diagnose them, and put both side by side.
 
-    ``known``: responses of the planned runs; ``reduced`` as of `diagnose`.
+    ``known``: responses of the planned runs; ``reduced`` as of `diagnose`; ``mesh`` of the data, see `measured`.
     """
-    with laboratory(Bench(study, planned(study))) as lab:
-        able = identifiable(gap_of(lab, known=known), study, case)
-    data = measured(study, case)
+    with evaluating(ForwardModel(study, planned(study))) as evaluations:
+        able = identifiable(evaluations, known, case)
+    data = measured(study, case, mesh=mesh)
     found = diagnose(study, data, largest=2, known=known, rerun=False, looks=1, reduced=reduced)
-    return Outcome(case, able, said(found))
+    return BlindOutcome(case, able, outcome_row(found))
 
 
-def said(found: Diagnosis) -> dict[str, Any]:
+def outcome_row(found: DiagnosisData) -> dict[str, Any]:
     """What a diagnosis says, for a row of ``blind.json``."""
     judgement = found.judgement
     best = judgement.best
     named = [one.key for one in best.members] if found.verdict == "identified" else []
     chosen: set[str] = set()
     for one in judgement.credible:
-        chosen |= (
-            {"not in the catalogue"} if one.unexplained else {member.key for member in one.members} or {"no effect"}
-        )
+        chosen |= {"not in the catalogue"} if one.outside else {member.key for member in one.members} or {"no effect"}
     return {
         "verdict": found.verdict,
         "named": named,
@@ -241,6 +247,9 @@ def said(found: Diagnosis) -> dict[str, Any]:
             "after": found.rms(after=True, held_out=True),
         },
         "noise_K": found.noise,
-        "points": {"reduced": found.gap.predicted.reduced, "lean": found.gap.predicted.lean},
+        "points": {
+            "reduced": found.predictions["points_by_reduced_models"],
+            "lean": found.predictions["points_by_lean_simulations"],
+        },
         "seconds": found.seconds,
     }

@@ -5,22 +5,22 @@ from __future__ import annotations
 import hashlib
 import json
 import math
-from collections.abc import Callable, Iterable, Sequence
+from collections.abc import Callable, Iterable, Mapping, Sequence
 from concurrent.futures import as_completed
-from dataclasses import dataclass
+from dataclasses import dataclass, field
 from functools import cached_property
 from itertools import pairwise
 from pathlib import Path
 from typing import Any
 
 import tyrefem
-from tyrefem.diagnose.blind import Outcome, cases, run_case
+from tyrefem.diagnose.blind import BlindOutcome, cases, run_case
 from tyrefem.diagnose.effort import CASE, SENSITIVITIES, check_effort
-from tyrefem.diagnose.evaluations import ProgressStore, laboratory
-from tyrefem.diagnose.forward_model import Bench, Response
+from tyrefem.diagnose.evaluations import ProgressStore, evaluating
+from tyrefem.diagnose.forward_model import DriveResponse, ForwardModel
 from tyrefem.diagnose.isolability import candidates_of, layout_notes, planned
 from tyrefem.diagnose.sensitivities import responses, unknowns_of
-from tyrefem.diagnose.synthetic import own_mesh
+from tyrefem.diagnose.synthetic import synthetic_mesh
 from tyrefem.errors import InputError
 from tyrefem.inputs.study import StudyData
 from tyrefem.interruption import held_back, keeping
@@ -33,7 +33,7 @@ from tyrefem.variants.answer_store import PROGRESS
 Row = dict[str, Any]
 #: What a blind test needs of a study.
 NEEDS = Requirements("a blind test", fitted=True)
-#: A stranger's place is right when the missing heat is found within this part of the half meridian.
+#: The place of an uncatalogued cause is right when the missing heat is found within this part of the half meridian.
 NEAR = 1.5 / 7
 #: Amplitude, in prior standard deviations, from which an effect counts as strong.
 STRONG = 1.0
@@ -75,12 +75,14 @@ class Rate:
 
 @dataclass(frozen=True, eq=False)
 class Blind:
-    """Finished cases of a blind test and their rates; ``notes``: what the study has not, in sentences."""
+    """Finished cases of a blind test and their rates; ``notes``: what the study has not, in sentences;
+    ``mesh``: of the synthetic data."""
 
     study: str
     seed: int
     rows: tuple[Row, ...]
     notes: tuple[str, ...] = ()
+    mesh: Mapping[str, Any] = field(default_factory=dict)
 
     def _of(self, kind: str) -> list[Row]:
         return [row for row in self.rows if row["kind"] == kind]
@@ -156,7 +158,7 @@ class Blind:
         return {
             "study": self.study,
             "seed": self.seed,
-            "mesh_of_the_truth": own_mesh(),
+            "mesh_of_the_truth": dict(self.mesh) or synthetic_mesh(),
             "cases": list(self.rows),
             "rates": {name: rate.to_dict() for name, rate in self.rates.items()},
             "reliability": self.reliability,
@@ -203,21 +205,40 @@ FAILED: Row = {
     "verdict": "failed", "named": [], "set": [], "best": "", "probability": 0.0, "missing_station_m": math.nan,
     "rms_K": {}, "held_out_rms_K": {"before": 0.0, "after": math.inf}, "noise_K": 0.0,
 }  # fmt: skip
-_KNOWN: list[tuple[StudyData, tuple[Response, ...], str]] = []
 
 
-def _install(study: StudyData, known: tuple[Response, ...], reduced: str) -> None:
-    _KNOWN[:] = [(study, known, reduced)]
+@dataclass(frozen=True, eq=False)
+class BlindTest:
+    """What all cases share: the study, how many there are, the seed, responses, and how data are made and diagnosed."""
+
+    study: StudyData
+    count: int
+    seed: int
+    known: tuple[DriveResponse, ...]
+    reduced: str
+    mesh: Mapping[str, Any]
 
 
-def _case(number: int, count: int, seed: int) -> Row:
-    study, known, reduced = _KNOWN[0]
-    case = cases(study, count, seed)[number]
+#: Of a worker process: the test that its cases belong to.
+_TEST: list[BlindTest] = []
+
+
+def _install(test: BlindTest) -> None:
+    _TEST[:] = [test]
+
+
+def _case_in_worker(number: int) -> Row:
+    return _case(_TEST[0], number)
+
+
+def _case(test: BlindTest, number: int) -> Row:
+    study = test.study
+    case = cases(study, test.count, test.seed)[number]
     try:
-        row = run_case(study, case, known, reduced).to_dict()
+        row = run_case(study, case, test.known, test.reduced, test.mesh).to_dict()
     except InputError as error:
         # A diagnosis that breaks down is a wrong one.
-        row = {**Outcome(case, identifiable=True).to_dict(), **FAILED, "reason": str(error)}
+        row = {**BlindOutcome(case, identifiable=True).to_dict(), **FAILED, "reason": str(error)}
     plain: Row = jsonable({**row, "station_m": case.station, "length_m": study.section.line.length})
     return plain
 
@@ -231,21 +252,24 @@ def run_blind(
     tick: Callable[[int], None] | None = None,
     *,
     reduced: str = "auto",
+    mesh: Mapping[str, Any] | None = None,
 ) -> Blind:
     """Run cases side by side; every finished one is kept in ``folder``/cases.
 
-    Cases already there (same study, count, seed, ``reduced`` and version) are not run again. ``reduced`` as of
-    `tyrefem.diagnose.diagnose`; all cases share what the reduced models are made of.
+    Cases already there (same study, count, seed, ``reduced``, ``mesh`` and version) are not run again. ``reduced`` as
+    of `tyrefem.diagnose.diagnose`; all cases share what the reduced models are made of. ``mesh``: of the synthetic
+    data, as changes of a study by dotted names; default: `synthetic_mesh`.
 
     Raises
     ------
     InputError : as `isolability`.
     """
     NEEDS.check(study)
-    candidates_of(study)
-    trials = planned(study)
-    said = [jsonable(dict(study.data)), count, seed, reduced, tyrefem.__version__]
-    text = json.dumps(said, sort_keys=True, default=str)
+    candidates = candidates_of(study)
+    drives = planned(study)
+    mesh = synthetic_mesh() if mesh is None else mesh
+    decisive = [jsonable(dict(study.data)), count, seed, reduced, dict(mesh), tyrefem.__version__]
+    text = json.dumps(decisive, sort_keys=True, default=str)
     tag = hashlib.sha256(text.encode()).hexdigest()[:12]
     store = folder / "cases"
     store.mkdir(parents=True, exist_ok=True)
@@ -261,33 +285,32 @@ def run_blind(
 
     with keeping(kept):
         if left:
-            bench = Bench(study, trials)
-            check_effort(bench, f"{len(left):,} blind cases", SENSITIVITIES + len(left) * CASE, workers)
-            progress.open(bench)
-            with laboratory(bench, workers, progress) as lab:
-                known = responses(lab, unknowns_of(study, [*study.sensors, GAS])[0])
-            for number, row in _answers((study, known, reduced), left, count, seed, workers):
+            model = ForwardModel(study, drives)
+            check_effort(model, f"{len(left):,} blind cases", SENSITIVITIES + len(left) * CASE, workers)
+            progress.open(model)
+            with evaluating(model, workers, progress) as evaluations:
+                unknowns, _ = unknowns_of(study, [*study.sensors, GAS], candidates)
+                known = responses(evaluations, unknowns)
+            test = BlindTest(study, count, seed, known, reduced, mesh)
+            for number, row in _answers(test, left, workers):
                 rows[number] = row
                 with held_back(), atomic_path(store / f"{tag}-{number:05d}.json") as temporary:
                     temporary.write_text(json.dumps(row), encoding="utf-8")
                 if tick:
                     tick(len(rows))
         notes = layout_notes(study)
-        if not any(one.hold_out for one in trials):
+        if not any(one.hold_out for one in drives):
             notes += ("No run is held out, so nothing is said of runs that were not fitted.",)
     progress.clear()
-    return Blind(study.name, seed, tuple(rows[number] for number in sorted(rows)), notes)
+    return Blind(study.name, seed, tuple(rows[number] for number in sorted(rows)), notes, mesh)
 
 
-def _answers(
-    known: tuple[StudyData, tuple[Response, ...], str], numbers: Sequence[int], count: int, seed: int, workers: int
-) -> Iterable[tuple[int, Row]]:
+def _answers(test: BlindTest, numbers: Sequence[int], workers: int) -> Iterable[tuple[int, Row]]:
     if workers <= 1:
-        _install(*known)
         for number in numbers:
-            yield number, _case(number, count, seed)
+            yield number, _case(test, number)
         return
-    with processes(workers, _install, *known) as pool:
-        futures = {pool.submit(_case, number, count, seed): number for number in numbers}
+    with processes(workers, _install, test) as pool:
+        futures = {pool.submit(_case_in_worker, number): number for number in numbers}
         for future in as_completed(futures):
             yield futures[future], future.result()

@@ -10,56 +10,59 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 
 from tyrefem.brief import Brief
+from tyrefem.diagnose.candidates import SetPrior
 from tyrefem.diagnose.numbers import percent
-from tyrefem.diagnose.residuals import gap_table, rms
-from tyrefem.diagnose.search import Prior
+from tyrefem.diagnose.residual_tables import residual_table, rms
 
 if TYPE_CHECKING:
     import pandas as pd
 
     from tyrefem.diagnose.amend import Change
-    from tyrefem.diagnose.fitted import Explained
-    from tyrefem.diagnose.linearised import Gap
-    from tyrefem.diagnose.missing_heat import MissingHeat
-    from tyrefem.diagnose.unknowns import Candidate
+    from tyrefem.diagnose.candidates import Candidate
+    from tyrefem.diagnose.fits import FittedSet
+    from tyrefem.diagnose.missing_heat import UnknownHeat
+    from tyrefem.diagnose.residuals import Residuals
     from tyrefem.diagnose.verdict import Judgement
     from tyrefem.inputs.study import StudyData
 
 
 @dataclass(frozen=True, eq=False)
-class Diagnosis(Brief):
+class DiagnosisData(Brief):
     """What a diagnosis found.
 
     Parameters
     ----------
     original : the study that was held against the data. study : the amended one, ready to save and run.
-    judgement : verdict, sets with their probabilities, reasons. gap : data, base predictions, tangents.
+    judgement : verdict, sets with their probabilities, reasons. gap : measured - computed, and how it
+        changes with every unknown.
     null, best : the fits without any effect and with the most probable set. missing : heat of unknown origin.
     changes : what ``study`` has that ``original`` has not. before, after : trial -> block means, degC.
     next_experiment : what would tell the credible sets apart; empty where nothing needs telling.
-    seconds : wall time. again : what was found when the amended study was held against the same data.
+    predictions : what predicted for the fits, with every certificate of a reduced model. seconds : wall time.
+    again : what was found when the amended study was held against the same data.
     """
 
     original: StudyData
     study: StudyData
     judgement: Judgement
-    gap: Gap
+    gap: Residuals
     candidates: tuple[Candidate, ...]
-    null: Explained
-    best: Explained
-    missing: MissingHeat
+    null: FittedSet
+    best: FittedSet
+    missing: UnknownHeat
     changes: tuple[Change, ...]
     before: dict[int, Any]
     after: dict[int, Any]
     next_experiment: Mapping[str, Any]
+    predictions: Mapping[str, Any]
     seconds: float
-    again: Diagnosis | None = None
+    again: DiagnosisData | None = None
 
     def _title(self) -> str:
         return f"of {self.original.name}: {self.verdict}"
 
     def _facts(self) -> Mapping[str, Any]:
-        sets = [f"{one.key} ({percent(one.probability)})" for one in self.judgement.standings[:3]]
+        sets = [f"{one.key} ({percent(one.probability)})" for one in self.judgement.ranking[:3]]
         facts: dict[str, Any] = {
             "most probable": ", ".join(sets),
             "reasons": " ".join(self.judgement.reasons),
@@ -77,7 +80,7 @@ class Diagnosis(Brief):
         }
 
     @property
-    def looks(self) -> tuple[Diagnosis, ...]:
+    def looks(self) -> tuple[DiagnosisData, ...]:
         """This diagnosis and those of what was left."""
         return (self, *(self.again.looks if self.again else ()))
 
@@ -89,17 +92,17 @@ class Diagnosis(Brief):
     @functools.cached_property
     def where(self) -> pd.DataFrame:
         """Disagreement of the original study with the data by run, sensor and stretch of time."""
-        return gap_table(self.gap, self.before)
+        return residual_table(self.gap, self.before)
 
     @functools.cached_property
     def where_after(self) -> pd.DataFrame:
         """The same for the amended study, at the same stretches of time."""
-        return gap_table(self.gap, self.after, self.before)
+        return residual_table(self.gap, self.after, self.before)
 
     @functools.cached_property
-    def prior(self) -> Prior:
+    def prior(self) -> SetPrior:
         """ln of the prior probability of a set."""
-        return Prior(self.candidates, self.original.card.diagnosis.effects_expected, self.gap.settings.size_shares)
+        return SetPrior(self.candidates, self.original.card.diagnosis.effects_expected, self.gap.settings.size_shares)
 
     def rms(self, *, after: bool, held_out: bool) -> float:
         """Root mean square of measured - computed, K."""
@@ -109,6 +112,6 @@ class Diagnosis(Brief):
     @property
     def noise(self) -> float:
         """Root mean square of the readings' noise, K."""
-        series = [one for each in self.gap.lab.bench.trials for one in each.series]
-        weights = np.array([len(one.times) for one in series], dtype=float)
-        return float(np.sqrt(np.average([one.noise**2 for one in series], weights=weights)))
+        sensors = [readings for trial in self.gap.trials for readings in trial.sensors]
+        weights = np.array([len(readings.times) for readings in sensors], dtype=float)
+        return float(np.sqrt(np.average([readings.noise**2 for readings in sensors], weights=weights)))

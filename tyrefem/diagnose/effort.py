@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from tyrefem.diagnose.forward_model import Bench
+from tyrefem.diagnose.forward_model import ForwardModel
 from tyrefem.estimates import work as estimate
 from tyrefem.simulation.estimate import RunEstimate
 
@@ -13,7 +13,7 @@ FITTED, OWN, CYCLES = 40.0, 2.0, 15.0
 SENSITIVITIES, CASE = 0.4, 0.6
 
 
-def check_effort(bench: Bench, what: str, share: float, workers: int = 1) -> None:
+def check_effort(model: ForwardModel, what: str, share: float, workers: int = 1) -> None:
     """Refuse simulations that do not fit in memory, and warn of long work.
 
     Parameters
@@ -25,9 +25,9 @@ def check_effort(bench: Bench, what: str, share: float, workers: int = 1) -> Non
     InputError : as `RunEstimate.check`.
     """
     seconds = 0.0
-    side_by_side = max(min(workers, len(bench.trials)), 1)
-    for number in range(len(bench.trials)):
-        own, fitted = (RunEstimate.of(bench.driven(study, number)) for study in (bench.study, bench.coarse))
+    side_by_side = max(min(workers, len(model.drives)), 1)
+    for number in range(len(model.drives)):
+        own, fitted = (RunEstimate.of(model.driven(study, number)) for study in (model.study, model.coarse))
         own.check(side_by_side)
         seconds += FITTED * fitted.march.time + OWN * own.march.time + CYCLES * own.mechanics.time
     estimate.warn_of(seconds * share / max(workers, 1), what)

@@ -1,7 +1,4 @@
-"""Finished simulations of a diagnosis, kept on disk, so that an interrupted one takes them up again.
-
-Where the diagnosis simulates: a bench's answers, in this process or in several.
-"""
+"""Evaluations of the forward model, in this process or in several; kept on disk for an interrupted diagnosis."""
 
 from __future__ import annotations
 
@@ -15,22 +12,22 @@ from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
 from tyrefem.brief import Brief
-from tyrefem.diagnose.forward_model import Bench
+from tyrefem.diagnose.forward_model import ForwardModel
 from tyrefem.output import jsonable, versions
 from tyrefem.processes import processes
 from tyrefem.variants.answer_store import AnswerStore, digest, effects_source, plain
 
 if TYPE_CHECKING:
-    from tyrefem.diagnose.runs import Series
+    from tyrefem.diagnose.sampling import SensorSampling
 
 
 @dataclass(eq=False)
 class ProgressStore(AnswerStore):
-    """Answers of a laboratory by question, in a folder; of one study, its cards, its data and one version only."""
+    """Answers of a forward model by question, in a folder; of one study, its cards, its drives and one version only."""
 
-    def open(self, bench: Bench) -> int:
-        """Find what was left for this bench, and drop what was left for any other; how many answers there are."""
-        return self.take_up(key_of(bench))
+    def open(self, model: ForwardModel) -> int:
+        """Find what was left for this model, and drop what was left for any other; how many answers there are."""
+        return self.take_up(key_of(model))
 
     def look(self, number: int) -> ProgressStore:
         """The store of a further look at the same data; this one for the first."""
@@ -42,72 +39,72 @@ class ProgressStore(AnswerStore):
             shutil.rmtree(folder, ignore_errors=True)
 
 
-def key_of(bench: Bench) -> str:
-    """Digest of everything that decides a bench's answers: study, cards, effects' source, data, versions.
+def key_of(model: ForwardModel) -> str:
+    """Digest of everything that decides a model's answers: study, cards, effects' source, drives, versions.
 
-    >>> from tyrefem.diagnose.forward_model import Bench
+    >>> from tyrefem.diagnose.forward_model import ForwardModel
     >>> from tyrefem.inputs.study import study
     >>> one, faster = study("nasa-22x5.5-8pr"), study("nasa-22x5.5-8pr", {"drive.speed": "25 mph"})
-    >>> key_of(Bench(one, ())) == key_of(Bench(faster, ()))
+    >>> key_of(ForwardModel(one, ())) == key_of(ForwardModel(faster, ()))
     False
     """
-    trials = [[one.name, one.drive, one.hold_out, [_series(each) for each in one.series]] for one in bench.trials]
+    drives = [[each.name, each.drive, each.hold_out, [_times(one) for one in each.sensors]] for each in model.drives]
     return digest(
-        [versions(), effects_source(), plain(bench.study), jsonable(trials), repr(bench.settings.of_simulations)]
+        [versions(), effects_source(), plain(model.study), jsonable(drives), repr(model.settings.of_simulations)]
     )
 
 
-def _series(one: Series) -> list[Any]:
-    data = [one.times.tolist(), one.measured.tolist()]
-    return [one.sensor, data, one.noise, one.discrepancy, one.correlation_time]
+def _times(sampling: SensorSampling) -> list[Any]:
+    noise = sampling.noise, sampling.discrepancy, sampling.correlation_time
+    return [sampling.sensor, sampling.times.tolist(), *noise]
 
 
-_BENCH: list[Bench] = []
+_MODEL: list[ForwardModel] = []
 
 
-def _install(bench: Bench) -> None:
-    _BENCH[:] = [bench]
+def _install(model: ForwardModel) -> None:
+    _MODEL[:] = [model]
 
 
 def _task(name: str, arguments: tuple[Any, ...]) -> Any:
-    return getattr(_BENCH[0], name)(*arguments)
+    return getattr(_MODEL[0], name)(*arguments)
 
 
 @dataclass(frozen=True, eq=False)
-class Laboratory(Brief):
-    """Simulations for a bench, side by side if it has workers. Results come in the order of the questions.
+class Evaluations(Brief):
+    """Answers of a forward model, side by side if there are workers. Results come in the order of the questions.
 
     What ``store`` knows from an interrupted diagnosis is not simulated again.
     """
 
-    bench: Bench
+    model: ForwardModel
     pool: Executor | None = None
     store: ProgressStore | None = None
 
     def __reduce__(self) -> tuple[Any, ...]:
         """Processes and folders stay where they are; what asks again asks here."""
-        return Laboratory, (self.bench,)
+        return Evaluations, (self.model,)
 
-    def ask(self, name: str, questions: Sequence[tuple[Any, ...]], tick: Callable[[], None] | None = None) -> list[Any]:
-        """The answers of a method of `Bench` to several questions (arguments)."""
-        found = [self.store.known(name, one) if self.store else None for one in questions]
-        open_ones = [number for number, answer in enumerate(found) if answer is None]
-        for _ in range(len(found) - len(open_ones)):
+    def of(self, name: str, questions: Sequence[tuple[Any, ...]], tick: Callable[[], None] | None = None) -> list[Any]:
+        """The answers of a method of `ForwardModel` to several questions (arguments)."""
+        answers = [self.store.known(name, one) if self.store else None for one in questions]
+        left = [number for number, answer in enumerate(answers) if answer is None]
+        for _ in range(len(answers) - len(left)):
             if tick:
                 tick()
-        for number, answer in self._answers(name, {number: questions[number] for number in open_ones}):
-            found[number] = answer
+        for number, answer in self._answers(name, {number: questions[number] for number in left}):
+            answers[number] = answer
             if self.store:
                 self.store.keep(name, questions[number], answer)
             if tick:
                 tick()
-        return found
+        return answers
 
     def _answers(self, name: str, questions: Mapping[int, tuple[Any, ...]]) -> Iterator[tuple[int, Any]]:
         """Answers as they are ready, with their questions' numbers."""
         if self.pool is None:
             for number, one in questions.items():
-                yield number, getattr(self.bench, name)(*one)
+                yield number, getattr(self.model, name)(*one)
             return
         futures = {self.pool.submit(_task, name, one): number for number, one in questions.items()}
         for future in as_completed(futures):
@@ -115,12 +112,12 @@ class Laboratory(Brief):
 
 
 @contextmanager
-def laboratory(bench: Bench, workers: int = 1, store: ProgressStore | None = None) -> Iterator[Laboratory]:
-    """A laboratory with so many processes; 1: in this one."""
+def evaluating(model: ForwardModel, workers: int = 1, store: ProgressStore | None = None) -> Iterator[Evaluations]:
+    """Evaluations of a model with so many processes; 1: in this one."""
     if workers <= 1:
-        yield Laboratory(bench, store=store)
+        yield Evaluations(model, store=store)
         return
     with tempfile.TemporaryDirectory(prefix="tyrefem-") as folder:
-        shared = replace(bench, folder=Path(folder))
+        shared = replace(model, folder=Path(folder))
         with processes(workers, _install, shared) as pool:
-            yield Laboratory(shared, pool, store)
+            yield Evaluations(shared, pool, store)

@@ -1,4 +1,4 @@
-"""A study and the runs it is held against: simulates one at a time, lean, on a few modes, or in full."""
+"""A study and the runs it is held against: simulates one at a time, on fixed steps, on a few modes, or in full."""
 
 from __future__ import annotations
 
@@ -14,10 +14,11 @@ from numpy.typing import NDArray
 
 from tyrefem.boundaries.rim import LumpedRim
 from tyrefem.brief import Brief
+from tyrefem.cache import Cache
 from tyrefem.conduction.sensitivity import Perturbed, tangents
-from tyrefem.diagnose.fast_simulation import Lean, Varied, lean
+from tyrefem.diagnose.fixed_step import FixedStepRun, ReadingSensitivities, fixed_step_run
 from tyrefem.diagnose.reduced_forward import Modes, ReducedDrive, modes_of
-from tyrefem.diagnose.runs import Trial
+from tyrefem.diagnose.sampling import DriveSampling
 from tyrefem.diagnose.settings import DEFAULT, DiagnosisSettings
 from tyrefem.diagnose.unknowns import Unknown, with_values
 from tyrefem.errors import InputError
@@ -37,13 +38,14 @@ FOLLOWED, NOT_FOLLOWED, UNSAID = 0, 1, 2
 
 
 @dataclass(frozen=True, eq=False)
-class Response(Brief):
+class DriveResponse(Brief):
     """How a study's readings at one drive respond to unknowns, on an even grid of times; independent of any data.
 
     Parameters
     ----------
-    times : (n,) s. readings : sensor -> (n,) degC at x = 0, by the lean simulation. correction : sensor -> (n,) K that
-        the study's own mesh and error control add. slopes : sensor -> (n, n_unknowns) d(reading)/dx at x = 0.
+    times : (n,) s. readings : sensor -> (n,) degC at x = 0, by the fixed-step simulation.
+    correction : sensor -> (n,) K that the study's own mesh and error control add.
+    slopes : sensor -> (n, n_unknowns) d(reading)/dx at x = 0.
     modes : for the drive's reduced model; learnt from the same tangents.
     """
 
@@ -54,10 +56,10 @@ class Response(Brief):
     slopes: dict[str, Array]
     modes: Modes
 
-    def blocks(self, trial: Trial) -> tuple[Array, Array, Array]:
-        """Block means of a trial's series: lean readings, correction, slopes (n_blocks, n_unknowns)."""
+    def blocks(self, drive: DriveSampling) -> tuple[Array, Array, Array]:
+        """Block means of a drive's sensors: fixed-step readings, correction, slopes (n_blocks, n_unknowns)."""
         parts = [
-            [one.sampled(self.times, values[one.sensor]) for one in trial.series]
+            [each.sampled(self.times, values[each.sensor]) for each in drive.sensors]
             for values in (self.readings, self.correction, self.slopes)
         ]
         first, second, third = (np.concatenate(part) for part in parts)
@@ -65,20 +67,25 @@ class Response(Brief):
 
 
 @dataclass(frozen=True, eq=False)
-class Bench(Brief):
-    """A study and the trials it is held against; simulates one trial at a time.
+class ForwardModel(Brief):
+    """A study and the drives it is measured at; says what the sensors read at one drive at a time.
 
-    ``folder``: where strain cycles by finite elements are left for other processes.
+    What was simulated once is kept: the coarse study and its reduced model at every drive.
+
+    Parameters
+    ----------
+    drives : of the measured runs, and when their sensors are read.
+    folder : where strain cycles by finite elements are left for other processes.
     """
 
     study: StudyData
-    trials: tuple[Trial, ...]
+    drives: tuple[DriveSampling, ...]
     folder: Path | None = None
     settings: DiagnosisSettings = DEFAULT
 
     def __reduce__(self) -> tuple[Any, ...]:
         """Another process starts with what was stated, not with what was simulated."""
-        return Bench, (self.study, self.trials, self.folder, self.settings)
+        return ForwardModel, (self.study, self.drives, self.folder, self.settings)
 
     @functools.cached_property
     def coarse(self) -> StudyData:
@@ -95,24 +102,37 @@ class Bench(Brief):
         return self.study.replace(coarse)
 
     @functools.cached_property
-    def _bases(self) -> dict[int, Lean]:
-        return {}
+    def _bases(self) -> Cache[FixedStepRun]:
+        """One per drive: the coarse study simulated."""
+        return Cache(max(len(self.drives), 1))
+
+    @functools.cached_property
+    def _numbers(self) -> Cache[Any]:
+        """Numbers as the study and its cards have them."""
+        return Cache(512)
+
+    def with_values(self, study: StudyData, values: Values, like: StudyData | None = None) -> StudyData:
+        """See `tyrefem.diagnose.unknowns.with_values`."""
+        return with_values(study, values, like, self._numbers)
 
     def driven(self, study: StudyData, number: int) -> StudyData:
-        """The study at the drive of a trial."""
-        drive = self.trials[number].drive
+        """The study at a drive."""
+        drive = self.drives[number].drive
         return study.with_drive(drive) if drive else study
 
-    def base(self, number: int) -> Lean:
-        """The coarse study simulated at a trial's drive."""
-        if number not in self._bases:
-            like = next((one.tyre for one in self._bases.values()), None)
-            driven = self.driven(self.coarse, number)
-            self._bases[number] = lean(driven, like, self.nearby(driven), every=self.settings.readings_every)
-        return self._bases[number]
+    def base(self, number: int) -> FixedStepRun:
+        """The coarse study simulated at a drive."""
+        return self._bases.get(number, lambda: self._based(number))
+
+    def _based(self, number: int) -> FixedStepRun:
+        """All drives share the mesh and the operators of the first that was simulated."""
+        first = next((other for other in range(len(self.drives)) if other in self._bases), None)
+        like = None if first is None else self.base(first).tyre
+        driven = self.driven(self.coarse, number)
+        return fixed_step_run(driven, like, self.nearby(driven), every=self.settings.readings_every)
 
     def nearby(self, driven: StudyData) -> NearbyCycles | None:
-        """Strain cycles near those of the coarse study at a trial's drive; None where each costs next to nothing."""
+        """Strain cycles near those of the coarse study at a drive; None where each costs next to nothing."""
         if not strain_law(driven).by_elements:
             return None
         return NearbyCycles(driven, self._solved)
@@ -123,13 +143,16 @@ class Bench(Brief):
         return SolvedCycles(self.folder)
 
     def blocks(self, number: int, times: Array, readings: Mapping[str, Any]) -> Array:
-        """Block means of a trial from readings at ``times``."""
+        """Block means at a drive from readings at ``times``."""
         return np.concatenate(
-            [one.sampled(times, np.asarray(readings[one.sensor], dtype=float)) for one in self.trials[number].series]
+            [
+                sampling.sampled(times, np.asarray(readings[sampling.sensor], dtype=float))
+                for sampling in self.drives[number].sensors
+            ]
         )
 
     def full(self, number: int, study: StudyData) -> Array:
-        """Block means of a trial from a run of a study (at the trial's drive) with error control on its own mesh."""
+        """Block means at a drive from a run of a study (at that drive) with error control on its own mesh."""
         readings = run(study).readings
         times = readings["time_s"].to_numpy(dtype=float)
         return self.blocks(number, times, {str(name): readings[name] for name in readings})
@@ -141,7 +164,7 @@ class Bench(Brief):
         return (*self.study.sensors, GAS, RIM) if lumped else (*self.study.sensors, GAS)
 
     def response(self, number: int, unknowns: Sequence[Unknown]) -> tuple[Array, Array, Array, Array, Array]:
-        """What a `Response` is made of: times; by sensor readings, correction and slopes, stacked; modes."""
+        """What a `DriveResponse` is made of: times; by sensor readings, correction and slopes, stacked; modes."""
         base = self.base(number)
         fine = run(self.driven(self.study, number)).readings
         times = fine["time_s"].to_numpy(dtype=float)
@@ -161,27 +184,27 @@ class Bench(Brief):
     def jacobian(self, number: int, unknowns: Sequence[Unknown], at: Values) -> Array:
         """(n_blocks, n_unknowns): d(block mean)/dx with unknowns at ``at``."""
         base = self.base(number)
-        here = lean(with_values(base.study, at), base.tyre, every=base.every)
-        series = self.trials[number].series
-        slopes = self._varied(here, base.study, unknowns, at).slopes([one.sensor for one in series])
-        return np.concatenate([one.sampled(here.grid, slopes[one.sensor]) for one in series])
+        here = fixed_step_run(self.with_values(base.study, at), base.tyre, every=base.every)
+        samplings = self.drives[number].sensors
+        slopes = self._varied(here, base.study, unknowns, at).slopes([each.sensor for each in samplings])
+        return np.concatenate([each.sampled(here.grid, slopes[each.sensor]) for each in samplings])
 
     def predict(self, number: int, values: Values) -> Array:
-        """Block means of a trial with unknowns at ``values``, by the lean simulation; NaN where no tyre can be so."""
+        """Block means at a drive with unknowns at ``values``, on fixed steps; NaN where no tyre can be so."""
         base = self.base(number)
         try:
-            study = with_values(base.study, values)
+            study = self.with_values(base.study, values)
             same = all(unknown.measures or x == 0.0 for unknown, x in values.items())
-            found = base.as_measured_by(study) if same else lean(study, base.tyre, every=base.every)
+            found = base.as_measured_by(study) if same else fixed_step_run(study, base.tyre, every=base.every)
         except InputError:
             # A load that the tyre cannot carry, say: the fit has stepped too far and will try a shorter step.
-            return np.full(len(self.trials[number].measured), np.nan)
+            return np.full(self.drives[number].size, np.nan)
         return self.blocks(number, found.grid, found.readings)
 
-    def simulate(self, number: int, values: Values) -> Lean:
-        """A trial's drive with unknowns at ``values``, by the lean simulation: temperatures at any place."""
-        study = with_values(self.driven(self.coarse, number), values)
-        return lean(study, every=self.settings.readings_every)
+    def simulate(self, number: int, values: Values) -> FixedStepRun:
+        """A drive with unknowns at ``values``, by the fixed-step simulation: temperatures at any place."""
+        study = self.with_values(self.driven(self.coarse, number), values)
+        return fixed_step_run(study, every=self.settings.readings_every)
 
     def differences(self, number: int, unknowns: Sequence[Unknown], at: Values) -> Array:
         """(n_blocks, n_unknowns): difference quotients by simulating again."""
@@ -194,15 +217,15 @@ class Bench(Brief):
     def reduced(self, number: int, modes: Modes, points: Sequence[Values]) -> tuple[Array, Array]:
         """(n_points,) `FOLLOWED` or what else, and (n_points, n_blocks) block means by the drive's reduced model.
 
-        They are the lean simulation's at x = 0 and what the model says that unknowns at each of ``points`` change.
+        They are the fixed-step simulation's at x = 0, and what unknowns at each of ``points`` change by the model.
         """
         base, drive = self.base(number), self._reduced_drive(number, modes)
         status = np.full(len(points), UNSAID)
-        found = np.full((len(points), len(self.trials[number].measured)), np.nan)
+        found = np.full((len(points), self.drives[number].size), np.nan)
         studies: dict[int, StudyData] = {}
         for place, values in enumerate(points):
             with contextlib.suppress(InputError):
-                studies[place] = with_values(base.study, values, base.study)
+                studies[place] = self.with_values(base.study, values, base.study)
         try:
             own = self.blocks(number, base.grid, base.readings) - self.blocks(number, base.grid, drive.own)
         except NotReducibleError:
@@ -220,33 +243,33 @@ class Bench(Brief):
     ) -> tuple[Array, Array]:
         """(1,) `FOLLOWED` or not, and `jacobian` by differences of the drive's reduced model."""
         base, drive = self.base(number), self._reduced_drive(number, modes)
-        here = with_values(base.study, at, base.study)
+        here = self.with_values(base.study, at, base.study)
         there = [
-            (with_values(base.study, {**at, one: at.get(one, 0.0) + one.step}, base.study), one.measures)
+            (self.with_values(base.study, {**at, one: at.get(one, 0.0) + one.step}, base.study), one.measures)
             for one in unknowns
         ]
         slopes = drive.slopes(here, there, [one.step for one in unknowns])
         if slopes is None:
-            return np.array([NOT_FOLLOWED]), np.zeros((len(self.trials[number].measured), len(unknowns)))
+            return np.array([NOT_FOLLOWED]), np.zeros((self.drives[number].size, len(unknowns)))
         return np.array([FOLLOWED]), np.column_stack([self.blocks(number, base.grid, one) for one in slopes])
 
     @functools.cached_property
-    def _drives(self) -> dict[tuple[int, str], ReducedDrive]:
-        return {}
+    def _reduced(self) -> Cache[ReducedDrive]:
+        """One per drive and modes."""
+        return Cache(2 * max(len(self.drives), 1))
 
     def _reduced_drive(self, number: int, modes: Modes) -> ReducedDrive:
-        key = number, modes.digest
-        if key not in self._drives:
-            self._drives[key] = ReducedDrive(self.base(number), modes, self.settings)
-        return self._drives[key]
+        return self._reduced.get((number, modes.digest), lambda: ReducedDrive(self.base(number), modes, self.settings))
 
-    def _varied(self, base: Lean, origin: StudyData, unknowns: Sequence[Unknown], at: Values) -> Varied:
+    def _varied(
+        self, base: FixedStepRun, origin: StudyData, unknowns: Sequence[Unknown], at: Values
+    ) -> ReadingSensitivities:
         """What unknowns change about a solution; from its operators where the mesh stays."""
-        again: dict[int, Lean] = {}
+        again: dict[int, FixedStepRun] = {}
         columns: list[int] = []
         perturbed: list[Perturbed] = []
         for column, one in enumerate(unknowns):
-            study = with_values(origin, {**at, one: at.get(one, 0.0) + one.step}, base.study)
+            study = self.with_values(origin, {**at, one: at.get(one, 0.0) + one.step}, base.study)
             if one.measures:
                 again[column] = base.as_measured_by(study)
                 continue
@@ -256,6 +279,7 @@ class Bench(Brief):
                 columns.append(column)
                 perturbed.append(Perturbed(tyre.problem, one.step, tyre.drive.initial))
             else:
-                again[column] = lean(study, base.tyre if tyre.mesh is base.tyre.mesh else None, every=base.every)
+                like = base.tyre if tyre.mesh is base.tyre.mesh else None
+                again[column] = fixed_step_run(study, like, every=base.every)
         found = tangents(base.tyre.problem, base.times, base.values, base.reservoirs, perturbed) if perturbed else None
-        return Varied(base, tuple(unknowns), again, columns, found)
+        return ReadingSensitivities(base, tuple(unknowns), again, columns, found)

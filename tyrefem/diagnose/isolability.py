@@ -13,15 +13,13 @@ import numpy as np
 from numpy.typing import NDArray
 
 from tyrefem.compare.experiment import OUTSIDE_THE_RUBBER
+from tyrefem.diagnose.candidates import Candidate, Members, SetPrior, catalogue_candidates
 from tyrefem.diagnose.effort import SENSITIVITIES, check_effort
-from tyrefem.diagnose.evaluations import ProgressStore, laboratory
-from tyrefem.diagnose.evidence import Linear, Members
-from tyrefem.diagnose.forward_model import Bench
-from tyrefem.diagnose.linearised import Gap
-from tyrefem.diagnose.runs import Series, Trial
-from tyrefem.diagnose.search import Prior
-from tyrefem.diagnose.sensitivities import gap_of
-from tyrefem.diagnose.unknowns import Candidate, candidates
+from tyrefem.diagnose.evaluations import Evaluations, ProgressStore, evaluating
+from tyrefem.diagnose.forward_model import DriveResponse, ForwardModel
+from tyrefem.diagnose.linear_model import LinearModel
+from tyrefem.diagnose.sampling import DriveSampling, SensorSampling
+from tyrefem.diagnose.sensitivities import Sensitivities, responses, sensitivities, unknowns_of
 from tyrefem.errors import InputError
 from tyrefem.inputs.study import StudyData
 from tyrefem.requirements import Requirements
@@ -32,14 +30,14 @@ if TYPE_CHECKING:
 Array = NDArray[np.float64]
 #: What isolability needs of a study.
 NEEDS = Requirements("isolability", fitted=True)
-#: Nats by which the true explanation must be ahead of every rival without noise, so that noise turns the order round,
+#: Nats by which the true explanation must be ahead of every other without noise, so that noise turns the order round,
 #: or leaves it undecided (less than 90 %), in one case of twenty: m - 1.645 sqrt(2 m) > ln 9.
 MARGIN = 9.3
 #: Readings are supposed this often, s.
 EVERY = 10.0
 
 
-def planned(study: StudyData, sensors: Sequence[str] = ()) -> tuple[Trial, ...]:
+def planned(study: StudyData, sensors: Sequence[str] = ()) -> tuple[DriveSampling, ...]:
     """The runs of a study's ``[[measured]]`` entries (or its own drive) with all its sensors read every 10 s.
 
     Raises
@@ -57,18 +55,17 @@ def planned(study: StudyData, sensors: Sequence[str] = ()) -> tuple[Trial, ...]:
         times = np.arange(0.0, driven.card.drive.end + EVERY / 2, EVERY)
         choice = study.card.diagnosis
         names = list(sensors) or [*study.sensors, OUTSIDE_THE_RUBBER[0]]
-        series = tuple(
-            Series(
+        sampled = tuple(
+            SensorSampling(
                 one,
                 times,
-                np.zeros_like(times),
                 study.sensors[one].noise if one in study.sensors else 0.5,
                 choice.discrepancy,
                 choice.correlation_time,
             )
             for one in names
         )
-        found.append(Trial(name, drive, hold_out, series))
+        found.append(DriveSampling(name, drive, hold_out, sampled))
     return tuple(found)
 
 
@@ -90,7 +87,7 @@ class Isolability:
     ----------
     study : its name. candidates : the effects. smallest : amplitude (own unit) from which each is told from all
         others, infinite if never within its bounds; ``seen`` : from which it is told from no effect.
-    scale : prior sd of the amplitude. rivals : the last rival to be ruled out.
+    scale : prior sd of the amplitude. competitors : the last other explanation to be ruled out.
     apart : (n, n) nats by which effect i at its scale is ahead of effect j fitted to it. runs : smallest sets of runs.
     notes : what the study has not, in sentences.
     """
@@ -100,7 +97,7 @@ class Isolability:
     smallest: Array
     seen: Array
     scale: Array
-    rivals: tuple[str, ...]
+    competitors: tuple[str, ...]
     apart: Array
     runs: tuple[tuple[str, ...], ...]
     weights: Array
@@ -119,7 +116,7 @@ class Isolability:
                 "usual": self.scale,
                 "seen_from": self.seen,
                 "told_from": self.smallest,
-                "last_rival": self.rivals,
+                "last_rival": self.competitors,
                 "identifiable_at_usual": self.smallest <= self.scale * (1 + 1e-9),
             }
         )
@@ -172,15 +169,17 @@ class Isolability:
         return [*lines, *self.notes]
 
 
-def margins(linear: Linear, signal: Array, true: Members, rivals: Sequence[Members], prior: Prior) -> list[float]:
-    """Nats by which ``true`` is ahead of each rival for data that are ``signal`` without noise."""
+def margins(
+    linear: LinearModel, signal: Array, true: Members, competitors: Sequence[Members], prior: SetPrior
+) -> list[float]:
+    """Nats by which ``true`` is ahead of each competitor for data that are ``signal`` without noise."""
     given = linear.with_data(signal)
     own = prior(true) + given.log_evidence(true)
-    return [own - prior(one) - given.log_evidence(one) for one in rivals]
+    return [own - prior(one) - given.log_evidence(one) for one in competitors]
 
 
-def rivals_of(true: Members, found: Sequence[Candidate]) -> list[Members]:
-    """No effect, every other single effect, and every part of the truth; sets that hold the truth are no rivals."""
+def competitors_of(true: Members, found: Sequence[Candidate]) -> list[Members]:
+    """No effect, every other single effect, and every part of the true set; sets that hold it are no competitors."""
     sets: list[Members] = [()]
     sets += [(one,) for one in found if one not in true]
     for size in range(1, len(true)):
@@ -195,7 +194,7 @@ def candidates_of(study: StudyData) -> tuple[Candidate, ...]:
     ------
     InputError : there is none, so that there is nothing to tell apart.
     """
-    found = candidates(study)
+    found = catalogue_candidates(study)
     if not found:
         message = "no effect of the catalogue is left that the study may lack: exclude fewer"
         raise InputError(message, field="diagnosis.exclude", file=study.file)
@@ -207,12 +206,13 @@ def isolability(
     *,
     workers: int = 1,
     progress: Callable[[str, int, int], None] | None = None,
-    gap: Gap | None = None,
+    known: Sensitivities | None = None,
     store: ProgressStore | None = None,
 ) -> Isolability:
     """What the sensors and runs of a study can tell apart, by the linear model about the study as it is.
 
-    ``gap``: where it is at hand. ``store``: keeps finished simulations, which an interrupted call takes up again.
+    ``known``: sensitivities of the planned runs, where they are at hand. ``store``: keeps finished simulations, which
+    an interrupted call takes up again.
 
     Raises
     ------
@@ -220,15 +220,15 @@ def isolability(
     """
     NEEDS.check(study)
     found = candidates_of(study)
-    if gap is None:
-        bench = Bench(study, planned(study))
-        check_effort(bench, f"the sensitivities of {study.name}", SENSITIVITIES, workers)
+    if known is None:
+        model = ForwardModel(study, planned(study))
+        check_effort(model, f"the sensitivities of {study.name}", SENSITIVITIES, workers)
         if store is not None:
-            store.open(bench)
-        with laboratory(bench, workers, store) as lab:
-            gap = gap_of(lab, progress)
-    prior = Prior(found, study.card.diagnosis.effects_expected)
-    linear = gap.linear(gap.fitted)
+            store.open(model)
+        with evaluating(model, workers, store) as evaluations:
+            known = layout_sensitivities(evaluations, progress=progress)
+    prior = SetPrior(found, study.card.diagnosis.effects_expected)
+    linear = _noiseless(known, known.fitted)
     n = len(found)
     smallest, seen, last = np.full(n, np.inf), np.full(n, np.inf), [""] * n
     apart = np.zeros((n, n))
@@ -238,7 +238,7 @@ def isolability(
         apart[i] = at_scale
         smallest[i], last[i] = _threshold(linear, response, one, found, prior)
         seen[i], _ = _threshold(linear, response, one, (), prior)
-    runs = _fewest_runs(gap, found, prior, smallest)
+    runs = _fewest_runs(known, found, prior, smallest)
     scale = np.array([one.amplitudes[0].sd if one.amplitudes else 1.0 for one in found])
     shares = np.array([1 / sum(other.name == one.name for other in found) for one in found])
     return Isolability(
@@ -246,22 +246,43 @@ def isolability(
     )
 
 
-def _response(linear: Linear, one: Candidate) -> Array:
+def layout_sensitivities(
+    evaluations: Evaluations,
+    responses_at_hand: Sequence[DriveResponse] | None = None,
+    progress: Callable[[str, int, int], None] | None = None,
+) -> Sensitivities:
+    """How the sensors of planned runs respond to everything that a diagnosis of them may fit."""
+    model = evaluations.model
+    read = {name for drive in model.drives for name in drive.parts()}
+    unknowns, nuisance = unknowns_of(model.study, read, catalogue_candidates(model.study), model.settings)
+    known = responses_at_hand or responses(evaluations, unknowns, progress)
+    return sensitivities(model.drives, unknowns, nuisance, known)
+
+
+def _noiseless(known: Sensitivities, numbers: Sequence[int]) -> LinearModel:
+    """The linear model of some runs, to be given data."""
+    design = known.design(numbers)
+    return LinearModel(design, np.zeros(len(design.jacobian)))
+
+
+def _response(linear: LinearModel, one: Candidate) -> Array:
     """Signal of an effect at its usual strength: all its amplitudes one prior sd from null, on the allowed side."""
     signal = np.zeros(len(linear.data))
     for unknown in one.presence:
-        signal = signal + linear.jacobian[:, linear.place[unknown]]
+        signal = signal + linear.jacobian[:, linear.design.place[unknown]]
     for unknown in one.amplitudes:
         side = 1.0 if unknown.high > 0 else -1.0
-        signal = signal + linear.jacobian[:, linear.place[unknown]] * side * min(unknown.sd, abs(side * unknown.high))
+        signal = signal + linear.jacobian[:, linear.design.place[unknown]] * side * min(
+            unknown.sd, abs(side * unknown.high)
+        )
     return signal
 
 
 def _threshold(
-    linear: Linear, response: Array, one: Candidate, found: Sequence[Candidate], prior: Prior
+    linear: LinearModel, response: Array, one: Candidate, found: Sequence[Candidate], prior: SetPrior
 ) -> tuple[float, str]:
-    """Amplitude, in prior sds, from which the effect is ahead of every rival; and the rival that holds out longest."""
-    sets = rivals_of((one,), found)
+    """Amplitude, in prior sds, from which the effect is ahead of all others; and which of these holds out longest."""
+    sets = competitors_of((one,), found)
     if not one.amplitudes:
         ahead = margins(linear, response, (one,), sets, prior)
         worst = int(np.argmin(ahead))
@@ -270,28 +291,34 @@ def _threshold(
     largest = max(abs(unknown.low), abs(unknown.high)) / unknown.sd
     largest = min(largest, 20.0)
     values = np.geomspace(0.02, largest, 40) if largest > 0.02 else np.array([largest])
-    rival = ""
+    competitor = ""
     for value in values:
         ahead = margins(linear, value * response, (one,), sets, prior)
         worst = int(np.argmin(ahead))
         if ahead[worst] >= MARGIN:
-            return float(value), rival
-        rival = " + ".join(member.key for member in sets[worst]) or "no effect"
-    return math.inf, rival
+            return float(value), competitor
+        competitor = " + ".join(member.key for member in sets[worst]) or "no effect"
+    return math.inf, competitor
 
 
-def _fewest_runs(gap: Gap, found: Sequence[Candidate], prior: Prior, smallest: Array) -> tuple[tuple[str, ...], ...]:
+def _fewest_runs(
+    known: Sensitivities, found: Sequence[Candidate], prior: SetPrior, smallest: Array
+) -> tuple[tuple[str, ...], ...]:
     """The smallest sets of fitted runs that identify at twice their usual strength all that all runs together do."""
-    names = [one.name for one in gap.lab.bench.trials]
+    names = [drive.name for drive in known.drives]
     wanted = [i for i in range(len(found)) if smallest[i] <= 2.0]
     if not wanted:
         return ()
-    for size in range(1, len(gap.fitted) + 1):
+    for size in range(1, len(known.fitted) + 1):
         enough = []
-        for chosen in itertools.combinations(gap.fitted, size):
-            linear = gap.linear(list(chosen))
+        for chosen in itertools.combinations(known.fitted, size):
+            linear = _noiseless(known, chosen)
             ok = all(
-                min(margins(linear, 2 * _response(linear, found[i]), (found[i],), rivals_of((found[i],), found), prior))
+                min(
+                    margins(
+                        linear, 2 * _response(linear, found[i]), (found[i],), competitors_of((found[i],), found), prior
+                    )
+                )
                 >= MARGIN
                 for i in wanted
             )

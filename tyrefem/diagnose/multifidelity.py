@@ -1,5 +1,4 @@
-"""Who says what the sensors read at a point of a fit: a drive's reduced model where it is certified, or else the lean
-simulation."""
+"""What the sensors read at a point of a fit: by a drive's reduced model where it is certified, else by simulation."""
 
 from __future__ import annotations
 
@@ -11,8 +10,8 @@ import numpy as np
 from numpy.typing import NDArray
 
 from tyrefem.brief import Brief
-from tyrefem.diagnose.evaluations import Laboratory
-from tyrefem.diagnose.evidence import Members
+from tyrefem.diagnose.candidates import Members
+from tyrefem.diagnose.evaluations import Evaluations
 from tyrefem.diagnose.forward_model import FOLLOWED, NOT_FOLLOWED
 from tyrefem.diagnose.reduced_forward import Modes
 from tyrefem.diagnose.settings import DiagnosisSettings
@@ -24,8 +23,8 @@ Tick = Callable[[], None] | None
 
 
 @dataclass(frozen=True)
-class Certificate:
-    """What lean simulations say of a drive's reduced model with a set of effects, at points it had not learnt.
+class DriveCertificate:
+    """What simulations say of a drive's reduced model with a set of effects, at points it had not learnt.
 
     Parameters
     ----------
@@ -45,50 +44,51 @@ class Certificate:
         """May the model speak for these effects at this drive?"""
         return self.apart <= self.allowed
 
-    def with_case(self, apart: float, error: float) -> Certificate:
+    def with_case(self, apart: float, error: float) -> DriveCertificate:
         """After one more point."""
         worst = max(apart, self.apart), max(error, self.error)
-        return Certificate(self.members, self.number, self.allowed, *worst, self.cases + 1)
+        return DriveCertificate(self.members, self.number, self.allowed, *worst, self.cases + 1)
 
 
 @dataclass(eq=False)
 class Predictions(Brief):
-    """Predictions and tangents for a laboratory's trials, each by whoever may say.
+    """Predictions and tangents at the drives of a forward model, each by the cheapest model that may answer.
 
-    The first point of every set of effects at every drive is simulated lean as well: that is the certificate. Where a
-    model cannot follow a set's effects, or is off by more than the settings allow, the set stays with the lean
-    simulation.
+    The first point of every set of effects at every drive is simulated on fixed steps as well: that is the
+    certificate. Where a model cannot follow a set's effects, or is off by more than the settings allow, the set stays
+    with the simulation. This object keeps the certificates, so it changes while it answers.
 
     Parameters
     ----------
-    modes : of every trial's drive; none: lean simulations only.
-    certificates : set and trial -> what is known. reduced, lean : how many points were asked of either.
+    modes : of every trial's drive; none: simulations only.
+    certificates : set and trial -> what is known. reduced, simulated : how many points either answered.
     given_up : the models were off at the best fit, which was then found without them.
     """
 
-    lab: Laboratory
+    evaluations: Evaluations
     modes: Sequence[Modes] = ()
-    certificates: dict[tuple[Members, int], Certificate] = field(default_factory=dict)
+    certificates: dict[tuple[Members, int], DriveCertificate] = field(default_factory=dict)
     reduced: int = 0
-    lean: int = 0
+    simulated: int = 0
     given_up: bool = False
 
     @property
     def settings(self) -> DiagnosisSettings:
-        return self.lab.bench.settings
+        """Those of the forward model."""
+        return self.evaluations.model.settings
 
     def predict(
         self, asking: Sequence[tuple[Members, Values]], numbers: Sequence[int], tick: Tick = None
     ) -> list[list[Array]]:
-        """Lean block means of some trials for every set and its point; NaN where no tyre can be so."""
+        """Block means of some trials for every set and its point; NaN where no tyre can be so."""
         found = self._by_model(asking, numbers, tick)
         fresh = {
             (place, i) for (place, i), one in found.items()
             if (asking[place][0], i) not in self.certificates and np.isfinite(one).all()
         }  # fmt: skip
         left = [(k, i) for k in range(len(asking)) for i in numbers if (k, i) not in found or (k, i) in fresh]
-        answers = self.lab.ask("predict", [(i, asking[k][1]) for k, i in left], tick)
-        self.lean += len(left)
+        answers = self.evaluations.of("predict", [(i, asking[k][1]) for k, i in left], tick)
+        self.simulated += len(left)
         for (k, i), answer in zip(left, answers, strict=True):
             if (k, i) in fresh and self._tried(asking[k][0], i, found[k, i], answer).good:
                 continue
@@ -101,30 +101,30 @@ class Predictions(Brief):
         """(n_blocks, n_unknowns) of some trials for every set, its unknowns and its point."""
         wanted = [(k, i) for k in range(len(asking)) for i in numbers]
         modal = [(k, i) for k, i in wanted if self.modes and self._known_good(asking[k][0], i)]
-        answers = self.lab.ask("reduced_jacobian", [(i, self.modes[i], *asking[k][1:]) for k, i in modal], tick)
+        answers = self.evaluations.of("reduced_jacobian", [(i, self.modes[i], *asking[k][1:]) for k, i in modal], tick)
         found = {one: jacobian for one, (status, jacobian) in zip(modal, answers, strict=True) if status[0] == FOLLOWED}
         left = [one for one in wanted if one not in found]
-        found |= zip(left, self.lab.ask("jacobian", [(i, *asking[k][1:]) for k, i in left], tick), strict=True)
+        found |= zip(left, self.evaluations.of("jacobian", [(i, *asking[k][1:]) for k, i in left], tick), strict=True)
         return [[found[k, i] for i in numbers] for k in range(len(asking))]
 
     def confirmed(self, members: Members, values: Values) -> bool:
-        """Is a point that matters what the lean simulation says, at every drive where the model spoke for it?"""
-        numbers = [i for i in range(len(self.lab.bench.trials)) if self.modes and self._known_good(members, i)]
+        """Is a point that matters what the simulation says, at every drive where the model spoke for it?"""
+        numbers = [i for i in range(len(self.evaluations.model.drives)) if self.modes and self._known_good(members, i)]
         found = self._by_model([(members, values)], numbers, None)
-        answers = self.lab.ask("predict", [(i, values) for i in numbers])
-        self.lean += len(numbers)
+        answers = self.evaluations.of("predict", [(i, values) for i in numbers])
+        self.simulated += len(numbers)
         pairs = [(i, found.get((0, i)), answer) for i, answer in zip(numbers, answers, strict=True)]
         return all(one is not None and self._tried(members, i, one, answer).good for i, one, answer in pairs)
 
     def to_dict(self) -> dict[str, Any]:
         """For `verdict.json`."""
         good = [one for one in self.certificates.values() if one.good]
-        names = [one.name for one in self.lab.bench.trials]
+        names = [one.name for one in self.evaluations.model.drives]
         return {
             "used": bool(good) and not self.given_up,
             "modes": {name: one.V.shape[1] for name, one in zip(names, self.modes, strict=False)},
             "points_by_reduced_models": self.reduced,
-            "points_by_lean_simulations": self.lean,
+            "points_by_lean_simulations": self.simulated,
             "allowed_whitened": self.settings.reduced_allowed,
             "worst_whitened": max((one.apart for one in good), default=None),
             "worst_K": max((one.error for one in good), default=None),
@@ -149,11 +149,13 @@ class Predictions(Brief):
         places = {i: own for i, own in places.items() if own}
         questions = [(i, self.modes[i], tuple(asking[k][1] for k in own)) for i, own in places.items()]
         found: dict[tuple[int, int], Array] = {}
-        for (i, own), (status, blocks) in zip(places.items(), self.lab.ask("reduced", questions, tick), strict=True):
+        for (i, own), (status, blocks) in zip(
+            places.items(), self.evaluations.of("reduced", questions, tick), strict=True
+        ):
             for k, one, row in zip(own, status, blocks, strict=True):
                 if one == NOT_FOLLOWED:
                     members = asking[k][0]
-                    self.certificates[members, i] = Certificate(
+                    self.certificates[members, i] = DriveCertificate(
                         members, i, self.settings.reduced_allowed, apart=np.inf, error=np.inf
                     )
                 elif one == FOLLOWED:
@@ -172,11 +174,13 @@ class Predictions(Brief):
         known = self.certificates.get((members, number))
         return known is not None and known.good
 
-    def _tried(self, members: Members, number: int, modal: Array, lean: Array) -> Certificate:
+    def _tried(self, members: Members, number: int, modal: Array, simulated: Array) -> DriveCertificate:
         """The certificate after one more point."""
-        known = self.certificates.get((members, number)) or Certificate(members, number, self.settings.reduced_allowed)
-        apart = float(np.linalg.norm(self.lab.bench.trials[number].whitened(modal - lean)))
-        error = float(np.abs(modal - lean).max(initial=0.0))
+        known = self.certificates.get((members, number)) or DriveCertificate(
+            members, number, self.settings.reduced_allowed
+        )
+        apart = float(np.linalg.norm(self.evaluations.model.drives[number].whitened(modal - simulated)))
+        error = float(np.abs(modal - simulated).max(initial=0.0))
         finite = np.isfinite(apart)
         found = known.with_case(apart if finite else np.inf, error if finite else np.inf)
         self.certificates[members, number] = found

@@ -8,13 +8,12 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
-from tyrefem.diagnose.evidence import Members
-from tyrefem.diagnose.fast_simulation import Lean
-from tyrefem.diagnose.fitted import Explained
-from tyrefem.diagnose.forward_model import Bench
-from tyrefem.diagnose.linearised import Gap
-from tyrefem.diagnose.runs import Series, Trial
-from tyrefem.diagnose.verdict import Judgement, Standing
+from tyrefem.diagnose.candidates import Members
+from tyrefem.diagnose.fits import FittedSet
+from tyrefem.diagnose.fixed_step import FixedStepRun
+from tyrefem.diagnose.forward_model import ForwardModel
+from tyrefem.diagnose.sampling import DriveSampling, SensorSampling
+from tyrefem.diagnose.verdict import Judgement, RankedSet
 from tyrefem.errors import InputError
 from tyrefem.inputs.study import StudyData
 from tyrefem.simulation.surroundings import GAS
@@ -36,7 +35,9 @@ NOISE = 0.5
 SKIN = 1e-3
 
 
-def next_experiment(gap: Gap, judgement: Judgement, fitted: Callable[[Members], Explained | None]) -> dict[str, Any]:
+def next_experiment(
+    model: ForwardModel, judgement: Judgement, fit_of: Callable[[Members], FittedSet]
+) -> dict[str, Any]:
     """The sensor place and the drive that separate the two most probable sets best.
 
     The expected gain of a further history is ln of the odds that it adds to the true one of the two sets,
@@ -47,22 +48,21 @@ def next_experiment(gap: Gap, judgement: Judgement, fitted: Callable[[Members], 
     -------
     ``between`` (two sets), ``sensors`` and ``drives`` in order of gain; empty if only one set is left.
     """
-    sets = _rivals(judgement)
+    sets = _contenders(judgement)
     if len(sets) < 2:
         return {}
-    fits = [one.explained or fitted(one.members) for one in sets]
-    first, second = (one.values for one in fits if one is not None)
-    bench = gap.lab.bench
+    fits = [entry.fit or fit_of(entry.members) for entry in sets]
+    first, second = (fit.values for fit in fits)
     sensors: dict[str, dict[str, Any]] = {}
-    for number in range(len(bench.trials)):
-        pair = [bench.simulate(number, values) for values in (first, second)]
-        for name, place, delta, spread, times in _places(bench.study, pair):
-            gain = _gain(times, delta, spread, bench.study)
+    for number in range(len(model.drives)):
+        pair = [model.simulate(number, values) for values in (first, second)]
+        for name, place, delta, spread, times in _places(model.study, pair):
+            gain = _gain(times, delta, spread, model.study)
             row = sensors.setdefault(name, {"place": name, **place, "gain": 0.0, "largest_K": 0.0, "run": ""})
             row["gain"] += gain
             if np.abs(delta).max() > row["largest_K"]:
-                row["largest_K"], row["run"] = float(np.abs(delta).max()), bench.trials[number].name
-    drives = [drive_gain(bench, name, factors, first, second) for name, factors in DRIVES.items()]
+                row["largest_K"], row["run"] = float(np.abs(delta).max()), model.drives[number].name
+    drives = [drive_gain(model, name, factors, first, second) for name, factors in DRIVES.items()]
     return {
         "between": [sets[0].key, sets[1].key],
         "sensors": sorted(sensors.values(), key=lambda one: -one["gain"])[:5],
@@ -70,9 +70,9 @@ def next_experiment(gap: Gap, judgement: Judgement, fitted: Callable[[Members], 
     }
 
 
-def _rivals(judgement: Judgement) -> list[Standing]:
+def _contenders(judgement: Judgement) -> list[RankedSet]:
     """The best set and the next one that is not the same with something idle added, or left out."""
-    sets = [one for one in judgement.credible if not one.unexplained]
+    sets = [entry for entry in judgement.credible if not entry.outside]
     for other in sets[1:]:
         ours, theirs = set(sets[0].members), set(other.members)
         if not ours <= theirs and (not theirs or not theirs <= ours):
@@ -80,7 +80,7 @@ def _rivals(judgement: Judgement) -> list[Standing]:
     return sets[:2]
 
 
-def _places(study: StudyData, pair: list[Lean]) -> list[tuple[str, dict[str, float], Array, Array, Array]]:
+def _places(study: StudyData, pair: list[FixedStepRun]) -> list[tuple[str, dict[str, float], Array, Array, Array]]:
     """(name, place, difference (n,), sd of a new sensor's place (n,) K, times) at every feasible place."""
     section = study.section
     s = np.repeat(np.linspace(0.0, section.line.length * 0.98, STATIONS), 3)
@@ -121,20 +121,22 @@ def _gain(
     return float(d @ np.linalg.solve(covariance, d) / 2)
 
 
-def drive_gain(bench: Bench, name: str, factors: Mapping[str, float], *values: Any) -> dict[str, Any] | None:
+def drive_gain(model: ForwardModel, name: str, factors: Mapping[str, float], *values: Any) -> dict[str, Any] | None:
     """A drive's gain with the study's sensors, or the contained air if it has none; None: the tyre cannot take it."""
     from tyrefem.inputs.changes import scaled
 
-    drive = bench.study.data["drive"]
+    drive = model.study.data["drive"]
     try:
         changed = {key: scaled(drive[key], factor) for key, factor in factors.items() if key in drive}
         if not changed:
             return None
-        study = bench.study.with_drive(changed)
+        study = model.study.with_drive(changed)
         times = np.arange(0.0, study.card.drive.end + 1e-9, 10.0)
         noises = {name: sensor.noise for name, sensor in study.sensors.items()} or {GAS: NOISE}
-        series = tuple(Series(name, times, np.zeros_like(times), sd, 0.1, 100.0) for name, sd in noises.items())
-        pair = [Bench(bench.study, (Trial(name, changed, True, series),)).simulate(0, one) for one in values]
+        sensors = tuple(SensorSampling(name, times, sd, 0.1, 100.0) for name, sd in noises.items())
+        pair = [
+            ForwardModel(model.study, (DriveSampling(name, changed, True, sensors),)).simulate(0, one) for one in values
+        ]
     except InputError:
         return None
     gain, largest, where = 0.0, 0.0, ""

@@ -10,13 +10,13 @@ from tyrefem.diagnose.words import look_folder, verdict_words
 from tyrefem.output import jsonable, versions
 
 if TYPE_CHECKING:
-    from tyrefem.diagnose.diagnosis import Diagnosis
+    from tyrefem.diagnose.diagnosis import DiagnosisData
 
 #: File of the amended study, beside the record.
 AMENDED = "amended.toml"
 
 
-def record(d: Diagnosis) -> dict[str, Any]:
+def record(d: DiagnosisData) -> dict[str, Any]:
     """The diagnosis in numbers, SI and degC as the keys say; NaN is null.
 
     ``effects`` are the members of the most probable set where the verdict is "identified" or "confounded".
@@ -57,7 +57,7 @@ def record(d: Diagnosis) -> dict[str, Any]:
             "mesh": d.original.mesh().summary() | {"element": d.original.card.mesh.element},
             "assumed": d.original.card.diagnosis.model_dump(),
         },
-        "reduced": d.gap.predicted.to_dict(),
+        "reduced": dict(d.predictions),
         "wall_time_s": d.seconds,
         "versions": versions(),
         "random_seed": None,
@@ -67,7 +67,7 @@ def record(d: Diagnosis) -> dict[str, Any]:
     return plain
 
 
-def where(d: Diagnosis) -> dict[str, Any]:
+def where(d: DiagnosisData) -> dict[str, Any]:
     """Where the original study disagrees most surely, and by more than noise."""
     table = d.where
     large = table[table["mean_K"].abs() >= d.noise]
@@ -85,7 +85,7 @@ def where(d: Diagnosis) -> dict[str, Any]:
     }
 
 
-def region_of(d: Diagnosis, sensor: str) -> str:
+def region_of(d: DiagnosisData, sensor: str) -> str:
     """The region that a sensor is in; its own name if it is not in the rubber."""
     card = d.original.sensors.get(sensor)
     if card is None:
@@ -95,7 +95,7 @@ def region_of(d: Diagnosis, sensor: str) -> str:
     return str(section.region_at(s, depth)[0])
 
 
-def change_rows(d: Diagnosis) -> list[dict[str, Any]]:
+def change_rows(d: DiagnosisData) -> list[dict[str, Any]]:
     """What the amended study changes: SI value of a parameter, factor of a base number, with standard deviation."""
     return [
         {
@@ -114,7 +114,7 @@ def change_rows(d: Diagnosis) -> list[dict[str, Any]]:
     ]
 
 
-def missing_heat(d: Diagnosis) -> dict[str, Any]:
+def missing_heat(d: DiagnosisData) -> dict[str, Any]:
     """Heat of unknown origin by station: W/m3 inside while the tyre rolls, W/m2 through the outer surface always."""
     found = d.missing
     return {
@@ -137,7 +137,7 @@ def missing_heat(d: Diagnosis) -> dict[str, Any]:
     }
 
 
-def _look(d: Diagnosis, number: int) -> dict[str, Any]:
+def _look(d: DiagnosisData, number: int) -> dict[str, Any]:
     """A further look at the same data in short; ``folder``: where the whole of it is, where something was found."""
     return {
         "verdict": d.verdict,
@@ -147,19 +147,19 @@ def _look(d: Diagnosis, number: int) -> dict[str, Any]:
     }
 
 
-def _rms(d: Diagnosis, *, after: bool) -> dict[str, float]:
+def _rms(d: DiagnosisData, *, after: bool) -> dict[str, float]:
     return {"rms_K": d.rms(after=after, held_out=False), "held_out_rms_K": d.rms(after=after, held_out=True)}
 
 
-def _runs(d: Diagnosis) -> list[dict[str, Any]]:
+def _runs(d: DiagnosisData) -> list[dict[str, Any]]:
     return [
         {
             "run": one.name,
             "hold_out": one.hold_out,
             "drive": one.drive,
-            "readings": sum(len(each.times) for each in one.series),
-            "end_s": max(float(each.times[-1]) for each in one.series),
-            "noise_K": {each.sensor: each.noise for each in one.series},
+            "readings": sum(len(each.times) for each in one.sensors),
+            "end_s": max(float(each.times[-1]) for each in one.sensors),
+            "noise_K": {each.sensor: each.noise for each in one.sensors},
         }
-        for one in d.gap.lab.bench.trials
+        for one in d.gap.trials
     ]

@@ -6,13 +6,13 @@ import contextlib
 import functools
 import hashlib
 from collections.abc import Sequence
-from dataclasses import dataclass, field
+from dataclasses import dataclass
 
 import numpy as np
 from numpy.typing import NDArray
 
 from tyrefem.conduction.sensitivity import Tangents
-from tyrefem.diagnose.fast_simulation import Lean, read, sensor_points
+from tyrefem.diagnose.fixed_step import FixedStepRun, read, sensor_points
 from tyrefem.diagnose.settings import DiagnosisSettings
 from tyrefem.diagnose.unknowns import Unknown
 from tyrefem.errors import InputError
@@ -36,16 +36,19 @@ class Modes:
     """V (n, m) of a drive on the mesh of the fit; m = 0: no reduced model follows the drive."""
 
     V: Array
-    digest: str = field(init=False)
 
-    def __post_init__(self) -> None:
-        object.__setattr__(self, "digest", hashlib.sha256(np.ascontiguousarray(self.V).tobytes()).hexdigest()[:16])
+    @functools.cached_property
+    def digest(self) -> str:
+        """Of the numbers."""
+        return hashlib.sha256(np.ascontiguousarray(self.V).tobytes()).hexdigest()[:16]
 
     def __repr__(self) -> str:
         return f"Modes({self.V.shape[1]}, {self.digest})"
 
 
-def modes_of(base: Lean, unknowns: Sequence[Unknown], found: Tangents | None, settings: DiagnosisSettings) -> Array:
+def modes_of(
+    base: FixedStepRun, unknowns: Sequence[Unknown], found: Tangents | None, settings: DiagnosisSettings
+) -> Array:
     """(n, m) modes of a drive and of what unknowns change in it, from tangents that are at hand.
 
     Tangents say what the mesh does with every unknown to first order; how far, and how two of them act together, is
@@ -72,7 +75,7 @@ def modes_of(base: Lean, unknowns: Sequence[Unknown], found: Tangents | None, se
 class ReducedDrive:
     """A drive's reduced model. Heat sources are evaluated at every node: on the mesh of the fit there are few."""
 
-    base: Lean
+    base: FixedStepRun
     modes: Modes
     settings: DiagnosisSettings
 
@@ -140,7 +143,7 @@ class ReducedDrive:
         found: list[tuple[list[int], Marched]] = []
         refused: list[int] = []
         tolerance, together = self.settings.reduced_time_tolerance, self.settings.marched_together
-        # Where one of them takes no step any more, the lean simulation says what is wrong with it.
+        # Where one of them takes no step any more, the fixed-step simulation says what is wrong with it.
         with contextlib.suppress(InputError):
             for numbers, part in side_by_side(self.model, tyres, tolerance, together):
                 if isinstance(part, Marched):

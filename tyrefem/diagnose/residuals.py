@@ -1,106 +1,100 @@
-"""Where, when and under which drive data and study disagree: residuals by run, sensor and stretch of time."""
+"""Measured minus computed temperatures of every run."""
 
 from __future__ import annotations
 
-from collections.abc import Mapping
-from typing import TYPE_CHECKING
+from collections.abc import Sequence
+from dataclasses import dataclass
+from functools import cached_property
 
 import numpy as np
 from numpy.typing import NDArray
 
-if TYPE_CHECKING:
-    import pandas as pd
-
-    from tyrefem.diagnose.linearised import Gap
-    from tyrefem.diagnose.runs import Series
+from tyrefem.brief import Brief
+from tyrefem.diagnose.linear_model import LinearModel
+from tyrefem.diagnose.runs import Trial
+from tyrefem.diagnose.sensitivities import DriveResponse, Sensitivities
+from tyrefem.diagnose.settings import DEFAULT, DiagnosisSettings
+from tyrefem.diagnose.unknowns import Unknown
+from tyrefem.inputs.study import StudyData
 
 Array = NDArray[np.float64]
-#: A sensor is on its plateau where it changes by less than this part of its fastest rate (a convention).
-SLOW = 0.1
-#: A history that changes by less than this is a plateau, K.
-FLAT = 0.1
-STRETCHES = ("heating", "plateau", "cooling")
 
 
-def stretches(series: Series, computed: Array) -> NDArray[np.object_]:
-    """Heating, plateau or cooling for every block, by the slope of the computed history (n_blocks,)."""
-    names = np.full(len(computed), "plateau", dtype=object)
-    if len(computed) < 2 or np.ptp(computed) < FLAT:
-        return names
-    slope = np.gradient(computed, series.block_times)
-    fastest = np.abs(slope).max()
-    names[slope > SLOW * fastest] = "heating"
-    names[slope < -SLOW * fastest] = "cooling"
-    return names
-
-
-def gap_table(gap: Gap, computed: Mapping[int, Array], like: Mapping[int, Array] | None = None) -> pd.DataFrame:
-    """One row per run, sensor and stretch: mean and rms of measured - computed, K, and how surely it is not nothing.
-
-    ``sigma`` is the mean over its standard deviation from noise, discrepancy (both with their correlation in time),
-    base numbers and sensors; ``sd_K`` that standard deviation.
+@dataclass(frozen=True, eq=False)
+class Residuals(Brief):
+    """What is measured minus what the study computes, run by run.
 
     Parameters
     ----------
-    computed : trial -> block means to hold against the data, e.g. the study's own.
-    like : trial -> block means whose slope tells the stretches apart; default: ``computed``.
+    study : the study. trials : the measured runs. sensitivities : what is computed, and how it changes with unknowns.
     """
-    import pandas as pd
 
-    trials, rows = gap.lab.bench.trials, []
-    prior = np.array([one.sd for one in gap.unknowns[: gap.nuisance]])
-    for number, trial in enumerate(trials):
-        measured = trial.measured
-        drive = gap.lab.bench.driven(gap.lab.bench.study, number).card.drive
-        for one in trial.series:
-            place = trial.parts()[one.sensor]
-            residual = (measured - computed[number])[place]
-            J = gap.jacobians[number][place, : gap.nuisance]
-            covariance = one.covariance + (J * prior**2) @ J.T
-            kinds = stretches(one, (like or computed)[number][place])
-            for kind in STRETCHES:
-                mask = kinds == kind
-                if not mask.any():
-                    continue
-                weight = mask * one.sizes / (mask * one.sizes).sum()
-                mean, sd = float(weight @ residual), float(np.sqrt(weight @ covariance @ weight))
-                rows.append(
-                    {
-                        "run": trial.name,
-                        "hold_out": trial.hold_out,
-                        "sensor": one.sensor,
-                        "phase": kind,
-                        "speed_m_s": _speed(drive, one.block_times[mask]),
-                        "n": int((mask * one.sizes).sum()),
-                        "mean_K": mean,
-                        "rms_K": float(np.sqrt(weight @ residual**2)),
-                        "sd_K": sd,
-                        "sigma": abs(mean) / sd,
-                    }
-                )
-    return pd.DataFrame(rows)
+    study: StudyData
+    trials: tuple[Trial, ...]
+    sensitivities: Sensitivities
+    settings: DiagnosisSettings = DEFAULT
 
+    @property
+    def unknowns(self) -> tuple[Unknown, ...]:
+        """Everything that may be fitted, nuisance first."""
+        return self.sensitivities.unknowns
 
-def _speed(drive: object, times: Array) -> float:
-    return float(np.mean([drive.value("speed", t) or 0.0 for t in times]))  # type: ignore[attr-defined]
+    @property
+    def nuisance(self) -> int:
+        """How many unknowns belong to every model."""
+        return self.sensitivities.nuisance
 
+    @property
+    def computed(self) -> tuple[Array, ...]:
+        """Per trial (n_blocks,) degC on the coarse mesh, with the study as it is."""
+        return self.sensitivities.computed
 
-def rms(gap: Gap, computed: Mapping[int, Array], trials: list[int], sensor: str | None = None) -> float:
-    """Root mean square of measured - computed over the readings of some trials (of one sensor), K; NaN without any.
+    @property
+    def whitened(self) -> tuple[Array, ...]:
+        """Per trial (n_blocks, k): whitened sensitivities."""
+        return self.sensitivities.whitened
 
-    Block means stand for their readings, so that the noise within a block is added to what the means show.
-    """
-    total = count = 0.0
-    for number in trials:
-        trial = gap.lab.bench.trials[number]
-        for one in trial.series:
-            if sensor not in (None, one.sensor):
-                continue
-            place = trial.parts()[one.sensor]
-            residual = trial.measured[place] - computed[number][place]
-            within = one.measured - np.repeat(one.block_means(one.measured), one.sizes.astype(int))
-            # The signal's own change within a block is no noise: take it off with the computed one where it is known.
-            noise = np.minimum(np.add.reduceat(within**2, one.starts), one.noise**2 * np.maximum(one.sizes - 1, 0))
-            total += float(one.sizes @ residual**2 + noise.sum())
-            count += float(one.sizes.sum())
-    return float(np.sqrt(total / count)) if count else float("nan")
+    @property
+    def responses(self) -> tuple[DriveResponse, ...]:
+        """Of the drives; of use for other data at the same drives."""
+        return self.sensitivities.responses
+
+    @property
+    def fitted(self) -> list[int]:
+        """Numbers of the trials that are fitted."""
+        return self.sensitivities.fitted
+
+    @property
+    def held_out(self) -> list[int]:
+        """Numbers of the trials that are held out."""
+        return self.sensitivities.held_out
+
+    def driven(self, number: int) -> StudyData:
+        """The study at the drive of a trial."""
+        drive = self.trials[number].drive
+        return self.study.with_drive(drive) if drive else self.study
+
+    @cached_property
+    def _start(self) -> tuple[float, ...]:
+        return tuple(self.driven(number).card.drive.initial for number in range(len(self.trials)))
+
+    def corrected(self, number: int, computed: Array) -> Array:
+        """Block means of a trial on the coarse mesh with what the study's own mesh adds.
+
+        That was found at x = 0; the error of a mesh grows with the heat, so it is scaled by the rise above the start,
+        all sensors together: one near the surface may hardly rise, and be far off for the gradient it sits in.
+        """
+        start, origin = self._start[number], self.computed[number]
+        before, after = (float(np.mean((values - start) ** 2)) for values in (origin, computed))
+        scale = np.clip(np.sqrt(after / before), *self.settings.mesh_error_scales) if before > 1.0 else 1.0
+        return np.asarray(computed + self.sensitivities.correction[number] * scale)
+
+    def residual(self, number: int, computed: Array) -> Array:
+        """Whitened measured - computed of one trial, from block means on the coarse mesh."""
+        trial = self.trials[number]
+        return trial.whitened(trial.measured - self.corrected(number, computed))
+
+    def linear(self, trials: Sequence[int]) -> LinearModel:
+        """The linear model of some trials about x = 0."""
+        data = np.concatenate([self.residual(number, self.computed[number]) for number in trials])
+        return LinearModel(self.sensitivities.design(trials), data)

@@ -3,33 +3,84 @@
 from __future__ import annotations
 
 from collections.abc import Callable, Iterable, Sequence
+from dataclasses import dataclass
+from functools import cached_property
 
-from tyrefem.diagnose.evaluations import Laboratory
-from tyrefem.diagnose.forward_model import Response
-from tyrefem.diagnose.linearised import Gap
-from tyrefem.diagnose.missing_heat import patches
-from tyrefem.diagnose.multifidelity import Predictions
+import numpy as np
+from numpy.typing import NDArray
+
+from tyrefem.brief import Brief
+from tyrefem.diagnose.candidates import Members
+from tyrefem.diagnose.evaluations import Evaluations
+from tyrefem.diagnose.forward_model import DriveResponse
+from tyrefem.diagnose.heat_patches import patches
+from tyrefem.diagnose.linear_model import DesignMatrix
 from tyrefem.diagnose.reduced_forward import Modes
+from tyrefem.diagnose.sampling import DriveSampling
 from tyrefem.diagnose.settings import DEFAULT, DiagnosisSettings
-from tyrefem.diagnose.unknowns import Unknown, base_unknowns, candidates, sensor_unknowns
+from tyrefem.diagnose.unknowns import Unknown, base_unknowns, sensor_unknowns
 from tyrefem.errors import InputError
 from tyrefem.inputs.study import StudyData
 
+Array = NDArray[np.float64]
 Tick = Callable[[str, int, int], None]
 
 
+@dataclass(frozen=True, eq=False)
+class Sensitivities(Brief):
+    """What the study computes at every drive, and how that changes with every unknown.
+
+    Parameters
+    ----------
+    drives : when the sensors are read. unknowns : nuisance first. nuisance : how many belong to every model.
+    computed : per drive (n_blocks,) degC on the coarse mesh. correction : per drive, K that the study's own mesh adds.
+    jacobians : per drive (n_blocks, k), K per unit of x. responses : what these were sampled from.
+    """
+
+    drives: tuple[DriveSampling, ...]
+    unknowns: tuple[Unknown, ...]
+    nuisance: int
+    computed: tuple[Array, ...]
+    correction: tuple[Array, ...]
+    jacobians: tuple[Array, ...]
+    responses: tuple[DriveResponse, ...] = ()
+
+    @property
+    def fitted(self) -> list[int]:
+        """Numbers of the drives that are fitted."""
+        return [number for number, drive in enumerate(self.drives) if not drive.hold_out]
+
+    @property
+    def held_out(self) -> list[int]:
+        """Numbers of the drives that are held out."""
+        return [number for number, drive in enumerate(self.drives) if drive.hold_out]
+
+    @cached_property
+    def whitened(self) -> tuple[Array, ...]:
+        """Whitened jacobian of every drive."""
+        return tuple(drive.whitened(J) for drive, J in zip(self.drives, self.jacobians, strict=True))
+
+    def design(self, numbers: Sequence[int]) -> DesignMatrix:
+        """The design matrix of some drives about x = 0."""
+        jacobian = np.vstack([self.whitened[number] for number in numbers])
+        return DesignMatrix(self.unknowns, self.nuisance, jacobian)
+
+
 def unknowns_of(
-    study: StudyData, measured: Iterable[str], settings: DiagnosisSettings = DEFAULT
+    study: StudyData, measured: Iterable[str], candidates: Members, settings: DiagnosisSettings = DEFAULT
 ) -> tuple[tuple[Unknown, ...], int]:
     """Everything that a diagnosis with these sensors may fit, and how many of it, the first, are in every model."""
     nuisance = (*base_unknowns(study), *sensor_unknowns(study, set(measured)))
-    found = [one for each in candidates(study) for one in (*each.amplitudes, *each.presence)]
-    return (*nuisance, *found, *patches(study, settings)), len(nuisance)
+    effects = [unknown for each in candidates for unknown in (*each.amplitudes, *each.presence)]
+    return (*nuisance, *effects, *patches(study, settings)), len(nuisance)
 
 
-def responses(lab: Laboratory, unknowns: tuple[Unknown, ...], tick: Tick | None = None) -> tuple[Response, ...]:
-    """The response of every trial's drive: the dear part of a diagnosis, and the same for any data."""
-    count = len(lab.bench.trials)
+def responses(
+    evaluations: Evaluations, unknowns: tuple[Unknown, ...], tick: Tick | None = None
+) -> tuple[DriveResponse, ...]:
+    """The response of every drive: the dear part of a diagnosis, and the same for any data."""
+    model = evaluations.model
+    count = len(model.drives)
     done = 0
 
     def step() -> None:
@@ -38,32 +89,35 @@ def responses(lab: Laboratory, unknowns: tuple[Unknown, ...], tick: Tick | None 
         if tick:
             tick("sensitivities", done, count)
 
-    sensors, near = lab.bench.sensors, lab.bench.nearby(lab.bench.coarse)
+    near = model.nearby(model.coarse)
     if tick and near is not None:
         tick(f"solving the strain cycle of every drive again for {len(near.numbers)} numbers", 0, 0)
-    found = []
-    for times, readings, correction, slopes, V in lab.ask("response", [(i, unknowns) for i in range(count)], step):
-        by_sensor = [dict(zip(sensors, each, strict=True)) for each in (readings, correction, slopes)]
-        found.append(Response(unknowns, times, by_sensor[0], by_sensor[1], by_sensor[2], Modes(V)))
-    return tuple(found)
+    answers = evaluations.of("response", [(number, unknowns) for number in range(count)], step)
+
+    def by_sensor(table: Array) -> dict[str, Array]:
+        return dict(zip(model.sensors, table, strict=True))
+
+    return tuple(
+        DriveResponse(unknowns, times, by_sensor(readings), by_sensor(correction), by_sensor(slopes), Modes(V))
+        for times, readings, correction, slopes, V in answers
+    )
 
 
-def gap_of(
-    lab: Laboratory, tick: Tick | None = None, known: Sequence[Response] | None = None, *, reduced: bool = True
-) -> Gap:
-    """Data against study for the trials of a laboratory; ``known``: their responses, if at hand.
+def sensitivities(
+    drives: Sequence[DriveSampling],
+    unknowns: tuple[Unknown, ...],
+    nuisance: int,
+    responses: Sequence[DriveResponse],
+) -> Sensitivities:
+    """The responses of drives as their sensors are read.
 
-    ``reduced``: whether the drives' reduced models may predict.
+    Raises
+    ------
+    InputError : the responses are to other unknowns.
     """
-    trials = lab.bench.trials
-    unknowns, nuisance = unknowns_of(
-        lab.bench.study, {one.sensor for each in trials for one in each.series}, lab.bench.settings
-    )
-    if known is not None and any(one.unknowns != unknowns for one in known):
+    if any(response.unknowns != unknowns for response in responses):
         raise InputError("the responses at hand are of another study, or of other sensors")
-    found = known or responses(lab, unknowns, tick)
     computed, correction, jacobians = zip(
-        *(one.blocks(each) for one, each in zip(found, trials, strict=True)), strict=True
+        *(response.blocks(drive) for response, drive in zip(responses, drives, strict=True)), strict=True
     )
-    predictions = Predictions(lab, [one.modes for one in found] if reduced else ())
-    return Gap(lab, unknowns, nuisance, correction, computed, jacobians, tuple(found), predictions, lab.bench.settings)
+    return Sensitivities(tuple(drives), unknowns, nuisance, computed, correction, jacobians, tuple(responses))

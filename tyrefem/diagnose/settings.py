@@ -95,8 +95,6 @@ class DiagnosisSettings:
     pressed: float = 2.0
 
     # -- search
-    #: Pairs in the linear model from which triples grow.
-    beam: int = 30
     #: Single effects that are fitted whatever comes.
     singles: int = 4
     #: Sets fitted at once, and in all.

@@ -1,4 +1,4 @@
-"""A made-up truth for blind tests: made otherwise than the diagnosis analyses, and read by imperfect sensors.
+"""Synthetic data for blind tests: made otherwise than the diagnosis analyses, and read by imperfect sensors.
 
 Effects that are in no catalogue, for blind tests of the verdict "unexplained".
 """
@@ -34,13 +34,13 @@ from tyrefem.simulation.surroundings import GAS
 Array = NDArray[np.float64]
 
 
-#: Step of the truth's own time integration, s.
+#: Step of the data's own time integration, s.
 STEP = 4.0
 
 
 @functools.cache
-def own_mesh() -> dict[str, str]:
-    """The truth's own mesh, finer than the diagnosis uses: unstructured quadratic triangles by gmsh.
+def synthetic_mesh() -> dict[str, str]:
+    """The mesh of synthetic data, finer than the diagnosis uses: unstructured quadratic triangles by gmsh.
 
     Without gmsh the mapped mesher's triangles.
     """
@@ -94,13 +94,23 @@ def backward(problem: Conduction, times: Array, initial: float) -> tuple[Array, 
     return np.array(u), np.array(g)
 
 
+@dataclass(frozen=True, eq=False)
+class ExtraEffectsTyre(RollingTyre):
+    """A study's tyre on which further effects act that the study cannot name: they are in no catalogue."""
+
+    extra: tuple[Effect, ...] = ()
+
+    @functools.cached_property
+    def acting(self) -> Acting:
+        """The study's effects, then the further ones."""
+        return Acting(self, (*self.study.effects, *self.extra))
+
+
 def record(
     study: StudyData, name: str, logger: Logger, rng: np.random.Generator, extra: tuple[Effect, ...] = ()
 ) -> MeasuredRun:
-    """A run as a logger records it. ``study``: the truth, at this run's drive; ``extra``: effects of no catalogue."""
-    tyre = RollingTyre(study)
-    if extra:
-        tyre.__dict__["acting"] = Acting(tyre, (*study.effects, *extra))
+    """A run as a logger records it. ``study``: with what is hidden; ``extra``: effects of no catalogue."""
+    tyre = ExtraEffectsTyre(study, extra=extra)
     edges = [*tyre.drive.starts, tyre.drive.end]
     times = np.unique(np.concatenate([np.linspace(a, b, round((b - a) / STEP) + 1) for a, b in pairwise(edges)]))
     values, reservoirs = backward(tyre.problem, times, tyre.drive.initial)

@@ -7,7 +7,7 @@ from collections.abc import Mapping
 from dataclasses import dataclass
 from typing import Any
 
-from tyrefem.brief import Brief
+from tyrefem.cache import Cache
 from tyrefem.effects import catalogue
 from tyrefem.effects.effect import Effect, Parameter
 from tyrefem.inputs.changes import scaled, value_at
@@ -82,47 +82,6 @@ class Unknown:
         return "1" if self.parameter is None else self.parameter.prior.unit
 
 
-@dataclass(frozen=True)
-class Candidate(Brief):
-    """An effect that may be missing: one variant of one entry of the catalogue.
-
-    ``unknowns``: its amplitudes first, then the parameters that only shape it.
-    """
-
-    name: str
-    choice: Choice
-    unknowns: tuple[Unknown, ...]
-
-    def _title(self) -> str:
-        return self.key
-
-    @property
-    def key(self) -> str:
-        """Name with its variant."""
-        shown = ", ".join(value for _, value in self.choice)
-        return f"{self.name} ({shown})" if shown else self.name
-
-    @property
-    def effect(self) -> type[Effect]:
-        """The entry of the catalogue."""
-        return catalogue()[self.name]
-
-    @property
-    def amplitudes(self) -> tuple[Unknown, ...]:
-        """The unknowns that make the effect."""
-        return tuple(one for one in self.unknowns if one.parameter and one.parameter.prior.amplitude)
-
-    @property
-    def presence(self) -> tuple[Unknown, ...]:
-        """The unknown of an effect that is there or not, with nothing in between."""
-        return tuple(one for one in self.unknowns if one.fixed)
-
-    @property
-    def shapes(self) -> tuple[Unknown, ...]:
-        """The unknowns that only shape it."""
-        return tuple(one for one in self.unknowns if one.parameter and not one.parameter.prior.amplitude)
-
-
 def of_effect(
     effect: type[Effect], choice: Choice, sd: float | None = None, stated: Effect | None = None
 ) -> tuple[Unknown, ...]:
@@ -130,16 +89,17 @@ def of_effect(
     tag = ".".join((effect.name, *(value for _, value in choice)))
     if not effect.parameters():
         return (Unknown(f"effects.{tag}", 1.0, 0.0, 1.0, effect.name, choice),)
-    found = []
-    for one in effect.parameters():
-        spread = one.prior.scale if sd is None else sd
-        origin = None if stated is None else stated.values[one.name]
-        if stated is not None and one.name in stated.sd:
-            spread = parse(stated.sd[one.name], one.prior.unit)
-        zero = one.prior.origin if origin is None else origin
-        limits = one.prior.low - zero, one.prior.high - zero
-        found.append(Unknown(f"effects.{tag}.{one.name}", spread, *limits, effect.name, choice, one, origin))
-    return tuple(found)
+    unknowns = []
+    for parameter in effect.parameters():
+        name, prior = parameter.name, parameter.prior
+        spread = prior.scale if sd is None else sd
+        origin = None if stated is None else stated.values[name]
+        if stated is not None and name in stated.sd:
+            spread = parse(stated.sd[name], prior.unit)
+        zero = prior.origin if origin is None else origin
+        limits = prior.low - zero, prior.high - zero
+        unknowns.append(Unknown(f"effects.{tag}.{name}", spread, *limits, effect.name, choice, parameter, origin))
+    return tuple(unknowns)
 
 
 def base_unknowns(study: StudyData) -> tuple[Unknown, ...]:
@@ -156,52 +116,43 @@ def base_unknowns(study: StudyData) -> tuple[Unknown, ...]:
         films += of_effect(known["film-scale"], choice, study.card.diagnosis.film_sd, stated)
     fitted = [
         unknown
-        for one in study.card.effects
-        if one.name != "film-scale" and one.name not in OF_SENSORS
-        for unknown in of_effect(type(one), tuple(one.choice.items()), stated=one)
-        if unknown.parameter is not None and unknown.parameter.name in one.sd
+        for effect in study.card.effects
+        if effect.name != "film-scale" and effect.name not in OF_SENSORS
+        for unknown in of_effect(type(effect), tuple(effect.choice.items()), stated=effect)
+        if unknown.parameter is not None and unknown.parameter.name in effect.sd
     ]
-    return (*numbers, *films, *(one for one in fitted if one.sd > 0))
+    return (*numbers, *films, *(unknown for unknown in fitted if unknown.sd > 0))
 
 
 def _stated(study: StudyData, name: str, choice: Choice) -> Effect | None:
     """The effect as the study has it, if it has."""
-    found = (one for one in study.card.effects if one.name == name and tuple(one.choice.items()) == choice)
-    return next(found, None)
+    effects = study.card.effects
+    return next((each for each in effects if each.name == name and tuple(each.choice.items()) == choice), None)
 
 
 def sensor_unknowns(study: StudyData, measured: set[str]) -> tuple[Unknown, ...]:
     """Place, lag and offset of every sensor that was read; contained air and rim have an offset only."""
     known = catalogue()
-    found: list[Unknown] = []
+    unknowns: list[Unknown] = []
     for name, sensor in study.sensors.items():
         if name not in measured:
             continue
         choice = (("sensor", name),)
         for effect, sd in zip(OF_SENSORS, (sensor.position_sd, sensor.lag_sd, sensor.accuracy), strict=True):
-            own = of_effect(known[effect], choice, sd, _stated(study, effect, choice))
-            found += [one for one in own if one.sd > 0]
-    return tuple(found)
+            of_sensor = of_effect(known[effect], choice, sd, _stated(study, effect, choice))
+            unknowns += [unknown for unknown in of_sensor if unknown.sd > 0]
+    return tuple(unknowns)
 
 
-def candidates(study: StudyData) -> tuple[Candidate, ...]:
-    """Every effect and variant that has a meaning in the study and is not in it already."""
-    present = {(effect.name, tuple(effect.choice.items())) for effect in study.card.effects}
-    found = []
-    for name, effect in catalogue().items():
-        if effect.calibration or name in study.card.diagnosis.exclude or effect.refusal(study) is not None:
-            continue
-        for variant in effect.variants(study):
-            choice = tuple(variant.items())
-            if (name, choice) not in present:
-                found.append(Candidate(name, choice, of_effect(effect, choice)))
-    return tuple(found)
-
-
-def with_values(study: StudyData, values: Mapping[Unknown, float], like: StudyData | None = None) -> StudyData:
+def with_values(
+    study: StudyData, values: Mapping[Unknown, float], like: StudyData | None = None, written: Cache[Any] | None = None
+) -> StudyData:
     """The study with unknowns set to values x; exactly the study itself where all are zero.
 
-    ``like``: a study close to it, with which it shares what it can; see `Study.replace`.
+    Parameters
+    ----------
+    like : a study close to it, with which it shares what it can; see `StudyData.replace`.
+    written : remembers the numbers as they are written, which take a look through the cards to find.
     """
     entries = [dict(entry) for entry in study.data.get("effects", [])]
     changes: dict[str, Any] = {}
@@ -209,7 +160,8 @@ def with_values(study: StudyData, values: Mapping[Unknown, float], like: StudyDa
     for unknown, x in values.items():
         if unknown.effect is None:
             if x != 0.0:
-                changes |= {key: scaled(_written(study, key), math.exp(x)) for key in unknown.keys or (unknown.key,)}
+                keys = unknown.keys or (unknown.key,)
+                changes |= {key: scaled(_written(study, key, written), math.exp(x)) for key in keys}
         else:
             # A sensor's offset may stand twice: as what every sensor has, and as a candidate that it is far off.
             totals[unknown.key] = unknown, totals.get(unknown.key, (unknown, 0.0))[1] + x
@@ -228,12 +180,12 @@ def with_values(study: StudyData, values: Mapping[Unknown, float], like: StudyDa
     return study.replace(changes, like) if changes else study
 
 
-def _written(study: StudyData, key: str) -> Any:
-    """The number at a dotted name as it is written; looked up once per study, which is immutable."""
-    known = study.__dict__.setdefault("_written", {})
-    if key not in known:
-        known[key] = value_at(study.data, key, study.folder)
-    return known[key]
+def _written(study: StudyData, key: str, known: Cache[Any] | None) -> Any:
+    """The number at a dotted name as it is written: it follows from the study's table of the first part of the name."""
+    if known is None:
+        return value_at(study.data, key, study.folder)
+    table = repr(study.data.get(key.split(".", maxsplit=1)[0]))
+    return known.get((key, table, study.folder), lambda: value_at(study.data, key, study.folder))
 
 
 def _entry(entries: list[dict[str, Any]], unknown: Unknown) -> dict[str, Any]:

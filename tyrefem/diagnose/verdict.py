@@ -7,8 +7,9 @@ from collections.abc import Callable, Sequence
 from dataclasses import dataclass
 
 from tyrefem.brief import Brief
-from tyrefem.diagnose.evidence import Members
-from tyrefem.diagnose.fitted import Explained
+from tyrefem.diagnose.candidates import Members
+from tyrefem.diagnose.fits import FittedSet
+from tyrefem.diagnose.selection import ScoredSet
 from tyrefem.diagnose.settings import DEFAULT, DiagnosisSettings
 
 IDENTIFIED, CONFOUNDED, UNEXPLAINED, NO_GAP = "identified", "confounded", "unexplained", "no gap"
@@ -17,14 +18,14 @@ SHOWN = 8
 
 
 @dataclass(frozen=True)
-class Standing(Brief):
+class RankedSet(Brief):
     """A set of effects and how it stands: ``score`` = ln(prior x evidence), ``probability``, the fit if any."""
 
     members: Members
     score: float
     probability: float
-    explained: Explained | None
-    unexplained: bool = False
+    fit: FittedSet | None
+    outside: bool = False
 
     def _title(self) -> str:
         return f"{self.key}: {self.probability:.3g}"
@@ -32,96 +33,94 @@ class Standing(Brief):
     @property
     def key(self) -> str:
         """The set in words."""
-        if self.unexplained:
+        if self.outside:
             return "not in the catalogue"
-        return " + ".join(sorted(one.key for one in self.members)) or "no effect"
+        return " + ".join(sorted(member.key for member in self.members)) or "no effect"
 
 
 @dataclass(frozen=True)
 class Judgement(Brief):
     """The verdict, the sets in order of probability, and the reasons in sentences.
 
-    ``named``: candidate key -> probability that it is part of the truth. ``credible``: the sets that make up 99 %.
+    ``named``: candidate key -> probability that it acts. ``credible``: the sets that make up 99 %.
     """
 
     verdict: str
-    standings: tuple[Standing, ...]
+    ranking: tuple[RankedSet, ...]
     named: dict[str, float]
-    credible: tuple[Standing, ...]
+    credible: tuple[RankedSet, ...]
     reasons: tuple[str, ...]
 
     @property
-    def best(self) -> Standing:
+    def best(self) -> RankedSet:
         """The most probable set."""
-        return self.standings[0]
+        return self.ranking[0]
 
     @property
     def probability(self) -> float:
-        """Probability that all of the best set is part of the truth, whatever else is."""
-        return probability(self.standings)
+        """Probability that all of the best set acts, whatever else does."""
+        return probability(self.ranking)
 
 
-def standings(
-    scores: Sequence[tuple[float, Members, Explained | None]], unknown: float | None = None
-) -> tuple[Standing, ...]:
-    """Sets with their probabilities, best first; ``unknown``: score of a cause outside the catalogue."""
-    rows = [(score, members, explained, False) for score, members, explained in scores]
-    if unknown is not None:
-        rows.append((unknown, (), None, True))
+def ranked(scored: Sequence[ScoredSet], outside: float | None = None) -> tuple[RankedSet, ...]:
+    """Sets with their probabilities, best first; ``outside``: score of a cause outside the catalogue."""
+    rows = [(entry.score, entry.members, entry.fit, False) for entry in scored]
+    if outside is not None:
+        rows.append((outside, (), None, True))
     top = max(score for score, *_ in rows)
     total = sum(math.exp(score - top) for score, *_ in rows)
-    found = [
-        Standing(members, score, math.exp(score - top) / total, explained, outside)
-        for score, members, explained, outside in rows
+    sets = [
+        RankedSet(members, score, math.exp(score - top) / total, fit, elsewhere)
+        for score, members, fit, elsewhere in rows
     ]
-    return tuple(sorted(found, key=lambda one: -one.score))
+    return tuple(sorted(sets, key=lambda entry: -entry.score))
 
 
-def inclusion(ranked: Sequence[Standing]) -> dict[str, float]:
-    """Candidate -> probability that it is part of the truth."""
-    found: dict[str, float] = {}
-    for one in ranked:
-        for member in one.members:
-            found[member.key] = found.get(member.key, 0.0) + one.probability
-    return dict(sorted(found.items(), key=lambda item: -item[1]))
+def inclusion(ranking: Sequence[RankedSet]) -> dict[str, float]:
+    """Candidate -> probability that it acts."""
+    shares: dict[str, float] = {}
+    for entry in ranking:
+        for member in entry.members:
+            shares[member.key] = shares.get(member.key, 0.0) + entry.probability
+    return dict(sorted(shares.items(), key=lambda item: -item[1]))
 
 
-def probability(ranked: Sequence[Standing]) -> float:
+def probability(ranking: Sequence[RankedSet]) -> float:
     """Joint probability of the best set and of all sets that hold it."""
-    best = ranked[0]
-    own = {one.key for one in best.members}
-    if not own or best.unexplained:
+    best = ranking[0]
+    keys = {member.key for member in best.members}
+    if not keys or best.outside:
         return best.probability
-    return sum(one.probability for one in ranked if own <= {member.key for member in one.members})
+    return sum(entry.probability for entry in ranking if keys <= {member.key for member in entry.members})
 
 
 def judge(
-    ranked: Sequence[Standing],
-    explained: Callable[[Members], Explained | None],
+    ranking: Sequence[RankedSet],
+    fit_of: Callable[[Members], FittedSet | None],
     settings: DiagnosisSettings = DEFAULT,
 ) -> Judgement:
     """The verdict on sets ranked by probability.
 
-    A set is *identified* when it is part of the truth with at least 90 % and all of it with at least 50 % probability,
+    A set is *identified* when it acts with at least 90 % probability, and alone with at least 50 %,
     no amplitude is pressed against a bound, the misfit is one that noise makes, and the held-out runs do not reject
     it. Without such a set: *no gap* if no effect is the most probable,
     *unexplained* if the cause is outside the catalogue or the best set does not fit, else *confounded*.
     """
-    best = ranked[0]
+    best = ranking[0]
     credible, mass = [], 0.0
-    for one in ranked:
-        credible.append(one)
-        mass += one.probability
+    for entry in ranking:
+        credible.append(entry)
+        mass += entry.probability
         if mass >= settings.credible:
             break
-    named = inclusion(ranked)
-    fit = best.explained or explained(best.members)
+    named = inclusion(ranking)
+    fit = best.fit or fit_of(best.members)
     reasons: list[str] = []
 
     def verdict(name: str) -> Judgement:
-        return Judgement(name, tuple(ranked), named, tuple(credible), tuple(reasons))
+        return Judgement(name, tuple(ranking), named, tuple(credible), tuple(reasons))
 
-    if best.unexplained:
+    if best.outside:
         reasons.append("heat of unknown origin explains the data better than any set of effects in the catalogue")
         return verdict(UNEXPLAINED)
     if fit is not None and fit.p_value < settings.improbable:
@@ -139,11 +138,11 @@ def judge(
     if fit is not None and fit.at_bound:
         reasons.append("the data want it beyond a bound that physics sets: " + ", ".join(fit.at_bound))
         return verdict(CONFOUNDED)
-    sure = probability(ranked)
+    sure = probability(ranking)
     if sure >= settings.sure and best.probability >= settings.whole:
         reasons.append(f"{best.key} is missing with {100 * sure:.1f} % probability, by all sets of effects tried")
         return verdict(IDENTIFIED)
     more = f"; and {len(credible) - SHOWN} more" if len(credible) > SHOWN else ""
-    shown = "; ".join(one.key for one in credible[:SHOWN])
+    shown = "; ".join(entry.key for entry in credible[:SHOWN])
     reasons.append(f"these sensors and runs cannot tell apart: {shown}{more}")
     return verdict(CONFOUNDED)

@@ -8,15 +8,16 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
+from tyrefem.diagnose.candidates import Candidate
 from tyrefem.diagnose.contenders import contenders, support
 from tyrefem.diagnose.numbers import percent
-from tyrefem.diagnose.unknowns import Candidate, Unknown
+from tyrefem.diagnose.unknowns import Unknown
 from tyrefem.diagnose.verdict import CONFOUNDED, IDENTIFIED, NO_GAP
 from tyrefem.geometry.place_names import place
 
 if TYPE_CHECKING:
-    from tyrefem.diagnose.diagnosis import Diagnosis
-    from tyrefem.diagnose.fitted import Explained
+    from tyrefem.diagnose.diagnosis import DiagnosisData
+    from tyrefem.diagnose.fits import FittedSet
 
 #: Unit of a parameter, SI -> factor and unit in which a person reads it.
 READ = {
@@ -64,20 +65,20 @@ def parameter_name(unknown: Unknown) -> str:
     return unknown.parameter.prior.meaning if unknown.parameter else unknown.label
 
 
-def effect_amounts(candidate: Candidate, fit: Explained) -> list[str]:
+def effect_amounts(candidate: Candidate, fit: FittedSet) -> list[str]:
     """Each fitted parameter of an effect: meaning and amount."""
     known = [one for one in candidate.unknowns if one in fit.values]
     return [f"{parameter_name(one)}: {amount(one.value(fit.values[one]), fit.sd[one], one.unit)}" for one in known]
 
 
-def effect_words(candidate: Candidate, fit: Explained) -> str:
+def effect_words(candidate: Candidate, fit: FittedSet) -> str:
     """An effect in one clause: its sentence, which variant, and how much."""
     said = candidate.effect.sentence.rstrip(".")
     parts = [value for _, value in candidate.choice] + effect_amounts(candidate, fit)
     return f"{said} ({'; '.join(parts)})"
 
 
-def verdict_words(d: Diagnosis) -> tuple[str, ...]:
+def verdict_words(d: DiagnosisData) -> tuple[str, ...]:
     """What stands behind the verdict's name, in a few plain sentences, the most important first."""
     closing = _closing(d)
     if d.verdict == NO_GAP:
@@ -99,7 +100,7 @@ def verdict_words(d: Diagnosis) -> tuple[str, ...]:
     )
 
 
-def missing_words(d: Diagnosis) -> str:
+def missing_words(d: DiagnosisData) -> str:
     """Heat of unknown origin in one clause: what, where, how much."""
     missing, section = d.missing, d.original.section
     total = float(section.total_thickness([missing.station])[0])
@@ -118,7 +119,7 @@ def missing_words(d: Diagnosis) -> str:
     return f"{kind}, {where} (s = {missing.station * 1e3:.0f} mm along the meridian): {size}"
 
 
-def _confounded(d: Diagnosis, closing: str) -> tuple[str, ...]:
+def _confounded(d: DiagnosisData, closing: str) -> tuple[str, ...]:
     rivals, best = contenders(d), d.judgement.best
     held, clauses = support(d, best), " And: ".join(effect_words(one, d.best) for one in best.members)
     if best.members and held >= d.gap.settings.sure:
@@ -139,7 +140,7 @@ def _confounded(d: Diagnosis, closing: str) -> tuple[str, ...]:
     return (first, *([decides] if decides else []), closing)
 
 
-def next_words(d: Diagnosis) -> str:
+def next_words(d: DiagnosisData) -> str:
     """What would tell the most probable sets apart, in one sentence; empty where nothing is known to."""
     if not d.next_experiment:
         return ""
@@ -157,7 +158,7 @@ def next_words(d: Diagnosis) -> str:
     return f"{' or '.join(offers)} would tell {between} apart best.".capitalize()
 
 
-def _closing(d: Diagnosis) -> str:
+def _closing(d: DiagnosisData) -> str:
     if not d.changes:
         return f"The rms of measured - computed is {_kelvin(d, after=False)}; the noise is {d.noise:.1f} K."
     parts = []
@@ -171,7 +172,7 @@ def _closing(d: Diagnosis) -> str:
     return f"{study} the rms of measured - computed goes {going}; the noise is {d.noise:.1f} K.{untried}"
 
 
-def _kelvin(d: Diagnosis, *, after: bool) -> str:
+def _kelvin(d: DiagnosisData, *, after: bool) -> str:
     parts = [(d.rms(after=after, held_out=held), name) for held, name in ((False, "fitted"), (True, "held out"))]
     return ", ".join(f"{value:.1f} K {name}" for value, name in parts if math.isfinite(value))
 
@@ -180,7 +181,7 @@ def _joined(clauses: Sequence[str], further: Sequence[str], closing: str) -> tup
     return (". And: ".join(clauses) + ". " + " ".join(further), closing)
 
 
-def again_words(d: Diagnosis) -> tuple[str, ...]:
+def again_words(d: DiagnosisData) -> tuple[str, ...]:
     """What further looks at the same data found, one sentence each; none where there was no further look."""
     found = []
     for number, one in enumerate(d.looks[1:], start=2):

@@ -24,7 +24,7 @@ from tyrefem.output import atomic_folder, write_json
 from tyrefem.reports.diagnosis_figures import pictures
 
 if TYPE_CHECKING:
-    from tyrefem.diagnose.diagnosis import Diagnosis
+    from tyrefem.diagnose.diagnosis import DiagnosisData
 
 PAGE = "diagnosis.html"
 _FILES = ("verdict.json", AMENDED, "difference.txt", "where.csv", "histories.csv", PAGE, "rms.png", "residual-map*.png",
@@ -39,7 +39,7 @@ SHOWN = 12
 TELLS = 0.1
 
 
-def save(d: Diagnosis, folder: str | Path) -> Path:
+def save(d: DiagnosisData, folder: str | Path) -> Path:
     """Write everything into a folder, each file complete or not there; returns the page.
 
     ``verdict.json``, ``amended.toml``, ``difference.txt``, ``where.csv``, ``histories.csv``, the pictures, and
@@ -65,7 +65,7 @@ def save(d: Diagnosis, folder: str | Path) -> Path:
     return folder / PAGE
 
 
-def page(d: Diagnosis, images: Mapping[str, bytes], *, version: str) -> str:
+def page(d: DiagnosisData, images: Mapping[str, bytes], *, version: str) -> str:
     """The page's HTML; ``images`` maps file name -> PNG, as `tyrefem.reports.diagnosis_figures.pictures` returns."""
     from jinja2 import Environment, PackageLoader, StrictUndefined
 
@@ -98,7 +98,7 @@ def page(d: Diagnosis, images: Mapping[str, bytes], *, version: str) -> str:
     )
 
 
-def _numbers(d: Diagnosis) -> list[dict[str, str]]:
+def _numbers(d: DiagnosisData) -> list[dict[str, str]]:
     """Root mean squares before and after, fitted and held out."""
     numbers = []
     for held_out, name in ((False, "fitted runs"), (True, "held-out runs")):
@@ -110,7 +110,7 @@ def _numbers(d: Diagnosis) -> list[dict[str, str]]:
     return [*numbers, {"label": "noise of the readings", "value": f"{d.noise:.2f} K", "note": note}]
 
 
-def _named(d: Diagnosis) -> list[dict[str, Any]]:
+def _named(d: DiagnosisData) -> list[dict[str, Any]]:
     """The effects that the amended study has beyond the original, as a person reads them."""
     if d.verdict not in (IDENTIFIED, CONFOUNDED, UNEXPLAINED):
         return []
@@ -160,16 +160,16 @@ def _fitness(row: Mapping[str, Any]) -> dict[str, str]:
     return shown
 
 
-def _where(d: Diagnosis) -> list[dict[Any, Any]]:
+def _where(d: DiagnosisData) -> list[dict[Any, Any]]:
     return where_table(d).to_dict(orient="records")
 
 
-def _corrections(d: Diagnosis) -> list[dict[str, str]]:
+def _corrections(d: DiagnosisData) -> list[dict[str, str]]:
     """Base numbers and sensors that the amended study corrects: original -> amended, with standard deviation."""
     return [_correction(d, change) for change in d.changes if not change.missing]
 
 
-def _correction(d: Diagnosis, change: Change) -> dict[str, str]:
+def _correction(d: DiagnosisData, change: Change) -> dict[str, str]:
     unknown = change.unknown
     if unknown.effect is None:
         new = value_at(d.study.data, unknown.key, d.study.folder)
@@ -204,7 +204,7 @@ def _prior(unknown: Unknown) -> str:
     return "± " + words.amount(0.0, unknown.sd, unknown.unit).split("± ")[1]
 
 
-def _offers(d: Diagnosis, kind: str, what: str, at: str) -> list[dict[str, Any]]:
+def _offers(d: DiagnosisData, kind: str, what: str, at: str) -> list[dict[str, Any]]:
     """Sensors or drives that would tell something, with what they change."""
     offers = []
     for offer in d.next_experiment.get(kind, ()):
@@ -214,7 +214,7 @@ def _offers(d: Diagnosis, kind: str, what: str, at: str) -> list[dict[str, Any]]
     return [offer for offer in offers if offer["gain"] > TELLS]
 
 
-def _linear(d: Diagnosis) -> list[str]:
+def _linear(d: DiagnosisData) -> list[str]:
     """What the fits take for the strain cycles of finite elements."""
     if not strain_law(d.original).by_elements:
         return []
@@ -225,7 +225,7 @@ def _linear(d: Diagnosis) -> list[str]:
     ]
 
 
-def _assumed(d: Diagnosis) -> list[str]:
+def _assumed(d: DiagnosisData) -> list[str]:
     choice = d.original.card.diagnosis
     return [
         f"Probability beforehand that anything is missing: {percent(choice.effects_expected)}, shared by "

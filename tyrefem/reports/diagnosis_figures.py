@@ -10,7 +10,7 @@ import numpy as np
 
 from tyrefem.diagnose.contenders import candidate_rows, rms_table, set_rows
 from tyrefem.diagnose.numbers import percent
-from tyrefem.diagnose.runs import Series, Trial
+from tyrefem.diagnose.runs import SensorReadings, Trial
 from tyrefem.diagnose.verdict import UNEXPLAINED
 from tyrefem.reports.diagnosis_sections import missing_figures, residual_figures
 from tyrefem.reports.figures.phases import Phase, draw_phases, make_room
@@ -34,19 +34,19 @@ if TYPE_CHECKING:
     from matplotlib.axes import Axes
     from matplotlib.figure import Figure
 
-    from tyrefem.diagnose.diagnosis import Diagnosis
+    from tyrefem.diagnose.diagnosis import DiagnosisData
 
 BEFORE, AFTER = PALETTE[1], PALETTE[0]
 #: Tint of what no fit has seen.
 HELD_OUT = "#f6f3e4"
 
 
-def pictures(d: Diagnosis) -> dict[str, bytes]:
+def pictures(d: DiagnosisData) -> dict[str, bytes]:
     """File name -> PNG: ``rms``, ``residual-map``, ``probabilities``, ``missing-heat`` where unexplained, histories."""
     drawn = {"rms.png": rms_figure(d), **residual_figures(d), "probabilities.png": probabilities_figure(d)}
     if d.verdict == UNEXPLAINED:
         drawn |= missing_figures(d)
-    for number, trial in enumerate(d.gap.lab.bench.trials):
+    for number, trial in enumerate(d.gap.trials):
         name = re.sub(r"[^\w.-]+", "-", trial.name).strip("-.") or "run"
         file, again = f"histories-{name}.png", 2
         while file in drawn:
@@ -58,7 +58,7 @@ def pictures(d: Diagnosis) -> dict[str, bytes]:
 # -- rms ---------------------------------------------------------------------------------------------------------------
 
 
-def rms_figure(d: Diagnosis) -> Figure:
+def rms_figure(d: DiagnosisData) -> Figure:
     """One panel per run: a pair of bars for every sensor, original and amended; held-out runs on a tinted ground."""
     table = rms_table(d)
     runs = list(table["run"].unique())
@@ -133,18 +133,18 @@ def _dashes(color: str) -> Any:
 # -- histories ---------------------------------------------------------------------------------------------------------
 
 
-def histories_figure(d: Diagnosis, number: int) -> Figure:
+def histories_figure(d: DiagnosisData, number: int) -> Figure:
     """One run, a panel per sensor: measured readings with both curves, and below what each of them leaves."""
-    trial = d.gap.lab.bench.trials[number]
-    columns = min(3, len(trial.series))
-    rows = math.ceil(len(trial.series) / columns)
+    trial = d.gap.trials[number]
+    columns = min(3, len(trial.sensors))
+    rows = math.ceil(len(trial.sensors) / columns)
     wide, high, low = 3.0 if columns > 2 else 4.2, 1.75, 0.8
     left, step_x, step_y = 0.75, wide + 0.42, high + low + 0.72
     drawn = figure(left + columns * step_x, rows * step_y + TITLE + 0.12)
     divisor, unit = time_unit(_last(trial))
     spans = _spans(d, number, trial)
     phases = _phases(d, number, divisor)
-    for place, series in enumerate(trial.series):
+    for place, series in enumerate(trial.sensors):
         row, column = divmod(place, columns)
         bottom = 0.5 + (rows - 1 - row) * step_y
         lower = add_axes(drawn, left + column * step_x, bottom, wide, low)
@@ -162,7 +162,7 @@ def histories_figure(d: Diagnosis, number: int) -> Figure:
         else:
             upper.tick_params(labelleft=False)
             lower.tick_params(labelleft=False)
-        if place + columns >= len(trial.series):
+        if place + columns >= len(trial.sensors):
             lower.set_xlabel(f"time [{unit}]", fontsize=FONT)
     held = "held out: no fit has seen it" if trial.hold_out else "fitted"
     title(drawn, f"{trial.name} ({held})", "")
@@ -172,13 +172,12 @@ def histories_figure(d: Diagnosis, number: int) -> Figure:
 
 def _last(trial: Trial) -> float:
     """Time of the last reading, s."""
-    return max(float(series.times[-1]) for series in trial.series)
+    return max(float(series.times[-1]) for series in trial.sensors)
 
 
-def _phases(d: Diagnosis, number: int, divisor: float) -> list[Phase]:
+def _phases(d: DiagnosisData, number: int, divisor: float) -> list[Phase]:
     """The phases of a run's drive, as far as there are readings."""
-    bench = d.gap.lab.bench
-    drive, last = bench.driven(bench.study, number).card.drive, _last(bench.trials[number])
+    drive, last = d.gap.driven(number).card.drive, _last(d.gap.trials[number])
     return [
         (phase.name, start / divisor, min(start + phase.duration, last) / divisor)
         for start, phase in zip(drive.starts, drive.phases, strict=True)
@@ -186,7 +185,7 @@ def _phases(d: Diagnosis, number: int, divisor: float) -> list[Phase]:
     ]
 
 
-def _spans(d: Diagnosis, number: int, trial: Trial) -> tuple[tuple[float, float], tuple[float, float]]:
+def _spans(d: DiagnosisData, number: int, trial: Trial) -> tuple[tuple[float, float], tuple[float, float]]:
     """Limits of temperatures and of deviations that all sensors of a run share."""
     values = np.concatenate([trial.measured, d.before[number], d.after[number]])
     left = np.concatenate([trial.measured - d.before[number], trial.measured - d.after[number], [0.5, -0.5]])
@@ -196,8 +195,8 @@ def _spans(d: Diagnosis, number: int, trial: Trial) -> tuple[tuple[float, float]
     )
 
 
-def _history(d: Diagnosis, number: int, series: Series, upper: Axes, lower: Axes, divisor: float) -> None:
-    trial = d.gap.lab.bench.trials[number]
+def _history(d: DiagnosisData, number: int, series: SensorReadings, upper: Axes, lower: Axes, divisor: float) -> None:
+    trial = d.gap.trials[number]
     place = trial.parts()[series.sensor]
     t = series.block_times / divisor
     step = max(1, math.ceil(len(series.times) / 300))
@@ -219,7 +218,7 @@ def _history(d: Diagnosis, number: int, series: Series, upper: Axes, lower: Axes
 # -- probabilities -----------------------------------------------------------------------------------------------------
 
 
-def probabilities_figure(d: Diagnosis, most: int = 8) -> Figure:
+def probabilities_figure(d: DiagnosisData, most: int = 8) -> Figure:
     """How probable each effect is to be part of the truth, and each set of effects to be the truth."""
     members = {member.key for member in d.best.members}
     effects = [(_key(row), row["probability"]) for row in candidate_rows(d)[:most]]

@@ -30,7 +30,7 @@ if TYPE_CHECKING:
     from matplotlib.axes import Axes
     from matplotlib.figure import Figure
 
-    from tyrefem.diagnose.diagnosis import Diagnosis
+    from tyrefem.diagnose.diagnosis import DiagnosisData
     from tyrefem.geometry import Section
 
 Array = NDArray[np.float64]
@@ -39,7 +39,7 @@ DIVERGING = "RdBu_r"
 APART = 0.032
 
 
-def residual_figures(d: Diagnosis) -> dict[str, Figure]:
+def residual_figures(d: DiagnosisData) -> dict[str, Figure]:
     """Mean deviation at every sensor on the section: original left and amended right, or one picture each for a full
     section.
     """
@@ -117,12 +117,12 @@ def _ground(drawn: Canvas) -> None:
 # -- heat of unknown origin --------------------------------------------------------------------------------------------
 
 
-def missing_figures(d: Diagnosis) -> dict[str, Figure]:
+def missing_figures(d: DiagnosisData) -> dict[str, Figure]:
     """Where the missing heat is: on the section, and by station with its uncertainty, run by run."""
     return {"missing-heat.png": _missing_map(d), "missing-heat-stations.png": _missing_stations(d)}
 
 
-def _missing_map(d: Diagnosis) -> Figure:
+def _missing_map(d: DiagnosisData) -> Figure:
     """Left: heat inside, W/m3, through the thickness. Right: flux through the outer surface, W/m2, as a band on it."""
     missing, section = d.missing, d.original.section
     drawn = canvas(section, bars=2)
@@ -172,7 +172,7 @@ def _outwards(x: Array, y: Array, distance: float) -> tuple[Array, Array]:
     return x - dy / length * distance, y + dx / length * distance
 
 
-def _missing_stations(d: Diagnosis) -> Figure:
+def _missing_stations(d: DiagnosisData) -> Figure:
     """Two panels over the meridian: heat and flux of every fitted run with their standard deviations."""
     missing, section = d.missing, d.original.section
     drawn = figure(9.4, TITLE + 5.2)

@@ -1,4 +1,4 @@
-"""The lean simulation of the fit: fixed steps, no heat budget, only what the sensors read.
+"""The fixed-step simulation of the fit: no error control, no heat budget, only what the sensors read.
 
 What unknowns change about a simulated drive: from tangents, or by simulating or measuring again.
 """
@@ -30,7 +30,7 @@ Array = NDArray[np.float64]
 
 
 @dataclass(frozen=True, eq=False)
-class Lean:
+class FixedStepRun:
     """A study simulated on fixed steps.
 
     Parameters
@@ -47,7 +47,7 @@ class Lean:
     reservoirs: Array
     every: float
 
-    def as_measured_by(self, study: StudyData) -> Lean:
+    def as_measured_by(self, study: StudyData) -> FixedStepRun:
         """The same temperatures, measured by another study's sensors."""
         return dataclasses.replace(self, study=study)
 
@@ -98,20 +98,20 @@ def read(study: StudyData, grid: Array, at_sensors: Array | None, lumped: dict[s
     ----------
     at_sensors : (n_grid, n_sensors) degC; None without sensors. lumped : contained air and rim where they are bodies.
     """
-    found = dict(lumped) if at_sensors is None else recorded(study, grid, at_sensors) | lumped
-    if GAS not in found:
+    readings = dict(lumped) if at_sensors is None else recorded(study, grid, at_sensors) | lumped
+    if GAS not in readings:
         held = study.card.boundaries.contained_air.held_at
-        found[GAS] = np.full(len(grid), held)
-    return found
+        readings[GAS] = np.full(len(grid), held)
+    return readings
 
 
-def lean(
+def fixed_step_run(
     study: StudyData, like: RollingTyre | None = None, near: NearbyCycles | None = None, *, every: float = 5.0
-) -> Lean:
+) -> FixedStepRun:
     """Simulate a study's drive on fixed steps, read ``every`` s; ``like``, ``near``: see `RollingTyre`."""
     tyre = RollingTyre(study, like, near=near)
     times = stage_times([*tyre.drive.starts, tyre.drive.end])
-    return Lean(study, tyre, times, *quick(tyre.problem, times, tyre.drive.initial), every)
+    return FixedStepRun(study, tyre, times, *quick(tyre.problem, times, tyre.drive.initial), every)
 
 
 def time_grid(times: Array, every: float) -> Array:
@@ -134,7 +134,7 @@ def on_grid(times: Array, history: Array, starts: tuple[float, ...], grid: Array
 
 
 @dataclass(frozen=True, eq=False)
-class Varied:
+class ReadingSensitivities:
     """What unknowns change about a solution.
 
     Parameters
@@ -143,9 +143,9 @@ class Varied:
     columns : the numbers of all others; tangents : theirs, in this order.
     """
 
-    base: Lean
+    base: FixedStepRun
     unknowns: tuple[Unknown, ...]
-    again: Mapping[int, Lean]
+    again: Mapping[int, FixedStepRun]
     columns: Sequence[int]
     tangents: Tangents | None
 

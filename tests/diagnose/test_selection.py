@@ -1,0 +1,162 @@
+"""Candidates, criterion and strategy: forward selection against the exhaustive search, on readings by formulas."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping, Sequence
+from typing import Any
+
+import numpy as np
+import pytest
+from formula import STATED, Array, Case, case, effect
+
+from tyrefem.diagnose.candidates import Members, SetPrior
+from tyrefem.diagnose.criterion import BIC, Criterion, LogEvidence
+from tyrefem.diagnose.exhaustive import Exhaustive
+from tyrefem.diagnose.forward_selection import ForwardSelection
+from tyrefem.diagnose.selection import ScoredSet, SelectionProblem, Strategy
+from tyrefem.diagnose.settings import DEFAULT, DiagnosisSettings
+from tyrefem.errors import InputError
+
+N = 60
+T = np.linspace(0.0, 1.0, N)
+STRATEGIES: tuple[Strategy, ...] = (ForwardSelection(), Exhaustive())
+CRITERIA: tuple[Criterion, ...] = (LogEvidence(), BIC())
+
+
+def linear_law(shapes: Mapping[str, Array]) -> Any:
+    """Readings that are linear in every amplitude."""
+
+    def law(values: Mapping[str, float]) -> Array:
+        heat = 5.0 * values.get(STATED.key, 0.0) * T
+        return np.asarray(heat + sum(values.get(name, 0.0) * shape for name, shape in shapes.items()))
+
+    return law
+
+
+def problem_of(made: Case, candidates: Members, criterion: Criterion) -> SelectionProblem:
+    prior = SetPrior(candidates, 0.5)
+    return SelectionProblem(made.residuals, made.predictions, candidates, prior, criterion)
+
+
+def searched(
+    shapes: Mapping[str, Array],
+    measured: Array,
+    strategy: Strategy,
+    criterion: Criterion = CRITERIA[0],
+    largest: int = 2,
+) -> list[ScoredSet]:
+    candidates = tuple(effect(name) for name in shapes)
+    made = case(linear_law(shapes), measured, candidates, DiagnosisSettings(largest=largest))
+    return strategy.search(problem_of(made, candidates, criterion))
+
+
+def names(scored: Sequence[ScoredSet]) -> set[str]:
+    return {member.name for member in scored[0].members}
+
+
+#: Five effects as a tyre has them: at once, slowly, in the middle of the drive, at its end, swinging.
+SHAPES = {
+    "step": np.where(T > 0.1, 6.0, 0.0),
+    "slow": 8.0 * T**2,
+    "middle": 6.0 * np.exp(-(((T - 0.5) / 0.15) ** 2)),
+    "end": 7.0 * np.where(T > 0.8, T - 0.8, 0.0) * 5,
+    "swing": 4.0 * np.sin(12.0 * T),
+}
+
+
+@pytest.mark.parametrize("criterion", CRITERIA, ids=lambda one: type(one).__name__)
+@pytest.mark.parametrize("hidden", [(), ("middle",), ("slow", "swing"), ("step", "end")], ids="+".join)
+def test_forward_and_exhaustive_search_find_what_is_hidden(hidden: tuple[str, ...], criterion: Criterion) -> None:
+    noise = np.random.default_rng(4).normal(size=N)
+    measured = linear_law(SHAPES)({STATED.key: 0.1} | dict.fromkeys(hidden, 1.5)) + noise
+    forward, exhaustive = (searched(SHAPES, measured, strategy, criterion) for strategy in STRATEGIES)
+    assert names(forward) == names(exhaustive) == set(hidden)
+    # Both have fitted the best set to convergence: the same score.
+    assert forward[0].fit is not None
+    assert forward[0].score == pytest.approx(exhaustive[0].score, abs=1e-6)
+    # Exhaustive is what it says: no effect, 5 single effects, 10 pairs.
+    assert sum(entry.fit is not None for entry in exhaustive) == 16
+    assert sum(entry.fit is not None for entry in forward) < 16
+
+
+def hiding() -> dict[str, Array]:
+    """Two effects that nearly cancel, and four that look like what is left of them, but not quite."""
+    large, left = 30.0 * np.cos(3.0 * T), 2.0 * np.sin(9.0 * T)
+    odd = {"first": np.sin(17.0 * T), "second": np.cos(13.0 * T), "third": np.cos(21.0 * T), "fourth": np.sin(25.0 * T)}
+    alike = {name: 8.0 * (np.sin(9.0 * T) + 0.4 * shape) for name, shape in odd.items()}
+    return {"warming": large + left, "cooling": left - large, **alike}
+
+
+def test_effects_that_hide_each_other_are_found_by_the_exhaustive_search_alone() -> None:
+    shapes = hiding()
+    noise = np.random.default_rng(6).normal(size=N)
+    measured = linear_law(shapes)({"warming": 4.0, "cooling": 4.0}) + noise
+    forward, exhaustive = (searched(shapes, measured, strategy) for strategy in STRATEGIES)
+    assert names(exhaustive) == {"warming", "cooling"}
+    assert names(forward) != {"warming", "cooling"}
+    assert exhaustive[0].score > forward[0].score + 10
+    # What was not fitted does not stand above what was.
+    assert forward[0].fit is not None
+
+
+def test_too_many_sets_are_refused_in_one_sentence() -> None:
+    candidates = tuple(effect(f"effect-{number}") for number in range(30))
+    made = case(lambda values: np.zeros(N), np.zeros(N), candidates, DiagnosisSettings(largest=2))
+    with pytest.raises(InputError, match=r"would fit 466 sets of up to 2 effects; allowed: 300"):
+        Exhaustive().search(problem_of(made, candidates, LogEvidence()))
+
+
+@pytest.mark.parametrize("strategy", STRATEGIES, ids=lambda one: type(one).__name__)
+def test_every_single_effect_has_a_score_and_the_best_has_a_fit(strategy: Strategy) -> None:
+    noise = np.random.default_rng(7).normal(size=N)
+    scored = searched(SHAPES, linear_law(SHAPES)({"slow": 2.0}) + noise, strategy)
+    assert [entry.score for entry in scored] == sorted((entry.score for entry in scored), reverse=True)
+    assert {entry.members[0].name for entry in scored if len(entry.members) == 1} == set(SHAPES)
+    assert next(entry for entry in scored if not entry.members).fit is not None
+
+
+@pytest.mark.parametrize("criterion", CRITERIA, ids=lambda one: type(one).__name__)
+def test_a_criterion_of_a_linear_problem_is_the_same_by_fit_and_by_linear_model(criterion: Criterion) -> None:
+    measured = linear_law(SHAPES)({"slow": 1.0, "swing": 0.5}) + np.random.default_rng(9).normal(size=N)
+    candidates = tuple(effect(name) for name in SHAPES)
+    made = case(linear_law(SHAPES), measured, candidates)
+    problem = problem_of(made, candidates, criterion)
+    sets = [(), candidates[1:2], candidates[1:5:3]]
+    fits = problem.carried_on(problem.fitted(sets, {}))
+    linear = made.residuals.linear([0])
+    for members, fit in zip(sets, fits, strict=True):
+        by_linear = criterion.of_linear(linear, members) + linear.constant
+        assert criterion.of_fit(fit) == pytest.approx(by_linear, abs=1e-3)
+
+
+def test_bic_counts_a_parameter_as_half_the_logarithm_of_the_readings() -> None:
+    # An effect that changes no reading: the misfit stays, only its parameter counts.
+    candidates = (effect("idle"),)
+    made = case(lambda values: 0.0 * T, np.random.default_rng(1).normal(size=N), candidates)
+    problem = problem_of(made, candidates, BIC())
+    none, idle = problem.fitted([(), candidates], {})
+    assert BIC().of_fit(none) - BIC().of_fit(idle) == pytest.approx(np.log(N) / 2, abs=1e-9)
+
+
+class Alone:
+    """A strategy of somebody else: single effects only, in the linear model, and no effect fitted."""
+
+    def search(self, problem: SelectionProblem) -> list[ScoredSet]:
+        (none,) = problem.carried_on(problem.fitted([()], {}))
+        singles = problem.fitted(problem.sets(1), {})
+        fits = [none, *singles]
+        return sorted((ScoredSet(problem.score(fit), fit.members, fit) for fit in fits), key=lambda entry: -entry.score)
+
+
+def test_a_strategy_is_any_object_with_a_search() -> None:
+    noise = np.random.default_rng(2).normal(size=N)
+    assert names(searched(SHAPES, linear_law(SHAPES)({"end": 2.0}) + noise, Alone())) == {"end"}
+
+
+def test_settings_are_checked_and_frozen() -> None:
+    with pytest.raises(InputError, match="largest is a number of effects from 1 to 3, not 4"):
+        DiagnosisSettings(largest=4)
+    with pytest.raises(InputError, match="looks is at least 1"):
+        DiagnosisSettings(looks=0)
+    with pytest.raises(AttributeError):
+        DEFAULT.batch = 1  # type: ignore[misc]

@@ -1,0 +1,55 @@
+"""Every set of effects fitted with the full model: the reference for small catalogues."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+from tyrefem.diagnose.candidates import Members
+from tyrefem.diagnose.fits import FittedSet
+from tyrefem.diagnose.selection import ScoredSet, SelectionProblem
+from tyrefem.errors import InputError
+
+
+@dataclass(frozen=True)
+class Exhaustive:
+    """All sets up to ``DiagnosisSettings.largest`` effects, each fitted to convergence.
+
+    A set starts where the best of its parts that nearly explains the data has ended, else from the study as it is.
+    """
+
+    def search(self, problem: SelectionProblem) -> list[ScoredSet]:
+        """See `tyrefem.diagnose.selection.Strategy`.
+
+        Raises
+        ------
+        InputError : there are more sets than ``DiagnosisSettings.most_exhaustive``.
+        """
+        settings = problem.settings
+        by_size = [problem.sets(size) for size in range(settings.largest + 1)]
+        count = sum(map(len, by_size))
+        if count > settings.most_exhaustive:
+            raise InputError(
+                f"the exhaustive search would fit {count:,} sets of up to {settings.largest} effects; allowed: "
+                f"{settings.most_exhaustive:,}. Exclude effects, allow fewer at once, or search forward",
+                field="diagnosis.exclude",
+                file=problem.residuals.study.file,
+            )
+        fits: dict[Members, FittedSet] = {}
+        for sets in by_size:
+            fits |= zip(sets, self._converged(problem, sets, fits), strict=True)
+        scored = [ScoredSet(problem.score(fit), members, fit) for members, fit in fits.items()]
+        return sorted(scored, key=lambda entry: -entry.score)
+
+    def _converged(
+        self, problem: SelectionProblem, sets: list[Members], fits: dict[Members, FittedSet]
+    ) -> list[FittedSet]:
+        """Fits of sets, carried on as often as a search may."""
+        ahead = sorted((members for members, fit in fits.items() if fit.close), key=lambda m: -problem.score(fits[m]))
+        parts = {members: next((part for part in ahead if set(part) < set(members)), None) for members in sets}
+        current = problem.fitted(sets, {members: fits[part] for members, part in parts.items() if part is not None})
+        for _ in range(problem.settings.carried_times):
+            left = [number for number, fit in enumerate(current) if not fit.finished]
+            further = problem.carried_on([current[number] for number in left])
+            for number, fit in zip(left, further, strict=True):
+                current[number] = fit
+        return current

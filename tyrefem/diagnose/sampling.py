@@ -1,0 +1,103 @@
+"""When and how surely the sensors of a run were read; nothing of what they read."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from functools import cached_property
+
+import numpy as np
+from numpy.typing import NDArray
+from scipy.linalg import cholesky, solve_triangular
+
+from tyrefem.brief import Brief
+from tyrefem.diagnose.settings import DEFAULT
+
+Array = NDArray[np.float64]
+
+
+@dataclass(frozen=True, eq=False)
+class SensorSampling(Brief):
+    """When one sensor was read in one run: ``times`` (n,) s, ``noise`` K of one reading.
+
+    Means over at most ``blocks`` blocks of neighbouring readings stand for them. The noise of a block of m readings is
+    noise/sqrt(m), and what the model misses even when it is right is correlated over time:
+    C = noise^2/m + d^2 exp(-|t - t'|/tau), with the ``discrepancy`` d (K) and the ``correlation_time`` tau (s).
+    """
+
+    sensor: str
+    times: Array
+    noise: float
+    discrepancy: float
+    correlation_time: float
+    blocks: int = DEFAULT.blocks
+
+    @cached_property
+    def starts(self) -> NDArray[np.intp]:
+        """First reading of every block."""
+        count = min(len(self.times), self.blocks)
+        return np.unique(np.linspace(0, len(self.times), count + 1).astype(np.intp)[:-1])
+
+    @cached_property
+    def sizes(self) -> Array:
+        """Number of readings in every block."""
+        return np.diff(np.append(self.starts, len(self.times))).astype(float)
+
+    def block_means(self, values: Array) -> Array:
+        """Means over the blocks along the first axis of values (n, ...)."""
+        shape = (-1,) + (1,) * (values.ndim - 1)
+        return np.asarray(np.add.reduceat(values, self.starts, axis=0) / self.sizes.reshape(shape))
+
+    def sampled(self, times: Array, values: Array) -> Array:
+        """Block means of a computed history: values (n_times,) or (n_times, k) at ``times`` (s)."""
+        if values.ndim == 1:
+            return self.block_means(np.interp(self.times, times, values))
+        at = np.clip(np.searchsorted(times, self.times, side="right") - 1, 0, len(times) - 2)
+        share = np.clip((self.times - times[at]) / (times[at + 1] - times[at]), 0.0, 1.0)[:, None]
+        return self.block_means(values[at] * (1 - share) + values[at + 1] * share)
+
+    @cached_property
+    def block_times(self) -> Array:
+        """Mean time of every block, s."""
+        return self.block_means(self.times)
+
+    @cached_property
+    def covariance(self) -> Array:
+        """(n_blocks, n_blocks) K2."""
+        apart = np.abs(self.block_times[:, None] - self.block_times[None, :])
+        return np.diag(self.noise**2 / self.sizes) + self.discrepancy**2 * np.exp(-apart / self.correlation_time)
+
+    @cached_property
+    def _root(self) -> Array:
+        return np.asarray(cholesky(self.covariance, lower=True))
+
+    def whitened(self, blocks: Array) -> Array:
+        """L^-1 times block values (n_blocks, ...), with C = L L^T: independent, of unit variance."""
+        return np.asarray(solve_triangular(self._root, blocks, lower=True))
+
+
+@dataclass(frozen=True, eq=False)
+class DriveSampling(Brief):
+    """A measured run as the forward model needs it: its drive, and when every sensor was read."""
+
+    name: str
+    drive: dict[str, object]
+    hold_out: bool
+    sensors: tuple[SensorSampling, ...]
+
+    @property
+    def size(self) -> int:
+        """Number of blocks, of all sensors one after the other."""
+        return sum(len(sampling.starts) for sampling in self.sensors)
+
+    def whitened(self, blocks: Array) -> Array:
+        """Whitened values of all sensors, one after the other."""
+        pieces = np.split(blocks, np.cumsum([len(sampling.starts) for sampling in self.sensors])[:-1])
+        return np.concatenate([sampling.whitened(piece) for sampling, piece in zip(self.sensors, pieces, strict=True)])
+
+    def parts(self) -> dict[str, slice]:
+        """Sensor -> its place among the blocks."""
+        places, start = {}, 0
+        for sampling in self.sensors:
+            places[sampling.sensor] = slice(start, start + len(sampling.starts))
+            start += len(sampling.starts)
+        return places
