@@ -28,8 +28,6 @@ SENSORS = ("crown-inner", "crown-middle")
 READING, NUMBER = 26.871337, 4
 #: Classes of what is made of the readings.
 MADE_OF = (
-    "Gap",
-    "Explained",
     "Residuals",
     "FittedSet",
     "ScoredSet",

@@ -9,13 +9,15 @@ import numpy as np
 import pytest
 from formula import STATED, Array, Case, case, effect
 
+import tyrefem as tf
 from tyrefem.diagnose.candidates import Members, SetPrior
 from tyrefem.diagnose.criterion import BIC, Criterion, LogEvidence
 from tyrefem.diagnose.exhaustive import Exhaustive
 from tyrefem.diagnose.forward_selection import ForwardSelection
-from tyrefem.diagnose.selection import ScoredSet, SelectionProblem, Strategy
+from tyrefem.diagnose.selection import ScoredSet, SelectionProblem, Strategy, sets_of
 from tyrefem.diagnose.settings import DEFAULT, DiagnosisSettings
 from tyrefem.errors import InputError
+from tyrefem.inputs.study import StudyData
 
 N = 60
 T = np.linspace(0.0, 1.0, N)
@@ -101,9 +103,11 @@ def test_effects_that_hide_each_other_are_found_by_the_exhaustive_search_alone()
 
 def test_too_many_sets_are_refused_in_one_sentence() -> None:
     candidates = tuple(effect(f"effect-{number}") for number in range(30))
-    made = case(lambda values: np.zeros(N), np.zeros(N), candidates, DiagnosisSettings(largest=2))
+    study, settings = tf.study("nasa-22x5.5-8pr"), DiagnosisSettings(largest=2)
     with pytest.raises(InputError, match=r"would fit 466 sets of up to 2 effects; allowed: 300"):
-        Exhaustive().search(problem_of(made, candidates, LogEvidence()))
+        Exhaustive().check(study, candidates, settings)
+    Exhaustive().check(study, candidates[:23], settings)
+    ForwardSelection().check(study, candidates, settings)
 
 
 @pytest.mark.parametrize("strategy", STRATEGIES, ids=lambda one: type(one).__name__)
@@ -141,9 +145,12 @@ def test_bic_counts_a_parameter_as_half_the_logarithm_of_the_readings() -> None:
 class Alone:
     """A strategy of somebody else: single effects only, in the linear model, and no effect fitted."""
 
+    def check(self, study: StudyData, candidates: Members, settings: DiagnosisSettings) -> None:
+        """Takes any number."""
+
     def search(self, problem: SelectionProblem) -> list[ScoredSet]:
         (none,) = problem.carried_on(problem.fitted([()], {}))
-        singles = problem.fitted(problem.sets(1), {})
+        singles = problem.fitted(list(sets_of(problem.candidates, 1)), {})
         fits = [none, *singles]
         return sorted((ScoredSet(problem.score(fit), fit.members, fit) for fit in fits), key=lambda entry: -entry.score)
 

@@ -6,13 +6,13 @@ import numpy as np
 import pytest
 
 from tyrefem.diagnose.residual_tables import stretches
-from tyrefem.diagnose.runs import SensorReadings, Trial, _scatter
+from tyrefem.diagnose.runs import MeasuredSensor, Trial, _scatter
 from tyrefem.diagnose.settings import DEFAULT
 
 
-def _series(count: int = 200, *, noise: float = 0.5, discrepancy: float = 0.1, tau: float = 120.0) -> SensorReadings:
+def _series(count: int = 200, *, noise: float = 0.5, discrepancy: float = 0.1, tau: float = 120.0) -> MeasuredSensor:
     times = np.sort(np.random.default_rng(1).uniform(0.0, 1000.0, count))
-    return SensorReadings("crown", times, noise, discrepancy, tau, measured=25.0 + 0.02 * times)
+    return MeasuredSensor("crown", times, noise, discrepancy, tau, measured=25.0 + 0.02 * times)
 
 
 def test_block_means_are_means_and_hold_every_reading() -> None:

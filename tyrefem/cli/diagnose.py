@@ -24,6 +24,7 @@ from tyrefem.cli.common import (
     warn,
 )
 from tyrefem.cli.progress import stages
+from tyrefem.errors import InputError, nearest
 from tyrefem.interruption import keeping
 from tyrefem.output.folder import results_folder
 
@@ -47,6 +48,9 @@ def diagnose(
         int, typer.Option(min=1, max=9, help="Diagnoses at most, each of what the one before it left unexplained.")
     ] = 3,
     reduced: ReducedOption = "auto",
+    strategy: Annotated[
+        str, typer.Option(help="forward: sets grow effect by effect; exhaustive: all sets, for few effects.")
+    ] = "forward",
     force: ForceOption = False,
     quiet: QuietOption = False,
     as_json: JsonOption = False,
@@ -57,12 +61,15 @@ def diagnose(
     """
     from tyrefem.api import study as load
     from tyrefem.diagnose.evaluations import ProgressStore
+    from tyrefem.diagnose.options import STRATEGIES
     from tyrefem.diagnose.workflow import NEEDS
     from tyrefem.reports.diagnosis import FILES
     from tyrefem.variants.answer_store import PROGRESS
 
     loaded = load(study, settings(changes), case)
     NEEDS.check(loaded, table)
+    if strategy not in STRATEGIES:
+        raise InputError(f"--strategy: there is no '{strategy}'{nearest(strategy, STRATEGIES)}")
     warn(loaded.warnings)
     place = out or Path("results") / f"{loaded.name}-diagnosis"
     read = [table] if table else [entry.table for entry in loaded.measured]
@@ -80,6 +87,7 @@ def diagnose(
                 progress=tick,
                 store=store,
                 reduced=reduced,
+                strategy=STRATEGIES[strategy],
             )
             tick("drawing", 0, 0)
             page = diagnosis.save(folder)

@@ -83,13 +83,12 @@ def candidate_rows(d: DiagnosisData) -> list[dict[str, Any]]:
 def set_rows(d: DiagnosisData, most: int = MOST_SETS) -> list[dict[str, Any]]:
     """The most probable sets, with the score relative to the best."""
     best = d.judgement.best.score
-    credible = {id(one) for one in d.judgement.credible}
     return [
         {
             "effects": ["not in the catalogue"] if one.outside else [member.key for member in one.members],
             "probability": one.probability,
             "log_score_below_best": best - one.score,
-            "credible": id(one) in credible,
+            "credible": one in d.judgement.credible,
             "fitted": one.fit is not None,
             **fitness(d, one.fit),
         }

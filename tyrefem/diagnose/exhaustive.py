@@ -6,8 +6,10 @@ from dataclasses import dataclass
 
 from tyrefem.diagnose.candidates import Members
 from tyrefem.diagnose.fits import FittedSet
-from tyrefem.diagnose.selection import ScoredSet, SelectionProblem
+from tyrefem.diagnose.selection import ScoredSet, SelectionProblem, sets_of
+from tyrefem.diagnose.settings import DiagnosisSettings
 from tyrefem.errors import InputError
+from tyrefem.inputs.study import StudyData
 
 
 @dataclass(frozen=True)
@@ -17,23 +19,25 @@ class Exhaustive:
     A set starts where the best of its parts that nearly explains the data has ended, else from the study as it is.
     """
 
-    def search(self, problem: SelectionProblem) -> list[ScoredSet]:
-        """See `tyrefem.diagnose.selection.Strategy`.
+    def check(self, study: StudyData, candidates: Members, settings: DiagnosisSettings) -> None:
+        """Refuse more sets than ``DiagnosisSettings.most_exhaustive``.
 
         Raises
         ------
-        InputError : there are more sets than ``DiagnosisSettings.most_exhaustive``.
+        InputError : there are more.
         """
-        settings = problem.settings
-        by_size = [problem.sets(size) for size in range(settings.largest + 1)]
-        count = sum(map(len, by_size))
+        count = sum(1 for size in range(settings.largest + 1) for _ in sets_of(candidates, size))
         if count > settings.most_exhaustive:
             raise InputError(
                 f"the exhaustive search would fit {count:,} sets of up to {settings.largest} effects; allowed: "
                 f"{settings.most_exhaustive:,}. Exclude effects, allow fewer at once, or search forward",
                 field="diagnosis.exclude",
-                file=problem.residuals.study.file,
+                file=study.file,
             )
+
+    def search(self, problem: SelectionProblem) -> list[ScoredSet]:
+        """See `tyrefem.diagnose.selection.Strategy`."""
+        by_size = [list(sets_of(problem.candidates, size)) for size in range(problem.settings.largest + 1)]
         fits: dict[Members, FittedSet] = {}
         for sets in by_size:
             fits |= zip(sets, self._converged(problem, sets, fits), strict=True)

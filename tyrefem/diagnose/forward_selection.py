@@ -12,7 +12,9 @@ import numpy as np
 from tyrefem.diagnose.candidates import Members
 from tyrefem.diagnose.fits import FittedSet
 from tyrefem.diagnose.linear_model import LinearModel
-from tyrefem.diagnose.selection import ScoredSet, SelectionProblem
+from tyrefem.diagnose.selection import ScoredSet, SelectionProblem, sets_of
+from tyrefem.diagnose.settings import DiagnosisSettings
+from tyrefem.inputs.study import StudyData
 
 
 @dataclass(frozen=True)
@@ -28,6 +30,9 @@ class ForwardSelection:
     Two effects that explain the data together are missed where each alone explains them much worse than others do;
     `tyrefem.diagnose.exhaustive.Exhaustive` finds them.
     """
+
+    def check(self, study: StudyData, candidates: Members, settings: DiagnosisSettings) -> None:
+        """Any number of candidates is welcome."""
 
     def search(self, problem: SelectionProblem) -> list[ScoredSet]:
         """See `tyrefem.diagnose.selection.Strategy`."""
@@ -57,7 +62,7 @@ class ForwardSelection:
 def screened(problem: SelectionProblem, linear: LinearModel) -> list[tuple[float, Members]]:
     """Single effects and pairs with their scores in a linear model, best first; the empty set included."""
     sizes = range(min(problem.settings.largest, 2) + 1)
-    sets = [members for size in sizes for members in problem.sets(size)]
+    sets = [members for size in sizes for members in sets_of(problem.candidates, size)]
     return sorted(((problem.linear_score(linear, members), members) for members in sets), key=lambda pair: -pair[0])
 
 

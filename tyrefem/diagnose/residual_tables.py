@@ -8,11 +8,13 @@ from typing import TYPE_CHECKING
 import numpy as np
 from numpy.typing import NDArray
 
+from tyrefem.inputs.motion import motion_at
+
 if TYPE_CHECKING:
     import pandas as pd
 
     from tyrefem.diagnose.residuals import Residuals
-    from tyrefem.diagnose.runs import SensorReadings
+    from tyrefem.diagnose.runs import MeasuredSensor
 
 Array = NDArray[np.float64]
 #: A sensor is on its plateau where it changes by less than this part of its fastest rate (a convention).
@@ -22,7 +24,7 @@ FLAT = 0.1
 STRETCHES = ("heating", "plateau", "cooling")
 
 
-def stretches(readings: SensorReadings, computed: Array) -> NDArray[np.object_]:
+def stretches(readings: MeasuredSensor, computed: Array) -> NDArray[np.object_]:
     """Heating, plateau or cooling for every block, by the slope of the computed history (n_blocks,)."""
     names = np.full(len(computed), "plateau", dtype=object)
     if len(computed) < 2 or np.ptp(computed) < FLAT:
@@ -72,7 +74,7 @@ def residual_table(
                         "hold_out": trial.hold_out,
                         "sensor": one.sensor,
                         "phase": kind,
-                        "speed_m_s": _speed(drive, one.block_times[mask]),
+                        "speed_m_s": float(np.mean([motion_at(drive, t).speed for t in one.block_times[mask]])),
                         "n": int((mask * one.sizes).sum()),
                         "mean_K": mean,
                         "rms_K": float(np.sqrt(weight @ residual**2)),
@@ -81,10 +83,6 @@ def residual_table(
                     }
                 )
     return pd.DataFrame(rows)
-
-
-def _speed(drive: object, times: Array) -> float:
-    return float(np.mean([drive.value("speed", t) or 0.0 for t in times]))  # type: ignore[attr-defined]
 
 
 def rms(residuals: Residuals, computed: Mapping[int, Array], trials: list[int], sensor: str | None = None) -> float:

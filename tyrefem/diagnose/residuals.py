@@ -15,6 +15,7 @@ from tyrefem.diagnose.runs import Trial
 from tyrefem.diagnose.sensitivities import DriveResponse, Sensitivities
 from tyrefem.diagnose.settings import DEFAULT, DiagnosisSettings
 from tyrefem.diagnose.unknowns import Unknown
+from tyrefem.errors import InputError
 from tyrefem.inputs.study import StudyData
 
 Array = NDArray[np.float64]
@@ -98,3 +99,17 @@ class Residuals(Brief):
         """The linear model of some trials about x = 0."""
         data = np.concatenate([self.residual(number, self.computed[number]) for number in trials])
         return LinearModel(self.sensitivities.design(trials), data)
+
+
+def residuals_of(
+    study: StudyData, trials: tuple[Trial, ...], sensitivities: Sensitivities, settings: DiagnosisSettings = DEFAULT
+) -> Residuals:
+    """The residuals of measured runs.
+
+    Raises
+    ------
+    InputError : runs and sensitivities are of other drives.
+    """
+    if [trial.size for trial in trials] != [drive.size for drive in sensitivities.drives]:
+        raise InputError("the measured runs are read at other times than the sensitivities")
+    return Residuals(study, trials, sensitivities, settings)

@@ -17,7 +17,7 @@ Array = NDArray[np.float64]
 
 
 @dataclass(frozen=True, eq=False)
-class SensorReadings(SensorSampling):
+class MeasuredSensor(SensorSampling):
     """The readings of one sensor in one run: ``measured`` (n,) degC at ``times``."""
 
     measured: Array = field(kw_only=True)
@@ -32,7 +32,7 @@ class SensorReadings(SensorSampling):
 class Trial(DriveSampling):
     """One measured run: its drive, and the readings of every sensor that was read."""
 
-    sensors: tuple[SensorReadings, ...]
+    sensors: tuple[MeasuredSensor, ...]
 
     @cached_property
     def measured(self) -> Array:
@@ -62,7 +62,7 @@ def trial(experiment: Experiment, study: StudyData, settings: DiagnosisSettings 
         times, measured = run.times[used], values[used]
         noise = max(stated, _scatter(times, measured))
         correlated = choice.discrepancy, choice.correlation_time
-        sensors.append(SensorReadings(sensor, times, noise, *correlated, settings.blocks, measured=measured))
+        sensors.append(MeasuredSensor(sensor, times, noise, *correlated, settings.blocks, measured=measured))
     return Trial(experiment.name, dict(experiment.drive), experiment.hold_out, tuple(sensors))
 
 

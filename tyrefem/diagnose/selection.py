@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import itertools
-from collections.abc import Callable, Iterable, Mapping, Sequence
+from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
 from dataclasses import dataclass
 from functools import cached_property
 from typing import NamedTuple, Protocol
@@ -16,6 +16,7 @@ from tyrefem.diagnose.linear_model import LinearModel
 from tyrefem.diagnose.multifidelity import Predictions
 from tyrefem.diagnose.residuals import Residuals
 from tyrefem.diagnose.settings import DiagnosisSettings
+from tyrefem.inputs.study import StudyData
 
 Tick = Callable[[str], None]
 
@@ -26,6 +27,12 @@ class ScoredSet(NamedTuple):
     score: float
     members: Members
     fit: FittedSet | None
+
+
+def sets_of(candidates: Members, size: int) -> Iterator[Members]:
+    """All sets of so many different effects."""
+    combined = itertools.combinations(candidates, size)
+    return (members for members in combined if len({member.name for member in members}) == size)
 
 
 @dataclass(frozen=True, eq=False)
@@ -67,11 +74,6 @@ class SelectionProblem(Brief):
         """A set in the order of the candidates: the same set is always the same tuple."""
         return tuple(sorted(members, key=self._order.__getitem__))
 
-    def sets(self, size: int) -> list[Members]:
-        """All sets of so many different effects."""
-        combined = itertools.combinations(self.candidates, size)
-        return [members for members in combined if len({member.name for member in members}) == size]
-
     def score(self, fit: FittedSet) -> float:
         """ln(prior) + criterion of a fitted set."""
         return self.prior(self.ordered(fit.members)) + self.criterion.of_fit(fit)
@@ -100,6 +102,15 @@ class SelectionProblem(Brief):
 
 class Strategy(Protocol):
     """Which sets are fitted, in which order."""
+
+    def check(self, study: StudyData, candidates: Members, settings: DiagnosisSettings) -> None:
+        """Refuse what the search cannot do, before anything is simulated.
+
+        Raises
+        ------
+        InputError : what is too much, and what to do.
+        """
+        ...
 
     def search(self, problem: SelectionProblem) -> list[ScoredSet]:
         """Sets with their scores, best first, among them that of no effect and all single effects.

@@ -2,84 +2,40 @@
 
 from __future__ import annotations
 
+import math
 import time
-from collections.abc import Callable, Iterable, Mapping, Sequence
+from collections.abc import Callable, Mapping
 from dataclasses import dataclass, replace
-from typing import Any, TypedDict, Unpack
+from typing import Any, Unpack
 
+from tyrefem.brief import Brief
 from tyrefem.compare.experiment import ColumnNames, Table, experiments
 from tyrefem.diagnose.amend import Change, amended, changes
-from tyrefem.diagnose.candidates import CandidateSpace
+from tyrefem.diagnose.candidates import Members, SetPrior
 from tyrefem.diagnose.criterion import Criterion
 from tyrefem.diagnose.diagnosis import DiagnosisData
 from tyrefem.diagnose.effort import check_effort
-from tyrefem.diagnose.evaluations import Evaluations, ProgressStore, evaluating
-from tyrefem.diagnose.forward_model import DriveResponse, ForwardModel
+from tyrefem.diagnose.evaluations import Evaluations, evaluating
+from tyrefem.diagnose.fits import FittedSet, first_fits
+from tyrefem.diagnose.forward_model import ForwardModel
 from tyrefem.diagnose.heat_patches import patches
+from tyrefem.diagnose.missing_heat import UnknownHeat, missing_heat, missing_heat_fitted
 from tyrefem.diagnose.multifidelity import Predictions
 from tyrefem.diagnose.next_experiment import next_experiment
-from tyrefem.diagnose.ranking import Method, Ranking, rank
-from tyrefem.diagnose.residuals import Residuals
+from tyrefem.diagnose.options import DiagnosisOptions, Method, SimulationWork, grouped
+from tyrefem.diagnose.residuals import Residuals, residuals_of
 from tyrefem.diagnose.runs import Trial, trial
-from tyrefem.diagnose.selection import Strategy
-from tyrefem.diagnose.sensitivities import Tick, responses, sensitivities, unknowns_of
+from tyrefem.diagnose.selection import SelectionProblem
+from tyrefem.diagnose.sensitivities import responses, sensitivities, unknowns_of
 from tyrefem.diagnose.settings import DiagnosisSettings
 from tyrefem.diagnose.unknowns import Unknown
-from tyrefem.diagnose.verdict import CONFOUNDED, IDENTIFIED, UNEXPLAINED
+from tyrefem.diagnose.verdict import CONFOUNDED, IDENTIFIED, UNEXPLAINED, Judgement, judge, ranked
 from tyrefem.errors import InputError
 from tyrefem.inputs.study import StudyData
 from tyrefem.requirements import Requirements
 
 #: What a diagnosis needs of a study.
 NEEDS = Requirements("a diagnosis", measured=True, fitted=True)
-
-
-@dataclass(frozen=True)
-class Work:
-    """How the simulations of a diagnosis are made, see `DiagnosisOptions`."""
-
-    workers: int = 1
-    progress: Tick | None = None
-    known: Sequence[DriveResponse] | None = None
-    rerun: bool = True
-    store: ProgressStore | None = None
-
-    def look(self, number: int) -> Work:
-        """The same for a further look at the data."""
-        if not number:
-            return self
-        store = None if self.store is None else self.store.look(number)
-        return replace(self, progress=_numbered(self.progress, number), known=None, store=store)
-
-    def tick(self, what: str, done: int = 0, total: int = 0) -> None:
-        """Say what is done."""
-        if self.progress is not None:
-            self.progress(what, done, total)
-
-
-def _numbered(progress: Tick | None, number: int) -> Tick | None:
-    if progress is None:
-        return None
-    return lambda what, done, total: progress(f"{what}, look {number + 1}", done, total)
-
-
-class DiagnosisOptions(TypedDict, total=False):
-    """Keywords of `diagnose`."""
-
-    ignore: Iterable[str]
-    rename: Mapping[str, str] | None
-    largest: int
-    looks: int
-    reduced: str
-    settings: DiagnosisSettings
-    candidates: CandidateSpace
-    criterion: Criterion
-    strategy: Strategy
-    workers: int
-    progress: Tick | None
-    known: Sequence[DriveResponse] | None
-    rerun: bool
-    store: ProgressStore | None
 
 
 def diagnose(study: StudyData, table: Table | None = None, **options: Unpack[DiagnosisOptions]) -> DiagnosisData:
@@ -108,7 +64,7 @@ def diagnose(study: StudyData, table: Table | None = None, **options: Unpack[Dia
     InputError : as `compare`; or every run is held out, or read outside the simulated drive only.
     TypeError : a keyword that is none of these.
     """
-    columns, method, work = _grouped(options)
+    columns, method, work = grouped(options)
     NEEDS.check(study, table)
     looks: list[DiagnosisData] = []
     while not looks or (looks[-1].verdict == IDENTIFIED and len(looks) < method.settings.looks):
@@ -120,31 +76,24 @@ def diagnose(study: StudyData, table: Table | None = None, **options: Unpack[Dia
     return result
 
 
-def _grouped(options: Mapping[str, Any]) -> tuple[ColumnNames, Method, Work]:
-    """The keywords of `diagnose` by what they are about."""
-    given = dict(options)
-    columns = ColumnNames(dict(given.pop("rename", None) or {}), tuple(given.pop("ignore", ())))
-    settings = given.pop("settings", DiagnosisSettings())
-    settings = replace(settings, **{name: given.pop(name) for name in ("largest", "looks", "reduced") if name in given})
-    parts = {name: given.pop(name) for name in ("candidates", "criterion", "strategy") if name in given}
-    return columns, Method(**parts, settings=settings), Work(**given)
-
-
-def _look(study: StudyData, table: Table | None, columns: ColumnNames, method: Method, work: Work) -> DiagnosisData:
+def _look(
+    study: StudyData, table: Table | None, columns: ColumnNames, method: Method, work: SimulationWork
+) -> DiagnosisData:
     """One diagnosis: what is measured goes forwards from residuals to ranking, verdict and amended study."""
     began = time.perf_counter()
     settings = method.settings
-    trials = _trials(study, table, columns, settings)
+    trials, candidates = _trials(study, table, columns, settings), method.candidates(study)
+    method.strategy.check(study, candidates, settings)
     model = ForwardModel(study, tuple(run.sampling for run in trials), settings=settings)
     if work.known is None:
         check_effort(model, f"the diagnosis of {study.name}", 1.0, work.workers)
     if work.store is not None and work.store.open(model):
         work.tick(f"taking up {work.store.taken_up} simulations")
-    candidates = method.candidates(study)
     unknowns, nuisance = unknowns_of(study, {name for run in trials for name in run.parts()}, candidates, settings)
     with evaluating(model, work.workers, work.store) as evaluations:
         known = tuple(work.known or responses(evaluations, unknowns, work.tick))
-        residuals = Residuals(study, trials, sensitivities(model.drives, unknowns, nuisance, known), settings)
+        sensitive = sensitivities(model.drives, unknowns, nuisance, known)
+        residuals = residuals_of(study, trials, sensitive, settings)
         predictions = Predictions(evaluations, [one.modes for one in known] if settings.reduced == "auto" else ())
         ranking = rank(residuals, predictions, candidates, method, _Counted(work.tick))
         if not predictions.confirmed(ranking.best.members, ranking.best.values):
@@ -188,6 +137,83 @@ def _trials(
         message = "no reading within the simulated drive in any run that is not held out"
         raise InputError(message, field="measured", file=study.file)
     return trials
+
+
+@dataclass(frozen=True, eq=False)
+class Ranking(Brief):
+    """What the search of one look comes to.
+
+    Parameters
+    ----------
+    judgement : verdict, and sets with their probabilities. best, null : fits with the most probable set and with none.
+    missing : heat of unknown origin. fit_of : the fit of a set, made if it has none.
+    """
+
+    judgement: Judgement
+    best: FittedSet
+    null: FittedSet
+    missing: UnknownHeat
+    fit_of: Callable[[Members], FittedSet]
+
+
+def rank(
+    residuals: Residuals,
+    predictions: Predictions,
+    candidates: Members,
+    method: Method,
+    tick: Callable[[str], None] | None = None,
+) -> Ranking:
+    """Search the sets that explain the residuals, and judge them against each other and against an unknown cause."""
+    settings, expected = residuals.settings, residuals.study.card.diagnosis.effects_expected
+    prior = SetPrior(candidates, expected, settings.size_shares)
+    origin = _UnknownOrigin(residuals, predictions, method.criterion, math.log(expected * settings.outside_share))
+    problem = SelectionProblem(
+        residuals,
+        predictions,
+        candidates,
+        prior,
+        method.criterion,
+        lambda null: origin.score(null, origin.of(null)),
+        tick,
+    )
+    scored = method.strategy.search(problem)
+    fits = {problem.ordered(entry.fit.members): entry.fit for entry in scored if entry.fit is not None}
+    null = fits[()]
+
+    def fit_of(members: Members) -> FittedSet:
+        if members not in fits:
+            (fits[members],) = first_fits(residuals, predictions, [members])
+        return fits[members]
+
+    missing, best = origin.of(null), scored[0]
+    doubtful = best.fit is None or min(best.fit.p_value, best.fit.held_out_p) < settings.improbable
+    if doubtful or origin.score(null, missing) > best.score - settings.missing_near:
+        missing = missing_heat_fitted(
+            residuals,
+            predictions,
+            origin.patches,
+            null,
+            lambda: tick("fitting heat of unknown origin") if tick else None,
+        )
+    judgement = judge(ranked(scored, origin.score(null, missing)), fit_of, settings)
+    ahead = judgement.best
+    return Ranking(judgement, ahead.fit or (null if ahead.outside else fit_of(ahead.members)), null, missing, fit_of)
+
+
+class _UnknownOrigin:
+    """Heat of unknown origin as a rival of all sets of the catalogue; ``prior``: ln of its prior probability."""
+
+    def __init__(self, residuals: Residuals, predictions: Predictions, criterion: Criterion, prior: float) -> None:
+        self.residuals, self.criterion, self.prior = residuals, criterion, prior
+        self.patches = patches(residuals.study, residuals.settings)
+
+    def of(self, null: FittedSet) -> UnknownHeat:
+        """In the linear model about the fit of no effect."""
+        return missing_heat(self.residuals, self.patches, null)
+
+    def score(self, null: FittedSet, heat: UnknownHeat) -> float:
+        """ln(prior) + criterion: of no effect, and what the evidence gains by the heat."""
+        return self.prior + self.criterion.of_fit(null) + (heat.log_evidence - null.log_evidence)
 
 
 class _Counted:

@@ -10,7 +10,7 @@ import numpy as np
 
 from tyrefem.diagnose.contenders import candidate_rows, rms_table, set_rows
 from tyrefem.diagnose.numbers import percent
-from tyrefem.diagnose.runs import SensorReadings, Trial
+from tyrefem.diagnose.runs import MeasuredSensor, Trial
 from tyrefem.diagnose.verdict import UNEXPLAINED
 from tyrefem.reports.diagnosis_sections import missing_figures, residual_figures
 from tyrefem.reports.figures.phases import Phase, draw_phases, make_room
@@ -195,7 +195,7 @@ def _spans(d: DiagnosisData, number: int, trial: Trial) -> tuple[tuple[float, fl
     )
 
 
-def _history(d: DiagnosisData, number: int, series: SensorReadings, upper: Axes, lower: Axes, divisor: float) -> None:
+def _history(d: DiagnosisData, number: int, series: MeasuredSensor, upper: Axes, lower: Axes, divisor: float) -> None:
     trial = d.gap.trials[number]
     place = trial.parts()[series.sensor]
     t = series.block_times / divisor

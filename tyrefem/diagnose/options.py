@@ -1,0 +1,95 @@
+"""How a diagnosis is made, in groups: its replaceable parts, names of columns, and how simulations are run."""
+
+from __future__ import annotations
+
+from collections.abc import Iterable, Mapping, Sequence
+from dataclasses import dataclass, field, replace
+from typing import Any, TypedDict
+
+from tyrefem.compare.experiment import ColumnNames
+from tyrefem.diagnose.candidates import CandidateSpace, catalogue_candidates
+from tyrefem.diagnose.criterion import Criterion, LogEvidence
+from tyrefem.diagnose.evaluations import ProgressStore
+from tyrefem.diagnose.exhaustive import Exhaustive
+from tyrefem.diagnose.forward_model import DriveResponse
+from tyrefem.diagnose.forward_selection import ForwardSelection
+from tyrefem.diagnose.selection import Strategy
+from tyrefem.diagnose.sensitivities import Tick
+from tyrefem.diagnose.settings import DEFAULT, DiagnosisSettings
+
+#: Strategies by the names that the command line has for them.
+STRATEGIES: Mapping[str, Strategy] = {"forward": ForwardSelection(), "exhaustive": Exhaustive()}
+
+
+@dataclass(frozen=True)
+class Method:
+    """The parts of a diagnosis, each of which may be replaced.
+
+    Parameters
+    ----------
+    candidates : study -> the effects that it may lack. criterion : how well a set explains the data.
+    strategy : which sets are fitted, in which order. settings : every number that steers the diagnosis.
+    """
+
+    candidates: CandidateSpace = catalogue_candidates
+    criterion: Criterion = field(default_factory=LogEvidence)
+    strategy: Strategy = field(default_factory=ForwardSelection)
+    settings: DiagnosisSettings = DEFAULT
+
+
+@dataclass(frozen=True)
+class SimulationWork:
+    """How the simulations of a diagnosis are made, see `DiagnosisOptions`."""
+
+    workers: int = 1
+    progress: Tick | None = None
+    known: Sequence[DriveResponse] | None = None
+    rerun: bool = True
+    store: ProgressStore | None = None
+
+    def look(self, number: int) -> SimulationWork:
+        """The same for a further look at the data."""
+        if not number:
+            return self
+        store = None if self.store is None else self.store.look(number)
+        return replace(self, progress=_numbered(self.progress, number), known=None, store=store)
+
+    def tick(self, what: str, done: int = 0, total: int = 0) -> None:
+        """Say what is done."""
+        if self.progress is not None:
+            self.progress(what, done, total)
+
+
+def _numbered(progress: Tick | None, number: int) -> Tick | None:
+    if progress is None:
+        return None
+    return lambda what, done, total: progress(f"{what}, look {number + 1}", done, total)
+
+
+class DiagnosisOptions(TypedDict, total=False):
+    """Keywords of `diagnose`."""
+
+    ignore: Iterable[str]
+    rename: Mapping[str, str] | None
+    largest: int
+    looks: int
+    reduced: str
+    settings: DiagnosisSettings
+    candidates: CandidateSpace
+    criterion: Criterion
+    strategy: Strategy
+    workers: int
+    progress: Tick | None
+    known: Sequence[DriveResponse] | None
+    rerun: bool
+    store: ProgressStore | None
+
+
+def grouped(options: Mapping[str, Any]) -> tuple[ColumnNames, Method, SimulationWork]:
+    """The keywords of `diagnose` by what they are about."""
+    given = dict(options)
+    columns = ColumnNames(dict(given.pop("rename", None) or {}), tuple(given.pop("ignore", ())))
+    settings = given.pop("settings", DiagnosisSettings())
+    settings = replace(settings, **{name: given.pop(name) for name in ("largest", "looks", "reduced") if name in given})
+    parts = {name: given.pop(name) for name in ("candidates", "criterion", "strategy") if name in given}
+    return columns, Method(**parts, settings=settings), SimulationWork(**given)
