@@ -106,6 +106,7 @@ def test_warm_air_cools_a_bias_tyre() -> None:
     assert cooler[0] > 1.0
     assert (cooler > -0.02).all()
     # Every run disagrees less: the heat that a kelvin takes away is far less than a kelvin's.
+    assert len(found.changes) > 1
     assert all(after < 0.3 * before for before, after in zip(found.changes, found.changes[1:], strict=False))
     assert two.heat_budget.imbalance < 1e-6
 

@@ -70,6 +70,7 @@ def test_a_hot_tyre_makes_less_heat():
 
 def test_no_heat_without_rolling_or_without_load():
     for tyre in (rolling(speed="0 mph"), rolling(load="0 lbf")):
+        assert len(tyre.sources) == 5
         for zone, source in tyre.sources.items():
             nodes = tyre.problem.points(zone)
             assert np.all(source(nodes, 0.0, np.full(nodes.shape[1], 25.0)) == 0)

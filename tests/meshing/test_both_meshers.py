@@ -74,6 +74,7 @@ def _length(tyre: TyreMesh, name: str) -> float:
 def test_regions_lie_where_the_section_says(section: Section, mesher: str, cell: str) -> None:
     mesh = build(section, mesher=mesher, cell=cell).mesh
     centres = mesh.p[:, mesh.t].mean(axis=1).T
+    assert set(mesh.subdomains) == set(section.regions)
     for region, found in mesh.subdomains.items():
         assert (section.region_at(*section.locate(centres[found])) == region).all()
 

@@ -26,16 +26,29 @@ def test_every_page_that_is_named_is_there() -> None:
     assert missing == set()
 
 
-@pytest.mark.parametrize("study", sorted(ROOT.glob("studies/*/study.toml")), ids=lambda path: path.parent.name)
-def test_the_page_that_a_study_refers_to_for_a_symbol_has_it(study: Path) -> None:
+REFERENCE = re.compile(r"#\s*(\w+)\b.*\bsee (?:the README of ([\w.-]*\w)|(docs/[\w/-]+\.md|README\.md))")
+REFERENCES = [
+    (study, *found.groups())
+    for study in sorted(ROOT.glob("studies/*/study.toml"))
+    for found in map(REFERENCE.search, study.read_text(encoding="utf-8").splitlines())
+    if found is not None
+]
+
+
+def test_studies_refer_to_pages() -> None:
+    assert len(REFERENCES) > 2
+
+
+@pytest.mark.parametrize(
+    ("study", "symbol", "other", "page"), REFERENCES, ids=[f"{row[0].parent.name}-{row[1]}" for row in REFERENCES]
+)
+def test_the_page_that_a_study_refers_to_for_a_symbol_has_it(
+    study: Path, symbol: str, other: str | None, page: str | None
+) -> None:
     """``poisson_term = 0.7  # c_a of eq 7a: ..., see README.md``: the page tells of c_a."""
-    for line in study.read_text(encoding="utf-8").splitlines():
-        found = re.search(r"#\s*(\w+)\b.*\bsee (?:the README of ([\w.-]*\w)|(docs/[\w/-]+\.md|README\.md))", line)
-        if found is None:
-            continue
-        symbol, other, page = found.groups()
-        if other is not None:
-            file = study.parents[1] / other / "README.md"
-        else:
-            file = ROOT / page if page.startswith("docs/") else study.parent / page
-        assert symbol in file.read_text(encoding="utf-8"), line
+    if other is not None:
+        file = study.parents[1] / other / "README.md"
+    else:
+        assert page is not None
+        file = ROOT / page if page.startswith("docs/") else study.parent / page
+    assert symbol in file.read_text(encoding="utf-8")

@@ -73,6 +73,7 @@ def test_films_that_follow_a_constant_drive_are_asked_for_once(plain: Study) -> 
         balance = reduced_balance(found.model, RollingTyre(plain.replace({"effects": [effect]}), base))
         assert steady(balance, 0) is constant
         marched = march(Batch(found.model, [balance]))
+        assert marched.windows
         assert all(window.steady is constant for window in marched.windows)
         moments = [Batch(found.model, [balance]).outside(t) for t in (1.0, 77.0, 150.0)]
         assert all(np.array_equal(one.sinks, moments[0].sinks) for one in moments) is constant
