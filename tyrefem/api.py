@@ -73,8 +73,8 @@ class Campaign(campaign.CampaignData):
 
     def outcome(self, case: Case) -> Result | str:
         """The result of a case, or why there is none."""
-        found = super().outcome(case)
-        return found if isinstance(found, str) else with_verbs(Result, found)
+        outcome = super().outcome(case)
+        return outcome if isinstance(outcome, str) else with_verbs(Result, outcome)
 
 
 class Comparison(comparison.Comparison):
@@ -209,8 +209,8 @@ class Study(studies.StudyData):
         `tyrefem.sweep.design.Questions.answered`.
 
         >>> coarse = study("nasa-22x5.5-8pr", {"mesh.size": "12 mm", "drive.duration": "60 s"})
-        >>> found = coarse.sweep({"drive.speed": ["10 mph", "20 mph"]}, limits={"hottest_degC": {"below": 35}})
-        >>> found.table["feasible"].tolist()
+        >>> design = coarse.sweep({"drive.speed": ["10 mph", "20 mph"]}, limits={"hottest_degC": {"below": 35}})
+        >>> design.table["feasible"].tolist()
         [True, False]
         """
         from tyrefem.sweep.design import asked_of

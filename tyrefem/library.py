@@ -43,11 +43,11 @@ def names(kind: str, near: Path | None = None) -> dict[str, Path]:
     True
     """
     pattern = f"*/{FILES[kind]}" if kind in FILES else "*.toml"
-    found: dict[str, Path] = {}
+    by_name: dict[str, Path] = {}
     for root in roots(near):
         for path in sorted((root / FOLDERS[kind]).glob(pattern)):
-            found.setdefault(path.parent.name if kind in FILES else path.stem, path)
-    return found
+            by_name.setdefault(path.parent.name if kind in FILES else path.stem, path)
+    return by_name
 
 
 def find(kind: str, name: str, near: Path | None = None) -> Path:
@@ -108,14 +108,15 @@ def _split(kind: str, reference: object) -> tuple[str, Mapping[str, Any]]:
     return reference, changes
 
 
-def over(kind: str, reference: object, own: object, data: Mapping[str, Any]) -> dict[str, Any] | None:
-    """`load`'s data of a reference, where those of ``own``, which changes nothing of the same card, are at hand; None:
-    it is another card.
+def over(kind: str, reference: object, present: object, data: Mapping[str, Any]) -> dict[str, Any] | None:
+    """`load`'s data of a reference, from the data at hand of ``present``; None: they are of another card.
+
+    ``present`` is a reference to the same card without changes.
 
     >>> over("material", {"base": "a", "k": 2}, "a", {"k": 1, "c": 3})
     {'k': 2, 'c': 3}
     """
-    (card, changes), (other, laid) = _split(kind, reference), _split(kind, own)
+    (card, changes), (other, laid) = _split(kind, reference), _split(kind, present)
     return merged(data, changes) if card == other and not laid else None
 
 

@@ -33,37 +33,39 @@ class DirectHeat:
     def __init__(
         self, base: HeatBalance, others: Sequence[HeatBalance], steps: Sequence[float], t: float, y: State
     ) -> None:
-        for one in (base, *others):
-            one.freeze(t, y)
+        for balance in (base, *others):
+            balance.freeze(t, y)
         self.base, self.others, self.steps = base, others, np.asarray(steps)
         shares, places = self._shares(), dict[Any, list[Load]]()
         for load in shares:
             places.setdefault(_place(load), []).append(load)
         together = [(loads, np.array([shares[load] for load in loads])) for loads in places.values()]
         # Of each place: the loads, and (n_loads, n_parameters) how much of each comes with a unit of a parameter.
-        self._sources: list[tuple[Any, Array]] = [one for one in together if isinstance(one[0][0], SourceLoad)]
-        self._films: list[tuple[Any, Array]] = [one for one in together if isinstance(one[0][0], FilmLoad)]
-        self._single = [one for one in together if not isinstance(one[0][0], SourceLoad | FilmLoad)]
+        self._sources: list[tuple[Any, Array]] = [
+            balance for balance in together if isinstance(balance[0][0], SourceLoad)
+        ]
+        self._films: list[tuple[Any, Array]] = [balance for balance in together if isinstance(balance[0][0], FilmLoad)]
+        self._single = [balance for balance in together if not isinstance(balance[0][0], SourceLoad | FilmLoad)]
         self._operators = [_Change.between(base, other, step) for other, step in zip(others, steps, strict=True)]
-        variable = any(one.variable_reservoirs for one in (base, *others))
+        variable = any(balance.variable_reservoirs for balance in (base, *others))
         self._constant_gas = None if variable else self._gas_capacity(y.g)
 
     def _shares(self) -> dict[Load, Array]:
         """Load -> (n_parameters,): 1/step where a parameter brings it, -1/step where it replaces it."""
-        found: dict[Load, Array] = {}
+        shares_of: dict[Load, Array] = {}
         for column, (other, step) in enumerate(zip(self.others, self.steps, strict=True)):
             for sign, mine, theirs in ((1, other, self.base), (-1, self.base, other)):
                 known = {_identity(theirs, load) for load in theirs.acting}
                 for load in mine.acting:
                     if _identity(mine, load) not in known:
-                        found.setdefault(load, np.zeros(len(self.others)))[column] = sign / step
-        return found
+                        shares_of.setdefault(load, np.zeros(len(self.others)))[column] = sign / step
+        return shares_of
 
     def __call__(self, t: float, y: State) -> Array:
         """(n + m, n_parameters) W per unit of each parameter; m: reservoirs."""
         n = y.u.size
-        found = np.zeros((len(self.others), n + y.g.size))
-        body, gas = found[:, :n], found[:, n:]
+        rates = np.zeros((len(self.others), n + y.g.size))
+        body, gas = rates[:, :n], rates[:, n:]
         if self._sources:
             body += self._heat_of_sources(t, y).T
         for films, shares in self._films:
@@ -75,25 +77,25 @@ class DirectHeat:
             each = np.zeros((len(loads), n + y.g.size))
             for load, heat in zip(loads, each, strict=True):
                 load.remainder(t, y, heat[:n], heat[n:])
-            found += shares.T @ each
-        own = heat_of(self.base, t, y)
-        rate = self._rate(y, own[:n])
+            rates += shares.T @ each
+        base_heat = heat_of(self.base, t, y)
+        rate = self._rate(y, base_heat[:n])
         for change, to_body, to_gas in zip(self._operators, body, gas, strict=True):
             change.add(y, rate, to_body, to_gas)
         capacity = self.base.reservoir_capacity(y.g)
         more = self._gas_capacity(y.g) if self._constant_gas is None else self._constant_gas
-        gas -= more * (own[n:] / np.where(capacity > 0, capacity, 1.0))
-        return np.ascontiguousarray(found.T)
+        gas -= more * (base_heat[n:] / np.where(capacity > 0, capacity, 1.0))
+        return np.ascontiguousarray(rates.T)
 
     def _heat_of_sources(self, t: float, y: State) -> Array:
         """(n, n_parameters)."""
-        heat = [np.column_stack([one.at_nodes(t, y.u) for one in loads]) @ shares for loads, shares in self._sources]
+        heat = [np.column_stack([load.at_nodes(t, y.u) for load in loads]) @ shares for loads, shares in self._sources]
         return np.asarray(self.base.ops.source(*(loads[0].name for loads, _ in self._sources)) @ np.concatenate(heat))
 
     def _gas_capacity(self, g: Array) -> Array:
         """(n_parameters, m): change of the reservoirs' heat capacities, J/K per unit of each parameter."""
-        own = self.base.reservoir_capacity(g)
-        change = [other.reservoir_capacity(g) - own for other in self.others]
+        capacity = self.base.reservoir_capacity(g)
+        change = [other.reservoir_capacity(g) - capacity for other in self.others]
         return np.reshape(change, (len(change), g.size)) / self.steps[:, None]
 
     def rate(self, t: float, y: State) -> Array:

@@ -70,8 +70,8 @@ def _march(problem: Conduction, times: Array, initial: float) -> tuple[Array, Ar
     state = problem._initial(balance, initial, float(times[0]), None)
     ordering = ops.ordering(np.arange(n))
     y = np.concatenate([state.u, state.g])
-    found = np.zeros((len(times), y.size))
-    found[0] = y
+    states = np.zeros((len(times), y.size))
+    states[0] = y
     solve: StageSolver | None = None
     for first in range(0, len(times) - 1, 2):
         h = times[first + 2] - times[first]
@@ -96,6 +96,6 @@ def _march(problem: Conduction, times: Array, initial: float) -> tuple[Array, Ar
                 G, Gg, _ = balance.remainder(t, State(at[:n], at[n:]))
                 k = solve(linear + np.concatenate([G, Gg]))
             slope = k
-            found[first + 1 + stage] = start + GAMMA * h * k
-        y = found[first + 2]
-    return found[:, :n], found[:, n:]
+            states[first + 1 + stage] = start + GAMMA * h * k
+        y = states[first + 2]
+    return states[:, :n], states[:, n:]

@@ -135,8 +135,8 @@ class Conduction:
                 )
         g = np.empty(len(self.reservoirs))
         for i, (name, reservoir) in enumerate(self.reservoirs.items()):
-            own = reservoir.initial if reservoir.initial is not None else float(weight @ u)
-            g[i] = {name: own, **before, **(given or {})}[name]
+            start = reservoir.initial if reservoir.initial is not None else float(weight @ u)
+            g[i] = {name: start, **before, **(given or {})}[name]
         if self.states is not None:
             g = np.concatenate([g, self.states.initial / self.states.scale])
         y = State(u, g)

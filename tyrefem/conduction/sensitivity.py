@@ -108,10 +108,10 @@ def tangents(
     InputError : another mesh or element, or a fixed boundary.
     """
     ops = base.operators
-    for one in perturbed:
-        if base.states is not None or one.problem.states is not None:
+    for column in perturbed:
+        if base.states is not None or column.problem.states is not None:
             raise InputError("states that follow a rate have no tangents: simulate again", field="states")
-        if one.problem.operators is not ops:
+        if column.problem.operators is not ops:
             raise InputError("a perturbed problem must be on the base problem's own mesh", field="perturbed")
     with one_thread():
         return _march(base, times, values, reservoirs, perturbed)
@@ -126,19 +126,19 @@ def _march(
         raise InputError("tangents need a problem without Fixed boundaries", field="boundaries")
     direct = DirectHeat(
         base._balance(),
-        [one.problem._balance() for one in perturbed],
-        [one.step for one in perturbed],
+        [perturbation.problem._balance() for perturbation in perturbed],
+        [perturbation.step for perturbation in perturbed],
         float(times[0]),
         State(values[0], reservoirs[0]),
     )
     heat = balance.reservoir_capacity(reservoirs[0])
     ordering = ops.ordering(np.arange(n))
     s = np.zeros((n + m, count))
-    for column, one in enumerate(perturbed):
-        if one.initial is not None:
-            s[:, column] = (one.initial - values[0, 0]) / one.step
-    found = np.zeros((len(times), n + m, count))
-    found[0] = s
+    for column, perturbation in enumerate(perturbed):
+        if perturbation.initial is not None:
+            s[:, column] = (perturbation.initial - values[0, 0]) / perturbation.step
+    derivatives = np.zeros((len(times), n + m, count))
+    derivatives[0] = s
     for first in range(0, len(times) - 1, 2):
         h = times[first + 2] - times[first]
         # Data are seen from inside the step: a jump at its end belongs to the next one.
@@ -159,9 +159,11 @@ def _march(
                 hot[:n] += slope @ (start[:n] + GAMMA * h * guess[:n])
                 guess = solve(hot)
             slopes.append(guess)
-            found[first + 1 + stage] = start + GAMMA * h * guess
-        s = found[first + 2]
-    return Tangents(ops, np.asarray(times), found[:, :n].transpose(2, 0, 1), found[:, n:].transpose(2, 0, 1))
+            derivatives[first + 1 + stage] = start + GAMMA * h * guess
+        s = derivatives[first + 2]
+    return Tangents(
+        ops, np.asarray(times), derivatives[:, :n].transpose(2, 0, 1), derivatives[:, n:].transpose(2, 0, 1)
+    )
 
 
 def _linear(balance: HeatBalance, s: Array) -> Array:

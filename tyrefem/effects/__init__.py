@@ -32,14 +32,14 @@ __all__ = ["Effect", "EffectOf", "EffectState", "Parameter", "Prior", "catalogue
 @functools.cache
 def _modules(folders: str) -> frozenset[str]:
     """Import every module that defines effects; their names."""
-    found = [f"{__name__}.{module.name}" for module in pkgutil.iter_modules(__path__)]
-    for name in found:
+    modules = [f"{__name__}.{module.name}" for module in pkgutil.iter_modules(__path__)]
+    for name in modules:
         importlib.import_module(name)
     for folder in filter(None, folders.split(os.pathsep)):
         if not Path(folder).is_dir():
             raise InputError(f"TYREFEM_EFFECTS names '{folder}', which is no folder")
-        found += [_loaded(file) for file in sorted(Path(folder).resolve().glob("*.py"))]
-    return frozenset(found)
+        modules += [_loaded(file) for file in sorted(Path(folder).resolve().glob("*.py"))]
+    return frozenset(modules)
 
 
 def _loaded(file: Path) -> str:
@@ -54,8 +54,8 @@ def _loaded(file: Path) -> str:
         spec.loader.exec_module(module)
     except Exception as error:
         del sys.modules[name]
-        said = error.message if isinstance(error, InputError) else f"{type(error).__name__}: {error}"
-        raise InputError(f"cannot be loaded as effects: {said}", file=file) from error
+        reason = error.message if isinstance(error, InputError) else f"{type(error).__name__}: {error}"
+        raise InputError(f"cannot be loaded as effects: {reason}", file=file) from error
     return name
 
 
@@ -71,24 +71,24 @@ def catalogue() -> dict[str, type[Effect]]:
     """
     modules = _modules(os.environ.get("TYREFEM_EFFECTS", ""))
     classes = [Effect]
-    for one in classes:
-        classes += one.__subclasses__()
+    for cls in classes:
+        classes += cls.__subclasses__()
     return dict(_by_name(modules, tuple(classes)))
 
 
 @functools.lru_cache(maxsize=1)
 def _by_name(modules: frozenset[str], classes: tuple[type[Effect], ...]) -> dict[str, type[Effect]]:
-    found: dict[str, type[Effect]] = {}
-    for one in classes:
-        if not one.name or one.__module__ not in modules:
+    effects: dict[str, type[Effect]] = {}
+    for cls in classes:
+        if not cls.name or cls.__module__ not in modules:
             continue
-        if getattr(sys.modules[one.__module__], one.__name__, None) is not one:
+        if getattr(sys.modules[cls.__module__], cls.__name__, None) is not cls:
             continue  # left over from an earlier state of its file
-        if one.name in found:
-            both = " and ".join(sorted({one.__module__, found[one.name].__module__}))
-            raise InputError(f"two effects are named '{one.name}': in {both}")
-        found[one.name] = one
-    return dict(sorted(found.items()))
+        if cls.name in effects:
+            both = " and ".join(sorted({cls.__module__, effects[cls.name].__module__}))
+            raise InputError(f"two effects are named '{cls.name}': in {both}")
+        effects[cls.name] = cls
+    return dict(sorted(effects.items()))
 
 
 class EffectOf:

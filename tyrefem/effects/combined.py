@@ -30,7 +30,7 @@ class Acting:
     def at(self, *ports: str) -> tuple[Effect, ...]:
         """The effects that enter at one of these ports."""
         if ports not in self._entering:
-            entering = tuple(one for one in self.effects if any(one.overrides(port) for port in ports))
+            entering = tuple(effect for effect in self.effects if any(effect.overrides(port) for port in ports))
             self._entering[ports] = entering
         return self._entering[ports]
 
@@ -46,25 +46,25 @@ class Acting:
     @functools.cached_property
     def with_states(self) -> tuple[Effect, ...]:
         """The effects that keep states through a run."""
-        return tuple(one for one in self.effects if one.states)
+        return tuple(effect for effect in self.effects if effect.states)
 
     @property
     def follows_drive(self) -> bool:
         """Do films, sinks and the rim's power depend on time through the drive alone?"""
-        return all(one.of_drive for one in self.at(*SURROUNDING))
+        return all(effect.of_drive for effect in self.at(*SURROUNDING))
 
     def film(self, film: str, t: float, base: float) -> float:
         """A film at a time, W/m2/K: sums, then factors, then resistances in series."""
-        for one in self.at("film_addend"):
-            base = base + one.film_addend(self.tyre, film, t)
-        for one in self.at("film_factor"):
-            base = base * one.film_factor(self.tyre, film, t)
-        resistance = sum(one.film_resistance(self.tyre, film, t) for one in self.at("film_resistance"))
+        for effect in self.at("film_addend"):
+            base = base + effect.film_addend(self.tyre, film, t)
+        for effect in self.at("film_factor"):
+            base = base * effect.film_factor(self.tyre, film, t)
+        resistance = sum(effect.film_resistance(self.tyre, film, t) for effect in self.at("film_resistance"))
         return base / (1 + base * resistance) if resistance else base
 
     def sink(self, sink: str, t: float, base: float) -> float:
         """A surrounding temperature at a time, degC."""
-        return base + sum(one.sink_addend(self.tyre, sink, t) for one in self.at("sink_addend"))
+        return base + sum(effect.sink_addend(self.tyre, sink, t) for effect in self.at("sink_addend"))
 
     def source(self, zone: str, base: Source) -> Source:
         """The heat source of a zone with every effect on it."""
@@ -74,10 +74,10 @@ class Acting:
 
         def heat(x: Array, t: float, T: Array) -> Array:
             q = base(x, t, T)
-            for one in addends:
-                q = q + one.heat_addend(tyre, zone, x, t, T)
-            for one in factors:
-                q = q * one.heat_factor(tyre, zone, x, t, T)
+            for effect in addends:
+                q = q + effect.heat_addend(tyre, zone, x, t, T)
+            for effect in factors:
+                q = q * effect.heat_factor(tyre, zone, x, t, T)
             return q
 
         return heat
@@ -91,8 +91,8 @@ class Acting:
         def k(T: Array) -> tuple[Any, Any]:
             value = law(T) if callable(law) else law
             along, across = value if isinstance(value, tuple) else (value, value)
-            for one in factors:
-                first, second = one.conductivity_factor(self.tyre, region, T)
+            for effect in factors:
+                first, second = effect.conductivity_factor(self.tyre, region, T)
                 along, across = along * first, across * second
             return along, across
 
@@ -110,35 +110,35 @@ class Acting:
 
         def capacity(T: Array) -> Any:
             value = law(T) if callable(law) else law
-            for one in factors:
-                value = value * one.capacity_factor(self.tyre, region, T)
+            for effect in factors:
+                value = value * effect.capacity_factor(self.tyre, region, T)
             return value
 
         return capacity
 
     def gas_capacity(self, base: float) -> float:
         """Heat capacity of the contained air, J/K."""
-        for one in self.at("gas_capacity_factor"):
-            base = base * one.gas_capacity_factor(self.tyre)
+        for effect in self.at("gas_capacity_factor"):
+            base = base * effect.gas_capacity_factor(self.tyre)
         return base
 
     def rim_power(self, t: float) -> float:
         """W that effects put into the whole wheel's lumped rim at a time."""
-        return sum(one.rim_power(self.tyre, t) for one in self.at("rim_power"))
+        return sum(effect.rim_power(self.tyre, t) for effect in self.at("rim_power"))
 
     def conditions(self, surface: str) -> list[tuple[str, Any]]:
         """Fluxes and radiation that effects add to a boundary, each with a name for the heat budget."""
-        found: list[tuple[str, Any]] = []
-        for one in self.effects:
-            if surface not in one.surfaces:
+        conditions: list[tuple[str, Any]] = []
+        for effect in self.effects:
+            if surface not in effect.surfaces:
                 continue
-            label = " ".join([one.name, *one.choice.values(), "on the", surface.replace("_", " ")])
-            if one.overrides("flux"):
-                found.append((label, Flux(_flux_of(one, self.tyre, surface))))
-            if one.overrides("radiation"):
-                radiation: Radiation | None = one.radiation(self.tyre, surface)
-                found += [] if radiation is None else [(label, radiation)]
-        return found
+            label = " ".join([effect.name, *effect.choice.values(), "on the", surface.replace("_", " ")])
+            if effect.overrides("flux"):
+                conditions.append((label, Flux(_flux_of(effect, self.tyre, surface))))
+            if effect.overrides("radiation"):
+                radiation: Radiation | None = effect.radiation(self.tyre, surface)
+                conditions += [] if radiation is None else [(label, radiation)]
+        return conditions
 
 
 def _flux_of(effect: Effect, tyre: Tyre, surface: str) -> Callable[[Array, float], Any]:

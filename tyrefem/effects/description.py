@@ -18,8 +18,8 @@ COLUMNS = ("parameter", "meaning", "not there at", "allowed", "prior sd")
 
 def by_family(effects: dict[str, type[Effect]]) -> dict[str, list[type[Effect]]]:
     """Effects by family, families in their usual order."""
-    found = {family: [one for one in effects.values() if one.family == family] for family in FAMILIES}
-    return {family: members for family, members in found.items() if members}
+    families = {family: [effect for effect in effects.values() if effect.family == family] for family in FAMILIES}
+    return {family: members for family, members in families.items() if members}
 
 
 def equation(effect: type[Effect]) -> str:
@@ -35,12 +35,12 @@ def ports(effect: type[Effect]) -> str:
 def parameter_rows(effect: type[Effect]) -> list[list[str]]:
     """Name, meaning, null (or start of a shape), bounds and prior of every parameter; then the text fields."""
     rows = []
-    for one in effect.parameters():
-        prior = one.prior
+    for parameter in effect.parameters():
+        prior = parameter.prior
         begin = prior.text(prior.null) if prior.amplitude else f"(shape; starts at {prior.text(_start(prior))})"
         bounds = f"{prior.text(prior.low)} to {prior.text(prior.high)}"
-        rows.append([one.name, prior.meaning, begin, bounds, prior.text(prior.scale)])
-    numbers = {one.name for one in effect.parameters()}
+        rows.append([parameter.name, prior.meaning, begin, bounds, prior.text(prior.scale)])
+    numbers = {parameter.name for parameter in effect.parameters()}
     for name, field in effect.model_fields.items():
         if name not in numbers | set(Effect.model_fields):
             default = "" if field.is_required() else f"default: {field.default}"
@@ -57,10 +57,12 @@ def example(effect: type[Effect]) -> str:
     lines = ["[[effects]]", f'name = "{effect.name}"']
     required = {name: field for name, field in effect.model_fields.items() if field.is_required()}
     lines += [f'{name} = "{_first_example(field)}"' for name, field in required.items()]
-    for one in effect.parameters():
-        if one.prior.amplitude:
-            value = one.prior.text(one.prior.null + one.prior.scale)
-            lines.append(f"{one.name} = {value}" if one.prior.unit == "1" else f'{one.name} = "{value}"')
+    for parameter in effect.parameters():
+        if parameter.prior.amplitude:
+            value = parameter.prior.text(parameter.prior.null + parameter.prior.scale)
+            lines.append(
+                f"{parameter.name} = {value}" if parameter.prior.unit == "1" else f'{parameter.name} = "{value}"'
+            )
     return "\n".join(lines)
 
 

@@ -134,15 +134,15 @@ class Effect(Card):
     @functools.cache
     def parameters(cls) -> tuple[Parameter, ...]:
         """The parameters with unit and prior, amplitudes first."""
-        found = []
+        parameters = []
         for name, field in cls.model_fields.items():
-            found += [Parameter(name, item) for item in field.metadata if isinstance(item, Prior)]
-        return tuple(sorted(found, key=lambda one: not one.prior.amplitude))
+            parameters += [Parameter(name, item) for item in field.metadata if isinstance(item, Prior)]
+        return tuple(sorted(parameters, key=lambda parameter: not parameter.prior.amplitude))
 
     @property
     def values(self) -> dict[str, float]:
         """Parameter -> value, SI."""
-        return {one.name: float(getattr(self, one.name)) for one in self.parameters()}
+        return {parameter.name: float(getattr(self, parameter.name)) for parameter in self.parameters()}
 
     @property
     def choice(self) -> dict[str, str]:
@@ -152,8 +152,10 @@ class Effect(Card):
     @property
     def is_null(self) -> bool:
         """Are all amplitudes at the value where the effect is not there?"""
-        amplitudes = [one for one in self.parameters() if one.prior.amplitude]
-        return bool(amplitudes) and all(getattr(self, one.name) == one.prior.null for one in amplitudes)
+        amplitudes = [parameter for parameter in self.parameters() if parameter.prior.amplitude]
+        return bool(amplitudes) and all(
+            getattr(self, parameter.name) == parameter.prior.null for parameter in amplitudes
+        )
 
     @classmethod
     def overrides(cls, port: str) -> bool:
@@ -303,9 +305,9 @@ FAMILIES = ("heat", "conduction", "boundary", "section", "asymmetry", "measureme
 
 def _complaint(cls: type[Effect]) -> str | None:
     """What an effect's class forgot."""
-    for said in ("sentence", "source", "family"):
-        if not getattr(cls, said):
-            return f"needs '{said}'"
+    for attribute in ("sentence", "source", "family"):
+        if not getattr(cls, attribute):
+            return f"needs '{attribute}'"
     if cls.family not in FAMILIES:
         return f"unknown family '{cls.family}'{nearest(cls.family, FAMILIES)}"
     if cls.states and cls.state_rates is Effect.state_rates:

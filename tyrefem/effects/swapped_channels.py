@@ -50,12 +50,12 @@ class SwappedChannels(Effect):
                 return f"the study has no sensor '{name}'{nearest(name, study.sensors)}"
         if self.sensor == self.other:
             return f"'{self.sensor}' is swapped with itself; name two sensors"
-        swaps = [one for one in study.card.effects if isinstance(one, SwappedChannels)]
-        taken = [name for one in swaps for name in (one.sensor, one.other)]
+        swaps = [swap for swap in study.card.effects if isinstance(swap, SwappedChannels)]
+        taken = [name for swap in swaps for name in (swap.sensor, swap.other)]
         twice = [name for name in (self.sensor, self.other) if taken.count(name) > 1]
         return f"'{twice[0]}' is swapped twice" if twice else self.refusal(study)
 
     @classmethod
     def variants(cls, study: StudyOfTyre) -> tuple[Mapping[str, str], ...]:
         """Every pair of sensors."""
-        return tuple({"sensor": one, "other": other} for one, other in itertools.combinations(study.sensors, 2))
+        return tuple({"sensor": sensor, "other": other} for sensor, other in itertools.combinations(study.sensors, 2))

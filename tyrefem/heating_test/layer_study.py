@@ -31,8 +31,8 @@ def merged(card: RigCard, count: int) -> RigCard:
     mass and heat capacity. Raises InputError for a count that the card does not have.
 
     >>> from tyrefem.heating_test.card import load
-    >>> one = merged(load("trtlab")[0], 1).layers[0]
-    >>> one.name, round(one.thickness, 4), round(one.conductivity.value, 3)
+    >>> layer = merged(load("trtlab")[0], 1).layers[0]
+    >>> layer.name, round(layer.thickness, 4), round(layer.conductivity.value, 3)
     ('tread+carcass', 0.015, 0.271)
     """
     if not 1 <= count <= len(card.layers):

@@ -97,8 +97,8 @@ def parameters_of(card: RigCard, sensors: Sequence[str]) -> Parameters:
     """Every parameter of a rig, for the sensors that are read; those without an uncertainty are held.
 
     >>> from tyrefem.heating_test.card import load
-    >>> found = parameters_of(load("trtlab")[0], ["outer", "inner", "interface"])
-    >>> found.names[:4]
+    >>> parameters = parameters_of(load("trtlab")[0], ["outer", "inner", "interface"])
+    >>> parameters.names[:4]
     ('tread.conductivity', 'tread.specific_heat', 'tread.conductivity_slope', 'tread.specific_heat_slope')
     """
     listed: list[RigParameter] = []

@@ -157,8 +157,8 @@ def estimate_of(parameter: RigParameter, x: float, sd: float) -> ParameterEstima
     """The estimate of a coordinate and its standard deviation.
 
     >>> k = RigParameter("tread.conductivity", "W/m/K", "log", 0.25, 0.47, "property")
-    >>> one = estimate_of(k, 0.1, 0.05)
-    >>> round(one.low, 3), round(one.value, 3), round(one.high, 3), one.verdict
+    >>> estimate = estimate_of(k, 0.1, 0.05)
+    >>> round(estimate.low, 3), round(estimate.value, 3), round(estimate.high, 3), estimate.verdict
     (0.248, 0.262, 0.277, 'determined')
     """
     value = parameter.value(x)

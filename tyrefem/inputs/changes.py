@@ -32,12 +32,12 @@ def all_changed(data: Mapping[str, Any], changes: Mapping[str, Any]) -> dict[str
     {'mesh': {'size': '3 mm', 'element': 'P1'}}
     """
     result: dict[str, Any] = dict(data)
-    own: set[str] = set()
+    copied: set[str] = set()
     for key, value in changes.items():
         table = key.split(".")[0].strip().replace("-", "_")
-        if table in result and table not in own:
+        if table in result and table not in copied:
             result[table] = written(result[table])
-            own.add(table)
+            copied.add(table)
         _change(result, key, written(value))
     return result
 

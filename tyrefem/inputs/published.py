@@ -111,7 +111,9 @@ class PublishedComparison:
         ['footprint length', '130 mm', '120 to 150', 'inside', 'a book']
         """
         unit, shown, digits = SHOWN[self.quantity]
-        value, low, high = (format(convert(one, unit, shown), digits) for one in (self.value, self.low, self.high))
+        value, low, high = (
+            format(convert(number, unit, shown), digits) for number in (self.value, self.low, self.high)
+        )
         name = "" if shown == "1" else f" {shown.replace('**', '')}"
         verdict = "inside" if self.inside else "outside"
         return [self.quantity.replace("_", " "), value + name, f"{low} to {high}", verdict, self.source]
@@ -128,20 +130,20 @@ def compared(published: Published, values: Mapping[str, float]) -> tuple[Publish
     ----------
     published : the study's table. values : results, SI, by the table's names.
     """
-    found = []
+    comparisons = []
     for name in SHOWN:
         known = getattr(published, name)
         if known is not None and name in values:
             low, high = known.between
-            found.append(PublishedComparison(name, values[name], low, high, known.source))
-    return tuple(found)
+            comparisons.append(PublishedComparison(name, values[name], low, high, known.source))
+    return tuple(comparisons)
 
 
-def of_footprint(found: Any) -> dict[str, float]:
+def of_footprint(footprint: Any) -> dict[str, float]:
     """Stiffness and footprint of a `footprint.Footprint` by the table's names, SI."""
     return {
-        "vertical_stiffness": found.load / found.deflection,
-        "footprint_length": found.length,
-        "footprint_width": found.width,
-        "footprint_area": found.area,
+        "vertical_stiffness": footprint.load / footprint.deflection,
+        "footprint_length": footprint.length,
+        "footprint_width": footprint.width,
+        "footprint_area": footprint.area,
     }

@@ -270,7 +270,7 @@ class StudyCard(Card):
             "mechanics.footprint": mechanics.footprint.law != TR_R_64.law,
             "mechanics.energy": mechanics.energy is not None,
         }
-        names["published"] = any(found is not None for _, found in self.published)
+        names["published"] = any(published_range is not None for _, published_range in self.published)
         return tuple(name for name, there in names.items() if there)
 
     @model_validator(mode="after")

@@ -146,8 +146,8 @@ def _named(study: StudyOfCards, key: str, sd: float) -> UncertainNumber:
         for other, (its, file) in study.material_data.items()
         if file == path and _at(its, within) == _at(data, within)
     ]
-    regions.sort(key=lambda one: one != region)
-    keys = tuple(f"materials.{one}.{within}" for one in regions)
+    regions.sort(key=lambda name: name != region)
+    keys = tuple(f"materials.{name}.{within}" for name in regions)
     return UncertainNumber(
         key, keys, (value,) * len(keys), sd, path.stem, tuple(regions), _idle(study, regions, within)
     )

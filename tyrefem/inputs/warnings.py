@@ -21,13 +21,13 @@ def study_warnings(
     >>> [warning.field for warning in light.warnings]
     ['materials.tread.density.value']
     """
-    found = [*card.warnings(), *_of_another_tyre(card, section)]
-    found += [warning.within(field="section") for warning in section.warnings]
-    found += _of_materials(materials)
+    warnings = [*card.warnings(), *_of_another_tyre(card, section)]
+    warnings += [warning.within(field="section") for warning in section.warnings]
+    warnings += _of_materials(materials)
     if card.mechanics.energy is not None:
         rows = card.mechanics.energy.without_effect(section)
-        found += [warning.within(field="mechanics.energy") for warning in rows]
-    return tuple(warning.within(file=file) for warning in found)
+        warnings += [warning.within(field="mechanics.energy") for warning in rows]
+    return tuple(warning.within(file=file) for warning in warnings)
 
 
 def _of_materials(materials: Mapping[str, MaterialCard]) -> Iterator[InputWarning]:

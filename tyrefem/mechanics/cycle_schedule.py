@@ -168,10 +168,10 @@ def cycle_schedule(study: StudyData) -> CycleSchedule:
     knots, cases, cycles = [], [], []
     for number, phase in enumerate(study.card.drive.phases):
         fractions = tuple(ramp_knots(phase.changes_load))
-        found = [solver.solve(number, fraction) for fraction in fractions]
+        solved = [solver.solve(number, fraction) for fraction in fractions]
         knots.append(fractions)
-        cases.append(tuple(case for case, _ in found))
-        cycles.append(tuple(cycle for _, cycle in found))
+        cases.append(tuple(case for case, _ in solved))
+        cycles.append(tuple(cycle for _, cycle in solved))
     return CycleSchedule(study.card.drive, tuple(knots), tuple(cases), tuple(cycles))
 
 

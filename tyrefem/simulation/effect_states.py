@@ -67,23 +67,25 @@ class EffectStates:
                 initial.append(value.reshape(-1))
                 size += value.size
         self.initial = np.concatenate(initial) if initial else np.zeros(0)
-        self.scale = np.concatenate([np.full(one.part.stop - one.part.start, one.state.scale) for one in self.places])
+        self.scale = np.concatenate(
+            [np.full(place.part.stop - place.part.start, place.state.scale) for place in self.places]
+        )
         self._now: Array | None = None
         self._history: tuple[Array, Array] | None = None
 
     def rate(self, tyre: Tyre, t: float, z: Array, temperatures: TemperaturesOfTyre) -> Array:
         """Rates (k,) per second of the states z (k,)."""
         rates = np.empty(z.size)
-        effects = {_key(one.effect): one.effect for one in self.places}
+        effects = {_key(place.effect): place.effect for place in self.places}
         for key, effect in effects.items():
-            mine = [one for one in self.places if _key(one.effect) == key]
-            state = {one.name: self._value(one, z) for one in mine}
+            mine = [place for place in self.places if _key(place.effect) == key]
+            state = {place.name: self._value(place, z) for place in mine}
             given = _checked(effect, effect.state_rates(tyre, t, state, temperatures), "state_rates")
-            for one in mine:
-                if given[one.name].shape != one.shape:
-                    words = f"state '{one.name}' has the shape {one.shape}, its rate {given[one.name].shape}"
+            for place in mine:
+                if given[place.name].shape != place.shape:
+                    words = f"state '{place.name}' has the shape {place.shape}, its rate {given[place.name].shape}"
                     raise InputError(f"{words}", field=f"effects.{effect.name}.state_rates")
-                rates[one.part] = given[one.name].reshape(-1)
+                rates[place.part] = given[place.name].reshape(-1)
         return rates
 
     def show(self, z: Array) -> None:
@@ -96,7 +98,14 @@ class EffectStates:
 
     def value(self, effect: Effect, name: str, t: float) -> Value:
         """A state at a time: of the step that is computed, else of the history; before a run, the initial one."""
-        place = next((one for one in self.places if one.name == name and _key(one.effect) == _key(effect)), None)
+        place = next(
+            (
+                candidate
+                for candidate in self.places
+                if candidate.name == name and _key(candidate.effect) == _key(effect)
+            ),
+            None,
+        )
         if place is None:
             raise InputError(f"has no state '{name}'", field=f"effects.{effect.name}")
         if self._now is not None:
@@ -114,10 +123,10 @@ class EffectStates:
     def named(self, values: Array) -> dict[str, StateHistory]:
         """ "effect state" -> its history, from values (n_times, k)."""
         return {
-            one.label: StateHistory(
-                one.state.unit, one.state.meaning, values[:, one.part].reshape(len(values), *one.shape)
+            place.label: StateHistory(
+                place.state.unit, place.state.meaning, values[:, place.part].reshape(len(values), *place.shape)
             )
-            for one in self.places
+            for place in self.places
         }
 
 

@@ -147,6 +147,8 @@ class RunEstimate:
         if needed(through=1) <= min(free, self.total.memory / 2):
             most = max((n for n in range(1, mesh.through) if needed(through=n) <= free), default=1)
             return "mesh.through", f"{mesh.through} makes {self.unknowns:,.0f} unknowns", f"{most} would fit"
-        size = estimate.smallest(lambda one: needed(size=one) <= free, mesh.size, self.study.section.line.length / 4)
+        size = estimate.smallest(
+            lambda coarser: needed(size=coarser) <= free, mesh.size, self.study.section.line.length / 4
+        )
         fits = f"{size * 1e3:g} mm or more would fit" if size else ""
         return "mesh.size", f"{mesh.size * 1e3:g} mm makes {self.unknowns:,.0f} unknowns", fits

@@ -52,16 +52,16 @@ def run(
         tyre = RollingTyre(study, first, cycles.schedule())
         result = simulate(tyre, progress, partial=partial)
         first, wall_time = first or tyre, wall_time + result.wall_time
-        found = Warmth.of(result)
-        changes.append(math.inf if result.history.interrupted else cycles.change(found))
+        warmth = Warmth.of(result)
+        changes.append(math.inf if result.history.interrupted else cycles.change(warmth))
         done = changes[-1] <= choice.tolerance or len(changes) == choice.iterations
         if done or result.history.interrupted:
             break
         if len(changes) > 1 and changes[-1] > SLOW * changes[-2]:
             share = max(share / 2, LEAST)
-        cycles.update(found, share)
+        cycles.update(warmth, share)
     end = float(result.times[-1])
-    last = found.at(end)
+    last = warmth.at(end)
     softened = {
         region: law(last.regions[region])
         for region in cycles.softening

@@ -112,13 +112,13 @@ class HeatBudget(Brief):
 
     def to_dict(self) -> dict[str, Any]:
         """JSON-ready: energies and final powers by kind and name, and how well the budget closes."""
-        found: dict[str, Any] = {"imbalance": self.imbalance, "residual_J": float(self.residual[-1])}
+        shares: dict[str, Any] = {"imbalance": self.imbalance, "residual_J": float(self.residual[-1])}
         for row in self.table.to_dict("records"):
             entry = {"energy_J": row["energy_J"]}
             if row["kind"] != "lumped":
                 entry["power_W"] = row["power_W"]
-            found.setdefault(row["kind"], {})[row["name"]] = entry
-        return found
+            shares.setdefault(row["kind"], {})[row["name"]] = entry
+        return shares
 
 
 #: What the conditions on a boundary are called in the budget, by (boundary, number of the condition).

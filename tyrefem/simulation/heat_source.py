@@ -63,9 +63,9 @@ class HeatSource:
         for phase, knot, weight in self.schedule.weights(t):
             if (phase, knot) not in self._spectra:
                 cycle = self.schedule.cycles[phase][knot]
-                own = getattr(cycle, "spectrum", None)
-                one = cycle.energy_density(self.zone, x)[None] if own is None else own(self.zone, x)
-                self._spectra[phase, knot] = np.asarray(one)
+                by_order = getattr(cycle, "spectrum", None)
+                energies = cycle.energy_density(self.zone, x)[None] if by_order is None else by_order(self.zone, x)
+                self._spectra[phase, knot] = np.asarray(energies)
             parts.append(weight * self._spectra[phase, knot])
         total: Array = np.zeros((max(len(part) for part in parts), x.shape[1]))
         for part in parts:

@@ -56,8 +56,8 @@ class LawOutcome:
 
     def heating_density(self, part: Zone, points: Array) -> Array:
         """U that makes the heat, J/m3, at points (2, n) of a part: for ``fem`` that of all harmonics together."""
-        own = {zone.name for zone in self.cycle.zones}
-        return np.asarray(self.cycle.energy_density(part.name if part.name in own else part.region, points))
+        zones = {zone.name for zone in self.cycle.zones}
+        return np.asarray(self.cycle.energy_density(part.name if part.name in zones else part.region, points))
 
     def energy_density(self, part: Zone, points: Array) -> Array:
         """Strain energy of the largest change within a revolution, J/m3, at points (2, n) of a part."""
@@ -134,14 +134,14 @@ class LawComparison:
         return self._integrals("heating_density")
 
     def _integrals(self, density: str) -> dict[str, dict[str, float]]:
-        found = {}
+        integrals = {}
         for outcome in self.outcomes:
-            own = {}
+            of_law = {}
             for part in self.parts:
                 points, weights = self._quadrature(part)
-                own[part.name] = float(getattr(outcome, density)(part, points) @ weights)
-            found[outcome.law] = own | {TOTAL: sum(own.values())}
-        return found
+                of_law[part.name] = float(getattr(outcome, density)(part, points) @ weights)
+            integrals[outcome.law] = of_law | {TOTAL: sum(of_law.values())}
+        return integrals
 
     def _quadrature(self, part: Zone) -> tuple[Array, Array]:
         """Points (2, n) and weights (n,), m3 of the whole tyre."""
@@ -164,20 +164,25 @@ class LawComparison:
             laws = [outcome.law for outcome in self.outcomes]
             rows.append({"kind": kind, "name": name, "unit": unit, **dict(zip(laws, values, strict=True))})
 
-        add("deflection", "deflection", "m", [one.deflection for one in self.outcomes])
+        add("deflection", "deflection", "m", [law_outcome.deflection for law_outcome in self.outcomes])
         volume = self.volumes | {TOTAL: sum(self.volumes.values())}
         for name in volume:
-            add("energy", name, "J", [self.energies[one.law][name] for one in self.outcomes])
+            add("energy", name, "J", [self.energies[law_outcome.law][name] for law_outcome in self.outcomes])
         for name in volume:
-            add("density", name, "J/m3", [self.energies[one.law][name] / volume[name] for one in self.outcomes])
+            add(
+                "density",
+                name,
+                "J/m3",
+                [self.energies[law_outcome.law][name] / volume[name] for law_outcome in self.outcomes],
+            )
         for name in volume:
-            add("heating", name, "J", [self.heating[one.law][name] for one in self.outcomes])
-        resistances = [one.result.rolling_resistance for one in self.outcomes]
-        add("coefficient", "cold", "1", [one.cold_coefficient for one in resistances])
-        add("coefficient", "at the end", "1", [one.coefficient for one in resistances])
-        temperatures = [one.temperatures for one in self.outcomes]
+            add("heating", name, "J", [self.heating[law_outcome.law][name] for law_outcome in self.outcomes])
+        resistances = [law_outcome.result.rolling_resistance for law_outcome in self.outcomes]
+        add("coefficient", "cold", "1", [law_outcome.cold_coefficient for law_outcome in resistances])
+        add("coefficient", "at the end", "1", [law_outcome.coefficient for law_outcome in resistances])
+        temperatures = [law_outcome.temperatures for law_outcome in self.outcomes]
         for name in temperatures[0]:
-            add("temperature", name, "degC", [one[name] for one in temperatures])
+            add("temperature", name, "degC", [law_outcome[name] for law_outcome in temperatures])
         return pd.DataFrame(rows)
 
     def summary(self) -> dict[str, Any]:
@@ -185,17 +190,17 @@ class LawComparison:
         from tyrefem.output import versions
 
         first, case, laws = self.outcomes[0], self.case, {}
-        for one in self.outcomes:
-            own, heating = self.energies[one.law], self.heating[one.law]
-            place = one.result.extremes.iloc[0]
-            laws[one.law] = {
-                "deflection_m": one.deflection,
-                "energy_J": own,
-                "mean_energy_J_m3": {name: own[name] / volume for name, volume in self.volumes.items()},
+        for outcome in self.outcomes:
+            energies, heating = self.energies[outcome.law], self.heating[outcome.law]
+            place = outcome.result.extremes.iloc[0]
+            laws[outcome.law] = {
+                "deflection_m": outcome.deflection,
+                "energy_J": energies,
+                "mean_energy_J_m3": {name: energies[name] / volume for name, volume in self.volumes.items()},
                 "heating_energy_J": heating,
-                "cold_coefficient": one.result.rolling_resistance.cold_coefficient,
-                "coefficient": one.result.rolling_resistance.coefficient,
-                "temperatures_degC": one.temperatures,
+                "cold_coefficient": outcome.result.rolling_resistance.cold_coefficient,
+                "coefficient": outcome.result.rolling_resistance.coefficient,
+                "temperatures_degC": outcome.temperatures,
                 "hottest": {name: float(place[name]) for name in ("time_s", "r_m", "z_m", "s_m", "depth_m")},
             }
         return {
@@ -232,8 +237,8 @@ def compare_laws(study: StudyData | str, laws: tuple[str, ...] | None = None) ->
 
     >>> brief = {"drive.duration": "60 s", "mesh.size": "12 mm", "numerics.tolerance": "0.5 delta_degC"}
     >>> from tyrefem import study
-    >>> found = compare_laws(study("nasa-22x5.5-8pr", brief), laws=("arcs",))
-    >>> sorted(found.energies["arcs"])
+    >>> comparison = compare_laws(study("nasa-22x5.5-8pr", brief), laws=("arcs",))
+    >>> sorted(comparison.energies["arcs"])
     ['I', 'II', 'III', 'IV', 'V', 'whole tyre']
     """
     from tyrefem.inputs.study import study as load_study

@@ -43,12 +43,12 @@ class PhaseState:
 
 def phase_states(tyre: RollingTyre) -> tuple[PhaseState, ...]:
     """Every phase of a tyre's drive."""
-    drive, found = tyre.drive, []
+    drive, states = tyre.drive, []
     for start, phase in zip(drive.starts, drive.phases, strict=True):
         end = start + phase.duration
         t = end * (1 - 1e-12)
         mean, motion = functools.partial(tyre.schedule.mean, time=t), tyre.motion(t)
-        found.append(
+        states.append(
             PhaseState(
                 phase.name,
                 start,
@@ -68,7 +68,7 @@ def phase_states(tyre: RollingTyre) -> tuple[PhaseState, ...]:
                 drive.locked_since(t) is not None,
             )
         )
-    return tuple(found)
+    return tuple(states)
 
 
 #: Largest part of the tread at the crown that one contact may reach before the result warns (a judgement).

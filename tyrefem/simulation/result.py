@@ -84,7 +84,7 @@ class ResultData(Brief):
             + (" degC at the end" if self.recorded else "none")
             + (f", and {len(self.recorded) - SHOWN} more" if len(self.recorded) > SHOWN else ""),
             "contained air": f"{self.gas_temperature[-1]:.1f} degC at the end",
-            **{name: f"{np.mean(one.values[-1]):.4g} {one.unit} at the end" for name, one in self.states.items()},
+            **{name: f"{np.mean(state.values[-1]):.4g} {state.unit} at the end" for name, state in self.states.items()},
             "rolling resistance": f"{resistance.force:.1f} N, coefficient {resistance.coefficient:.5f}"
             if resistance.phase
             else "it never rolls",

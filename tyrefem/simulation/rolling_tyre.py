@@ -55,12 +55,12 @@ class RollingTyre(Surroundings):
         # What a state changes is this tyre's alone: functions of another one read the other's states.
         if self.like is None or self.states is not None or self.like.states is not None:
             return False
-        own, other = self.study, self.like.study
+        study, other = self.study, self.like.study
         if "mechanics" in tables and self.cycles is not self.like.cycles:
             return False
         return (
-            own.section == other.section
-            and all(own.data.get(table) == other.data.get(table) for table in tables)
+            study.section == other.section
+            and all(study.data.get(table) == other.data.get(table) for table in tables)
             and self.acting.at(*ports) == self.like.acting.at(*ports)
         )
 
@@ -98,19 +98,19 @@ class RollingTyre(Surroundings):
     @functools.cached_property
     def bodies(self) -> dict[str, Material]:
         """Region -> what conducts and stores heat there, effects included."""
-        like, found = self.like, {}
+        like, bodies = self.like, {}
         same = like is not None and self._as_in_like((), ("conductivity_factor", "capacity_factor"))
         for region, card in self.study.materials.items():
             if like is not None and same and self.mesh is like.mesh and card is like.study.materials[region]:
-                found[region] = like.bodies[region]
+                bodies[region] = like.bodies[region]
                 continue
             orthotropic = card.conductivity.orthotropic
-            found[region] = Material(
+            bodies[region] = Material(
                 self.acting.conductivity(region, card.conductivity.law()),
                 self.acting.capacity(region, card.heat_capacity()),
                 self.mesh.along_meridian if orthotropic or self.acting.at("conductivity_factor") else None,
             )
-        return found
+        return bodies
 
     @functools.cached_property
     def boundaries(self) -> dict[str, list[Any]]:
@@ -165,18 +165,18 @@ class RollingTyre(Surroundings):
         return None if capacity is None else self.acting.gas_capacity(capacity)
 
     def _reservoirs(self) -> dict[str, Reservoir]:
-        found: dict[str, Reservoir] = {}
+        reservoirs: dict[str, Reservoir] = {}
         rim, share = self.study.card.boundaries.rim, 0.5 if self.study.section.half else 1.0
         if self._gas_capacity is not None:
             start = self.study.card.boundaries.contained_air.start(self.drive.initial)
-            found[GAS] = Reservoir(self._gas_capacity, start)
+            reservoirs[GAS] = Reservoir(self._gas_capacity, start)
         if isinstance(rim, LumpedRim):
             exchanges: list[tuple[float, Any]] = [(rim.cooling * share, self.ambient)]
             if self._gas_capacity is not None and rim.air > 0:
                 exchanges.append((rim.air * share, GAS))
             power = (lambda t: share * self.acting.rim_power(t)) if self.acting.at("rim_power") else 0.0
-            found[RIM] = Reservoir(rim.heat_capacity * share, self.rim_temperature(0.0), tuple(exchanges), power)
-        return found
+            reservoirs[RIM] = Reservoir(rim.heat_capacity * share, self.rim_temperature(0.0), tuple(exchanges), power)
+        return reservoirs
 
     def _added_states(self) -> AddedStates | None:
         states = self.states
@@ -199,26 +199,26 @@ class RollingTyre(Surroundings):
     @functools.cached_property
     def hysteresis(self) -> dict[str, HeatSource]:
         """Zone -> heat of its strain cycle."""
-        factor, found = LOSS_FACTOR[self.study.card.mechanics.loss_convention], {}
+        factor, sources = LOSS_FACTOR[self.study.card.mechanics.loss_convention], {}
         for zone in self.schedule.zones:
             law = self.study.materials[zone.region].loss_tangent
             over_frequency = None if law.frequency is None else law.over_frequency
-            found[zone.name] = HeatSource(zone.name, self.schedule, self.motion, law, factor, over_frequency)
-        return found
+            sources[zone.name] = HeatSource(zone.name, self.schedule, self.motion, law, factor, over_frequency)
+        return sources
 
     @functools.cached_property
     def sources(self) -> dict[str, Source]:
         """Zone -> heat source: the strain cycle's, and what the study's effects make of it."""
-        like, found = self.like, {}
+        like, sources = self.like, {}
         same = like is not None and self._as_in_like(("drive",), ("heat_factor", "heat_addend"))
         for zone in self.schedule.zones:
             if like is not None and same and self.schedule is like.schedule:
                 cards = [study.materials[zone.region].loss_tangent for study in (self.study, like.study)]
                 if cards[0] == cards[1]:
-                    found[zone.name] = like.sources[zone.name]
+                    sources[zone.name] = like.sources[zone.name]
                     continue
-            found[zone.name] = self.acting.source(zone.name, self.hysteresis[zone.name])
-        return found
+            sources[zone.name] = self.acting.source(zone.name, self.hysteresis[zone.name])
+        return sources
 
     @functools.cached_property
     def sliding(self) -> SlidingTread:

@@ -42,7 +42,7 @@ def lagged(times: Array, temperatures: Array, lag: float) -> Array:
 def true_places(study: StudyData) -> dict[str, tuple[float, float]]:
     """(r, z) of every sensor, m: as stated, moved by the study's effects, but never out of the rubber."""
     stated = study.stated_places
-    section, found = study.section, dict(stated)
+    section, true = study.section, dict(stated)
     worn_away = () if section.as_built is None else [name for name in stated if not section.contains([stated[name]])[0]]
     moved: dict[str, tuple[float, float]] = {}
     effects = study.effects
@@ -55,8 +55,8 @@ def true_places(study: StudyData) -> dict[str, tuple[float, float]]:
         s, depth = section.locate(np.array([stated[name] for name in moved]))
         along_by, deeper_by = np.array(list(moved.values())).T
         places = section.place(*section.clamp(s + along_by, depth + deeper_by, 0.0))
-        found |= {name: (float(r), float(z)) for name, (r, z) in zip(moved, places, strict=True)}
-    return found
+        true |= {name: (float(r), float(z)) for name, (r, z) in zip(moved, places, strict=True)}
+    return true
 
 
 def recorded(study: StudyData, times: Array, temperatures: ArrayLike) -> dict[str, Array]:
@@ -71,14 +71,14 @@ def recorded(study: StudyData, times: Array, temperatures: ArrayLike) -> dict[st
     }
     read = {name: lagged(times, values[:, column], lags[name]) for column, name in enumerate(lags)}
     late = sum(effect.clock() for effect in effects)
-    found = {}
+    readings = {}
     for name in read:
         channel = name
         for effect in effects:
             channel = effect.channel(channel)
         column = read[channel] + sum(effect.offset(name) for effect in effects)
-        found[name] = np.interp(times + late, times, column) if late else column
-    return found
+        readings[name] = np.interp(times + late, times, column) if late else column
+    return readings
 
 
 def recorded_change(study: StudyData, times: Array, temperatures: ArrayLike) -> dict[str, Array]:
@@ -86,5 +86,5 @@ def recorded_change(study: StudyData, times: Array, temperatures: ArrayLike) -> 
 
     `recorded` is linear but for the offsets of channels, which no temperature changes.
     """
-    found = recorded(study, times, temperatures)
-    return {name: one - sum(effect.offset(name) for effect in study.effects) for name, one in found.items()}
+    readings = recorded(study, times, temperatures)
+    return {name: column - sum(effect.offset(name) for effect in study.effects) for name, column in readings.items()}

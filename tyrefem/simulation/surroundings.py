@@ -71,7 +71,7 @@ class Surroundings:
 
     @functools.cached_property
     def _regions(self) -> dict[str, str]:
-        return {one.name: str(one.region) for one in self.schedule.zones}
+        return {zone.name: str(zone.region) for zone in self.schedule.zones}
 
     def places(self, x: Array) -> tuple[Array, Array]:
         """|s| along the meridian and depth of points x (2, n), m; remembered for the 32 latest sets of points."""

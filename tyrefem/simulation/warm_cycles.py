@@ -35,9 +35,9 @@ class TyreTemperatures:
 
     def distance(self, other: TyreTemperatures, *, gas: bool, regions: tuple[str, ...]) -> float:
         """Largest difference, K, of the contained air (if ``gas``) and of some regions."""
-        found = [abs(self.gas - other.gas)] if gas else []
-        found += [abs(self.regions[name] - other.regions[name]) for name in regions]
-        return max(found, default=0.0)
+        distances = [abs(self.gas - other.gas)] if gas else []
+        distances += [abs(self.regions[name] - other.regions[name]) for name in regions]
+        return max(distances, default=0.0)
 
     def towards(self, other: TyreTemperatures, share: float) -> TyreTemperatures:
         """A share of the way to another moment."""
@@ -145,13 +145,15 @@ class WarmCycles:
         """What a run takes. A phase in which nothing changes has one strain cycle, as without feedback."""
         fractions, cases, cycles = [], [], []
         for number, (phase, knots) in enumerate(zip(self.study.card.drive.phases, self.knots, strict=True)):
-            found = [self._kept[number, place] for place in range(len(knots))]
-            same = all((one.case, one.softened) == (found[0].case, found[0].softened) for one in found)
+            kept = [self._kept[number, place] for place in range(len(knots))]
+            same = all(
+                (warm_cycle.case, warm_cycle.softened) == (kept[0].case, kept[0].softened) for warm_cycle in kept
+            )
             if same and not phase.changes_load:
-                found, knots = found[:1], (0.0,)
+                kept, knots = kept[:1], (0.0,)
             fractions.append(knots)
-            cases.append(tuple(settled(one.cycle, one.case) for one in found))
-            cycles.append(tuple(one.cycle for one in found))
+            cases.append(tuple(settled(warm_cycle.cycle, warm_cycle.case) for warm_cycle in kept))
+            cycles.append(tuple(warm_cycle.cycle for warm_cycle in kept))
         return CycleSchedule(self.study.card.drive, tuple(fractions), tuple(cases), tuple(cycles))
 
     def _places(self) -> list[tuple[int, int]]:
@@ -162,8 +164,8 @@ class WarmCycles:
         return warmth.at(drive.starts[number] + self.knots[number][knot] * drive.phases[number].duration)
 
     def _distance(self, place: tuple[int, int], warmth: Warmth) -> float:
-        own = self._kept[place].moment
-        return own.distance(self._moment(place, warmth), gas=self.choice.pressure, regions=self.softening)
+        moment = self._kept[place].moment
+        return moment.distance(self._moment(place, warmth), gas=self.choice.pressure, regions=self.softening)
 
     def _solved(self, place: tuple[int, int], moment: TyreTemperatures) -> _Knot:
         number, knot = place
@@ -176,12 +178,12 @@ class WarmCycles:
         return _Knot(moment, case, softened, self._solver(softened, moment).cycle(number, case))
 
     def _softened(self, moment: TyreTemperatures) -> Softened:
-        found: list[float] = []
+        shares: list[float] = []
         for region in self.softening:
             card, T = self.study.materials[region], moment.regions[region]
-            laws = [one.softening for one in (card, card.cord, card.cords) if one is not None]
-            found += [law(T) for law in laws if law is not None]
-        return tuple(found)
+            laws = [part.softening for part in (card, card.cord, card.cords) if part is not None]
+            shares += [law(T) for law in laws if law is not None]
+        return tuple(shares)
 
     def _solver(self, softened: Softened, moment: TyreTemperatures) -> KnotSolver:
         """One for all knots of equal moduli; forgotten after every update, as the next one has other moduli."""

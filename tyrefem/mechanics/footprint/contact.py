@@ -191,8 +191,8 @@ def footprint(state: Prestressed, road: Road = FLAT, **wanted: Any) -> Footprint
     """The footprint of a tyre: `Pressing.solve` in one call.
 
     >>> from tyrefem.mechanics.footprint.example_tyre import PlainTyre
-    >>> found = footprint(PlainTyre().state(along=10), load=2000.0, tolerance=0.05)
-    >>> round(found.load), found.harmonics
+    >>> result = footprint(PlainTyre().state(along=10), load=2000.0, tolerance=0.05)
+    >>> round(result.load), result.harmonics
     (2000, 54)
     """
     return Pressing(state, road).solve(**wanted)

@@ -37,8 +37,8 @@ class Balance:
     steps : deflections on the way, at most. before_rim : share of the way to the rim at which deflections end.
 
     >>> from tyrefem.mechanics.footprint.example_tyre import PlainTyre
-    >>> found = Balance(Pressing(PlainTyre().state(along=6)), 12).at_deflection(0.004)
-    >>> found.balanced.shape == found.amplitudes.shape, 0 < found.load < 400
+    >>> footprint = Balance(Pressing(PlainTyre().state(along=6)), 12).at_deflection(0.004)
+    >>> footprint.balanced.shape == footprint.amplitudes.shape, 0 < footprint.load < 400
     (True, True)
     """
 

@@ -222,8 +222,8 @@ def press(
         tyre can carry.
 
     >>> from tyrefem import study
-    >>> found = press(study("nasa-22x5.5-8pr", {"mesh.size": "12 mm"}), deflection=0.015)
-    >>> found.footprint.deflection, 3e5 < found.secant_stiffness < 6e5
+    >>> pressed = press(study("nasa-22x5.5-8pr", {"mesh.size": "12 mm"}), deflection=0.015)
+    >>> pressed.footprint.deflection, 3e5 < pressed.secant_stiffness < 6e5
     (0.015, True)
     """
     from tyrefem.mechanics.footprint.contact import Pressing
