@@ -77,7 +77,7 @@ class Campaign(campaign.CampaignData):
         return outcome if isinstance(outcome, str) else with_verbs(Result, outcome)
 
 
-class Comparison(comparison.Comparison):
+class Comparison(comparison.ComparisonData):
     """Deviations of a study from measurements, with `save`."""
 
     def save(self, folder: str | Path) -> Path:

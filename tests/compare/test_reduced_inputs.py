@@ -9,7 +9,7 @@ import numpy as np
 import pytest
 
 from tyrefem.api import Study, study
-from tyrefem.compare import Comparison
+from tyrefem.compare import ComparisonData
 from tyrefem.compare.reduced_inputs import ReducedInputSettings
 from tyrefem.errors import InputError
 from tyrefem.processes import processes
@@ -47,16 +47,16 @@ def counting() -> Counting:
 
 
 @pytest.fixture(scope="module")
-def reduced(quick: Study, table: Path, counting: Counting) -> Comparison:
+def reduced(quick: Study, table: Path, counting: Counting) -> ComparisonData:
     return quick.compare(table, executor=counting)
 
 
 @pytest.fixture(scope="module")
-def full(quick: Study, table: Path) -> Comparison:
+def full(quick: Study, table: Path) -> ComparisonData:
     return quick.compare(table, reduced="never")
 
 
-def test_reduced_inputs_are_those_of_full_runs(reduced: Comparison, full: Comparison) -> None:
+def test_reduced_inputs_are_those_of_full_runs(reduced: ComparisonData, full: ComparisonData) -> None:
     found = reduced.reduced
     assert found is not None
     assert found.worst <= 0.8 * found.tolerance
@@ -70,7 +70,7 @@ def test_reduced_inputs_are_those_of_full_runs(reduced: Comparison, full: Compar
 
 
 def test_few_runs_are_full_and_the_comparison_says_so(
-    reduced: Comparison, full: Comparison, counting: Counting
+    reduced: ComparisonData, full: ComparisonData, counting: Counting
 ) -> None:
     found = reduced.reduced
     assert found is not None
@@ -91,7 +91,7 @@ def test_what_does_not_hold_is_run_in_full(quick: Study, table: Path) -> None:
     assert any("full ones" in note for note in found.notes)
 
 
-def test_one_model_for_all_drives_and_in_processes(quick: Study, full: Comparison) -> None:
+def test_one_model_for_all_drives_and_in_processes(quick: Study, full: ComparisonData) -> None:
     with processes(2) as pool:
         found = quick.compare(executor=pool)
     assert found.reduced is not None

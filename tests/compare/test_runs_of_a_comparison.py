@@ -10,7 +10,7 @@ import pytest
 
 import tyrefem as tf
 from tyrefem.compare import runs
-from tyrefem.compare.reduced_inputs import Certificate, Neighbours, ReducedInputSettings
+from tyrefem.compare.reduced_inputs import Neighbours, ReducedInputCertificate, ReducedInputSettings
 from tyrefem.compare.runs import Runs
 from tyrefem.inputs.study import StudyData
 from tyrefem.mechanics.footprint.pressed_tyre import REMEMBERED_TYRES
@@ -150,7 +150,7 @@ def test_a_long_drive_is_followed_from_its_first_readings() -> None:
     keys = {key: sd for key, sd in study.uncertainty.items() if key.split(".")[1] in outer}
     studies = {("", None): study} | {("", key): study.scaled(key, 1.0 + sd) for key, sd in keys.items()}
 
-    def certificate(settings: ReducedInputSettings) -> Certificate:
+    def certificate(settings: ReducedInputSettings) -> ReducedInputCertificate:
         with Runs(studies, keys) as made:
             made.begin()
             return Neighbours(made, settings).solve()

@@ -90,10 +90,10 @@ def test_signed_changes_of_an_input_may_cancel_in_the_mean_but_not_in_a_reading(
     """An input that heats early and cools late moves no mean, yet blurs every reading."""
     run = measured_from(study, EVERY_10)
     change = np.where(np.arange(len(EVERY_10)) % 2, 1.0, -1.0)[:120]
-    from tyrefem.compare.history import History
+    from tyrefem.compare.history import SensorHistory
     from tyrefem.compare.uncertainty import uncertainty
 
-    history = History(
+    history = SensorHistory(
         "a", "crown", False, run.times[:120], np.zeros(120), np.zeros(120), np.full(120, "x", dtype=object),
         np.zeros(120), {"k": 2.0 * change}, 0.0, 0.0, 0.0, 0.0,
     )  # fmt: skip
@@ -148,11 +148,11 @@ def test_the_verdict_is_wrong_as_rarely_as_k_promises(study):
     rng = np.random.default_rng(11)
     offsets = 0.8 * rng.normal(size=1000) + 0.1 * rng.normal(size=1000)
     from tyrefem.compare.comparison import comparison_of
-    from tyrefem.compare.history import History
+    from tyrefem.compare.history import SensorHistory
 
     times = np.arange(40.0)
     made = [
-        History(
+        SensorHistory(
             "run", name, False, times, offset + 0.5 * rng.normal(size=40), np.zeros(40),
             np.full(40, "x", dtype=object), np.zeros(40), {}, 0.5, 0.8, 0.0, 0.1,
         )

@@ -14,13 +14,15 @@ import tyrefem as tf
 from tyrefem.compare.experiment import experiments
 from tyrefem.diagnose import DiagnosisData
 from tyrefem.diagnose.candidates import Candidate, catalogue_candidates
+from tyrefem.diagnose.criterion import BIC
 from tyrefem.diagnose.evaluations import Evaluations
+from tyrefem.diagnose.exhaustive import Exhaustive
 from tyrefem.diagnose.forward_model import FOLLOWED, NOT_FOLLOWED, UNSAID, DriveResponse, ForwardModel
 from tyrefem.diagnose.multifidelity import Predictions
 from tyrefem.diagnose.reduced_forward import Modes, ReducedDrive
 from tyrefem.diagnose.runs import trial
 from tyrefem.diagnose.sensitivities import responses, unknowns_of
-from tyrefem.diagnose.settings import DEFAULT
+from tyrefem.diagnose.settings import DEFAULT, DiagnosisSettings
 from tyrefem.diagnose.unknowns import Unknown, with_values
 from tyrefem.effects import catalogue
 
@@ -198,6 +200,35 @@ def test_where_the_best_fit_is_not_confirmed_everything_is_simulated(
     found = diagnosed(drives)
     assert found.to_dict()["reduced"]["used"] is False
     assert found.best.log_evidence == pytest.approx(never.best.log_evidence, abs=1e-6)
+
+
+PARTS: dict[str, dict[str, Any]] = {
+    "exhaustive": {"strategy": Exhaustive()},
+    "bic": {"criterion": BIC()},
+    "few candidates": {"candidates": lambda study: catalogue_candidates(study)[:2]},
+    "settings": {"settings": DiagnosisSettings(batch=1, singles=2)},
+}
+
+
+@pytest.mark.parametrize("parts", PARTS)
+def test_the_parts_of_a_diagnosis_are_replaced_one_by_one(drives: Drives, never: DiagnosisData, parts: str) -> None:
+    known = {} if parts == "few candidates" else {"known": drives.known}
+    found = drives.study.diagnose(largest=1, looks=1, rerun=False, **known, **PARTS[parts])
+    assert found.verdict == "identified"
+    assert [one.key for one in found.best.members] == ["hot-road"]
+    (amplitude,) = found.best.members[0].amplitudes
+    assert found.best.values[amplitude] == pytest.approx(
+        never.best.values[amplitude], abs=0.5 * never.best.sd[amplitude]
+    )
+    if parts == "exhaustive":
+        assert all(one.fit is not None for one in found.judgement.ranking if not one.outside)
+    if parts == "few candidates":
+        assert len(found.candidates) == 2
+
+
+def test_a_keyword_that_is_none_is_refused(drives: Drives) -> None:
+    with pytest.raises(TypeError, match="stratgy"):
+        diagnosed(drives, stratgy=Exhaustive())
 
 
 def test_a_word_that_is_no_choice_is_refused(drives: Drives) -> None:

@@ -3,7 +3,7 @@
 Knows nothing of diagnoses, pages and pictures.
 """
 
-from tyrefem.compare.comparison import Comparison
+from tyrefem.compare.comparison import ComparisonData
 from tyrefem.compare.validation import compare
 
-__all__ = ["Comparison", "compare"]
+__all__ = ["ComparisonData", "compare"]

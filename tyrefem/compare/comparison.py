@@ -9,22 +9,22 @@ from functools import cached_property
 from typing import TYPE_CHECKING, Any
 
 from tyrefem.brief import Brief
-from tyrefem.compare.history import ALL, History
+from tyrefem.compare.history import ALL, SensorHistory
 from tyrefem.compare.uncertainty import COLUMNS, row
 from tyrefem.output import jsonable
 
 if TYPE_CHECKING:
     import pandas as pd
 
-    from tyrefem.compare.reduced_inputs import Certificate
+    from tyrefem.compare.reduced_inputs import ReducedInputCertificate
 
 
-#: Columns of `Comparison.inputs`.
+#: Columns of `ComparisonData.inputs`.
 INPUTS = ("run", "sensor", "phase", "key", "relative_sd", "change_K", "regions")
 
 
 @dataclass(frozen=True, eq=False)
-class Comparison(Brief):
+class ComparisonData(Brief):
     """Deviations of a study from measurements.
 
     Parameters
@@ -50,7 +50,7 @@ class Comparison(Brief):
     curves: Mapping[str, pd.DataFrame]
     notes: tuple[str, ...] = ()
     k: float = 2.0
-    reduced: Certificate | None = None
+    reduced: ReducedInputCertificate | None = None
 
     def _title(self) -> str:
         return f"of {self.study}"
@@ -158,15 +158,15 @@ class Comparison(Brief):
 
 def comparison_of(
     study: str,
-    histories: Sequence[History],
+    histories: Sequence[SensorHistory],
     *,
     curves: Mapping[str, pd.DataFrame],
     relative_sd: Mapping[str, float],
     regions: Mapping[str, tuple[str, ...]] | None = None,
     notes: tuple[str, ...] = (),
     k: float = 2.0,
-    reduced: Certificate | None = None,
-) -> Comparison:
+    reduced: ReducedInputCertificate | None = None,
+) -> ComparisonData:
     """The comparison that follows from paired histories; ``regions``: input -> the regions that it is moved in."""
     import pandas as pd
 
@@ -198,7 +198,7 @@ def comparison_of(
         ],
         ignore_index=True,
     )
-    return Comparison(
+    return ComparisonData(
         study=study,
         table=pd.DataFrame(rows, columns=list(COLUMNS)),
         residuals=residuals,

@@ -7,7 +7,7 @@ from dataclasses import dataclass, field, replace
 from pathlib import Path
 from typing import Any
 
-from tyrefem.compare.interface import MeasuredEntry, StudyLike
+from tyrefem.compare.interface import MeasuredEntryLike, StudyLike
 from tyrefem.errors import InputError, nearest, quoted
 from tyrefem.measured import MeasuredRun
 from tyrefem.measured.columns import parts
@@ -139,7 +139,7 @@ class ColumnNames:
                 raise no_column(missing, purpose, dict.fromkeys(parts(name)[0] for name in columns))
 
 
-def _table(entry: MeasuredEntry, given: ColumnNames, at_hand: dict[str, MeasuredTable]) -> MeasuredTable:
+def _table(entry: MeasuredEntryLike, given: ColumnNames, at_hand: dict[str, MeasuredTable]) -> MeasuredTable:
     """An entry's table, read once; its own names of columns must be there, those given for all tables may be."""
     rename, ignore = {**entry.rename, **given.rename}, (*entry.ignore, *given.ignore)
     key = repr((entry.table, entry.time_offset, rename, ignore))
@@ -153,7 +153,7 @@ def _table(entry: MeasuredEntry, given: ColumnNames, at_hand: dict[str, Measured
     return whole
 
 
-def _of_entry(entry: MeasuredEntry, whole: MeasuredTable) -> list[Experiment]:
+def _of_entry(entry: MeasuredEntryLike, whole: MeasuredTable) -> list[Experiment]:
     names = [run.name for run in whole.runs]
     if entry.run is not None and entry.run not in names:
         wrong = f"no run '{entry.run}'{nearest(entry.run, names)}"

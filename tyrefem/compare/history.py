@@ -18,7 +18,7 @@ ALL = "all"
 
 
 @dataclass(frozen=True, eq=False)
-class History:
+class SensorHistory:
     """Readings of one sensor in one run that lie within the simulated span; n readings.
 
     Parameters
@@ -70,7 +70,7 @@ def histories(
     study: StudyLike,
     result: ResultLike,
     perturbed: Mapping[str, ResultLike],
-) -> tuple[list[History], int]:
+) -> tuple[list[SensorHistory], int]:
     """The histories of a run's sensors, and how many measured times lie outside the simulated span.
 
     Computed readings are interpolated linearly between saved times and never extrapolated.
@@ -95,7 +95,7 @@ def histories(
         card = study.sensors.get(sensor)
         noise = card.noise if experiment.noise is None and card is not None else experiment.noise
         found.append(
-            History(
+            SensorHistory(
                 run=run.name,
                 sensor=sensor,
                 hold_out=experiment.hold_out,

@@ -39,7 +39,7 @@ class PhaseLike(Protocol):
     def end(self) -> float: ...
 
 
-class MeasuredEntry(Protocol):
+class MeasuredEntryLike(Protocol):
     """A ``[[measured]]`` entry of a study."""
 
     @property
@@ -81,7 +81,7 @@ class StudyLike(Protocol):
     @property
     def sensors(self) -> Mapping[str, SensorLike]: ...
     @property
-    def measured(self) -> Sequence[MeasuredEntry]: ...
+    def measured(self) -> Sequence[MeasuredEntryLike]: ...
     @property
     def uncertainty(self) -> Mapping[str, float]: ...
     @property

@@ -69,7 +69,7 @@ def worth(studies: Mapping[Key, StudyData], settings: ReducedInputSettings = DEF
 
 
 @dataclass(frozen=True, eq=False)
-class Certificate:
+class ReducedInputCertificate:
     """What full runs say of those of the reduced model.
 
     Parameters
@@ -91,7 +91,7 @@ class Certificate:
         return [float(getattr(self, name.name)) for name in fields(self)]
 
     @classmethod
-    def of(cls, values: Any) -> Certificate:
+    def of(cls, values: Any) -> ReducedInputCertificate:
         """The certificate of such numbers."""
         worst, tolerance, *counts = (float(value) for value in values)
         return cls(worst, tolerance, *(round(count) for count in counts))
@@ -153,7 +153,7 @@ class Neighbours:
         """All runs made so far."""
         return self.runs.found
 
-    def solve(self) -> Certificate:
+    def solve(self) -> ReducedInputCertificate:
         """Find every run.
 
         Raises
@@ -190,13 +190,13 @@ class Neighbours:
         most = self.settings.most_modes
         return replace(ReducedFineness.of(self.settings.finer * self.tolerance), most_modes=most, most_sources=most)
 
-    def _filled(self, reduced: Mapping[Key, Computed], worst: float, cases: int) -> Certificate:
+    def _filled(self, reduced: Mapping[Key, Computed], worst: float, cases: int) -> ReducedInputCertificate:
         """Take the reduced runs; what no reduced model can follow is run in full."""
         taken = {key: reduced[key] for key in self.changed if key not in self.found and key in reduced}
         self.runs.take(taken)
         self.runs.fill()
         in_full = len(self.runs.changed) - len(taken)
-        return Certificate(worst, self.tolerance, cases, len(taken), in_full, self.corrections)
+        return ReducedInputCertificate(worst, self.tolerance, cases, len(taken), in_full, self.corrections)
 
     def _round(self, model: ReducedModel) -> ReducedModel:
         """Corrections: every input lowered once, at one drive after the other; what is wanted raised stays untaught."""

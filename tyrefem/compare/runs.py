@@ -38,7 +38,7 @@ TAUGHT, FULL, REDUCED = "taught", "full", "reduced"
 
 
 @dataclass(frozen=True, eq=False)
-class Drive:
+class PackedDrive:
     """A drive as it is, for any process: its changed runs share its mesh, operators and strain cycles.
 
     Parameters
@@ -48,7 +48,7 @@ class Drive:
     """
 
     packed: Bundle
-    first: Drive | None = None
+    first: PackedDrive | None = None
     cycles: str = ""
 
     @property
@@ -83,7 +83,7 @@ _TYRES: dict[str, RollingTyre] = {}
 class Work:
     """A drive with some of its study's numbers changed, by dotted names; none: as it is."""
 
-    drive: Drive
+    drive: PackedDrive
     changes: Mapping[str, Any] = field(default_factory=dict)
 
     @property
@@ -156,7 +156,7 @@ class Runs:
 
     def __enter__(self) -> Runs:
         self._folder = tempfile.TemporaryDirectory(prefix="tyrefem-")
-        self._drives: dict[str, Drive] = {}
+        self._drives: dict[str, PackedDrive] = {}
         return self
 
     def __exit__(self, *_: object) -> None:
@@ -232,12 +232,12 @@ class Runs:
             self._add((drive, None), computed, lesson)
             self._keep(FULL, (drive, None), arrays_of(computed))
             self.done(len(self.found))
-        first: Drive | None = None
+        first: PackedDrive | None = None
         for number, drive in enumerate(self.drives):
             path = Path(self._folder.name) / f"{number}.pickle"
             if cycles[drive] is not None:
                 path.write_bytes(pickle.dumps(cycles.pop(drive)))
-            self._drives[drive] = Drive(packed[drive], first, str(path) if path.exists() else "")
+            self._drives[drive] = PackedDrive(packed[drive], first, str(path) if path.exists() else "")
             first = first or self._drives[drive]
 
     def teach(self, keys: Sequence[Key]) -> None:

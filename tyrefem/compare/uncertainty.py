@@ -12,7 +12,7 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
-from tyrefem.compare.history import Array, History
+from tyrefem.compare.history import Array, SensorHistory
 
 
 def effective_number(errors: Array) -> float:
@@ -86,7 +86,7 @@ class Uncertainty:
         return math.hypot(self.numerical, self.input, self.data)
 
 
-def uncertainty(history: History, mask: NDArray[np.bool_]) -> Uncertainty:
+def uncertainty(history: SensorHistory, mask: NDArray[np.bool_]) -> Uncertainty:
     """The uncertainties of the mean deviation over the masked readings of a history."""
     return Uncertainty(
         n_effective=effective_number(history.error[mask]),
@@ -105,7 +105,9 @@ COLUMNS = (
 )  # fmt: skip
 
 
-def row(history: History, phase: str, mask: NDArray[np.bool_], k: float) -> tuple[dict[str, Any], dict[str, float]]:
+def row(
+    history: SensorHistory, phase: str, mask: NDArray[np.bool_], k: float
+) -> tuple[dict[str, Any], dict[str, float]]:
     """The row of one sensor, run and phase, and the change (K) of its mean with each uncertain input.
 
     The mean deviation is judged against k u_val. A deviation that changes sign within the phase has a small mean,

@@ -1,22 +1,22 @@
-"""Simulate what was measured and compare: the way from a study and a table to a `Comparison`."""
+"""Simulate what was measured and compare: the way from a study and a table to a `ComparisonData`."""
 
 from __future__ import annotations
 
 from collections.abc import Callable, Iterable, Mapping, Sequence
 from concurrent.futures import Executor
 from dataclasses import dataclass
-from typing import Any
+from typing import Any, TypedDict, Unpack
 
 import numpy as np
 
-from tyrefem.compare.comparison import Comparison, comparison_of
-from tyrefem.compare.experiment import Experiment, Table, experiments
+from tyrefem.compare.comparison import ComparisonData, comparison_of
+from tyrefem.compare.experiment import ColumnNames, Experiment, Table, experiments
 from tyrefem.compare.history import histories
 from tyrefem.compare.interface import ResultLike, StudyLike, computed_of
 from tyrefem.compare.reduced_inputs import (
     DEFAULT,
-    Certificate,
     Neighbours,
+    ReducedInputCertificate,
     ReducedInputSettings,
     followed,
     worth,
@@ -34,22 +34,27 @@ from tyrefem.variants.answer_store import AnswerStore
 NEEDS = Requirements("a comparison", measured=True)
 
 
+class ComparisonOptions(TypedDict, total=False):
+    """Keywords of `compare`."""
+
+    inputs: bool
+    ignore: Iterable[str]
+    rename: Mapping[str, str] | None
+    k: float
+    executor: Executor | None
+    progress: Callable[[int, int], None] | None
+    reduced: str
+    store: AnswerStore | None
+    begin: Callable[[str], None] | None
+    settings: ReducedInputSettings
+
+
 def compare(
     study: StudyLike,
     table: Table | None = None,
     result: ResultLike | None = None,
-    *,
-    inputs: bool = True,
-    ignore: Iterable[str] = (),
-    rename: Mapping[str, str] | None = None,
-    k: float = 2.0,
-    executor: Executor | None = None,
-    progress: Callable[[int, int], None] | None = None,
-    reduced: str = "auto",
-    store: AnswerStore | None = None,
-    begin: Callable[[str], None] | None = None,
-    settings: ReducedInputSettings = DEFAULT,
-) -> Comparison:
+    **options: Unpack[ComparisonOptions],
+) -> ComparisonData:
     """Deviations between a study and measured temperature histories, E = computed - measured.
 
     Parameters
@@ -76,20 +81,19 @@ def compare(
     ------
     InputError : a campaign; no measured runs; the table cannot be read, a column is no sensor, no measured time is
         within the simulated span.
+    TypeError : a keyword that is none of these.
 
     Source: ASME V&V 20-2009; equations and simplifications in docs/method/validation.md.
     """
+    columns, judged, work = _grouped(options)
     NEEDS.check(study, table)
-    if not 0.0 < k < 100.0:
-        raise InputError(f"the coverage factor k must be more than 0 and less than 100, not {k!r}")
-    if reduced not in ("auto", "never"):
-        raise InputError(f"reduced is 'auto' or 'never', not {reduced!r}")
-    planned = experiments(study, table, ignore=ignore, rename=rename)
+    judged.check()
+    work.check()
+    planned = experiments(study, table, ignore=columns.ignore, rename=columns.rename)
     if result is None and isinstance(study, StudyData):
         _check_times(study, planned)
-    keys = dict(study.uncertainty) if inputs else {}
-    how = _How(executor, progress, reduced, store, begin, settings)
-    solved, certificate, said = _solved(study, planned, result, keys, how)
+    keys = dict(study.uncertainty) if judged.inputs else {}
+    solved, certificate, of_model = _solved(study, planned, result, keys, work)
     found, curves, notes = [], {}, []
     for experiment in planned:
         computed, perturbed = solved[_drive(experiment)]
@@ -100,10 +104,10 @@ def compare(
         notes += _outside(experiment, first, last, outside)
     if not found:
         raise InputError("no measured time is within the simulated span: " + "; ".join(notes))
-    notes += [*said, *_left_out(planned), *_unstated(study, planned, inputs)]
+    notes += [*of_model, *_left_out(planned), *_unstated(study, planned, judged.inputs)]
     regions = {number.key: number.regions for number in getattr(study, "uncertain_numbers", ())}
     return comparison_of(
-        study.name, found, curves=curves, relative_sd=keys, regions=regions, notes=tuple(notes), k=k,
+        study.name, found, curves=curves, relative_sd=keys, regions=regions, notes=tuple(notes), k=judged.k,
         reduced=certificate,
     )  # fmt: skip
 
@@ -115,19 +119,45 @@ def _drive(experiment: Experiment) -> str:
 
 #: Drive and changed input; None: as the study has it.
 Key = tuple[str, str | None]
-Solved = tuple[dict[Key, ResultLike], Certificate | None, list[str]]
+Solved = tuple[dict[Key, ResultLike], ReducedInputCertificate | None, list[str]]
+
+
+def _grouped(options: Mapping[str, Any]) -> tuple[ColumnNames, _Judged, _Work]:
+    """The keywords of `compare` by what they are about."""
+    given = dict(options)
+    columns = ColumnNames(dict(given.pop("rename", None) or {}), tuple(given.pop("ignore", ())))
+    judged = {name: given.pop(name) for name in ("inputs", "k") if name in given}
+    return columns, _Judged(**judged), _Work(**given)
+
+
+@dataclass(frozen=True)
+class _Judged:
+    """What a deviation is judged against, see `compare`."""
+
+    inputs: bool = True
+    k: float = 2.0
+
+    def check(self) -> None:
+        """Raises InputError for a coverage factor that is none."""
+        if not 0.0 < self.k < 100.0:
+            raise InputError(f"the coverage factor k must be more than 0 and less than 100, not {self.k!r}")
 
 
 @dataclass(frozen=True, eq=False)
-class _How:
+class _Work:
     """How the simulations are made, see `compare`."""
 
-    executor: Executor | None
-    progress: Callable[[int, int], None] | None
-    reduced: str
-    store: AnswerStore | None
-    begin: Callable[[str], None] | None
-    settings: ReducedInputSettings
+    executor: Executor | None = None
+    progress: Callable[[int, int], None] | None = None
+    reduced: str = "auto"
+    store: AnswerStore | None = None
+    begin: Callable[[str], None] | None = None
+    settings: ReducedInputSettings = DEFAULT
+
+    def check(self) -> None:
+        """Raises InputError for a word that is no choice."""
+        if self.reduced not in ("auto", "never"):
+            raise InputError(f"reduced is 'auto' or 'never', not {self.reduced!r}")
 
     def done(self, total: int) -> Callable[[int], None]:
         """What is called with the number of simulations made."""
@@ -139,8 +169,8 @@ def _solved(
     planned: Sequence[Experiment],
     result: ResultLike | None,
     keys: Mapping[str, float],
-    how: _How,
-) -> tuple[dict[str, tuple[ResultLike, dict[str, ResultLike]]], Certificate | None, list[str]]:
+    work: _Work,
+) -> tuple[dict[str, tuple[ResultLike, dict[str, ResultLike]]], ReducedInputCertificate | None, list[str]]:
     """Drive -> its result, and its results with each uncertain input one sd higher; certificate; notes."""
     known: dict[str, ResultLike] = {}
     studies: dict[Key, StudyLike] = {}
@@ -158,20 +188,20 @@ def _solved(
     own = {key: one for key, one in studies.items() if isinstance(one, StudyData)}
     at_hand = {drive: one for drive, one in known.items() if isinstance(one, ResultData)}
     if len(own) == len(studies) and len(at_hand) == len(known):
-        found, certificate, notes = _by_runs(own, at_hand, keys, how)
+        found, certificate, notes = _by_runs(own, at_hand, keys, work)
     else:
-        found, certificate, notes = _one_by_one(studies, known, how)
+        found, certificate, notes = _one_by_one(studies, known, work)
     together = {
         drive: (one, {key: found[drive, key] for key in keys}) for (drive, name), one in found.items() if not name
     }
     return together, certificate, notes
 
 
-def _one_by_one(studies: Mapping[Key, StudyLike], known: Mapping[str, ResultLike], how: _How) -> Solved:
+def _one_by_one(studies: Mapping[Key, StudyLike], known: Mapping[str, ResultLike], work: _Work) -> Solved:
     """The runs of studies of any kind, every one in full."""
-    each: Any = how.executor.map if how.executor is not None else map
+    each: Any = work.executor.map if work.executor is not None else map
     results: dict[Key, ResultLike] = {(drive, None): result for drive, result in known.items()}
-    missing, done = [key for key in studies if key not in results], how.done(len(studies))
+    missing, done = [key for key in studies if key not in results], work.done(len(studies))
     for key, computed in zip(missing, each(_run, [studies[key] for key in missing]), strict=True):
         results[key] = computed
         done(len(results))
@@ -184,38 +214,38 @@ def _run(study: StudyLike) -> ResultLike:
 
 
 def _by_runs(
-    studies: Mapping[Key, StudyData], known: Mapping[str, ResultData], keys: Mapping[str, float], how: _How
+    studies: Mapping[Key, StudyData], known: Mapping[str, ResultData], keys: Mapping[str, float], work: _Work
 ) -> Solved:
     """The runs of studies, those with a changed input by a reduced model where it holds."""
-    model = how.reduced == "auto" and worth(followed(studies), how.settings)
-    if how.store is not None:
-        how.store.take_up(store_key(next(iter(studies.values()))))
-    with Runs(studies, keys, known, how.executor, how.store, how.done(len(studies))) as runs:
+    model = work.reduced == "auto" and worth(followed(studies), work.settings)
+    if work.store is not None:
+        work.store.take_up(store_key(next(iter(studies.values()))))
+    with Runs(studies, keys, known, work.executor, work.store, work.done(len(studies))) as runs:
         verdict = runs.noted if model else None
         refused = verdict is not None and verdict.dtype.kind == "U"
         certified = verdict is not None and not refused
-        complete = how.store is not None and runs.take_up_all(reduced=certified)
-        if how.begin is not None:
-            how.begin(runs.workload(model=model))
+        complete = work.store is not None and runs.take_up_all(reduced=certified)
+        if work.begin is not None:
+            work.begin(runs.workload(model=model))
         if complete:
-            certificate = Certificate.of(verdict) if certified else None
+            certificate = ReducedInputCertificate.of(verdict) if certified else None
             why = str(verdict) if refused else ""
-            return dict(runs.found), certificate, [*runs.cost, *_said(model, certificate, why)]
+            return dict(runs.found), certificate, [*runs.cost, *_of_model(model, certificate, why)]
         runs.begin()
         certificate, why = None, str(verdict) if refused else ""
         if model and not why:
             try:
-                certificate = Neighbours(runs, how.settings).solve()
+                certificate = Neighbours(runs, work.settings).solve()
                 runs.note(certificate.values)
             except (InputError, np.linalg.LinAlgError) as error:
                 # What is wrong with the study itself is said by its full run.
                 why = str(error)
                 runs.note(why)
         runs.fill()
-    return dict(runs.found), certificate, [*runs.cost, *_said(model, certificate, why)]
+    return dict(runs.found), certificate, [*runs.cost, *_of_model(model, certificate, why)]
 
 
-def _said(model: bool, certificate: Certificate | None, why: str) -> list[str]:
+def _of_model(model: bool, certificate: ReducedInputCertificate | None, why: str) -> list[str]:
     """What the notes say of the reduced model."""
     if certificate is not None:
         return [certificate.sentence]

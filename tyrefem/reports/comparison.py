@@ -25,7 +25,7 @@ if TYPE_CHECKING:
     from matplotlib.axes import Axes
     from matplotlib.figure import Figure
 
-    from tyrefem.compare.comparison import Comparison
+    from tyrefem.compare.comparison import ComparisonData
 
 COMPUTED, MEASURED, BEYOND = "#1f5a96", "#d1600a", "#a4161a"
 
@@ -38,7 +38,7 @@ MOST_POINTS = 400
 MOST_COLUMNS = 15
 
 
-def pictures(comparison: Comparison) -> dict[str, bytes]:
+def pictures(comparison: ComparisonData) -> dict[str, bytes]:
     """File name -> PNG: ``deviations.png``, then ``histories-<run>.png`` for each run."""
     drawn = {"deviations.png": _png(deviations(comparison))}
     for run in comparison.residuals["run"].unique():
@@ -50,7 +50,7 @@ def pictures(comparison: Comparison) -> dict[str, bytes]:
     return drawn
 
 
-def histories(comparison: Comparison, run: str) -> Figure:
+def histories(comparison: ComparisonData, run: str) -> Figure:
     """One panel per sensor: measured points, the computed line, and a band of k u_val of a reading around it."""
     from matplotlib.figure import Figure
 
@@ -96,7 +96,9 @@ def _phases(residuals: pd.DataFrame, divisor: float) -> list[Phase]:
     return [(str(name), float(start), float(end)) for (name, start), end in zip(starts.items(), ends, strict=True)]
 
 
-def _history(panel: Axes, part: pd.DataFrame, comparison: Comparison, run: str, sensor: str, divisor: float) -> None:
+def _history(
+    panel: Axes, part: pd.DataFrame, comparison: ComparisonData, run: str, sensor: str, divisor: float
+) -> None:
     times = part["time_s"].to_numpy() / divisor
     computed = part["computed_degC"].to_numpy()
     band = comparison.k * part["u_val_K"].to_numpy()
@@ -118,7 +120,7 @@ def _history(panel: Axes, part: pd.DataFrame, comparison: Comparison, run: str, 
     panel.grid(alpha=0.25, lw=0.5)
 
 
-def deviations(comparison: Comparison) -> Figure:
+def deviations(comparison: ComparisonData) -> Figure:
     """A map: sensors down, runs and their phases across; colour and upper number the mean, lower the rms.
 
     Phases are left out where a run has but one, or where they would make the map wider than a page.
@@ -168,7 +170,7 @@ def _cell(axes: Axes, column: int, row: int, cell: Any, *, dark: bool) -> None:
         axes.add_patch(Rectangle((column - 0.44, row - 0.44), 0.88, 0.88, fill=False, edgecolor="black", lw=1.4))
 
 
-def _rows(comparison: Comparison, run: str, sensor: str, phase: str) -> pd.DataFrame:
+def _rows(comparison: ComparisonData, run: str, sensor: str, phase: str) -> pd.DataFrame:
     table = comparison.table
     return table[(table["run"] == run) & (table["sensor"] == sensor) & (table["phase"] == phase)]
 
@@ -191,7 +193,7 @@ def _png(figure: Figure) -> bytes:
 FILES = ("comparison.csv", "residuals.csv", "comparison.json", "comparison.html", "histories-*.png", "deviations.png")
 
 
-def save(comparison: Comparison, folder: str | Path) -> Path:
+def save(comparison: ComparisonData, folder: str | Path) -> Path:
     """Write tables, pictures and a self-contained page into a folder; returns the page.
 
     ``comparison.csv``, ``residuals.csv``, ``comparison.json``, ``histories-<run>.png``, ``deviations.png``,
@@ -214,7 +216,7 @@ def save(comparison: Comparison, folder: str | Path) -> Path:
     return folder / "comparison.html"
 
 
-def page(comparison: Comparison, images: Mapping[str, bytes]) -> str:
+def page(comparison: ComparisonData, images: Mapping[str, bytes]) -> str:
     """The page's HTML; ``images`` maps file name -> PNG, as `tyrefem.reports.comparison.pictures` returns."""
     from jinja2 import Environment, FileSystemLoader, StrictUndefined
 
