@@ -18,7 +18,7 @@ ROOT = Path(__file__).resolve().parents[2]
 #: Modules on a walk at most.
 MOST_OF_SPEED, MOST_OF_A_THERMOCOUPLE = 9, 12
 #: Where ramps of the drive's motion are read: nobody else reads the drive's speed.
-READERS = {"inputs/drive.py", "inputs/motion.py", "diagnose/missing_heat.py"}
+READERS = {"inputs/drive.py", "inputs/motion.py"}
 MOTION = {"speed", "slip_speed", "slip_ratio", "slip_angle"}
 
 

@@ -179,7 +179,7 @@ def _estimated(
         mean[:, half:],
         spread[:, half:],
         tuple(trials[i].name for i in residuals.fitted),
-        np.array([max(max(phase.speed.start, phase.speed.end) for phase in drive.phases) for drive in drives]),
+        np.array([drive.top_speed for drive in drives]),
         solution.log_evidence - float(about.data @ about.data) / 2,
         str(study.section.region_at(s, depth)[0]),
         float(stations[worst]),

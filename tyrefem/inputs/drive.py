@@ -139,6 +139,11 @@ class Drive(DriveTable):
         """End of the drive, s."""
         return sum(phase.duration for phase in self.phases)
 
+    @property
+    def top_speed(self) -> float:
+        """Greatest speed over the road, m/s."""
+        return max(max(phase.speed.start, phase.speed.end) for phase in self.phases)
+
     def locate(self, time: float) -> tuple[int, float]:
         """Number of the phase at a time, and the fraction of it that has passed."""
         starts = self.starts
