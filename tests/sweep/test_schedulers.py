@@ -2,13 +2,12 @@
 
 from __future__ import annotations
 
-import os
-import signal
 from collections.abc import Iterator, Sequence
 from pathlib import Path
 from typing import Any
 
 import pytest
+from worker_tasks import added, always_dies, dies_the_first_time, squared
 
 from tyrefem import study
 from tyrefem.errors import InputError
@@ -20,26 +19,6 @@ from tyrefem.variants.plan import plan_of
 from tyrefem.variants.schedulers import Here, Local
 
 
-def squared(task: Any) -> dict[str, Any]:
-    return {"answers": {"x": float(task) ** 2}}
-
-
-def dies_the_first_time(task: tuple[int, str]) -> dict[str, Any]:
-    number, folder = task
-    if number == 3:
-        mark = Path(folder) / "died"
-        if not mark.exists():
-            mark.touch()
-            os.kill(os.getpid(), signal.SIGKILL)
-    return {"answers": {"x": float(number)}}
-
-
-def always_dies(task: int) -> dict[str, Any]:
-    if task == 2:
-        os.kill(os.getpid(), signal.SIGKILL)
-    return {"answers": {"x": float(task)}}
-
-
 def test_in_this_process() -> None:
     assert dict(Here().outcomes(squared, [1, 2])) == {0: {"answers": {"x": 1.0}}, 1: {"answers": {"x": 4.0}}}
 
@@ -47,10 +26,6 @@ def test_in_this_process() -> None:
 def test_local_processes_answer_everything() -> None:
     found = dict(Local(2).outcomes(squared, list(range(12))))
     assert {n: one["answers"]["x"] for n, one in found.items()} == {n: n**2 for n in range(12)}
-
-
-def added(task: int, common: list[float]) -> dict[str, Any]:
-    return {"answers": {"x": task + common[0], "process": os.getpid()}}
 
 
 def test_what_is_common_to_all_tasks_reaches_every_worker() -> None:
