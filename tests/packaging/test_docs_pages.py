@@ -1,7 +1,8 @@
-"""Every page of docs/ begins with purpose, command and picture; its links lead somewhere, its commands exist."""
+"""Every page of docs/ begins with purpose, command and picture; its links, commands and tables hold."""
 
 from __future__ import annotations
 
+import csv
 import re
 import shlex
 from itertools import groupby
@@ -124,3 +125,25 @@ def test_a_command_that_does_not_exist_is_refused(line: str) -> None:
 def test_every_picture_is_on_a_page() -> None:
     shown = {(page.parent / name).resolve() for page in TEXTS for _, name in PICTURE.findall(prose(page))}
     assert {file.relative_to(ROOT) for file in (ROOT / "docs").rglob("*.png") if file not in shown} == set()
+
+
+TABLES = sorted((ROOT / "docs").rglob("*.csv"))
+
+
+def rows(table: Path) -> list[list[str]]:
+    with table.open(encoding="utf-8", newline="") as lines:
+        return list(csv.reader(lines))
+
+
+@pytest.mark.parametrize("table", TABLES, ids=relative)
+def test_a_table_has_a_heading_and_full_rows(table: Path) -> None:
+    heading, *body = rows(table)
+    assert body, "rows follow the heading"
+    assert all(heading), "every column has a name"
+    assert len(set(heading)) == len(heading), "every column has its own name"
+    assert {len(row) for row in body} == {len(heading)}
+
+
+def test_every_table_is_linked_from_a_page() -> None:
+    linked = {(page.parent / target).resolve() for page in TEXTS for target in LINK.findall(prose(page))}
+    assert {relative(table) for table in TABLES if table not in linked} == set()
