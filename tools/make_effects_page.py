@@ -1,7 +1,6 @@
-"""Write docs/effects.md from the catalogue, and the picture of every effect's signature (run from the root).
+"""Write docs/effects.md, its table of bounds and the picture of every effect's signature (run from the root).
 
-`python tools/make_effects_page.py` writes both; with names of effects the page and only their pictures, with `--text`
-the page alone.
+`python tools/make_effects_page.py` writes all; with names of effects only their pictures, with `--text` none.
 """
 
 from __future__ import annotations
@@ -43,15 +42,14 @@ from = "diagnosis of run-1.csv"          # optional: where the value comes from
 sd = { warmer_by = "2 delta_degC" }      # optional: its standard deviation, for reports only
 ```
 
-Every quantity is (base + sum of addends) x product of factors, in any order of the file. Films take resistances in
-series last. An effect whose amplitudes are all 0 is left out: the run is the same to the bit. Refused, with the reason,
-are values beyond the bounds of physics and effects without meaning in a study (camber on a half section).
+Every quantity is (base + sum of addends) x product of factors, in any order; films take resistances in series last. An
+effect whose amplitudes are all 0 leaves the run the same to the bit. Values beyond the bounds of physics are refused,
+and so are effects without meaning in a study (camber on a half section).
 
-Below, each parameter has its bounds and *prior sd*: its standard deviation before any data, the effect's typical size.
-A *shape* says how an effect looks and does nothing while the amplitude is 0. An "estimate" is an engineer's judgement,
-not a measurement. Pictures show what the effect, at one prior sd, changes in the readings of `example-validation`
-(22x5.5 8PR, 2700 lbf, 83 psi, 20 mph for 600 s, then 600 s at rest), unless stated. Below its 0.5 K noise a
-thermocouple cannot see the effect.
+Each parameter has its bounds and *sd*: its standard deviation before any data, the effect's typical size. A *shape*
+does nothing while the amplitude is 0. An "estimate" is an engineer's judgement, not a measurement. Pictures show what
+one sd changes in the readings of `example-validation` (22x5.5 8PR, 2700 lbf, 83 psi, 20 mph for 600 s, then 600 s at
+rest), whose thermocouples have 0.5 K noise: below that they cannot see the effect.
 
 ## An effect of your own
 
@@ -78,19 +76,17 @@ class Lamp(Effect):
         return self.shine
 ```
 
-`Prior` takes unit, meaning, prior sd, lower and upper bound. The method is one of the ports of
-`tyrefem.effects.Effect`, whose docstrings give arguments and units:
+`Prior` takes unit, meaning, sd, lower and upper bound. The method is a port of `tyrefem.effects.Effect`, documented
+there:
 PORTS
 `tyrefem/effects/tyre.py` lists what a port may ask of its `tyre`. A choice (a sensor, a side) is a field with
-`Field(description=..., examples=[...])`.
-
-Set `of_drive: ClassVar[bool] = True` where films, surrounding temperatures and the rim depend on time through the
-drive alone: reduced models then evaluate the effect once per phase.
+`Field(description=..., examples=[...])`. `of_drive: ClassVar[bool] = True` says that films, surroundings and rim
+depend on time through the drive alone: reduced models then evaluate the effect once per phase.
 
 ## An effect with a state of its own
 
-Wear, water on the tread, a warm brake disc: an effect declares `states` with unit and scale, gives their rates per
-second in `state_rates`, and its ports read them with `tyre.state(self, name, t)`:
+Wear, water on the tread, a warm brake disc: `states` has their unit and scale, `state_rates` their rates per second;
+ports read them with `tyre.state(self, name, t)`:
 
 ```python
 from math import exp
@@ -126,12 +122,12 @@ class DryingTread(Effect):
         return 1 - exp(-max(water, 0.0) / 0.01)
 ```
 
-- A state is a number, or an array with one value per place: what `initial_states` returns says its shape (default 0).
-- States and temperatures are unknowns of the same equations. One error-controlled step of third order takes both: the
-  error of a state stays below the study's tolerance times `scale`, the change that matters as much as 1 K.
+- A state is a number, or an array with one value per place, as `initial_states` returns it (default 0).
+- One error-controlled step of third order takes states and temperatures together. The error of a state stays below the
+  study's tolerance times `scale`, the change that matters as much as 1 K.
 - `temperatures` gives `surface("road")`, `region("tread")`, `at(points)` and `reservoir("contained-air")` in degC.
-- `result.states` holds every state over time with its unit; `summary.json` has start, end, least and largest value.
-- A diagnosis simulates such an effect in full. Reduced and real-time models refuse it and say so.
+- `result.states` holds every state over time; `summary.json` its start, end, least and largest value.
+- A diagnosis simulates such an effect in full; reduced and real-time models refuse it.
 """
 
 
@@ -158,9 +154,8 @@ def _entry(effect: type[Effect]) -> str:
             f"{effect.sentence}\n",
             f"    {equation(effect)}\n",
             *(f"- `{name}`: {text}." for name, text in _parameters(effect).items()),
-            f"\nSource: {effect.source}.\n",
+            f"\nSource: {effect.source}." + (f" Drawn {where}." if where else "") + "\n",
             f"![Signature](pictures/effect-{effect.name}.png)\n",
-            *([f"Drawn {where}.\n"] if where else []),
         ]
     )
 

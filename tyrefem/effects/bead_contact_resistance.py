@@ -15,14 +15,14 @@ class BeadContactResistance(Effect):
     name: ClassVar[str] = "bead-contact-resistance"
     family: ClassVar[str] = "boundary"
     of_drive: ClassVar[bool] = True
-    sentence: ClassVar[str] = "Bead and rim do not touch perfectly: heat has to cross a thin gap."
+    sentence: ClassVar[str] = "Heat has to cross a thin gap between bead and rim."
     source: ClassVar[str] = (
-        "Clark & Dodge 1980, appendix I: the contact resistance is unknown and neglected; estimate: 1e-4 to "
-        "1e-3 m2 K/W for rubber pressed on metal, 0.04 for 1 mm of still air"
+        "Clark & Dodge 1980, appendix I: unknown and neglected; estimate: 1e-4 to 1e-3 m2 K/W for rubber pressed "
+        "on metal, 0.04 for 1 mm of still air"
     )
     signature: ClassVar[Signature] = Signature(
         changes={"sensors.bead": {"s": "5.6 in", "depth": "0.3 in"}, "drive.rim_temperature": "90 degC"},
-        words="with a thermocouple in the bead and the rim at 90 °C",
+        words="with a bead thermocouple and the rim at 90 °C",
         signs={"bead": -1},
     )
 

@@ -20,13 +20,10 @@ class BeltEdgeShear(Effect):
 
     name: ClassVar[str] = "belt-edge-shear"
     family: ClassVar[str] = "heat"
-    sentence: ClassVar[str] = (
-        "Plies or belt edges shear against each other under the shoulder, between tread and carcass."
-    )
+    sentence: ClassVar[str] = "Plies or belt edges shear against each other under the shoulder."
     source: ClassVar[str] = (
-        "estimate: W = pi G gamma^2 tan(delta) lost per revolution = 2e4 J/m3 with G = 2.3 MPa, tan(delta) = "
-        "0.1 and an interply shear strain gamma of 0.17, within the 0.1 to 0.2 of textbooks on belt edges; "
-        "extent 8 mm along and 2.5 mm across"
+        "estimate, as is the extent: pi G gamma^2 tan(delta) = 2e4 J/m3 per revolution with G = 2.3 MPa, "
+        "tan(delta) = 0.1 and an interply shear strain gamma of 0.17 (textbooks on belt edges: 0.1 to 0.2)"
     )
     signature: ClassVar[Signature] = Signature(signs={"shoulder-inner": 1, "shoulder-outer": 1})
 

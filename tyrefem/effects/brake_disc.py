@@ -14,16 +14,15 @@ from tyrefem.effects.tyre import StudyOfTyre, Tyre
 class BrakeDisc(Effect):
     """m c dT_d/dt = power - (G + UA) T_d;  rim: C dT_rim/dt -> C dT_rim/dt + G T_d, T_d above rim and air.
 
-    T_d is what braking warms the disc by, above rim and air. What they warm by themselves is neglected beside T_d, so
-    that the disc's losses depend on T_d alone, and nothing changes without braking.
+    T_d: what braking warms the disc by, above rim and air, whose own warming is neglected beside it.
     """
 
     name: ClassVar[str] = "brake-disc"
     family: ClassVar[str] = "boundary"
     sentence: ClassVar[str] = "The brake disc stores heat and warms the rim long after the wheel has stopped."
     source: ClassVar[str] = (
-        "Limpert, Brake Design and Safety, 2nd ed., 1999, chapter 3: a disc of one temperature, m c dT/dt = q - h A T; "
-        "estimate: 8 kg of cast iron with 0.2 m2 at 25 W/m2/K, half as much into the rim through hat and bolts"
+        "Limpert, Brake Design and Safety, 2nd ed., 1999, chapter 3: a disc of one temperature; estimate: 8 kg of "
+        "cast iron, 0.2 m2 at 25 W/m2/K, half as much into the rim"
     )
     free_rolling: ClassVar[bool] = False
     signature: ClassVar[Signature] = Signature(
@@ -31,7 +30,7 @@ class BrakeDisc(Effect):
             "sensors.bead": {"s": "5.6 in", "depth": "0.3 in"},
             "boundaries.rim": {"law": "lumped", "mass": "9 kg", "cooling": "2 W/K", "air": "0.5 W/K"},
         },
-        words="with a thermocouple in the bead and a lumped rim of 9 kg",
+        words="with a bead thermocouple and a lumped rim of 9 kg",
         signs={"rim": 1, "bead": 1},
     )
     states: ClassVar[Mapping[str, EffectState]] = {

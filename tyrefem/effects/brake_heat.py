@@ -16,14 +16,11 @@ class BrakeHeat(Effect):
     name: ClassVar[str] = "brake-heat"
     family: ClassVar[str] = "boundary"
     sentence: ClassVar[str] = "The brake warms the rim, and the rim the bead."
-    source: ClassVar[str] = (
-        "estimate: wheels of braked runs get 20 to 100 K hotter than ambient within some minutes, and stay so "
-        "for many more"
-    )
+    source: ClassVar[str] = "estimate: the wheels of braked runs get 20 to 100 K hotter than ambient within minutes"
     free_rolling: ClassVar[bool] = False
     signature: ClassVar[Signature] = Signature(
         changes={"sensors.bead": {"s": "5.6 in", "depth": "0.3 in"}},
-        words="with a thermocouple in the bead",
+        words="with a bead thermocouple",
         signs={"bead": 1},
     )
 

@@ -25,7 +25,7 @@ class BrakePower(Effect):
             "sensors.bead": {"s": "5.6 in", "depth": "0.3 in"},
             "boundaries.rim": {"law": "lumped", "mass": "9 kg", "cooling": "2 W/K", "air": "0.5 W/K"},
         },
-        words="with a thermocouple in the bead and a lumped rim of 9 kg",
+        words="with a bead thermocouple and a lumped rim of 9 kg",
         signs={"rim": 1, "bead": 1},
     )
 

@@ -20,13 +20,13 @@ class Camber(Effect):
     family: ClassVar[str] = "asymmetry"
     sentence: ClassVar[str] = "The wheel leans, so that one shoulder deflects more than the other."
     source: ClassVar[str] = (
-        "estimate: each side deflects by D + z_s tan(angle), and strain energy goes with the square of the "
-        "deflection; alignment is good to a degree or two"
+        "estimate: each side deflects by D + z_s tan(angle), strain energy goes with its square; alignment is good "
+        "to a degree or two"
     )
     free_rolling: ClassVar[bool] = False
     signature: ClassVar[Signature] = Signature(
         changes={"mesh.section": "full", "sensors.shoulder-left": {"s": "-2.00 in", "depth": "0.07 in"}},
-        words="on the full section, with a thermocouple in the other shoulder",
+        words="on the full section, with a thermocouple in both shoulders",
         signs={"shoulder-inner": 1, "sidewall-inner": 1, "shoulder-left": -1},
     )
 

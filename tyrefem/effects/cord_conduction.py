@@ -17,8 +17,8 @@ class CordConduction(Effect):
     family: ClassVar[str] = "conduction"
     sentence: ClassVar[str] = "Cords conduct better than rubber, so heat flows more easily along the plies."
     source: ClassVar[str] = (
-        "estimate: rubber 0.2 W/m/K; nylon and polyester cords 0.2 to 1 along the fibre (gain below 1), "
-        "aramid 3 to 4, steel about 50 (gain 5 to 30 at 2 to 10 % by volume)"
+        "estimate: rubber 0.2 W/m/K; along the fibre nylon and polyester 0.2 to 1 (gain below 1), aramid 3 to 4, "
+        "steel about 50 (gain 5 to 30 at 2 to 10 % by volume)"
     )
     signature: ClassVar[Signature] = Signature(signs={"crown-inner": -1, "shoulder-inner": -1})
 

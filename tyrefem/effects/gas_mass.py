@@ -15,10 +15,10 @@ class GasMass(Effect):
 
     name: ClassVar[str] = "gas-mass"
     family: ClassVar[str] = "boundary"
-    sentence: ClassVar[str] = "The contained air is denser than the 1 atm of the report, so it warms more slowly."
+    sentence: ClassVar[str] = "The contained air is denser than the report's 1 atm, so it warms more slowly."
     source: ClassVar[str] = (
-        "Clark & Dodge 1980, appendix I takes 0.0013 g/cm3 whatever the pressure; the ideal gas law at 83 psi "
-        "gauge gives 6.6 times as much"
+        "Clark & Dodge 1980, appendix I: 0.0013 g/cm3 at any pressure; an ideal gas at 83 psi gauge has 6.6 times "
+        "as much"
     )
     signature: ClassVar[Signature] = Signature(
         changes={"boundaries.contained_air": {"law": "report"}},

@@ -18,8 +18,8 @@ class GasMixing(Effect):
     of_drive: ClassVar[bool] = True
     sentence: ClassVar[str] = "Rolling stirs the contained air, which then takes up heat more quickly."
     source: ClassVar[str] = (
-        "Clark & Dodge 1980, appendix I: 4.18 W/m2/K at any speed; estimate: forced convection in a turning "
-        "cavity of this size reaches 10 to 30 W/m2/K at 10 m/s"
+        "Clark & Dodge 1980, appendix I: 4.18 W/m2/K at any speed; estimate: forced convection in a cavity of this "
+        "size reaches 10 to 30 W/m2/K at 10 m/s"
     )
     signature: ClassVar[Signature] = Signature(signs={"contained-air": 1, "crown-inner": -1})
 

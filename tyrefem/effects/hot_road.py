@@ -16,10 +16,7 @@ class HotRoad(Effect):
     family: ClassVar[str] = "boundary"
     of_drive: ClassVar[bool] = True
     sentence: ClassVar[str] = "The road is warmer than stated, as asphalt in the sun is."
-    source: ClassVar[str] = (
-        "estimate: summer asphalt is 20 to 30 K above the air (handbook range); Cattani et al. 2023 keep the road's "
-        "temperature as an input of its own"
-    )
+    source: ClassVar[str] = "estimate: summer asphalt is 20 to 30 K above the air (handbook range)"
     signature: ClassVar[Signature] = Signature(signs={"shoulder-outer": 1, "crown-middle": 1})
 
     warmer_by: Annotated[float, Prior("delta_degC", "road above its stated temperature", 10.0, -30.0, 60.0)] = 0.0

@@ -19,8 +19,8 @@ class LossTemperatureLaw(Effect):
     family: ClassVar[str] = "heat"
     sentence: ClassVar[str] = "tan delta falls with temperature faster (or slower) than the card says."
     source: ClassVar[str] = (
-        "Clark & Dodge 1980, table 3, note 5 gives a rate of 0.0148 1/K for all compounds; estimate: between "
-        "compounds the rate spreads by a third of that"
+        "Clark & Dodge 1980, table 3, note 5: 0.0148 1/K for all compounds; estimate: compounds differ by a third "
+        "of that"
     )
     signature: ClassVar[Signature] = Signature(signs={"crown-inner": -1, "shoulder-inner": -1})
 

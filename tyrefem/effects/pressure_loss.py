@@ -17,8 +17,8 @@ class PressureLoss(Effect):
     family: ClassVar[str] = "heat"
     sentence: ClassVar[str] = "The tyre loses air during the run, deflects more and more, and heats up."
     source: ClassVar[str] = (
-        "estimate: a slow leak loses up to 1 bar in an hour (28 Pa/s); strain energy of the carcass and "
-        "sidewall goes with the square of the deflection"
+        "estimate: a slow leak loses up to 1 bar in an hour (28 Pa/s); strain energy goes with the square of the "
+        "deflection"
     )
     signature: ClassVar[Signature] = Signature(signs={"crown-inner": 1, "sidewall-inner": 1})
 

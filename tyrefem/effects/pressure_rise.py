@@ -20,8 +20,8 @@ class PressureRise(Effect):
         "The contained air warms, its pressure rises and the tyre deflects less than the drive says."
     )
     source: ClassVar[str] = (
-        "estimate: at constant volume 45 K of warming raise the absolute pressure by 15 %; strain energy of "
-        "the carcass and sidewall goes with the square of the deflection"
+        "estimate: at constant volume 45 K of warming raise the absolute pressure by 15 %; strain energy goes with "
+        "the square of the deflection"
     )
     signature: ClassVar[Signature] = Signature(signs={"crown-inner": -1, "sidewall-inner": -1})
 

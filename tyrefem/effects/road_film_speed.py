@@ -18,8 +18,8 @@ class RoadFilmSpeed(Effect):
     of_drive: ClassVar[bool] = True
     sentence: ClassVar[str] = "The film between tread and road rises with speed, as each contact is shorter."
     source: ClassVar[str] = (
-        "Cattani et al. 2023, eq 12: H_c = sqrt(lambda C v / FL), an exponent of 0.5, where Clark & Dodge "
-        "1980 have one film for all speeds"
+        "Cattani et al. 2023, eq 12: H_c = sqrt(lambda C v / FL), an exponent of 0.5; Clark & Dodge 1980 have one "
+        "film for all speeds"
     )
     signature: ClassVar[Signature] = Signature(
         changes={

@@ -16,8 +16,7 @@ class SensorLag(OfSensor):
     family: ClassVar[str] = "measurement"
     sentence: ClassVar[str] = "One thermocouple follows the rubber more slowly than stated."
     source: ClassVar[str] = (
-        "estimate: 1 to 5 s for a bare junction in rubber, up to a minute for a sheathed one or one in a "
-        "drilled and badly filled hole"
+        "estimate: 1 to 5 s for a bare junction in rubber, up to a minute for a sheathed one or a badly filled hole"
     )
     signature: ClassVar[Signature] = Signature(choice={"sensor": "crown-inner"}, signs={"crown-inner": -1})
 

@@ -16,7 +16,7 @@ class SensorMisplaced(OfSensor):
     family: ClassVar[str] = "measurement"
     sentence: ClassVar[str] = "One thermocouple sits millimetres from its stated place."
     source: ClassVar[str] = (
-        "estimate: a drilled hole ends within 1 mm of its mark; a slipped or mistaken thermocouple is 3 to 5 mm off"
+        "estimate: a drilled hole ends within 1 mm of its mark; a slipped thermocouple is 3 to 5 mm off"
     )
     signature: ClassVar[Signature] = Signature(choice={"sensor": "crown-inner"}, signs={"crown-inner": -1})
 

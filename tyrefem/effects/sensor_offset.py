@@ -16,7 +16,7 @@ class SensorOffset(OfSensor):
     family: ClassVar[str] = "measurement"
     sentence: ClassVar[str] = "One thermocouple shows too much, or too little, at any temperature."
     source: ClassVar[str] = (
-        "estimate: class 1 type K is good to 1.5 K (IEC 60584-1); a bad cold junction or connector adds some kelvins"
+        "estimate: class 1 type K is good to 1.5 K (IEC 60584-1); a bad cold junction adds some kelvins"
     )
     signature: ClassVar[Signature] = Signature(choice={"sensor": "crown-inner"}, signs={"crown-inner": 1})
 

@@ -17,12 +17,11 @@ class StandingWave(Effect):
     name: ClassVar[str] = "standing-wave"
     family: ClassVar[str] = "heat"
     sentence: ClassVar[str] = (
-        "Above a critical speed a standing wave runs round the tyre behind the footprint and flexes it again and again."
+        "Above a critical speed a standing wave behind the footprint flexes the tyre again and again."
     )
     source: ClassVar[str] = (
-        "estimate: waves run round a membrane at sqrt(p r / (rho h)), 90 m/s for the 22x5.5 at 83 psi and 50 "
-        "to 60 m/s for a passenger tyre; onset over a tenth of the critical speed and a heat that trebles at "
-        "1.5 times the critical speed are judgements"
+        "estimate: waves run at sqrt(p r / (rho h)), 90 m/s in the 22x5.5 at 83 psi, 50 to 60 m/s in a passenger "
+        "tyre; onset over a tenth of the critical speed, three times the heat at 1.5 times that speed"
     )
     signature: ClassVar[Signature] = Signature(
         changes={"drive.phases.rolling.speed": "55 m/s"},

@@ -16,8 +16,8 @@ class Sun(Effect):
     family: ClassVar[str] = "boundary"
     sentence: ClassVar[str] = "The sun shines on the tyre."
     source: ClassVar[str] = (
-        "estimate: up to 1000 W/m2 at the ground, 0.93 absorbed by black rubber, and a turning tyre shows the "
-        "sun a sixth of its outer surface on average"
+        "estimate: up to 1000 W/m2 at the ground, 0.93 absorbed by black rubber, a sixth of the outer surface in "
+        "the sun"
     )
     signature: ClassVar[Signature] = Signature(signs={"sidewall-outer": 1, "shoulder-outer": 1})
 

@@ -21,7 +21,7 @@ class SwappedChannels(Effect):
     name: ClassVar[str] = "swapped-channels"
     family: ClassVar[str] = "measurement"
     sentence: ClassVar[str] = "Two thermocouples are plugged into each other's channels."
-    source: ClassVar[str] = "estimate: the commonest mistake at the patch panel of a rig with many thermocouples"
+    source: ClassVar[str] = "estimate: the commonest mistake at a patch panel with many thermocouples"
     signature: ClassVar[Signature] = Signature(
         choice={"sensor": "crown-inner", "other": "sidewall-inner"}, signs={"crown-inner": -1, "sidewall-inner": 1}
     )

@@ -16,12 +16,11 @@ class UnderInflationFlexing(Effect):
     name: ClassVar[str] = "under-inflation-flexing"
     family: ClassVar[str] = "heat"
     sentence: ClassVar[str] = (
-        "A tyre deflected beyond its rated deflection flexes more at shoulder and sidewall than the two arcs say."
+        "Beyond its rated deflection a tyre flexes more at shoulder and sidewall than the two arcs say."
     )
     source: ClassVar[str] = (
-        "Clark & Dodge 1980, summary: when the tyre is seriously under-inflated the theory predicts a lower "
-        "temperature rise than is observed. estimate: linear in the excess deflection, local to shoulder and "
-        "sidewall, about doubled heat at twice the rated deflection"
+        "Clark & Dodge 1980, summary: a seriously under-inflated tyre warms more than the theory says; estimate: "
+        "linear in the excess deflection, about twice the heat at twice the rated deflection"
     )
     signature: ClassVar[Signature] = Signature(
         changes={"drive.load": "4000 lbf"}, words="at 4000 lbf", signs={"shoulder-inner": 1, "sidewall-inner": 1}

@@ -16,12 +16,11 @@ class WetRoad(Effect):
     family: ClassVar[str] = "boundary"
     of_drive: ClassVar[bool] = True
     sentence: ClassVar[str] = (
-        "Water on the road improves the contact and wets the tread, which evaporation then cools between two contacts."
+        "Water improves the contact with the road and wets the tread, which evaporation then cools."
     )
     source: ClassVar[str] = (
-        "estimate: water fills the gaps of the road texture and about doubles H_c (film_gain 1); on the wet "
-        "tread evaporation adds 2.8 times the dry film, by the Lewis relation L/c_p dw/dT with 1.2e-3 1/K at "
-        "25 degC"
+        "estimate: water in the road texture about doubles H_c (film_gain 1); evaporation adds 2.8 times the dry "
+        "film, by the Lewis relation L/c_p dw/dT with 1.2e-3 1/K at 25 degC"
     )
     signature: ClassVar[Signature] = Signature(
         changes={"boundaries.road": {"law": "constant", "coefficient": "500 W/m**2/K"}},

@@ -19,8 +19,7 @@ class WornTread(Effect):
     family: ClassVar[str] = "section"
     sentence: ClassVar[str] = "The tread is thinner than the section says."
     source: ClassVar[str] = (
-        "estimate: tyres are tested anywhere between new and worn to the base of the grooves, about half of "
-        "the tread layer"
+        "estimate: tyres are tested new to worn to the base of the grooves, about half of the tread layer"
     )
     free_rolling: ClassVar[bool] = False
     signature: ClassVar[Signature] = Signature(

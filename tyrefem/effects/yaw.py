@@ -19,18 +19,15 @@ class Yaw(Effect):
 
     name: ClassVar[str] = "yaw"
     family: ClassVar[str] = "asymmetry"
-    sentence: ClassVar[str] = (
-        "The wheel runs at a slip angle: the tread scrubs sideways, most on the side that the side force loads."
-    )
+    sentence: ClassVar[str] = "The wheel runs at a slip angle: the tread scrubs sideways, most on the loaded side."
     source: ClassVar[str] = (
-        "Roberts, Temperature rise when rubber slides, eqs 2 and 5, as for tread-slip; estimate: friction "
-        "rises linearly from one shoulder to the other; a slip angle of 1 degree slides by 1.7 % of the speed "
-        "where it slides fully"
+        "Roberts, Temperature rise when rubber slides, eqs 2 and 5; estimate: friction rises linearly from "
+        "shoulder to shoulder; full sliding at a slip angle of 1 degree is 1.7 % of the speed"
     )
     free_rolling: ClassVar[bool] = False
     signature: ClassVar[Signature] = Signature(
         changes={"mesh.section": "full", "sensors.shoulder-left": {"s": "-2.00 in", "depth": "0.07 in"}},
-        words="on the full section, with a thermocouple in the other shoulder",
+        words="on the full section, with a thermocouple in both shoulders",
         choice={"side": "right"},
         signs={"shoulder-edge": 1},
     )
