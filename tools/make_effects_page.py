@@ -18,6 +18,7 @@ from tyrefem.effects.signature import STUDY
 from tyrefem.output import atomic_path
 
 PAGE = Path("docs/effects.md")
+BOUNDS = Path("docs/evidence/tables/effect-parameters.csv")
 PICTURES = Path("docs/pictures")
 DRAWING = {"mesh.size": "4 mm", "numerics.tolerance": "0.02 delta_degC", "output": {"every": "10 s", "fields": 2}}
 INTRODUCTION = """\
@@ -46,10 +47,10 @@ Every quantity is (base + sum of addends) x product of factors, in any order; fi
 effect whose amplitudes are all 0 leaves the run the same to the bit. Values beyond the bounds of physics are refused,
 and so are effects without meaning in a study (camber on a half section).
 
-Each parameter has its bounds and *sd*: its standard deviation before any data, the effect's typical size. A *shape*
-does nothing while the amplitude is 0. An "estimate" is an engineer's judgement, not a measurement. Pictures show what
-one sd changes in the readings of `example-validation` (22x5.5 8PR, 2700 lbf, 83 psi, 20 mph for 600 s, then 600 s at
-rest), whose thermocouples have 0.5 K noise: below that they cannot see the effect.
+Each parameter has an *sd*, its standard deviation before any data: the effect's typical size. Bounds are in a
+[table](evidence/tables/effect-parameters.csv). A *shape* does nothing while the amplitude is 0. An "estimate" is an
+engineer's judgement, not a measurement. Pictures show what one sd changes in the readings of `example-validation`
+(22x5.5 8PR, 2700 lbf, 83 psi, 20 mph for 600 s, then at rest). Below its 0.5 K noise a thermocouple sees nothing.
 
 ## An effect of your own
 
@@ -161,18 +162,29 @@ def _entry(effect: type[Effect]) -> str:
 
 
 def _parameters(effect: type[Effect]) -> dict[str, str]:
-    """Meaning, bounds and prior of every parameter, the choices after them."""
-    texts = {}
-    for parameter in effect.parameters():
-        prior = parameter.prior
-        low, _, unit = prior.text(prior.low).partition(" ")
-        high = prior.text(prior.high)
-        bounds = f"{low if high.endswith(unit) else prior.text(prior.low)} to {high}"
-        start = prior.null if prior.start is None else prior.start
-        kind = "" if prior.amplitude else f"shape, starts at {prior.text(start)}; "
-        texts[parameter.name] = f"{prior.meaning}; {kind}{bounds}, prior sd {prior.text(prior.scale)}"
+    """Meaning and prior of every parameter, the choices after them."""
+    texts = {
+        parameter.name: f"{parameter.prior.meaning}; {'' if parameter.prior.amplitude else 'shape, '}"
+        f"sd {parameter.prior.text(parameter.prior.scale)}"
+        for parameter in effect.parameters()
+    }
     choices = {row[0]: row for row in parameter_rows(effect) if row[0] not in texts}
     return texts | {name: "; ".join(filter(None, (row[1], row[3]))) for name, row in choices.items()}
+
+
+def bounds() -> str:
+    """The table of docs/evidence/tables/effect-parameters.csv: each number in the unit of its row."""
+    rows = ["effect,parameter,meaning,kind,unit,starts at,least,largest,prior sd"]
+    for effect in filter(_shown, catalogue().values()):
+        for parameter in effect.parameters():
+            prior = parameter.prior
+            start = prior.null if prior.start is None or prior.amplitude else prior.start
+            texts = [prior.text(value).partition(" ") for value in (start, prior.low, prior.high, prior.scale)]
+            kind = "amplitude" if prior.amplitude else "shape"
+            meaning = f'"{prior.meaning}"' if "," in prior.meaning else prior.meaning
+            row = [effect.name, parameter.name, meaning, kind, texts[-1][2] or "1", *(number for number, _, _ in texts)]
+            rows.append(",".join(row))
+    return "\n".join(rows) + "\n"
 
 
 def _study(effect: type[Effect]) -> tf.Study:
@@ -240,8 +252,10 @@ def main() -> None:
                 bases[changes] = _study(effect).run()
             draw(effect, bases[changes])
             print(effect.name, flush=True)
-    with atomic_path(PAGE) as temporary:
-        temporary.write_text(page(), encoding="utf-8")
+    BOUNDS.parent.mkdir(exist_ok=True)
+    for file, text in ((PAGE, page()), (BOUNDS, bounds())):
+        with atomic_path(file) as temporary:
+            temporary.write_text(text, encoding="utf-8")
 
 
 if __name__ == "__main__":

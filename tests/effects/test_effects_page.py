@@ -34,6 +34,7 @@ def tool() -> ModuleType:
 def test_the_page_is_up_to_date(tool: ModuleType) -> None:
     written = (ROOT / "docs/effects.md").read_text(encoding="utf-8")
     assert written == tool.page(), "run tools/make_effects_page.py"
+    assert (ROOT / tool.BOUNDS).read_text(encoding="utf-8") == tool.bounds(), "run tools/make_effects_page.py"
 
 
 def test_every_effect_has_a_picture_and_every_picture_an_effect(tool: ModuleType) -> None:
