@@ -6,14 +6,12 @@
 from __future__ import annotations
 
 import sys
-import textwrap
 from pathlib import Path
 from typing import Any
 
 import tyrefem as tf
 from tyrefem.effects import Effect, catalogue
 from tyrefem.effects.description import by_family, equation, parameter_rows
-from tyrefem.effects.effect import PORTS
 from tyrefem.effects.signature import STUDY
 from tyrefem.output import atomic_path
 
@@ -77,9 +75,7 @@ class Lamp(Effect):
         return self.shine
 ```
 
-`Prior` takes unit, meaning, sd, lower and upper bound. The method is a port of `tyrefem.effects.Effect`, documented
-there:
-PORTS
+`Prior` takes unit, meaning, sd, lower and upper bound. The method is one of the ports of `tyrefem.effects.Effect`;
 `tyrefem/effects/tyre.py` lists what a port may ask of its `tyre`. A choice (a sensor, a side) is a field with
 `Field(description=..., examples=[...])`. `of_drive: ClassVar[bool] = True` says that films, surroundings and rim
 depend on time through the drive alone: reduced models then evaluate the effect once per phase.
@@ -140,8 +136,7 @@ def _shown(effect: type[Effect]) -> bool:
 def page() -> str:
     """The text of docs/effects.md."""
     families = by_family({name: effect for name, effect in catalogue().items() if _shown(effect)})
-    names = textwrap.fill(", ".join(f"`{port.name}`" for port in PORTS) + ".", 119)
-    parts = [INTRODUCTION.replace("PORTS", names)]
+    parts = [INTRODUCTION]
     for family, members in families.items():
         parts += [f"## Family: {family}\n", *(_entry(effect) for effect in members)]
     return "\n".join(parts)
