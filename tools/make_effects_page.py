@@ -41,14 +41,13 @@ from = "diagnosis of run-1.csv"          # optional: where the value comes from
 sd = { warmer_by = "2 delta_degC" }      # optional: its standard deviation, for reports only
 ```
 
-Every quantity is (base + sum of addends) x product of factors, in any order; films take resistances in series last. An
-effect whose amplitudes are all 0 leaves the run the same to the bit. Values beyond the bounds of physics are refused,
-and so are effects without meaning in a study (camber on a half section).
+Every quantity is (base + sum of addends) x product of factors; films take resistances in series last. Effects whose
+amplitudes are all 0 change nothing. Values beyond the bounds are refused, and effects without meaning in a study.
 
 Each parameter has an *sd*, its standard deviation before any data: the effect's typical size. Bounds are in a
-[table](evidence/tables/effect-parameters.csv). A *shape* does nothing while the amplitude is 0. An "estimate" is an
-engineer's judgement, not a measurement. Pictures show what one sd changes in the readings of `example-validation`
-(22x5.5 8PR, 2700 lbf, 83 psi, 20 mph for 600 s, then at rest). Below its 0.5 K noise a thermocouple sees nothing.
+[table](evidence/tables/effect-parameters.csv). A *shape* does nothing while the amplitude is 0. An "estimate" is a
+judgement, not a measurement. Pictures show what one sd changes in the readings of `example-validation` (22x5.5 8PR,
+2700 lbf, 83 psi, 20 mph for 600 s, then at rest; noise of a thermocouple 0.5 K).
 
 ## An effect of your own
 
@@ -83,41 +82,8 @@ depend on time through the drive alone: reduced models then evaluate the effect 
 ## An effect with a state of its own
 
 Wear, water on the tread, a warm brake disc: `states` has their unit and scale, `state_rates` their rates per second;
-ports read them with `tyre.state(self, name, t)`:
-
-```python
-from math import exp
-from typing import Annotated, ClassVar
-
-from tyrefem.effects import Effect, EffectState, Prior
-
-
-class DryingTread(Effect):
-    \"\"\"L dw/dt = -2.8 h wet(w) (T_tread - T_air) off the road;  h of the tread -> h (1 + 2.8 wet(w)).\"\"\"
-
-    name: ClassVar[str] = "drying-tread"
-    family: ClassVar[str] = "boundary"
-    sentence: ClassVar[str] = "Water that a puddle left on the tread cools it until it is dry."
-    source: ClassVar[str] = "Lewis relation as of 'wet-road', L = 2.45e6 J/kg; estimate: wet above 10 um of water"
-    states: ClassVar = {"water": EffectState("kg/m**2", "water on the tread", scale=1e-3)}
-
-    puddle: Annotated[float, Prior("kg/m**2", "water at the start", 0.05, 0.0, 1.0)] = 0.0
-
-    def initial_states(self, tyre):
-        return {"water": self.puddle}
-
-    def state_rates(self, tyre, t, state, temperatures):
-        film = tyre.study.card.boundaries.outside_air.film(tyre.speed(t)) * (1 - tyre.road_fraction(t))
-        warmer = temperatures.surface("road") - tyre.ambient(t)
-        return {"water": -2.8 * film * self.wet(state["water"]) * warmer / 2.45e6}
-
-    def film_factor(self, tyre, film, t):
-        return 1 + 2.8 * self.wet(tyre.state(self, "water", t)) if film == "tread_air" else 1.0
-
-    @staticmethod
-    def wet(water):
-        return 1 - exp(-max(water, 0.0) / 0.01)
-```
+ports read them with `tyre.state(self, name, t)`. Copy `tyrefem/effects/brake_disc.py` or
+`tests/effects/drying_tread.py`.
 
 - A state is a number, or an array with one value per place, as `initial_states` returns it (default 0).
 - One error-controlled step of third order takes states and temperatures together. The error of a state stays below the

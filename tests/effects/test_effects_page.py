@@ -54,8 +54,10 @@ def test_the_example_of_the_page_can_be_put_into_a_study(name: str) -> None:
 
 @pytest.fixture
 def own(tmp_path: Path, tool: ModuleType, monkeypatch: pytest.MonkeyPatch) -> None:
-    """The page's own effects in a user's folder."""
+    """The page's own effect, and the one with a state that it names, in a user's folder."""
+    (named,) = re.findall(r"`(tests/effects/\w+\.py)`", tool.page())
     codes = re.findall(r"```python\n(.*?)```", tool.page(), re.DOTALL)
+    codes.append((ROOT / named).read_text(encoding="utf-8"))
     for number, code in enumerate(codes):
         (tmp_path / f"own_{number}.py").write_text(code, encoding="utf-8")
     monkeypatch.setenv("TYREFEM_EFFECTS", str(tmp_path))
@@ -66,7 +68,7 @@ def test_the_page_s_own_effects_load(own: None) -> None:
     assert catalogue()["drying-tread"].ports() == ("film_factor",)
 
 
-def test_the_page_s_drying_tread_dries_and_cools(own: None) -> None:
+def test_the_drying_tread_that_the_page_names_dries_and_cools(own: None) -> None:
     """Heat that evaporates the water is what the tread loses more than without the wet film."""
     coarse = {"mesh.size": "8 mm", "mesh.element": "P1", "drive.initial": "80 degC", "drive.ambient": "20 degC"}
     study = tf.study("example-validation").replace(coarse)

@@ -22,8 +22,8 @@ class BeltEdgeShear(Effect):
     family: ClassVar[str] = "heat"
     sentence: ClassVar[str] = "Plies or belt edges shear against each other under the shoulder."
     source: ClassVar[str] = (
-        "estimate, as is the extent: pi G gamma^2 tan(delta) = 2e4 J/m3 per revolution with G = 2.3 MPa, "
-        "tan(delta) = 0.1 and an interply shear strain gamma of 0.17 (textbooks on belt edges: 0.1 to 0.2)"
+        "estimate, as is the extent: 2e4 J/m3 per revolution = pi G gamma^2 tan(delta) with G = 2.3 MPa, "
+        "tan(delta) = 0.1, interply shear strain gamma = 0.17 (textbooks: 0.1 to 0.2)"
     )
     signature: ClassVar[Signature] = Signature(signs={"shoulder-inner": 1, "shoulder-outer": 1})
 

@@ -17,7 +17,7 @@ class BrakePower(Effect):
     of_drive: ClassVar[bool] = True
     sentence: ClassVar[str] = "The brake puts heat into the rim while the wheel turns."
     source: ClassVar[str] = (
-        "estimate: a dragging brake of 0.1 % of 12 kN at 9 m/s makes 100 W; steady braking at 0.03 g some kW"
+        "estimate: a dragging brake of 0.1 % of 12 kN at 9 m/s makes 100 W; braking at 0.03 g some kW"
     )
     free_rolling: ClassVar[bool] = False
     signature: ClassVar[Signature] = Signature(

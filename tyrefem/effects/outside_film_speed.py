@@ -19,7 +19,7 @@ class OutsideFilmSpeed(Effect):
     sentence: ClassVar[str] = "The outside film follows another power of speed than the study says."
     source: ClassVar[str] = (
         "Clark & Dodge 1980, appendix I: 5.44 + 1.674 v; estimate: turbulent flow over a plate goes with v^0.8, a "
-        "wheel in a well less: exponent -0.2 beside the linear law, 0.8 beside a constant film"
+        "wheel in a well less: -0.2 beside the linear law, 0.8 beside a constant film"
     )
     signature: ClassVar[Signature] = Signature(
         changes={"drive.phases.rolling.speed": "30 m/s"}, words="at 30 m/s", signs={"sidewall-outer": -1}

@@ -18,8 +18,8 @@ class RadiationToAmbient(Effect):
     family: ClassVar[str] = "boundary"
     sentence: ClassVar[str] = "The outer surface radiates to the surroundings beside what the film takes."
     source: ClassVar[str] = (
-        "Allouis et al. 2016: emissivity 0.95 of tread and liner. The surroundings have ambient temperature. Clark "
-        "& Dodge 1980 do not say whether their films include radiation"
+        "Allouis et al. 2016: emissivity 0.95 of tread and liner. Clark & Dodge 1980 do not say whether their "
+        "films include radiation"
     )
     signature: ClassVar[Signature] = Signature(signs={"sidewall-outer": -1, "shoulder-outer": -1})
 

@@ -21,7 +21,7 @@ class StandingWave(Effect):
     )
     source: ClassVar[str] = (
         "estimate: waves run at sqrt(p r / (rho h)), 90 m/s in the 22x5.5 at 83 psi, 50 to 60 m/s in a passenger "
-        "tyre; onset over a tenth of the critical speed, three times the heat at 1.5 times that speed"
+        "tyre; three times the heat at 1.5 times the critical speed"
     )
     signature: ClassVar[Signature] = Signature(
         changes={"drive.phases.rolling.speed": "55 m/s"},

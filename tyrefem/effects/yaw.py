@@ -21,8 +21,8 @@ class Yaw(Effect):
     family: ClassVar[str] = "asymmetry"
     sentence: ClassVar[str] = "The wheel runs at a slip angle: the tread scrubs sideways, most on the loaded side."
     source: ClassVar[str] = (
-        "Roberts, Temperature rise when rubber slides, eqs 2 and 5; estimate: friction rises linearly from "
-        "shoulder to shoulder; full sliding at a slip angle of 1 degree is 1.7 % of the speed"
+        "Roberts as for tread-slip; estimate: friction rises linearly from shoulder to shoulder; full sliding at 1 "
+        "degree is 1.7 % of the speed"
     )
     free_rolling: ClassVar[bool] = False
     signature: ClassVar[Signature] = Signature(
