@@ -91,7 +91,7 @@ def test_one_cycle_loses_what_the_footprints_own_account_of_the_reports_conventi
 def schedule(cycle: FiniteElements | None = None) -> CycleSchedule:
     """The drive with the strain cycle that was solved already."""
     found = pressed() if cycle is None else cycle
-    return CycleSchedule(study(None).card.drive, ((0.0,),), ((found.settled,),), ((found,),))
+    return CycleSchedule(study(None).card.drive, ((0.0,),), ((found.solved_case,),), ((found,),))
 
 
 def test_a_report_style_law_of_one_cycle_takes_the_revolutions_frequency() -> None:

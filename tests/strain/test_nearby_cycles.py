@@ -61,7 +61,7 @@ def test_only_what_moves_the_strain_cycle_is_solved_for() -> None:
 @pytest.mark.parametrize("law", ["fem", "barrel"])
 def test_a_number_at_its_deviation_is_exact(law: str) -> None:
     other = moved(law, tread=1.2)
-    found, full = near(law).of(other), cycle_schedule(other)
+    found, full = near(law).schedule_of(other), cycle_schedule(other)
     assert found is not None
     assert parts(found) == pytest.approx(parts(full), rel=1e-9)
     one, exact = found.cases[0][0], full.cases[0][0]
@@ -73,32 +73,32 @@ def test_a_number_at_its_deviation_is_exact(law: str) -> None:
 def test_several_numbers_at_once_are_close() -> None:
     """All one standard deviation off, two of them down: what is left is of second order."""
     factors = {"tread": 1 / 1.2, "plies": 1.2, "load": 0.95}
-    found, full = (parts(one) for one in (near().of(moved(**factors)), cycle_schedule(moved(**factors))))
+    found, full = (parts(one) for one in (near().schedule_of(moved(**factors)), cycle_schedule(moved(**factors))))
     before = parts(near().schedule)
     change = np.array([math.log(full[one] / before[one]) for one in before])
     off = np.array([math.log(found[one] / full[one]) for one in before])
     assert np.abs(change).max() > 0.08
     assert np.abs(off).max() < 0.25 * np.abs(change).max()
-    deflection = near().of(moved(**factors)).cases[0][0].deflection
+    deflection = near().schedule_of(moved(**factors)).cases[0][0].deflection
     assert deflection == pytest.approx(cycle_schedule(moved(**factors)).cases[0][0].deflection, rel=0.01)
 
 
 def test_the_load_is_the_drives_to_the_digit() -> None:
-    found = near().of(moved(load=0.97))
+    found = near().schedule_of(moved(load=0.97))
     assert found.cases[0][0].load == cycle_schedule(moved("arcs", load=0.97)).cases[0][0].load
 
 
 def test_another_tyre_is_not_near() -> None:
-    assert near().of(study().replace({"materials.bead.youngs_modulus.value": "10e6 psi"})) is None
-    assert near().of(study().replace({"mesh.size": "12 mm"})) is None
-    assert near().of(study().replace({"mechanics.loss_convention": "sinusoid"})) is None
+    assert near().schedule_of(study().replace({"materials.bead.youngs_modulus.value": "10e6 psi"})) is None
+    assert near().schedule_of(study().replace({"mesh.size": "12 mm"})) is None
+    assert near().schedule_of(study().replace({"mechanics.loss_convention": "sinusoid"})) is None
     other = study().replace({"materials.tread.conductivity.value": "0.3 W/m/K"})
-    assert near().of(other).cases[0][0] == near().schedule.cases[0][0]
+    assert near().schedule_of(other).cases[0][0] == near().schedule.cases[0][0]
 
 
 def test_tyres_like_a_tyre_take_its_nearby_cycles(monkeypatch: pytest.MonkeyPatch) -> None:
     base = RollingTyre(study(), near=near())
-    _ = near().of(moved(tread=1.1, plies=0.9, load=1.02))
+    _ = near().schedule_of(moved(tread=1.1, plies=0.9, load=1.02))
 
     def refuse(*_: Any) -> Any:
         raise AssertionError("a strain cycle was solved again")
@@ -107,18 +107,18 @@ def test_tyres_like_a_tyre_take_its_nearby_cycles(monkeypatch: pytest.MonkeyPatc
     first = RollingTyre(moved(tread=1.3, plies=0.8), base)
     second = RollingTyre(moved(tread=0.7, load=1.05), first)
     assert parts(first.schedule) != pytest.approx(parts(base.schedule), rel=0.01)
-    assert parts(second.schedule) == pytest.approx(parts(near().of(second.study)))
+    assert parts(second.schedule) == pytest.approx(parts(near().schedule_of(second.study)))
 
 
 def test_other_processes_read_what_was_solved(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
     first = NearbyCycles(study(), SolvedCycles(tmp_path))
-    told = first.of(moved(tread=1.1))
+    told = first.schedule_of(moved(tread=1.1))
     assert len(list(tmp_path.glob("*.npz"))) == 1
     second = NearbyCycles(study(), SolvedCycles(tmp_path))
     _ = second.schedule
     monkeypatch.setattr(
         "tyrefem.mechanics.footprint.contact.Pressing.solve", lambda *_, **__: pytest.fail("solved again")
     )
-    again = second.of(moved(tread=1.1))
+    again = second.schedule_of(moved(tread=1.1))
     assert parts(again) == parts(told)
     assert again.cases == told.cases

@@ -1,4 +1,4 @@
-"""The strain cycle of a rolling tyre: by arcs, by finite elements, given; inflation and footprint.
+"""The strain cycle of a rolling tyre: by arcs, by finite elements, or given; inflation and footprint.
 
-Knows nothing of heat conduction and results.
+This package does not import heat conduction or results.
 """

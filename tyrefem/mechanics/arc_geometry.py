@@ -41,7 +41,7 @@ class DeflectedArcs:
 
 
 def through(shoulder: tuple[float, float], bead: tuple[float, float], radius: float) -> DeflectedArcs:
-    """The arc of a radius from shoulder to bead, bulging outwards; points are (axial x, radius y)."""
+    """The arc of a given radius from shoulder to bead that bulges outwards; points are (axial x, radius y)."""
     (xs, ys), (xb, yb) = shoulder, bead
     half = math.hypot(xs - xb, ys - yb) / 2
     height = math.sqrt(max(radius * radius - half * half, 0.0))
@@ -65,7 +65,7 @@ def deflected_sidewall(line: Any, deflection: float, membrane_compliance: float,
 
     Raises
     ------
-    InputError : no such arc: the sidewall cannot reach (the deflection is impossible for this section).
+    InputError : no such arc exists: the deflection is impossible for this section.
     """
     (_, yc), bead = line.shoulder, line.bead
     length = line.length - line.shoulder_s
@@ -78,7 +78,7 @@ def deflected_sidewall(line: Any, deflection: float, membrane_compliance: float,
     def gap(radius: float) -> float:
         return 2 * radius * math.sin(stretched(radius) / (2 * radius)) - chord
 
-    # From R_1 downwards the arc closes up; the first sign change is the wanted root.
+    # From R_1 downwards the arc gets shorter; the first sign change is the root.
     radii = np.linspace(line.sidewall_radius, 0.25 * line.sidewall_radius, 400)
     lengths = length * (1 + pressure * (radii - line.sidewall_radius) * membrane_compliance)
     possible = (lengths > 0) & (lengths < 2 * math.pi * radii)
@@ -100,7 +100,7 @@ def deflected_sidewall(line: Any, deflection: float, membrane_compliance: float,
 def sidewall_arc(
     shoulder: tuple[float, float], bead: tuple[float, float], radius: float, length: float
 ) -> DeflectedArcs:
-    """The arc of a radius and length (m) from shoulder to bead: of the two possible, the one of that length."""
+    """The arc of given radius and length (m) from shoulder to bead; the length selects one of two arcs."""
     return (through if length / radius < math.pi else _major)(shoulder, bead, radius)
 
 
@@ -115,7 +115,7 @@ def _major(shoulder: tuple[float, float], bead: tuple[float, float], radius: flo
 def _root(gap: Callable[[float], float], lower: float, upper: float) -> float:
     """Root of a function that is negative at ``lower`` and positive at ``upper``, to rounding (the Illinois method).
 
-    Written out because scipy.optimize takes a tenth of a short run to import.
+    Written here because the import of scipy.optimize takes a tenth of a short run.
 
     >>> _root(lambda x: x**2 - 2.0, 0.0, 2.0) == 2.0**0.5
     True
@@ -132,7 +132,7 @@ def _root(gap: Callable[[float], float], lower: float, upper: float) -> float:
         value, before = gap(x), x
         if value == 0:
             return x
-        # An end that stays twice counts half, so that it moves too.
+        # The value at an end that does not change for two steps is halved, so that this end changes too.
         if value < 0:
             lower, below = x, value
             above, side = (above / 2 if side < 0 else above), -1

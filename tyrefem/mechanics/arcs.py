@@ -1,7 +1,8 @@
 """Strain-energy density of the NASA report: two arcs, barrel deformation (Clark & Dodge 1980, eqs 2-19).
 
-A material point goes once per revolution from the inflated section to the section under the footprint's centre, as if
-the whole tyre were pressed in a barrel ("axisymmetric"); the energy of that change is what the loss works on.
+Once per revolution a material point goes from the inflated section to the section under the footprint's centre. The
+whole tyre is taken as pressed in a barrel ("axisymmetric"). The hysteresis loss is a share of the energy of that
+change.
 """
 
 from __future__ import annotations
@@ -31,7 +32,7 @@ CONTACT_PRESSURE = 1.5
 
 
 def report_zones(shoulder: float) -> tuple[Zone, ...]:
-    """Regions I to V of the report, the shoulder at a distance from the crown, m."""
+    """Regions I to V of the report; ``shoulder`` is the shoulder's distance from the crown, m."""
     return (
         Zone("I", "carcass", "carcass under the tread", 0.0, shoulder),
         Zone("II", "tread", "tread rubber"),
@@ -43,7 +44,7 @@ def report_zones(shoulder: float) -> tuple[Zone, ...]:
 
 @dataclass(frozen=True)
 class ArcStiffness:
-    """What the strain energy needs of the materials. SI."""
+    """Stiffness values of the materials from which the strain energy is computed. SI."""
 
     carcass: BiasPlies
     ply_shear_modulus: float
@@ -57,7 +58,7 @@ class ArcStiffness:
 class Strains:
     """Strain cycle at points: hoop and meridional strain, meridional stress change (Pa), membrane shear force (N/m).
 
-    ``radius`` is that of the midline at the points, m, where the plies' stiffness is taken.
+    ``radius`` is the midline's radius at the points, m, where the plies' stiffness is evaluated.
     """
 
     radius: Array
@@ -70,8 +71,8 @@ class Strains:
 
 @dataclass(frozen=True)
 class Places:
-    """Where points (2, n) are, whatever the load: s, distance y from the carcass midline, thickness of the carcass,
-    radius of the meridian, and, of the sidewall, fraction of its arc and distance from the meridian."""
+    """Positions of points (2, n), independent of the load: s, distance y from the carcass midline, carcass thickness
+    and radius of the meridian; for the sidewall also the fraction of its arc and the distance from the meridian."""
 
     points: Array
     s: Array
@@ -92,14 +93,14 @@ class PliesAt:
     poisson: Array
 
 
-#: Places of points, by section, part of it and points; plies, by their material and radii. All load cases and all
-#: variants on one section and mesh share them: a section of two arcs has four zones with nodes.
+#: Positions of points are kept by section, part of it and points; plies by material and radii. All load cases and
+#: variants on the same section and mesh share them: a two-arc section has four zones with nodes.
 _PLACES: Cache[Places] = Cache(size=32)
 _PLIES: Cache[PliesAt] = Cache(size=32)
 
 
 def plies_at(plies: BiasPlies, radius: Array) -> PliesAt:
-    """The plies at radii (n,), m; remembered for the 32 latest."""
+    """The plies at radii (n,), m. The 32 latest are kept."""
 
     def compute() -> PliesAt:
         return PliesAt(radius, plies.circumferential(radius), plies.meridional(radius), plies.poisson(radius))
@@ -108,7 +109,7 @@ def plies_at(plies: BiasPlies, radius: Array) -> PliesAt:
 
 
 def places(section: Section, at_crown: bool, points: Array) -> Places:
-    """The places of points (2, n) of the crown or the sidewall; remembered for the 32 latest."""
+    """The positions of points (2, n) of the crown or the sidewall. The 32 latest are kept."""
     return _PLACES.get((section, at_crown, Content.of(points)), lambda: _places(section, at_crown, points))
 
 
@@ -121,7 +122,7 @@ def _places(section: Section, at_crown: bool, points: Array) -> Places:
     fraction, offset = s, s
     if not at_crown:
         fraction = (s - line.shoulder_s) / (line.length - line.shoulder_s)
-        # A half section's points, or the mirrored half's: either way the side with z >= 0.
+        # A point of the mirrored half (z < 0) has the same values as its mirror image.
         offset = np.sum((np.abs(points.T) - line.position(s)) * line.normal(s), axis=1)
     thickness = np.asarray(section.thickness("carcass", s))
     return Places(points, s, y, thickness, line.position(s)[:, 0], fraction, offset)
@@ -129,9 +130,9 @@ def _places(section: Section, at_crown: bool, points: Array) -> Places:
 
 @functools.lru_cache(maxsize=32)
 def sidewall_compliance(section: Section, plies: BiasPlies) -> tuple[float, Array, Array]:
-    """Mean of 1/(h_c E_phi) over the sidewall, m/N; s and the integral of cot^2 from the crown to it, m.
+    """Mean of 1/(h_c E_phi) over the sidewall, m/N; positions s and the integral of cot^2 from the crown to s, m.
 
-    The same for all load cases; remembered for the 32 latest.
+    It is the same for all load cases. The 32 latest are kept.
     """
     line: Any = section.line
     side = np.linspace(line.shoulder_s, line.length, 101)
@@ -145,7 +146,7 @@ def sidewall_compliance(section: Section, plies: BiasPlies) -> tuple[float, Arra
 
 @functools.lru_cache(maxsize=32)
 def bead_area(section: Section) -> float:
-    """Area of the region of one bead, m2; remembered for the 32 latest sections."""
+    """Area of the region of one bead, m2. The values of the 32 latest sections are kept."""
     return float(section.area("bead")) / (1 if section.half else 2)
 
 
@@ -153,8 +154,8 @@ def bead_area(section: Section) -> float:
 class Arcs:
     """The strain cycle of one load case on one section (SI units).
 
-    Below the deflection that flattens the whole crown, where the report's arcs do not apply, strains are those at that
-    deflection times D over it (linear elasticity; an estimate), so that U falls to zero with the square of the load.
+    The report's arcs do not apply below the deflection that flattens the whole crown. There the strains at that
+    deflection are scaled with D (linear elasticity; an estimate). U then falls to zero with the square of the load.
     """
 
     section: Any
@@ -203,7 +204,7 @@ class Arcs:
     def deflected(self) -> DeflectedArcs:
         """The sidewall arc under the footprint's centre."""
         line = self.section.line
-        return deflected_sidewall(line, self._deflection, self._of_plies[0], self.case.pressure)
+        return deflected_sidewall(line, self._deflection, self._sidewall_compliance[0], self.case.pressure)
 
     # -- membrane forces ---------------------------------------------------------------------------------------
 
@@ -221,13 +222,13 @@ class Arcs:
         )
 
     @property
-    def _of_plies(self) -> tuple[float, Array, Array]:
+    def _sidewall_compliance(self) -> tuple[float, Array, Array]:
         return sidewall_compliance(self.section, self.stiffness.carcass)
 
     def _shear_force(self, s: Array, membrane_change: Array) -> Array:
         """N = (0.858/w) (N_phi,A - N_phi,B) int cot^2(alpha) ds from the crown (D5)."""
         return np.asarray(
-            STEEPEST_SLOPE / self.section.rating.width * -membrane_change * np.interp(s, *self._of_plies[1:])
+            STEEPEST_SLOPE / self.section.rating.width * -membrane_change * np.interp(s, *self._sidewall_compliance[1:])
         )
 
     # -- strains -----------------------------------------------------------------------------------------------

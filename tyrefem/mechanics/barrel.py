@@ -28,10 +28,10 @@ Array = NDArray[np.float64]
 class Barrel:
     """Strain cycle of one load case: U = J/2 (E : C' : E), J/m3, as the report's arcs count it.
 
-    E is Green's strain from the inflated section to that in the cylinder of radius R - D, D the load case's deflection
-    and R the inflated radius; C' the part of the inflated tangent that dissipates (the rubber; cords only where their
-    card gives them a loss); J the inflated volume of a unit of the undeformed one. The loss convention applies to this
-    U as to the arcs'. A drum is not bent in: the cylinder is the same.
+    E is Green's strain from the inflated section to the section in the cylinder of radius R - D. D is the load case's
+    deflection, R the inflated radius. C' is the dissipating part of the inflated tangent: the rubber, and cords whose
+    card gives a loss. J is the inflated volume per undeformed volume. The loss convention applies to U as for the arcs.
+    A drum does not change the cylinder.
 
     Parameters
     ----------
@@ -61,7 +61,7 @@ class Barrel:
 
     @functools.cached_property
     def energies(self) -> PointEnergies:
-        """The energies alone, without the tyre that they are of."""
+        """The energies without the tyre."""
         return PointEnergies(self.zones, GaussPoints(self.tyre.body.rings), self.density[None])
 
     def energy_density(self, zone: str, points: Array) -> Array:
@@ -70,9 +70,10 @@ class Barrel:
 
 
 def provider(study: StudyData) -> Callable[[LoadCase], StrainCycle]:
-    """From a load case to its strain cycle: what ``mechanics.strain = "barrel"`` chooses.
+    """A function from load case to strain cycle, for ``mechanics.strain = "barrel"``.
 
-    The tyre is inflated once for every pressure; each deflection starts from the next smaller one already solved.
+    The tyre is inflated once for every pressure. Each deflection starts from the next smaller deflection already
+    solved.
 
     Raises
     ------

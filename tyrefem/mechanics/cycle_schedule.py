@@ -19,13 +19,13 @@ from tyrefem.inputs.study import StudyData
 from tyrefem.materials.reads import ARCS, values_read
 from tyrefem.mechanics.arc_geometry import BiasPlies
 from tyrefem.mechanics.arcs import ArcStiffness
-from tyrefem.mechanics.strain_cycle import StrainCycle, settled
+from tyrefem.mechanics.strain_cycle import StrainCycle, solved_case
 from tyrefem.mechanics.strain_laws import strain_law
 
 if TYPE_CHECKING:
     from tyrefem.geometry import Section
 
-#: Times of which a schedule keeps what it has worked out.
+#: Number of times whose weights a schedule keeps.
 REMEMBERED = 512
 #: (phase, knot, weight) of load cases that are mixed.
 Weights = tuple[tuple[int, int, float], ...]
@@ -44,12 +44,12 @@ class CycleSchedule(Brief, Stated):
     cycles: tuple[tuple[StrainCycle, ...], ...]
 
     def weights(self, time: float) -> Weights:
-        """(phase, knot, weight) of the load cases that make up a time."""
+        """(phase, knot, weight) of the load cases that are mixed at a time."""
         return self._weights(time)
 
     @functools.cached_property
     def _weights(self) -> Callable[[float], Weights]:
-        """`weights` of the latest times: every zone and film asks for the same ones."""
+        """`weights` with a cache of the latest times: all zones and films use the same times."""
         return functools.lru_cache(REMEMBERED)(functools.partial(_weights, self.drive, self.knots))
 
     def mean(self, quantity: Callable[[LoadCase], float], time: float) -> float:
@@ -67,7 +67,7 @@ class CycleSchedule(Brief, Stated):
 
     @property
     def motion(self) -> WheelMotion:
-        """How the wheel moves at a time, on the rolling radius that the load cases have then."""
+        """Motion of the wheel as a function of time, with the rolling radius of the load cases at that time."""
         return WheelMotion(self.drive, self.rolling_radius)
 
     def revolutions_per_second(self, time: float) -> float:
@@ -90,7 +90,7 @@ def _weights(drive: Drive, knots: tuple[tuple[float, ...], ...], time: float) ->
 
 
 def warming_knots(count: int) -> Sequence[float]:
-    """Fractions of a phase at which strain cycles follow the temperature: closer at its start, where it rises fast.
+    """Fractions of a phase at which strain cycles follow the temperature: closer at its start, where it changes fast.
 
     >>> warming_knots(5)
     (0.0, 0.0625, 0.25, 0.5625, 1.0)
@@ -99,19 +99,19 @@ def warming_knots(count: int) -> Sequence[float]:
 
 
 def ramp_knots(changes: bool, count: int = 9) -> Sequence[float]:
-    """Fractions of a phase at which load cases are solved: one, or ``count`` where the load changes.
+    """Fractions of a phase at which load cases are solved: the start alone, or ``count`` where the load changes.
 
     Nine leave less than 0.2 % of the heat of a ramp between no load and the rated one (five: 1.3 %).
     """
     return tuple(np.linspace(0.0, 1.0, count)) if changes else (0.0,)
 
 
-#: Regions of the sections that the report's arcs are made for.
+#: Regions of the sections to which the report's arcs apply.
 ARC_REGIONS = tuple(ARCS)
 
 
 def stiffness(study: StudyData) -> ArcStiffness:
-    """What the strain energy of the arcs needs of the cards, SI.
+    """Stiffness values of the material cards from which the arcs compute strain energy, SI.
 
     Raises
     ------
@@ -146,7 +146,7 @@ def stiffness(study: StudyData) -> ArcStiffness:
 
 @functools.lru_cache(maxsize=32)
 def _crown_radius(section: Section) -> float:
-    """Distance of the meridian from the wheel's axis at the crown, m; remembered for the 32 latest sections."""
+    """Distance of the meridian from the wheel's axis at the crown, m. The values of the 32 latest sections are kept."""
     return float(section.line.position(np.zeros(1))[0, 0])
 
 
@@ -162,7 +162,7 @@ def cycle_schedule(study: StudyData) -> CycleSchedule:
 
     Raises
     ------
-    InputError : a load or deflection that the section cannot take; names the phase.
+    InputError : a load or deflection that the section cannot take; the message names the phase.
     """
     solver = KnotSolver(study)
     knots, cases, cycles = [], [], []
@@ -176,11 +176,11 @@ def cycle_schedule(study: StudyData) -> CycleSchedule:
 
 
 def check_cases(study: StudyData) -> None:
-    """Refuse loads and deflections that the section cannot take, as far as that is known without finite elements.
+    """Raise an error for loads and deflections that the section cannot take, by checks without finite elements.
 
     Raises
     ------
-    InputError : names the phase.
+    InputError : the message names the phase.
     """
     solver, cheap = KnotSolver(study), not strain_law(study).by_elements
     for number, phase in enumerate(study.card.drive.phases):
@@ -191,7 +191,7 @@ def check_cases(study: StudyData) -> None:
 
 
 def same_cycles(study: StudyData, other: StudyData) -> bool:
-    """Do two studies have the same strain cycles? Section, drive, mechanics, what the law reads of the cards, mesh."""
+    """True if section, drive, mechanics, mesh and the material data that the strain law reads are equal."""
     if study.section != other.section:
         return False
     if any(study.data.get(table) != other.data.get(table) for table in ("drive", "mechanics")):
@@ -203,7 +203,7 @@ def same_cycles(study: StudyData, other: StudyData) -> bool:
 
 
 def rated_case(study: StudyData) -> LoadCase:
-    """The load case of the section's rated load and pressure on a flat road, as the strain law has it.
+    """The load case of the section's rated load and pressure on a flat road, with the strain law's contact.
 
     Raises
     ------
@@ -218,13 +218,13 @@ def rated_case(study: StudyData) -> LoadCase:
     if law is not None:
         return case
     try:
-        return settled(strain_law(study).provider(study)(case), case)
+        return solved_case(strain_law(study).provider(study)(case), case)
     except InputError as error:
         raise error.within(field="section.rating", file=study.file) from None
 
 
 class KnotSolver:
-    """Load case and strain cycle of a moment of a study's drive."""
+    """Load case and strain cycle at one point of a study's drive."""
 
     def __init__(self, study: StudyData) -> None:
         _check_footprint(study)
@@ -238,11 +238,11 @@ class KnotSolver:
         return provider
 
     def case(self, number: int, fraction: float, pressure_ratio: float = 1.0) -> LoadCase:
-        """The load case at a fraction of a phase as driven; ``pressure_ratio``: absolute pressure over the drive's.
+        """The load case at a fraction of a driven phase; ``pressure_ratio``: absolute pressure over that of the drive.
 
         Raises
         ------
-        InputError : a load or deflection that the section cannot take; names the phase.
+        InputError : a load or deflection that the section cannot take; the message names the phase.
         """
         try:
             return _load_case(self.study, number, fraction, pressure_ratio)
@@ -250,17 +250,17 @@ class KnotSolver:
             raise self._placed(error, number) from None
 
     def cycle(self, number: int, case: LoadCase) -> StrainCycle:
-        """The strain cycle of a load case of a phase; raises as `case`."""
+        """The strain cycle of a load case of a phase; raises the same errors as `case`."""
         try:
             return self._cycle(case)
         except InputError as error:
             raise self._placed(error, number) from None
 
     def solve(self, number: int, fraction: float) -> tuple[LoadCase, StrainCycle]:
-        """Both, at the drive's own pressure, the load case with the contact that the strain law has found."""
+        """Load case, with the contact that the strain law computes, and strain cycle at the drive's pressure."""
         case = self.case(number, fraction)
         cycle = self.cycle(number, case)
-        return settled(cycle, case), cycle
+        return solved_case(cycle, case), cycle
 
     def _placed(self, error: InputError, number: int) -> InputError:
         name = self.study.card.drive.phases[number].name
@@ -280,7 +280,7 @@ def _load_case(study: StudyData, number: int, fraction: float, pressure_ratio: f
     phase, section = study.card.drive.phases[number], study.section
     assert section.rating is not None
     pressure = phase.pressure.at(fraction)
-    # Written so that a ratio of 1 leaves the pressure as it is, to the bit.
+    # In this form a ratio of 1 leaves the pressure unchanged to the last bit.
     pressure = pressure + (pressure + ATMOSPHERE) * (pressure_ratio - 1)
     mechanics = study.card.mechanics
     return load_case(

@@ -27,13 +27,13 @@ if TYPE_CHECKING:
 Array = NDArray[np.float64]
 
 
-#: So many Gauss points make a value; their weights stay finite where a point meets one.
+#: Number of Gauss points per interpolated value; weights stay finite where a point coincides with a Gauss point.
 NEAREST, SMALLEST = 4, 1e-12
 
 
 @dataclass(frozen=True, eq=False)
 class GaussPoints:
-    """Gauss points of a mesh, region by region: no value crosses the border between two compounds.
+    """Gauss points of a mesh by region: values are not interpolated across the border of two compounds.
 
     >>> import skfem
     >>> from tyrefem.mechanics.solid.elements import Rings
@@ -68,7 +68,7 @@ class GaussPoints:
 @dataclass(frozen=True, eq=False)
 class PointEnergies:
     """A strain cycle as energies at Gauss points: ``densities`` (orders, n_elements, n_points) U, J/m3, by
-    `strain.ORDERS`, of ``zones`` that are whole regions."""
+    `strain.ORDERS`. Each of the ``zones`` is a whole region."""
 
     zones: tuple[Zone, ...]
     points: GaussPoints
@@ -84,11 +84,11 @@ class PointEnergies:
         return self.points.interpolate(self.density, zone, points)
 
     def spectrum(self, zone: str, points: Array) -> Array:
-        """(orders, n) the same by `strain.ORDERS`."""
+        """(orders, n) U, J/m3, at points (2, n) by `strain.ORDERS`."""
         return self.points.interpolate(self.densities, zone, points)
 
-    def moved(self, others: Sequence[tuple[PointEnergies, float]]) -> PointEnergies:
-        """U + sum_i w_i (U_i - U) with shares w_i of the way to other cycles at the same points; nowhere below 0."""
+    def interpolated(self, others: Sequence[tuple[PointEnergies, float]]) -> PointEnergies:
+        """U + sum_i w_i (U_i - U), never below 0: interpolation to other cycles at the same points with weights w_i."""
         size = max(len(energies.densities) for energies in (self, *(other for other, _ in others)))
         densities = _padded(self.densities, size)
         for other, share in others:
@@ -104,11 +104,11 @@ def _padded(densities: Array, size: int) -> Array:
 class FiniteElements:
     """Strain cycle of one load case: U = (sum_n n e_n : C' : e_n) / f, J/m3.
 
-    A harmonic n runs n cycles per revolution, each of which loses pi tan d e_n : C' : e_n, so that the heat
-    f U tan d v / (2 R) of `heating` is the loss of all harmonics per revolution of 2 pi R, whatever the loss
-    convention's factor f; R is the footprint's own rolling radius, as in `settled`. `spectrum` keeps the harmonics
-    apart, for a tan d that depends on frequency. ``one_cycle``: U is the energy of the largest change of strain, as if
-    the revolution were one cycle; then f counts.
+    A harmonic n runs n cycles per revolution. Each cycle loses pi tan d e_n : C' : e_n. The heat f U tan d v / (2 R)
+    of `heating` is thus the loss of all harmonics per revolution of 2 pi R, for any factor f of the loss convention.
+    R is the footprint's rolling radius, as in `solved_case`. `spectrum` keeps the harmonics apart, for a tan d that
+    depends on frequency. With ``one_cycle``, U is the energy of the largest change of strain, as if the revolution were
+    one cycle; then the heat depends on f.
 
     Parameters
     ----------
@@ -128,13 +128,13 @@ class FiniteElements:
         return tuple(Zone(region, region, region) for region in self.tyre.body.parts)
 
     @functools.cached_property
-    def settled(self) -> LoadCase:
-        """The load case with the footprint's own load, deflection, length, area and rolling radius."""
+    def solved_case(self) -> LoadCase:
+        """The load case with the load, deflection, length, area and rolling radius of the computed footprint."""
         footprint, case = self.footprint, self.case
         if footprint is None:
             free = PressedContact(0.0, 0.0, float(self.tyre.places[0].max()))
             return replace(case, load=0.0, deflection=0.0, contact=free)
-        # A load that was given stays to the last digit.
+        # A given load is kept to the last digit.
         load = footprint.load if case.by_deflection else case.load
         contact = PressedContact(footprint.length, footprint.area, footprint.rolling_radius)
         return replace(case, load=load, deflection=footprint.deflection, contact=contact)
@@ -160,7 +160,7 @@ class FiniteElements:
 
     @functools.cached_property
     def energies(self) -> PointEnergies:
-        """The energies alone, without the tyre that they are of."""
+        """The energies without the tyre."""
         return PointEnergies(self.zones, GaussPoints(self.tyre.body.rings), self.densities)
 
     def energy_density(self, zone: str, points: Array) -> Array:
@@ -168,16 +168,16 @@ class FiniteElements:
         return self.energies.energy_density(zone, points)
 
     def spectrum(self, zone: str, points: Array) -> Array:
-        """(orders, n) the same by `strain.ORDERS`."""
+        """(orders, n) U, J/m3, at points (2, n) by `strain.ORDERS`."""
         return self.energies.spectrum(zone, points)
 
 
 def provider(study: StudyData) -> Callable[[LoadCase], FiniteElements]:
-    """From a load case to its strain cycle: what ``mechanics.strain = "fem"`` chooses.
+    """A function from load case to strain cycle, for ``mechanics.strain = "fem"``.
 
-    The tyre is inflated once for every pressure, and every load, pressure and drum is solved once, also for other
-    studies of this process with the same tyre (`pressed_tyre`). What the drive gives decides, load or deflection; the
-    study's load law and footprint law are not read.
+    The tyre is inflated once for every pressure. Every load, pressure and drum is solved once in a process, also for
+    other studies with the same tyre (`pressed_tyre`). The drive prescribes either load or deflection. The study's load
+    law and footprint law are not used.
 
     Raises
     ------

@@ -1,4 +1,4 @@
-"""Strain energy that a study gives region by region: estimated, where no law here fits the tyre."""
+"""Strain energy given in the study by region: an estimate for tyres to which no strain law applies."""
 
 from __future__ import annotations
 
@@ -22,9 +22,9 @@ Array = NDArray[np.float64]
 
 @dataclass(frozen=True, eq=False)
 class Given:
-    """U = U_given(s) (D / D_given)^2 m: linear elasticity carries the given energy to other deflections D [m].
+    """U = U_given(s) (D / D_given)^2 m: linear elasticity scales the given energy to other deflections D [m].
 
-    m, ``softened``, is a region's modulus over that at which the energy was given; 1 where not given.
+    m, ``softened``, is a region's modulus over that at which the energy was given; 1 where it is missing.
 
     >>> from tyrefem.inputs.loading import LoadCase
     >>> from tyrefem.geometry import load

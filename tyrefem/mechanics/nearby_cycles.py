@@ -1,4 +1,4 @@
-"""Strain cycles of studies that are a little off one: from one solution for every number that moves them."""
+"""Strain cycles of studies near a solved one: interpolated from one further solution per changed number."""
 
 from __future__ import annotations
 
@@ -17,7 +17,7 @@ from tyrefem.inputs.loading import LoadCase, PressedContact
 from tyrefem.inputs.uncertain_numbers import UncertainNumber, written_at
 from tyrefem.mechanics.cycle_schedule import CycleSchedule, KnotSolver, cycle_schedule, same_cycles
 from tyrefem.mechanics.finite_elements import PointEnergies
-from tyrefem.mechanics.strain_cycle import settled
+from tyrefem.mechanics.strain_cycle import solved_case
 from tyrefem.output import atomic_path
 
 if TYPE_CHECKING:
@@ -29,15 +29,15 @@ Solved = tuple[LoadCase, PointEnergies]
 
 @dataclass(frozen=True, eq=False)
 class SolvedCycles:
-    """Load cases as solved and their energies, by name: in memory, and in a folder that several processes share."""
+    """Solved load cases and their energies by name, in memory and in a folder that several processes share."""
 
     folder: Path | None = None
     known: dict[str, Solved] = field(default_factory=dict)
 
-    def of(self, name: str, like: PointEnergies, solve: Callable[[], Solved]) -> Solved:
-        """What is known by a name, or solved now; ``like``: energies at the same points."""
+    def get(self, name: str, like: PointEnergies, solve: Callable[[], Solved]) -> Solved:
+        """The stored solution of a name, or else a new one from ``solve``; ``like``: energies at the same points."""
         if name not in self.known:
-            self.known[name] = self._read(name, like) or self._kept(name, solve())
+            self.known[name] = self._read(name, like) or self._store(name, solve())
         return self.known[name]
 
     def _file(self, name: str) -> Path | None:
@@ -53,7 +53,7 @@ class SolvedCycles:
             contact = PressedContact(*map(float, contact)) if len(contact) else None
             return replace(case, contact=contact), replace(like, densities=kept["densities"])
 
-    def _kept(self, name: str, solved: Solved) -> Solved:
+    def _store(self, name: str, solved: Solved) -> Solved:
         file = self._file(name)
         if file is not None:
             case, energies = solved
@@ -68,13 +68,13 @@ class SolvedCycles:
 class NearbyCycles:
     """Strain cycles by finite elements, linear in the logarithms of the numbers that they depend on.
 
-    U(x) = U_0 + sum_i x_i / s_i (U_i - U_0), x_i = ln of a number's factor, U_i solved at the factor 1 + sd, s_i its
-    ln; deflection, footprint and rolling radius alike. Each number costs one solution for every load case, when it is
-    first moved.
+    U(x) = U_0 + sum_i x_i / s_i (U_i - U_0). x_i is ln of a number's factor, U_i the solution at the factor 1 + sd, s_i
+    its ln. Deflection, footprint and rolling radius are interpolated alike. The first change of a number costs one
+    solution per load case.
 
     Parameters
     ----------
-    study : with a strain law by finite elements. solved : may be shared by studies that differ in their drives.
+    study : with a strain law by finite elements. solved : studies that differ in their drives may share it.
     """
 
     study: StudyData
@@ -82,7 +82,7 @@ class NearbyCycles:
 
     @functools.cached_property
     def schedule(self) -> CycleSchedule:
-        """The study's own."""
+        """The study's schedule."""
         return cycle_schedule(self.study)
 
     @functools.cached_property
@@ -91,54 +91,56 @@ class NearbyCycles:
         return tuple(
             number
             for number in self.study.uncertain_numbers
-            if not number.idle and not same_cycles(self._up(number), self.study)
+            if not number.idle and not same_cycles(self._raised(number), self.study)
         )
 
-    def of(self, study: StudyData) -> CycleSchedule | None:
-        """The strain cycles of another study; None where it differs in more than `numbers`.
+    def schedule_of(self, study: StudyData) -> CycleSchedule | None:
+        """The strain cycles of another study; None if it differs in more than `numbers`.
 
         Raises
         ------
         InputError : a load, deflection or number that the tyre cannot take.
         """
-        moved: list[tuple[str, float]] = []
+        changes: list[tuple[str, float]] = []
         back: dict[str, Any] = {}
         for number in self.numbers:
             if (factor := _factor(study, number)) != 1.0:
-                moved.append((number.key, math.log(factor) / math.log1p(number.sd)))
+                changes.append((number.key, math.log(factor) / math.log1p(number.sd)))
                 back |= dict(zip(number.keys, number.written, strict=True))
         if not same_cycles(study.replace(back, self.study), self.study):
             return None
         schedule, driven = self.schedule, KnotSolver(study)
-        ways = [(self._ways[key], share) for key, share in moved]
+        neighbours = [(self._neighbours[key], share) for key, share in changes]
         cases: list[tuple[LoadCase, ...]] = []
         cycles: list[tuple[PointEnergies, ...]] = []
         for phase, fractions in enumerate(schedule.knots):
-            there = [[(way[phase][knot], share) for way, share in ways] for knot in range(len(fractions))]
+            neighbours_at_knots = [
+                [(neighbour[phase][knot], share) for neighbour, share in neighbours] for knot in range(len(fractions))
+            ]
             cases.append(
                 tuple(
                     _between(driven.case(phase, fraction), case, [(neighbour[0], share) for neighbour, share in at])
-                    for fraction, case, at in zip(fractions, schedule.cases[phase], there, strict=True)
+                    for fraction, case, at in zip(fractions, schedule.cases[phase], neighbours_at_knots, strict=True)
                 )
             )
             cycles.append(
                 tuple(
-                    _energies(cycle).moved([(neighbour[1], share) for neighbour, share in at])
-                    for cycle, at in zip(schedule.cycles[phase], there, strict=True)
+                    _energies(cycle).interpolated([(neighbour[1], share) for neighbour, share in at])
+                    for cycle, at in zip(schedule.cycles[phase], neighbours_at_knots, strict=True)
                 )
             )
         return CycleSchedule(study.card.drive, schedule.knots, tuple(cases), tuple(cycles))
 
-    def _up(self, number: UncertainNumber) -> StudyData:
+    def _raised(self, number: UncertainNumber) -> StudyData:
         return self.study.replace(number.changes(1.0 + number.sd))
 
     @functools.cached_property
-    def _ways(self) -> _Ways:
-        return _Ways(self)
+    def _neighbours(self) -> _Neighbours:
+        return _Neighbours(self)
 
 
-class _Ways(dict[str, list[list[Solved]]]):
-    """Key of a number -> (phase, knot) what is solved with it a standard deviation up; when first asked for."""
+class _Neighbours(dict[str, list[list[Solved]]]):
+    """Key of a number -> solutions by (phase, knot) with the number one standard deviation up, made when used."""
 
     def __init__(self, near: NearbyCycles) -> None:
         super().__init__()
@@ -147,17 +149,17 @@ class _Ways(dict[str, list[list[Solved]]]):
     def __missing__(self, key: str) -> list[list[Solved]]:
         near = self.near
         number = next(uncertain for uncertain in near.numbers if uncertain.key == key)
-        solver, schedule = KnotSolver(near._up(number)), near.schedule
+        solver, schedule = KnotSolver(near._raised(number)), near.schedule
 
         def solved(phase: int, knot: int) -> Solved:
             case, like = solver.case(phase, schedule.knots[phase][knot]), _energies(schedule.cycles[phase][knot])
 
             def solve() -> Solved:
                 cycle = solver.cycle(phase, case)
-                # At the same points: the mesh of every other cycle need not be kept.
-                return settled(cycle, case), replace(like, densities=_energies(cycle).densities)
+                # Interpolated to the same points, so that the mesh of the other cycle need not be kept.
+                return solved_case(cycle, case), replace(like, densities=_energies(cycle).densities)
 
-            return near.solved.of(f"{key} {case!r}", like, solve)
+            return near.solved.get(f"{key} {case!r}", like, solve)
 
         self[key] = [[solved(phase, knot) for knot in range(len(knots))] for phase, knots in enumerate(schedule.knots)]
         return self[key]
@@ -170,7 +172,7 @@ def _energies(cycle: Any) -> PointEnergies:
 
 
 def _factor(study: StudyData, number: UncertainNumber) -> float:
-    """What a study's number is over that of another; 1: as it was, or not to be compared."""
+    """The number in one study over that in another; 1: unchanged, or not comparable."""
     now, before = written_at(study, number.keys[0]), number.written[0]
     if now == before:
         return 1.0
@@ -180,7 +182,7 @@ def _factor(study: StudyData, number: UncertainNumber) -> float:
 
 def _amount(value: Any) -> tuple[float, str]:
     if isinstance(value, list):
-        # A table's numbers move together: the last cell stands for them.
+        # The numbers of a table change by one factor: the last cell gives it.
         return _amount(value[-1])
     if isinstance(value, str):
         match = _AMOUNT.match(value)
@@ -189,7 +191,7 @@ def _amount(value: Any) -> tuple[float, str]:
 
 
 def _between(driven: LoadCase, case: LoadCase, others: list[tuple[LoadCase, float]]) -> LoadCase:
-    """A load case as driven, with what a strain law finds itself as far towards others as each share says."""
+    """A driven load case whose computed contact is interpolated towards other load cases by their weights."""
     if case.contact is None:
         return driven
 

@@ -1,10 +1,10 @@
 """The strain cycle of a rolling tyre: load case -> strain-energy density, zone by zone.
 
 A provider offers ``zones`` (name, region and extent of each) and ``energy_density(zone, points)`` in J/m3.
-`arcs` is the NASA report's, `given` takes the study's own numbers; `tyrefem.inputs.study_card.Mechanics` names the
-provider.
-One that knows the harmonics of its cycle may also offer ``spectrum(zone, points)``: U by its `ORDERS`, (orders, n).
-One that presses the tyre on its road also offers ``settled``: the load case with the contact that it has found.
+`arcs` is the NASA report's provider, `given` takes numbers of the study; `tyrefem.inputs.study_card.Mechanics` names
+the provider. Two methods are optional:
+``spectrum(zone, points)``: U by harmonic order `ORDERS`, (orders, n);
+``solved_case``: the load case with the contact that the provider computes.
 """
 
 from __future__ import annotations
@@ -18,7 +18,7 @@ from numpy.typing import NDArray
 if TYPE_CHECKING:
     from tyrefem.inputs.loading import LoadCase
 
-#: Energy lost per cycle over U tan d / pi: the report's U stands for E' e0^2, the strict one for half of it (eq 25).
+#: Energy lost per cycle over U tan d / pi. In the report U stands for E' e0^2; strictly it is half of that (eq 25).
 LOSS_FACTOR = {"nasa": 1.0, "sinusoid": 2.0}
 
 
@@ -35,7 +35,7 @@ ORDERS = tuple(float(x) for x in 2 ** (np.arange(8.5 * _STEPS + 1) / _STEPS))
 
 @dataclass(frozen=True)
 class Zone:
-    """A part of a region with one strain law: ``region`` between two meridian distances (|s|, m)."""
+    """A part of a region with one strain law: the part of ``region`` between two meridian distances (|s|, m)."""
 
     name: str
     region: str
@@ -49,22 +49,23 @@ class StrainCycle(Protocol):
 
     @property
     def zones(self) -> tuple[Zone, ...]:
-        """The zones, which together cover every region that makes heat."""
+        """The zones, which together cover every region that generates heat."""
 
     def energy_density(self, zone: str, points: Array) -> Array:
         """Strain energy per cycle U, J/m3, at points (2, n) in (r, z)."""
 
 
-def settled(cycle: StrainCycle, case: LoadCase) -> LoadCase:
-    """The load case as its strain cycle has it: with the contact of a provider that presses the tyre itself."""
-    settled_case: LoadCase = getattr(cycle, "settled", case)
-    return settled_case
+def solved_case(cycle: StrainCycle, case: LoadCase) -> LoadCase:
+    """The load case with the contact that the provider computes; without such a provider the given load case."""
+    case_in_contact: LoadCase = getattr(cycle, "solved_case", case)
+    return case_in_contact
 
 
 def by_order(harmonics: Array) -> Array:
-    """(orders, ...) what harmonics (n + 1, ...) carry, shared between the two `ORDERS` next to each, linear in log n.
+    """(orders, ...) values of harmonics (n + 1, ...) shared between the two nearest `ORDERS`, linear in log n.
 
-    Their sum is within 0.1 % of that of the harmonics themselves for a power law of frequency with the exponent 0.3,
+    The sum over orders is within 0.1 % of that over harmonics for a power law of frequency with the exponent 0.3, and
+    within 0.4 % for a single Maxwell element.
     and within 0.4 % for a single Maxwell element.
 
     >>> by_order(np.array([0.0, 1.0, 5.0, 8.0])).round(3).tolist()

@@ -1,4 +1,4 @@
-"""The strain laws by name: what ``mechanics.strain`` of a study may say, one class in a module of `laws` each."""
+"""The strain laws by name, the allowed values of ``mechanics.strain``: one class in a module of `laws` each."""
 
 from __future__ import annotations
 
@@ -18,28 +18,28 @@ PACKAGE = "tyrefem.mechanics.laws"
 
 
 class StrainLaw(ABC):
-    """How the strain cycle of a load case is found. A subclass names itself and gives a `provider`; it is found by
-    existing.
+    """A law that gives the strain cycle of a load case. A subclass has a name and a `provider`; its file in `laws`
+    makes it known.
 
-    Strain cycles of two studies are taken for the same where the law reads the same of their material cards:
-    `tyrefem.materials.reads`. A law that is not named there reads all of them.
+    Two studies have the same strain cycles if the law reads the same values of their material cards:
+    `tyrefem.materials.reads`. A law that is not listed there reads all values.
     """
 
     #: In study files; in a picture's title.
     name: ClassVar[str] = ""
     title: ClassVar[str] = ""
-    #: Does a load case take seconds, as finite elements do? Then studies with the same cycles share them.
+    #: True: a load case takes seconds, as with finite elements; studies with the same cycles then share them.
     by_elements: ClassVar[bool] = False
-    #: Does it press the tyre on its road itself, so that load law and footprint law of the study are not read?
+    #: True: the law solves the contact with the road; load law and footprint law of the study are then not used.
     presses: ClassVar[bool] = False
-    #: Is it one of those that `tyrefem strain` compares, without further inputs?
+    #: True: `tyrefem strain` compares the law, which needs no further inputs.
     compared: ClassVar[bool] = True
-    #: For the report: what is assumed, and why it matters.
+    #: For the report: the assumption, and its consequence.
     assumption: ClassVar[tuple[str, str]] = ("", "")
 
     @abstractmethod
     def provider(self, study: StudyData) -> Callable[[LoadCase], Any]:
-        """From a load case to its strain cycle (`tyrefem.mechanics.strain_cycle.StrainCycle`), for one study.
+        """A function from load case to strain cycle (`tyrefem.mechanics.strain_cycle.StrainCycle`), for one study.
 
         Raises
         ------
@@ -69,7 +69,7 @@ def strain_law(study: StudyData) -> StrainLaw:
 
     Raises
     ------
-    InputError : there is none of that name.
+    InputError : no law has that name.
     """
     name, laws = study.card.mechanics.strain, strain_laws()
     if name not in laws:

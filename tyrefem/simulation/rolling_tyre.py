@@ -73,7 +73,7 @@ class RollingTyre(Surroundings):
             return self.near.schedule
         if self.like is not None and self.like.cycles is None and same_cycles(self.study, self.like.study):
             return self.like.schedule
-        nearby = None if self._nearby is None else self._nearby.of(self.study)
+        nearby = None if self._nearby is None else self._nearby.schedule_of(self.study)
         return super().schedule if nearby is None else nearby
 
     @property

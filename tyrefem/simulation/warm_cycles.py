@@ -14,7 +14,7 @@ from numpy.typing import NDArray
 
 from tyrefem.boundaries.contained_air import KELVIN
 from tyrefem.mechanics.cycle_schedule import CycleSchedule, KnotSolver, ramp_knots, warming_knots
-from tyrefem.mechanics.strain_cycle import settled
+from tyrefem.mechanics.strain_cycle import solved_case
 
 if TYPE_CHECKING:
     from tyrefem.inputs.loading import LoadCase
@@ -152,7 +152,7 @@ class WarmCycles:
             if same and not phase.changes_load:
                 kept, knots = kept[:1], (0.0,)
             fractions.append(knots)
-            cases.append(tuple(settled(warm_cycle.cycle, warm_cycle.case) for warm_cycle in kept))
+            cases.append(tuple(solved_case(warm_cycle.cycle, warm_cycle.case) for warm_cycle in kept))
             cycles.append(tuple(warm_cycle.cycle for warm_cycle in kept))
         return CycleSchedule(self.study.card.drive, tuple(fractions), tuple(cases), tuple(cycles))
 

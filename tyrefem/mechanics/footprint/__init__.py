@@ -1,4 +1,4 @@
 """The footprint by Fourier harmonics about the inflated tyre.
 
-Knows nothing of heat conduction and results.
+This package does not import heat conduction or results.
 """

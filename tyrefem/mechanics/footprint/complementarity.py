@@ -9,25 +9,25 @@ Array = NDArray[np.float64]
 Flags = NDArray[np.bool_]
 #: Forces and gaps smaller than this share of the largest count as zero.
 ROUND_OFF = 1e-10
-#: Exchanges of all wrong contacts at once that may fail to reduce their number before single ones are tried.
+#: Number of block exchanges without progress after which single contacts are exchanged.
 PATIENCE = 6
 
 
 def contact_forces(compliance: Array, gaps: Array, start: Flags | None = None) -> tuple[Array, Flags]:
     """Forces f >= 0 that leave no penetration w = gaps + C f >= 0, with f w = 0.
 
-    Block pivoting (Portugal, Judice and Vicente 1994): every contact that pulls is opened and every point that
-    penetrates is closed at once; where that cycles, one at a time, which ends for any positive definite C.
+    Block pivoting (Portugal, Judice and Vicente 1994): all tensile contacts are opened and all penetrating points are
+    closed together. If that cycles, single contacts are exchanged, which terminates for any positive definite C.
 
     Parameters
     ----------
     compliance : (n, n) C, symmetric positive definite, m/N.
-    gaps : (n,) without forces, negative where bodies would overlap, m.
-    start : contacts to begin with.
+    gaps : (n,) at zero force, negative where the bodies overlap, m.
+    start : initial set of contacts.
 
     Returns
     -------
-    (n,) forces, N, and which points are in contact.
+    (n,) forces, N, and (n,) flags of the points in contact.
 
     Raises
     ------

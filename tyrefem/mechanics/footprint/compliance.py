@@ -1,4 +1,4 @@
-"""How far the tread gives under unit loads, harmonic by harmonic."""
+"""Displacement of the tread under unit loads, by harmonic."""
 
 from __future__ import annotations
 
@@ -16,14 +16,14 @@ from tyrefem.mechanics.footprint.harmonics import Harmonics
 
 Array = NDArray[np.float64]
 Indices = NDArray[np.int64]
-#: Every harmonic up to this one is solved; above it, solved ones grow by a factor and those between are interpolated.
+#: All harmonics up to this one are solved; above it the solved ones grow by a factor, with interpolation between.
 ALL_UP_TO = 24
 GROWTH = 1.12
 
 
 @functools.lru_cache(maxsize=64)
 def solved_harmonics(highest: int) -> tuple[int, ...]:
-    """Harmonics that are solved so that all up to ``highest`` follow.
+    """Harmonics to solve, from which all others up to ``highest`` are interpolated.
 
     >>> solved_harmonics(40)[-8:]
     (22, 23, 24, 27, 30, 34, 38, 43)
@@ -55,8 +55,8 @@ def interpolation(highest: int) -> Array:
 class TreadCompliance(Brief):
     """Displacements of the tread's nodes per unit load, G_n = T K_n^-1 T', m per N per radian.
 
-    Loads act at the tread's nodes along r, t and, on a full section, z. One factorisation per solved harmonic;
-    between solved ones G_n is interpolated, as above the first two dozen it is smooth in n.
+    Loads act at the tread's nodes along r, t and, on a full section, z. Each solved harmonic needs one factorisation.
+    Between solved harmonics G_n is interpolated: above the first two dozen it is smooth in n.
 
     Raises
     ------
@@ -64,7 +64,7 @@ class TreadCompliance(Brief):
     """
 
     harmonics: Harmonics
-    #: Compliance of solved harmonics: more than `solved_harmonics` of any footprint.
+    #: Compliances of solved harmonics; the cache holds more than `solved_harmonics` of any footprint.
     _solved: Cache[Array] = field(default_factory=lambda: Cache(size=128), init=False, repr=False)
 
     def __post_init__(self) -> None:
@@ -74,7 +74,7 @@ class TreadCompliance(Brief):
 
     @property
     def half(self) -> bool:
-        """Does the mesh hold one half of a symmetric tyre?"""
+        """True if the mesh is one half of a symmetric tyre."""
         state = self.harmonics.state
         return state.symmetric in state.mesh.boundaries
 
@@ -97,7 +97,7 @@ class TreadCompliance(Brief):
 
     @functools.cached_property
     def widths(self) -> tuple[Array, Array]:
-        """Length of the outline and of its axial projection that belong to each node, (m,), m."""
+        """Tributary length of each node on the outline and on its axial projection, (m,), m."""
         facets = self.harmonics.elements.facet_basis(self.harmonics.state.tread)
         values = np.stack([np.broadcast_to(np.asarray(f[0]), facets.dx.shape) for f in facets.basis], axis=0)
         length, axial = np.zeros((2, self.harmonics.elements.nodes.shape[1]))
@@ -108,7 +108,7 @@ class TreadCompliance(Brief):
 
     @functools.cached_property
     def grooves(self) -> Array:
-        """(n, 2) axial stretches that the tread leaves out, m: between its facets, and at the mid plane of a half."""
+        """(n, 2) axial intervals without tread, m: between its facets, and at the mid plane of a half."""
         mesh, tread = self.harmonics.state.mesh, self.harmonics.state.tread
         ends = np.sort(mesh.p[1, mesh.facets[:, mesh.boundaries[tread]]], axis=0)
         low, high = ends[:, np.argsort(ends[0])]
@@ -123,7 +123,7 @@ class TreadCompliance(Brief):
         return np.stack([COMPONENTS * self.nodes + c for c in self.components])
 
     def solved(self, n: int) -> Array:
-        """(c, m, c, m) compliance of a solved harmonic; remembered."""
+        """(c, m, c, m) compliance of a solved harmonic, with a cache."""
 
         def compute() -> Array:
             matrix = self.harmonics.compliance(n, self.dofs.ravel())
@@ -143,7 +143,7 @@ class TreadCompliance(Brief):
         return self.responses(everywhere)
 
     def responses(self, loads: Array) -> Array:
-        """(n_harmonics, n_dofs) amplitudes, m, under loads (n_harmonics, n_dofs), N per radian, anywhere."""
+        """(n_harmonics, n_dofs) amplitudes, m, under loads (n_harmonics, n_dofs), N per radian, on any nodes."""
         highest = len(loads) - 1
         weights, displacements = interpolation(highest), np.zeros_like(loads)
         for column, n in enumerate(solved_harmonics(highest)):

@@ -19,22 +19,22 @@ from tyrefem.mechanics.footprint.tyre_on_road import FLAT, TyreOnRoad
 from tyrefem.mechanics.solid.body import Prestressed
 
 Array = NDArray[np.float64]
-#: Harmonics tried in turn until the error measure is met.
+#: Numbers of harmonics, tried in turn until the error is below the tolerance.
 LADDER = (24, 36, 54, 80, 120, 180, 270)
 
 
 @dataclass(frozen=True, eq=False)
 class Pressing(TyreOnRoad):
-    """A tyre that can be pressed on its road; compliances are remembered between loads and numbers of harmonics."""
+    """A tyre and the road on which it is pressed; compliances are kept for further loads and numbers of harmonics."""
 
     _grids: dict[int, ContactGrid] = field(default_factory=dict, init=False, repr=False)
 
     def grid(self, harmonics: int, deflection: float) -> ContactGrid:
-        """Angles that may touch: the part of the free tyre below the road and a third beyond.
+        """Grid of the angles that may touch: the part of the free tyre below the road and a third more.
 
         Raises
         ------
-        InputError : no number of harmonics, or more than there is memory for.
+        InputError : an invalid number of harmonics, or too many for the memory.
         """
         radius = self.reach
         round_drum = 1.0 / (1.0 + 2 * radius / self.road.drum_diameter)
@@ -47,8 +47,8 @@ class Pressing(TyreOnRoad):
         return self._grids[harmonics]
 
     def check_harmonics(self, harmonics: int, share: float = 0.0) -> None:
-        """Raises `InputError` for what is no number of harmonics, or needs more memory than is free; ``share`` of the
-        angles may touch."""
+        """Raise `InputError` for an invalid number of harmonics, or one that needs more memory than is free; ``share``
+        of the angles may touch."""
         if not (isinstance(harmonics, int | np.integer) and harmonics >= 1):
             raise InputError(f"must be a whole number, 1 or more, not {harmonics!r}", field="harmonics")
         nodes, components = len(self.tread.nodes), len(self.tread.components)
@@ -70,7 +70,7 @@ class Pressing(TyreOnRoad):
             raise error.within(field="harmonics") from None
 
     def check(self, deflection: float) -> None:
-        """Raises `InputError` for a deflection that is negative or would press the crown on the rim."""
+        """Raise `InputError` for a deflection that is negative or would press the crown on the rim."""
         if not 0 <= deflection < self.bottoming:
             raise InputError(
                 f"a deflection of {deflection * 1e3:.4g} mm is impossible; it must be at least 0 and less than "
@@ -81,9 +81,9 @@ class Pressing(TyreOnRoad):
     def at_deflection(self, deflection: float, harmonics: int, start: Footprint | None = None) -> Footprint:
         """The footprint at a deflection, m, with harmonics up to a number.
 
-        On a flat road the gap is linear in the displacement, (r + u_r) cos t - u_t sin t, and the first solution is
-        final; on a drum its direction is renewed until forces settle to 1e-6. ``start``: a footprint near by, whose
-        contacts are tried first.
+        On a flat road the gap is linear in the displacement, (r + u_r) cos t - u_t sin t, so one solution is enough. On
+        a drum the contact direction is updated until forces change by less than 1e-6. ``start``: a similar footprint
+        whose contacts are the first guess.
 
         Raises
         ------
@@ -93,39 +93,43 @@ class Pressing(TyreOnRoad):
         grid = self.grid(harmonics, deflection)
         distance = self.reach - deflection
         size = len(grid.areas)
-        moved, closed = np.zeros((len(self.tread.components), size)), np.zeros(size, dtype=bool)
+        displacement, closed = np.zeros((len(self.tread.components), size)), np.zeros(size, dtype=bool)
         if start is not None and start.grid is grid:
             closed = start.forces > 0
-        forces, direction = np.zeros(size), np.zeros_like(moved)
+        forces, direction = np.zeros(size), np.zeros_like(displacement)
         for _ in range(30):
-            gaps, normals = self.gaps(grid, moved, distance)
-            turned = grid.along(normals)
-            compliance = np.einsum("ak,akbl,bl->kl", turned, grid.blocks, turned, optimize=True)
-            before, free = forces, gaps + np.einsum("ck,ck->k", turned, moved)
+            gaps, normals = self.gaps(grid, displacement, distance)
+            towards_road = grid.along(normals)
+            compliance = np.einsum("ak,akbl,bl->kl", towards_road, grid.blocks, towards_road, optimize=True)
+            before, free = forces, gaps + np.einsum("ck,ck->k", towards_road, displacement)
             forces, closed = contact_forces(compliance, free, closed if closed.any() else None)
-            direction = turned
-            moved = -np.einsum("akbl,bl->ak", grid.blocks, turned * forces, optimize=True)
+            direction = towards_road
+            displacement = -np.einsum("akbl,bl->ak", grid.blocks, towards_road * forces, optimize=True)
             if math.isinf(self.road.drum_diameter) or np.abs(forces - before).max() <= 1e-6 * forces.max(initial=0.0):
                 break
-        leads = self.road.normal @ normals
+        normal_components = self.road.normal @ normals
         index = np.flatnonzero(closed)
         stiffness = 0.0
         if len(index):
-            stiffness = float(leads[index] @ np.linalg.solve(compliance[np.ix_(index, index)], leads[index]))
+            stiffness = float(
+                normal_components[index] @ np.linalg.solve(compliance[np.ix_(index, index)], normal_components[index])
+            )
         both = 2.0 if self.tread.half else 1.0
         left = free + compliance @ forces
-        load = float(both * leads @ forces)
-        return Footprint(self, grid, deflection, load, both * stiffness, forces, direction, moved, left)
+        load = float(both * normal_components @ forces)
+        return Footprint(self, grid, deflection, load, both * stiffness, forces, direction, displacement, left)
 
-    def gaps(self, grid: ContactGrid, moved: Array, distance: float) -> tuple[Array, Array]:
-        """Gaps and normals in the middle of the hats; the free tyre's gap averaged with the hat by two points."""
-        aside, free = grid.step / math.sqrt(6), np.zeros_like(moved)
-        ahead, here, behind = (self.road.gaps(grid.places(free, shift), distance)[0] for shift in (aside, 0.0, -aside))
-        gaps, normals = self.road.gaps(grid.places(moved, 0.0), distance)
+    def gaps(self, grid: ContactGrid, displacement: Array, distance: float) -> tuple[Array, Array]:
+        """Gaps and normals at the centres of the hats; the free tyre's gap is averaged over the hat by two points."""
+        offset, free = grid.step / math.sqrt(6), np.zeros_like(displacement)
+        ahead, here, behind = (
+            self.road.gaps(grid.places(free, shift), distance)[0] for shift in (offset, 0.0, -offset)
+        )
+        gaps, normals = self.road.gaps(grid.places(displacement, 0.0), distance)
         return gaps + (ahead + behind) / 2 - here, normals
 
     def at_load(self, load: float, harmonics: int, start: Footprint | None = None) -> Footprint:
-        """The footprint under a load, N, both sides of the tyre: Newton on the deflection.
+        """The footprint under a load, N, on both sides of the tyre: Newton on the deflection.
 
         Raises
         ------
@@ -157,14 +161,14 @@ class Pressing(TyreOnRoad):
     def solve(
         self, *, deflection: float | None = None, load: float | None = None, tolerance: float = 0.01
     ) -> Footprint:
-        """The footprint with as many harmonics as the error measure asks for.
+        """The footprint with the number of harmonics that the tolerance needs.
 
-        The number grows until load, deflection and elastic work change by less than ``tolerance``, and the area in
-        contact by less than five times that; the last change is reported as ``error``.
+        The number grows until load, deflection and elastic work change by less than ``tolerance``, and the contact area
+        by less than five times that. The last change is the ``error``.
 
         Raises
         ------
-        InputError : not exactly one of deflection and load; what `at_deflection` and `at_load` raise; no convergence.
+        InputError : both or neither of deflection and load; errors of `at_deflection` and `at_load`; no convergence.
         """
         if (deflection is None) == (load is None):
             raise InputError("give exactly one of 'deflection' and 'load'")

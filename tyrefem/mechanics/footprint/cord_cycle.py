@@ -1,4 +1,4 @@
-"""What the cords of every layer carry round the wheel."""
+"""Cord tensions of every layer over a revolution."""
 
 from __future__ import annotations
 
@@ -18,15 +18,15 @@ Array = NDArray[np.float64]
 
 @dataclass(frozen=True, eq=False)
 class CordCycle:
-    """Tension of a layer's cords round the wheel, where it is greatest.
+    """Tension of a layer's cords over a revolution, at the place where it is largest.
 
     Parameters
     ----------
-    region : the layer. place : (r, z) there before inflation, m.
+    region : the layer. place : (r, z) before inflation, m.
     angles : (n,) from the middle of the footprint, rad.
-    plus, minus : (n,) tension of the cords at +angle and -angle; each the other's mirror image.
-    inflated : before the tyre touches the road.
-    unit : ``"N"``, of one cord; ``"Pa"``, v_c E (lambda - 1) of the layer, where no cord's own stiffness is known.
+    plus, minus : (n,) tension of the cords at +angle and -angle; each is the mirror image of the other.
+    inflated : tension before contact with the road.
+    unit : ``"N"``, of one cord; ``"Pa"``, v_c E (lambda - 1) of the layer, if the stiffness of one cord is not known.
     """
 
     region: str
@@ -39,14 +39,14 @@ class CordCycle:
 
 
 def cord_cycles(tyre: Inflation, cycle: StrainHarmonics, count: int = 181) -> tuple[CordCycle, ...]:
-    """The cords of every region: inflated tension + E A lambda a . e a, a the cords' present direction.
+    """The cords of every region: inflated tension + E A lambda a . e a, with the cords' deformed direction a.
 
-    E A is less where the inflated cord is compressed, as in the tangent from which the footprint is computed. In large
-    motion the cords' own law at the stretch lambda sqrt(1 + 2 a . E a), E Green's strain.
+    E A is smaller where the inflated cord is compressed, as in the tangent of the footprint. In large motion the
+    tension follows the cords' law at the stretch lambda sqrt(1 + 2 a . E a), with Green's strain E.
 
     Parameters
     ----------
-    tyre : the inflated tyre. cycle : strains round the wheel of the same tyre. count : angles from -pi to pi.
+    tyre : the inflated tyre. cycle : strains of the same tyre over a revolution. count : angles from -pi to pi.
     """
     return tuple(
         _greatest(tyre, cycle, region, layer, np.linspace(-np.pi, np.pi, count))

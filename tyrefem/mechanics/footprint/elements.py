@@ -1,6 +1,6 @@
-"""A motion's values and gradients at angles round the wheel, and forces back to harmonics.
+"""Nine-node rings in a Fourier harmonic: strains and projected dilatation.
 
-Nine-node rings in a Fourier harmonic: strains and projected dilatation.
+Values and gradients of a motion at angles of the wheel, and forces of harmonics from stresses at these angles.
 """
 
 from __future__ import annotations
@@ -105,7 +105,7 @@ PER_HARMONIC = 1.5
 class WheelAngles:
     """Angles from 0 to pi for harmonics (u_r cos n t, u_z cos n t, u_t sin n t) up to ``highest``.
 
-    3/2 ``highest`` + 1 of them: products of two harmonics do not fold back on those that are kept.
+    The number of angles is 3/2 ``highest`` + 1: products of two harmonics are not aliased to lower ones.
     """
 
     elements: SectionElements
@@ -126,7 +126,7 @@ class WheelAngles:
 
     @functools.cached_property
     def shares(self) -> Array:
-        """(m, highest + 1) weights with which a wave's amplitude is taken from values at the angles."""
+        """(m, highest + 1) weights for a wave's amplitude as a sum of values at the angles."""
         weights = np.full(len(self.angles), 1 / (len(self.angles) - 1))
         weights[[0, -1]] /= 2
         shares = np.tile(2 * weights[:, None], (1, self.highest + 1))
@@ -134,7 +134,7 @@ class WheelAngles:
         return shares
 
     @functools.cached_property
-    def _back(self) -> tuple[Array, Array]:
+    def _to_amplitudes(self) -> tuple[Array, Array]:
         value, slope = self.waves
         return value * self.shares, slope * self.shares
 
@@ -150,15 +150,15 @@ class WheelAngles:
         return samples[0], samples[1]
 
     def from_nodes(self, value: Array, slope: Array) -> Array:
-        """(highest + 1, n_dofs) forces against the amplitudes, of forces against `at_nodes`; adjoint to it."""
+        """(highest + 1, n_dofs) forces on the amplitudes from forces on `at_nodes`; its adjoint."""
         forces = np.empty((self.highest + 1, len(value), COMPONENTS))
         for c in range(COMPONENTS):
-            forces[..., c] = (value[..., c] @ self._back[0][c] + slope[..., c] @ self._back[1][c]).T
+            forces[..., c] = (value[..., c] @ self._to_amplitudes[0][c] + slope[..., c] @ self._to_amplitudes[1][c]).T
         return forces.reshape(self.highest + 1, -1)
 
     @functools.cached_property
-    def _by(self) -> tuple[Array, Array]:
-        """Values by r, z and over r: (e, 3 q, 9), and over r alone (e, q, 9)."""
+    def _derivatives(self) -> tuple[Array, Array]:
+        """Shape functions differentiated by r and z and divided by r: (e, 3 q, 9); divided by r only (e, q, 9)."""
         over_r = self.elements.values / self.elements.radii[..., None]
         return np.concatenate([*self.elements.gradients, over_r], axis=1), over_r
 
@@ -174,7 +174,7 @@ class WheelAngles:
     def gradient(self, amplitudes: Array) -> Array:
         """(e, q, m, 9) displacement gradient H, component 3 k + i of (r, z, t)."""
         value, slope = self.at_nodes(amplitudes)
-        nodes, (by, over_r) = self.elements.element_nodes, self._by
+        nodes, (by, over_r) = self.elements.element_nodes, self._derivatives
         e, m = len(nodes), len(self.angles)
         parts = (by @ value[nodes].reshape(e, 9, -1)).reshape(e, 3, -1, m, 3)
         turned = (over_r @ slope[nodes].reshape(e, 9, -1)).reshape(e, -1, m, 3)
@@ -187,7 +187,7 @@ class WheelAngles:
     def forces(self, stress: Array) -> Array:
         """(highest + 1, n_dofs) forces, N per radian, of a stress (e, q, m, 9) times r dA; adjoint to `gradient`."""
         e, q, m, _ = stress.shape
-        p, (by, over_r) = stress.reshape(e, q, m, 3, 3), self._by
+        p, (by, over_r) = stress.reshape(e, q, m, 3, 3), self._derivatives
         parts = np.zeros((e, 3, q, m, 3))
         parts[:, 0], parts[:, 1] = p[..., 0], p[..., 1]
         parts[:, 2, ..., 0], parts[:, 2, ..., 2] = p[..., 2, 2], -p[..., 0, 2]

@@ -42,7 +42,7 @@ def stress_free(mesh: Any, shear_modulus: float, bulk_modulus: float, fixed: tup
 
 
 def pressurised(state: Prestressed, pressure: float) -> Prestressed:
-    """The same place and stiffness, with the stress of linear elasticity that bears ``pressure``, Pa, exactly."""
+    """The same geometry and stiffness with the stress of linear elasticity that balances ``pressure``, Pa, exactly."""
     from tyrefem.mechanics.footprint.harmonics import Harmonics
 
     harmonics = Harmonics(replace(state, stress=np.zeros_like(state.stress), pressure=0.0))
@@ -131,7 +131,7 @@ class PlainTyre:
         )
 
     def state(self, pressure: float = 2e5, along: int = 24, through: tuple[int, int, int] = (1, 1, 1)) -> Prestressed:
-        """The inflated tyre: its shape as given, the stress that bears ``pressure``, Pa."""
+        """The inflated tyre: the given shape with a stress that balances ``pressure``, Pa."""
         mesh = self.mesh(along, through)
         elements = SectionElements(mesh)
         shape = elements.radii.shape
@@ -152,7 +152,7 @@ class PlainTyre:
 def meridian_direction(elements: SectionElements) -> Array:
     """(3, n_elements, n_points) unit vectors (r, z, 0) along the meridian, for meshes made by `PlainTyre`."""
     corners = elements.mesh.p[:, elements.mesh.t]
-    # Tensor meshes number corners so that edges 0-1 and 3-2 run along the second coordinate.
+    # Tensor meshes number corners such that edges 0-1 and 3-2 have the second coordinate's direction.
     along = corners[:, 1] + corners[:, 2] - corners[:, 0] - corners[:, 3]
     along = along / np.linalg.norm(along, axis=0)
     return np.stack([*np.broadcast_to(along[..., None], (2, *elements.radii.shape)), np.zeros(elements.radii.shape)])

@@ -23,17 +23,17 @@ class Footprint(Brief):
 
     Parameters
     ----------
-    pressing : the inflated tyre and its road. grid : angles and tread nodes that may touch.
-    deflection : how far the free tyre would reach into the road, m.
+    pressing : the inflated tyre and its road. grid : angles and tread nodes of possible contact.
+    deflection : penetration of the free tyre into the road, m.
     load : force along the road's normal, N, of the whole tyre.
     stiffness : d load / d deflection at this deflection, N/m.
     forces : (k,) contact force at each point (angle, node) of the grid, both sides of the wheel together, N.
-    direction : (c, k) into the road.
-    moved : (c, k) displacement of the tread, m.
-    balanced : (harmonics + 1, n_dofs) displacement amplitudes of a balanced footprint, m; None: linear in the forces.
-    gaps : (k,) left between tread and road, m.
-    error : largest relative change of load, deflection, work and a fifth of the area against fewer harmonics; nan: not
-        compared.
+    direction : (c, k) unit vectors into the road.
+    displacement : (c, k) displacement of the tread, m.
+    balanced : (harmonics + 1, n_dofs) displacement amplitudes in large motion, m; None: linear in the forces.
+    gaps : (k,) between tread and road, m.
+    error : largest relative change of load, deflection, work and a fifth of the area against fewer harmonics; nan if
+        they were not compared.
     """
 
     pressing: TyreOnRoad
@@ -43,7 +43,7 @@ class Footprint(Brief):
     stiffness: float
     forces: Array
     direction: Array
-    moved: Array
+    displacement: Array
     gaps: Array
     error: float = float("nan")
     balanced: Array | None = None
@@ -68,12 +68,12 @@ class Footprint(Brief):
 
     @property
     def unstable(self) -> tuple[int, ...]:
-        """Harmonics in which some motion of the state has negative stiffness: there the linearisation is in doubt."""
+        """Harmonics in which a motion has negative stiffness: the linearisation may not hold there."""
         return tuple(n for n, count in sorted(self.pressing.harmonics.negative_pivots.items()) if count)
 
     @property
     def unstable_place(self) -> str | None:
-        """Where the lowest of `unstable` has such a motion: region and place; None: there is none."""
+        """Region and place of such a motion in the lowest harmonic of `unstable`; None: all are stable."""
         for n, (r, z) in self.pressing.harmonics.buckling_place.items():
             elements = self.pressing.harmonics.elements
             distance = np.hypot(elements.points[0] - r, elements.points[1] - z).min(axis=1)
@@ -85,12 +85,12 @@ class Footprint(Brief):
 
     @property
     def work(self) -> float:
-        """Elastic work of the contact, J: half of force times displacement."""
+        """Elastic work of the contact, J: half the sum of force times displacement."""
         both = 2.0 if self.pressing.tread.half else 1.0
-        return float(-0.5 * both * np.sum(self.direction * self.moved * self.forces))
+        return float(-0.5 * both * np.sum(self.direction * self.displacement * self.forces))
 
     def compared(self, before: Footprint) -> Footprint:
-        """This one with the relative change against one with fewer harmonics as its ``error``."""
+        """The footprint with its ``error``: the relative change against one with fewer harmonics."""
 
         def change(now: float, then: float) -> float:
             return abs(now - then) / max(abs(now), 1e-300) if now != then else 0.0
@@ -110,13 +110,13 @@ class Footprint(Brief):
         both = 2.0 if self.pressing.tread.half else 1.0
         angles, r = self.grid.angles, self.grid.tread.places[0]
         lengths, _ = self.grid.tread.widths
-        into = np.repeat(self.grid.sides, len(r)) * self._leads
+        into = np.repeat(self.grid.sides, len(r)) * self._normal_components
         per_angle = (self.pressure.ravel() * into).reshape(len(angles), -1) @ (lengths * r)
         return float(both * per_angle.sum() * self.grid.step)
 
     @property
-    def _leads(self) -> Array:
-        """(k,) share of each force along the road's normal."""
+    def _normal_components(self) -> Array:
+        """(k,) component of each unit force along the road's normal."""
         road, grid = self.pressing.road, self.grid
         normals = np.repeat(road.normal[:, None], grid.n_angles * len(grid.tread.nodes), axis=1)
         return np.asarray((grid.along(normals) * self.direction).sum(axis=0))
@@ -134,8 +134,8 @@ class Footprint(Brief):
 
     @property
     def width(self) -> float:
-        """Axial extent of the contact, m: the nodes that touch anywhere, each with its share of the tread, and the
-        grooves between them."""
+        """Axial extent of the contact, m: nodes that touch at any angle, with their tributary widths and the grooves
+        between them."""
         _, axial = self.grid.tread.widths
         both = 2.0 if self.pressing.tread.half else 1.0
         touching = np.flatnonzero(self.pressure.max(axis=0) > 0)
@@ -149,7 +149,7 @@ class Footprint(Brief):
 
     @property
     def area(self) -> float:
-        """Area in contact, m2, without that of grooves."""
+        """Contact area, m2, without grooves."""
         _, axial = self.grid.tread.widths
         both = 2.0 if self.pressing.tread.half else 1.0
         return float(both * 2 * (self.half_lengths * axial).sum())
@@ -194,7 +194,7 @@ class Footprint(Brief):
 
 
 def _end(pressure: Array) -> float:
-    """Where a pressure (n,) from the middle outwards ends, in steps of the angle."""
+    """End of a pressure distribution (n,) from the middle outwards, in steps of the angle."""
     touching = np.flatnonzero(pressure > 0)
     if not len(touching):
         return 0.0

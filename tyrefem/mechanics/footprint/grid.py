@@ -1,4 +1,4 @@
-"""The tread as seen by the road: nodes times angles, and how each gives when another is loaded."""
+"""The grid of possible contact, nodes times angles, and the compliance between its points."""
 
 from __future__ import annotations
 
@@ -16,11 +16,11 @@ Array = NDArray[np.float64]
 
 @dataclass(frozen=True, eq=False)
 class ContactGrid(Brief):
-    """Tread nodes at angles j D, j = 0 .. n_angles - 1, D = pi / harmonics; the wheel's other side is its mirror image.
+    """Tread nodes at angles j D, j = 0 .. n_angles - 1, D = pi / harmonics; the other side is the mirror image.
 
-    Pressure is linear between angles: a force at j is a hat of half width D, whose amplitude in harmonic n is
-    sinc^2(n D/2) cos(n j D); displacements and gaps are averages with the same hat, so that the compliance is
-    symmetric and positive definite for any number of angles up to ``harmonics`` + 1.
+    Pressure is linear between angles: a force at j is a hat of half width D with the amplitude
+    sinc^2(n D/2) cos(n j D) in harmonic n. Displacements and gaps are averages with the same hat. The compliance is
+    therefore symmetric and positive definite for any number of angles up to ``harmonics`` + 1.
     """
 
     tread: TreadCompliance
@@ -39,7 +39,7 @@ class ContactGrid(Brief):
 
     @functools.cached_property
     def sides(self) -> Array:
-        """(n_angles,) how many times an angle occurs round the wheel: once at 0, twice elsewhere."""
+        """(n_angles,) number of times that an angle occurs on the wheel: once at 0, else twice."""
         sides: Array = np.full(self.n_angles, 2.0)
         sides[0] = 1.0
         return sides
@@ -54,14 +54,14 @@ class ContactGrid(Brief):
 
     @functools.cached_property
     def shares(self) -> Array:
-        """(harmonics + 1,) 1/pi, half of it for n = 0: unit work round the wheel."""
+        """(harmonics + 1,) 1/pi, half of it for n = 0: normalisation to unit work on the whole wheel."""
         shares = np.full(self.harmonics + 1, 1 / np.pi)
         shares[0] /= 2
         return shares
 
     @functools.cached_property
     def blocks(self) -> Array:
-        """(c, k, c, k) displacement along c of point k = (angle, node) per force at another; both sides."""
+        """(c, k, c, k) displacement along c of point k = (angle, node) per force at another point; both sides."""
         compliance = self.tread.up_to(self.harmonics)
         _, c, m, _, _ = compliance.shape
         blocks = np.zeros((c, self.n_angles * m, c, self.n_angles * m))
@@ -84,15 +84,15 @@ class ContactGrid(Brief):
         return np.einsum("cnj,ncm->cjm", self.shapes, at).reshape(len(self.shapes), -1)
 
     def places(self, displacement: Array, shift: float) -> Array:
-        """(3, k) points (x, y, z), m, at the angles plus ``shift``, moved by displacements (c, k)."""
+        """(3, k) points (x, y, z), m, at the angles plus ``shift``, with displacements (c, k) added."""
         r, z = self.tread.places
         angle = np.repeat(self.angles + shift, len(r))
-        moved = np.zeros((3, len(angle)))
-        moved[list(self.tread.components)] = displacement
-        radius = np.tile(r, self.n_angles) + moved[0]
+        displacements = np.zeros((3, len(angle)))
+        displacements[list(self.tread.components)] = displacement
+        radius = np.tile(r, self.n_angles) + displacements[0]
         sin, cos = np.sin(angle), np.cos(angle)
-        axial = np.tile(z, self.n_angles) + moved[1]
-        return np.stack([radius * sin + moved[2] * cos, radius * cos - moved[2] * sin, axial])
+        axial = np.tile(z, self.n_angles) + displacements[1]
+        return np.stack([radius * sin + displacements[2] * cos, radius * cos - displacements[2] * sin, axial])
 
     def along(self, normals: Array) -> Array:
         """(c, k) components along (r, t, z) of directions (3, k) in (x, y, z)."""
@@ -104,6 +104,6 @@ class ContactGrid(Brief):
 
     @functools.cached_property
     def areas(self) -> Array:
-        """(k,) tread area that belongs to a point, on one side, m2."""
+        """(k,) tributary tread area of a point on one side, m2."""
         lengths, _ = self.tread.widths
         return np.tile(lengths * self.tread.places[0] * self.step, self.n_angles)

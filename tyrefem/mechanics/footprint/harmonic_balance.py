@@ -1,4 +1,4 @@
-"""Harmonic balance: the footprint in large motion, not linear about the inflated state."""
+"""Harmonic balance: the footprint in large motion, without linearisation about the inflated state."""
 
 from __future__ import annotations
 
@@ -11,13 +11,13 @@ from tyrefem.mechanics.footprint.footprint import Footprint
 from tyrefem.mechanics.footprint.large_motion import BEFORE_RIM, DeflectedState, LargeMotion
 from tyrefem.mechanics.solid.finite_law import FiniteLaw
 
-#: Numbers of harmonics: the way is gone with the first, the others refine what it leads to.
+#: Numbers of harmonics: the load steps use the first, the others refine the last step.
 LADDER = (16, 24, 36)
-#: Last change on the way, and how near it leads.
+#: Tolerance of the load steps, and distance to the target at which they end.
 ON_THE_WAY, NEAR = 1e-2, 1e-2
-#: Smallest step on the way over the whole of it, and steps in all.
+#: Smallest load step over the total, and largest number of steps.
 SMALLEST, MOST = 1e-3, 60
-#: A tyre in large motion stiffens from a small load on by about this factor: guess of the second step's slope.
+#: A tyre in large motion is stiffer than at a small load by about this factor: slope of the second step's guess.
 STIFFENS = 1.3
 
 
@@ -25,16 +25,16 @@ STIFFENS = 1.3
 class Balance:
     """Footprints in large motion: the stress at every angle (`NonlinearForces`) balances the road's pressure.
 
-    Deflections grow from the free tyre's on with few harmonics; each step ends in Newton's (`LargeMotion`), and more
-    harmonics refine the last.
+    Deflections grow from the free tyre in load steps with few harmonics. Each step ends with Newton iterations
+    (`LargeMotion`); more harmonics refine the last step.
 
     Parameters
     ----------
     pressing : the tyre and its road.
     harmonics : highest harmonic.
-    tolerance : last change of motion and load, relative.
-    law : stress; by default that of the state's own compounds and cords, or linear in Green's strain without these.
-    steps : deflections on the way, at most. before_rim : share of the way to the rim at which deflections end.
+    tolerance : last relative change of motion and load.
+    law : stress; by default that of the state's compounds and cords, or linear in Green's strain without these.
+    steps : largest number of load steps. before_rim : largest deflection over that at which the crown meets the rim.
 
     >>> from tyrefem.mechanics.footprint.example_tyre import PlainTyre
     >>> footprint = Balance(Pressing(PlainTyre().state(along=6)), 12).at_deflection(0.004)
@@ -48,12 +48,13 @@ class Balance:
     law: FiniteLaw | None = None
     steps: int = MOST
     before_rim: float = BEFORE_RIM
-    #: (deflection, load), m and N, on the way, balanced to `ON_THE_WAY`; cleared by every solution.
+    #: (deflection, load), m and N, of the load steps, with the tolerance `ON_THE_WAY`; every solution starts a new
+    #: list.
     path: list[tuple[float, float]] = field(default_factory=list, init=False, repr=False)
 
     @functools.cached_property
     def motion(self) -> LargeMotion:
-        """Balances near by one another."""
+        """Solver of a balance from a nearby balance."""
         return LargeMotion(self.pressing, self.law, self.before_rim)
 
     def at_deflection(self, deflection: float) -> Footprint:
@@ -67,12 +68,13 @@ class Balance:
     def solve(
         self, *, deflection: float | None = None, load: float | None = None, tolerance: float = 0.01
     ) -> Footprint:
-        """The footprint with as many harmonics as the error measure of `Pressing.solve` asks for, at most
+        """The footprint with the number of harmonics that the tolerance of `Pressing.solve` needs, at most
         ``harmonics``; its ``error`` is the last change.
 
         Raises
         ------
-        InputError : not exactly one of deflection and load; one that is impossible; no balance: how far it got.
+        InputError : both or neither of deflection and load; an impossible one; no balance: the message gives the last
+        one.
         """
         if (deflection is None) == (load is None):
             raise InputError("give exactly one of 'deflection' and 'load'")
@@ -81,10 +83,10 @@ class Balance:
         moment, footprint = self._way(deflection, load, ladder[0]), None
         for count in ladder:
             start = self.motion.refined(moment, count)
-            settled = self.motion.settled(start, moment.deflection, self.tolerance, load)
-            if settled is None:
+            balanced = self.motion.balance(start, moment.deflection, self.tolerance, load)
+            if balanced is None:
                 raise self._stuck(moment, deflection, load, f" with {count} harmonics")
-            moment, before, footprint = settled, footprint, self.motion.footprint(settled)
+            moment, before, footprint = balanced, footprint, self.motion.footprint(balanced)
             if before is not None:
                 footprint = footprint.compared(before)
                 if footprint.error <= tolerance:
@@ -93,7 +95,7 @@ class Balance:
         return replace(footprint, stiffness=self.motion.stiffness(moment))
 
     def _way(self, deflection: float | None, load: float | None, harmonics: int) -> DeflectedState:
-        """From the free tyre to near a deflection or a load: steps as long as the motion allows."""
+        """Load steps from the free tyre to near a deflection or a load; the motion limits their size."""
         pressing, motion = self.pressing, self.motion
         if deflection is not None:
             pressing.check(deflection)
@@ -108,14 +110,14 @@ class Balance:
             left = whole - now.deflection if load is None else (load - now.load) / slope
             if abs(left) <= NEAR * whole * (load is not None):
                 return now
-            ahead = min(now.deflection + max(-step, min(left, step)), motion.deepest)
+            ahead = min(now.deflection + max(-step, min(left, step)), motion.largest_deflection)
             if ahead == now.deflection:
                 raise InputError(
                     f"the tyre cannot carry {load:.5g} N: the crown meets the rim at {now.load:.5g} N "
                     f"({now.deflection * 1e3:.4g} mm)",
                     field="load",
                 )
-            reached = motion.settled(now, ahead, ON_THE_WAY)
+            reached = motion.balance(now, ahead, ON_THE_WAY)
             if reached is None:
                 step = abs(ahead - now.deflection) / 2
                 if step < SMALLEST * whole:

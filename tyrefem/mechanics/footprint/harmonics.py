@@ -1,6 +1,6 @@
 """Stiffness of every Fourier harmonic about a pre-stressed axisymmetric state, from three assemblies.
 
-Pressure that follows the wall: its load and its stiffness, harmonic by harmonic.
+Load and stiffness of the follower pressure on the wall, by harmonic.
 """
 
 from __future__ import annotations
@@ -53,8 +53,8 @@ def follower_stiffness(elements: SectionElements, boundary: str) -> tuple[Indice
     v P_n u = int v_r (n_r (n u_t + u_r) - r u_z') + v_z (n_z (n u_t + u_r) + r u_r')
               + v_t (n_r (n u_r + u_t) + n_z n u_z) ds,
 
-    ' along the wall, (n_r, n_z) outwards of the body; made symmetric, which alters nothing where the wall closes on
-    itself, ends on a held edge or on the mid plane.
+    ' is the derivative along the wall, (n_r, n_z) the outward normal. The matrix is made symmetric. This changes
+    nothing if the wall is closed, or ends on a fixed edge or on the mid plane.
     """
     dofs, values, along, (n_r, n_z), radii, weights = along_wall(elements.facet_basis(boundary))
     n_faces, nodes = values.shape[::2]
@@ -78,11 +78,11 @@ def follower_stiffness(elements: SectionElements, boundary: str) -> tuple[Indice
     return dofs, symmetric(constant), symmetric(linear)
 
 
-#: Energy over the sum of its parts' sizes below which a motion counts as free.
+#: A motion counts as free if its energy over the sum of its parts' sizes is smaller.
 ROUND_OFF = 1e-12
 
 
-#: Pivots are taken from the diagonal: the matrices are symmetric, and positive definite if the state is stable.
+#: Pivots on the diagonal: the matrices are symmetric, and positive definite if the state is stable.
 SYMMETRIC: dict[str, Any] = {"diag_pivot_thresh": 0.0, "options": {"SymmetricMode": True}}
 
 
@@ -94,7 +94,7 @@ class Harmonics(Brief):
 
     d_n : dilatation projected on the linear polynomials of each element (Q2/P1-discontinuous: no locking);
     H : gradient, rows (u_r,r, u_r,z, -(n u_r + u_t)/r), (u_z,r, u_z,z, -n u_z/r), (u_t,r, u_t,z, (n u_t + u_r)/r);
-    P_n : stiffness of the following pressure (`follower`). The state's ``support`` is added to A. Everything is per
+    P_n : stiffness of the follower pressure (`follower`). The state's ``support`` is added to A. All values are per
     radian: the energy of an amplitude u round the wheel is pi/2 u K_n u, and pi u K_0 u for n = 0.
 
     Raises
@@ -104,9 +104,9 @@ class Harmonics(Brief):
     """
 
     state: Prestressed
-    #: Harmonic -> number of motions with negative stiffness found when `compliance` was solved: cords that buckle.
+    #: Harmonic -> number of motions with negative stiffness (buckling cords), written by `compliance`.
     negative_pivots: dict[int, int] = field(default_factory=dict, init=False, repr=False)
-    #: Lowest such harmonic -> the place (r, z), m, where one of its motions of negative stiffness is largest.
+    #: Lowest such harmonic -> place (r, z), m, of the largest displacement of such a motion.
     buckling_place: dict[int, tuple[float, float]] = field(default_factory=dict, init=False, repr=False)
     _orders: dict[bytes, Indices] = field(default_factory=dict, init=False, repr=False)
 
@@ -148,7 +148,7 @@ class Harmonics(Brief):
         return self._assembled(a, b, cc)
 
     def _initial_stress(self) -> tuple[Array, Array, Array]:
-        """int s_ij H_ki H_kj r dA of each element in powers of n, (n_elements, 27, 27)."""
+        """int s_ij H_ki H_kj r dA of each element as powers of n, (n_elements, 27, 27)."""
         elements, s = self.elements, self.state.stress * self.elements.weights
         (by_r, by_z), values = elements.gradients, elements.values / elements.radii[..., None]
         plane = np.einsum("eqa,eqb->eab", by_r, s[0][..., None] * by_r + s[3][..., None] * by_z)
@@ -191,7 +191,7 @@ class Harmonics(Brief):
 
     @functools.cached_property
     def held(self) -> Indices:
-        """Degrees of freedom that are held: all at fixed boundaries, u_z on the mid plane."""
+        """Fixed degrees of freedom: all at fixed boundaries, u_z on the mid plane."""
         boundaries, elements = self.state.mesh.boundaries or {}, self.elements
         dofs = [np.zeros(0, dtype=np.int64)]
         for name in self.state.fixed:
@@ -203,7 +203,7 @@ class Harmonics(Brief):
 
     @functools.cached_property
     def free(self) -> Indices:
-        """Degrees of freedom that are not held."""
+        """Degrees of freedom that are not fixed."""
         return np.setdiff1d(np.arange(self.elements.n_dofs), self.held)
 
     def solve(self, n: float, loads: Array) -> Array:
@@ -211,7 +211,7 @@ class Harmonics(Brief):
 
         Raises
         ------
-        InputError : the state is not stable against harmonic n, or a rigid motion is free.
+        InputError : the state is not stable in harmonic n, or a rigid motion is free.
         """
         from scipy.sparse.linalg import splu
 
@@ -234,7 +234,7 @@ class Harmonics(Brief):
         return displacements
 
     def _last(self, dofs: Indices) -> Indices:
-        """Order of the free degrees of freedom that keeps the factor sparse, with ``dofs`` last; remembered."""
+        """Order of the free degrees of freedom that keeps the factor sparse, with ``dofs`` last; with a cache."""
         key = dofs.tobytes()
         if key not in self._orders:
             from scipy.sparse.linalg import splu
@@ -249,11 +249,11 @@ class Harmonics(Brief):
     def compliance(self, n: int, dofs: Indices) -> Array:
         """(k, k) displacements of some free degrees of freedom under unit loads on them, m per N per radian.
 
-        With them last, the last blocks of the factors are those of the Schur complement: no right-hand side is solved.
+        With these last, the last blocks of the factors are those of the Schur complement: no right-hand side is solved.
 
         Raises
         ------
-        InputError : harmonic n has no positive stiffness seen from there.
+        InputError : harmonic n has no positive stiffness at these degrees of freedom.
         """
         from scipy.linalg import LinAlgError, cho_factor, cho_solve
         from scipy.sparse.linalg import splu
@@ -275,7 +275,7 @@ class Harmonics(Brief):
             raise InputError(f"the state is not stable: harmonic {n:g} has negative stiffness") from None
 
     def _largest(self, order: Indices, upper: Any) -> tuple[float, float]:
-        """Where the motion of the most negative pivot is largest: U x = e_i; x K x has the pivot's sign."""
+        """Place of the largest motion of the most negative pivot: U x = e_i; x K x has the pivot's sign."""
         from scipy.sparse.linalg import spsolve_triangular
 
         pivot = int(upper.diagonal().argmin())
@@ -287,5 +287,5 @@ class Harmonics(Brief):
         return float(r), float(z)
 
     def inflated_by(self, pressure: float) -> Array:
-        """(n_dofs,) small axisymmetric displacement, m, under ``pressure`` (Pa) more on the wall: K_0 u = p F."""
+        """(n_dofs,) small axisymmetric displacement, m, under additional ``pressure`` (Pa) on the wall: K_0 u = p F."""
         return self.solve(0, pressure * pressure_load(self.elements, self.state.pressurised))

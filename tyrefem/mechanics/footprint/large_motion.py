@@ -1,4 +1,4 @@
-"""A pressed tyre in large motion: balance at one deflection or load, begun from a balance near by."""
+"""A pressed tyre in large motion: balance at a deflection or load, from a nearby balance."""
 
 from __future__ import annotations
 
@@ -17,19 +17,19 @@ from tyrefem.mechanics.solid.finite_law import FiniteLaw
 
 Array = NDArray[np.float64]
 Flags = NDArray[np.bool_]
-#: Largest change of a displacement gradient in the first Newton step and in those that correct it; a hopeless one.
+#: Largest change of a displacement gradient: in the first Newton step, in later steps, and at failure.
 AHEAD, CORRECTION, HOPELESS = 0.25, 0.5, 30.0
-#: After a change this small the stiffness before it serves again.
+#: After a smaller change the last stiffness is used again.
 ALIKE = 0.02
-#: Newton steps, and how many may find negative stiffness before the balance is given up.
+#: Newton steps, and the number of them with negative stiffness after which the balance fails.
 STEPS, UNSTABLE = 12, 2
-#: Last change from which on the points in contact need not be settled.
+#: Below this last change, changes of the contact set are allowed.
 LOOSE = 5e-3
-#: What conjugate gradients leave of a residual: of a Newton step, for a change of deflection, and for the stiffness.
+#: Relative residual of conjugate gradients: of a Newton step, for a change of deflection, and for the stiffness.
 INNER, BORDER, STIFFNESS = 0.05, 0.02, 0.001
-#: Angles that may touch are those of this many deflections.
+#: The angles of possible contact are those of the deflection times this factor.
 WIDER = 1.6
-#: Share of the way to the rim at which deflections end.
+#: Largest deflection over that at which the crown meets the rim.
 BEFORE_RIM = 0.999
 
 
@@ -52,13 +52,13 @@ class DeflectedState:
 
 @dataclass(frozen=True, eq=False)
 class LargeMotion:
-    """Newton steps on all harmonics at once until inner and contact forces balance; contact is found anew in each.
+    """Newton steps on all harmonics together until internal and contact forces balance, with a new contact set in each.
 
     Parameters
     ----------
     pressing : the tyre and its road.
     law : stress; by default that of the state.
-    before_rim : share of the way to the rim at which deflections end.
+    before_rim : largest deflection over that at which the crown meets the rim.
     """
 
     pressing: Pressing
@@ -72,27 +72,27 @@ class LargeMotion:
         return LinearFactors(self.pressing)
 
     @property
-    def _both(self) -> float:
-        """Sides of the tyre over those of the mesh."""
+    def _sides(self) -> float:
+        """Sides of the tyre per side of the mesh."""
         return 2.0 if self.pressing.tread.half else 1.0
 
     @property
-    def deepest(self) -> float:
-        """Greatest deflection that is tried, m: just before the crown meets the rim."""
+    def largest_deflection(self) -> float:
+        """Largest deflection, m: just before the crown meets the rim."""
         return self.before_rim * self.pressing.bottoming
 
     def nonlinear(self, harmonics: int) -> NonlinearForces:
-        """Inner forces with so many harmonics; the last asked for is remembered."""
+        """Internal forces with a number of harmonics; the last is kept."""
         if harmonics not in self._forces:
             self._forces.clear()
             self._forces[harmonics] = NonlinearForces(self.pressing.harmonics, harmonics, self.law)
         return self._forces[harmonics]
 
     def _grid(self, harmonics: int, deflection: float) -> ContactGrid:
-        return self.pressing.grid(harmonics, min(WIDER * deflection, self.deepest))
+        return self.pressing.grid(harmonics, min(WIDER * deflection, self.largest_deflection))
 
     def free(self, harmonics: int, deflection: float) -> DeflectedState:
-        """The tyre off the road, on a grid that serves up to a deflection, m."""
+        """The tyre without contact, on a grid for deflections up to the given one, m."""
         grid = self._grid(harmonics, deflection)
         motion = np.zeros((harmonics + 1, self.pressing.harmonics.elements.n_dofs))
         return DeflectedState(0.0, motion, grid, np.zeros(len(grid.areas)))
@@ -110,16 +110,16 @@ class LargeMotion:
         forces = pressure.ravel() * np.repeat(grid.sides, len(grid.tread.nodes)) * grid.areas
         return replace(moment, motion=motion, grid=grid, forces=forces)
 
-    def settled(
+    def balance(
         self, start: DeflectedState, deflection: float, tolerance: float, load: float | None = None
     ) -> DeflectedState | None:
-        """The balance at a deflection, m, or from there on under a load, N; None where it does not settle.
+        """The balance at a deflection, m, or from there under a load, N; None without convergence.
 
-        Where the first step would move the tyre too far, it goes ahead to a smaller deflection, and that is balanced.
+        If the first step would move the tyre too far, the balance of a smaller deflection is solved instead.
 
         Parameters
         ----------
-        start : a balance near by. tolerance : last change of the motion, and of the load, relative.
+        start : a nearby balance. tolerance : last relative change of the motion, and of the load.
         """
         outside = self.nonlinear(start.harmonics)
         u, forces = start.motion, start.forces
@@ -129,32 +129,32 @@ class LargeMotion:
         unstable, change = 0, np.inf
         for count in range(STEPS):
             tangent = replace(tangent, forces=outside.forces(u)) if tangent and change <= ALIKE else outside.at(u)
-            gaps, leads, touching = self._road(replace(start, motion=u, deflection=deflection))
+            gaps, normal_components, touching = self._road(replace(start, motion=u, deflection=deflection))
             enough = tolerance**2 * self.factors.work(tangent.forces, u)
             if closed is None:
                 closed = touching.closed(gaps, forces, forces > 0)
             step = newton_step(touching, closed, tangent, gaps, INNER, enough)
-            change = self._turned(outside, step)
+            change = self._gradient_change(outside, step)
             if count == 0 and change > AHEAD:
                 ahead = AHEAD / change * (deflection - start.deflection)
-                gaps = gaps + leads * (deflection - start.deflection - ahead)
+                gaps = gaps + normal_components * (deflection - start.deflection - ahead)
                 deflection = start.deflection + ahead
                 closed = touching.closed(gaps, forces, forces > 0)
                 step = newton_step(touching, closed, tangent, gaps, INNER, enough)
-                change = self._turned(outside, step)
+                change = self._gradient_change(outside, step)
             unstable += not step.stable
             if not change < HOPELESS or unstable > UNSTABLE:
                 return None
             share = min(1.0, CORRECTION / max(change, 1e-300))
             u, forces = u + share * step.motion, forces + share * (step.forces - forces)
             before, closed = closed, touching.closed(gaps - touching.into(step.motion), step.forces, closed)
-            now = self._both * float(leads @ forces)
+            now = self._sides * float(normal_components @ forces)
             last = share * float(np.abs(step.motion).max()) / max(float(np.abs(u).max()), 1e-300)
             done = last <= tolerance and share == 1 and step.stable
             done &= tolerance > LOOSE or bool((closed == before).all())
             if load is not None:
-                rate = rate or self._rate(touching, before, tangent, leads, BORDER)
-                slope = self._both * float(leads @ rate.forces)
+                rate = rate or self._rate(touching, before, tangent, normal_components, BORDER)
+                slope = self._sides * float(normal_components @ rate.forces)
                 if not slope > 0:
                     return None
                 done &= abs(load - now) <= tolerance * load
@@ -165,24 +165,28 @@ class LargeMotion:
         return None
 
     @staticmethod
-    def _turned(outside: NonlinearForces, step: NewtonStep) -> float:
+    def _gradient_change(outside: NonlinearForces, step: NewtonStep) -> float:
         """Largest change of a displacement gradient."""
         return float(np.abs(outside.round.gradient(step.motion)).max())
 
     def _road(self, moment: DeflectedState) -> tuple[Array, Array, Touching]:
-        """Gaps, m, how much each closes per metre of deflection, and the points that may touch."""
+        """Gaps, m, their decrease per metre of deflection, and the points of possible contact."""
         pressing, grid = self.pressing, moment.grid
-        moved = grid.displacements(moment.motion)
-        gaps, normals = pressing.gaps(grid, moved, pressing.reach - moment.deflection)
+        displacements = grid.displacements(moment.motion)
+        gaps, normals = pressing.gaps(grid, displacements, pressing.reach - moment.deflection)
         return gaps, pressing.road.normal @ normals, Touching(self.factors, grid, grid.along(normals))
 
     @staticmethod
-    def _rate(touching: Touching, closed: Flags, tangent: Tangent, leads: Array, accuracy: float) -> NewtonStep:
-        """Motion and forces per metre of deflection, while the same points touch."""
-        return newton_step(touching, closed, replace(tangent, forces=np.zeros_like(tangent.forces)), -leads, accuracy)
+    def _rate(
+        touching: Touching, closed: Flags, tangent: Tangent, normal_components: Array, accuracy: float
+    ) -> NewtonStep:
+        """Motion and forces per metre of deflection with a constant contact set."""
+        return newton_step(
+            touching, closed, replace(tangent, forces=np.zeros_like(tangent.forces)), -normal_components, accuracy
+        )
 
     def footprint(self, moment: DeflectedState) -> Footprint:
-        """The footprint of a balance; its stiffness is left to `stiffness`."""
+        """The footprint of a balance, without its `stiffness`."""
         gaps, _, touching = self._road(moment)
         return Footprint(
             self.pressing, moment.grid, moment.deflection, moment.load, 0.0, moment.forces, touching.direction,
@@ -190,8 +194,8 @@ class LargeMotion:
         )  # fmt: skip
 
     def stiffness(self, moment: DeflectedState) -> float:
-        """d load / d deflection of a balance, N/m, while the same points touch."""
-        _, leads, touching = self._road(moment)
+        """d load / d deflection of a balance, N/m, with a constant contact set."""
+        _, normal_components, touching = self._road(moment)
         tangent = self.nonlinear(moment.harmonics).at(moment.motion)
-        rate = self._rate(touching, moment.forces > 0, tangent, leads, STIFFNESS)
-        return self._both * float(leads @ rate.forces)
+        rate = self._rate(touching, moment.forces > 0, tangent, normal_components, STIFFNESS)
+        return self._sides * float(normal_components @ rate.forces)

@@ -1,4 +1,4 @@
-"""Energy lost per revolution: every harmonic of the strain at its own frequency."""
+"""Energy lost per revolution: the loss of every strain harmonic at its frequency."""
 
 from __future__ import annotations
 
@@ -22,14 +22,14 @@ ONE_CYCLE = {"nasa": np.pi, "sinusoid": 2 * np.pi}
 
 @dataclass(frozen=True, eq=False)
 class RevolutionLoss(Brief):
-    """What a revolution dissipates: w = sum_n n pi tan d(n f, T) e_n : C' : e_n, J/m3, f = v / (2 pi R_r).
+    """Energy dissipated per revolution: w = sum_n n pi tan d(n f, T) e_n : C' : e_n, J/m3, f = v / (2 pi R_r).
 
-    A point runs through n cycles of amplitude e_n per revolution, each of which loses pi E'' e_n^2; harmonics are
-    orthogonal over the revolution, so that their losses add.
+    A point runs n cycles of amplitude e_n per revolution, and each loses pi E'' e_n^2. Harmonics are orthogonal over
+    the revolution, so their losses add up.
 
     Parameters
     ----------
-    cycle : strains round the wheel.
+    cycle : strains over a revolution.
     tangents : region -> tan delta; regions without one lose nothing.
     speed : m/s.
     temperature : degC, one number or (n_elements, n_points).
@@ -103,7 +103,7 @@ class RevolutionLoss(Brief):
 
     @functools.cached_property
     def stored_by_harmonic(self) -> Array:
-        """(harmonics + 1,) elastic energy of each harmonic's strain in what loses energy, mean over the wheel, J."""
+        """(harmonics + 1,) elastic energy of each strain harmonic in the dissipating parts, mean over the wheel, J."""
         stored = np.array([self.total(products) / 4 for products in self.cycle.storage_products])
         stored[0] *= 2
         return stored

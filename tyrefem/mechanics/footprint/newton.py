@@ -1,4 +1,4 @@
-"""One Newton step of a tyre in large motion against the road: conjugate gradients on all harmonics at once."""
+"""One Newton step of a tyre in large motion against the road: conjugate gradients on all harmonics together."""
 
 from __future__ import annotations
 
@@ -19,30 +19,30 @@ from tyrefem.mechanics.footprint.nonlinear import Tangent
 Array = NDArray[np.float64]
 Indices = NDArray[np.int64]
 Flags = NDArray[np.bool_]
-#: Conjugate gradients at most in a step.
+#: Largest number of conjugate-gradient iterations in a step.
 ITERATIONS = 400
 
 
 @dataclass(frozen=True, eq=False)
 class LinearFactors:
-    """K_n of every harmonic, factorised once: what the tyre does in small motions."""
+    """Factors of K_n for every harmonic, computed once: the tyre in small motions."""
 
     pressing: Pressing
     _factors: dict[int, Any] = field(default_factory=dict, init=False, repr=False)
-    _under: dict[int, Array] = field(default_factory=dict, init=False, repr=False)
+    _under_tread: dict[int, Array] = field(default_factory=dict, init=False, repr=False)
 
     @functools.cached_property
     def free(self) -> Indices:
-        """Degrees of freedom that are not held."""
+        """Degrees of freedom that are not fixed."""
         return self.pressing.harmonics.free
 
     @functools.cached_property
     def tread(self) -> Indices:
-        """(c m,) degrees of freedom that the road may load."""
+        """(c m,) degrees of freedom on which the road may act."""
         return self.pressing.tread.dofs.ravel()
 
     def factor(self, n: int) -> Any:
-        """SuperLU factors of a harmonic's free degrees of freedom; remembered."""
+        """SuperLU factors of a harmonic's free degrees of freedom, with a cache."""
         from scipy.sparse.linalg import splu
 
         if n not in self._factors:
@@ -54,16 +54,16 @@ class LinearFactors:
         return self._factors[n]
 
     def under_tread(self, n: int) -> Array:
-        """(n_free, c m) displacements of a harmonic under unit loads on the tread, m per N per radian; remembered."""
-        if n not in self._under:
+        """(n_free, c m) displacements of a harmonic under unit loads on the tread, m per N per radian, with a cache."""
+        if n not in self._under_tread:
             places = np.searchsorted(self.free, self.tread)
             loads = np.zeros((len(self.free), len(places)))
             loads[places, np.arange(len(places))] = 1.0
-            self._under[n] = self.factor(n).solve(loads)
-        return self._under[n]
+            self._under_tread[n] = self.factor(n).solve(loads)
+        return self._under_tread[n]
 
     def compliance(self, count: int) -> Array:
-        """(count, c m, c m) of the tread, of the first harmonics."""
+        """(count, c m, c m) compliance of the tread in the first harmonics."""
         places = np.searchsorted(self.free, self.tread)
         return np.stack([self.under_tread(n)[places] for n in range(count)])
 
@@ -76,14 +76,14 @@ class LinearFactors:
 
     @staticmethod
     def work(forces: Array, motion: Array) -> float:
-        """Work round the wheel over pi, J: twice as much for n = 0."""
+        """Work on the whole wheel over pi, J: n = 0 counts twice."""
         each = np.einsum("nd,nd->n", forces, motion)
         return float(each.sum() + each[0])
 
 
 @dataclass(frozen=True, eq=False)
 class Touching:
-    """The points of a grid that may touch, along their directions into the road.
+    """The points of possible contact, along their directions into the road.
 
     Parameters
     ----------
@@ -96,7 +96,7 @@ class Touching:
 
     @functools.cached_property
     def rows(self) -> Array:
-        """(k, (highest + 1) c m): how far amplitudes of the tread bring a point into the road."""
+        """(k, (highest + 1) c m) displacement of a point into the road per amplitude of the tread."""
         c, k = self.direction.shape
         m, highest = len(self.grid.tread.nodes), self.grid.harmonics
         angle, node, rows = np.arange(k) // m, np.arange(k) % m, np.zeros((k, highest + 1, c, m))
@@ -106,18 +106,18 @@ class Touching:
 
     @functools.cached_property
     def compliance(self) -> Array:
-        """(k, k) how far a point moves per force at another, in small motions, m/N."""
+        """(k, k) displacement of a point per force at another, in small motions, m/N."""
         k, size = len(self.rows), len(self.factors.tread)
         per_force = self.rows.reshape(k, -1, size) * self.grid.shares[:, None]
-        moved = per_force.transpose(1, 0, 2) @ self.factors.compliance(per_force.shape[1])
-        return np.asarray(moved.transpose(1, 0, 2).reshape(k, -1) @ self.rows.T)
+        displacement = per_force.transpose(1, 0, 2) @ self.factors.compliance(per_force.shape[1])
+        return np.asarray(displacement.transpose(1, 0, 2).reshape(k, -1) @ self.rows.T)
 
     def into(self, motion: Array, points: Any = slice(None)) -> Array:
-        """How far amplitudes (highest + 1, n_dofs) bring points into the road, m."""
+        """Displacement of points into the road, m, for amplitudes (highest + 1, n_dofs)."""
         return np.asarray(self.rows[points] @ motion[:, self.factors.tread].ravel())
 
     def closed(self, gaps: Array, forces: Array, start: Flags) -> Flags:
-        """(k,) which points will touch: gaps, m, under forces, N, if the tyre gives as in small motions."""
+        """(k,) contact set for gaps, m, under forces, N, with the compliance of small motions."""
         free = gaps - self.compliance @ forces
         return contact_forces(self.compliance, free, start if start.any() else None)[1]
 
@@ -131,7 +131,7 @@ class Touching:
         loads[:, self.factors.tread] = self._loads(forces, points)
         return loads
 
-    def moved(self, forces: Array, points: Any = slice(None)) -> Array:
+    def displacements(self, forces: Array, points: Any = slice(None)) -> Array:
         """(highest + 1, n_dofs) displacements under `loads` in small motions, m."""
         displacements = np.zeros((self.grid.harmonics + 1, self.factors.pressing.harmonics.elements.n_dofs))
         for n, load in enumerate(self._loads(forces, points)):
@@ -141,8 +141,8 @@ class Touching:
 
 @dataclass(frozen=True, eq=False)
 class NewtonStep:
-    """A step (highest + 1, n_dofs), m; contact forces (k,), N, with it; iterations; ``stable``: the stiffness was
-    positive in every direction that was tried."""
+    """A step (highest + 1, n_dofs), m; its contact forces (k,), N; iterations; ``stable``: the stiffness was positive
+    in all search directions."""
 
     motion: Array
     forces: Array
@@ -158,15 +158,15 @@ def newton_step(
     accuracy: float,
     least: float = 0.0,
 ) -> NewtonStep:
-    """J x + B' f = -g with B x = w on the closed points: conjugate gradients on the motions that B leaves.
+    """J x + B' f = -g with B x = w on the closed points: conjugate gradients on the motions with B x = 0.
 
-    The linear tyre, held at the same points, is the preconditioner: K^-1 - K^-1 B' (B K^-1 B')^-1 B K^-1.
+    The preconditioner is the linear tyre with the same points fixed: K^-1 - K^-1 B' (B K^-1 B')^-1 B K^-1.
 
     Parameters
     ----------
-    touching : points and linear tyre. touched : which of them (k,) touch.
-    tangent : g, inner forces, and J, their derivative. distance : w, gaps (k,) that are to close, m.
-    accuracy : what is left of the residual in the preconditioner's norm, relative. least : or of its work, J.
+    touching : points and linear tyre. touched : (k,) contact set.
+    tangent : g, internal forces, and J, their derivative. distance : w, gaps (k,) to close, m.
+    accuracy : relative residual in the preconditioner's norm. least : the same for its work, J.
     """
     from scipy.linalg import cho_factor, cho_solve
 
@@ -186,9 +186,9 @@ def newton_step(
         motion = factors.solve(residual)
         forces = solve(touching.into(motion, closed))
         total[:] += forces
-        return residual - touching.loads(forces, closed), motion - touching.moved(forces, closed)
+        return residual - touching.loads(forces, closed), motion - touching.displacements(forces, closed)
 
-    x = touching.moved(solve(distance[closed]), closed)
+    x = touching.displacements(solve(distance[closed]), closed)
     residual, change = preconditioned(free(-tangent.forces - tangent.product(x)))
     size = first = factors.work(residual, change)
     along, stable, count = change, True, 0

@@ -1,4 +1,4 @@
-"""Forces of a large motion about the inflated state, harmonic by harmonic, and their derivative."""
+"""Forces of a large motion about the inflated state, by harmonic, and their derivative."""
 
 from __future__ import annotations
 
@@ -26,21 +26,21 @@ class Tangent:
     wall: tuple[Array, Array]
 
     def product(self, change: Array) -> Array:
-        """(highest + 1, n_dofs) change of the forces for a change (highest + 1, n_dofs) of the motion."""
+        """(highest + 1, n_dofs) change of the forces due to a change (highest + 1, n_dofs) of the motion."""
         round_wheel = self.outside.round
         forces = round_wheel.forces(self.response.product(round_wheel.gradient(change)))
-        return forces + self.outside.of_support(change) + self.outside.of_wall(change, self.wall)
+        return forces + self.outside.support_forces(change) + self.outside.wall_forces(change, self.wall)
 
 
 @dataclass(frozen=True, eq=False)
 class NonlinearForces:
-    """Internal forces beyond those of the inflated state: int P : dH r dA, the pressure p (x_s x x_t) on the wall.
+    """Internal forces in excess of those of the inflated state: int P : dH r dA, pressure p (x_s x x_t) on the wall.
 
     Parameters
     ----------
     harmonics : the linear problem about the state.
     highest : harmonics of the motion.
-    law : stress; by default the state's own, or linear in Green's strain where it has none.
+    law : stress; by default that of the state, or linear in Green's strain if the state has none.
     """
 
     harmonics: Harmonics
@@ -59,7 +59,7 @@ class NonlinearForces:
 
     @functools.cached_property
     def _at_rest(self) -> Array:
-        """Forces of the state itself: what bears the rim's reaction."""
+        """Forces of the inflated state: the reaction of the rim."""
         rest = NonlinearForces(self.harmonics, 0, self.law)
         forces = np.zeros((self.highest + 1, self.harmonics.elements.n_dofs))
         forces[0] = rest._total(forces[:1], False)[0][0]
@@ -71,11 +71,11 @@ class NonlinearForces:
         return Tangent(self, forces - self._at_rest, response, wall)
 
     def forces(self, amplitudes: Array) -> Array:
-        """(highest + 1, n_dofs) forces alone, N per radian."""
+        """(highest + 1, n_dofs) forces without derivative, N per radian."""
         return np.asarray(self._total(amplitudes, False)[0] - self._at_rest)
 
     def __call__(self, amplitudes: Array) -> Array:
-        """(highest + 1, n_dofs) forces, N per radian, less the linear ones of `Harmonics`."""
+        """(highest + 1, n_dofs) forces, N per radian, minus the linear ones of `Harmonics`."""
         linear = np.stack([self.harmonics.stiffness(n) @ part for n, part in enumerate(amplitudes)])
         forces = self.forces(amplitudes) - linear
         forces[:, self.harmonics.held] = 0.0
@@ -89,18 +89,18 @@ class NonlinearForces:
             wall[0][..., 0] += n_z[..., None]
             wall[0][..., 1] -= n_r[..., None]
             wall[1][..., 2] += radii[..., None]
-        forces = self.round.forces(response.stress) + self.of_support(amplitudes)
-        return forces + self._on_wall(_cross(*wall)), response, wall
+        forces = self.round.forces(response.stress) + self.support_forces(amplitudes)
+        return forces + self._wall_loads(_cross(*wall)), response, wall
 
-    def of_support(self, change: Array) -> Array:
-        """Forces of what the body lies on."""
+    def support_forces(self, change: Array) -> Array:
+        """Forces of the body's support."""
         support = self.harmonics.state.support
         return np.zeros(()) if support is None else np.asarray((support @ np.asarray(change).T).T)
 
-    def of_wall(self, change: Array, wall: tuple[Array, Array]) -> Array:
+    def wall_forces(self, change: Array, wall: tuple[Array, Array]) -> Array:
         """Change of the pressure's forces: p (u_s x x_t + x_s x u_t)."""
         along, around = self._vectors(change)
-        return self._on_wall(_cross(along, wall[1]) + _cross(wall[0], around))
+        return self._wall_loads(_cross(along, wall[1]) + _cross(wall[0], around))
 
     @functools.cached_property
     def _wall(self) -> tuple[NDArray[np.int64], Array, Array, Array, Array, Array, Any]:
@@ -134,7 +134,7 @@ class NonlinearForces:
         v[..., 2] += here[..., 0]
         return s, v
 
-    def _on_wall(self, vectors: Array) -> Array:
+    def _wall_loads(self, vectors: Array) -> Array:
         """Forces of vectors (f, q, m, 3) per area of the parameters."""
         if not self.harmonics.state.pressure:
             return np.zeros(())
@@ -146,7 +146,7 @@ class NonlinearForces:
         return self.round.from_nodes(value, np.zeros_like(value))
 
     def second_strains(self, amplitudes: Array) -> Array:
-        """(highest + 1, 6, e, q) amplitudes of H'H/2, what Green's strain adds to the linear one; shears doubled."""
+        """(highest + 1, 6, e, q) amplitudes of H'H/2, the nonlinear part of Green's strain; shears doubled."""
         h = self.round.gradient(amplitudes)
         h = h.reshape(*h.shape[:3], 3, 3)
         (cos, _, sin), _ = self.round.waves

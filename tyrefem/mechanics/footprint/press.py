@@ -1,4 +1,4 @@
-"""A study's tyre, inflated and pressed on the road: what the command `tyrefem press` tells."""
+"""A study's tyre, inflated and pressed on the road: the results of the command `tyrefem press`."""
 
 from __future__ import annotations
 
@@ -30,12 +30,12 @@ if TYPE_CHECKING:
     from tyrefem.mechanics.solid.inflation import Inflation
 
 Array = NDArray[np.float64]
-#: What a footprint needs of a study.
+#: Requirements of a footprint on the study.
 NEEDS = Requirements("a footprint")
-#: The curve of load over deflection goes this much further than the footprint, or to just before the rim.
+#: The load-deflection curve ends at this factor beyond the footprint, or just before the rim.
 BEYOND = 1.25
 BEFORE_RIM = 0.98
-#: A narrower drum, over the tyre's diameter, is an obstacle, which these harmonics and linear contact do not resolve.
+#: Smallest drum over the tyre's diameter. Harmonics and linear contact do not resolve smaller drums, i.e. obstacles.
 SMALLEST_DRUM = 0.1
 
 
@@ -46,9 +46,9 @@ class Pressed(Brief):
     Parameters
     ----------
     study : the study. mesh : the mechanical mesh. tyre : the inflated tyre.
-    pressing : what presses it on its road. footprint : the tyre on the road.
-    tolerance : change with the number of harmonics that was allowed.
-    path : (deflection, load), m and N, on the way to a footprint in large motion; empty: linear about the inflation.
+    pressing : tyre and road with the contact solver. footprint : the tyre on the road.
+    tolerance : allowed change with the number of harmonics.
+    path : (deflection, load), m and N, of the load steps in large motion; empty: linear about the inflated state.
     """
 
     study: StudyData
@@ -67,7 +67,7 @@ class Pressed(Brief):
 
     @property
     def balanced(self) -> bool:
-        """Is the footprint in large motion?"""
+        """True if the footprint is in large motion."""
         return self.footprint.balanced is not None
 
     @property
@@ -85,26 +85,26 @@ class Pressed(Brief):
 
     @property
     def peak_pressure(self) -> float:
-        """Greatest contact pressure, Pa: at a tread's sharp edge it depends on the mesh."""
+        """Largest contact pressure, Pa; at a sharp edge of the tread it depends on the mesh."""
         return float(self.footprint.pressure.max())
 
     @property
     def speed(self) -> float:
-        """Speed of the drive's first phase, m/s: where it starts, or where it ends if it starts at rest."""
+        """Speed at the start of the drive's first phase, m/s; at its end if it starts at rest."""
         phase = self.study.card.drive.phases[0]
         return motion_in(phase, 0.0).speed or motion_in(phase, 1.0).speed
 
     @functools.cached_property
     def cycle(self) -> StrainHarmonics:
-        """Strains round the wheel."""
+        """Strains over a revolution."""
         from tyrefem.mechanics.footprint.strain_harmonics import StrainHarmonics
 
         return StrainHarmonics(self.footprint)
 
     @functools.cached_property
     def left_out(self) -> tuple[float, float, str]:
-        """What linearised strains leave out of Green's, over themselves (`StrainHarmonics.coarseness`): root mean
-        square by volume, the greatest of an element, and its region."""
+        """Ratio of Green's strain minus its linear part to the linear part (`StrainHarmonics.coarseness`): root mean
+        square by volume, largest value of an element, and the region of that element."""
         coarse = self.cycle.coarseness()
         worst = int(np.argmax(coarse))
         volumes = self.cycle.elements.weights.sum(axis=1)
@@ -123,7 +123,7 @@ class Pressed(Brief):
 
     @property
     def published(self) -> tuple[PublishedComparison, ...]:
-        """The results beside the study's published ranges."""
+        """The results with the study's published ranges."""
         from tyrefem.inputs.published import compared, of_footprint
 
         values = of_footprint(self.footprint)
@@ -132,21 +132,21 @@ class Pressed(Brief):
         return compared(self.study.card.published, values)
 
     def curve(self, count: int = 10) -> Array:
-        """(n, 2) deflection, m, and load, N, from the free tyre on, with as many harmonics as the footprint; in large
-        motion those balanced on the way, and the footprint."""
+        """(n, 2) deflection, m, and load, N, from zero load, with the same number of harmonics as the footprint; in
+        large motion the load steps and the footprint."""
         if self.balanced:
             before = [point for point in self.path if point[0] < 0.99 * self.footprint.deflection]
             return np.array([*before, (self.footprint.deflection, self.footprint.load)])
         last = min(BEYOND * self.footprint.deflection, BEFORE_RIM * self.pressing.bottoming)
         deflections = np.linspace(0.0, last, count + 1)
-        # The largest first: its grid of angles serves the others.
+        # The largest first: its grid of angles is used for the others.
         loads = [
             self.pressing.at_deflection(float(point), self.footprint.harmonics).load for point in deflections[:0:-1]
         ]
         return np.column_stack([deflections, [0.0, *loads[::-1]]])
 
     def summary(self) -> dict[str, Any]:
-        """Everything in SI, as the keys say; versions, mesh and tolerance."""
+        """All results in SI as the keys state, with versions, mesh and tolerance."""
         from tyrefem.output import versions
 
         footprint, loss = self.footprint, self.loss
@@ -204,7 +204,7 @@ def press(
     tolerance: float = TOLERANCE,
     balanced: bool = False,
 ) -> Pressed:
-    """Inflate a study's tyre and press it on the road; what is not given is that of the drive's first phase's start.
+    """Inflate a study's tyre and press it on the road; defaults are the values at the start of the drive's first phase.
 
     Parameters
     ----------
@@ -212,14 +212,14 @@ def press(
     pressure : Pa above the ambient, positive.
     load, deflection : N or m, positive; at most one of them.
     drum_diameter : m; infinite for a flat road.
-    camber : rad; positive: the side z > 0 comes down. A half section is made whole by its mirror image.
-    tolerance : change with the number of harmonics that the footprint may keep.
+    camber : rad; positive: the side z > 0 moves down. A half section is completed by its mirror image.
+    tolerance : allowed change with the number of harmonics.
     balanced : in large motion (`footprint.balance`) instead of linear about the inflated state: slower.
 
     Raises
     ------
-    InputError : a campaign; a value that is not positive; both load and deflection; no equilibrium; more than the
-        tyre can carry.
+    InputError : a campaign; a value that is not positive; both load and deflection; no equilibrium; a load that the
+        tyre cannot carry.
 
     >>> from tyrefem import study
     >>> pressed = press(study("nasa-22x5.5-8pr", {"mesh.size": "12 mm"}), deflection=0.015)

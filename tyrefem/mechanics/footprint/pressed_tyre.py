@@ -1,4 +1,4 @@
-"""A study's tyre inflated and pressed on its road by finite elements: each pressure, road and load once."""
+"""A study's tyre inflated and pressed on its road by finite elements, with a cache of pressures, roads and loads."""
 
 from __future__ import annotations
 
@@ -24,20 +24,22 @@ if TYPE_CHECKING:
     from tyrefem.mechanics.footprint.footprint import Footprint
     from tyrefem.mechanics.solid.inflation import Inflation
 
-#: Change with the number of harmonics that the footprint may keep.
+#: Allowed change with the number of harmonics.
 TOLERANCE = 0.02
-#: Nine-node elements are this much larger than those of the study's mesh.
+#: Size of nine-node elements over that of the study's mesh.
 COARSER = 2.0
-#: Pressures with roads, and loads on them, that a tyre remembers: a ramp has nine. About 40 MB each.
+#: Numbers of pressures with roads, and of loads, that a tyre keeps: a ramp has nine. About 40 MB each.
 REMEMBERED = 10
-#: Tyres that a process remembers: the study as it is, and the last one with another stiffness.
+#: Number of tyres that a process keeps: the study's tyre, and the last one with another stiffness.
 TYRES = 2
 
 
 def mechanical_mesh(study: StudyData, *, large: bool | None = None) -> TyreMesh:
-    """The study's own mesh file; gmsh's quadrilaterals where the study asks for these; otherwise a mapped mesh of
-    nine-node elements twice as large as the study asks for, also beside gmsh's triangles (nine-node elements need
-    quadrilaterals; energies go over by region and place). ``large``: for large motion; None: as the study says.
+    """The study's mesh file; gmsh's quadrilaterals if the study has these; otherwise a mapped mesh.
+
+    The mapped mesh has nine-node elements twice as large as the study's, also if the study has gmsh's triangles
+    (nine-node elements need quadrilaterals; energies are interpolated by region and place). ``large``: for large
+    motion; None: as in the study.
 
     Raises
     ------
@@ -61,7 +63,7 @@ def mechanical_mesh(study: StudyData, *, large: bool | None = None) -> TyreMesh:
 
 
 def _check_memory(study: StudyData, mesher: str, size: float, large: bool) -> None:
-    """Refuse a mesh on which the footprint has no room."""
+    """Raise an error for a mesh whose footprint does not fit into the memory."""
 
     def nodes(size: float) -> float:
         return QUADRATIC * expected_nodes(study.section, size, mesher=mesher)
@@ -91,18 +93,18 @@ class PressedTyre:
 
         Raises
         ------
-        InputError : no pressure; no equilibrium.
+        InputError : the pressure is not positive; no equilibrium.
         """
         if pressure <= 0:
             raise InputError("the strain laws 'fem' and 'barrel' need an inflated tyre", field="pressure")
         return self._inflated(pressure)
 
     def footprint(self, case: LoadCase, *, large: bool) -> Footprint | None:
-        """The tyre on the road of a load case, at its load or its deflection; None: it carries nothing.
+        """The tyre on the road of a load case, at its load or its deflection; None: the load is zero.
 
         Raises
         ------
-        InputError : as `inflated`; a load that the tyre cannot carry, a deflection that is impossible.
+        InputError : errors of `inflated`; a load that the tyre cannot carry, a deflection that is impossible.
         """
         given = case.deflection if case.by_deflection else case.load
         if given <= 0:
@@ -139,20 +141,20 @@ class PressedTyre:
         return pressed
 
 
-#: The latest tyres, by all that their finite elements depend on. A run whose study differs in other numbers
-#: (conductivity, films, sensors) finds its tyre here, solved.
+#: The latest tyres, by all inputs of their finite elements. A run with other numbers that do not matter here
+#: (conductivity, films, sensors) reuses the solved tyre.
 REMEMBERED_TYRES: Cache[PressedTyre] = Cache(size=TYRES)
 
 
 def pressed_tyre(study: StudyData) -> PressedTyre:
-    """The tyre of a study: a remembered one, if all that its finite elements depend on is the same."""
+    """The tyre of a study; a cached one if all inputs of its finite elements are the same."""
     return REMEMBERED_TYRES.get(inputs(study), lambda: PressedTyre(study))
 
 
 def inputs(study: StudyData) -> Hashable:
-    """All that a study's finite elements depend on, apart from load, pressure and road: equal for equal tyres.
+    """All inputs of a study's finite elements except load, pressure and road: equal for equal tyres.
 
-    The section, the choice of mesh with its file's content, and of every card what `strain.reads` names.
+    These are the section, the choice of mesh with its file's content, and the card values that `strain.reads` names.
     """
     choice = study.card.mesh
     content = ""

@@ -39,7 +39,7 @@ class Hexahedra:
 
     Raises
     ------
-    InputError : a state that lies on a rim's flange: only fixed boundaries are known here.
+    InputError : a state supported by a rim's flange: only fixed boundaries are implemented here.
     """
 
     state: Prestressed
@@ -65,7 +65,7 @@ class Hexahedra:
         return skfem.Basis(mesh, skfem.ElementHex2(), intorder=INTORDER)
 
     def _of_section(self, field: Array) -> Array:
-        """A field at the section's Gauss points (..., e, q) at those of the hexahedra (..., layers e, q')."""
+        """A field (..., e, q) at the section's Gauss points, at those of the hexahedra (..., layers, e, q')."""
         return np.concatenate([field[..., self._point]] * (len(self.angles) - 1), axis=-2)
 
     @functools.cached_property
@@ -220,11 +220,11 @@ class Hexahedra:
         loads = np.zeros((COMPONENTS * places.shape[1], len(tread)))
         loads[COMPONENTS * tread, np.arange(len(tread))] = np.cos(t[tread])
         loads[COMPONENTS * tread + 2, np.arange(len(tread))] = -np.sin(t[tread])
-        moved = np.zeros_like(loads)
-        moved[free] = factor.solve(np.ascontiguousarray(loads[free]))
+        displacements = np.zeros_like(loads)
+        displacements[free] = factor.solve(np.ascontiguousarray(loads[free]))
         gaps = reach - deflection - r[tread] * np.cos(t[tread])
-        forces, _ = contact_forces(loads.T @ moved, gaps)
-        return PressedHexahedra(4 * float(forces.sum()), forces, t[tread], -(moved @ forces))
+        forces, _ = contact_forces(loads.T @ displacements, gaps)
+        return PressedHexahedra(4 * float(forces.sum()), forces, t[tread], -(displacements @ forces))
 
     def strain(self, displacement: Array) -> tuple[Array, Array]:
         """(3, e, q) places and (6, e, q) strains at the Gauss points."""

@@ -1,4 +1,4 @@
-"""What a tyre is pressed against: a flat road or a drum, its plane tilted by camber."""
+"""The road: flat or a drum, with its plane tilted by camber."""
 
 from __future__ import annotations
 
@@ -15,7 +15,7 @@ Array = NDArray[np.float64]
 
 @dataclass(frozen=True)
 class Road:
-    """A flat road, or the outside of a drum whose axis is parallel to the road and square to the travel.
+    """A flat road, or the outside of a drum whose axis is parallel to the road and perpendicular to the travel.
 
     Coordinates are (x forward, y down, z along the wheel's axis) from the wheel's centre; the road's top is at
     ``distance`` along its normal (0, cos camber, sin camber).
@@ -23,7 +23,7 @@ class Road:
     Parameters
     ----------
     drum_diameter : m; infinite for a flat road.
-    camber : rad; positive: the side z > 0 comes down.
+    camber : rad; positive: the side z > 0 moves down.
 
     >>> gap, _ = Road().gaps(np.array([[0.0], [0.28], [0.0]]), distance=0.30)
     >>> round(float(gap[0]), 6)
@@ -41,27 +41,27 @@ class Road:
         if not abs(self.camber) < 0.6:
             raise InputError("camber must lie between -0.6 and 0.6 rad", field="camber")
 
-    def turned(self, points: Array) -> Array:
+    def in_road_axes(self, points: Array) -> Array:
         """(3, ...) points with y along the road's normal."""
         cos, sin = math.cos(self.camber), math.sin(self.camber)
         x, y, z = points
         return np.stack([x, cos * y + sin * z, cos * z - sin * y])
 
     def lowest(self, nodes: Array) -> float:
-        """How far the free tyre (nodes (2, n) in (r, z)) reaches towards the road, m."""
+        """Reach of the free tyre (nodes (2, n) in (r, z)) towards the road, m."""
         r, z = nodes
-        return float(self.turned(np.stack([np.zeros_like(r), r, z]))[1].max())
+        return float(self.in_road_axes(np.stack([np.zeros_like(r), r, z]))[1].max())
 
     def gaps(self, points: Array, distance: float) -> tuple[Array, Array]:
-        """Gap of points (3, ...), m, and unit vectors (3, ...) from them into the road."""
-        x, y, _ = self.turned(points)
+        """Gaps of points (3, ...), m, and unit vectors (3, ...) from them into the road."""
+        x, y, _ = self.in_road_axes(points)
         if math.isinf(self.drum_diameter):
             gap, along, down = distance - y, np.zeros_like(y), np.ones_like(y)
         else:
             radius = self.drum_diameter / 2
             depth = distance + radius - y
             length = np.hypot(x, depth)
-            # sqrt(x^2 + depth^2) - radius without the loss of digits on a large drum.
+            # sqrt(x^2 + depth^2) - radius without cancellation for a large drum.
             gap = (x * x + (depth - radius) * (depth + radius)) / (length + radius)
             along, down = -x / length, depth / length
         cos, sin = math.cos(self.camber), math.sin(self.camber)

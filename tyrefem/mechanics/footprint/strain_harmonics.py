@@ -1,4 +1,4 @@
-"""The strain of every point of the section round the wheel."""
+"""The strain of every point of the section over a revolution."""
 
 from __future__ import annotations
 
@@ -19,7 +19,7 @@ COMPONENTS = ("rr", "zz", "tt", "rz", "rt", "zt")
 
 @dataclass(frozen=True)
 class LargestEdgeShear:
-    """Largest shear strain round the wheel at the edge of a region: its range, place (r, z) in m and component."""
+    """Largest shear strain range over a revolution at the edge of a region; its place (r, z), m, and component."""
 
     range: float
     place: tuple[float, float]
@@ -30,7 +30,7 @@ class LargestEdgeShear:
 class StrainHarmonics:
     """Strain e(t) = sum e_n (cos n t for rr, zz, tt, rz; sin n t for rt, zt) at the Gauss points, beyond inflation.
 
-    t is the angle from the middle of the footprint; a point of a tyre that rolls steadily runs through it once per
+    t is the angle from the middle of the footprint. A point of a steadily rolling tyre runs through it once per
     revolution. Shears are engineering strains.
     """
 
@@ -80,7 +80,7 @@ class StrainHarmonics:
     def along(self, direction: Array, angles: Array, elements: Any = slice(None)) -> Array:
         """(n_elements, n_points, n_angles) strain along unit vectors (3, n_elements, n_points) in (r, z, t).
 
-        Times the cords' modulus and area this is the change of the cord tension round the wheel.
+        Times modulus and area of a cord this is the change of its tension over a revolution.
         """
         r, z, t = np.asarray(direction)
         weights = np.stack([r * r, z * z, t * t, r * z, r * t, z * t])
@@ -128,9 +128,9 @@ class StrainHarmonics:
         return products
 
     def largest_energy(self, count: int = 180) -> Array:
-        """(n_elements, n_points) U = 1/2 de : C' : de at its largest over the angle, J/m3.
+        """(n_elements, n_points) U = 1/2 de : C' : de, largest over the angle, J/m3.
 
-        de is the strain less that opposite the footprint, where the tyre is as inflated.
+        de is the strain minus that opposite the footprint, where the tyre has its inflated shape.
         """
         largest = np.zeros(self.elements.radii.shape)
         storage = np.moveaxis(self.footprint.pressing.state.storage, (0, 1), (-2, -1))
@@ -141,10 +141,10 @@ class StrainHarmonics:
         return largest
 
     def coarseness(self, angles: Array | None = None) -> Array:
-        """(n_elements,) how far the linearised strain is from Green's, by element: root of the ratio of
+        """(n_elements,) error of the linearised strain against Green's, by element: root of the ratio of
         int |H' H / 2|^2 to int |e|^2 over section and revolution (tensor norms).
 
-        Where it nears 1 rotations, not strains, govern, and the linearised strain cycle there is an estimate only.
+        Where it is near 1, rotations exceed strains, and the linearised strain cycle is an estimate only.
         """
         angles = np.linspace(0, np.pi, 37) if angles is None else angles
         second, first = np.zeros((2, len(self.elements.radii)))

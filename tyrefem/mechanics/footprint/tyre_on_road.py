@@ -48,12 +48,12 @@ class TyreOnRoad(Brief):
 
     @functools.cached_property
     def reach(self) -> float:
-        """How far the free tyre reaches towards the road, m."""
+        """Reach of the free tyre towards the road, m."""
         return self.road.lowest(self.tread.places)
 
     @functools.cached_property
     def bottoming(self) -> float:
-        """Deflection at which the crown's inner surface would meet the highest held point (the rim's flange), m."""
+        """Deflection at which the crown's inner surface would meet the highest fixed point (the rim's flange), m."""
         elements, state = self.harmonics.elements, self.state
         held = [elements.nodes[0, elements.boundary_nodes(name)].max() for name in state.fixed]
         held += [state.rim_top] if state.rim_top else []

@@ -20,7 +20,7 @@ class TwoArcStrains(StrainLaw):
     title: ClassVar[str] = "arcs"
 
     def provider(self, study: StudyData) -> Callable[[LoadCase], Arcs]:
-        """Raises `InputError` for a card that lacks a modulus; when called: a load that the arcs cannot take."""
+        """Raises `InputError` for a card without a modulus; its result, for a load that the arcs cannot take."""
         moduli = stiffness(study)
 
         def cycle(case: LoadCase) -> Arcs:

@@ -1,4 +1,4 @@
-"""``mechanics.strain = "barrel"``: every meridian deflected alike, by finite elements."""
+"""``mechanics.strain = "barrel"``: all meridians have the same deflection, by finite elements."""
 
 from __future__ import annotations
 

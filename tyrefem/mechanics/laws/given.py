@@ -1,4 +1,4 @@
-"""``mechanics.strain = "given"``: strain energy that the study itself gives, region by region."""
+"""``mechanics.strain = "given"``: strain energy given in the study by region."""
 
 from __future__ import annotations
 

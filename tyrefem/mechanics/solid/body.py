@@ -1,6 +1,6 @@
 """An axisymmetric body of compounds and cord layers in large displacement: forces, stiffness, state.
 
-The state of an inflated body, as a small further motion sees it.
+The state of an inflated body is the start of small further motions.
 """
 
 from __future__ import annotations
@@ -42,9 +42,9 @@ class Prestressed(Brief):
     bulk : (n_elements, n_points) bulk stiffness, Pa, that acts on the projected dilatation.
     storage : (6, 6, n_elements, n_points) the part of ``tangent`` that dissipates, Pa.
     pressure : gauge pressure, Pa, that follows the boundary ``pressurised``.
-    fixed : boundaries that are held.
-    pressurised, tread : boundaries under pressure, and that may touch the road.
-    support : sparse (3 n_nodes, 3 n_nodes) stiffness of what the body lies on, N/m per radian, component c of (r, z, t)
+    fixed : boundaries without displacement.
+    pressurised, tread : boundary under pressure; boundary that may touch the road.
+    support : sparse (3 n_nodes, 3 n_nodes) stiffness of the body's support, N/m per radian, component c of (r, z, t)
         of node i at 3 i + c; alike for every harmonic. None: nothing but ``fixed``.
     rim_top : largest radius of the rim, m, where it is more than that of ``fixed``.
     symmetric : boundary on the mid plane of a half section, where u_z = 0; a mesh without it is a full section.
@@ -76,7 +76,7 @@ class Body(Brief):
     ----------
     mesh : skfem ``MeshQuad`` in (r, z), m, undeformed; subdomains and boundaries named.
     parts : region -> what it is made of; every element belongs to one region.
-    held : boundary -> components held: ``"rz"``, ``"r"`` or ``"z"``.
+    held : boundary -> fixed components: ``"rz"``, ``"r"`` or ``"z"``.
     pressurised : boundaries under the following pressure.
     flanges : rigid rings on which the body may lie.
 
@@ -111,7 +111,7 @@ class Body(Brief):
 
     @functools.cached_property
     def wall(self) -> PressedWall:
-        """Where the pressure acts."""
+        """Edges on which the pressure acts."""
         return PressedWall(self.rings, self.pressurised)
 
     @functools.cached_property
@@ -124,7 +124,7 @@ class Body(Brief):
 
     @functools.cached_property
     def free(self) -> Indices:
-        """Degrees of freedom 2 i + c that are not held."""
+        """Degrees of freedom 2 i + c that are not fixed."""
         free = np.ones(2 * self.rings.n_nodes, dtype=bool)
         for boundary, components in self.held.items():
             for component in components:
@@ -151,8 +151,8 @@ class Body(Brief):
         moments = functions.transpose(0, 2, 1) @ (weights * volume)[..., None]
         return np.asarray(self.bulk[:, None] * ((functions @ moments)[..., 0] - 1))
 
-    def _gathered(self, deformation: Array, method: str, axes: tuple[int, ...]) -> tuple[Array, Array]:
-        """A quantity of the compounds and of the cords (there weighted 1 and with their loss)."""
+    def _sum_of_parts(self, deformation: Array, method: str, axes: tuple[int, ...]) -> tuple[Array, Array]:
+        """A quantity of the compounds and of the cords, and the same with the cords weighted by their loss."""
         shape = (*axes, *self.rings.weights.shape)
         total, losing = np.zeros(shape), np.zeros(shape)
         for name, part in self.parts.items():
@@ -168,14 +168,14 @@ class Body(Brief):
         """Elastic energy per radian, J."""
         f = self.deformation(displacement)
         dilatation = self.pressure(determinant(f)) / self.bulk[:, None]
-        density = self._gathered(f, "energy", ())[0] + self.bulk[:, None] / 2 * dilatation**2
+        density = self._sum_of_parts(f, "energy", ())[0] + self.bulk[:, None] / 2 * dilatation**2
         lying = sum(flange.energy(self.rings.nodes + displacement) for flange in self.flanges)
         return float((density * self.rings.weights).sum() + lying)
 
     # -- forces and stiffness ----------------------------------------------------------------------------------------
 
     def residual(self, displacement: Array, pressure: float) -> Array:
-        """(2 n_nodes,) inner forces less those of ``pressure`` (Pa) and of the flanges, N per radian."""
+        """(2 n_nodes,) internal forces minus those of ``pressure`` (Pa) and of the flanges, N per radian."""
         f = self.deformation(displacement)
         stress, _, _ = self._stresses(f)
         strains, _ = self._strains(displacement, f)
@@ -187,7 +187,7 @@ class Body(Brief):
         return forces - pressure * self.load(displacement)
 
     def load(self, displacement: Array) -> Array:
-        """(2 n_nodes,) force of unit pressure in the present place, m2 per radian."""
+        """(2 n_nodes,) force of unit pressure in the deformed configuration, m2 per radian."""
         forces = np.zeros(2 * self.rings.n_nodes)
         force = self.wall.force(self.rings.nodes + displacement)
         np.add.at(forces, _dofs(self.wall.nodes), force.reshape(len(force), -1))
@@ -228,18 +228,18 @@ class Body(Brief):
         """Kirchhoff stress (6, ...), pressure p and J."""
         volume = determinant(f)
         p = self.pressure(volume)
-        stress = self._gathered(f, "stress", (6,))[0]
+        stress = self._sum_of_parts(f, "stress", (6,))[0]
         stress[:3] += p * volume
         return stress, p, volume
 
     def _tangent(self, f: Array, p: Array, volume: Array) -> tuple[Array, Array]:
-        """J c without the bulk stiffness, and the part of it that dissipates."""
-        tangent, losing = self._gathered(f, "tangent", (6, 6))
+        """J c without the bulk stiffness, and the dissipating part of it."""
+        tangent, losing = self._sum_of_parts(f, "tangent", (6, 6))
         ones = over(outer(UNIT, UNIT) - 2 * SYMMETRIC_UNIT, p.shape)
         return tangent + p * volume * ones, losing
 
     def _strains(self, displacement: Array, f: Array) -> tuple[Array, Array]:
-        """Matrix (n_elements, n_points, 4, 18) from displacements to e_rr, e_zz, e_tt, g_rz; present gradients."""
+        """Matrix (n_elements, n_points, 4, 18) from displacements to e_rr, e_zz, e_tt, g_rz; gradients as deformed."""
         plane = f[0, 0] * f[1, 1] - f[0, 1] * f[1, 0]
         by_r, by_z = self.rings.gradients
         r = (f[1, 1][..., None] * by_r - f[1, 0][..., None] * by_z) / plane[..., None]
@@ -271,8 +271,8 @@ class Body(Brief):
 
     # -- results -----------------------------------------------------------------------------------------------------
 
-    def moved(self, displacement: Array) -> Any:
-        """The mesh in its present place: skfem ``MeshQuad2`` with the same regions and boundaries."""
+    def deformed_mesh(self, displacement: Array) -> Any:
+        """The deformed mesh: skfem ``MeshQuad2`` with the same regions and boundaries."""
         import skfem
 
         curved = skfem.MeshQuad2.from_mesh(self.mesh)
@@ -282,14 +282,14 @@ class Body(Brief):
         return replace(curved, doflocs=locations, _subdomains=self.mesh.subdomains, _boundaries=self.mesh.boundaries)
 
     def state(self, displacement: Array, pressure: float) -> Prestressed:
-        """What a small further motion sees of the present place."""
+        """The deformed state as the start of a small further motion."""
         f = self.deformation(displacement)
         stress, p, volume = self._stresses(f)
         tangent, losing = self._tangent(f, p, volume)
         fixed = tuple(name for name, components in self.held.items() if set(components) == {"r", "z"})
         bulk = self.bulk[:, None] * volume
         return Prestressed(
-            self.moved(displacement), stress / volume, tangent / volume, bulk, losing / volume, pressure,
+            self.deformed_mesh(displacement), stress / volume, tangent / volume, bulk, losing / volume, pressure,
             fixed=fixed, pressurised=self.pressurised,
             support=self._support(displacement, 3) if self.flanges else None,
             rim_top=max((flange.centre[0] + flange.radius for flange in self.flanges), default=0.0),

@@ -11,7 +11,7 @@ from tyrefem.errors import InputError
 from tyrefem.mechanics.solid.elements import SYMMETRIC_UNIT, UNIT, box, components, outer, over
 
 Array = NDArray[np.float64]
-#: Bulk modulus over shear modulus where none is given: Poisson's ratio 0.495.
+#: Default of bulk modulus over shear modulus: Poisson's ratio 0.495.
 BULK_RATIO = 100.0
 
 
@@ -46,7 +46,7 @@ class Compound:
 
     @property
     def shear_modulus(self) -> float:
-        """Of small strains, Pa."""
+        """Shear modulus at small strain, Pa."""
         return 2 * (self.c10 + self.c01)
 
     @property

@@ -19,7 +19,7 @@ class CordLayer:
 
     W' = v_c E (lambda - 1), lambda = |F d|, averaged over d = (sin a m, +-cos a), m along the meridian  [J/m3].
 
-    In compression W' = - C x/(1 + C x/Y), x = 1 - lambda, C = v_c E_c: it levels off at Y. A layer whose cords do not
+    In compression W' = - C x/(1 + C x/Y), x = 1 - lambda, C = v_c E_c: it approaches Y. A layer whose cords do not
     resist bending is unstable, at any wavelength, once the compression along its cords reaches the shear modulus of
     the rubber (Rosen 1965, Mechanics of composite strengthening: the shear mode of microbuckling).
 
@@ -29,7 +29,7 @@ class CordLayer:
     meridian : (2, ...) unit vector (r, z) along the meridian.
     stiffness : (...) v_c E in tension, Pa: the cords' share of the volume times their modulus.
     compression : v_c E in compression over that in tension, C / (v_c E).
-    limit : Y, Pa, the most that the layer carries in compression along its cords.
+    limit : Y, Pa, largest compression along the cords.
     cord_stiffness : E A of one cord, N; None where only ``stiffness`` is known.
 
     >>> layer = CordLayer(np.array(0.0), np.array([0.0, 1.0]), np.array(1e9), cord_stiffness=1e4)
@@ -53,14 +53,14 @@ class CordLayer:
 
     def stretch(self, deformation: Array) -> Array:
         """lambda of the cords (the same at +angle and -angle where there is no twist)."""
-        return np.asarray(np.linalg.norm(self._carried(deformation)[0], axis=0))
+        return np.asarray(np.linalg.norm(self._deformed_directions(deformation)[0], axis=0))
 
     def tension(self, deformation: Array) -> Array:
         """Tension of a cord, N: E A (lambda - 1), less in compression.
 
         Raises
         ------
-        InputError : the cords' own stiffness is not known.
+        InputError : the stiffness of one cord is not known.
         """
         if self.cord_stiffness is None:
             raise InputError("the tension of one cord needs its modulus and diameter; its layer gives only their sum")
@@ -76,13 +76,13 @@ class CordLayer:
 
     def energy(self, deformation: Array) -> Array:
         """W, J/m3."""
-        stretches = [np.linalg.norm(a, axis=0) for a in self._carried(deformation)]
+        stretches = [np.linalg.norm(a, axis=0) for a in self._deformed_directions(deformation)]
         return np.asarray(sum(self._law(x)[0] / 2 for x in stretches))
 
     def stress(self, deformation: Array) -> Array:
         """Kirchhoff stress: mean of W'/lambda a a, a = F d; Pa, (6, ...)."""
         total: Array = np.zeros(())
-        for carried in self._carried(deformation):
+        for carried in self._deformed_directions(deformation):
             x = np.linalg.norm(carried, axis=0)
             dyad = components(carried[:, None] * carried[None])
             total = total + self._law(x)[1] / x / 2 * dyad
@@ -91,7 +91,7 @@ class CordLayer:
     def tangent(self, deformation: Array) -> Array:
         """Spatial tangent J c: mean of (W'' - W'/lambda)/lambda^2 a a a a; Pa, (6, 6, ...)."""
         total: Array = np.zeros(())
-        for carried in self._carried(deformation):
+        for carried in self._deformed_directions(deformation):
             x = np.linalg.norm(carried, axis=0)
             dyad = components(carried[:, None] * carried[None])
             _, slope, curvature = self._law(x)
@@ -109,7 +109,7 @@ class CordLayer:
             energy, slope, curvature = energy * levelled, slope / (1 + part), curvature / (1 + part) ** 2
         return energy, slope, curvature
 
-    def _carried(self, deformation: Array) -> tuple[Array, Array]:
+    def _deformed_directions(self, deformation: Array) -> tuple[Array, Array]:
         first, second = (np.einsum("ij...,j...->i...", deformation, d) for d in self.directions)
         return first, second
 
@@ -135,6 +135,6 @@ def lifted_angle(angle: float, radius: float, at: Array) -> Array:
 
 
 def lifted_ends(angle: float, radius: float, at: Array) -> Array:
-    """Cords per metre across them over that at ``radius``: as many cross every parallel, e r sin a = constant."""
+    """Cords per metre across them over the value at ``radius``: each parallel has as many, e r sin a = constant."""
     here = lifted_angle(angle, radius, at)
     return np.asarray(radius * np.sin(angle) / (np.asarray(at) * np.sin(here)))

@@ -19,9 +19,9 @@ CLOSED = 1e-12
 
 @dataclass(frozen=True)
 class CylinderChoice:
-    """How equilibrium is sought: ``tolerance``, force out of balance over that of pressure and contact; ``iterations``,
-    most per step; ``first_step``, ``smallest_step`` of the deflection, over the radius; ``halvings`` of a Newton step
-    that folds."""
+    """Settings of the search for equilibrium. ``tolerance``: unbalanced force over that of pressure and contact.
+    ``iterations``: most per step. ``first_step``, ``smallest_step``: of the deflection, over the radius. ``halvings``:
+    most of a Newton step that folds the mesh."""
 
     tolerance: float = 1e-9
     iterations: int = 25
@@ -31,20 +31,21 @@ class CylinderChoice:
 
 
 class StuckError(Exception):
-    """A step that did not converge: where it is worst."""
+    """A step that did not converge; the message gives the place of the largest error."""
 
 
 def equilibrium_inside(
     body: Body, pressure: float, nodes: Indices, start: Array, forces: Array, radius: float, choice: CylinderChoice
 ) -> tuple[Array, Array, tuple[float, ...]]:
-    """The body inside one cylinder: displacement, contact forces, history of the force out of balance.
+    """The body inside one cylinder: displacement, contact forces, history of the unbalanced force.
 
-    u_r <= radius - r and inward force >= 0 at every node that may touch, never both: a node is closed where
-    force - stiffness * gap > 0 (primal-dual active set; Hintermuller, Ito & Kunisch 2003), and a Newton step closes it.
+    u_r <= radius - r and inward force >= 0 at every node of the contact, never both. A node is closed where
+    force - stiffness * gap > 0 (primal-dual active set; Hintermuller, Ito & Kunisch 2003); a Newton step closes its
+    gap.
 
     Parameters
     ----------
-    pressure : of the gas, Pa, constant. nodes : that may touch. radius : of the cylinder, m.
+    pressure : of the gas, Pa, constant. nodes : of the contact. radius : of the cylinder, m.
     start, forces : displacement (2, n_nodes), m, and inward forces (n_contact_nodes,), N per radian, to start from.
 
     Raises
@@ -54,7 +55,7 @@ def equilibrium_inside(
     from scipy.sparse.linalg import splu
 
     now, history = start, []
-    closed, moved = np.zeros(len(nodes), dtype=bool), np.inf
+    closed, largest_change = np.zeros(len(nodes), dtype=bool), np.inf
     for _ in range(choice.iterations + 1):
         if (at := _folded(body, now)) is not None:
             raise StuckError(at)
@@ -62,15 +63,16 @@ def equilibrium_inside(
         matrix = body.stiffness(now, pressure)
         gaps = radius - body.rings.nodes[0, nodes] - now[0, nodes]
         before = closed
-        # Any positive stiffness decides alike once gaps or forces vanish; the matrix's own keeps the units right.
+        # Any positive stiffness gives the same sets once gaps or forces vanish; the matrix's diagonal has the right
+        # units.
         closed = forces - matrix.diagonal()[2 * nodes] * gaps > 0
         held = 2 * nodes[closed]
         free = np.setdiff1d(body.free, held)
         size = pressure * np.linalg.norm(body.load(now)[body.free]) + np.linalg.norm(residual[held])
         history.append(float(np.linalg.norm(residual[free]) / size) if size else 0.0)
         shut = np.abs(gaps[closed]).max(initial=0.0) <= CLOSED * radius
-        settled = history[-1] <= choice.tolerance or moved <= ROUND_OFF * radius
-        if settled and shut and np.isfinite(moved) and (closed == before).all():
+        converged = history[-1] <= choice.tolerance or largest_change <= ROUND_OFF * radius
+        if converged and shut and np.isfinite(largest_change) and (closed == before).all():
             return now, np.where(closed, -residual[2 * nodes], 0.0), tuple(history)
         if not np.isfinite(history[-1]):
             break
@@ -85,13 +87,13 @@ def equilibrium_inside(
             if _folded(body, now + share * change.reshape(-1, 2).T) is None:
                 break
             share /= 2
-        now, moved = now + share * change.reshape(-1, 2).T, float(np.abs(change).max())
+        now, largest_change = now + share * change.reshape(-1, 2).T, float(np.abs(change).max())
         forces = np.where(closed, -(residual + matrix @ change)[2 * nodes], 0.0)
     raise StuckError(_worst(body, residual, free))
 
 
 def _folded(body: Body, displacement: Array) -> str | None:
-    """Where an element is turned over; None: nowhere."""
+    """Description of a place where an element is inverted; None: there is none."""
     f = body.deformation(displacement)
     volume = np.minimum(determinant(f), f[2, 2])
     if (volume > 0).all():

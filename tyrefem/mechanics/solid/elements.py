@@ -1,7 +1,6 @@
 """Nine-node rings: shape functions, Gauss points, projected dilatation, boundaries, edges under pressure.
 
-Large displacements take them as they are; harmonics (`tyrefem.mechanics.footprint.elements`) build their strains on
-them.
+Large displacements use them directly; `tyrefem.mechanics.footprint.elements` builds the strains of harmonics on them.
 
 Symmetric tensors as six components rr, zz, tt, rz, rt, zt; any shape of points after the first axes.
 """
@@ -57,7 +56,7 @@ class Rings:
 
     @functools.cached_property
     def nodes(self) -> Array:
-        """(2, n_nodes) places of the nodes, m."""
+        """(2, n_nodes) positions of the nodes, m."""
         return np.asarray(self.basis.doflocs)
 
     @functools.cached_property
@@ -141,7 +140,7 @@ def edge_functions(count: int) -> tuple[Array, Array, Array]:
 
 @dataclass(frozen=True, eq=False)
 class PressedWall:
-    """Edges of a boundary under a pressure that follows them; force on the body per radian
+    """Edges of a boundary under a follower pressure; force on the body per radian
 
     f = -p int N n r ds,  n r ds = +-(r dz, -r dr) outwards  [N].
     """
@@ -170,7 +169,7 @@ class PressedWall:
         return np.stack([np.einsum("fq,qa->fa", signed * part, values) for part in (dz, -dr)], axis=-1)
 
     def stiffness(self, places: Array) -> Array:
-        """(n_edges, 3, 2, 3, 2) derivative of `force` by the places of the nodes, m per radian."""
+        """(n_edges, 3, 2, 3, 2) derivative of `force` with respect to node positions, m per radian."""
         (r, dr, dz), values, slopes, weights = self._along(places)
         signed = -self.outwards[:, None] * weights
         blocks = np.zeros((len(r), 3, 2, 3, 2))
@@ -189,12 +188,12 @@ class PressedWall:
         return (r @ values.T, r @ slopes.T, z @ slopes.T), values, slopes, weights
 
 
-#: Tensor indices of the six components; r, z, theta are 0, 1, 2.
+#: Tensor indices of the six components; 0, 1, 2 stand for r, z, theta.
 FIRST = np.array([0, 1, 2, 0, 0, 1])
 SECOND = np.array([0, 1, 2, 1, 2, 2])
 
 
-#: The unit tensor, and the symmetric unit of fourth order for engineering shears.
+#: The unit tensor, and the symmetric unit tensor of fourth order for engineering shears.
 UNIT = np.array([1.0, 1.0, 1.0, 0.0, 0.0, 0.0])
 SYMMETRIC_UNIT = np.diag([1.0, 1.0, 1.0, 0.5, 0.5, 0.5])
 
@@ -220,5 +219,5 @@ def box(b: Array) -> Array:
 
 
 def over(values: Array, shape: tuple[int, ...]) -> Array:
-    """A constant tensor at every point: further axes of size one."""
+    """A constant tensor with further axes of size one, for use at every point."""
     return np.asarray(values).reshape(values.shape + (1,) * len(shape))

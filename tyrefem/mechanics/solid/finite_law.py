@@ -1,4 +1,4 @@
-"""Stress and tangent of a pre-stressed body in a further motion of any size: by its own compounds and cords, or linear
+"""Stress and tangent of a pre-stressed body in a further motion of any size: from its compounds and cords, or linear
 in Green's strain."""
 
 from __future__ import annotations
@@ -16,25 +16,25 @@ from tyrefem.mechanics.solid.elements import SYMMETRIC_UNIT, UNIT, Indices, Ring
 from tyrefem.mechanics.solid.parts import RegionMaterial
 
 Array = NDArray[np.float64]
-#: Where a tensor's component stands among the six.
+#: Index of a tensor's component among the six.
 PLACE = np.array([[0, 3, 4], [3, 1, 5], [4, 5, 2]])
 #: The six components.
 PAIRS = ((0, 0), (1, 1), (2, 2), (0, 1), (0, 2), (1, 2))
-#: What a pressure p J 1 adds to the spatial tangent, over p J.
+#: Contribution of a pressure p J 1 to the spatial tangent, over p J.
 PRESSED = np.multiply.outer(UNIT, UNIT) - 2 * SYMMETRIC_UNIT
-#: Angles treated at once: bounds the memory of intermediate tensors.
+#: Number of angles computed together; it limits the memory of intermediate tensors.
 CHUNK = 8
 
 
 @dataclass(frozen=True, eq=False)
 class StressResponse:
-    """First Piola stress P over the pre-stressed place and its derivative, both times r dA, at m angles.
+    """First Piola stress P in the pre-stressed configuration and its derivative, both times r dA, at m angles.
 
     dP = A : dF + V kappa Proj(V : dF), V = dJ/dF: the dilatation is projected on 1, xi, eta of each element.
 
     Parameters
     ----------
-    stress : (e, q, m, 9) P, N m per radian; components 3 k + i, k the force's direction and i the gradient's.
+    stress : (e, q, m, 9) P, N m per radian; components 3 k + i with direction k of the force and i of the gradient.
     tangent : (e, q, m, 9, 9) A. volume : (e, q, m, 9) V. Empty where only the stress was asked for.
     functions : (e, q, 3) 1, xi, eta. bulk : (e, 3, 3) bulk stiffness between them.
     """
@@ -46,7 +46,7 @@ class StressResponse:
     bulk: Array
 
     def product(self, change: Array) -> Array:
-        """(e, q, m, 9) change of the stress for a change (e, q, m, 9) of the gradient."""
+        """(e, q, m, 9) change of the stress due to a change (e, q, m, 9) of the gradient."""
         product = (self.tangent @ change[..., None])[..., 0]
         dilatation = np.einsum("eqmc,eqmc->eqm", self.volume, change)
         moments = self.bulk @ (self.functions.transpose(0, 2, 1) @ dilatation)
@@ -55,10 +55,10 @@ class StressResponse:
 
 
 class FiniteLaw(Protocol):
-    """Stress over a pre-stressed place."""
+    """Stress as a function of displacement gradients from a pre-stressed configuration."""
 
     def response(self, gradient: Array, tangent: bool = True) -> StressResponse:
-        """`StressResponse` at displacement gradients H (e, q, m, 9) from the pre-stressed place."""
+        """`StressResponse` at displacement gradients H (e, q, m, 9) from the pre-stressed configuration."""
         ...  # pragma: no cover
 
 
@@ -80,7 +80,7 @@ def _inverse(f: Array) -> Array:
 
 
 def _points(tensors: Array, axes: int) -> Array:
-    """Tensors of one or two component axes at the front with these at the end, contiguous."""
+    """Tensors with their one or two component axes moved from the front to the end, contiguous."""
     return np.ascontiguousarray(np.moveaxis(tensors, range(axes), range(-axes, 0)))
 
 
@@ -98,7 +98,7 @@ class GreenLaw:
 
     Parameters
     ----------
-    rings : shape functions of the pre-stressed place.
+    rings : shape functions of the pre-stressed configuration.
     initial, modulus, bulk_modulus : s_0 (6, e, q), c (6, 6, e, q), kappa (e, q), Pa.
     """
 
@@ -137,12 +137,12 @@ class GreenLaw:
 
 @dataclass(frozen=True, eq=False)
 class BodyLaw:
-    """The stress of a body's compounds and cords at F F_0: cords slack or taut as they are at every angle.
+    """The stress of a body's compounds and cords at F F_0; cords may be slack at some angles and taut at others.
 
     Parameters
     ----------
     rings : shape functions of the body before inflation.
-    parts : region -> what it is made of. members : region -> numbers of its elements.
+    parts : region -> its material. members : region -> numbers of its elements.
     bulk_modulus : (e,) Pa. inflated : (3, 3, e, q) F_0.
     """
 
@@ -158,7 +158,7 @@ class BodyLaw:
 
     @functools.cached_property
     def _parts(self) -> dict[str, RegionMaterial]:
-        """The parts, with values at the points ready for one more axis, that of the angles."""
+        """The parts with a further axis in the values at the points, for the angles."""
         parts = {}
         for name, part in self.parts.items():
             layers = [
@@ -173,7 +173,7 @@ class BodyLaw:
             parts[name] = replace(part, cords=tuple(layers))
         return parts
 
-    def _gathered(self, deformation: Array, method: str, axes: tuple[int, ...]) -> Array:
+    def _sum_of_parts(self, deformation: Array, method: str, axes: tuple[int, ...]) -> Array:
         gathered = np.empty((*axes, *deformation.shape[2:]))
         for name, part in self._parts.items():
             members = self.members[name]
@@ -197,14 +197,14 @@ class BodyLaw:
             whole = np.einsum("ijeqm,jkeq->ikeqm", f, self.inflated)
             j = determinant(whole)
             p = functions @ (self._bulk @ (functions.transpose(0, 2, 1) @ (weights * (j - 1))))
-            six = self._gathered(whole, "stress", (6,))
+            six = self._sum_of_parts(whole, "stress", (6,))
             six[:3] += p * j
             tau = _points(six[PLACE] * weights, 2)
             shape = (*inverse.shape[:3], 9)
             stress[:, :, part] = (tau @ inverse.swapaxes(-1, -2)).reshape(shape)
             if tangent:
                 volume[:, :, part] = (inverse.swapaxes(-1, -2) * (j * weights)[..., None, None]).reshape(shape)
-                c = self._gathered(whole, "tangent", (6, 6)) + p * j * over(PRESSED, p.shape)
+                c = self._sum_of_parts(whole, "tangent", (6, 6)) + p * j * over(PRESSED, p.shape)
                 strains = np.zeros((*shape[:3], 6, 9))
                 for row, (i, m) in enumerate(PAIRS):
                     strains[..., row, 3 * i : 3 * i + 3] += inverse[..., m]

@@ -1,4 +1,4 @@
-"""An inflated body pressed inside a rigid cylinder: every meridian deflected alike ("barrel", Clark & Dodge 1980)."""
+"""An inflated body pressed inside a rigid cylinder: all meridians deflect alike ("barrel", Clark & Dodge 1980)."""
 
 from __future__ import annotations
 
@@ -25,9 +25,9 @@ class Flattened:
     ----------
     tyre : the inflated body; R is the largest radius of its boundary ``touching``.
     deflection : D, m.
-    displacement : (2, n_nodes) from the undeformed place, m.
+    displacement : (2, n_nodes) from the undeformed configuration, m.
     forces : (n_contact_nodes,) inward force of the cylinder on the nodes of ``touching``, N per radian.
-    steps : deflections passed on the way, m; residuals : force out of balance at every iteration of every step.
+    steps : deflections of earlier load steps, m; residuals : unbalanced force at every iteration of every step.
     """
 
     tyre: Inflation
@@ -40,7 +40,7 @@ class Flattened:
 
     @functools.cached_property
     def nodes(self) -> Indices:
-        """Nodes that may touch."""
+        """Nodes of the contact boundary."""
         return self.tyre.body.rings.boundary_nodes(self.touching)
 
     @property
@@ -50,7 +50,7 @@ class Flattened:
 
     @property
     def places(self) -> Array:
-        """(2, n_nodes) present places, m."""
+        """(2, n_nodes) deformed positions, m."""
         return self.tyre.body.rings.nodes + self.displacement
 
     @property
@@ -60,7 +60,7 @@ class Flattened:
 
     @property
     def width(self) -> float:
-        """Axial width in contact, m; 0 where nothing touches."""
+        """Axial width of the contact, m; 0 without contact."""
         touched = self.places[1, self.nodes[self.forces > 0]]
         if not touched.size:
             return 0.0
@@ -68,12 +68,12 @@ class Flattened:
 
     @property
     def force(self) -> float:
-        """Force of the cylinder all round and on both halves, N: the derivative of the potential by the deflection."""
+        """Force of the cylinder on the whole circumference of both halves, N: dW/dD of the potential W."""
         return float(self._whole * self.forces.sum())
 
     @functools.cached_property
     def stiffness(self) -> float:
-        """dF/dD, N/m, of the nodes in contact as they are."""
+        """dF/dD, N/m, with the same nodes in contact."""
         from scipy.sparse.linalg import splu
 
         body = self.tyre.body
@@ -93,7 +93,7 @@ class Flattened:
 
     @functools.cached_property
     def strain(self) -> Array:
-        """(6, n_elements, n_points) Green's strain from the inflated place, (f'f - 1)/2 with engineering shears."""
+        """(6, n_elements, n_points) Green's strain from the inflated state, (f'f - 1)/2 with engineering shears."""
         before, after = self.tyre.deformation, self.tyre.body.deformation(self.displacement)
         first, last = (np.moveaxis(gradient, (0, 1), (-2, -1)) for gradient in (before, after))
         f = last @ np.linalg.inv(first)
@@ -108,9 +108,9 @@ def reach(tyre: Inflation, touching: str = "road") -> float:
 
 
 def bottoming(tyre: Inflation) -> float:
-    """Deflection at which the crown's inner surface would meet the rim: its top, or the highest point held, m.
+    """Deflection at which the crown's inner surface would meet the rim: its top, or the highest fixed point, m.
 
-    Without either: R.
+    If the body has neither: R.
     """
     rings, body = tyre.body.rings, tyre.body
     stops = [rings.nodes[0, rings.boundary_nodes(name)].max() for name, axes in body.held.items() if "r" in axes]
@@ -127,10 +127,11 @@ def flatten(
     choice: CylinderChoice | None = None,
     touching: str = "road",
 ) -> Flattened:
-    """Press an inflated body inside a rigid frictionless cylinder; the gas keeps its pressure.
+    """Press an inflated body inside a rigid frictionless cylinder; the gas pressure stays constant.
 
-    u_r <= R - D - r at every node of the boundary, inward force >= 0, never both: a bound on single degrees of freedom,
-    so Newton with an active set (primal-dual; Hintermuller, Ito & Kunisch 2003) meets it exactly, without a penalty.
+    u_r <= R - D - r at every node of the boundary, inward force >= 0, never both. This bounds single degrees of
+    freedom: Newton with an active set (primal-dual; Hintermuller, Ito & Kunisch 2003) fulfils it exactly, without a
+    penalty.
 
     Parameters
     ----------
@@ -138,7 +139,7 @@ def flatten(
 
     Raises
     ------
-    InputError : a deflection that is negative, that brings the crown to the rim, or beyond which nothing is in balance.
+    InputError : the deflection is negative, brings the crown to the rim, or has no equilibrium.
 
     >>> from tyrefem import study
     >>> from tyrefem.geometry.meshing import build

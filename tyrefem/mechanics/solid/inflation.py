@@ -1,4 +1,4 @@
-"""The inflated tyre: growth, cord tensions, bead tension, and the state that a footprint starts from."""
+"""The inflated tyre: growth, cord tensions, bead tension, and the initial state of a footprint."""
 
 from __future__ import annotations
 
@@ -23,8 +23,9 @@ Array = NDArray[np.float64]
 
 @dataclass(frozen=True)
 class LayerTension:
-    """Cords of a region: least, mean and greatest of stretch - 1; of the stress v_c E (lambda - 1) along the cords per
-    undeformed section of the layer, Pa; of the tension of one cord, N (None: its diameter is not known)."""
+    """Cords of a region: smallest, mean and largest of three quantities. ``strain``: stretch - 1. ``stress``:
+    v_c E (lambda - 1) along the cords per undeformed section of the layer, Pa. ``tension``: of one cord, N (None: its
+    diameter is not known)."""
 
     region: str
     strain: tuple[float, float, float]
@@ -36,7 +37,7 @@ class LayerTension:
 class Inflation(Brief):
     """A body in equilibrium under inflation pressure. Made by `inflate`.
 
-    ``half``: the body is the half z >= 0 of a symmetric tyre; lengths and volumes below are the whole tyre's.
+    ``half``: the body is the half z >= 0 of a symmetric tyre. Lengths and volumes below are those of the whole tyre.
     """
 
     body: Body
@@ -55,7 +56,7 @@ class Inflation(Brief):
 
     @property
     def places(self) -> Array:
-        """(2, n_nodes) inflated places of the nodes, m."""
+        """(2, n_nodes) inflated positions of the nodes, m."""
         return self.body.rings.nodes + self.displacement
 
     @functools.cached_property
@@ -65,7 +66,7 @@ class Inflation(Brief):
 
     @functools.cached_property
     def state(self) -> Prestressed:
-        """What a small further motion sees."""
+        """The inflated state as the start of a small further motion."""
         return self.body.state(self.displacement, self.pressure)
 
     @property
@@ -104,7 +105,7 @@ class Inflation(Brief):
 
         Raises
         ------
-        InputError : no region ``bead``, or one without hoop cords.
+        InputError : no region ``bead``, or no hoop cords in it.
         """
         part = self.body.parts.get("bead")
         if part is None or not part.cords:
@@ -146,12 +147,12 @@ def inflate(
     ----------
     study : the study.
     pressure : Pa above the ambient; by default that of the drive's first phase.
-    mesh : a mesh of the study's section in quadrilaterals; by default the study's own.
-    temperature : degC, as `tyrefem.mechanics.solid.thermal.warm` takes it; by default nothing expands.
+    mesh : a mesh of the study's section in quadrilaterals; by default that of the study.
+    temperature : degC, as for `tyrefem.mechanics.solid.thermal.warm`; by default without thermal expansion.
 
     Raises
     ------
-    InputError : a card that lacks a modulus, or no equilibrium: at which share of the pressure, and where.
+    InputError : a card without a modulus, or no equilibrium: the message gives the share of the pressure and the place.
 
     >>> from tyrefem import study
     >>> from tyrefem.geometry.meshing import build
@@ -173,7 +174,7 @@ def inflate(
         from tyrefem.mechanics.solid import thermal
 
         warmed = thermal.warm(body, temperature, thermal.expansions(study))
-        state = thermal.relaxed(warmed, equilibrium(body, pressure, choice))
+        state = thermal.thermal_equilibrium(warmed, equilibrium(body, pressure, choice))
     except InputError as error:
         raise error if error.file else InputError(error.message, field=error.field, file=study.file) from None
     return Inflation(warmed, state, study.section.half)

@@ -1,4 +1,4 @@
-"""Equilibrium of a body under a rising pressure: Newton with line search, load steps that adapt."""
+"""Equilibrium of a body under a rising pressure: Newton with line search and adaptive load steps."""
 
 from __future__ import annotations
 
@@ -13,18 +13,18 @@ from tyrefem.mechanics.solid.body import Body
 from tyrefem.mechanics.solid.compounds import determinant
 
 Array = NDArray[np.float64]
-#: A Newton step of this share of the largest coordinate alters nothing that can be computed.
+#: A Newton step smaller than this share of the largest coordinate is below rounding errors.
 ROUND_OFF = 1e-13
-#: A load step of at most so many evaluations is followed by one twice as large.
+#: After a load step with at most this many evaluations, the next one is twice as large.
 EASY = 12
 
 
 @dataclass(frozen=True)
 class NewtonChoice:
-    """How equilibrium is sought.
+    """Settings of the search for equilibrium.
 
-    ``tolerance`` : force out of balance over that of the pressure; ``iterations`` : most per load step; ``first_step``,
-    ``smallest_step`` : of the load, over the whole; ``line_search`` : most halvings of a Newton step.
+    ``tolerance`` : unbalanced force over that of the pressure; ``iterations`` : most per load step; ``first_step``,
+    ``smallest_step`` : of the load, over the total; ``line_search`` : most halvings of a Newton step.
     """
 
     tolerance: float = 1e-8
@@ -36,9 +36,9 @@ class NewtonChoice:
 
 @dataclass(frozen=True, eq=False)
 class Equilibrium(Brief):
-    """Displacement (2, n_nodes), m, that balances a pressure, Pa, and how it was found.
+    """Displacement (2, n_nodes), m, in equilibrium with a pressure, Pa, with the load steps and residuals.
 
-    ``residuals`` holds the force out of balance, over that of the pressure, at every iteration of every load step.
+    ``residuals`` holds the unbalanced force, over that of the pressure, at every iteration of every load step.
     """
 
     displacement: Array
@@ -48,15 +48,15 @@ class Equilibrium(Brief):
 
 
 class _StuckError(Exception):
-    """A load step that did not converge: where it is worst."""
+    """A load step that did not converge; the message gives the place of the largest error."""
 
 
 def equilibrium(body: Body, pressure: float, choice: NewtonChoice | None = None) -> Equilibrium:
-    """The state of a body under a pressure, raised in steps from the undeformed state.
+    """The equilibrium of a body under a pressure, reached in steps from the undeformed state.
 
     Raises
     ------
-    InputError : no equilibrium was found; says at which share of the load, where (r, z), and in which region.
+    InputError : no equilibrium; the message gives the share of the load, the place (r, z) and its region.
     """
     choice = choice or NewtonChoice()
     if not np.isfinite(pressure):
@@ -109,17 +109,17 @@ def _newton(body: Body, start: Array, pressure: float, choice: NewtonChoice) -> 
             change.T.flat[free] = -splu(matrix.tocsc()).solve(residual[free])
         except RuntimeError:
             raise _StuckError("nothing holds the body: its stiffness is singular") from None
-        now, residual = _searched(body, now, change, residual, pressure, choice)
+        now, residual = _line_search(body, now, change, residual, pressure, choice)
         history.append(float(np.linalg.norm(residual[free])) / size)
         if np.abs(change).max() <= ROUND_OFF * np.abs(body.rings.nodes).max():
             break
     return now, tuple(history)
 
 
-def _searched(
+def _line_search(
     body: Body, now: Array, change: Array, residual: Array, pressure: float, choice: NewtonChoice
 ) -> tuple[Array, Array]:
-    """The step along ``change``, halved while it turns elements over or the work along it grows."""
+    """The step along ``change``, halved while it inverts elements or the work along it grows."""
     free = body.free
     along = change.T.ravel()[free]
     work, size = abs(along @ residual[free]), np.linalg.norm(residual[free])

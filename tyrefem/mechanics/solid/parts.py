@@ -1,4 +1,4 @@
-"""What the regions of a body are made of."""
+"""Materials of a body's regions."""
 
 from __future__ import annotations
 
@@ -10,9 +10,9 @@ from tyrefem.mechanics.solid.cords import CordLayer
 
 @dataclass(frozen=True, eq=False)
 class RegionMaterial:
-    """What a region is made of: a compound and layers of cords at the points of the region's elements.
+    """The material of a region: a compound, and layers of cords at the points of the region's elements.
 
-    ``cord_loss`` is the cords' tan delta over the compound's: 0 where the cords lose nothing.
+    ``cord_loss`` is the cords' tan delta over the compound's: 0 if the cords lose nothing.
     """
 
     compound: Compound

@@ -1,4 +1,4 @@
-"""The rim: a seat that holds the bead, and a rounded flange on which the bead's outside may lie or lift off."""
+"""The rim: a seat that fixes the bead, and a rounded flange which the bead's outside may touch or leave."""
 
 from __future__ import annotations
 
@@ -12,12 +12,12 @@ from numpy.typing import NDArray
 from tyrefem.mechanics.solid.elements import Indices, Rings, edge_functions
 
 Array = NDArray[np.float64]
-#: Radius of a flange, m, where the section gives none. Estimate: rims have 8 to 13 mm.
+#: Radius of a flange, m, if the section gives none. Estimate: rims have 8 to 13 mm.
 FLANGE_RADIUS = 10e-3
 #: The boundary that the seat holds, and the one that may touch the flange; facets so many radii away never do.
 SEAT, FLANGE = "rim_seat", "rim_flange"
 REACH = 4.0
-#: Pressure of the flange per depth, Pa/m. Estimate: so stiff that 5 MPa, more than any bead sees, go 10 um deep.
+#: Pressure of the flange per depth, Pa/m. Estimate: at 5 MPa, more than any bead bears, the depth is 10 um.
 STIFFNESS = 5e11
 
 
@@ -25,13 +25,13 @@ STIFFNESS = 5e11
 class Flange:
     """A rigid ring of circular section without friction: pressure k <-g>, gap g = |x - c| - R in the (r, z) plane.
 
-    The pressure acts per undeformed area, so that energy int k <-g>^2/2 r0 ds0, force and stiffness belong together.
+    The pressure acts per undeformed area: energy int k <-g>^2/2 r0 ds0, force and stiffness are consistent.
 
     Parameters
     ----------
     rings : shape functions of the body.
     centre : (r, z) of the circle, m. radius : R, m.
-    boundary : the edges that may touch. side : +1, or -1 for the mirrored flange of a full section's other half.
+    boundary : the edges that may touch. side : +1, or -1 for the mirrored flange on the other half of a full section.
     stiffness : k, Pa/m.
     """
 
@@ -44,7 +44,7 @@ class Flange:
 
     @functools.cached_property
     def _facets(self) -> Indices:
-        """Edges on the flange's own side."""
+        """Edges on the same side as the flange."""
         facets, mesh = self.rings.boundary(self.boundary), self.rings.mesh
         return np.asarray(facets[self.side * mesh.p[1, mesh.facets[:, facets]].mean(axis=0) > 0], dtype=np.int64)
 
@@ -61,7 +61,7 @@ class Flange:
         length = np.hypot(*(places[..., 1] - places[..., 0]))
         return values, places[0] @ values.T * w * length[:, None] / 2
 
-    def _at(self, places: Array) -> tuple[Array, Array, Array]:
+    def _contact_geometry(self, places: Array) -> tuple[Array, Array, Array]:
         """Gap (n_edges, 5), m, its normal (2, n_edges, 5), distance from the centre."""
         away = places[:, self.nodes] @ self._functions[0].T - np.reshape(self.centre, (2, 1, 1))
         distance = np.hypot(*away)
@@ -69,7 +69,7 @@ class Flange:
 
     def gap(self, places: Array) -> Array:
         """(n_edges, 5) gap at the Gauss points, m, for nodes at (2, n_nodes)."""
-        return self._at(places)[0]
+        return self._contact_geometry(places)[0]
 
     def pressure(self, places: Array) -> Array:
         """(n_edges, 5) pressure on the body, Pa per undeformed area."""
@@ -81,7 +81,7 @@ class Flange:
 
     def force(self, places: Array) -> Array:
         """(2 n_nodes,) force on the body, N per radian, component c of node i at 2 i + c."""
-        _, normal, _ = self._at(places)
+        _, normal, _ = self._contact_geometry(places)
         values, weights = self._functions
         local = np.einsum("cfq,fq,qa->fac", normal, self.pressure(places) * weights, values)
         force = np.zeros(2 * self.rings.n_nodes)
@@ -89,14 +89,14 @@ class Flange:
         return force
 
     def stiffness_matrix(self, places: Array, components: int = 2) -> Any:
-        """Derivative of - `force` by the places: sparse (components n_nodes, components n_nodes), N/m per radian.
+        """Derivative of - `force` by the positions: sparse (components n_nodes, components n_nodes), N/m per radian.
 
-        k n n - p Hess g where the gap is closed; with three components (r, z, t) also Hess g_tt = n_r/r, of a motion
-        round the wheel: what a harmonic of any order n sees.
+        k n n - p Hess g where the gap is closed. With three components (r, z, t) it also has Hess g_tt = n_r/r, for
+        motions along the circumference; it is the same for all harmonics n.
         """
         import scipy.sparse as sp
 
-        _, normal, distance = self._at(places)
+        _, normal, distance = self._contact_geometry(places)
         pressure, (values, weights) = self.pressure(places), self._functions
         along = np.stack([-normal[1], normal[0]])
         local = np.zeros((components, components, *pressure.shape))
@@ -116,9 +116,9 @@ class Flange:
 def on_rim(mesh: Any, radius: float, rim: str = "rim", outside: str = "outside_air") -> tuple[Any, tuple[Flange, ...]]:
     """A tyre's mesh with the boundaries `SEAT` and `FLANGE` in place of the rim, and a flange on each side.
 
-    The outer face's part of ``rim`` is as high as the flange. The flange's circle touches the undeformed outer face
-    without crossing it, one radius (along the face) below that part's end; what lies below is the seat. Where the
-    outer face is hollow, the circle is as small as it must be. A rim that does not meet ``outside`` is all seat.
+    The part of ``rim`` on the outer face is as high as the flange. The flange's circle touches the undeformed outer
+    face without crossing it, one radius (along the face) below that part's end; the rest below is the seat. A hollow
+    outer face reduces the circle's radius. A rim that does not meet ``outside`` is all seat.
 
     Parameters
     ----------
@@ -152,7 +152,7 @@ def on_rim(mesh: Any, radius: float, rim: str = "rim", outside: str = "outside_a
 
 
 def _chain(mesh: Any, facets: Indices, other: Indices) -> tuple[Indices, Indices]:
-    """Facets of a line in order from the point that it shares with another line on, and its points."""
+    """Facets of a line in order from its common point with another line, and the points of the line."""
     ends = mesh.facets[:, facets]
     point = int(np.intersect1d(ends, mesh.facets[:, other])[0])
     left, order, points = list(range(len(facets))), [], [point]
@@ -168,7 +168,7 @@ def _chain(mesh: Any, facets: Indices, other: Indices) -> tuple[Indices, Indices
 
 
 def _tangent_circle(points: Array, side: int, radius: float) -> tuple[tuple[float, float], float]:
-    """Centre and radius of the circle that touches a line of points (2, n) from outside where it begins."""
+    """Centre and radius of the circle that touches a line of points (2, n) from outside at its start."""
     away = points[:, 1:] - points[:, :1]
     along = away[:, 0] / np.hypot(*away[:, 0])
     outwards = side * np.array([-along[1], along[0]])

@@ -1,4 +1,4 @@
-"""A warm body: thermal expansion, and the stress where it is hindered."""
+"""A warm body: thermal expansion, and the stress where expansion is hindered."""
 
 from __future__ import annotations
 
@@ -25,7 +25,7 @@ Array = NDArray[np.float64]
 
 @dataclass(frozen=True)
 class Expansion:
-    """Linear expansion, 1/K, of a region's compound and of its cords along themselves; stress-free at ``reference``.
+    """Linear expansion, 1/K, of a region's compound and of its cords (lengthwise); stress-free at ``reference``, degC.
 
     >>> round(Expansion(2e-4).stretch(75.0), 4)
     1.01
@@ -40,7 +40,7 @@ class Expansion:
         return 1 + self.compound * (temperature - self.reference)
 
     def cord_stretch(self, temperature: Any) -> Any:
-        """The same of the cords."""
+        """1 + alpha (T - T_ref) of the cords."""
         return 1 + self.cords * (temperature - self.reference)
 
 
@@ -69,15 +69,15 @@ class WarmCords(CordLayer):
 
     thermal: Array | float = 1.0
 
-    def _carried(self, deformation: Array) -> tuple[Array, Array]:
-        return super()._carried(deformation / self.thermal)
+    def _deformed_directions(self, deformation: Array) -> tuple[Array, Array]:
+        return super()._deformed_directions(deformation / self.thermal)
 
 
 @dataclass(frozen=True, eq=False)
 class WarmBody(Body):
     """A body whose elastic deformation is F/t, t = 1 + alpha (T - T_ref) ``thermal`` (n_elements, n_points).
 
-    p = kappa t^3 (Proj (J/t^3) - 1) works on the change of J/t^3; t^3 its mean of each element. Made by `warm`.
+    p = kappa t^3 (Proj (J/t^3) - 1) is work-conjugate to J/t^3; t^3 is averaged over each element. Made by `warm`.
     """
 
     thermal: Array = field(default_factory=lambda: np.ones((1, 1)))
@@ -91,7 +91,7 @@ class WarmBody(Body):
         return np.asarray(moduli * (self.thermal**3).mean(axis=1))
 
     def pressure(self, volume: Array) -> Array:
-        """(n_elements, n_points) of J: what times J is the mean Kirchhoff stress, Pa."""
+        """(n_elements, n_points) pressure, Pa; times J it is the mean Kirchhoff stress."""
         return np.asarray(super().pressure(volume / self.thermal**3) / self.thermal**3)
 
     def energy(self, displacement: Array) -> float:
@@ -117,17 +117,17 @@ class WarmBody(Body):
         return super()._dilatation_stiffness(strains, volume / self.thermal**3)
 
     def state(self, displacement: Array, pressure: float) -> Prestressed:
-        """What a small further motion sees of the present place."""
+        """The deformed state as the start of a small further motion."""
         state = super().state(displacement, pressure)
         return replace(state, bulk=state.bulk / self.thermal**6, law=None)
 
 
 def expansions(study: StudyData) -> dict[str, Expansion]:
-    """Region -> expansion, of the cards that give one.
+    """Region -> expansion, for all cards that give one.
 
     Raises
     ------
-    InputError : none does.
+    InputError : no card gives one.
     """
     written = {region: card.expansion for region, card in study.materials.items()}
     given = {
@@ -141,7 +141,7 @@ def expansions(study: StudyData) -> dict[str, Expansion]:
 
 
 def warm(body: Body, temperature: Any, expansions: Mapping[str, Expansion]) -> WarmBody:
-    """A body at temperatures.
+    """A body at given temperatures.
 
     Parameters
     ----------
@@ -150,7 +150,7 @@ def warm(body: Body, temperature: Any, expansions: Mapping[str, Expansion]) -> W
 
     Raises
     ------
-    InputError : a region that the body does not have; temperatures that are not finite or of the wrong shape.
+    InputError : an unknown region; temperatures that are not finite or have the wrong shape.
     """
     for region in expansions:
         if region not in body.parts:
@@ -180,20 +180,20 @@ def _fields(of: Any) -> dict[str, Any]:
     return {field.name: getattr(of, field.name) for field in fields(of)}
 
 
-#: First and smallest share of the heating in one step of `relaxed`.
+#: First and smallest share of the heating in one step of `thermal_equilibrium`.
 FIRST_STEP, SMALLEST_STEP = 0.125, 1e-3
 
 
-def relaxed(
+def thermal_equilibrium(
     body: WarmBody, cold: Equilibrium | None = None, tolerance: float = 1e-8, iterations: int = 15
 ) -> Equilibrium:
-    """A warm body's balance: heated in steps from its ``cold`` equilibrium (none: without pressure), each by Newton.
+    """A warm body's equilibrium: heated in steps from its ``cold`` equilibrium (default: no pressure), each by Newton.
 
-    ``tolerance`` : forces out of balance over those of one step's heating.
+    ``tolerance`` : unbalanced forces over those of one step's heating.
 
     Raises
     ------
-    InputError : no balance was found; says at which share of the heating.
+    InputError : no equilibrium; the message gives the share of the heating.
     """
     cold = cold or Equilibrium(np.zeros((2, body.rings.n_nodes)), 0.0, (), ())
     displacement = cold.displacement
@@ -201,7 +201,7 @@ def relaxed(
     steps, histories = list(cold.steps), list(cold.residuals)
     while reached < 1:
         aim = min(1.0, reached + step)
-        guess, history = _balanced(body.heated(aim), displacement, cold.pressure, tolerance, iterations)
+        guess, history = _newton(body.heated(aim), displacement, cold.pressure, tolerance, iterations)
         if not history[-1] <= tolerance:
             step /= 2
             if step < SMALLEST_STEP:
@@ -215,10 +215,10 @@ def relaxed(
     return Equilibrium(displacement, cold.pressure, tuple(steps), tuple(histories))
 
 
-def _balanced(
+def _newton(
     body: Body, start: Array, pressure: float, tolerance: float, iterations: int
 ) -> tuple[Array, tuple[float, ...]]:
-    """Displacement, and the forces out of balance over the first ones."""
+    """Displacement, and the unbalanced forces over the first ones."""
     from scipy.sparse.linalg import splu
 
     displacement, free = start, body.free

@@ -1,4 +1,4 @@
-"""From a study's cards to the body that is inflated: compounds, cords, held boundaries."""
+"""From a study's cards to the body before inflation: compounds, cords, fixed boundaries."""
 
 from __future__ import annotations
 
@@ -26,16 +26,16 @@ if TYPE_CHECKING:
 Array = NDArray[np.float64]
 #: Temperature, degC, at which the losses of cords and rubber are compared.
 LOSS_TEMPERATURE = 60.0
-#: A layer carries so much of its rubber's shear modulus in compression along the cords. Estimate: wavy cords buckle
-#: below the limit of straight ones, which is 1.
+#: Compressive limit of a layer along its cords, over the shear modulus of its rubber. Estimate: wavy cords buckle
+#: below the limit of straight cords, which is 1.
 BUCKLING = 0.5
-#: Crown angles, deg, of plies whose cords' stiffness follows from the ply shear modulus.
+#: Range of crown angles, deg, in which the cords' stiffness can be computed from the ply shear modulus.
 BIAS_ANGLES = (10.0, 80.0)
 
 
 def tyre_body(study: StudyData, mesh: TyreMesh | None = None) -> Body:
-    """The body of a study's tyre on its mesh: held on the rim's seat, lying on its flanges; u_z = 0 on the mid plane
-    of a half section.
+    """The body of a study's tyre on its mesh: fixed on the rim's seat, supported by its flanges; u_z = 0 on the mid
+    plane of a half section.
 
     A region's compound is its card's ``[elasticity]``, or neo-Hookean with its ``shear_modulus`` (that of the carcass
     where it has none). Its cords are the card's ``[cords]``; or bias plies with v_c E = 4 G_p / sin^2(2 a), from
@@ -43,7 +43,7 @@ def tyre_body(study: StudyData, mesh: TyreMesh | None = None) -> Body:
 
     Raises
     ------
-    InputError : triangles; a region without a modulus; cords that the lift law cannot place.
+    InputError : triangles; a region without a modulus; cords for which the lift law has no angle.
     """
     meshed = study.mesh() if mesh is None else mesh
     nodes = QUADRATIC * meshed.n_nodes
@@ -76,12 +76,12 @@ class _Reader:
         if cords is not None:
             cord_loss = getattr(cords, "loss_tangent", None) or 0.0
             ratio = cord_loss / max(float(card.loss_tangent(LOSS_TEMPERATURE)), 1e-12)
-            return RegionMaterial(compound, (self._limited(self.layer(region, cords), compound),), ratio)
+            return RegionMaterial(compound, (self._with_buckling_limit(self.layer(region, cords), compound),), ratio)
         layer = self.bias_plies(region, card) or self.bead_wire(region, card)
-        return RegionMaterial(compound, (self._limited(layer, compound),) if layer else ())
+        return RegionMaterial(compound, (self._with_buckling_limit(layer, compound),) if layer else ())
 
     @staticmethod
-    def _limited(layer: CordLayer, compound: Compound) -> CordLayer:
+    def _with_buckling_limit(layer: CordLayer, compound: Compound) -> CordLayer:
         return replace(layer, limit=BUCKLING * compound.shear_modulus)
 
     def compound(self, card: MaterialCard) -> Compound:
@@ -121,15 +121,16 @@ class _Reader:
         if not angle:
             raise InputError("neither the section nor the card gives the crown cord angle", field="cord.crown_angle")
         if not BIAS_ANGLES[0] <= np.degrees(angle) <= BIAS_ANGLES[1]:
-            # v_c E = 4 G_p / sin^2(2 a) has no bound at 0 and 90 deg.
+            # v_c E = 4 G_p / sin^2(2 a) is infinite at 0 and 90 deg.
             raise InputError(
-                f"a ply shear modulus tells the cords' stiffness for crown angles of {BIAS_ANGLES[0]:g} to "
+                f"the cords' stiffness follows from a ply shear modulus for crown angles of {BIAS_ANGLES[0]:g} to "
                 f"{BIAS_ANGLES[1]:g} deg, not {np.degrees(angle):.4g} deg; give the card [cords]",
                 field="cord.crown_angle",
             )
         points, meridian, _ = self._places(region)
         crown = float(self.study.section.line.position(np.zeros(1))[0, 0])
-        # Beyond the crown's midline the plies' outer half would pass the lift law's radius: the midline's angle holds.
+        # The outer half of the plies exceeds the radius of the lift law at the crown: the midline's angle is used
+        # there.
         angles = lifted_angle(angle, crown, np.minimum(points[0], crown))
         stiffness = 4 * card.cord.ply_shear_modulus / np.sin(2 * angle) ** 2
         return CordLayer(angles, meridian, np.full(angles.shape, stiffness))
@@ -160,7 +161,7 @@ class _Reader:
         for piece in pieces:
             inside = np.clip(s, piece.start, piece.end)
             thickness = section.layers[piece.layer].thickness(inside)
-            # A curved layer's Gauss point may project just beyond the piece's end.
+            # The Gauss point of a curved layer may project just beyond the end of the piece.
             total += np.where(np.abs(inside - s) < 2e-3, thickness, 0.0)
         if (total <= 0).any():
             raise InputError(f"region '{region}' has no thickness at s = {float(s[total <= 0][0]) * 1e3:.1f} mm")
