@@ -69,7 +69,7 @@ def test_unexplained_draws_the_missing_heat_and_names_nothing(case: Case, tmp_pa
     d = case.diagnosis
     outside = RankedSet((), 0.0, 0.97, None, outside=True)
     judged = replace(
-        d.judgement, verdict=UNEXPLAINED, standings=(outside, *d.judgement.ranking), credible=(outside,), named={}
+        d.judgement, verdict=UNEXPLAINED, ranking=(outside, *d.judgement.ranking), credible=(outside,), named={}
     )
     missing = replace(
         d.missing, flux=np.full_like(d.missing.flux, 10.0), flux_sd=np.full_like(d.missing.flux, 50.0),

@@ -35,22 +35,22 @@ def changes(
     """What a fit changes: what is ``missing`` first, then the corrections of base numbers and sensors that matter."""
     fitted = [residuals.trials[number].name for number in residuals.fitted]
     source = f"diagnosis of {residuals.study.name}, fitted to {', '.join(fitted)}"
-    own = set(missing)
-    found = []
-    for unknown in sorted(values, key=lambda one: one not in own):
-        if unknown in own:
-            found.append(Change(unknown, values[unknown], sd[unknown], True, source))
+    lacking = set(missing)
+    kept = []
+    for unknown in sorted(values, key=lambda unknown: unknown not in lacking):
+        if unknown in lacking:
+            kept.append(Change(unknown, values[unknown], sd[unknown], True, source))
             continue
         column = residuals.unknowns.index(unknown)
         moved = max(float(np.abs(J[:, column] * values[unknown]).max()) for J in residuals.sensitivities.jacobians)
         if moved > residuals.settings.negligible:
-            found.append(Change(unknown, values[unknown], sd[unknown], False, source))
-    return tuple(found)
+            kept.append(Change(unknown, values[unknown], sd[unknown], False, source))
+    return tuple(kept)
 
 
 def rounded(change: Sequence[Change]) -> dict[Unknown, float]:
     """The changes' values, rounded to what their standard deviations carry."""
-    return {one.unknown: _rounded(one.x, one.sd) for one in change}
+    return {each.unknown: _rounded(each.x, each.sd) for each in change}
 
 
 def amended(study: StudyData, change: Sequence[Change]) -> StudyData:
@@ -60,10 +60,10 @@ def amended(study: StudyData, change: Sequence[Change]) -> StudyData:
     """
     totals = rounded(change)
     new = with_values(study, {unknown: x for unknown, x in totals.items() if unknown.effect})
-    base = [one for one in change if not one.unknown.effect]
-    for one in base:
-        for key in one.unknown.keys or (one.unknown.key,):
-            new = new.replace({key: _restated(study, one, key), **_provenance(study, one, key)})
+    base = [each for each in change if not each.unknown.effect]
+    for each in base:
+        for key in each.unknown.keys or (each.unknown.key,):
+            new = new.replace({key: _restated(study, each, key), **_provenance(study, each, key)})
     runs = [dict(entry) for entry in new.data.get("measured", [])]
     for unknown, x in totals.items():
         if unknown.effect is None and unknown.key.startswith("drive."):
@@ -74,46 +74,46 @@ def amended(study: StudyData, change: Sequence[Change]) -> StudyData:
     if runs != new.data.get("measured", []):
         new = new.replace({"measured": runs})
     entries = [dict(entry) for entry in new.data.get("effects", [])]
-    for one in change:
-        if one.unknown.effect is None:
+    for each in change:
+        if each.unknown.effect is None:
             continue
-        wanted = {"name": one.unknown.effect, **dict(one.unknown.choice)}
+        wanted = {"name": each.unknown.effect, **dict(each.unknown.choice)}
         for entry in entries:
             if all(entry.get(key) == value for key, value in wanted.items()):
-                entry["from"] = one.source
-                if one.unknown.parameter is None:
+                entry["from"] = each.source
+                if each.unknown.parameter is None:
                     continue
-                unit = one.unknown.unit
-                number = float(f"{one.sd:.2g}")
+                unit = each.unknown.unit
+                number = float(f"{each.sd:.2g}")
                 entry["sd"] = {
                     **entry.get("sd", {}),
-                    one.unknown.parameter.name: number if unit == "1" else f"{number!r} {unit}",
+                    each.unknown.parameter.name: number if unit == "1" else f"{number!r} {unit}",
                 }
     if entries:
         # Named effects first: they are what the study is about.
-        named = {one.unknown.effect for one in change if one.missing}
+        named = {each.unknown.effect for each in change if each.missing}
         entries.sort(key=lambda entry: entry["name"] not in named)
         new = new.replace({"effects": entries})
     title = study.title if study.title.endswith("(amended)") else f"{study.title} (amended)"
     return new.replace({"title": title}) if change else new
 
 
-def _restated(study: StudyData, one: Change, key: str) -> Any:
+def _restated(study: StudyData, change: Change, key: str) -> Any:
     """A base number as the study writes it, changed, to the digits that a hundredth of its standard deviation has."""
     written = value_at(study.data, key, study.folder)
-    digits = max(3, int(np.ceil(-np.log10(max(one.sd, 1e-6) / 100))) + 1)
-    return scaled(written, one.unknown.value(one.x), digits)
+    digits = max(3, int(np.ceil(-np.log10(max(change.sd, 1e-6) / 100))) + 1)
+    return scaled(written, change.unknown.value(change.x), digits)
 
 
-def _provenance(study: StudyData, one: Change, key: str) -> dict[str, Any]:
+def _provenance(study: StudyData, change: Change, key: str) -> dict[str, Any]:
     """What a corrected number of a card must say: its new source and standard deviation."""
     # What a law over frequency says has source and deviation in the table above it.
     table = key.rpartition(".")[0].removesuffix(".frequency")
     if not table.startswith("materials."):
         return {}
     before = value_at(study.data, f"{table}.source", study.folder)
-    factor = f"factor {one.unknown.value(one.x):.3f} ± {one.sd:.2g} by {one.source}"
-    return {f"{table}.source": f"{factor}; before: {before}", f"{table}.relative_sd": float(f"{one.sd:.2g}")}
+    factor = f"factor {change.unknown.value(change.x):.3f} ± {change.sd:.2g} by {change.source}"
+    return {f"{table}.source": f"{factor}; before: {before}", f"{table}.relative_sd": float(f"{change.sd:.2g}")}
 
 
 def _rounded(x: float, sd: float) -> float:
@@ -130,5 +130,5 @@ def difference(study: StudyData, new: StudyData) -> list[str]:
 
     import tomli_w
 
-    before, after = (tomli_w.dumps(dict(one.data)).splitlines() for one in (study, new))
+    before, after = (tomli_w.dumps(dict(each.data)).splitlines() for each in (study, new))
     return list(difflib.unified_diff(before, after, "study.toml", "amended.toml", n=1, lineterm=""))

@@ -51,7 +51,9 @@ class BlindCase:
     @property
     def names(self) -> list[str]:
         """The hidden effects in words."""
-        return [one.key for one in self.hidden] or ([] if self.uncatalogued is None else [type(self.uncatalogued).name])
+        return [member.key for member in self.hidden] or (
+            [] if self.uncatalogued is None else [type(self.uncatalogued).name]
+        )
 
 
 def cases(study: StudyData, count: int, seed: int) -> list[BlindCase]:
@@ -60,9 +62,11 @@ def cases(study: StudyData, count: int, seed: int) -> list[BlindCase]:
     Variants of an effect (sensors) are drawn; amplitudes are log-uniform from 0.25 to 3 prior standard deviations.
     A study that may lack fewer than two physical effects has one where two are due.
     """
-    found = catalogue_candidates(study)
-    names = sorted({one.name for one in found})
-    physical = [name for name in names if next(one for one in found if one.name == name).effect.family != "measurement"]
+    candidates = catalogue_candidates(study)
+    names = sorted({one.name for one in candidates})
+    physical = [
+        name for name in names if next(one for one in candidates if one.name == name).effect.family != "measurement"
+    ]
     order = np.random.default_rng([seed, 0]).permutation(len(names))
     turn = itertools.cycle([names[i] for i in order])
     result = []
@@ -76,10 +80,10 @@ def cases(study: StudyData, count: int, seed: int) -> list[BlindCase]:
         hidden: list[Candidate] = []
         uncatalogued, station, loud = None, math.nan, ""
         if kind == "one":
-            hidden = [_variant(found, next(turn), rng)]
+            hidden = [_variant(candidates, next(turn), rng)]
         elif kind == "two":
             pair = rng.choice(len(physical), 2, replace=False)
-            hidden = [_variant(found, physical[i], rng) for i in pair]
+            hidden = [_variant(candidates, physical[i], rng) for i in pair]
         elif kind == "outside":
             uncatalogued, station = _uncatalogued(study, rng)
         elif rng.random() < 0.5 and study.uncertainty:
@@ -113,9 +117,9 @@ def _within(unknown: Unknown, x: float) -> float:
     return float(np.clip(x, 0.95 * unknown.low, 0.95 * unknown.high))
 
 
-def _variant(found: Sequence[Candidate], name: str, rng: np.random.Generator) -> Candidate:
-    own = [one for one in found if one.name == name]
-    return own[int(rng.integers(len(own)))]
+def _variant(candidates: Sequence[Candidate], name: str, rng: np.random.Generator) -> Candidate:
+    variants = [candidate for candidate in candidates if candidate.name == name]
+    return variants[int(rng.integers(len(variants)))]
 
 
 def _uncatalogued(study: StudyData, rng: np.random.Generator) -> tuple[Effect, float]:
@@ -177,7 +181,9 @@ class BlindOutcome:
             "kind": self.case.kind,
             "hidden": self.case.names,
             "amplitude": {
-                one.key: self.case.values[one] / one.sd for member in self.case.hidden for one in member.amplitudes
+                unknown.key: self.case.values[unknown] / unknown.sd
+                for member in self.case.hidden
+                for unknown in member.amplitudes
             },
             "identifiable": self.identifiable,
             **self.diagnosis,
@@ -191,7 +197,9 @@ def identifiable(evaluations: Evaluations, known: Sequence[DriveResponse], case:
     """
     if not case.hidden:
         return False
-    hidden = {one: case.values[one] for member in case.hidden for one in (*member.amplitudes, *member.presence)}
+    hidden = {
+        unknown: case.values[unknown] for member in case.hidden for unknown in (*member.amplitudes, *member.presence)
+    }
     model, sensitive = evaluations.model, layout_sensitivities(evaluations, known)
     signal = np.concatenate(
         [
@@ -199,10 +207,10 @@ def identifiable(evaluations: Evaluations, known: Sequence[DriveResponse], case:
             for number in sensitive.fitted
         ]
     )
-    found = catalogue_candidates(model.study)
-    prior = SetPrior(found, model.study.card.diagnosis.effects_expected, model.settings.size_shares)
+    candidates = catalogue_candidates(model.study)
+    prior = SetPrior(candidates, model.study.card.diagnosis.effects_expected, model.settings.size_shares)
     linear = LinearModel(sensitive.design(sensitive.fitted), signal)
-    return min(margins(linear, signal, case.hidden, competitors_of(case.hidden, found), prior)) >= MARGIN
+    return min(margins(linear, signal, case.hidden, competitors_of(case.hidden, candidates), prior)) >= MARGIN
 
 
 def run_case(
@@ -219,37 +227,42 @@ def run_case(
     with evaluating(ForwardModel(study, planned(study))) as evaluations:
         able = identifiable(evaluations, known, case)
     data = measured(study, case, mesh=mesh)
-    found = diagnose(study, data, largest=2, known=known, rerun=False, looks=1, reduced=reduced)
-    return BlindOutcome(case, able, outcome_row(found))
+    diagnosis = diagnose(study, data, largest=2, known=known, rerun=False, looks=1, reduced=reduced)
+    return BlindOutcome(case, able, outcome_row(diagnosis))
 
 
-def outcome_row(found: DiagnosisData) -> dict[str, Any]:
+def outcome_row(diagnosis: DiagnosisData) -> dict[str, Any]:
     """What a diagnosis says, for a row of ``blind.json``."""
-    judgement = found.judgement
+    judgement = diagnosis.judgement
     best = judgement.best
-    named = [one.key for one in best.members] if found.verdict == "identified" else []
+    named = [member.key for member in best.members] if diagnosis.verdict == "identified" else []
     chosen: set[str] = set()
-    for one in judgement.credible:
-        chosen |= {"not in the catalogue"} if one.outside else {member.key for member in one.members} or {"no effect"}
+    for ranked in judgement.credible:
+        chosen |= (
+            {"not in the catalogue"} if ranked.outside else {member.key for member in ranked.members} or {"no effect"}
+        )
     return {
-        "verdict": found.verdict,
+        "verdict": diagnosis.verdict,
         "named": named,
         "set": sorted(chosen),
         "best": best.key,
         "probability": judgement.probability,
         "inclusion": {key: value for key, value in judgement.named.items() if value > 0.01},
-        "p_value": found.best.p_value,
-        "held_out_p": found.best.held_out_p,
-        "missing_station_m": found.missing.station,
-        "rms_K": {"before": found.rms(after=False, held_out=False), "after": found.rms(after=True, held_out=False)},
+        "p_value": diagnosis.best.p_value,
+        "held_out_p": diagnosis.best.held_out_p,
+        "missing_station_m": diagnosis.missing.station,
+        "rms_K": {
+            "before": diagnosis.rms(after=False, held_out=False),
+            "after": diagnosis.rms(after=True, held_out=False),
+        },
         "held_out_rms_K": {
-            "before": found.rms(after=False, held_out=True),
-            "after": found.rms(after=True, held_out=True),
+            "before": diagnosis.rms(after=False, held_out=True),
+            "after": diagnosis.rms(after=True, held_out=True),
         },
-        "noise_K": found.noise,
+        "noise_K": diagnosis.noise,
         "points": {
-            "reduced": found.predictions["points_by_reduced_models"],
-            "lean": found.predictions["points_by_lean_simulations"],
+            "reduced": diagnosis.predictions["points_by_reduced_models"],
+            "lean": diagnosis.predictions["points_by_lean_simulations"],
         },
-        "seconds": found.seconds,
+        "seconds": diagnosis.seconds,
     }

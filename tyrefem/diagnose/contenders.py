@@ -29,9 +29,13 @@ MOST_SETS = 30
 def parameters(unknowns: Sequence[Unknown], fit: FittedSet) -> dict[str, dict[str, Any]]:
     """Parameter -> value and standard deviation, SI, of those that were fitted."""
     return {
-        one.parameter.name: {"value": one.value(fit.values[one]), "sd": fit.sd[one], "unit": one.unit}
-        for one in unknowns
-        if one.parameter is not None and one in fit.values
+        unknown.parameter.name: {
+            "value": unknown.value(fit.values[unknown]),
+            "sd": fit.sd[unknown],
+            "unit": unknown.unit,
+        }
+        for unknown in unknowns
+        if unknown.parameter is not None and unknown in fit.values
     }
 
 
@@ -55,16 +59,16 @@ def fitness(d: DiagnosisData, fit: FittedSet | None) -> dict[str, Any]:
 def candidate_rows(d: DiagnosisData) -> list[dict[str, Any]]:
     """One row per candidate, most probable first.
 
-    ``probability``: that it is part of the truth. ``log_evidence``: ln p(fitted data | it alone), up to a constant of
+    ``probability``: that it acts. ``log_evidence``: ln p(fitted data | it alone), up to a constant of
     the data; ``log_evidence_gain``: the same minus that of no effect. ``confounded_with``: what takes its place in
     other credible sets, where the verdict is "confounded".
     """
-    alone = {one.members[0]: one for one in d.judgement.ranking if len(one.members) == 1}
-    none = next(one for one in d.judgement.ranking if not one.members and not one.outside)
+    alone = {ranked.members[0]: ranked for ranked in d.judgement.ranking if len(ranked.members) == 1}
+    none = next(ranked for ranked in d.judgement.ranking if not ranked.members and not ranked.outside)
     rows = []
     for candidate in d.candidates:
-        one = alone[candidate]
-        evidence = _log_evidence(d, one)
+        ranked = alone[candidate]
+        evidence = _log_evidence(d, ranked)
         rows.append(
             {
                 "name": candidate.name,
@@ -73,8 +77,8 @@ def candidate_rows(d: DiagnosisData) -> list[dict[str, Any]]:
                 "log_evidence": evidence,
                 "log_evidence_gain": evidence - _log_evidence(d, none),
                 "confounded_with": confounded_with(d, candidate),
-                "parameters": parameters(candidate.unknowns, one.fit) if one.fit else {},
-                **fitness(d, one.fit),
+                "parameters": parameters(candidate.unknowns, ranked.fit) if ranked.fit else {},
+                **fitness(d, ranked.fit),
             }
         )
     return sorted(rows, key=lambda row: (-row["probability"], -row["log_evidence"]))
@@ -85,52 +89,52 @@ def set_rows(d: DiagnosisData, most: int = MOST_SETS) -> list[dict[str, Any]]:
     best = d.judgement.best.score
     return [
         {
-            "effects": ["not in the catalogue"] if one.outside else [member.key for member in one.members],
-            "probability": one.probability,
-            "log_score_below_best": best - one.score,
-            "credible": one in d.judgement.credible,
-            "fitted": one.fit is not None,
-            **fitness(d, one.fit),
+            "effects": ["not in the catalogue"] if ranked.outside else [member.key for member in ranked.members],
+            "probability": ranked.probability,
+            "log_score_below_best": best - ranked.score,
+            "credible": ranked in d.judgement.credible,
+            "fitted": ranked.fit is not None,
+            **fitness(d, ranked.fit),
         }
-        for one in d.judgement.ranking[:most]
+        for ranked in d.judgement.ranking[:most]
     ]
 
 
 def contenders(d: DiagnosisData) -> list[RankedSet]:
-    """Credible sets that none of their own parts outdoes: a set with an idle effect beside the others is no rival."""
-    found: list[RankedSet] = []
-    for one in d.judgement.credible:
-        parts = [each for each in found if not each.outside and set(each.members) < set(one.members)]
-        if one.outside or not parts:
-            found.append(one)
-    return found
+    """Credible sets that none of their own parts outdoes: sets with an idle effect are left out."""
+    kept: list[RankedSet] = []
+    for ranked in d.judgement.credible:
+        parts = [each for each in kept if not each.outside and set(each.members) < set(ranked.members)]
+        if ranked.outside or not parts:
+            kept.append(ranked)
+    return kept
 
 
-def support(d: DiagnosisData, one: RankedSet) -> float:
-    """Probability that all members of a set are part of the truth, whatever is beside them."""
-    if one.outside:
-        return one.probability
-    having = (each for each in d.judgement.ranking if not each.outside and set(one.members) <= set(each.members))
-    return min(sum(each.probability for each in having), 1.0) if one.members else one.probability
+def support(d: DiagnosisData, ranked: RankedSet) -> float:
+    """Probability that all members of a set act, whatever is beside them."""
+    if ranked.outside:
+        return ranked.probability
+    having = (each for each in d.judgement.ranking if not each.outside and set(ranked.members) <= set(each.members))
+    return min(sum(each.probability for each in having), 1.0) if ranked.members else ranked.probability
 
 
 def confounded_with(d: DiagnosisData, candidate: Candidate) -> list[str]:
     """What other contenders have in a candidate's place; empty unless the verdict is "confounded"."""
     sets = contenders(d)
-    if d.verdict != CONFOUNDED or not any(candidate in one.members for one in sets):
+    if d.verdict != CONFOUNDED or not any(candidate in ranked.members for ranked in sets):
         return []
-    found: dict[str, None] = {}
-    for one in sets:
-        if candidate not in one.members:
-            found.update(dict.fromkeys([member.key for member in one.members] or [one.key]))
-    return list(found)
+    others: dict[str, None] = {}
+    for ranked in sets:
+        if candidate not in ranked.members:
+            others.update(dict.fromkeys([member.key for member in ranked.members] or [ranked.key]))
+    return list(others)
 
 
-def _log_evidence(d: DiagnosisData, one: RankedSet) -> float:
+def _log_evidence(d: DiagnosisData, ranked: RankedSet) -> float:
     """Fitted with the full model where that was done, else by the linear one."""
-    if one.fit is not None:
-        return one.fit.log_evidence
-    return one.score - d.prior(one.members)
+    if ranked.fit is not None:
+        return ranked.fit.log_evidence
+    return ranked.score - d.prior(ranked.members)
 
 
 def finite(row: Mapping[str, Any], key: str) -> float | None:
@@ -152,20 +156,20 @@ def rms_table(d: DiagnosisData) -> pd.DataFrame:
 
     rows = []
     for number, trial in enumerate(d.gap.trials):
-        for one in trial.sensors:
-            place = trial.parts()[one.sensor]
+        for readings in trial.sensors:
+            place = trial.parts()[readings.sensor]
             left = [trial.measured[place] - computed[number][place] for computed in (d.before, d.after)]
             rows.append(
                 {
                     "run": trial.name,
                     "hold_out": trial.hold_out,
-                    "sensor": one.sensor,
-                    "n": len(one.times),
-                    "before_K": rms(d.gap, d.before, [number], one.sensor),
-                    "after_K": rms(d.gap, d.after, [number], one.sensor),
-                    "noise_K": one.noise,
-                    "mean_before_K": float(np.average(left[0], weights=one.sizes)),
-                    "mean_after_K": float(np.average(left[1], weights=one.sizes)),
+                    "sensor": readings.sensor,
+                    "n": len(readings.times),
+                    "before_K": rms(d.gap, d.before, [number], readings.sensor),
+                    "after_K": rms(d.gap, d.after, [number], readings.sensor),
+                    "noise_K": readings.noise,
+                    "mean_before_K": float(np.average(left[0], weights=readings.sizes)),
+                    "mean_after_K": float(np.average(left[1], weights=readings.sizes)),
                 }
             )
     return pd.DataFrame(rows)
@@ -178,20 +182,20 @@ def history_table(d: DiagnosisData) -> pd.DataFrame:
     rows = []
     for number, trial in enumerate(d.gap.trials):
         measured, before, after = trial.measured, d.before[number], d.after[number]
-        for one in trial.sensors:
-            place = trial.parts()[one.sensor]
+        for readings in trial.sensors:
+            place = trial.parts()[readings.sensor]
             rows.append(
                 pd.DataFrame(
                     {
                         "run": trial.name,
                         "hold_out": trial.hold_out,
-                        "sensor": one.sensor,
-                        "time_s": one.block_times,
-                        "readings": one.sizes.astype(int),
+                        "sensor": readings.sensor,
+                        "time_s": readings.block_times,
+                        "readings": readings.sizes.astype(int),
                         "measured_degC": measured[place],
                         "original_degC": before[place],
                         "amended_degC": after[place],
-                        "noise_K": one.noise / np.sqrt(one.sizes),
+                        "noise_K": readings.noise / np.sqrt(readings.sizes),
                     }
                 )
             )

@@ -27,7 +27,7 @@ def check_effort(model: ForwardModel, what: str, share: float, workers: int = 1)
     seconds = 0.0
     side_by_side = max(min(workers, len(model.drives)), 1)
     for number in range(len(model.drives)):
-        own, fitted = (RunEstimate.of(model.driven(study, number)) for study in (model.study, model.coarse))
-        own.check(side_by_side)
-        seconds += FITTED * fitted.march.time + OWN * own.march.time + CYCLES * own.mechanics.time
+        full, fitted = (RunEstimate.of(model.driven(study, number)) for study in (model.study, model.coarse))
+        full.check(side_by_side)
+        seconds += FITTED * fitted.march.time + OWN * full.march.time + CYCLES * full.mechanics.time
     estimate.warn_of(seconds * share / max(workers, 1), what)

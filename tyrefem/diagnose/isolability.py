@@ -108,10 +108,10 @@ class Isolability:
         """One row per effect: from what amplitude it is seen, and told from all others."""
         import pandas as pd
 
-        units = [one.unknowns[0].unit for one in self.candidates]
+        units = [candidate.unknowns[0].unit for candidate in self.candidates]
         return pd.DataFrame(
             {
-                "effect": [one.key for one in self.candidates],
+                "effect": [candidate.key for candidate in self.candidates],
                 "unit": units,
                 "usual": self.scale,
                 "seen_from": self.seen,
@@ -126,7 +126,7 @@ class Isolability:
         """Effects that are not told apart at their usual strength: connected by pairs that are too close."""
         n = len(self.candidates)
         close = (self.apart < MARGIN) & (self.apart.T < MARGIN)
-        left, found = set(range(n)), []
+        left, groups = set(range(n)), []
         while left:
             group, queue = set(), [min(left)]
             while queue:
@@ -136,8 +136,8 @@ class Isolability:
                 group.add(i)
                 queue += [j for j in left if close[i, j] and j not in group]
             left -= group
-            found.append(tuple(self.candidates[i].key for i in sorted(group)))
-        return tuple(sorted(found, key=len, reverse=True))
+            groups.append(tuple(self.candidates[i].key for i in sorted(group)))
+        return tuple(sorted(groups, key=len, reverse=True))
 
     def to_dict(self) -> dict[str, Any]:
         """Plain data for JSON."""
@@ -146,7 +146,7 @@ class Isolability:
             "margin_nats": MARGIN,
             "effects": self.table.to_dict(orient="records"),
             "groups": [list(group) for group in self.groups],
-            "fewest_runs": [list(one) for one in self.runs],
+            "fewest_runs": [list(runs) for runs in self.runs],
             "apart_nats": self.apart.round(2).tolist(),
             "notes": list(self.notes),
         }
@@ -164,7 +164,7 @@ class Isolability:
         together = [", ".join(group) for group in self.groups if len(group) > 1]
         lines += [f"Not told apart, or not seen, at usual strength: {names}." for names in together]
         if self.runs:
-            sets = "; ".join(" + ".join(one) for one in self.runs)
+            sets = "; ".join(" + ".join(runs) for runs in self.runs)
             lines.append(f"Fewest runs that identify as much: {sets}.")
         return [*lines, *self.notes]
 
@@ -174,14 +174,14 @@ def margins(
 ) -> list[float]:
     """Nats by which ``true`` is ahead of each competitor for data that are ``signal`` without noise."""
     given = linear.with_data(signal)
-    own = prior(true) + given.log_evidence(true)
-    return [own - prior(one) - given.log_evidence(one) for one in competitors]
+    of_true = prior(true) + given.log_evidence(true)
+    return [of_true - prior(members) - given.log_evidence(members) for members in competitors]
 
 
-def competitors_of(true: Members, found: Sequence[Candidate]) -> list[Members]:
+def competitors_of(true: Members, candidates: Sequence[Candidate]) -> list[Members]:
     """No effect, every other single effect, and every part of the true set; sets that hold it are no competitors."""
     sets: list[Members] = [()]
-    sets += [(one,) for one in found if one not in true]
+    sets += [(candidate,) for candidate in candidates if candidate not in true]
     for size in range(1, len(true)):
         sets += list(itertools.combinations(true, size))
     return sets
@@ -194,11 +194,11 @@ def candidates_of(study: StudyData) -> tuple[Candidate, ...]:
     ------
     InputError : there is none, so that there is nothing to tell apart.
     """
-    found = catalogue_candidates(study)
-    if not found:
+    candidates = catalogue_candidates(study)
+    if not candidates:
         message = "no effect of the catalogue is left that the study may lack: exclude fewer"
         raise InputError(message, field="diagnosis.exclude", file=study.file)
-    return found
+    return candidates
 
 
 def isolability(
@@ -219,7 +219,7 @@ def isolability(
     InputError : a campaign; every run held out; every effect excluded; a run's drive that the tyre cannot take.
     """
     NEEDS.check(study)
-    found = candidates_of(study)
+    candidates = candidates_of(study)
     if known is None:
         model = ForwardModel(study, planned(study))
         check_effort(model, f"the sensitivities of {study.name}", SENSITIVITIES, workers)
@@ -227,22 +227,31 @@ def isolability(
             store.open(model)
         with evaluating(model, workers, store) as evaluations:
             known = layout_sensitivities(evaluations, progress=progress)
-    prior = SetPrior(found, study.card.diagnosis.effects_expected)
+    prior = SetPrior(candidates, study.card.diagnosis.effects_expected)
     linear = _noiseless(known, known.fitted)
-    n = len(found)
+    n = len(candidates)
     smallest, seen, last = np.full(n, np.inf), np.full(n, np.inf), [""] * n
     apart = np.zeros((n, n))
-    for i, one in enumerate(found):
-        response = _response(linear, one)
-        at_scale = margins(linear, response, (one,), [(other,) for other in found], prior)
+    for i, candidate in enumerate(candidates):
+        response = _response(linear, candidate)
+        at_scale = margins(linear, response, (candidate,), [(other,) for other in candidates], prior)
         apart[i] = at_scale
-        smallest[i], last[i] = _threshold(linear, response, one, found, prior)
-        seen[i], _ = _threshold(linear, response, one, (), prior)
-    runs = _fewest_runs(known, found, prior, smallest)
-    scale = np.array([one.amplitudes[0].sd if one.amplitudes else 1.0 for one in found])
-    shares = np.array([1 / sum(other.name == one.name for other in found) for one in found])
+        smallest[i], last[i] = _threshold(linear, response, candidate, candidates, prior)
+        seen[i], _ = _threshold(linear, response, candidate, (), prior)
+    runs = _fewest_runs(known, candidates, prior, smallest)
+    scale = np.array([candidate.amplitudes[0].sd if candidate.amplitudes else 1.0 for candidate in candidates])
+    shares = np.array([1 / sum(other.name == candidate.name for other in candidates) for candidate in candidates])
     return Isolability(
-        study.name, found, smallest * scale, seen * scale, scale, tuple(last), apart, runs, shares, layout_notes(study)
+        study.name,
+        candidates,
+        smallest * scale,
+        seen * scale,
+        scale,
+        tuple(last),
+        apart,
+        runs,
+        shares,
+        layout_notes(study),
     )
 
 
@@ -265,12 +274,12 @@ def _noiseless(known: Sensitivities, numbers: Sequence[int]) -> LinearModel:
     return LinearModel(design, np.zeros(len(design.jacobian)))
 
 
-def _response(linear: LinearModel, one: Candidate) -> Array:
+def _response(linear: LinearModel, candidate: Candidate) -> Array:
     """Signal of an effect at its usual strength: all its amplitudes one prior sd from null, on the allowed side."""
     signal = np.zeros(len(linear.data))
-    for unknown in one.presence:
+    for unknown in candidate.presence:
         signal = signal + linear.jacobian[:, linear.design.place[unknown]]
-    for unknown in one.amplitudes:
+    for unknown in candidate.amplitudes:
         side = 1.0 if unknown.high > 0 else -1.0
         signal = signal + linear.jacobian[:, linear.design.place[unknown]] * side * min(
             unknown.sd, abs(side * unknown.high)
@@ -279,21 +288,21 @@ def _response(linear: LinearModel, one: Candidate) -> Array:
 
 
 def _threshold(
-    linear: LinearModel, response: Array, one: Candidate, found: Sequence[Candidate], prior: SetPrior
+    linear: LinearModel, response: Array, candidate: Candidate, candidates: Sequence[Candidate], prior: SetPrior
 ) -> tuple[float, str]:
     """Amplitude, in prior sds, from which the effect is ahead of all others; and which of these holds out longest."""
-    sets = competitors_of((one,), found)
-    if not one.amplitudes:
-        ahead = margins(linear, response, (one,), sets, prior)
+    sets = competitors_of((candidate,), candidates)
+    if not candidate.amplitudes:
+        ahead = margins(linear, response, (candidate,), sets, prior)
         worst = int(np.argmin(ahead))
         return 1.0 if ahead[worst] >= MARGIN else math.inf, " + ".join(each.key for each in sets[worst]) or "no effect"
-    unknown = one.amplitudes[0]
+    unknown = candidate.amplitudes[0]
     largest = max(abs(unknown.low), abs(unknown.high)) / unknown.sd
     largest = min(largest, 20.0)
     values = np.geomspace(0.02, largest, 40) if largest > 0.02 else np.array([largest])
     competitor = ""
     for value in values:
-        ahead = margins(linear, value * response, (one,), sets, prior)
+        ahead = margins(linear, value * response, (candidate,), sets, prior)
         worst = int(np.argmin(ahead))
         if ahead[worst] >= MARGIN:
             return float(value), competitor
@@ -302,11 +311,11 @@ def _threshold(
 
 
 def _fewest_runs(
-    known: Sensitivities, found: Sequence[Candidate], prior: SetPrior, smallest: Array
+    known: Sensitivities, candidates: Sequence[Candidate], prior: SetPrior, smallest: Array
 ) -> tuple[tuple[str, ...], ...]:
     """The smallest sets of fitted runs that identify at twice their usual strength all that all runs together do."""
     names = [drive.name for drive in known.drives]
-    wanted = [i for i in range(len(found)) if smallest[i] <= 2.0]
+    wanted = [i for i in range(len(candidates)) if smallest[i] <= 2.0]
     if not wanted:
         return ()
     for size in range(1, len(known.fitted) + 1):
@@ -316,7 +325,11 @@ def _fewest_runs(
             ok = all(
                 min(
                     margins(
-                        linear, 2 * _response(linear, found[i]), (found[i],), competitors_of((found[i],), found), prior
+                        linear,
+                        2 * _response(linear, candidates[i]),
+                        (candidates[i],),
+                        competitors_of((candidates[i],), candidates),
+                        prior,
                     )
                 )
                 >= MARGIN

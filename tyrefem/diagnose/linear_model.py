@@ -9,6 +9,7 @@ from functools import cached_property
 import numpy as np
 from numpy.typing import NDArray
 
+from tyrefem.brief import Brief
 from tyrefem.diagnose.candidates import Members
 from tyrefem.diagnose.evidence import posterior
 from tyrefem.diagnose.unknowns import Unknown
@@ -17,7 +18,7 @@ Array = NDArray[np.float64]
 
 
 @dataclass(frozen=True, eq=False)
-class DesignMatrix:
+class DesignMatrix(Brief):
     """How whitened readings depend on unknowns: ``jacobian`` (n, k); ``nuisance``: how many of the unknowns, the first,
     belong to every model.
     """
@@ -63,7 +64,7 @@ class DesignMatrix:
 
 
 @dataclass(frozen=True, eq=False)
-class LinearModel:
+class LinearModel(Brief):
     """d = J x + e with whitened ``data`` d (n,), e ~ N(0, 1), and priors and bounds of x."""
 
     design: DesignMatrix

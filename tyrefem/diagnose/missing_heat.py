@@ -100,17 +100,17 @@ def pursuit(residuals: Residuals, unknown: Sequence[Unknown]) -> tuple[Unknown, 
     """
     linear = residuals.linear(residuals.fitted)
     n = residuals.nuisance
-    low, high = (np.array([getattr(one, which) for one in linear.design.unknowns[:n]]) for which in ("low", "high"))
+    low, high = (np.array([getattr(patch, which) for patch in linear.design.unknowns[:n]]) for which in ("low", "high"))
     ends = np.cumsum([0, *(len(residuals.whitened[i]) for i in residuals.fitted)])
 
     def evidence(patches: Sequence[Unknown]) -> float:
         columns, sd = [linear.jacobian[:, :n]], [linear.design.sd[:n]]
-        for one in patches:
-            own = np.zeros((len(linear.data), len(ends) - 1))
+        for patch in patches:
+            of_runs = np.zeros((len(linear.data), len(ends) - 1))
             for run, (start, end) in enumerate(pairwise(ends)):
-                own[start:end, run] = linear.jacobian[start:end, linear.design.place[one]]
-            columns.append(own)
-            sd.append(np.full(own.shape[1], residuals.settings.source_spread * one.sd))
+                of_runs[start:end, run] = linear.jacobian[start:end, linear.design.place[patch]]
+            columns.append(of_runs)
+            sd.append(np.full(of_runs.shape[1], residuals.settings.source_spread * patch.sd))
         J, more = np.hstack(columns), len(patches) * (len(ends) - 1)
         limits = np.concatenate([low, np.zeros(more)]), np.concatenate([high, np.full(more, np.inf)])
         return posterior(J.T @ J, J.T @ linear.data, np.concatenate(sd), *limits).log_evidence
@@ -118,8 +118,8 @@ def pursuit(residuals: Residuals, unknown: Sequence[Unknown]) -> tuple[Unknown, 
     chosen: list[Unknown] = []
     best = -np.inf
     while len(chosen) < residuals.settings.most_sources:
-        found = [(evidence([*chosen, one]), number) for number, one in enumerate(unknown) if one not in chosen]
-        value, number = max(found)
+        gains = [(evidence([*chosen, patch]), number) for number, patch in enumerate(unknown) if patch not in chosen]
+        value, number = max(gains)
         if chosen and value < best + residuals.settings.source_gain:
             break
         best = value
@@ -141,22 +141,22 @@ def _estimated(
     residuals: Residuals, unknown: Sequence[Unknown], about: _Point, chosen: Unknown | None = None
 ) -> UnknownHeat:
     trials = residuals.trials
-    shared, own = about.patches, []
+    shared, of_runs = about.patches, []
     ends = np.cumsum([len(residuals.whitened[i]) for i in residuals.fitted])
     for end, i in zip(ends, residuals.fitted, strict=True):
         wide = np.zeros_like(shared)
         rows = slice(end - len(residuals.whitened[i]), end)
         wide[rows] = shared[rows]
-        own.append(wide)
+        of_runs.append(wide)
     n, k = len(about.unknowns), len(unknown)
-    J = np.hstack([about.jacobian, shared, *own])
-    sd_patch = np.array([one.sd for one in unknown])
-    sd = np.concatenate([[one.sd for one in about.unknowns], sd_patch, *[sd_patch / 2 for _ in own]])
-    low = np.concatenate([[one.low for one in about.unknowns], np.full(k * (1 + len(own)), -np.inf)])
-    high = np.concatenate([[one.high for one in about.unknowns], np.full(k * (1 + len(own)), np.inf)])
+    J = np.hstack([about.jacobian, shared, *of_runs])
+    sd_patch = np.array([each.sd for each in unknown])
+    sd = np.concatenate([[each.sd for each in about.unknowns], sd_patch, *[sd_patch / 2 for _ in of_runs]])
+    low = np.concatenate([[each.low for each in about.unknowns], np.full(k * (1 + len(of_runs)), -np.inf)])
+    high = np.concatenate([[each.high for each in about.unknowns], np.full(k * (1 + len(of_runs)), np.inf)])
     solution = posterior(J.T @ J, J.T @ about.data, sd, low, high)
     means, spreads = [], []
-    for number in range(len(own)):
+    for number in range(len(of_runs)):
         at = n + k * (number + 1) + np.arange(k)
         both = n + np.arange(k)
         means.append(solution.mean[both] + solution.mean[at])
@@ -166,7 +166,7 @@ def _estimated(
     mean, spread = np.array(means), np.array(spreads)
     half = k // 2
     study = residuals.study
-    stations = np.array([float(dict(one.choice)["station"].split()[0]) for one in unknown[:half]])
+    stations = np.array([float(dict(each.choice)["station"].split()[0]) for each in unknown[:half]])
     watts = _watts(study, stations, mean[:, :half].mean(axis=0), mean[:, half:].mean(axis=0))
     first = int(np.argmax(_score(mean, spread, half))) if chosen is None else unknown.index(chosen)
     worst = first % half

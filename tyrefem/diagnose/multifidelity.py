@@ -81,19 +81,19 @@ class Predictions(Brief):
         self, asking: Sequence[tuple[Members, Values]], numbers: Sequence[int], tick: Tick = None
     ) -> list[list[Array]]:
         """Block means of some trials for every set and its point; NaN where no tyre can be so."""
-        found = self._by_model(asking, numbers, tick)
+        blocks = self._by_model(asking, numbers, tick)
         fresh = {
-            (place, i) for (place, i), one in found.items()
-            if (asking[place][0], i) not in self.certificates and np.isfinite(one).all()
+            (place, i) for (place, i), row in blocks.items()
+            if (asking[place][0], i) not in self.certificates and np.isfinite(row).all()
         }  # fmt: skip
-        left = [(k, i) for k in range(len(asking)) for i in numbers if (k, i) not in found or (k, i) in fresh]
+        left = [(k, i) for k in range(len(asking)) for i in numbers if (k, i) not in blocks or (k, i) in fresh]
         answers = self.evaluations.of("predict", [(i, asking[k][1]) for k, i in left], tick)
         self.simulated += len(left)
         for (k, i), answer in zip(left, answers, strict=True):
-            if (k, i) in fresh and self._tried(asking[k][0], i, found[k, i], answer).good:
+            if (k, i) in fresh and self._tried(asking[k][0], i, blocks[k, i], answer).good:
                 continue
-            found[k, i] = answer
-        return [[found[k, i] for i in numbers] for k in range(len(asking))]
+            blocks[k, i] = answer
+        return [[blocks[k, i] for i in numbers] for k in range(len(asking))]
 
     def jacobians(
         self, asking: Sequence[tuple[Members, tuple[Unknown, ...], Values]], numbers: Sequence[int], tick: Tick = None
@@ -102,42 +102,44 @@ class Predictions(Brief):
         wanted = [(k, i) for k in range(len(asking)) for i in numbers]
         modal = [(k, i) for k, i in wanted if self.modes and self._known_good(asking[k][0], i)]
         answers = self.evaluations.of("reduced_jacobian", [(i, self.modes[i], *asking[k][1:]) for k, i in modal], tick)
-        found = {one: jacobian for one, (status, jacobian) in zip(modal, answers, strict=True) if status[0] == FOLLOWED}
-        left = [one for one in wanted if one not in found]
-        found |= zip(left, self.evaluations.of("jacobian", [(i, *asking[k][1:]) for k, i in left], tick), strict=True)
-        return [[found[k, i] for i in numbers] for k in range(len(asking))]
+        tables = {
+            pair: jacobian for pair, (status, jacobian) in zip(modal, answers, strict=True) if status[0] == FOLLOWED
+        }
+        left = [pair for pair in wanted if pair not in tables]
+        tables |= zip(left, self.evaluations.of("jacobian", [(i, *asking[k][1:]) for k, i in left], tick), strict=True)
+        return [[tables[k, i] for i in numbers] for k in range(len(asking))]
 
     def confirmed(self, members: Members, values: Values) -> bool:
         """Is a point that matters what the simulation says, at every drive where the model spoke for it?"""
         numbers = [i for i in range(len(self.evaluations.model.drives)) if self.modes and self._known_good(members, i)]
-        found = self._by_model([(members, values)], numbers, None)
+        modal = self._by_model([(members, values)], numbers, None)
         answers = self.evaluations.of("predict", [(i, values) for i in numbers])
         self.simulated += len(numbers)
-        pairs = [(i, found.get((0, i)), answer) for i, answer in zip(numbers, answers, strict=True)]
-        return all(one is not None and self._tried(members, i, one, answer).good for i, one, answer in pairs)
+        pairs = [(i, modal.get((0, i)), answer) for i, answer in zip(numbers, answers, strict=True)]
+        return all(row is not None and self._tried(members, i, row, answer).good for i, row, answer in pairs)
 
     def to_dict(self) -> dict[str, Any]:
         """For `verdict.json`."""
-        good = [one for one in self.certificates.values() if one.good]
-        names = [one.name for one in self.evaluations.model.drives]
+        good = [certificate for certificate in self.certificates.values() if certificate.good]
+        names = [drive.name for drive in self.evaluations.model.drives]
         return {
             "used": bool(good) and not self.given_up,
-            "modes": {name: one.V.shape[1] for name, one in zip(names, self.modes, strict=False)},
+            "modes": {name: modes.V.shape[1] for name, modes in zip(names, self.modes, strict=False)},
             "points_by_reduced_models": self.reduced,
             "points_by_lean_simulations": self.simulated,
             "allowed_whitened": self.settings.reduced_allowed,
-            "worst_whitened": max((one.apart for one in good), default=None),
-            "worst_K": max((one.error for one in good), default=None),
+            "worst_whitened": max((certificate.apart for certificate in good), default=None),
+            "worst_K": max((certificate.error for certificate in good), default=None),
             "certificates": [
                 {
-                    "effects": [member.key for member in one.members],
-                    "run": names[one.number],
-                    "used": one.good,
-                    "points": one.cases,
-                    "whitened": one.apart if one.cases else None,
-                    "worst_K": one.error if one.cases else None,
+                    "effects": [member.key for member in certificate.members],
+                    "run": names[certificate.number],
+                    "used": certificate.good,
+                    "points": certificate.cases,
+                    "whitened": certificate.apart if certificate.cases else None,
+                    "worst_K": certificate.error if certificate.cases else None,
                 }
-                for one in self.certificates.values()
+                for certificate in self.certificates.values()
             ],
         }
 
@@ -146,22 +148,22 @@ class Predictions(Brief):
     ) -> dict[tuple[int, int], Array]:
         """(place, trial) -> block means by the models, of what they may be asked and can follow."""
         places = {i: [k for k, (members, _) in enumerate(asking) if self._may(members, i)] for i in numbers}
-        places = {i: own for i, own in places.items() if own}
-        questions = [(i, self.modes[i], tuple(asking[k][1] for k in own)) for i, own in places.items()]
-        found: dict[tuple[int, int], Array] = {}
-        for (i, own), (status, blocks) in zip(
+        places = {i: places_here for i, places_here in places.items() if places_here}
+        questions = [(i, self.modes[i], tuple(asking[k][1] for k in places_here)) for i, places_here in places.items()]
+        modal: dict[tuple[int, int], Array] = {}
+        for (i, places_here), (status, blocks) in zip(
             places.items(), self.evaluations.of("reduced", questions, tick), strict=True
         ):
-            for k, one, row in zip(own, status, blocks, strict=True):
-                if one == NOT_FOLLOWED:
+            for k, state, row in zip(places_here, status, blocks, strict=True):
+                if state == NOT_FOLLOWED:
                     members = asking[k][0]
                     self.certificates[members, i] = DriveCertificate(
                         members, i, self.settings.reduced_allowed, apart=np.inf, error=np.inf
                     )
-                elif one == FOLLOWED:
-                    found[k, i] = row
-        self.reduced += len(found)
-        return found
+                elif state == FOLLOWED:
+                    modal[k, i] = row
+        self.reduced += len(modal)
+        return modal
 
     def _may(self, members: Members, number: int) -> bool:
         """May the model be asked: is it there, and has nothing been said against it?"""
@@ -182,6 +184,6 @@ class Predictions(Brief):
         apart = float(np.linalg.norm(self.evaluations.model.drives[number].whitened(modal - simulated)))
         error = float(np.abs(modal - simulated).max(initial=0.0))
         finite = np.isfinite(apart)
-        found = known.with_case(apart if finite else np.inf, error if finite else np.inf)
-        self.certificates[members, number] = found
-        return found
+        certificate = known.with_case(apart if finite else np.inf, error if finite else np.inf)
+        self.certificates[members, number] = certificate
+        return certificate

@@ -22,19 +22,19 @@ def record(d: DiagnosisData) -> dict[str, Any]:
     ``effects`` are the members of the most probable set where the verdict is "identified" or "confounded".
     """
     named = d.best.members if d.verdict in (IDENTIFIED, CONFOUNDED) else ()
-    found = {
+    contents = {
         "verdict": d.verdict,
         "summary": list(verdict_words(d)),
         "reasons": list(d.judgement.reasons),
         "effects": [
             {
-                "name": one.name,
-                "variant": dict(one.choice),
-                "probability": d.judgement.named.get(one.key, 0.0),
-                "parameters": parameters(one.unknowns, d.best),
-                "source": one.effect.source,
+                "name": member.name,
+                "variant": dict(member.choice),
+                "probability": d.judgement.named.get(member.key, 0.0),
+                "parameters": parameters(member.unknowns, d.best),
+                "source": member.effect.source,
             }
-            for one in named
+            for member in named
         ],
         "candidates": candidate_rows(d),
         "sets": set_rows(d),
@@ -48,7 +48,7 @@ def record(d: DiagnosisData) -> dict[str, Any]:
         "amended_study": AMENDED,
         "changes": change_rows(d),
         "missing_heat": missing_heat(d) if d.verdict == UNEXPLAINED else None,
-        "again": [_look(one, number) for number, one in enumerate(d.looks[1:], start=2)],
+        "again": [_look(look, number) for number, look in enumerate(d.looks[1:], start=2)],
         "study": d.original.name,
         "title": d.original.title,
         "runs": _runs(d),
@@ -63,7 +63,7 @@ def record(d: DiagnosisData) -> dict[str, Any]:
         "random_seed": None,
         "input": dict(d.original.data),
     }  # fmt: skip
-    plain: dict[str, Any] = jsonable(found)
+    plain: dict[str, Any] = jsonable(contents)
     return plain
 
 
@@ -99,40 +99,40 @@ def change_rows(d: DiagnosisData) -> list[dict[str, Any]]:
     """What the amended study changes: SI value of a parameter, factor of a base number, with standard deviation."""
     return [
         {
-            "key": one.unknown.key,
-            "keys": list(one.unknown.keys),
-            "effect": one.unknown.effect,
-            "variant": dict(one.unknown.choice),
-            "missing": one.missing,
-            "original": one.unknown.value(0.0),
-            "value": one.unknown.value(one.x),
-            "sd": one.sd * (one.unknown.value(one.x) if one.unknown.parameter is None else 1.0),
-            "unit": one.unknown.unit,
-            "source": one.source,
+            "key": change.unknown.key,
+            "keys": list(change.unknown.keys),
+            "effect": change.unknown.effect,
+            "variant": dict(change.unknown.choice),
+            "missing": change.missing,
+            "original": change.unknown.value(0.0),
+            "value": change.unknown.value(change.x),
+            "sd": change.sd * (change.unknown.value(change.x) if change.unknown.parameter is None else 1.0),
+            "unit": change.unknown.unit,
+            "source": change.source,
         }
-        for one in d.changes
+        for change in d.changes
     ]
 
 
 def missing_heat(d: DiagnosisData) -> dict[str, Any]:
     """Heat of unknown origin by station: W/m3 inside while the tyre rolls, W/m2 through the outer surface always."""
-    found = d.missing
+    heat = d.missing
     return {
-        "kind": found.kind,
-        "region": found.region,
-        "station_m": found.station,
-        "stations_m": found.stations,
-        "watts": found.watts,
+        "kind": heat.kind,
+        "region": heat.region,
+        "station_m": heat.station,
+        "stations_m": heat.stations,
+        "watts": heat.watts,
         "runs": [
             {
                 "run": run,
-                "speed_m_s": float(found.speeds[number]),
-                "heat_W_m3": found.heat[number],
-                "heat_sd_W_m3": found.heat_sd[number],
-                "flux_W_m2": found.flux[number],
-                "flux_sd_W_m2": found.flux_sd[number],
+                "speed_m_s": float(heat.speeds[number]),
+                "heat_W_m3": heat.heat[number],
+                "heat_sd_W_m3": heat.heat_sd[number],
+                "flux_W_m2": heat.flux[number],
+                "flux_sd_W_m2": heat.flux_sd[number],
             }
-            for number, run in enumerate(found.runs)
+            for number, run in enumerate(heat.runs)
         ],
     }
 
@@ -141,7 +141,7 @@ def _look(d: DiagnosisData, number: int) -> dict[str, Any]:
     """A further look at the same data in short; ``folder``: where the whole of it is, where something was found."""
     return {
         "verdict": d.verdict,
-        "effects": [one.key for one in d.best.members] if d.verdict in (IDENTIFIED, CONFOUNDED) else [],
+        "effects": [member.key for member in d.best.members] if d.verdict in (IDENTIFIED, CONFOUNDED) else [],
         "reasons": list(d.judgement.reasons),
         "folder": None if d.verdict == NO_GAP else look_folder(number),
     }
@@ -154,12 +154,12 @@ def _rms(d: DiagnosisData, *, after: bool) -> dict[str, float]:
 def _runs(d: DiagnosisData) -> list[dict[str, Any]]:
     return [
         {
-            "run": one.name,
-            "hold_out": one.hold_out,
-            "drive": one.drive,
-            "readings": sum(len(each.times) for each in one.sensors),
-            "end_s": max(float(each.times[-1]) for each in one.sensors),
-            "noise_K": {each.sensor: each.noise for each in one.sensors},
+            "run": trial.name,
+            "hold_out": trial.hold_out,
+            "drive": trial.drive,
+            "readings": sum(len(readings.times) for readings in trial.sensors),
+            "end_s": max(float(readings.times[-1]) for readings in trial.sensors),
+            "noise_K": {readings.sensor: readings.noise for readings in trial.sensors},
         }
-        for one in d.gap.trials
+        for trial in d.gap.trials
     ]

@@ -52,30 +52,30 @@ def residual_table(
     import pandas as pd
 
     trials, rows = residuals.trials, []
-    prior = np.array([one.sd for one in residuals.unknowns[: residuals.nuisance]])
+    prior = np.array([unknown.sd for unknown in residuals.unknowns[: residuals.nuisance]])
     for number, trial in enumerate(trials):
         measured = trial.measured
         drive = residuals.driven(number).card.drive
-        for one in trial.sensors:
-            place = trial.parts()[one.sensor]
+        for readings in trial.sensors:
+            place = trial.parts()[readings.sensor]
             residual = (measured - computed[number])[place]
             J = residuals.sensitivities.jacobians[number][place, : residuals.nuisance]
-            covariance = one.covariance + (J * prior**2) @ J.T
-            kinds = stretches(one, (like or computed)[number][place])
+            covariance = readings.covariance + (J * prior**2) @ J.T
+            kinds = stretches(readings, (like or computed)[number][place])
             for kind in STRETCHES:
                 mask = kinds == kind
                 if not mask.any():
                     continue
-                weight = mask * one.sizes / (mask * one.sizes).sum()
+                weight = mask * readings.sizes / (mask * readings.sizes).sum()
                 mean, sd = float(weight @ residual), float(np.sqrt(weight @ covariance @ weight))
                 rows.append(
                     {
                         "run": trial.name,
                         "hold_out": trial.hold_out,
-                        "sensor": one.sensor,
+                        "sensor": readings.sensor,
                         "phase": kind,
-                        "speed_m_s": float(np.mean([motion_at(drive, t).speed for t in one.block_times[mask]])),
-                        "n": int((mask * one.sizes).sum()),
+                        "speed_m_s": float(np.mean([motion_at(drive, t).speed for t in readings.block_times[mask]])),
+                        "n": int((mask * readings.sizes).sum()),
                         "mean_K": mean,
                         "rms_K": float(np.sqrt(weight @ residual**2)),
                         "sd_K": sd,
@@ -93,14 +93,16 @@ def rms(residuals: Residuals, computed: Mapping[int, Array], trials: list[int], 
     total = count = 0.0
     for number in trials:
         trial = residuals.trials[number]
-        for one in trial.sensors:
-            if sensor not in (None, one.sensor):
+        for readings in trial.sensors:
+            if sensor not in (None, readings.sensor):
                 continue
-            place = trial.parts()[one.sensor]
+            place = trial.parts()[readings.sensor]
             residual = trial.measured[place] - computed[number][place]
-            within = one.measured - np.repeat(one.block_means(one.measured), one.sizes.astype(int))
+            within = readings.measured - np.repeat(readings.block_means(readings.measured), readings.sizes.astype(int))
             # The signal's own change within a block is no noise: take it off with the computed one where it is known.
-            noise = np.minimum(np.add.reduceat(within**2, one.starts), one.noise**2 * np.maximum(one.sizes - 1, 0))
-            total += float(one.sizes @ residual**2 + noise.sum())
-            count += float(one.sizes.sum())
+            noise = np.minimum(
+                np.add.reduceat(within**2, readings.starts), readings.noise**2 * np.maximum(readings.sizes - 1, 0)
+            )
+            total += float(readings.sizes @ residual**2 + noise.sum())
+            count += float(readings.sizes.sum())
     return float(np.sqrt(total / count)) if count else float("nan")
