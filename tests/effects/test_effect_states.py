@@ -175,7 +175,7 @@ def test_the_fixed_steps_of_a_fit_take_states_along(result) -> None:
 def test_reduced_models_refuse_states() -> None:
     tyre = RollingTyre(braked(DISC))
     model = ReducedModel(tyre, np.ones((tyre.problem.operators.size, 1)), {}, np.zeros((0, 0)))
-    with pytest.raises(NotReducibleError, match="states of their own, which no reduced model follows: 'brake-disc'"):
+    with pytest.raises(NotReducibleError, match="a reduced model cannot follow effects with states: 'brake-disc'"):
         reduced_balance(model, tyre)
 
 

@@ -10,7 +10,7 @@ from tyrefem.api import Study
 from tyrefem.reduced.answers import reduced_answers
 from tyrefem.reduced.balance import reduced_balance
 from tyrefem.reduced.batch import Batch, steady
-from tyrefem.reduced.march import march
+from tyrefem.reduced.integration import integrate
 from tyrefem.reduced.surrogate import surrogate, temperature_error
 from tyrefem.simulation.rolling_tyre import RollingTyre
 from tyrefem.simulation.run import run
@@ -72,10 +72,10 @@ def test_films_that_follow_a_constant_drive_are_asked_for_once(plain: Study) -> 
     ):
         balance = reduced_balance(found.model, RollingTyre(plain.replace({"effects": [effect]}), base))
         assert steady(balance, 0) is constant
-        marched = march(Batch(found.model, [balance]))
-        assert marched.windows
-        assert all(window.steady is constant for window in marched.windows)
-        moments = [Batch(found.model, [balance]).outside(t) for t in (1.0, 77.0, 150.0)]
+        solution = integrate(Batch(found.model, [balance]))
+        assert solution.windows
+        assert all(window.steady is constant for window in solution.windows)
+        moments = [Batch(found.model, [balance]).boundary_data(t) for t in (1.0, 77.0, 150.0)]
         assert all(np.array_equal(one.sinks, moments[0].sinks) for one in moments) is constant
 
 

@@ -7,7 +7,7 @@ import pytest
 from scipy.integrate import solve_ivp
 
 from tyrefem.reduced.exponential import relaxed, responses
-from tyrefem.reduced.pod import modes, places
+from tyrefem.reduced.pod import modes, sample_nodes
 
 pytestmark = pytest.mark.fast
 
@@ -31,7 +31,7 @@ def test_modes_keep_what_they_are_asked_to_keep() -> None:
 def test_a_few_places_tell_the_whole_field() -> None:
     x = np.linspace(0.0, 1.0, 400)
     fields = np.array([np.exp(-((x - c) ** 2) / 0.5) * (1 + 0.1 * c) for c in np.linspace(0, 1, 30)])
-    chosen, everywhere = places(fields, 1e-6, 30)
+    chosen, everywhere = sample_nodes(fields, 1e-6, 30)
     fresh = np.exp(-((x - 0.4321) ** 2) / 0.5)
     assert len(chosen) < 20
     assert np.abs(everywhere @ fresh[chosen] - fresh).max() < 1e-5

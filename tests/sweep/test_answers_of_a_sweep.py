@@ -208,15 +208,15 @@ def test_a_sample_of_all_uncertain_numbers_moves_a_shared_card_as_one(tyre: Stud
 
 def test_a_reduced_model_follows_uncertain_numbers(tyre: Study) -> None:
     """Moved in two regions at once, by full runs and by the model."""
-    from tyrefem.reduced.surrogate import outside
+    from tyrefem.reduced.surrogate import why_outside
 
     shared = {f"materials.{one}": "nasa-tread" for one in ("tread", "sidewall")}
     plan = plan_of(tyre.replace(shared), {}, uncertain=1, sample="sobol", count=2)
     for variant in plan.variants:
-        assert outside(plan.study.replace(variant), plan.study, plan.varied) == ""
+        assert why_outside(plan.study.replace(variant), plan.study, plan.varied) == ""
     alone = {key: value for key, value in plan.variants[0].items() if not key.startswith("materials.sidewall.")}
     assert len(alone) < len(plan.variants[0])
-    assert "does not follow" in outside(plan.study.replace(alone), plan.study, plan.varied)
+    assert "does not change with" in why_outside(plan.study.replace(alone), plan.study, plan.varied)
 
 
 BOX = {"drive.speed": ("10 m/s", "20 m/s"), "drive.ambient": ("10 degC", "30 degC")}

@@ -16,9 +16,9 @@ from tyrefem.mechanics.cycle_schedule import same_cycles
 from tyrefem.mechanics.strain_laws import strain_law
 from tyrefem.reduced.answers import outcomes_of
 from tyrefem.reduced.model import NotReducibleError, ReducedModel
-from tyrefem.reduced.residual import EARLY, corrected
+from tyrefem.reduced.residual import EARLY, corrected_tyre
 from tyrefem.reduced.training import ReducedFineness, Snapshots, trained
-from tyrefem.reduced.training_rounds import HORIZONS, Packed, pack, remember
+from tyrefem.reduced.training_rounds import HORIZONS, PackedModel, pack, remember
 from tyrefem.reduced.variant import Variant
 
 
@@ -105,7 +105,7 @@ class ReducedInputCertificate:
         )
 
 
-def amended(task: tuple[Packed, Work, float, float]) -> Snapshots | None:
+def amended(task: tuple[PackedModel, Work, float, float]) -> Snapshots | None:
     """Done in a worker: what the full model makes of the reduced run of a study, over a horizon.
 
     None: no reduced model can follow it. It will be run in full, which says what is wrong, if anything is.
@@ -114,7 +114,7 @@ def amended(task: tuple[Packed, Work, float, float]) -> Snapshots | None:
     first = work.drive.first or work.drive
     try:
         remember(first.packed, first.tyre)
-        return corrected(packed.unpacked(), work.tyre, share, early)[0]
+        return corrected_tyre(packed.unpacked(), work.tyre, share, early)[0]
     except InputError:
         return None
 

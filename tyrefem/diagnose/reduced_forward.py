@@ -17,11 +17,11 @@ from tyrefem.diagnose.settings import DiagnosisSettings
 from tyrefem.diagnose.unknowns import Unknown
 from tyrefem.errors import InputError
 from tyrefem.inputs.study import StudyData
-from tyrefem.reduced.answers import side_by_side
+from tyrefem.reduced.answers import batch_solutions
 from tyrefem.reduced.balance import ReducedBalance, reduced_balance
-from tyrefem.reduced.exponential import Marched
 from tyrefem.reduced.model import NotReducibleError, ReducedModel
 from tyrefem.reduced.pod import modes
+from tyrefem.reduced.solution import BatchSolution
 from tyrefem.reduced.training import weight
 from tyrefem.simulation.rolling_tyre import RollingTyre
 from tyrefem.simulation.surroundings import GAS, RIM
@@ -138,15 +138,15 @@ class ReducedDrive:
             {name: (one[name] - first[name]) / step for name in first} for one, step in zip(others, steps, strict=True)
         ]
 
-    def _marched(self, tyres: Sequence[RollingTyre]) -> tuple[list[tuple[list[int], Marched]], list[int]]:
+    def _marched(self, tyres: Sequence[RollingTyre]) -> tuple[list[tuple[list[int], BatchSolution]], list[int]]:
         """Those that can be marched, together; numbers of those that the model cannot follow."""
-        found: list[tuple[list[int], Marched]] = []
+        found: list[tuple[list[int], BatchSolution]] = []
         refused: list[int] = []
         tolerance, together = self.settings.reduced_time_tolerance, self.settings.marched_together
         # Where one of them takes no step any more, the fixed-step simulation says what is wrong with it.
         with contextlib.suppress(InputError):
-            for numbers, part in side_by_side(self.model, tyres, tolerance, together):
-                if isinstance(part, Marched):
+            for numbers, part in batch_solutions(self.model, tyres, tolerance, together):
+                if isinstance(part, BatchSolution):
                     found.append((numbers, part))
                 elif isinstance(part, NotReducible):
                     refused += numbers

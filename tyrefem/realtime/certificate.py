@@ -279,7 +279,7 @@ class _Tool:
         taught = [run.snapshots for run in learnt]
         none = np.zeros((0, taught[0].fields.shape[1]))
         self.reduced = trained(
-            self.base, [*taught, Snapshots(none, self._sources(taught))], choice=self.settings.fineness
+            self.base, [*taught, Snapshots(none, self._sources(taught))], fineness=self.settings.fineness
         )
         hot = np.unique(np.concatenate([run.hot for run in learnt]))
         return arrays_of(self.reduced, self.probe, self.tables, hot)

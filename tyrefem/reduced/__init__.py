@@ -1,4 +1,4 @@
-"""Reduced models: a rolling tyre's temperatures from a few dozen numbers instead of thousands.
+"""Reduced models: a rolling tyre's temperatures from a few dozen POD modes instead of thousands of nodes.
 
-Knows nothing of sweeps, diagnoses and reports.
+This package does not import sweeps, diagnoses or reports.
 """

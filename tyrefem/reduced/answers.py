@@ -1,4 +1,4 @@
-"""Answers of studies by a reduced model: what can be marched together is."""
+"""Answers of studies by a reduced model; variants with the same drive are integrated as one batch."""
 
 from __future__ import annotations
 
@@ -9,10 +9,10 @@ from tyrefem.errors import InputError
 from tyrefem.inputs.study import StudyData
 from tyrefem.reduced.balance import ReducedBalance, reduced_balance
 from tyrefem.reduced.batch import Batch
-from tyrefem.reduced.exponential import Marched
-from tyrefem.reduced.march import march
+from tyrefem.reduced.integration import integrate
 from tyrefem.reduced.model import NotReducibleError, ReducedModel
 from tyrefem.reduced.readout import Readout
+from tyrefem.reduced.solution import BatchSolution
 from tyrefem.reduced.variant import Variant
 from tyrefem.simulation.rolling_tyre import RollingTyre
 from tyrefem.simulation.simulate import output_times
@@ -20,14 +20,14 @@ from tyrefem.variants.answers import answers
 from tyrefem.variants.outcomes import Answered, Failed, NotReducible
 
 ReducedOutcome = Answered | Failed | NotReducible
-#: Variants marched side by side.
-SIDE_BY_SIDE = 32
+#: Variants integrated in one batch, at most.
+BATCH_SIZE = 32
 #: K, of the reduced model's time integration; see `Batch`.
 TIME_TOLERANCE = 0.2
 
 
 def reduced_answers(model: ReducedModel, studies: Sequence[StudyData], time_to: float | None) -> list[ReducedOutcome]:
-    """What becomes of every study, in their order."""
+    """The outcome of every study, in the order of the studies."""
     outcomes: dict[int, ReducedOutcome] = {}
     for number, outcome in reduced_outcomes(model, studies):
         if isinstance(outcome, Variant):
@@ -40,7 +40,7 @@ def reduced_answers(model: ReducedModel, studies: Sequence[StudyData], time_to: 
 def reduced_outcomes(
     model: ReducedModel, studies: Sequence[StudyData], tolerance: float = TIME_TOLERANCE
 ) -> Iterator[tuple[int, Variant | Failed | NotReducible]]:
-    """(number, variant) of every study, marched side by side; `Failed` or `NotReducible` in place of a variant.
+    """Yield (number, variant) of every study; `Failed` or `NotReducible` in place of the variant.
 
     Parameters
     ----------
@@ -52,8 +52,8 @@ def reduced_outcomes(
 def outcomes_of(
     model: ReducedModel, tyres: Sequence[RollingTyre], tolerance: float = TIME_TOLERANCE
 ) -> Iterator[tuple[int, Variant | Failed | NotReducible]]:
-    """The same of tyres on the model's mesh."""
-    for numbers, part in side_by_side(model, tyres, tolerance):
+    """Yield (number, variant) of every tyre on the model's mesh, as `reduced_outcomes`."""
+    for numbers, part in batch_solutions(model, tyres, tolerance):
         if isinstance(part, Failed | NotReducible):
             yield numbers[0], part
             continue
@@ -62,13 +62,13 @@ def outcomes_of(
             yield number, Variant(readout, place)
 
 
-def side_by_side(
-    model: ReducedModel, tyres: Sequence[RollingTyre], tolerance: float = TIME_TOLERANCE, most: int = SIDE_BY_SIDE
-) -> Iterator[tuple[list[int], Marched | Failed | NotReducible]]:
-    """Tyres marched together where their drives allow it, ``most`` at a time: (their numbers, the march).
+def batch_solutions(
+    model: ReducedModel, tyres: Sequence[RollingTyre], tolerance: float = TIME_TOLERANCE, most: int = BATCH_SIZE
+) -> Iterator[tuple[list[int], BatchSolution | Failed | NotReducible]]:
+    """Yield (numbers, solution) of batches of at most ``most`` tyres whose drives have the same times.
 
-    Or ([a number], `Failed`) of a tyre that cannot be, ([a number], `NotReducible`) of one that the model cannot
-    follow.
+    A tyre that cannot be built gives ([number], `Failed`). A tyre that the model cannot represent gives ([number],
+    `NotReducible`).
     """
     groups: dict[Any, list[tuple[int, ReducedBalance]]] = {}
     for number, tyre in enumerate(tyres):
@@ -85,4 +85,4 @@ def side_by_side(
     for members in groups.values():
         for first in range(0, len(members), most):
             part = members[first : first + most]
-            yield [number for number, _ in part], march(Batch(model, [balance for _, balance in part], tolerance))
+            yield [number for number, _ in part], integrate(Batch(model, [balance for _, balance in part], tolerance))

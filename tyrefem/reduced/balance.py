@@ -1,4 +1,4 @@
-"""A variant's heat balance on modes: masses, conduction, and everything that exchanges heat."""
+"""Heat balance of a variant on the POD modes: masses, conduction, films and reservoirs."""
 
 from __future__ import annotations
 
@@ -19,7 +19,7 @@ Array = NDArray[np.float64]
 
 
 class ReducedBalance:
-    """M y' = A(t) y + b(t) + sources, y = (a, reservoirs)."""
+    """M y' = A(t) y + b(t) + sources, with y = (mode amplitudes a, reservoir temperatures)."""
 
     def __init__(
         self,
@@ -32,16 +32,16 @@ class ReducedBalance:
         self.model, self.tyre, self.bodies, self.films, self.reservoirs = model, tyre, bodies, films, reservoirs
         m, names = model.size, list(reservoirs)
         n = m + len(names)
-        among = [(name, pair) for name in names for pair in reservoirs[name].exchanges]
+        conductances = [(name, pair) for name in names for pair in reservoirs[name].exchanges]
         self.layout: Layout = (
             tuple((side, _reservoir(film.sink)) for side, _, film in films),
-            tuple((name, _reservoir(other)) for name, (_, other) in among),
+            tuple((name, _reservoir(other)) for name, (_, other) in conductances),
             tuple(names),
         )
         self.exchanges = model.exchanges(self.layout)
         #: (coefficient, sink) of every exchange: numbers or functions f(x, t).
         self.data = [(film.h, film.sink) for _, _, film in films]
-        self.data += [(_timed(conductance), _timed(other)) for _, (conductance, other) in among]
+        self.data += [(_timed(conductance), _timed(other)) for _, (conductance, other) in conductances]
         self.start = np.zeros(n)
         initial = tyre.drive.initial
         # The first mode is even: V a = initial.
@@ -57,32 +57,32 @@ class ReducedBalance:
 
     @functools.cached_property
     def M(self) -> Array:
-        """(n, n) J/K."""
+        """Heat capacities, (n, n) J/K."""
         return matrices_of([self])[0][0]
 
     @functools.cached_property
     def K(self) -> Array:
-        """(n, n) W/K of conduction."""
+        """Conduction, (n, n) W/K."""
         return matrices_of([self])[1][0]
 
     @property
     def stack(self) -> Array:
-        """(n_exchanges, n, n), for 1 W/m2/K or 1 W/K."""
+        """Exchange matrices, (n_exchanges, n, n), for a coefficient of 1 W/m2/K or 1 W/K."""
         return self.exchanges.matrices
 
     @property
     def loads(self) -> Array:
-        """(n_exchanges, n) of given sinks."""
+        """Load vectors of the given sinks, (n_exchanges, n)."""
         return self.exchanges.loads
 
     def coefficients(self, t: float) -> tuple[Array, Array]:
-        """(films and conductances, their sinks) at a time."""
+        """Films and conductances, and their sinks, at a time."""
         h = np.array([_value(film[0], t) for film in self.data])
         sinks = np.array([0.0 if isinstance(film[1], str) else _value(film[1], t) for film in self.data])
         return h, sinks
 
     def source(self, t: float, a: Array) -> Array:
-        """(n_samples,) W/m3 at the samples."""
+        """Heat source at the sample nodes, (n_samples,) W/m3."""
         model = self.model
         T = model.at_samples @ a
         q = np.empty(len(T))
@@ -91,7 +91,7 @@ class ReducedBalance:
         return q
 
     def powers(self, t: float) -> list[float]:
-        """W put into every reservoir from outside."""
+        """Power into every reservoir from outside, W."""
         return [_value(_timed(reservoir.power), t) for reservoir in self.reservoirs.values()]
 
 
@@ -100,16 +100,16 @@ def reduced_balance(model: ReducedModel, tyre: RollingTyre) -> ReducedBalance:
 
     Raises
     ------
-    NotReducibleError : another mesh, properties that depend on temperature, fluxes, radiation, sliding,
-        states of effects.
+    NotReducibleError : the tyre has another mesh, properties that depend on temperature, fluxes, radiation, sliding,
+        or effects with states.
     """
     if tyre.study.card.mechanics.feedback is not None and tyre.cycles is None:
         raise NotReducibleError("strain cycles that follow the temperature")
     if tyre.acting.with_states:
         names = ", ".join(f"'{effect.name}'" for effect in tyre.acting.with_states)
-        raise NotReducibleError(f"effects with states of their own, which no reduced model follows: {names}")
+        raise NotReducibleError(f"a reduced model cannot follow effects with states: {names}")
     if tyre.mesh is not model.base.mesh:
-        raise NotReducibleError("another mesh: geometry, strain zones or [mesh] differ")
+        raise NotReducibleError("the mesh is another: geometry, strain zones or [mesh] differ")
     bodies = {region: _constant(region, body) for region, body in tyre.bodies.items()}
     films: list[tuple[str, int, Film]] = []
     for side, conditions in tyre.boundaries.items():
@@ -120,21 +120,21 @@ def reduced_balance(model: ReducedModel, tyre: RollingTyre) -> ReducedBalance:
     reservoirs = tyre._reservoirs()
     for name, reservoir in reservoirs.items():
         if not is_number(reservoir.heat_capacity) or not float(reservoir.heat_capacity) > 0:
-            raise NotReducibleError(f"heat capacity of '{name}' is none, or depends on temperature")
+            raise NotReducibleError(f"the heat capacity of '{name}' is not positive, or depends on temperature")
     return ReducedBalance(model, tyre, bodies, films, reservoirs)
 
 
 def _constant(region: str, body: Material) -> tuple[float, float, float]:
-    """Conductivity along, across, and heat capacity."""
+    """Conductivity along and across the direction, W/m/K, and heat capacity, J/m3/K."""
     k = body.conductivity
     if callable(k) or not is_number(body.heat_capacity):
-        raise NotReducibleError(f"conductivity or heat capacity of '{region}' depends on temperature")
+        raise NotReducibleError(f"the conductivity or heat capacity of '{region}' depends on temperature")
     along, across = k if isinstance(k, tuple | list) else (k, k)
     return float(along), float(across), float(body.heat_capacity)
 
 
 def matrices_of(balances: Sequence[ReducedBalance]) -> tuple[Array, Array]:
-    """M and K of variants on the same modes, (B, n, n) each."""
+    """M and K of B variants on the same modes, (B, n, n) each."""
     first = balances[0]
     model, m, regions = first.model, first.model.size, list(first.model.mass)
     n = m + len(first.reservoirs)
@@ -157,5 +157,5 @@ def _timed(datum: Any) -> Any:
 
 
 def _value(datum: Any, t: float) -> float:
-    """A number, or a function of time that does not vary in space."""
+    """The value at a time of a number or of a function of time that is uniform in space."""
     return float(datum(None, t)) if callable(datum) else float(datum)

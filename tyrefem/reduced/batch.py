@@ -1,4 +1,4 @@
-"""Many variants on the same modes: their matrices, heat sources, and what acts on them from outside."""
+"""A batch of variants on the same modes: matrices, heat sources and boundary data."""
 
 from __future__ import annotations
 
@@ -12,7 +12,7 @@ from numpy.typing import NDArray
 from tyrefem.quantity import Ramp
 from tyrefem.reduced.balance import ReducedBalance, matrices_of
 from tyrefem.reduced.boundary_data import BoundaryData
-from tyrefem.reduced.budget import Ledger
+from tyrefem.reduced.budget import HeatFlows
 from tyrefem.reduced.model import ReducedModel
 from tyrefem.reduced.sampled_source import SampledHeat
 
@@ -21,15 +21,16 @@ Array = NDArray[np.float64]
 
 @dataclass(frozen=True, eq=False)
 class Batch:
-    """Variants whose drives have the same phases and load-case knots in time, on the same modes.
+    """Variants on the same modes whose drives have the same phases and the same load-case times.
 
-    M y' = -A y + r(t, y), A of frozen films. In the modes of (A, M) every unknown decays by itself, exactly; r, the
-    heat sources, given sinks and what films deviate by, is a polynomial through Lobatto points of a window, found by
-    sweeps until it does not change. Windows are as long as the most demanding variant allows.
+    M y' = -A y + r(t, y), with the films in A frozen. In the eigenvectors of (A, M) the unknowns decouple and decay
+    exactly. r holds the heat sources, the given sinks and the change of the films. Within a time window r is a
+    polynomial through Lobatto points, iterated (swept) until it no longer changes. The most demanding variant limits
+    the window's length.
 
     Parameters
     ----------
-    model : the modes. balances : one per variant, at least one. tolerance : K, of a window, estimated with much room.
+    model : the modes. balances : one per variant, at least one. tolerance : K, of a window; a conservative estimate.
     """
 
     model: ReducedModel
@@ -37,22 +38,22 @@ class Batch:
     tolerance: float = 0.1
 
     @functools.cached_property
-    def ledger(self) -> Ledger:
-        """Of any variant: they exchange heat in the same places."""
-        return Ledger(self.balances[0])
+    def heat_flows(self) -> HeatFlows:
+        """Heat flows of the batch; all variants have the same zones, films and reservoirs."""
+        return HeatFlows(self.balances[0])
 
     @functools.cached_property
     def heat(self) -> SampledHeat:
-        """Sources of all variants."""
+        """Heat sources of all variants at the sample nodes."""
         return SampledHeat(self.balances)
 
     @functools.cached_property
     def matrices(self) -> tuple[Array, Array]:
-        """M, K; (B, n, n) each."""
+        """M and K, (B, n, n) each."""
         return matrices_of(self.balances)
 
-    def outside(self, t: float) -> BoundaryData:
-        """What acts from outside at a time."""
+    def boundary_data(self, t: float) -> BoundaryData:
+        """Films, sinks and powers at a time."""
         pairs = [balance.coefficients(t) for balance in self.balances]
         films, sinks = (np.array(each) for each in zip(*pairs, strict=True))
         powers = np.array([balance.powers(t) for balance in self.balances]).reshape(len(films), -1)
@@ -62,7 +63,7 @@ class Batch:
 
 
 def steady(balance: ReducedBalance, number: int) -> bool:
-    """Is everything that acts from outside constant within a phase?"""
+    """Are the boundary data constant within a phase?"""
     tyre = balance.tyre
     phase = tyre.drive.phases[number]
     if not tyre.acting.follows_drive or phase.slides or len(tyre.schedule.knots[number]) > 1:

@@ -1,4 +1,4 @@
-"""What acts on reduced variants from outside, at one time."""
+"""Boundary data of a batch of reduced variants at a time."""
 
 from __future__ import annotations
 
@@ -12,8 +12,7 @@ Array = NDArray[np.float64]
 
 @dataclass(frozen=True, eq=False)
 class BoundaryData:
-    """What acts from outside at a time: films (B, n_exchanges), their sinks, powers into reservoirs (B, n_reservoirs),
-    and all given heat (B, n)."""
+    """Films (B, n_exchanges), their sinks, powers into reservoirs (B, n_reservoirs) and given heat (B, n) at a time."""
 
     time: float
     films: Array

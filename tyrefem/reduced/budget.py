@@ -1,4 +1,4 @@
-"""The heat budget of reduced variants, and their history as the full model gives it."""
+"""Heat budget of reduced variants, and their history in the format of the full model."""
 
 from __future__ import annotations
 
@@ -15,8 +15,8 @@ from tyrefem.reduced.boundary_data import BoundaryData
 Array = NDArray[np.float64]
 
 
-class Ledger:
-    """Powers by zone, by film, by exchange and power of reservoirs."""
+class HeatFlows:
+    """Heat flows of a batch: by zone, by film, by exchange, and powers of reservoirs."""
 
     def __init__(self, balance: ReducedBalance) -> None:
         self.b, self.at = balance, balance.exchanges
@@ -33,7 +33,7 @@ class Ledger:
         return np.concatenate([q @ self.b.model.power.T, exchanged, data.powers], axis=1)
 
     def rest(self, q: Array, films: Array, sinks: Array, powers: Array, frozen: Array, y: Array) -> Array:
-        """(B, width, k) W but for what frozen films (B, n_exchanges) exchange with states y (B, n, k)."""
+        """(B, width, k) W of all heat flows except those of frozen films (B, n_exchanges) with states y (B, n, k)."""
         at, count = self.at, y.shape[2]
         exchanged = films * np.where(at.given[:, None], sinks * at.areas[:, None], 0.0)
         if films.shape[2] > 1:
@@ -52,6 +52,7 @@ class Ledger:
         return flows
 
     def entries(self) -> list[tuple[str, str, int]]:
+        """(kind, name, number) of every entry, as `tyrefem.conduction.budget.Tally` takes them."""
         names = list(self.b.reservoirs)
         entries = [("source", zone, 0) for zone in self.b.model.zones]
         entries += [("boundary", side, number) for side, number, _ in self.b.films]
@@ -62,31 +63,37 @@ class Ledger:
 def budget(
     balance: ReducedBalance, times: Array, states: Array, slopes: Array, powers: Array, energies: Array
 ) -> Budget:
-    """The budget at times (s) of states (n_times, n), the drive's start being that of the balance."""
+    """The heat budget at times (s) of states (n_times, n); heat counts from the start of the balance."""
     model, m = balance.model, balance.model.size
     rows = np.array([balance.bodies[region][2] * model.stored_row[region] for region in balance.bodies])
     stored = (states[:, :m] - balance.start[:m]) @ rows.T
     storing = slopes[:, :m] @ rows.T
-    held = (states[:, m:] - balance.start[m:]) * balance.capacities
-    return _tallied(balance, times, energies, powers, stored, storing, held)
+    in_reservoirs = (states[:, m:] - balance.start[m:]) * balance.capacities
+    return _tally(balance, times, energies, powers, stored, storing, in_reservoirs)
 
 
 def end_budgets(
     balances: Sequence[ReducedBalance], states: Array, slopes: Array, powers: Array, energies: Array
 ) -> Budget:
-    """The budget of variants (B, ...) at the end of their drive: each stands where a `Budget` has a time."""
+    """The heat budget of B variants at the end of their drive; the variants take the place of the times."""
     first, m = balances[0], balances[0].model.size
     rows = np.array([first.model.stored_row[region] for region in first.bodies])
     capacity = np.array([[body[2] for body in balance.bodies.values()] for balance in balances])
-    held = np.array([each.capacities for each in balances])
+    in_reservoirs = np.array([each.capacities for each in balances])
     start = np.array([balance.start for balance in balances])
     stored, storing = (capacity * (each[:, :m] @ rows.T) for each in (states - start, slopes))
-    kept = held * (states - start)[:, m:]
-    return _tallied(first, np.zeros(len(balances)), energies, powers, stored, storing, kept)
+    in_reservoirs = in_reservoirs * (states - start)[:, m:]
+    return _tally(first, np.zeros(len(balances)), energies, powers, stored, storing, in_reservoirs)
 
 
-def _tallied(
-    balance: ReducedBalance, times: Array, energies: Array, powers: Array, stored: Array, storing: Array, held: Array
+def _tally(
+    balance: ReducedBalance,
+    times: Array,
+    energies: Array,
+    powers: Array,
+    stored: Array,
+    storing: Array,
+    in_reservoirs: Array,
 ) -> Budget:
     names = list(balance.reservoirs)
     into = {(side, number): film.sink for side, number, film in balance.films if isinstance(film.sink, str)}
@@ -94,34 +101,42 @@ def _tallied(
     for name in names:
         for i, (_, other) in enumerate(balance.reservoirs[name].exchanges):
             between[name, i] = (name, other if isinstance(other, str) else None)
-    tally = Tally(Ledger(balance).entries(), list(balance.bodies), names, into, between)
+    tally = Tally(HeatFlows(balance).entries(), list(balance.bodies), names, into, between)
     for i in range(len(times)):
-        tally.record(energies[i], powers[i], stored[i], storing[i], held[i])
+        tally.record(energies[i], powers[i], stored[i], storing[i], in_reservoirs[i])
     return tally.budget(times)
 
 
 def history(
-    balance: ReducedBalance, times: Array, states: Array, budget_of_run: Budget, looked: tuple[Array, Array], steps: int
+    balance: ReducedBalance,
+    times: Array,
+    states: Array,
+    heat_budget: Budget,
+    peak_data: tuple[Array, Array],
+    steps: int,
 ) -> History:
-    """The history of states (n_times, n) at times (s), with its budget; ``looked``: times and states of the peaks."""
+    """The history of states (n_times, n) at times (s), with its heat budget.
+
+    ``peak_data``: times (s) and states among which the peaks are searched.
+    """
     model, m = balance.model, balance.model.size
-    ops, (when, seen) = model.operators, looked
-    fields = seen[:, :m] @ model.V.T
+    ops, (peak_times, peak_states) = model.operators, peak_data
+    fields = peak_states[:, :m] @ model.V.T
     return History(
         operators=ops,
         materials=balance.tyre.bodies,
         times=times,
         values=states[:, :m] @ model.V.T,
         reservoirs={name: states[:, m + i] for i, name in enumerate(balance.reservoirs)},
-        budget=budget_of_run,
-        maximum=_peak(ops.points, when, fields, None),
-        region_maximum={region: _peak(ops.points, when, fields, ops.dofs(region)) for region in balance.bodies},
+        budget=heat_budget,
+        maximum=_peak(ops.points, peak_times, fields, None),
+        region_maximum={region: _peak(ops.points, peak_times, fields, ops.dofs(region)) for region in balance.bodies},
         steps=Steps(steps, 0, 0, 2 * steps),
     )
 
 
 def _peak(points: Array, times: Array, values: Array, dofs: Array | None) -> Peak:
-    seen = values if dofs is None else values[:, dofs]
-    i, j = np.unravel_index(int(np.argmax(seen)), seen.shape)
+    of_nodes = values if dofs is None else values[:, dofs]
+    i, j = np.unravel_index(int(np.argmax(of_nodes)), of_nodes.shape)
     node = int(j) if dofs is None else int(dofs[j])
-    return Peak(float(seen[i, j]), (float(points[0, node]), float(points[1, node])), float(times[i]))
+    return Peak(float(of_nodes[i, j]), (float(points[0, node]), float(points[1, node])), float(times[i]))

@@ -1,4 +1,4 @@
-"""Films and exchanges of reservoirs as matrices on modes, for a coefficient of 1."""
+"""Matrices of films and reservoir exchanges on the modes, for a coefficient of 1."""
 
 from __future__ import annotations
 
@@ -15,7 +15,7 @@ Array = NDArray[np.float64]
 
 @dataclass(frozen=True, eq=False)
 class Exchanges(Brief):
-    """Everything that exchanges heat: sides in the order of their films, then the reservoirs among themselves.
+    """Matrices of all heat exchanges: first the films of the sides, then the exchanges between reservoirs.
 
     Parameters
     ----------
@@ -36,9 +36,9 @@ Layout = tuple[tuple[tuple[str, str | None], ...], tuple[tuple[str, str | None],
 
 
 def exchanges(layout: Layout, size: int, surfaces: Mapping[str, tuple[Array, Array, float]]) -> Exchanges:
-    """The exchanges of a layout on ``size`` modes; ``surfaces``: side -> R, r and area, as `ReducedModel.surfaces`."""
-    films, among, names = layout
-    m, n, count = size, size + len(names), len(films) + len(among)
+    """The exchange matrices of a layout on ``size`` modes; ``surfaces``: as `ReducedModel.surfaces`."""
+    films, conductances, names = layout
+    m, n, count = size, size + len(names), len(films) + len(conductances)
     result = Exchanges(
         np.zeros((count, n, n)), np.zeros((count, n)), np.zeros((count, n)), np.ones(count), np.zeros(count, bool)
     )
@@ -51,7 +51,7 @@ def exchanges(layout: Layout, size: int, surfaces: Mapping[str, tuple[Array, Arr
             g = m + names.index(sink)
             result.matrices[j, :m, g] = result.matrices[j, g, :m] = -r
             result.matrices[j, g, g] = result.rows[j, g] = area
-    for j, (owner, other) in enumerate(among, len(films)):
+    for j, (owner, other) in enumerate(conductances, len(films)):
         i = m + names.index(owner)
         result.matrices[j, i, i], result.rows[j, i] = 1.0, -1.0
         if other is None:

@@ -1,4 +1,4 @@
-"""The rolling tyre on a few modes: conduction, films, capacity projected; heat sources known from a few places."""
+"""The rolling tyre on POD modes: projected conduction, films and capacities; heat sources from sample nodes."""
 
 from __future__ import annotations
 
@@ -17,34 +17,34 @@ from tyrefem.conduction.points import located
 from tyrefem.errors import InputError
 from tyrefem.geometry.wall import wall_of
 from tyrefem.reduced.exchanges import Exchanges, Layout, exchanges
-from tyrefem.reduced.pod import CHOICE
+from tyrefem.reduced.pod import CANDIDATE_NODES
 from tyrefem.simulation.rolling_tyre import RollingTyre
 
 Array = NDArray[np.float64]
 
 
 class NotReducibleError(InputError):
-    """Something of a study is not in the reduced model: run it in full."""
+    """A reduced model cannot represent the study: run the study in full."""
 
 
 @dataclass(frozen=True, eq=False)
 class ReducedModel(Brief):
-    """A tyre's heat balance on modes u = V a; gas and rim keep their own states.
+    """A tyre's heat balance on POD modes, u = V a; contained air and rim have separate states.
 
-    M a' = -sum_i k_i K_i a - sum_j h_j (R_j a - r_j T_j) + sum_z V^T S_z q_z(T),  q_z from `samples` of the nodes.
+    M a' = -sum_i k_i K_i a - sum_j h_j (R_j a - r_j T_j) + sum_z V^T S_z q_z(T),  q_z from the sample nodes.
 
     Parameters
     ----------
-    base : the tyre it was made for; others must be on its mesh. V : (n, m) modes.
-    samples : zone -> numbers of the nodes (among the zone's) where its source is evaluated.
-    nodes_from_samples : (all zones' nodes, all samples) that tells the source everywhere.
+    base : the tyre that the model was made for; all variants have its mesh. V : (n, m) modes.
+    samples : zone -> numbers of its sample nodes (among the zone's nodes), where the heat source is evaluated.
+    nodes_from_samples : (all zones' nodes, all samples): interpolates the heat source to all nodes.
     """
 
     base: RollingTyre
     V: Array
     samples: Mapping[str, NDArray[Any]]
     nodes_from_samples: Array
-    #: Region -> its nodes that were about the hottest in training; others are looked at once.
+    #: Region -> its nodes that were nearly the hottest in training: the peak is searched there first.
     hot: Mapping[str, NDArray[np.intp]] = field(default_factory=dict)
 
     def _title(self) -> str:
@@ -59,7 +59,7 @@ class ReducedModel(Brief):
 
     @property
     def operators(self) -> Operators:
-        """Of the full model."""
+        """Operators of the full model."""
         return self.base.problem.operators
 
     @property
@@ -68,7 +68,7 @@ class ReducedModel(Brief):
         return int(self.V.shape[1])
 
     def exchanges(self, layout: Layout) -> Exchanges:
-        """The exchanges of a layout, built once."""
+        """The exchange matrices of a layout, built once."""
         if layout not in self._exchanges:
             self._exchanges[layout] = exchanges(layout, self.size, self.surfaces)
         return self._exchanges[layout]
@@ -85,16 +85,16 @@ class ReducedModel(Brief):
 
     @functools.cached_property
     def stored_row(self) -> dict[str, Array]:
-        """Region -> (m,): J/K of the mean temperature, for a heat capacity of 1 J/m3/K."""
+        """Region -> (m,): stored heat per mode amplitude, for a heat capacity of 1 J/m3/K."""
         ops = self.operators
         ones = np.ones(ops.size)
         return {region: (ops.matrix(ops.mass(region)) @ ones) @ self.V for region in self.base.bodies}
 
     @functools.cached_property
     def conduction(self) -> dict[str, tuple[Array, Array]]:
-        """Region -> (m, m) along and across, for 1 W/m/K.
+        """Region -> (m, m) along and across the conduction direction, for 1 W/m/K.
 
-        Along is the meridian: a body that conducts evenly is the same in any direction, and a variant's may not.
+        Isotropic bodies take the meridian as direction: a variant may make them anisotropic.
         """
         ops, along = self.operators, self.base.mesh.along_meridian
         return {
@@ -130,23 +130,23 @@ class ReducedModel(Brief):
 
     @functools.cached_property
     def region_rows(self) -> dict[str, Array]:
-        """Region -> modes at its nodes."""
+        """Region -> rows of V at its nodes."""
         return {region: self.V[dofs] for region, dofs in self.regions.items()}
 
     @functools.cached_property
     def hot_rows(self) -> dict[str, Array]:
-        """Region -> modes at the nodes that were about the hottest in training."""
+        """Region -> rows of V at the nodes that were nearly the hottest in training."""
         return {region: self.V[dofs] for region, dofs in self.hot.items()}
 
     @functools.cached_property
     def wall(self) -> tuple[Array, Array, Array, Array]:
-        """s (k,) m, thickness (k,) m, and (k, m) modes at the inner and the outer surface there."""
+        """Stations s (k,) m, wall thickness (k,) m, and rows of V (k, m) at the inner and the outer surface."""
         wall = wall_of(self.base.study.section, self.base.mesh.size)
         inner, outer = (self.rows(points) for points in (wall.inner, wall.outer))
         return wall.s, wall.thickness, inner, outer
 
     def rows(self, points: Array) -> Array:
-        """(k, m): modes at points (k, 2) in (r, z), m; remembered for the 64 latest sets of points."""
+        """Rows of V, (k, m), at points (k, 2) in (r, z), m; kept for the 64 latest sets of points."""
         array = np.asarray(points, dtype=float)
         return self._rows.get(Content.of(array), lambda: np.asarray(located(self.operators, array).value() @ self.V))
 
@@ -156,25 +156,25 @@ class ReducedModel(Brief):
 
     @functools.cached_property
     def node_places(self) -> Cache[tuple[float, float]]:
-        """(s, depth), m, of nodes at (r, z) where peaks were."""
+        """(r, z) of a peak's node -> its (s, depth), m."""
         return Cache(size=4096)
 
     @functools.cached_property
     def sensor_places(self) -> Cache[Array]:
-        """Where sensors are in the mesh, by their stated places."""
+        """Stated places of sensors -> their places in the mesh."""
         return Cache(size=64)
 
     @functools.cached_property
     def stage_matrices(self) -> Cache[Any]:
-        """Factored matrices of the study that the model was made for, by phase and step; see `reduced.residual`."""
+        """(phase, share) -> factored matrix of the base study; see `reduced.residual`."""
         return Cache(size=8)
 
     @functools.cached_property
-    def watched(self) -> Array:
-        """(m, m): modes at as many nodes, where they differ most; what is small there is small everywhere."""
+    def error_rows(self) -> Array:
+        """Rows of V, (m, m), at the nodes where the modes differ most; a field small there is small everywhere."""
         from scipy.linalg import qr
 
-        some = self.V[:: max(len(self.V) // CHOICE, 1)]
+        some = self.V[:: max(len(self.V) // CANDIDATE_NODES, 1)]
         _, _, pivots = qr(some.T, pivoting=True, mode="economic")
         return some[pivots[: self.size]]
 
@@ -185,19 +185,19 @@ class ReducedModel(Brief):
 
     @functools.cached_property
     def sample_points(self) -> dict[str, Array]:
-        """Zone -> (2, k) m: always the same arrays, so that a source remembers what it found there."""
+        """Zone -> (2, k) m: always the same arrays, so that a source can keep its values there."""
         ops = self.operators
         return {zone: np.ascontiguousarray(ops.nodes(zone)[:, chosen]) for zone, chosen in self.samples.items()}
 
     @functools.cached_property
     def sample_slices(self) -> dict[str, slice]:
-        """Zone -> its part of all samples."""
+        """Zone -> its slice of all samples."""
         ends = np.cumsum([0, *(len(nodes) for nodes in self.samples.values())])
         return {zone: slice(int(a), int(b)) for zone, a, b in zip(self.zones, ends[:-1], ends[1:], strict=True)}
 
     @functools.cached_property
     def at_samples(self) -> Array:
-        """(n_samples, m): modes at the samples."""
+        """Rows of V at the sample nodes, (n_samples, m)."""
         ops = self.operators
         return np.vstack([self.V[ops.dofs(zone)[chosen]] for zone, chosen in self.samples.items()])
 
@@ -208,7 +208,7 @@ class ReducedModel(Brief):
 
     @functools.cached_property
     def load(self) -> Array:
-        """(m, n_samples): heat into the modes of the sources at the samples."""
+        """(m, n_samples): heat into the modes per heat source at the sample nodes."""
         loads = np.zeros((self.size, self.nodes_from_samples.shape[1]))
         for zone, rows in self._zone_rows.items():
             loads += (self.operators.source(zone).T @ self.V).T @ self.nodes_from_samples[rows]
@@ -216,7 +216,7 @@ class ReducedModel(Brief):
 
     @functools.cached_property
     def power(self) -> Array:
-        """(n_zones, n_samples): W of every zone from the sources at the samples."""
+        """(n_zones, n_samples): power of every zone per heat source at the sample nodes."""
         rows = []
         for zone, part in self._zone_rows.items():
             row = np.asarray(self.operators.source(zone).sum(axis=0)).ravel()
@@ -224,6 +224,6 @@ class ReducedModel(Brief):
         return np.array(rows)
 
     def _projected(self, data: Array, dofs: NDArray[np.intp]) -> Array:
-        """V^T A V of a matrix A whose other rows than ``dofs`` are empty."""
+        """V^T A V of a matrix A with entries only in the rows ``dofs``."""
         rows = self.operators.matrix(data)[dofs]
         return np.asarray(self.V[dofs].T @ (rows @ self.V))

@@ -1,4 +1,4 @@
-"""Proper orthogonal modes of snapshots, and the few places that stand for a whole field."""
+"""POD modes of snapshots, and sample nodes for the hyper-reduction of fields (Q-DEIM)."""
 
 from __future__ import annotations
 
@@ -6,17 +6,17 @@ import numpy as np
 from numpy.typing import NDArray
 
 Array = NDArray[np.float64]
-#: Places are chosen among about so many.
-CHOICE = 3000
+#: Sample nodes are chosen among about so many candidates.
+CANDIDATE_NODES = 3000
 
 
 def modes(snapshots: Array, weight: Array, tolerance: float, most: int) -> Array:
-    """Modes V (n, m), V^T diag(weight) V = 1: the even field first, then what spans the rest of the snapshots best.
+    """POD modes V (n, m) with V^T diag(weight) V = 1; the first mode is the uniform field.
 
     Parameters
     ----------
     snapshots : (k, n). weight : (n,) positive, of the inner product.
-    tolerance : rms over the snapshots that may be left out, in their unit; most : modes at most.
+    tolerance : rms error of the snapshots that is allowed, in their unit. most : modes at most.
 
     >>> fields = np.array([[1.0, 1.0, 1.0], [0.0, 1.0, 2.0]])
     >>> modes(fields, np.ones(3), 1e-9, 5).shape
@@ -26,17 +26,17 @@ def modes(snapshots: Array, weight: Array, tolerance: float, most: int) -> Array
     even = np.ones(len(weight))
     scaled = snapshots * root
     rest = scaled - np.outer(scaled @ root, root)
-    # The Gram matrix is small, and the modes wanted are far above its round-off.
+    # The Gram matrix is small, and the wanted modes are far above its rounding errors.
     values, left = np.linalg.eigh(rest @ rest.T)
     order = np.argsort(values)[::-1]
     values, left = np.maximum(values[order], 0.0), left[:, order]
-    # A mode's sign is free: the snapshot that it takes the largest part of has it positively, whatever the rounding.
+    # Fix the free sign of a mode: the snapshot with its largest coefficient has a positive one.
     left = left * np.sign(left[np.argmax(np.abs(left), axis=0), np.arange(left.shape[1])])
     left_out = np.sqrt(np.append(np.cumsum(values[::-1])[::-1], 0.0) / len(snapshots))
     count = min(int(np.argmax(left_out <= tolerance)), most - 1)
     count = min(count, int((values > 1e-13 * max(values[0], 1e-300)).sum()))
     coefficients = (left[:, :count].T @ rest) / root / np.sqrt(values[:count])[:, None]
-    # What is even stays exactly the first mode.
+    # Keep the uniform field exactly the first mode.
     rest = coefficients * root
     return np.column_stack(
         [even / np.linalg.norm(root), orthonormal((rest - np.outer(rest @ root, root)).T) / root[:, None]]
@@ -44,44 +44,44 @@ def modes(snapshots: Array, weight: Array, tolerance: float, most: int) -> Array
 
 
 def orthonormal(X: Array) -> Array:
-    """Columns that are nearly orthogonal made so, by Cholesky's factor of their products, twice."""
+    """Orthonormalise nearly orthogonal columns by two passes of Cholesky QR."""
     for _ in range(2):
-        # Twice makes up for the inverse's rounding.
+        # The second pass removes the rounding errors of the first.
         X = X @ np.linalg.inv(np.linalg.cholesky(X.T @ X)).T
     return X
 
 
-def places(fields: Array, tolerance: float, most: int, spare: float = 1.5) -> tuple[Array, Array]:
-    """Places from which fields of a kind are known: f ~ P f[places].
+def sample_nodes(fields: Array, tolerance: float, most: int, spare: float = 1.5) -> tuple[Array, Array]:
+    """Sample nodes and the matrix P that interpolates fields from them: f ~ P f[nodes].
 
-    Modes of the fields, and places by QR with pivots of the modes, ``spare`` times as many as modes (Q-DEIM with
-    oversampling: least squares where places are more than modes).
+    Pivoted QR of the fields' POD modes chooses the nodes, ``spare`` times as many as modes (Q-DEIM with oversampling).
+    P is the least-squares fit of the modes.
 
     Parameters
     ----------
-    fields : (k, n). tolerance : share of the fields' energy (root) that may be left out. most : modes at most.
+    fields : (k, n). tolerance : relative rms error of the fields that is allowed. most : modes at most.
 
     Returns
     -------
-    numbers (p,) of the places, and P (n, p).
+    numbers (p,) of the sample nodes, and P (n, p).
     """
     from scipy.linalg import qr
 
     values, left = np.linalg.eigh(fields @ fields.T)
     order = np.argsort(values)[::-1]
     values, left = np.maximum(values[order], 0.0), left[:, order]
-    # A mode's sign is free: the snapshot that it takes the largest part of has it positively, whatever the rounding.
+    # Fix the free sign of a mode: the snapshot with its largest coefficient has a positive one.
     left = left * np.sign(left[np.argmax(np.abs(left), axis=0), np.arange(left.shape[1])])
     left_out = np.sqrt(np.append(np.cumsum(values[::-1])[::-1], 0.0) / max(values.sum(), 1e-300))
     count = max(min(int(np.argmax(left_out <= tolerance)), most), 1)
     count = min(count, int((values > 1e-13 * values[0]).sum()))
     U = orthonormal((fields.T @ left[:, :count]) / np.sqrt(values[:count]))
     wanted = min(int(np.ceil(spare * count)), U.shape[0])
-    # Of a fine mesh's nodes a part is enough to choose from.
-    some = np.arange(0, len(U), max(len(U) // CHOICE, 1))
+    # In a fine mesh a part of the nodes is enough to choose from.
+    some = np.arange(0, len(U), max(len(U) // CANDIDATE_NODES, 1))
     _, _, pivots = qr(U[some].T, pivoting=True, mode="economic")
     chosen = list(some[pivots[:count]])
-    # More places: where the leverage of the modes is largest among those left.
+    # Oversampling: the remaining nodes with the largest leverage of the modes.
     leverage = np.full(len(U), -1.0)
     leverage[some] = (U[some] ** 2).sum(axis=1)
     leverage[chosen] = -1.0

@@ -1,4 +1,4 @@
-"""What the full model says of a reduced variant: a correction of its fields by one linear solve, without a run."""
+"""Correction of a reduced solution by the residual of the full model: one linear solve instead of a full run."""
 
 from __future__ import annotations
 
@@ -13,27 +13,29 @@ from tyrefem.conduction.statement import balance_of
 from tyrefem.conduction.terms import State
 from tyrefem.reduced.balance import reduced_balance
 from tyrefem.reduced.batch import Batch
-from tyrefem.reduced.exponential import Marched
-from tyrefem.reduced.march import march
+from tyrefem.reduced.integration import integrate
 from tyrefem.reduced.model import ReducedModel
+from tyrefem.reduced.solution import BatchSolution
 from tyrefem.reduced.training import Snapshots, sources_at
 from tyrefem.simulation.rolling_tyre import RollingTyre
 
 Array = NDArray[np.float64]
-#: Parts of a phase at which fields are corrected, and the one whose exchanges its matrix has.
+#: Parts of a phase at which fields are corrected, and the part whose films are in the matrix.
 PARTS, MIDDLE = np.array([0.02, 0.1, 0.3, 0.6, 1.0]), 0.3
-#: The first field of a phase is one of its first s: a surface answers within seconds, however long the phase lasts.
-EARLY, EARLIER = 15.0, 4.0
-#: Error of a correction that is left over to the next, and solves for it at most.
-LEFT, ITERATIONS = 0.1, 8
-#: K, of the time integration of what is corrected.
+#: s: the first corrected field lies within this time, as a surface responds within seconds; ratio of the early times.
+EARLY, EARLY_RATIO = 15.0, 4.0
+#: Relative error that the solver leaves to the next round, and its iterations at most.
+REMAINING_ERROR, ITERATIONS = 0.1, 8
+#: K, of the time integration of the reduced solution.
 TIME_TOLERANCE = 0.2
 
 
 def parts(span: float, early: float = EARLY) -> Array:
-    """Parts of a phase of so many s at which its fields are corrected: `PARTS`, and in a long phase earlier ones.
+    """Parts of a phase at which its fields are corrected: `PARTS`, and earlier ones if the phase is long.
 
-    ``early``: the first of them lies within so many s.
+    Parameters
+    ----------
+    span : duration of the phase, s. early : the first corrected field lies within this time, s.
 
     >>> parts(600.0)
     array([0.02, 0.1 , 0.3 , 0.6 , 1.  ])
@@ -42,30 +44,32 @@ def parts(span: float, early: float = EARLY) -> Array:
     """
     ends = list(PARTS)
     while ends[0] * span > early:
-        ends.insert(0, ends[0] / EARLIER)
+        ends.insert(0, ends[0] / EARLY_RATIO)
     return np.array(ends)
 
 
-def corrected(model: ReducedModel, tyre: RollingTyre, share: float, early: float = EARLY) -> tuple[Snapshots, float]:
-    """`correction` of a variant that is marched alone."""
-    return correction(march(Batch(model, [reduced_balance(model, tyre)], TIME_TOLERANCE)), 0, share, early)
+def corrected_tyre(
+    model: ReducedModel, tyre: RollingTyre, share: float, early: float = EARLY
+) -> tuple[Snapshots, float]:
+    """`correction` of a tyre in a batch of one."""
+    return correction(integrate(Batch(model, [reduced_balance(model, tyre)], TIME_TOLERANCE)), 0, share, early)
 
 
-def correction(marched: Marched, place: int, share: float, early: float = EARLY) -> tuple[Snapshots, float]:
-    """Fields and heat sources of a variant as the full model corrects its reduced ones, and the largest correction, K.
+def correction(solution: BatchSolution, place: int, share: float, early: float = EARLY) -> tuple[Snapshots, float]:
+    """Corrected fields and heat sources of a variant, and the largest correction, K.
 
     With the residual of the full heat balance at the reduced field u = V a and its rate V a',
 
         (M / tau + S) c = G(t, u) - S u + B g - M V a',
 
-    u + c is what an implicit step of the full model makes of u: c is what the modes lack for this variant, over a time
-    tau. Its size is an estimate of the error too.
+    u + c is the result of an implicit step tau of the full model from u. c is what the modes cannot represent. Its size
+    estimates the error.
 
     Parameters
     ----------
-    marched, place : the variant's batch and its place there. share : tau over the duration of every phase.
+    solution, place : solution of the variant's batch, and its place there. share : tau over the phase's duration.
     """
-    balance, model = marched.batch.balances[place], marched.batch.model
+    balance, model = solution.batch.balances[place], solution.batch.model
     tyre = balance.tyre
     full = balance_of(model.operators, tyre.bodies, tyre.boundaries, tyre.sources, balance.reservoirs)
     m = model.size
@@ -73,7 +77,7 @@ def correction(marched: Marched, place: int, share: float, early: float = EARLY)
     for number, (start, end) in enumerate(pairwise([*tyre.drive.starts, tyre.drive.end])):
         span = end - start
         times = start + parts(span, early) * span * (1 - 1e-9)
-        states, slopes = marched.states(times)[:, place], marched.slopes(times)[:, place]
+        states, slopes = solution.states(times)[:, place], solution.slopes(times)[:, place]
         values, rates = (each[:, :m] @ model.V.T for each in (states, slopes))
         middle = len(times) - len(PARTS) + int(np.searchsorted(PARTS, MIDDLE))
         full.freeze(float(times[middle]), State(values[middle], states[middle, m:]))
@@ -92,7 +96,7 @@ def correction(marched: Marched, place: int, share: float, early: float = EARLY)
 
 
 def nearby(model: ReducedModel, number: int, share: float) -> StageMatrix:
-    """The factored matrix of the study that the model was made for, in one of its phases; kept with the model."""
+    """The factored matrix of the model's base study in a phase; kept with the model."""
 
     def factored() -> StageMatrix:
         base = model.base
@@ -109,10 +113,11 @@ def nearby(model: ReducedModel, number: int, share: float) -> StageMatrix:
 
 
 def solved(full: HeatBalance, near: StageMatrix, tau: float, right: Array, lumped: Array) -> Array:
-    """Rates (n, k) of (M + tau S) rate = right, the reservoirs (lumped) with it, by conjugate gradients.
+    """Rates (n, k) of (M + tau S) rate = right, coupled with the reservoirs (lumped), by conjugate gradients.
 
-    A variant's matrix is near the one that is factored: three or four solves take the place of a factorisation, and
-    what is left, `LEFT` of a correction, is for the next round. Where it is not near, its own is factored.
+    The factored matrix of a nearby study is the preconditioner: three or four solves replace a factorisation. The
+    error that remains, `REMAINING_ERROR`, is left to the next round. Without convergence the variant's matrix is
+    factored.
     """
     n = len(right)
 
@@ -122,12 +127,12 @@ def solved(full: HeatBalance, near: StageMatrix, tau: float, right: Array, lumpe
         return np.concatenate([product, full.C[:, None] * g + tau * (full.D @ g - full.B.T @ u)])
 
     r = np.concatenate([right, lumped])
-    # Every unknown by its own heat capacity and conductance: a measure of what is left that costs no solve.
+    # Scaled by heat capacity and conductance of each unknown: this measure of the residual costs no solve.
     scale = 1.0 / np.concatenate([full.M.diagonal() + tau * full.S.diagonal(), full.C + tau * np.diag(full.D)])
     x, p, before = np.zeros_like(r), np.zeros_like(r), np.full(r.shape[1], np.inf)
-    enough = LEFT**2 * (scale @ r**2)
+    enough = REMAINING_ERROR**2 * (scale @ r**2)
     for _ in range(ITERATIONS):
-        z = _by(near, r, n)
+        z = _solved_by(near, r, n)
         rz = np.sum(r * z, axis=0)
         p = z + rz / np.maximum(before, 1e-300) * p
         q = times(p)
@@ -137,11 +142,11 @@ def solved(full: HeatBalance, near: StageMatrix, tau: float, right: Array, lumpe
         before = rz
         if (scale @ r**2 <= enough).all():
             return x[:n]
-    return _by(StageMatrix(full, tau / GAMMA), np.concatenate([right, lumped]), n)[:n]
+    return _solved_by(StageMatrix(full, tau / GAMMA), np.concatenate([right, lumped]), n)[:n]
 
 
-def _by(matrix: StageMatrix, right: Array, n: int) -> Array:
-    """Solve a factored matrix, the reservoirs bordering it, for columns."""
+def _solved_by(matrix: StageMatrix, right: Array, n: int) -> Array:
+    """Solution for columns of a factored matrix that is bordered by the reservoirs."""
     solution = matrix.factor.solve(np.asfortranarray(right[:n]))
     if not matrix.m:
         return np.asarray(solution)

@@ -11,42 +11,42 @@ from tyrefem.reduced.balance import ReducedBalance
 from tyrefem.simulation.heat_source import HeatSource
 
 Array = NDArray[np.float64]
-#: Temperatures, degC, between which tan delta is tabulated, every 0.25 K.
+#: Range of the table of tan delta, degC, and its spacing, K.
 COLD, HOT, FINE = -60.0, 400.0, 0.25
 
 
-def is_plain(balance: ReducedBalance) -> bool:
-    """Is every source the strain cycle's alone, with a tan delta that knows no frequency?"""
+def has_plain_sources(balance: ReducedBalance) -> bool:
+    """Do all heat sources come from the strain cycle alone, with a tan delta independent of frequency?"""
     return all(type(source) is HeatSource and source.over_frequency is None for source in balance.tyre.sources.values())
 
 
 class SampledHeat:
-    """(B, n_samples) W/m3 of variants whose drives have the same phases and knots in time.
+    """Heat sources at the sample nodes of variants whose drives have the same phases and load-case times.
 
-    Where effects act on the heat, or tan delta depends on frequency, it is asked for variant by variant.
+    A variant is evaluated alone if effects act on its heat or its tan delta depends on frequency.
     """
 
     def __init__(self, balances: Sequence[ReducedBalance]) -> None:
         self.balances = balances
-        self.rows = [row for row, balance in enumerate(balances) if is_plain(balance)]
+        self.rows = [row for row, balance in enumerate(balances) if has_plain_sources(balance)]
         self.others = [row for row in range(len(balances)) if row not in self.rows]
-        self.tabled = TabledHeat([balances[row] for row in self.rows]) if self.rows else None
+        self.tabulated = TabulatedHeat([balances[row] for row in self.rows]) if self.rows else None
 
     def __call__(self, times: Sequence[float], a: Array) -> Array:
         """(B, n_samples, k) sources of modes a (B, m, k) at times of one phase, seen from inside it."""
-        if self.tabled is not None and not self.others:
-            return self.tabled(times, a)
+        if self.tabulated is not None and not self.others:
+            return self.tabulated(times, a)
         heat = np.empty((len(a), len(self.balances[0].model.at_samples), a.shape[2]))
-        if self.tabled is not None:
-            heat[self.rows] = self.tabled(times, a[self.rows])
+        if self.tabulated is not None:
+            heat[self.rows] = self.tabulated(times, a[self.rows])
         for row in self.others:
             for column, t in enumerate(times):
                 heat[row, :, column] = self.balances[row].source(t, a[row, :, column])
         return heat
 
 
-class TabledHeat:
-    """The same where every source is the strain cycle's alone: strain energies once, tan delta from a table."""
+class TabulatedHeat:
+    """Heat sources of plain variants: strain energies are computed once, tan delta comes from a table."""
 
     def __init__(self, balances: Sequence[ReducedBalance]) -> None:
         self.balances, self.model = balances, balances[0].model
@@ -66,7 +66,7 @@ class TabledHeat:
         zone_of = np.repeat(np.arange(len(sizes)), sizes)
         #: Where the table of a variant and a sample's zone begins.
         self.first = ((np.arange(len(balances))[:, None] * len(sizes) + zone_of) * self.width).astype(np.int32)
-        self._phase = -1
+        self._phase_number = -1
 
     def __call__(self, times: Sequence[float], a: Array) -> Array:
         """(B, n_samples, k) sources of modes a (B, m, k) at times of one phase, seen from inside it."""
@@ -90,22 +90,22 @@ class TabledHeat:
     def _losses(self, times: Sequence[float]) -> Array | None:
         """Energy lost per revolution x revolutions per second, (B, n_samples, 1 or k) W/m3 per unit of tan delta.
 
-        None: all stand still.
+        None: all tyres stand still.
         """
         drive, schedule = self.balances[0].tyre.drive, self.balances[0].tyre.schedule
         phase, _ = drive.locate(times[0])
-        if self._phase != phase:
-            self._phase = phase
+        if self._phase_number != phase:
+            self._phase_number = phase
             self._energies = np.array([_energies(balance, phase) for balance in self.balances])
             same = all(_same_speed(balance, phase) for balance in self.balances)
             self._steady = same and self._energies.shape[1] == 1
-            self._known: dict[tuple[float, ...], Array] = {}
+            self._losses_by_times: dict[tuple[float, ...], Array] = {}
         if self._steady:
             times = times[:1]
         key = () if self._steady else tuple(times)
-        if key not in self._known:
-            if len(self._known) > 4:
-                self._known.clear()
+        if key not in self._losses_by_times:
+            if len(self._losses_by_times) > 4:
+                self._losses_by_times.clear()
             rates = np.array(
                 [[balance.tyre.motion(t).revolutions_per_second for t in times] for balance in self.balances]
             )
@@ -113,8 +113,8 @@ class TabledHeat:
             for column, t in enumerate(times):
                 for _, knot, weight in schedule.weights(t):
                     shares[knot, column] = weight
-            self._known[key] = rates[:, None, :] * np.tensordot(self._energies, shares, axes=(1, 0))
-        losses = self._known[key]
+            self._losses_by_times[key] = rates[:, None, :] * np.tensordot(self._energies, shares, axes=(1, 0))
+        losses = self._losses_by_times[key]
         return losses if losses.any() else None
 
 
@@ -123,7 +123,7 @@ def _same_speed(balance: ReducedBalance, phase: int) -> bool:
 
 
 def _energies(balance: ReducedBalance, phase: int) -> Array:
-    """(n_knots, n_samples) J/m3 lost per revolution, per unit of tan delta."""
+    """Energy lost per revolution and unit of tan delta, (n_knots, n_samples) J/m3."""
     tyre, model = balance.tyre, balance.model
     energies = np.zeros((len(tyre.schedule.knots[phase]), model.at_samples.shape[0]))
     if tyre.drive.phases[phase].stands:

@@ -1,4 +1,4 @@
-"""A reduced model for a box of variants: trained, tried on fresh full runs, and only then used."""
+"""A reduced model for a box of variants: trained, and used only after validation on fresh full runs."""
 
 from __future__ import annotations
 
@@ -15,7 +15,7 @@ from tyrefem.inputs.study import StudyData
 from tyrefem.reduced.answers import ReducedOutcome, reduced_answers
 from tyrefem.reduced.model import NotReducibleError, ReducedModel
 from tyrefem.reduced.training import ReducedFineness
-from tyrefem.reduced.training_rounds import Learnt, Packed, School, Tick, check_reducible, pack
+from tyrefem.reduced.training_rounds import FullRun, PackedModel, ProgressCallback, Training, check_reducible, pack
 from tyrefem.variants.execution import SweepSettings
 from tyrefem.variants.outcomes import Answered, NotReducible
 from tyrefem.variants.plan import Plan
@@ -25,31 +25,31 @@ from tyrefem.variants.task import Bundle
 from tyrefem.variants.varied import Varied
 
 Array = NDArray[np.float64]
-#: Time error of the training runs over the wanted tolerance: snapshots need not be good, certification is.
-COARSER = 100.0
-#: K: no full run is asked for a smaller time error. What is to be nearer than that fails for a reason.
-FINEST = 1e-3
-#: K: the full runs that a certificate compares with do not agree so well among themselves, whatever is learnt.
-HOPELESS = 1e-6
-#: Largest correction of a round over the tolerance that ends the rounds: what is left is a fraction of it.
-ENOUGH = 1.0
-#: Share of the tolerance that the fresh runs may take up: the few of them do not show the worst case.
+#: Time error of the training runs over the wanted tolerance: snapshots may be coarse, validation runs may not.
+TRAINING_FACTOR = 100.0
+#: K: smallest time error of a full run.
+LEAST_RUN_TOLERANCE = 1e-3
+#: K: smallest tolerance of a certificate; full runs differ by more from each other.
+LEAST_TOLERANCE = 1e-6
+#: The rounds end when the largest correction over the tolerance is at most this; the error left is a part of it.
+CORRECTION_FACTOR = 1.0
+#: Largest error of the validation runs over the tolerance: a few runs do not show the worst case.
 SAFETY = 0.8
 
 
-#: Tables of a study that no temperature depends on.
-UNSEEN = ("title", "measured", "cases", "diagnosis", "uncertainty")
+#: Tables of a study that do not affect temperatures.
+IRRELEVANT_TABLES = ("title", "measured", "cases", "diagnosis", "uncertainty")
 
 
 @dataclass(frozen=True, eq=False)
 class SurrogateCertificate(Brief):
-    """What fresh full runs say of a reduced model.
+    """Errors of a reduced model in validation runs: full runs that were not used in training.
 
     Parameters
     ----------
-    errors : answer -> largest difference to full runs that it had not learnt from. cases : how many of them.
-    worst : largest error of any temperature answer, K. tolerance : what was asked for, K. trained_on : full runs, or
-        what is left of them where some failed, and corrections. amended : corrections alone.
+    errors : answer -> largest difference to the validation runs. cases : number of validation runs.
+    worst : largest error of any temperature answer, K. tolerance : allowed error, K. trained_on : number of successful
+        training runs and corrections. amended : number of corrections.
     """
 
     errors: Mapping[str, float]
@@ -61,13 +61,13 @@ class SurrogateCertificate(Brief):
 
     @property
     def good(self) -> bool:
-        """Is it within the tolerance, with some room?"""
+        """Is the largest error at most `SAFETY` x tolerance?"""
         return self.worst <= SAFETY * self.tolerance
 
 
 @dataclass(frozen=True, eq=False)
 class Surrogate(Brief):
-    """A certified reduced model and the box it may be used in."""
+    """A certified reduced model and the box of variants in which it is valid."""
 
     model: ReducedModel
     varied: tuple[Varied, ...]
@@ -86,14 +86,16 @@ class Surrogate(Brief):
             f"{certificate.tolerance:g} K wanted",
         }
 
-    def packed(self, base: Bundle) -> Packed:
-        """To be sent to other processes; ``base`` is the study it was made for."""
+    def packed(self, base: Bundle) -> PackedModel:
+        """The model packed for other processes; ``base``: the study that it was made for."""
         return pack(self.model, base)
 
     def answers(self, studies: Sequence[StudyData]) -> list[ReducedOutcome]:
-        """What becomes of studies, marched side by side; one is `NotReducible` outside the box, or where it differs in
-        something that the box does not vary."""
-        reasons = [outside(study, self.model.base.study, self.varied) for study in studies]
+        """The outcomes of studies, in their order.
+
+        A study outside the box, or with a difference that the box does not vary, gives `NotReducible`.
+        """
+        reasons = [why_outside(study, self.model.base.study, self.varied) for study in studies]
         answered: list[ReducedOutcome] = [NotReducible(why) for why in reasons]
         inside = [number for number, why in enumerate(reasons) if not why]
         outcomes = reduced_answers(self.model, [studies[number] for number in inside], self.time_to)
@@ -102,32 +104,32 @@ class Surrogate(Brief):
         return answered
 
 
-def outside(study: StudyData, base: StudyData, varied: Sequence[Varied]) -> str:
-    """Why a study is not in a box about another; empty: it is."""
+def why_outside(study: StudyData, base: StudyData, varied: Sequence[Varied]) -> str:
+    """Why a study is outside the box around a base study; empty: the study is inside."""
     for number in varied:
         value = value_at(study.data, number.key, study.folder)
         if not number.contains(value):
             return f"'{number.key}' = {value!r} is outside the box of the reduced model"
         if not number.together(value, {key: value_at(study.data, key, study.folder) for key, _ in number.also}):
-            return f"'{number.also[0][0]}' does not follow '{number.key}', as it did for the reduced model"
+            return f"'{number.also[0][0]}' does not change with '{number.key}', as the reduced model assumes"
     same = changes_at(varied, [0.5] * len(varied))
-    mine, theirs = (all_changed(each.data, same) for each in (study, base))
-    for key in dict.fromkeys([*mine, *theirs]):
-        if key not in UNSEEN and mine.get(key) != theirs.get(key):
-            name = next((f"{key}.{k}" for k in _keys(mine, theirs, key)), key)
-            return f"'{name}' is not what it was in the study that the reduced model was made for"
+    study_data, base_data = (all_changed(each.data, same) for each in (study, base))
+    for key in dict.fromkeys([*study_data, *base_data]):
+        if key not in IRRELEVANT_TABLES and study_data.get(key) != base_data.get(key):
+            name = next((f"{key}.{k}" for k in _keys(study_data, base_data, key)), key)
+            return f"'{name}' differs from the study that the reduced model was made for"
     return ""
 
 
-def _keys(mine: Mapping[str, Any], theirs: Mapping[str, Any], key: str) -> list[str]:
-    first, second = mine.get(key), theirs.get(key)
+def _keys(study_data: Mapping[str, Any], base_data: Mapping[str, Any], key: str) -> list[str]:
+    first, second = study_data.get(key), base_data.get(key)
     if not isinstance(first, Mapping) or not isinstance(second, Mapping):
         return []
     return [k for k in dict.fromkeys([*first, *second]) if first.get(k) != second.get(k)]
 
 
 def temperature_error(first: Mapping[str, Any], second: Mapping[str, Any]) -> float:
-    """Largest difference of two variants' temperature answers, K."""
+    """Largest difference between the temperature answers of two variants, K."""
     return max(
         (abs(first[name] - second[name]) for name in first if name.endswith("_degC") and name in second), default=0.0
     )
@@ -138,52 +140,58 @@ def surrogate(
     *,
     tolerance: float = 0.01,
     scheduler: Scheduler | None = None,
-    choice: ReducedFineness | None = None,
+    fineness: ReducedFineness | None = None,
     seed: int = 7,
-    progress: Tick | None = None,
+    progress: ProgressCallback | None = None,
     settings: SweepSettings | None = None,
 ) -> Surrogate:
-    """Train a reduced model for a plan's box, and try it on fresh full runs.
+    """Train a reduced model for a plan's box, and validate it on fresh full runs.
 
     Parameters
     ----------
-    plan : its `varied` says which box. tolerance : K, of every temperature answer of the fresh runs.
-    settings : how many fresh runs, certificates and rounds of corrections.
+    plan : its `varied` defines the box. tolerance : K, of every temperature answer of the validation runs.
+    settings : numbers of validation runs, certificates and rounds of corrections.
 
     Raises
     ------
-    NotReducibleError : the box varies what a reduced model cannot follow, or the tolerance was not reached.
+    NotReducibleError : a reduced model cannot follow what the box varies, or the tolerance was not reached.
     """
     settings = settings or SweepSettings()
     check_varied(plan)
-    if tolerance < HOPELESS:
-        raise NotReducibleError(f"no reduced model is certified to {tolerance:g} K; allowed: {HOPELESS:g} K or more")
-    tick = progress or (lambda what, done, total: None)
-    lesson = School(plan, scheduler or Here(), choice or ReducedFineness.of(tolerance), tick, seed)
-    # Two opposite corners: the rest of the box is learnt from residuals.
+    if tolerance < LEAST_TOLERANCE:
+        raise NotReducibleError(
+            f"no reduced model is certified to {tolerance:g} K; allowed: {LEAST_TOLERANCE:g} K or more"
+        )
+    report = progress or (lambda what, done, total: None)
+    training = Training(plan, scheduler or Here(), fineness or ReducedFineness.of(tolerance), report, seed)
+    # Full runs at two opposite corners; residual corrections cover the rest of the box.
     places = [np.zeros(len(plan.varied)), np.ones(len(plan.varied))]
-    lesson.run(places, COARSER * max(tolerance, FINEST), "training", with_answers=False)
+    training.run(places, TRAINING_FACTOR * max(tolerance, LEAST_RUN_TOLERANCE), "training", with_answers=False)
     certificate: SurrogateCertificate | None = None
     for trial in range(settings.trials):
-        model = lesson.rounds(1 if trial else settings.rounds, ENOUGH * tolerance)
-        places = lesson.fresh(settings.fresh)
-        known = len(lesson.learnt)
-        full = lesson.run(places, min(plan.study.tolerance, max(tolerance, FINEST)), "certifying", with_answers=True)
-        reduced = reduced_answers(model, [plan.study.replace(lesson.variant(place)) for place in places], plan.time_to)
+        model = training.correction_rounds(1 if trial else settings.rounds, CORRECTION_FACTOR * tolerance)
+        places = training.fresh_places(settings.fresh)
+        known = len(training.snapshots)
+        full_runs = training.run(
+            places, min(plan.study.tolerance, max(tolerance, LEAST_RUN_TOLERANCE)), "certifying", with_answers=True
+        )
+        reduced = reduced_answers(
+            model, [plan.study.replace(training.variant(place)) for place in places], plan.time_to
+        )
         check_reducible(reduced)
         pairs = [
-            (mine.answers, theirs.answers)
-            for mine, theirs in zip(reduced, full, strict=True)
-            if isinstance(mine, Answered) and isinstance(theirs, Learnt)
+            (reduced_outcome.answers, full_run.answers)
+            for reduced_outcome, full_run in zip(reduced, full_runs, strict=True)
+            if isinstance(reduced_outcome, Answered) and isinstance(full_run, FullRun)
         ]
         if not pairs:
-            raise NotReducibleError("no run to certify with succeeded")
-        certificate = certified(pairs, tolerance, known, lesson.amended)
+            raise NotReducibleError("all validation runs failed")
+        certificate = certified(pairs, tolerance, known, training.correction_count)
         if certificate.good:
             return Surrogate(model, plan.varied, certificate, plan.time_to)
     assert certificate is not None
     raise NotReducibleError(
-        f"after {certificate.amended} corrections fresh runs are still off by {certificate.worst:.3g} K;"
+        f"after {certificate.amended} corrections the error in the validation runs is {certificate.worst:.3g} K;"
         f" allowed: {SAFETY:g} x {tolerance:g} K"
     )
 
@@ -191,7 +199,7 @@ def surrogate(
 def certified(
     pairs: Sequence[tuple[Mapping[str, Any], Mapping[str, Any]]], tolerance: float, trained_on: int, amended: int
 ) -> SurrogateCertificate:
-    """The certificate of pairs (reduced, full) of answers."""
+    """The certificate from pairs of answers (reduced model, full run)."""
     names = [name for name, value in pairs[0][1].items() if isinstance(value, float)]
     errors = {name: max(abs(a[name] - b[name]) for a, b in pairs) for name in names}
     worst = max(temperature_error(a, b) for a, b in pairs)
@@ -199,11 +207,11 @@ def certified(
 
 
 def check_varied(plan: Plan) -> None:
-    """Raise `NotReducibleError` where what a plan varies cannot be followed on one mesh."""
+    """Raise `NotReducibleError` if a plan varies something that needs another mesh or changing strain cycles."""
     if not plan.varied:
-        raise NotReducibleError("variants from a list have no box to train in")
+        raise NotReducibleError("variants from a list span no box for training")
     for number in plan.varied:
         if number.key.split(".")[0] in ("section", "mesh", "output", "numerics"):
-            raise NotReducibleError(f"'{number.key}' changes the mesh or the numbers' precision")
+            raise NotReducibleError(f"'{number.key}' changes the mesh or the numerical precision")
     if plan.study.card.mechanics.feedback is not None:
         raise NotReducibleError("strain cycles that follow the temperature")

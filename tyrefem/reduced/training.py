@@ -1,4 +1,4 @@
-"""Training: modes and sample places from snapshots of a few full runs."""
+"""Training: POD modes and sample nodes from snapshots of a few full runs."""
 
 from __future__ import annotations
 
@@ -11,26 +11,26 @@ from numpy.typing import NDArray
 
 from tyrefem.conduction.operators import Operators
 from tyrefem.reduced.model import ReducedModel
-from tyrefem.reduced.pod import modes, places
+from tyrefem.reduced.pod import modes, sample_nodes
 from tyrefem.simulation.result import ResultData
 from tyrefem.simulation.rolling_tyre import RollingTyre
 
 Array = NDArray[np.float64]
-#: A node within this share of a region's range below its highest temperature may be the hottest; ranges below, K, are
-#: those of an even field.
+#: A node may be the hottest of a region if it is below its peak by at most this share of the region's range; a field
+#: with a smaller range than this, K, counts as uniform.
 NEAR, EVEN = 0.005, 0.5
 
 
 @dataclass(frozen=True)
 class ReducedFineness:
-    """How fine a reduced model is.
+    """Resolution of a reduced model.
 
     Parameters
     ----------
-    modes_tolerance : rms of the temperature over the snapshots that the modes may leave out, K.
-    source_tolerance : share of the heat sources that their modes may leave out.
-    most_modes, most_sources : at most.
-    fields : temperature fields taken of every run.
+    modes_tolerance : rms error of the snapshots on the modes, K.
+    source_tolerance : relative rms error of the heat sources on their modes.
+    most_modes, most_sources : modes of temperature and of heat source, at most.
+    fields : temperature fields taken from every run.
     """
 
     modes_tolerance: float = 4e-4
@@ -41,21 +41,21 @@ class ReducedFineness:
 
     @classmethod
     def of(cls, tolerance: float) -> ReducedFineness:
-        """Fine enough for a tolerance, K: modes leave out a twenty-fifth of it."""
+        """The resolution for a tolerance, K: the modes' rms error is 1/25 of it."""
         return cls(0.04 * tolerance, 8e-4 * tolerance)
 
 
-#: Parts of a phase at which a training run gives a field: dense where temperatures change fast.
+#: Parts of a phase at which a training run takes a snapshot: dense where temperatures change fast.
 PARTS = np.array([0.005, 0.02, 0.05, 0.1, 0.2, 0.35, 0.5, 0.7, 0.85, 1.0])
 
 
 @dataclass(frozen=True, eq=False)
 class Snapshots:
-    """What one full run teaches.
+    """Snapshots of a full run.
 
     Parameters
     ----------
-    fields : (k, n) degC. sources : (k', all zones' nodes) W/m3, zone after zone: fewer, as a source changes slowly.
+    fields : (k, n) degC. sources : (k', all zones' nodes) W/m3, zone after zone; fewer, as a source changes slowly.
     """
 
     fields: Array
@@ -63,7 +63,7 @@ class Snapshots:
 
 
 def snapshots(result: ResultData, count: int) -> Snapshots:
-    """Fields and heat sources of a run, dense where temperatures change fast: after every start of a phase."""
+    """Snapshots of a result's fields and heat sources, dense after the start of every phase."""
     times, tyre = result.times, result.tyre
     spread = np.unique(np.round(np.linspace(0, len(times) - 1, count)).astype(int))
     early = [int(np.searchsorted(times, start)) + k for start in tyre.drive.starts for k in (0, 1, 2, 3)]
@@ -76,13 +76,13 @@ def snapshots(result: ResultData, count: int) -> Snapshots:
 
 
 def training_run(tyre: RollingTyre, tolerance: float) -> Snapshots:
-    """Snapshots of a full run that is made for nothing else; ``tolerance``: K, of its time integration."""
+    """Snapshots of a full run made for training only; ``tolerance``: K, of its time integration."""
     ends = [*tyre.drive.starts, tyre.drive.end]
     times = np.concatenate([[0.0], *(a + (b - a) * PARTS for a, b in pairwise(ends))])
     problem = tyre.problem
     history = problem.transient(times, tyre.drive.initial, tolerance, breakpoints=tyre.drive.starts[1:])
     ops, fields = problem.operators, np.asarray(history.values)
-    # Seen from before: at the end of a phase, that phase still counts.
+    # Just before the times: the end of a phase belongs to that phase.
     when = times * (1 - 1e-9)
     return Snapshots(
         fields, np.array([sources_at(ops, tyre, float(when[i]), fields[i]) for i in range(1, len(times), 3)])
@@ -90,22 +90,22 @@ def training_run(tyre: RollingTyre, tolerance: float) -> Snapshots:
 
 
 def sources_at(ops: Operators, tyre: RollingTyre, t: float, field: Array) -> Array:
-    """(all zones' nodes,) W/m3 at a time and a field, zone after zone."""
+    """Heat sources at a time for a field, (all zones' nodes,) W/m3, zone after zone."""
     return np.concatenate([source(ops.nodes(zone), t, field[ops.dofs(zone)]) for zone, source in tyre.sources.items()])
 
 
-def trained(base: RollingTyre, learnt: Sequence[Snapshots], choice: ReducedFineness | None = None) -> ReducedModel:
-    """A reduced model on a tyre's mesh, from what variants on that mesh have taught."""
-    choice = choice or ReducedFineness()
+def trained(base: RollingTyre, sets: Sequence[Snapshots], fineness: ReducedFineness | None = None) -> ReducedModel:
+    """A reduced model on a tyre's mesh, from snapshots of variants on that mesh."""
+    fineness = fineness or ReducedFineness()
     ops = base.problem.operators
-    fields = np.vstack([snapshot.fields for snapshot in learnt])
-    hot = hot_nodes(base, learnt)
-    V = modes(fields, weight(base, hot), choice.modes_tolerance, choice.most_modes)
-    heats = np.vstack([snapshot.sources for snapshot in learnt])
+    fields = np.vstack([snapshot.fields for snapshot in sets])
+    hot = hot_nodes(base, sets)
+    V = modes(fields, weight(base, hot), fineness.modes_tolerance, fineness.most_modes)
+    heats = np.vstack([snapshot.sources for snapshot in sets])
     largest = np.abs(heats).max(axis=1)
-    # All of a like size: a slow variant's sources are to be met as well as a fast one's.
+    # Normalised: the sources of slow variants count as much as those of fast ones.
     heats = heats[largest > 0] / largest[largest > 0][:, None] if largest.any() else heats[:1] + 1.0
-    chosen, everywhere = places(heats, choice.source_tolerance, choice.most_sources)
+    chosen, everywhere = sample_nodes(heats, fineness.source_tolerance, fineness.most_sources)
     zones = list(base.sources)
     ends = np.cumsum([0, *(len(ops.dofs(zone)) for zone in zones)])
     samples = {
@@ -115,9 +115,10 @@ def trained(base: RollingTyre, learnt: Sequence[Snapshots], choice: ReducedFinen
 
 
 def weight(base: RollingTyre, hot: Mapping[str, NDArray[np.intp]]) -> Array:
-    """(n,) weights of the nodes: half by volume, every region counting alike, half where regions are the hottest.
+    """Weights (n,) of the nodes in the inner product.
 
-    A bead is small, but its hottest place is asked for.
+    Half of the weight is by volume, the same for every region; half is on the nodes where regions are hottest. Small
+    regions such as beads count too, as their peaks are answers.
     """
     ops = base.problem.operators
     weights, ones = np.zeros(ops.size), np.ones(ops.size)
@@ -128,15 +129,15 @@ def weight(base: RollingTyre, hot: Mapping[str, NDArray[np.intp]]) -> Array:
     return weights / weights.sum()
 
 
-def hot_nodes(base: RollingTyre, learnt: Sequence[Snapshots]) -> dict[str, NDArray[np.intp]]:
-    """Region -> the nodes that came near its highest temperature in any field."""
+def hot_nodes(base: RollingTyre, sets: Sequence[Snapshots]) -> dict[str, NDArray[np.intp]]:
+    """Region -> the nodes that are near its highest temperature in any snapshot."""
     ops = base.problem.operators
-    fields, hot = np.vstack([snapshot.fields for snapshot in learnt]), {}
+    fields, hot = np.vstack([snapshot.fields for snapshot in sets]), {}
     for region in base.bodies:
         dofs = ops.dofs(region)
         of_region = fields[:, dofs]
         most, least = of_region.max(axis=1, keepdims=True), of_region.min(axis=1, keepdims=True)
         near = of_region >= most - NEAR * (most - least)
-        # A field that is even says nothing.
+        # Uniform fields have no hottest node.
         hot[region] = dofs[near[(most - least)[:, 0] > EVEN].any(axis=0)] if ((most - least) > EVEN).any() else dofs
     return hot

@@ -1,6 +1,6 @@
-"""Teaching a reduced model: full runs, and corrections by residuals, wherever the scheduler has room.
+"""Training of a reduced model by full runs and residual corrections, in parallel.
 
-Variants of a reduced model as work for any process: the model travels as arrays.
+Worker tasks that use a reduced model receive it as arrays.
 """
 
 from __future__ import annotations
@@ -16,9 +16,9 @@ from numpy.typing import NDArray
 
 from tyrefem.cache import Cache
 from tyrefem.errors import InputError
-from tyrefem.reduced.answers import ReducedOutcome, reduced_answers, side_by_side
+from tyrefem.reduced.answers import ReducedOutcome, batch_solutions, reduced_answers
 from tyrefem.reduced.model import NotReducibleError, ReducedModel
-from tyrefem.reduced.residual import TIME_TOLERANCE as CORRECTED_TO
+from tyrefem.reduced.residual import TIME_TOLERANCE as CORRECTION_TOLERANCE
 from tyrefem.reduced.residual import correction
 from tyrefem.reduced.training import ReducedFineness, Snapshots, snapshots, trained, training_run
 from tyrefem.simulation.rolling_tyre import RollingTyre
@@ -34,12 +34,12 @@ Array = NDArray[np.float64]
 
 
 @dataclass(frozen=True, eq=False)
-class Packed:
-    """A reduced model without its operators: who unpacks it assembles them once on the same mesh.
+class PackedModel:
+    """A reduced model without its operators; the receiving process assembles them once on the same mesh.
 
     Parameters
     ----------
-    base : the study it was made for. V, samples, nodes_from_samples, hot : as `ReducedModel` has them.
+    base : the study that it was made for. V, samples, nodes_from_samples, hot : as in `ReducedModel`.
     """
 
     base: Bundle
@@ -50,11 +50,11 @@ class Packed:
 
     @functools.cached_property
     def digest(self) -> str:
-        """Of study and modes."""
+        """Digest of the study and the modes."""
         return hashlib.sha256(self.base.digest.encode() + self.V.tobytes()).hexdigest()[:16]
 
     def unpacked(self) -> ReducedModel:
-        """The model again, once per process."""
+        """The reduced model, unpacked once per process."""
         return _models.get(
             self.digest,
             lambda: ReducedModel(base_of(self.base), self.V, self.samples, self.nodes_from_samples, self.hot),
@@ -62,21 +62,21 @@ class Packed:
 
 
 def base_of(packed: Bundle) -> RollingTyre:
-    """The tyre of a study, whose mesh and operators serve all its variants; once per process."""
+    """The tyre of a study, built once per process; all variants use its mesh and operators."""
     return _bases.get(packed.digest, lambda: RollingTyre(unpacked(packed)))
 
 
 def remember(packed: Bundle, base: RollingTyre) -> None:
-    """Let `base_of` give this tyre here, unless it has one of the same study."""
+    """Make `base_of` return this tyre in this process, unless it has a tyre of the same study."""
     _bases.get(packed.digest, lambda: base)
 
 
-def pack(model: ReducedModel, base: Bundle) -> Packed:
-    """A model to be sent to other processes; ``base`` is the study it was made for."""
-    return Packed(base, model.V, model.samples, model.nodes_from_samples, model.hot)
+def pack(model: ReducedModel, base: Bundle) -> PackedModel:
+    """A model packed for other processes; ``base``: the study that it was made for."""
+    return PackedModel(base, model.V, model.samples, model.nodes_from_samples, model.hot)
 
 
-#: Models and tyres that a process keeps: those of two sweeps at once, on threads of one worker.
+#: Models and tyres that a process keeps: two sweeps may run on threads of one worker.
 KEPT = 2
 _models: Cache[ReducedModel] = Cache(KEPT)
 _bases: Cache[RollingTyre] = Cache(KEPT)
@@ -84,14 +84,14 @@ _bases: Cache[RollingTyre] = Cache(KEPT)
 
 @dataclass(frozen=True, eq=False)
 class ReducedTask:
-    """Variants to be marched side by side: their changes, in order."""
+    """Variants for the reduced model: their changes, in order. ``time_to``: see `answers`."""
 
     changes: Sequence[Mapping[str, Any]]
     time_to: float | None = None
 
 
-def perform_reduced(task: ReducedTask, packed: Packed) -> tuple[ReducedOutcome, ...]:
-    """Done in a worker: what becomes of every variant, in their order."""
+def perform_reduced(task: ReducedTask, packed: PackedModel) -> tuple[ReducedOutcome, ...]:
+    """Run in a worker: the outcome of every variant, in the order of the task."""
     model = packed.unpacked()
     outcomes: dict[int, ReducedOutcome] = {}
     studies, places = [], []
@@ -105,84 +105,84 @@ def perform_reduced(task: ReducedTask, packed: Packed) -> tuple[ReducedOutcome, 
     return tuple(outcomes[place] for place in range(len(task.changes)))
 
 
-Tick = Callable[[str, int, int], None]
+ProgressCallback = Callable[[str, int, int], None]
 
 
-#: Variants corrected by residuals in a round, per number that varies and at least.
-PER_NUMBER, LEAST = 2.0, 10
+#: Variants corrected by residuals in a round: per number that varies, and at least.
+CORRECTIONS_PER_NUMBER, LEAST_CORRECTIONS = 2.0, 10
 
 
-#: Variants corrected together: marched side by side, few enough for several processes.
-TOGETHER = 5
+#: Variants corrected in one task: few enough to occupy several processes.
+CORRECTIONS_PER_TASK = 5
 
 
-#: Horizons of the corrections over the duration of a phase, in turns.
+#: Times tau of the corrections over the duration of a phase, used in turn.
 HORIZONS = (0.1, 0.5)
 
 
-#: Places of the box are stretched about its middle: corners are interpolated between, not extrapolated to.
+#: Sample points are stretched about the middle of the box, so that its corners need no extrapolation.
 STRETCH = 1.25
 
 
 @dataclass(frozen=True, eq=False)
-class Lesson:
-    """Work of a full run: snapshots of one variant, and its answers.
+class FullRunTask:
+    """A full run of a variant for snapshots, and for answers if wanted.
 
     Parameters
     ----------
-    fields : temperature fields taken of it. time_tolerance : K, of the run. with_answers : whether answers are wanted.
+    variant : the variant. fields : snapshots to take. time_tolerance : K, of the run. with_answers : compute answers?
     """
 
-    task: Task
+    variant: Task
     fields: int
     time_tolerance: float
     with_answers: bool
 
 
 @dataclass(frozen=True, eq=False)
-class Learnt:
-    """What a full run teaches, and its answers; none where none are wanted."""
+class FullRun:
+    """Snapshots of a full run, and its answers; without answers the mapping is empty."""
 
     snapshots: Snapshots
     answers: Mapping[str, Any] = field(default_factory=dict)
 
 
-def learn(lesson: Lesson) -> Learnt | Failed:
-    """Done in a worker: run a variant in full."""
+def perform_full_run(task: FullRunTask) -> FullRun | Failed:
+    """Run in a worker: a full run of a variant."""
     from tyrefem.conduction import SolverError
 
-    task, base = lesson.task, base_of(lesson.task.packed)
+    variant, base = task.variant, base_of(task.variant.packed)
     try:
-        study = base.study.replace(task.changes)
-        if not lesson.with_answers:
-            return Learnt(training_run(RollingTyre(study, base), lesson.time_tolerance))
-        result = run(study.replace({"numerics.tolerance": f"{lesson.time_tolerance:.6g} delta_degC"}), like=base)
-        return Learnt(snapshots(result, lesson.fields), answers(result, task.time_to))
+        study = base.study.replace(variant.changes)
+        if not task.with_answers:
+            return FullRun(training_run(RollingTyre(study, base), task.time_tolerance))
+        result = run(study.replace({"numerics.tolerance": f"{task.time_tolerance:.6g} delta_degC"}), like=base)
+        return FullRun(snapshots(result, task.fields), answers(result, variant.time_to))
     except (InputError, SolverError) as error:
         return Failed(str(error))
 
 
 @dataclass(frozen=True, eq=False)
-class Amendment:
-    """Work of corrections by residuals: variants, and for each tau over the duration of every phase."""
+class CorrectionTask:
+    """Variants to be corrected by residuals; ``shares``: tau over the phase duration, per variant."""
 
     changes: Sequence[Mapping[str, Any]]
     shares: Sequence[float]
 
 
 @dataclass(frozen=True, eq=False)
-class Corrected:
-    """What the full model makes of a reduced run, and by how much at most, K."""
+class Correction:
+    """Corrected snapshots of a reduced run; ``largest``: the largest correction, K."""
 
     snapshots: Snapshots
     largest: float
 
 
-def amend(work: Amendment, packed: Packed) -> tuple[Corrected | Failed | NotReducible, ...]:
-    """Done in a worker: correct reduced runs of variants, in their order."""
+def perform_corrections(work: CorrectionTask, packed: PackedModel) -> tuple[Correction | Failed | NotReducible, ...]:
+    """Run in a worker: corrections of reduced runs, in the order of the task."""
     model = packed.unpacked()
     base = model.base
-    outcomes: dict[int, Corrected | Failed | NotReducible] = {}
+    outcomes: dict[int, Correction | Failed | NotReducible] = {}
     tyres: dict[int, RollingTyre] = {}
     for number, changes in enumerate(work.changes):
         try:
@@ -191,93 +191,98 @@ def amend(work: Amendment, packed: Packed) -> tuple[Corrected | Failed | NotRedu
             outcomes[number] = Failed(str(error))
     numbers = list(tyres)
     try:
-        for places, part in side_by_side(model, list(tyres.values()), CORRECTED_TO):
+        for places, part in batch_solutions(model, list(tyres.values()), CORRECTION_TOLERANCE):
             for place, number in enumerate(numbers[task] for task in places):
                 if isinstance(part, Failed | NotReducible):
                     outcomes[number] = part
                 else:
-                    outcomes[number] = Corrected(*correction(part, place, work.shares[number]))
+                    outcomes[number] = Correction(*correction(part, place, work.shares[number]))
     except InputError as error:
         outcomes = {number: Failed(str(error)) for number in numbers} | outcomes
     return tuple(outcomes[number] for number in range(len(work.changes)))
 
 
 def check_reducible(outcomes: Sequence[object]) -> None:
-    """Raise `NotReducibleError` where a reduced model cannot follow one of the variants."""
+    """Raise `NotReducibleError` if the reduced model cannot follow one of the variants."""
     for outcome in outcomes:
         if isinstance(outcome, NotReducible):
             raise NotReducibleError(outcome.reason)
 
 
-class School:
-    """Teaches: full runs, and corrections by residuals."""
+class Training:
+    """Training of a reduced model: full runs and residual corrections give the snapshots."""
 
-    def __init__(self, plan: Plan, scheduler: Scheduler, choice: ReducedFineness, tick: Tick, seed: int) -> None:
+    def __init__(
+        self, plan: Plan, scheduler: Scheduler, fineness: ReducedFineness, report: ProgressCallback, seed: int
+    ) -> None:
         from scipy.stats import qmc
 
-        self.plan, self.scheduler, self.choice, self.tick = plan, scheduler, choice, tick
+        self.plan, self.scheduler, self.fineness, self.report = plan, scheduler, fineness, report
         self.base = RollingTyre(plan.study)
         remember(plan.packed, self.base)
-        self.learnt: list[Snapshots] = []
-        self.amended = 0
-        self.round = max(LEAST, int(np.ceil(PER_NUMBER * len(plan.varied))))
-        self.places = qmc.Halton(len(plan.varied), seed=seed)
+        self.snapshots: list[Snapshots] = []
+        self.correction_count = 0
+        self.round_size = max(LEAST_CORRECTIONS, int(np.ceil(CORRECTIONS_PER_NUMBER * len(plan.varied))))
+        self.sequence = qmc.Halton(len(plan.varied), seed=seed)
 
-    def fresh(self, count: int) -> list[Array]:
-        """Places of the box that were not used yet."""
-        return list(self.places.random(count))
+    def fresh_places(self, count: int) -> list[Array]:
+        """New points of the unit box, from a Halton sequence."""
+        return list(self.sequence.random(count))
 
     def variant(self, place: Array) -> dict[str, Any]:
-        """Changes at a place of the unit box."""
+        """The variant's changes at a point of the unit box."""
         return changes_at(self.plan.varied, place)
 
     def run(
         self, places: Sequence[Array], time_tolerance: float, what: str, with_answers: bool
-    ) -> list[Learnt | Failed]:
-        """What full runs teach, in their order; their snapshots are learnt."""
-        lessons = [
-            Lesson(
+    ) -> list[FullRun | Failed]:
+        """Outcomes of full runs at points of the box, in order; their snapshots are added to the training."""
+        tasks = [
+            FullRunTask(
                 Task(n, self.plan.packed, self.variant(place), self.plan.time_to),
-                self.choice.fields,
+                self.fineness.fields,
                 time_tolerance,
                 with_answers,
             )
             for n, place in enumerate(places)
         ]
-        outcomes = self._done(learn, lessons, what)
-        learnt = [outcome for outcome in outcomes if isinstance(outcome, Learnt)]
+        outcomes = self._outcomes(perform_full_run, tasks, what)
+        full_runs = [outcome for outcome in outcomes if isinstance(outcome, FullRun)]
         failed = [outcome for outcome in outcomes if isinstance(outcome, Failed)]
-        if failed and not learnt:
-            raise NotReducibleError(f"no run for {what} succeeded: {failed[0].reason}")
-        self.learnt += [outcome.snapshots for outcome in learnt]
+        if failed and not full_runs:
+            raise NotReducibleError(f"all runs for {what} failed: {failed[0].reason}")
+        self.snapshots += [outcome.snapshots for outcome in full_runs]
         return outcomes
 
-    def rounds(self, most: int, enough: float) -> ReducedModel:
-        """A model corrected at fresh places until corrections are small."""
+    def correction_rounds(self, most: int, enough: float) -> ReducedModel:
+        """A model trained on corrections at new points, until the largest correction is at most ``enough`` K."""
         for _ in range(most):
-            model = trained(self.base, self.learnt, self.choice)
+            model = trained(self.base, self.snapshots, self.fineness)
             packed = pack(model, self.plan.packed)
-            places = [np.clip(0.5 + STRETCH * (place - 0.5), 0.0, 1.0) for place in self.fresh(self.round)]
+            places = [np.clip(0.5 + STRETCH * (place - 0.5), 0.0, 1.0) for place in self.fresh_places(self.round_size)]
             changes = [self.variant(place) for place in places]
             shares = [HORIZONS[n % len(HORIZONS)] for n in range(len(places))]
-            firsts = range(0, len(places), TOGETHER)
-            work = [Amendment(changes[n : n + TOGETHER], shares[n : n + TOGETHER]) for n in firsts]
-            parts = self._done(amend, work, "correcting", packed)
-            # A part that failed as a whole, as where its process died, teaches nothing.
+            firsts = range(0, len(places), CORRECTIONS_PER_TASK)
+            work = [
+                CorrectionTask(changes[n : n + CORRECTIONS_PER_TASK], shares[n : n + CORRECTIONS_PER_TASK])
+                for n in firsts
+            ]
+            parts = self._outcomes(perform_corrections, work, "correcting", packed)
+            # A task that failed as a whole, e.g. because its process died, gives no snapshots.
             outcomes = [outcome for part in parts for outcome in ((part,) if isinstance(part, Failed) else part)]
             check_reducible(outcomes)
-            corrected = [outcome for outcome in outcomes if isinstance(outcome, Corrected)]
-            self.learnt += [outcome.snapshots for outcome in corrected]
-            self.amended += len(outcomes)
+            corrected = [outcome for outcome in outcomes if isinstance(outcome, Correction)]
+            self.snapshots += [outcome.snapshots for outcome in corrected]
+            self.correction_count += len(outcomes)
             if max((outcome.largest for outcome in corrected), default=0.0) <= enough:
                 break
-        return trained(self.base, self.learnt, self.choice)
+        return trained(self.base, self.snapshots, self.fineness)
 
-    def _done(
+    def _outcomes(
         self, work: Callable[..., Result], tasks: Sequence[Any], what: str, common: Any = None
     ) -> list[Result | Failed]:
         outcomes: dict[int, Result | Failed] = {}
         for place, outcome in self.scheduler.outcomes(work, tasks, common):
             outcomes[place] = outcome
-            self.tick(what, len(outcomes), len(tasks))
+            self.report(what, len(outcomes), len(tasks))
         return [outcomes[n] for n in range(len(tasks))]

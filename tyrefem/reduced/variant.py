@@ -1,4 +1,4 @@
-"""One variant of a reduced model as a run that answers are asked of."""
+"""A variant of a reduced model with the interface of a finished run."""
 
 from __future__ import annotations
 
@@ -29,12 +29,13 @@ Array = NDArray[np.float64]
 
 @dataclass(frozen=True, eq=False)
 class Variant:
-    """A `tyrefem.variants.answers.Outcome` whose numbers come from modes; all else of a `Result` is made when asked
-    for.
+    """A `tyrefem.variants.answers.FinishedRun` whose numbers come from POD modes.
+
+    Other attributes of a `Result` are computed at their first use.
 
     Parameters
     ----------
-    readout : of its batch. number : its place there.
+    readout : of the variant's batch. number : place of the variant in the batch.
     """
 
     readout: Readout
@@ -42,12 +43,12 @@ class Variant:
 
     @property
     def tyre(self) -> RollingTyre:
-        """Its drive, load cases and materials."""
-        return self.readout.marched.batch.balances[self.number].tyre
+        """The rolling tyre: drive, load cases and materials."""
+        return self.readout.solution.batch.balances[self.number].tyre
 
     @property
     def study(self) -> StudyData:
-        """What it is."""
+        """The study of the variant."""
         return self.tyre.study
 
     @property
@@ -57,9 +58,9 @@ class Variant:
 
     @functools.cached_property
     def result(self) -> ResultData:
-        """The whole result: every field, the budget over time."""
+        """The whole result, with all fields and the heat budget over time."""
         _, fields = output_times(self.tyre)
-        return ResultData(self.study, self.tyre, self.readout.marched.history(self.number, self.times), fields, 0.0)
+        return ResultData(self.study, self.tyre, self.readout.solution.history(self.number, self.times), fields, 0.0)
 
     def __getattr__(self, name: str) -> Any:
         if name.startswith("__"):
@@ -78,15 +79,15 @@ class Variant:
             s, depth = self.study.section.locate(np.array([peak.point]))
             return float(s[0]), float(depth[0])
 
-        return self.readout.marched.batch.model.node_places.get((self.study.section, peak.point), located)
+        return self.readout.solution.batch.model.node_places.get((self.study.section, peak.point), located)
 
     @functools.cached_property
     def recorded(self) -> dict[str, Array]:
-        """Sensor -> what the logger recorded, (n_times,) degC."""
+        """Sensor -> recorded temperature, (n_times,) degC."""
         places = true_places(self.study)
         if not places:
             return {}
-        model, section, stated = self.readout.marched.batch.model, self.study.section, tuple(places.values())
+        model, section, stated = self.readout.solution.batch.model, self.study.section, tuple(places.values())
         built_in = model.sensor_places.get(
             (section, stated), lambda: inside(section, self.tyre.mesh.size, *section.locate(np.array(stated)))
         )
@@ -94,7 +95,7 @@ class Variant:
 
     @property
     def gas_temperature(self) -> Array:
-        """Contained air, (n_times,) degC."""
+        """Temperature of the contained air, (n_times,) degC."""
         history = self.readout.reservoirs(self.number).get(GAS)
         if history is not None:
             return history
@@ -102,14 +103,14 @@ class Variant:
 
     @property
     def rim_temperature(self) -> Array | None:
-        """A lumped rim, (n_times,) degC; None where its temperature is given."""
+        """Temperature of a lumped rim, (n_times,) degC; None if the rim's temperature is given."""
         return self.readout.reservoirs(self.number).get(RIM)
 
     pressure_at = ResultData.pressure_at
 
     @functools.cached_property
     def readings(self) -> pd.DataFrame:
-        """As of a `Result`."""
+        """Table of readings, as `Result.readings`."""
         import pandas as pd
 
         rim = self.rim_temperature
@@ -118,12 +119,12 @@ class Variant:
 
     @property
     def wall_gradient(self) -> tuple[Array, Array]:
-        """s (k,) m along the meridian, and |T inner - T outer| / thickness there at the end, K/m."""
-        return self.readout.marched.batch.model.wall[0], self.readout.wall[self.number]
+        """Stations s (k,) m along the meridian, and |T inner - T outer| / thickness there at the end, K/m."""
+        return self.readout.solution.batch.model.wall[0], self.readout.wall[self.number]
 
     @property
     def highest(self) -> Array:
-        """Hottest node over time, (n_times,) degC."""
+        """Temperature of the hottest node over time, (n_times,) degC."""
         return self.readout.highest[:, self.number]
 
     @property
@@ -131,23 +132,23 @@ class Variant:
         return 2.0 if self.study.section.half else 1.0
 
     def generated(self, i: int) -> tuple[float, float]:
-        """Heat of hysteresis in the whole tyre until ``times[i]``, J, and then, W."""
+        """Heat of hysteresis in the whole tyre until ``times[i]``, J, and its power at ``times[i]``, W."""
         energy, power = self.readout.generated(i)
         return self._sides * float(energy[self.number]), self._sides * float(power[self.number])
 
     def cold_power(self, t: float) -> float:
-        """The same at the drive's initial temperature, W, at a time just before a reading."""
+        """Power of hysteresis in the whole tyre at the initial temperature, W, just before a reading at t."""
         i = int(np.searchsorted(self.times, t - 1e-12))
         return self._sides * float(self.readout.cold_power(i)[self.number])
 
     @functools.cached_property
     def rolling_resistance(self) -> RollingResistance:
-        """Force, N, and coefficient; of hysteresis only."""
+        """Rolling resistance of hysteresis: force, N, and coefficient."""
         return rolling_resistance(self)
 
     @functools.cached_property
     def end_budget(self) -> HeatBudget:
-        """The heat budget of the whole tyre at the end alone."""
+        """The heat budget of the whole tyre at the end."""
         titles = {zone.name: zone.title for zone in self.tyre.schedule.zones}
         key = tuple(titles.items()), self.study.section.half, tuple(self.tyre.condition_names.items())
         together, of_variant = self.readout.end_budget(key), slice(self.number, self.number + 1)
