@@ -73,14 +73,14 @@ def test_fixed_steps_converge_with_third_order(case: str) -> None:
             problem.operators, problem.regions, problem.boundaries, problem.sources, problem.reservoirs
         )
         y = State(np.full(problem.operators.size, 25.0), np.full(len(reservoirs), 25.0))
-        balance.settle(0.0, y.u, y.g)
+        balance.balance_massless(0.0, y.u, y.g)
         balance.freeze(0.0, y)
         matrices, h = StageMatrices(), 160.0 / steps
         for i in range(steps):
             step = Step(balance, i * h, h, y)
             step.run(matrices.get(balance, h), 0.0, 160.0)
             y = step.at(1.0)
-            balance.settle((i + 1) * h, y.u, y.g)
+            balance.balance_massless((i + 1) * h, y.u, y.g)
         return np.concatenate((y.u, y.g))
 
     reference = end(640)

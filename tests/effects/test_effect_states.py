@@ -11,7 +11,7 @@ import pytest
 from suitable import COARSE
 
 import tyrefem as tf
-from tyrefem.conduction.fixed_steps import quick
+from tyrefem.conduction.fixed_steps import fixed_step_solution
 from tyrefem.conduction.sensitivity import stage_times
 from tyrefem.errors import InputError
 from tyrefem.reduced.balance import reduced_balance
@@ -168,7 +168,7 @@ def test_two_effects_of_a_user_and_of_the_package_keep_their_states_at_once(own:
 def test_the_fixed_steps_of_a_fit_take_states_along(result) -> None:
     tyre = RollingTyre(result.study)
     times = stage_times([0.0, ROLLING, END])
-    _, lumped = quick(tyre.problem, times, tyre.drive.initial)
+    _, lumped = fixed_step_solution(tyre.problem, times, tyre.drive.initial)
     assert lumped[::2, -1] == pytest.approx(warming(times[::2]), abs=0.1)
 
 

@@ -1,8 +1,8 @@
 """Transient and steady heat conduction on any named mesh, with a closing heat budget.
 
-Knows no tyres: any mesh, any material. `tyrefem.conduction.equation` states the equation and assembles it.
+It works on any mesh and material, without tyres. `tyrefem.conduction.equation` states the equation and assembles it.
 
-A slab of 20 mm with an insulated face and a film on the other. Where h = k z tan(z) / L, the temperature
+A slab of 20 mm has an insulated face and a film on the other. If h = k z tan(z) / L, the temperature
 T_sink + A cos(z x / L) keeps its shape and decays with exp(-z^2 a t / L^2), a = k / (rho c):
 
 >>> import numpy as np, skfem

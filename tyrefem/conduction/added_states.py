@@ -1,10 +1,10 @@
-"""Unknowns that are no temperatures and follow a rate: dz/dt = rate(t, z, T). Wear, water on a tread, a brake disc.
+"""Additional states with a rate, dz/dt = rate(t, z, T): wear, water on a tread, temperature of a brake disc.
 
-They are unknowns of the system like the reservoirs, g = z / scale with C = 1, so that one step of one method takes
-temperatures and states together: errors of both are controlled, and the order is that of the method. A step of its
-own for the states (operator splitting) would be of second order at most and need an error control of its own. The
-rate may be as nonlinear as it likes: the Rosenbrock-W method keeps its order with any approximation of the Jacobian.
-Its diagonal, by differences, goes into D, so that a fast decay does not shorten the steps.
+Like the reservoirs they are unknowns of the system, g = z / scale with C = 1. One step of one method advances
+temperatures and states together, so errors of both are controlled and the order is that of the method. Separate steps
+for the states (operator splitting) would be of second order at most and need a further error control. The rate may be
+nonlinear: the Rosenbrock-W method keeps its order with any approximation of the Jacobian. The Jacobian's diagonal,
+by differences, is part of D, so that a fast decay does not shorten the steps.
 """
 
 from __future__ import annotations
@@ -23,9 +23,9 @@ from tyrefem.errors import InputError, nearest
 
 Array = NDArray[Any]
 
-#: Part of its scale by which a state is moved for the slope of its rate.
+#: Change of a state over its scale for the difference that gives the slope of its rate.
 _BUMP = 1e-3
-#: Slopes below this, 1/s, need no place in the linear part: no step is shorter for them.
+#: Smaller slopes, 1/s, are not in the linear part, as they do not shorten the steps.
 _SLOW = 1e-3
 
 
@@ -35,9 +35,9 @@ class AddedStates:
 
     Parameters
     ----------
-    initial : (k,) at the start. scale : (k,) changes that matter as much as 1 K.
+    initial : (k,) at the start. scale : (k,) changes of the same importance as 1 K.
     rate : f(t, z, T) -> (k,) per second, z (k,), T `BodyTemperatures`.
-    show : called with z (k,) before films, fluxes, sources and exchanges are evaluated, which may depend on it.
+    show : called with z (k,) before the evaluation of films, fluxes, sources and exchanges, which may depend on z.
     """
 
     initial: Array
@@ -55,28 +55,28 @@ class BodyTemperatures:
     lumped: dict[str, float]
 
     def surface(self, boundary: str) -> float:
-        """Mean over the area of a boundary."""
+        """Mean over the area of a boundary, degC."""
         s = self.operators.surface(boundary)
         return float(s.row @ self.values[s.dofs]) / s.area
 
     def region(self, name: str) -> float:
-        """Mean over the volume of a region."""
+        """Mean over the volume of a region, degC."""
         row = self.operators.mass_row(name)
         return float(row @ self.values) / float(row.sum())
 
     def at(self, points: ArrayLike) -> Array:
-        """At points (n_points, 2)."""
+        """Temperatures at points (n_points, 2), degC."""
         return np.asarray(located(self.operators, points).value() @ self.values)
 
     def reservoir(self, name: str) -> float:
-        """Of a reservoir; InputError for a name that is none."""
+        """Temperature of a reservoir, degC; InputError for an unknown name."""
         if name not in self.lumped:
             raise InputError(f"unknown reservoir '{name}'{nearest(name, self.lumped)}", field="reservoirs")
         return self.lumped[name]
 
 
 class StateRates(Load):
-    """dz/dt = rate(t, z, T) at the places ``first``... of the reservoirs' unknowns."""
+    """dz/dt = rate(t, z, T) for the unknowns after those of the reservoirs, from ``first`` on."""
 
     timed = True
 

@@ -1,4 +1,4 @@
-"""The heat balance of one problem: its system of equations, and the ledger of every power in it."""
+"""The heat balance of one problem: its system of equations, and the ledger of all powers."""
 
 from __future__ import annotations
 
@@ -25,10 +25,10 @@ Array = NDArray[Any]
 
 
 class HeatBalance(System):
-    """The `System` of a problem, frozen at a state and renewed when stale, and what heat flows in it.
+    """The `System` of a problem, frozen at a state and frozen anew when stale, with its powers.
 
-    `entries` is the ledger: (kind, name, index) of every power; a positive power heats the body (or, for an
-    exchange or a reservoir's power, the reservoir).
+    `entries` is the ledger: (kind, name, index) of every power. A positive power heats the body; for an exchange or a
+    reservoir's power it heats the reservoir.
     """
 
     def __init__(
@@ -74,12 +74,12 @@ class HeatBalance(System):
         heat = [r.heat_capacity for r in reservoirs.values()]
         self.massless = np.array([i for i, c in enumerate(heat) if not callable(c) and float(c) == 0.0], dtype=int)
         self.massive = np.array([i for i in range(len(heat)) if i not in self.massless], dtype=int)
-        #: Unknowns of g that follow a rate in time, added states too.
+        #: Unknowns of g with a rate, added states included.
         self.rated = np.array([i for i in range(self.m) if i not in self.massless], dtype=int)
         self.variable_reservoirs = any(callable(c) for c in heat)
 
     def reservoir_stored(self, before: Array, after: Array) -> Array:
-        """Heat taken up by every reservoir between two temperatures, J."""
+        """Heat stored in every reservoir between two temperatures, J."""
         count = len(self.reservoirs)
         before, after = before[:count], after[:count]
         if not self.variable_reservoirs:
@@ -88,14 +88,14 @@ class HeatBalance(System):
         return np.asarray(mean * (after - before))
 
     def freeze(self, t: float, y: State) -> None:
-        """Take the linear part at this state; numbers change, nothing is reassembled."""
+        """Evaluate the linear part at this state: only numbers change, nothing is assembled again."""
         self.assemble(t, y)
         B = self.fixed.dofs
         if B.size:
             self.S_fixed, self.M_fixed = self.S[B], self.M[B]
 
     def stale(self, t: float, y: State) -> bool:
-        """Whether the frozen linear part should be renewed."""
+        """True if the frozen linear part should be frozen anew."""
         self.show(y.g)
         if any(load.stale(t, y) for load in self._watched):
             return True
@@ -107,21 +107,21 @@ class HeatBalance(System):
         return bool(np.any(np.abs(now / self.M.diagonal() - 1) > 0.2))
 
     def time_slope(self, t: float, y: State, dt: float) -> tuple[Array, Array, Array] | None:
-        """Partial time derivative of the remainder of boundary data that depend on time."""
+        """Partial time derivative of the remainder, for boundary data that depend on time."""
         if not self._timed:
             return None
-        now, later = self.blank(), self.blank()
+        now, later = self.zeros(), self.zeros()
         self.add(now, t, y, self._timed)
         self.add(later, t + dt, y, self._timed)
         return tuple((b - a) / dt for a, b in zip(now, later, strict=True))  # type: ignore[return-value]
 
     def add_linear_powers(self, y: State, P: Array) -> None:
-        """Add the powers of the frozen linear part at a state to the ledger line P."""
+        """Add the powers of the frozen linear part at a state to the ledger powers P."""
         for load in self._linear:
             P[load.slot] += load.linear_power(y)
 
-    def settle(self, t: float, u: Array, g: Array) -> None:
-        """Set the massless reservoirs in `g` to the temperatures that balance them."""
+    def balance_massless(self, t: float, u: Array, g: Array) -> None:
+        """Set the massless reservoirs in `g` to their equilibrium temperatures."""
         if not self.massless.size:
             return
         self.show(g)
@@ -169,12 +169,12 @@ class HeatBalance(System):
         return P + self.reaction(t, y, slope)
 
     def stored(self, before: Array, after: Array) -> Array:
-        """Heat taken up by every region, J."""
+        """Heat stored in every region, J."""
         if not self.variable_capacity:
             return np.asarray(self._capacity_rows @ (after - before))
         return np.array([c.stored(before, after) for c in self.capacities.values()])
 
-    def storing(self, u: Array, slope: Array) -> Array:
+    def storage_power(self, u: Array, slope: Array) -> Array:
         """Heat stored per second in every region, W."""
         if not self.variable_capacity:
             return np.asarray(self._capacity_rows @ slope)

@@ -18,20 +18,20 @@ Array = NDArray[Any]
 class Budget(Brief):
     """Energies (J) since the first time and powers (W) at `times`; every array is (n_times,).
 
-    At a breakpoint the powers are those just before it, at the first time those just after.
+    Powers at a breakpoint are those just before it; powers at the first time are those just after it.
 
     Attributes
     ----------
     generated, generated_power : by source subdomain.
     stored, stored_power : by region.
-    lost, lost_power : by boundary, positive outwards; where a boundary has several conditions, their sum.
+    lost, lost_power : by boundary, positive outwards; the sum over all conditions of the boundary.
     lost_by_condition, lost_power_by_condition : by (boundary, index of the condition).
     reservoir_stored : by reservoir, J.
     reservoir_gained : by reservoir, J from its exchanges and its own power.
     residual : generated - stored - lost of the body, J.
     reservoir_residual : received + gained - stored of every reservoir, J.
-    throughput : J, sum of |generated| + |lost| + |gained|: what the residuals compare with.
-    floor : J, a millionth of the heat that the body holds above 0 degC at the start: less is rounding.
+    throughput : J, sum of |generated| + |lost| + |gained|, the reference of the residuals.
+    floor : J, a millionth of the heat that the body holds above 0 degC at the start; smaller residuals are rounding.
     """
 
     times: Array
@@ -64,14 +64,14 @@ class Budget(Brief):
 
     @property
     def imbalance(self) -> float:
-        """Largest residual of body and reservoirs over the largest throughput, or the floor where that is more."""
+        """Largest residual of body and reservoirs over the largest throughput, or over the floor if that is larger."""
         worst = max(float(np.max(np.abs(r))) for r in (self.residual, *self.reservoir_residual.values()))
         turned_over = max(float(np.max(self.throughput)), self.floor)
         return worst / turned_over if turned_over > 0 else worst
 
 
 class Tally:
-    """Collects energies and powers at the requested times, then makes the `Budget`."""
+    """Collects energies and powers at the requested times for the `Budget`."""
 
     def __init__(
         self,
@@ -87,16 +87,16 @@ class Tally:
         self.energy: list[Array] = []
         self.power: list[Array] = []
         self.stored: list[Array] = []
-        self.storing: list[Array] = []
+        self.storage_power: list[Array] = []
         self.kept: list[Array] = []
 
-    def record(self, energy: Array, power: Array, stored: Array, storing: Array, kept: Array) -> None:
-        """One requested time: ledger energies and powers, region energies and powers, reservoir energies."""
+    def record(self, energy: Array, power: Array, stored: Array, storage_power: Array, kept: Array) -> None:
+        """Add one requested time: ledger energies and powers, region energies and powers, reservoir energies."""
         for series, value in (
             (self.energy, energy),
             (self.power, power),
             (self.stored, stored),
-            (self.storing, storing),
+            (self.storage_power, storage_power),
             (self.kept, kept),
         ):
             series.append(np.array(value))
@@ -109,7 +109,7 @@ class Tally:
             return np.array(rows[:n]).reshape(n, width)
 
         energy, power = (table(rows, len(self.entries)) for rows in (self.energy, self.power))
-        stored, storing = (table(rows, len(self.regions)) for rows in (self.stored, self.storing))
+        stored, storage_power = (table(rows, len(self.regions)) for rows in (self.stored, self.storage_power))
         kept = table(self.kept, len(self.reservoirs))
         generated: dict[str, Array] = {}
         generated_power: dict[str, Array] = {}
@@ -143,7 +143,7 @@ class Tally:
             generated=generated,
             generated_power=generated_power,
             stored=dict(zip(self.regions, stored.T, strict=True)),
-            stored_power=dict(zip(self.regions, storing.T, strict=True)),
+            stored_power=dict(zip(self.regions, storage_power.T, strict=True)),
             lost=lost,
             lost_power=lost_power,
             lost_by_condition=by_condition,

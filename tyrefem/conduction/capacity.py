@@ -1,4 +1,4 @@
-"""Heat capacity of a region and the heat it stores."""
+"""Heat capacity of a region and its stored heat."""
 
 from __future__ import annotations
 
@@ -31,7 +31,7 @@ class Capacity:
             self.q = ops.quadrature(name, material.direction)
 
     def values(self, T: Array) -> Array:
-        """c at quadrature temperatures."""
+        """c at quadrature temperatures, J/m3/K."""
         c = np.broadcast_to(np.asarray(self.c(T), dtype=float), T.shape)
         if not np.min(c) > 0:
             where = f"between {T.min():.6g} and {T.max():.6g} degC"
@@ -43,13 +43,13 @@ class Capacity:
         return self.data if self.constant else self.q.mass @ self.values(self.q.value @ u)
 
     def slope(self, u: Array, rate: Array, bump: float) -> Array:
-        """Operator values of d(M du/dt)/d(temperature) at a rate (n,), K/s, by differences of so many K either way."""
+        """Operator values of d(M du/dt)/d(temperature) at a rate (n,), K/s, by differences over +-``bump`` K."""
         T = self.q.value @ u
         rise = (self.values(T + bump) - self.values(T - bump)) / (2 * bump)
         return np.asarray(self.q.mass @ (rise * (self.q.value @ rate)))
 
     def stored(self, before: Array, after: Array) -> float:
-        """Heat taken up from one temperature field to another, J."""
+        """Heat stored from one temperature field to another, J."""
         if self.constant:
             return float(self.row @ (after - before))
         T0, T1 = self.q.value @ before, self.q.value @ after

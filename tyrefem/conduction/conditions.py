@@ -1,4 +1,4 @@
-"""What a body is made of and what acts on its surface: the user's side of a conduction problem."""
+"""Materials of a body and conditions on its surface: the input of a conduction problem."""
 
 from __future__ import annotations
 
@@ -97,7 +97,7 @@ class Film:
 class Flux:
     """Heat flux q in W/m2 into the body: number or f(x, t); with ``of_temperature`` f(x, t, T), T (n,) degC at x.
 
-    Its slope in T is left out of the linear part: keep it small, as that of a film that the mesh resolves.
+    Its slope in T is not in the linear part: it should be as small as that of a film that the mesh resolves.
 
     >>> Flux(1700.0).q
     1700.0
@@ -181,8 +181,8 @@ class Reservoir:
 
     Parameters
     ----------
-    heat_capacity : C in J/K: number or f(Tg); 0 makes it massless (always in balance).
-    initial : degC; without it, the body's mean initial temperature.
+    heat_capacity : C in J/K: number or f(Tg); 0 makes it massless (always in equilibrium).
+    initial : degC; default: the body's mean initial temperature.
     exchanges : pairs (conductance W/K, other): number or f(t); other is a reservoir's name, a temperature
         in degC or f(t).
     power : W, number or f(t).

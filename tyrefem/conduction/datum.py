@@ -1,4 +1,4 @@
-"""A number or a function of place and time that a user gave, checked at every use."""
+"""A number or a function of place and time given by the user, checked at every use."""
 
 from __future__ import annotations
 
@@ -15,7 +15,7 @@ Array = NDArray[Any]
 
 
 class Datum:
-    """A number or a function of (x, t), checked and remembered for the latest time."""
+    """A number or a function of (x, t), checked and cached for the latest time."""
 
     def __init__(self, value: Any, x: Array, field: str, low: float = -np.inf) -> None:
         self.constant = is_number(value)
@@ -24,8 +24,8 @@ class Datum:
         self._time: float | None = None
         self._latest: Any = None
 
-    def forget(self) -> None:
-        """Ask the function again at the next use, whatever the time."""
+    def clear_cache(self) -> None:
+        """Clear the cache: the next use calls the function, also for the same time."""
         self._time = None
 
     def __call__(self, t: float) -> Any:
@@ -40,7 +40,7 @@ class Datum:
 
 
 def checked(value: Any, n: int, field: str, t: float) -> Any:
-    """A float, or a finite array (n,): what a user's function returned."""
+    """The return value of a user's function as a float or a finite array (n,)."""
     if isinstance(value, float) and math.isfinite(value):
         return float(value)
     array = np.asarray(value, dtype=float)

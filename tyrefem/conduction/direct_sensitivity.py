@@ -1,4 +1,4 @@
-"""What parameters of a problem change in its heat balance directly, at given temperatures: all of them at once."""
+"""Direct effect of parameters on the heat balance at given temperatures, for all parameters together."""
 
 from __future__ import annotations
 
@@ -20,10 +20,10 @@ Array = NDArray[Any]
 
 
 class DirectHeat:
-    """dF/dp - (dM/dp) du/dt for every parameter p, u and t held; F: heat into every unknown, M du/dt = F.
+    """dF/dp - (dM/dp) du/dt for every parameter p at constant t and u; F: heat into every unknown, M du/dt = F.
 
-    Only loads that differ from the base problem's are evaluated. Those of one place are put together first and then
-    spread over the unknowns in one product. All problems are frozen at one state: what they have in common drops out.
+    Only loads that differ from those of the base problem are evaluated. Loads of the same place are summed first and
+    then distributed to the unknowns in one product. All problems are frozen at one state, so that common parts cancel.
 
     Parameters
     ----------
@@ -40,7 +40,7 @@ class DirectHeat:
         for load in shares:
             places.setdefault(_place(load), []).append(load)
         together = [(loads, np.array([shares[load] for load in loads])) for loads in places.values()]
-        # Of each place: the loads, and (n_loads, n_parameters) how much of each comes with a unit of a parameter.
+        # For each place: the loads, and (n_loads, n_parameters) their change per unit of each parameter.
         self._sources: list[tuple[Any, Array]] = [
             balance for balance in together if isinstance(balance[0][0], SourceLoad)
         ]
@@ -51,7 +51,7 @@ class DirectHeat:
         self._constant_gas = None if variable else self._gas_capacity(y.g)
 
     def _shares(self) -> dict[Load, Array]:
-        """Load -> (n_parameters,): 1/step where a parameter brings it, -1/step where it replaces it."""
+        """Load -> (n_parameters,): 1/step if a parameter adds it, -1/step if a parameter replaces it."""
         shares_of: dict[Load, Array] = {}
         for column, (other, step) in enumerate(zip(self.others, self.steps, strict=True)):
             for sign, mine, theirs in ((1, other, self.base), (-1, self.base, other)):
@@ -116,9 +116,9 @@ class DirectHeat:
 
 @dataclass(frozen=True)
 class _Change:
-    """What one parameter changes in the operators, per unit of it; None: nothing.
+    """Change of the operators per unit of one parameter; None: no change.
 
-    ``capacities``: pairs of the base problem's and its own, where they differ and one varies with temperature.
+    ``capacities``: pairs of base and changed heat capacity if they differ and one varies with temperature.
     """
 
     base: HeatBalance
@@ -168,28 +168,28 @@ class _Change:
 
 
 def _place(load: Load) -> Any:
-    """Loads of one place differ by a source at its nodes, or by a film and a flux at its quadrature points."""
+    """Key of a load's place. Loads of one place differ by nodal sources, or by films and fluxes at its points."""
     if isinstance(load, SourceLoad):
         return load.name
     return (load.s, load.reservoir) if isinstance(load, FilmLoad) else None
 
 
 def _identity(balance: HeatBalance, load: Load) -> tuple[Any, ...]:
-    """The same for loads of two balances that act alike: of one cause, at one place. Without a cause none is."""
+    """Key that is equal for equal loads of two balances: same cause, same place. A load without cause equals none."""
     place = balance.entries[load.slot][:2] if load.slot >= 0 else getattr(load, "name", None)
     return place, id(load if load.cause is None else load.cause)
 
 
 def _heat_of_films(films: list[FilmLoad], shares: Array, t: float, y: State) -> Array:
-    """(n_parameters, n_dofs): what films of one surface and sink leave out, with such shares of each."""
+    """(n_parameters, n_dofs): remainder of films of one surface and sink, weighted with their ``shares``."""
     s = films[0].s
     flux, more = np.empty((2, len(films), s.weight.size))
     for number, film in enumerate(films):
-        flux[number], more[number] = film.beyond(t, y)
+        flux[number], more[number] = film.excess(t, y)
     q = shares.T @ flux - (shares.T @ more) * (s.trace @ y.u[s.dofs])
     return np.asarray((s.trace_t @ (q * s.weight).T).T)
 
 
 def heat_of(balance: HeatBalance, t: float, y: State) -> Array:
-    """(n + m,) heat into every unknown, W; exact wherever the linear part was frozen."""
+    """(n + m,) heat into every unknown, W; exact for any state of the freeze."""
     return np.concatenate(balance.heat(t, y))

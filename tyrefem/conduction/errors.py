@@ -1,4 +1,4 @@
-"""What a conduction solve reports when it fails."""
+"""The error of a conduction solve that fails."""
 
 from __future__ import annotations
 

@@ -1,6 +1,6 @@
-"""One temperature field of a conduction problem.
+"""One temperature field of a conduction problem, and the history of a transient run.
 
-Temperatures and heat of a transient run at the requested times.
+The history holds temperatures and heat at the requested times.
 """
 
 from __future__ import annotations
@@ -28,7 +28,7 @@ class Field(Brief):
 
     Attributes
     ----------
-    values : (n,) degC at the unknowns; points : (2, n) their places; mesh : the scikit-fem mesh.
+    values : (n,) degC at the unknowns; points : (2, n) their positions; mesh : the scikit-fem mesh.
     reservoirs : name -> degC.
     generated : source subdomain -> W; lost : boundary -> W, positive outwards.
     time : s, or None for a steady field.
@@ -58,15 +58,15 @@ class Field(Brief):
 
     @property
     def points(self) -> Array:
-        """Places of the unknowns, (2, n)."""
+        """Positions of the unknowns, (2, n)."""
         return self.operators.points
 
     def at(self, points: ArrayLike) -> Array:
-        """Temperatures at points (n_points, 2), degC; InputError names a point outside the mesh."""
+        """Temperatures at points (n_points, 2), degC; InputError for a point outside the mesh."""
         return located(self.operators, points).value() @ self.values
 
     def flux_at(self, points: ArrayLike) -> Array:
-        """Heat flux -k grad T at points, (n_points, 2), W/m2, from the element that holds each point."""
+        """Heat flux -k grad T at points, (n_points, 2), W/m2, evaluated in the element around each point."""
         place = located(self.operators, points)
         slope = np.stack([g @ self.values for g in place.gradient()])
         T = place.value() @ self.values
@@ -88,8 +88,8 @@ class Field(Brief):
     def flux_through(self, boundary: str) -> float:
         """Heat leaving through a boundary, W (full ring, or per metre of depth).
 
-        It is the discrete balance's own flux: the condition's integral, or for `Fixed` the reaction, so that
-        generated = stored + lost closes to rounding. An insulated boundary gives 0.
+        It is the flux of the discrete balance: the integral of the condition, or the reaction of `Fixed`. Therefore
+        generated = stored + lost holds up to rounding. An insulated boundary gives 0.
         """
         known = self.operators.mesh.boundaries or {}
         if boundary not in known:
@@ -99,7 +99,7 @@ class Field(Brief):
 
 @dataclass(frozen=True)
 class Steps:
-    """What a run cost: accepted and rejected steps, factorisations, linear solves."""
+    """Effort of a run: accepted and rejected steps, factorisations, linear solves."""
 
     accepted: int
     rejected: int
@@ -126,7 +126,7 @@ class History(Brief):
     reservoirs : name -> (n_times,) degC.
     budget : the heat budget at `times`.
     maximum : hottest point over all accepted steps and requested times; region_maximum : the same by region.
-    steps : what it cost; interrupted : True if the run was stopped before its last time.
+    steps : the effort; interrupted : True if the run was stopped before its last time.
     states : (n_times, k) the problem's `AddedStates`.
     """
 
@@ -162,7 +162,7 @@ class History(Brief):
 
     @property
     def points(self) -> Array:
-        """Places of the unknowns, (2, n)."""
+        """Positions of the unknowns, (2, n)."""
         return self.operators.points
 
     def at(self, points: ArrayLike) -> Array:

@@ -14,7 +14,7 @@ Array = NDArray[Any]
 
 
 class FixedNodes:
-    """Prescribed unknowns: the first boundary that names a node owns it."""
+    """Prescribed unknowns: a node of several boundaries gets the temperature of the first."""
 
     def __init__(self, size: int, fixed: list[tuple[int, Surface, Datum]]) -> None:
         owner = np.full(size, -1)

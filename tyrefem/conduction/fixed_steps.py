@@ -1,4 +1,4 @@
-"""A transient on given steps: for many similar solutions of modest accuracy, where error control costs too much."""
+"""A transient with given steps, without error control: fast, for many similar solutions of modest accuracy."""
 
 from __future__ import annotations
 
@@ -32,8 +32,8 @@ class StageSolver:
         small = np.diag(heat) + h * balance.D - self.back @ self.through
         self.inverse = np.linalg.inv(small)
 
-    def serves(self, balance: HeatBalance, h: float, heat: Array) -> bool:
-        """Is it the solver of this step too: the same frozen part, length (to rounding) and reservoirs?"""
+    def is_valid_for(self, balance: HeatBalance, h: float, heat: Array) -> bool:
+        """True if the solver is valid for this step: same frozen part, length (to rounding) and reservoirs."""
         same = self.version == balance.version and abs(h - self.h) <= 1e-12 * self.h
         return same and np.array_equal(heat, self.heat)
 
@@ -45,23 +45,23 @@ class StageSolver:
         return np.concatenate([body + self.through @ gas, gas])
 
 
-def quick(problem: Conduction, times: Array, initial: float) -> tuple[Array, Array]:
-    """Temperatures at the stages and ends of given steps, by SDIRK2 with the sources iterated.
+def fixed_step_solution(problem: Conduction, times: Array, initial: float) -> tuple[Array, Array]:
+    """Temperatures at the stages and ends of given steps, by SDIRK2 with iterated sources.
 
     Parameters
     ----------
-    problem : its boundaries may not be `Fixed`. times : (2 n_steps + 1,) s as `tangent.stage_times` gives them.
-    initial : degC, of the body and of reservoirs without an initial temperature of their own.
+    problem : without `Fixed` boundaries. times : (2 n_steps + 1,) s, from `stage_times`.
+    initial : degC, of the body and of reservoirs without an initial temperature.
 
     Returns
     -------
-    values (n_times, n) and reservoirs (n_times, m), degC. Step ends are of second order, stages of first.
+    values (n_times, n) and reservoirs (n_times, m), degC. Step ends have second order, stages first order.
     """
     with one_thread():
-        return _march(problem, times, initial)
+        return _integrate(problem, times, initial)
 
 
-def _march(problem: Conduction, times: Array, initial: float) -> tuple[Array, Array]:
+def _integrate(problem: Conduction, times: Array, initial: float) -> tuple[Array, Array]:
     ops = problem.operators
     balance = problem._balance()
     if balance.fixed.dofs.size:
@@ -75,13 +75,13 @@ def _march(problem: Conduction, times: Array, initial: float) -> tuple[Array, Ar
     solve: StageSolver | None = None
     for first in range(0, len(times) - 1, 2):
         h = times[first + 2] - times[first]
-        # Data are seen from inside the step: a jump at its end belongs to the next one.
+        # Data are limits from inside the step: a jump at its end belongs to the next step.
         inside = [times[first + 1], times[first + 2] - 1e-9 * max(1.0, times[first + 2])]
         now = State(y[:n], y[n:])
         if first == 0 or balance.stale(inside[0], now):
             balance.freeze(inside[0], now)
         heat = balance.reservoir_capacity(now.g)
-        if solve is None or not solve.serves(balance, GAMMA * h, heat):
+        if solve is None or not solve.is_valid_for(balance, GAMMA * h, heat):
             solve = StageSolver(ordering, balance, GAMMA * h, heat)
         slope = np.zeros_like(y)
         for stage, t in enumerate(inside):
@@ -90,7 +90,7 @@ def _march(problem: Conduction, times: Array, initial: float) -> tuple[Array, Ar
                 [balance.B @ start[n:] - balance.S @ start[:n], balance.B.T @ start[:n] - balance.D @ start[n:]]
             )
             k = slope
-            # Sources change little over a step: a second correction takes the error from 2 % of the rise to 0.1 %.
+            # Sources change little over a step: a second correction reduces the error from 2 % to 0.1 % of the rise.
             for _ in range(2):
                 at = start + GAMMA * h * k
                 G, Gg, _ = balance.remainder(t, State(at[:n], at[n:]))

@@ -22,7 +22,7 @@ _ELEMENTS = {
     ("quad", "P2"): skfem.ElementQuad2,
 }
 
-#: Numbers that an integrand may hold at a time: what fits a processor's cache.
+#: Largest number of values of an integrand at a time, so that it fits a processor's cache.
 _CHUNK = 500_000
 
 
@@ -30,7 +30,7 @@ def integrand(form: skfem.BilinearForm, phi: Array, slopes: Array | None = None,
     """A form for every pair of shape functions: (test i, trial j, element, point).
 
     ``phi`` (i, element, point) are the shape functions, ``slopes`` (2, i, element, point) their gradients, ``data``
-    what the form reads as ``w.name``.
+    values for the names ``w.name`` in the form.
     """
     T = skfem.DiscreteField(phi[None], None if slopes is None else slopes[:, None])
     v = skfem.DiscreteField(phi[:, None], None if slopes is None else slopes[:, :, None])
@@ -130,17 +130,17 @@ class FunctionSpace:
         return d, np.stack([-d[1], d[0]])
 
     def _integrand(self, form: skfem.BilinearForm, e: Array, points: slice, data: dict[str, Array]) -> Array:
-        # The shape functions, unlike their slopes, are the same in every element.
+        # The shape functions are the same in every element, their slopes are not.
         return integrand(form, self.phi[:, :1, points], self._grad[:, :, e, points], **data)
 
     def integrands(self, form: skfem.BilinearForm, elements: Array, **data: Array) -> Array:
-        """`integrand` of elements, times the volume that belongs to each quadrature point."""
+        """`integrand` of elements, times the volume weight of each quadrature point."""
         return np.asarray(self._integrand(form, elements, slice(None), data) * self.weight[elements])
 
     def integrals(self, form: skfem.BilinearForm, elements: Array, even: bool = False, **data: Array) -> Array:
-        """The integral of a form over every one of so many elements, (i, j, n_elements).
+        """The integral of a form over each element, (i, j, n_elements).
 
-        ``even``: the integrand does not vary within an element; one of its points stands for all.
+        ``even``: the integrand is constant within an element, so one point is enough.
         """
         weight = self.weight[elements]
         points = slice(0, 1) if even else slice(None)

@@ -1,6 +1,6 @@
-"""Factor the symmetric positive definite matrices of conduction: banded where thin, sparse where wide.
+"""Factor the symmetric positive definite matrices of conduction: banded for thin bodies, sparse for wide ones.
 
-Solve a banded Cholesky factor for many right-hand sides: block by block, by products of full matrices.
+A banded Cholesky factor solves many right-hand sides by blocks, with products of full matrices.
 """
 
 from __future__ import annotations
@@ -27,10 +27,10 @@ _SMALLEST = 24
 
 
 class BlockFactor:
-    """The factor L of A = L L^T as blocks no narrower than its band: D on the diagonal, E below, all else zero.
+    """The factor L of A = L L^T as blocks at least as wide as its band: D on the diagonal, E below, all else zero.
 
-    LAPACK's banded solve takes one right-hand side at a time, a few numbers per step; here a block of the solution
-    follows from the one before by one product, X_i = D_i^-1 (R_i - E_i X_(i-1)), for all right-hand sides.
+    LAPACK's banded solve takes one right-hand side at a time, a few numbers per step. Here one product gives a block of
+    the solution from the previous block, X_i = D_i^-1 (R_i - E_i X_(i-1)), for all right-hand sides.
 
     Parameters
     ----------
@@ -52,7 +52,7 @@ class BlockFactor:
         flat = np.zeros((self.count + 1) * b * (width + 1))
         flat[: band.size] = band.reshape(-1, order="F")
         flat[band.size :: width + 1] = 1.0
-        # L[i, j] lies at i + j width, so that every block is a view; what is outside the band is masked.
+        # L[i, j] is stored at i + j width, so that every block is a view; entries outside the band are masked.
         step = flat.itemsize
         layout = ((self.count, b, b), (b * (width + 1) * step, step, width * step))
         row, column = np.indices((b, b))
@@ -82,7 +82,7 @@ class BlockFactor:
 _SOLVES_PER_FACTOR = 30.0
 
 
-#: Right-hand sides from which a few solves by blocks pay for making them.
+#: Number of right-hand sides from which block solves are faster than banded ones, their set-up included.
 _MANY = 16
 
 
@@ -96,9 +96,9 @@ def _libraries() -> ThreadpoolController:
 
 
 def one_thread() -> AbstractContextManager[Any]:
-    """Within it BLAS works in one thread: band solves are too small to share, and looking up libraries is slow.
+    """Context in which BLAS uses one thread: band solves are too small for several, and the library search is slow.
 
-    On a busy machine waiting threads cost ten times the work.
+    On a busy machine waiting threads take ten times the time of the work.
     """
     return _libraries().limit(limits=1, user_api="blas")
 
@@ -106,8 +106,8 @@ def one_thread() -> AbstractContextManager[Any]:
 class Ordering:
     """An elimination order for one sparsity pattern, chosen by predicted cost.
 
-    A tyre's cross-section is long and thin, so a Cuthill-McKee order has a tiny band and LAPACK's banded
-    Cholesky beats a general sparse factorisation several times; a chunky body goes to SuperLU instead.
+    A tyre's cross-section is long and thin: with a Cuthill-McKee order its band is small, and LAPACK's banded Cholesky
+    is several times faster than a general sparse factorisation. A compact body is factorised by SuperLU.
 
     Parameters
     ----------

@@ -1,4 +1,4 @@
-"""Finite-element operators of one mesh: assembled once, then combined by numbers only."""
+"""Finite-element operators of one mesh: assembled once, then combined as sums of arrays."""
 
 from __future__ import annotations
 
@@ -17,11 +17,11 @@ from tyrefem.conduction.quadrature import Quadrature, Surface
 
 Array = NDArray[Any]
 
-#: Operators by mesh, element and symmetry: the latest, and all that a problem still holds. Some MB to some 100 MB each.
+#: Number of operators kept, by mesh, element and symmetry, beside those in use. 1 MB to some 100 MB each.
 _OPERATORS: Cache[Operators] = Cache(size=6, shared=True)
-#: Operators and quadratures that one mesh keeps: about seven for each of at most a few dozen regions and boundaries.
+#: Number of operators and quadratures that one mesh keeps: about seven for each of some dozen regions and boundaries.
 KEPT = 512
-#: Sets of points that one mesh keeps located.
+#: Number of located sets of points that one mesh keeps.
 POINT_SETS = 8
 
 
@@ -43,18 +43,18 @@ class Operators(FunctionSpace):
     def __init__(self, mesh: Any, element: str = "P1", axisymmetric: bool = True) -> None:
         super().__init__(mesh, element, axisymmetric)
         self._assembled: Cache[Any] = Cache(size=KEPT)
-        #: Points in this mesh, by their content; see `tyrefem.conduction.points.located`.
+        #: Located points of this mesh, by their content; see `tyrefem.conduction.points.located`.
         self.located: Cache[Any] = Cache(size=POINT_SETS)
 
     def __reduce__(self) -> tuple[Any, ...]:
-        """Another process assembles them again: that takes less time than sending them."""
+        """For another process: it assembles the operators again, which is faster than their transfer."""
         return operators_of, (self.mesh, self.element, self.axisymmetric)
 
     def __repr__(self) -> str:
         shape = "axisymmetric" if self.axisymmetric else "planar"
         return f"Operators ({self.element}, {shape}, {self.size} unknowns)"
 
-    def _once(self, key: Any, make: Callable[[], Any]) -> Any:
+    def _cached(self, key: Any, make: Callable[[], Any]) -> Any:
         return self._assembled.get(key, make)
 
     def mean_weight(self) -> Array:
@@ -65,15 +65,15 @@ class Operators(FunctionSpace):
             row = np.bincount(self.element_dofs.reshape(-1), weights=load.reshape(-1), minlength=self.size)
             return row / row.sum()
 
-        return self._once("mean", make)
+        return self._cached("mean", make)
 
     def dofs(self, name: str) -> Array:
         """Unknowns of a named subdomain, increasing."""
-        return self._once(("dofs", name), lambda: np.unique(self.element_dofs[:, self.elements(name)]))
+        return self._cached(("dofs", name), lambda: np.unique(self.element_dofs[:, self.elements(name)]))
 
     def nodes(self, name: str) -> Array:
         """Points (2, n) of a named subdomain: the same array object at every call."""
-        return self._once(("nodes", name), lambda: np.ascontiguousarray(self.points[:, self.dofs(name)]))
+        return self._cached(("nodes", name), lambda: np.ascontiguousarray(self.points[:, self.dofs(name)]))
 
     def _gather(self, elements: Array, local: Array) -> Array:
         place = self.place[:, :, elements]
@@ -86,11 +86,11 @@ class Operators(FunctionSpace):
             e = self.elements(name)
             return self._gather(e, self.integrals(storage, e))
 
-        return self._once(("mass", name), make)
+        return self._cached(("mass", name), make)
 
     def mass_row(self, name: str) -> Array:
-        """Integral of every shape function over a subdomain, (n,): what a unit of heat per volume does."""
-        return self._once(("mass row", name), lambda: self.matrix(self.mass(name)) @ np.ones(self.size))
+        """Integral of every shape function over a subdomain, (n,): the load of a unit heat source."""
+        return self._cached(("mass row", name), lambda: self.matrix(self.mass(name)) @ np.ones(self.size))
 
     def conduction(self, name: str, direction: Callable[..., Any] | None) -> tuple[Array, Array]:
         """Values of the integrals of v,1 u,1 and v,2 u,2 (along, across `direction`) over a subdomain."""
@@ -102,37 +102,37 @@ class Operators(FunctionSpace):
             first, second = (self._gather(e, self.integrals(conduction, e, even, d=d)) for d in (along, across))
             return first, second
 
-        return self._once(("conduction", name, direction), make)
+        return self._cached(("conduction", name, direction), make)
 
     def source(self, *names: str) -> csr_matrix:
         """Nodal source (W/m3 at `nodes(name)`) to nodal load (W): consistent mass, (n, n_nodes).
 
-        Several subdomains: their nodes one after the other.
+        For several subdomains, their nodes are concatenated.
         """
 
         def make() -> csr_matrix:
             return hstack([self.matrix(self.mass(name)).tocsc()[:, self.dofs(name)] for name in names], format="csr")
 
-        return self._once(("source", *names), make)
+        return self._cached(("source", *names), make)
 
     def quadrature(self, name: str, direction: Callable[..., Any] | None = None) -> Quadrature:
         """Quadrature of a region for coefficients that depend on temperature."""
-        return self._once(("quadrature", name, direction), lambda: Quadrature(self, name, direction))
+        return self._cached(("quadrature", name, direction), lambda: Quadrature(self, name, direction))
 
     def surface(self, name: str) -> Surface:
         """Quadrature of a named boundary."""
-        return self._once(("surface", name), lambda: Surface(self, name))
+        return self._cached(("surface", name), lambda: Surface(self, name))
 
     def ordering(self, free: Array) -> Ordering:
         """Elimination order for the given free unknowns."""
         hint = None
         if self.element == "P2":
-            hint = self._once(("hint",), self._hint)
+            hint = self._cached(("hint",), self._hint)
         key = ("ordering", free.tobytes())
-        return self._once(key, lambda: Ordering(self.indptr, self.indices, free, hint))
+        return self._cached(key, lambda: Ordering(self.indptr, self.indices, free, hint))
 
     def _hint(self) -> Array:
-        """Order every unknown by its element's corner nodes: the quadratic graph alone orders badly."""
+        """Order of the unknowns by corner nodes of their elements; the graph of quadratic elements orders badly."""
         linear = operators_of(self.mesh, "P1", self.axisymmetric)
         order = linear.ordering(np.arange(linear.size)).order
         place = np.empty(linear.size)
@@ -159,7 +159,7 @@ def operators_of(mesh: Any, element: str = "P1", axisymmetric: bool = True) -> O
 
 
 def _content(mesh: Any) -> tuple[Any, ...]:
-    """All that operators depend on: the mesh's kind, its nodes and elements, its named parts with their sides."""
+    """The key of operators: the mesh's kind, nodes, elements, and named parts with their sides."""
     parts = [
         (name, fingerprint(numbers, getattr(numbers, "ori", np.zeros(0))))
         for named in (mesh.subdomains, mesh.boundaries)

@@ -18,7 +18,7 @@ _SNAP = 1e-9
 
 
 def as_points(points: ArrayLike) -> Array:
-    """Points as an array (n, 2); one pair counts as one point."""
+    """Points as an array (n, 2); a single pair is one point."""
     array = np.asarray(points, dtype=float)
     if array.ndim == 1 and array.size == 2:
         array = array[None]
@@ -28,7 +28,7 @@ def as_points(points: ArrayLike) -> Array:
 
 
 class OutsideMeshError(InputError):
-    """Points outside a mesh: the message names the first of them; ``numbers`` has all."""
+    """Points outside a mesh: the message gives the first of them; ``numbers`` holds all."""
 
     def __init__(self, message: str, numbers: Array) -> None:
         super().__init__(message, field="points")
@@ -67,7 +67,7 @@ class Located:
             )
 
     def _locate(self, points: Array, part: slice, low: Array, high: Array, size: float) -> Array:
-        """Try every element whose box holds a point; keep the one that misses it least. Numbers of those outside."""
+        """Find, among all elements whose box holds a point, the nearest one; return the numbers of points outside."""
         x, y = points[part, :1], points[part, 1:]
         boxed = (low[0] <= x) & (x <= high[0]) & (low[1] <= y) & (y <= high[1])
         owner, elements = np.nonzero(boxed)
@@ -79,7 +79,7 @@ class Located:
         return np.setdiff1d(np.arange(len(x)), owner[hit])
 
     def _nearest(self, points: Array, elements: Array) -> tuple[Array, Array]:
-        """Reference coordinates of the nearest point of each element, and how far it misses, m."""
+        """Reference coordinates of the nearest point of each element, and its distance, m."""
         mapping, triangle = self.ops.basis.mapping, self.ops.skfem_element.refdom.nnodes == 3
         target = points.T[:, :, None]
         X = np.full(target.shape, 1 / 3 if triangle else 0.5)
@@ -127,7 +127,7 @@ def distance(ops: Operators, point: Array) -> float:
 
 
 def located(ops: Operators, points: ArrayLike) -> Located:
-    """The located points, remembered on the operators for the latest few sets."""
+    """The located points; the operators keep the latest few sets."""
     array = as_points(points)
     place: Located = ops.located.get(Content.of(array), lambda: Located(ops, array))
     return place

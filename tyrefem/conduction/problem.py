@@ -1,4 +1,4 @@
-"""The conduction problem a user states: mesh, materials, conditions, sources, reservoirs."""
+"""The conduction problem of a user: mesh, materials, conditions, sources, reservoirs."""
 
 from __future__ import annotations
 
@@ -32,7 +32,7 @@ from tyrefem.estimates.work import check_memory, history, matrices, rounded_down
 Array = NDArray[Any]
 
 
-#: Part of the heat that a body holds above 0 degC: a budget that turns over less has nothing in it but rounding.
+#: Share of the heat that a body holds above 0 degC: a budget with a smaller throughput contains only rounding.
 NEGLIGIBLE = 1e-6
 
 
@@ -44,15 +44,15 @@ class Conduction:
     mesh : scikit-fem triangle or quadrilateral mesh, coordinates (r, z) or (x, y) in m.
     regions : subdomain -> `Material`; they must cover every element exactly once.
     boundaries : boundary -> `Film`, `Flux`, `Radiation`, `Convection`, `Fixed`, or a list of them that add up.
-        Boundaries left out are insulated. A node of two `Fixed` boundaries takes the first one's value.
+            Boundaries without a condition are insulated. A node of two `Fixed` boundaries has the first one's value.
     sources : subdomain (any) -> W/m3, a number or f(x, t, T) with x (2, n), T (n,) at its nodes; overlapping
-        subdomains add. x is the same array object at every call.
+            subdomains add. x is the same array object at every call.
     axisymmetric : coordinates (r, z) and the full ring; otherwise planar, one metre deep.
     element : "P1" or "P2".
     reservoirs : name -> `Reservoir`, coupled by films whose sink is that name.
-    states : unknowns beside the temperatures that follow rates.
+    states : additional unknowns with a rate.
 
-    Raises InputError for names, materials or conditions that do not fit the mesh.
+    Raises InputError for names, materials or conditions that are inconsistent with the mesh.
 
     >>> import numpy as np, skfem
     >>> from tyrefem.conduction import Film, Fixed
@@ -113,7 +113,7 @@ class Conduction:
         )
 
     def points(self, subdomain: str) -> Array:
-        """Points (2, n) where the source of a subdomain is evaluated (its nodes), always the same array."""
+        """Points (2, n) at which the source of a subdomain is evaluated (its nodes), always the same array."""
         return self.operators.nodes(subdomain)
 
     def _balance(self) -> HeatBalance:
@@ -140,23 +140,23 @@ class Conduction:
         if self.states is not None:
             g = np.concatenate([g, self.states.initial / self.states.scale])
         y = State(u, g)
-        balance.settle(t, y.u, y.g)
+        balance.balance_massless(t, y.u, y.g)
         return y
 
     def steady(self, initial: Any = 25.0, *, time: float = 0.0) -> Field:
-        """The steady temperature field with the data of one time.
+        """The steady temperature field for the data of one time.
 
         Parameters
         ----------
         initial : first guess, degC: number, array (n,) or `Field`.
-        time : s, where functions of time are evaluated.
+        time : s, at which functions of time are evaluated.
 
-        Raises InputError if nothing fixes the temperature level, SolverError without convergence.
+        Raises InputError if no condition fixes the temperature level, SolverError without convergence.
         """
         if self.states is not None:
             raise InputError("states that follow a rate have a transient only", field="states")
         balance = self._balance()
-        outside = self._held_reservoirs()
+        outside = self._anchored_reservoirs()
         if not anchored(balance, outside, time):
             raise InputError(
                 "a steady problem needs a Fixed, Film or Radiation boundary, or a Convection", field="boundaries"
@@ -170,9 +170,9 @@ class Conduction:
                 generated[name] = generated.get(name, 0.0) + float(W)
             elif kind == "boundary":
                 lost[name] = lost.get(name, 0.0) - float(W)
-        return Field(self.operators, self.regions, y.u, self._named(y.g), generated, lost)
+        return Field(self.operators, self.regions, y.u, self._temperatures_by_name(y.g), generated, lost)
 
-    def _held_reservoirs(self) -> set[int]:
+    def _anchored_reservoirs(self) -> set[int]:
         names = list(self.reservoirs)
         links = [
             (name, other)
@@ -185,7 +185,7 @@ class Conduction:
             held |= {a for a, b in links if b in held} | {b for a, b in links if a in held and isinstance(b, str)}
         return {names.index(name) for name in held}
 
-    def _named(self, g: Array) -> dict[str, float]:
+    def _temperatures_by_name(self, g: Array) -> dict[str, float]:
         return {name: float(T) for name, T in zip(self.reservoirs, g, strict=True)}
 
     def transient(
@@ -206,15 +206,15 @@ class Conduction:
         ----------
         times : s, strictly increasing, at least two; the first is the initial time.
         initial : degC: number, array (n,) or `Field` (with its reservoirs).
-        tolerance : K, aimed at as the largest error in time of any nodal temperature at any time.
-        breakpoints : times where data jump; steps end there, data are seen from the left before and the right after.
+        tolerance : K, target for the largest error in time of all nodal temperatures at all times.
+        breakpoints : times where data jump; a step ends there and uses data from the left, the next one from the right.
         progress : called with t after every accepted step. max_step : s.
-        reservoirs_initial : name -> degC, over the reservoirs' own.
-        partial : Ctrl-C gives the finished part back, `interrupted` being True; without it, it is raised.
+        reservoirs_initial : name -> degC, instead of the reservoirs' values.
+        partial : on Ctrl-C return the finished part with `interrupted` True; otherwise Ctrl-C is raised.
 
-        Raises InputError for bad times, tolerance or initial values and more times than memory holds,
-        SolverError if the step vanishes, and KeyboardInterrupt: nobody takes a part for the whole who has not asked
-        for it.
+        Raises InputError for bad times, tolerance or initial values and for more times than memory holds,
+        SolverError if the step vanishes, and KeyboardInterrupt without ``partial``: a part is never taken for the
+        complete run by mistake.
         """
         when = np.array(times, dtype=float)
         if when.ndim != 1 or when.size < 2 or not np.isfinite(when).all() or np.any(np.diff(when) <= 0):
@@ -277,7 +277,7 @@ class Conduction:
 
 
 def _check_memory(mesh: Any, element: str) -> None:
-    """Raise `InputError` for a mesh whose matrices do not fit in memory."""
+    """Raise `InputError` for a mesh whose matrices do not fit into memory."""
     unknowns = mesh.p.shape[1] + (mesh.facets.shape[1] + mesh.t.shape[1] if element == "P2" else 0)
     try:
         check_memory(matrices(unknowns), f"{unknowns:,} unknowns", "a coarser mesh or linear elements would fit")
@@ -286,7 +286,7 @@ def _check_memory(mesh: Any, element: str) -> None:
 
 
 def _check_kept(unknowns: int, times: int) -> None:
-    """Raise `InputError` for more times than there is memory for."""
+    """Raise `InputError` for more times than fit into memory."""
     try:
         check_memory(
             history(unknowns, times),

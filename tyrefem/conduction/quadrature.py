@@ -1,4 +1,4 @@
-"""Quadrature of regions and surfaces for data that vary in place or with temperature."""
+"""Quadrature of regions and surfaces for data that vary with place or temperature."""
 
 from __future__ import annotations
 
@@ -17,12 +17,12 @@ from tyrefem.errors import InputError, nearest
 
 Array = NDArray[Any]
 
-#: Unknowns of a surface up to which a full matrix multiplies faster than a sparse one.
+#: Largest number of unknowns of a surface for which a full matrix is faster than a sparse one.
 _FEW = 128
 
 
 class Quadrature:
-    """Values and slopes of a field at a region's quadrature points, and the way back to operator values."""
+    """Values and slopes of a field at a region's quadrature points, and operator values from coefficients there."""
 
     def __init__(self, space: FunctionSpace, name: str, direction: Callable[..., Any] | None) -> None:
         e = space.elements(name)
@@ -45,7 +45,7 @@ class Quadrature:
         where = np.broadcast_to(place[..., None], q.shape).reshape(-1)
 
         def scatter(form: skfem.BilinearForm, **data: Array) -> csr_matrix:
-            """From a coefficient at the points to the operator values of the form with it."""
+            """Matrix from a coefficient at the points to the operator values of the form."""
             values = space.integrands(form, e, **data)
             return csr_matrix((values.reshape(-1), (where, q.reshape(-1))), (space.nnz, self.weight.size))
 
@@ -54,7 +54,7 @@ class Quadrature:
 
 
 class Surface:
-    """Quadrature of a named boundary: points x (2, n_q), weights, and the trace of the unknowns there."""
+    """Quadrature of a named boundary: points x (2, n_q), weights, and the trace of the unknowns."""
 
     def __init__(self, space: FunctionSpace, name: str) -> None:
         boundaries = space.mesh.boundaries or {}
@@ -82,7 +82,7 @@ class Surface:
         self.trace_t = self.trace.T.tocsr()
         self.row = self.trace_t @ self.weight
         self.points = np.ascontiguousarray(space.points[:, self.dofs])
-        # From h times the weights at the points to the values of the film's form on the common pattern.
+        # From h times the weights at the points to the operator values of the film on the common pattern.
         shape = (len(phi), *phi.shape)
         i, j = np.broadcast_to(dofs[:, None], shape), np.broadcast_to(dofs[None], shape)
         both = used[:, None] & used[None]
@@ -98,18 +98,18 @@ class Surface:
     def loss(self, h: Any, T: Array) -> Array:
         """Load (n_dofs,) W of the flux h T, with h a number or values at the points, T of the surface's unknowns."""
         if isinstance(h, float):
-            return np.asarray(h * (self.even @ T))
+            return np.asarray(h * (self.unit_film @ T))
         return np.asarray(self.trace_t @ (self.weight * h * (self.trace @ T)))
 
     @functools.cached_property
-    def even(self) -> Any:
-        """Load W of the flux h T for h = 1 everywhere, from T of the surface's unknowns: (n_dofs, n_dofs)."""
+    def unit_film(self) -> Any:
+        """Matrix from T of the surface's unknowns to the load, W, of the flux h T with h = 1: (n_dofs, n_dofs)."""
         matrix = (self.trace_t.multiply(self.weight) @ self.trace).tocsr()
         return matrix.toarray() if self.dofs.size <= _FEW else matrix
 
     @functools.cached_property
-    def even_exchange(self) -> tuple[Array, Array]:
-        """What `exchange` finds for h = 1 everywhere."""
+    def unit_exchange(self) -> tuple[Array, Array]:
+        """`exchange` for h = 1 everywhere."""
         return self._places, self._films @ self.weight
 
     def film_matrix(self, h: Any, n: int) -> csr_matrix:
@@ -120,6 +120,6 @@ class Surface:
     def exchange(self, h: Any) -> tuple[Array, Array]:
         """Positions and values on the common pattern of int h v T dA; h: a number or values at the points, W/m2/K."""
         if isinstance(h, float):
-            where, value = self.even_exchange
+            where, value = self.unit_exchange
             return where, h * value
         return self._places, self._films @ (self.weight * h)

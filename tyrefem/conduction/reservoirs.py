@@ -1,4 +1,4 @@
-"""How reservoirs exchange heat with each other and their surroundings."""
+"""Heat exchange of reservoirs with each other and with their surroundings."""
 
 from __future__ import annotations
 
@@ -17,7 +17,7 @@ Array = NDArray[Any]
 
 
 class ExchangeLoad(Load):
-    """Conductance (W/K) between a reservoir and another one, or a given temperature. Its slot: W into it."""
+    """Conductance (W/K) between a reservoir and another one or a given temperature. Its slot: W into the reservoir."""
 
     def __init__(self, owner: int, conductance: Any, other: Any, field: str, partner: int | None) -> None:
         nowhere = np.zeros((2, 1))
@@ -31,9 +31,9 @@ class ExchangeLoad(Load):
         self.h0 = self.conductance(t)
         linear.add_conductance(self.h0, self.owner, self.partner)
 
-    def forget(self) -> None:
-        self.conductance.forget()
-        self.other.forget()
+    def clear_cache(self) -> None:
+        self.conductance.clear_cache()
+        self.other.clear_cache()
 
     def stale(self, t: float, y: State) -> bool:
         h = self.conductance(t)
@@ -55,15 +55,15 @@ class ExchangeLoad(Load):
 
 
 class PowerLoad(Load):
-    """Power put straight into a reservoir, W."""
+    """Power supplied to a reservoir, W."""
 
     def __init__(self, owner: int, power: Any, field: str) -> None:
         self.owner, self.power = owner, Datum(power, np.zeros((2, 1)), field)
         self.static = self.power.constant
         self.timed = not self.static
 
-    def forget(self) -> None:
-        self.power.forget()
+    def clear_cache(self) -> None:
+        self.power.clear_cache()
 
     def remainder(self, t: float, y: State, G: Array, Gg: Array) -> float:
         power = self.power(t)
@@ -72,12 +72,12 @@ class PowerLoad(Load):
 
 
 def time_only(function: Callable[..., Any]) -> Callable[..., Any]:
-    """f(t) as f(x, t): a reservoir has no place."""
+    """f(t) as f(x, t), for reservoirs, which have no place."""
     return lambda x, t: function(t)
 
 
 def reservoir_loads(index: int, name: str, reservoir: Reservoir, numbers: dict[str, int]) -> list[tuple[int, Load]]:
-    """The exchanges of one reservoir by their index, and its power as index -1."""
+    """The exchanges of one reservoir with their index, and its power with index -1."""
     loads: list[tuple[int, Load]] = []
     for i, (conductance, other) in enumerate(reservoir.exchanges):
         field = f"reservoirs.{name}.exchanges[{i}]"

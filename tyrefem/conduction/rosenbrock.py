@@ -1,6 +1,6 @@
 """One step of the linearly implicit Rosenbrock-W method ROS34PW2 for the heat balance.
 
-Its coefficients and those of its continuous extension, and mass solves.
+The module holds its coefficients, those of its continuous extension, and mass solves.
 """
 
 from __future__ import annotations
@@ -40,7 +40,7 @@ NODE, SHIFT = ALPHA.sum(axis=1), LOWER.sum(axis=1)
 
 
 def _dense_weights() -> Array:
-    """b(theta) = W @ (theta, theta^2, theta^3): the third-order conditions of the partial step, solved.
+    """W with b(theta) = W @ (theta, theta^2, theta^3), from the third-order conditions of the partial step.
 
     sum b = theta, sum b alpha = theta^2/2, sum b gamma = 0, sum b beta beta = theta^3/6; b(1) is WEIGHT.
     """
@@ -63,7 +63,7 @@ def dense_weights(theta: float) -> Array:
 
 
 def conjugate_gradients(M: Any, right: Array, tolerance: float = 1e-11) -> Array:
-    """Solve a mass matrix, well conditioned once scaled by its diagonal."""
+    """Solution of a mass matrix, which is well conditioned after scaling by its diagonal."""
     scale = 1.0 / M.diagonal()
     x = scale * right
     r = right - M @ x
@@ -84,7 +84,7 @@ def conjugate_gradients(M: Any, right: Array, tolerance: float = 1e-11) -> Array
 
 
 class Step:
-    """The stages of one step from state y at t, and everything that follows from them."""
+    """The stages of one step from state y at t, and the solution, energies and slopes from them."""
 
     def __init__(self, balance: HeatBalance, t: float, h: float, y: State) -> None:
         n, m, ledger = y.u.size, y.g.size, len(balance.entries)
@@ -92,7 +92,7 @@ class Step:
         self.ku, self.kg, self.P = np.zeros((4, n)), np.zeros((4, m)), np.zeros((4, ledger))
 
     def run(self, matrix: StageMatrix, first: float, last: float) -> float:
-        """Compute the stages with data seen only from `first` to `last`; return the error estimate, K."""
+        """Compute the stages with data from `first` to `last` only; return the error estimate, K."""
         b, t, h, y = self.balance, self.t, self.h, self.y
         ku, kg, gh = self.ku, self.kg, GAMMA * h
         fixed = b.fixed.dofs
@@ -106,7 +106,7 @@ class Step:
         for i in range(4):
             ti = min(max(t + NODE[i] * h, first), last)
             U = State(y.u + h * (ALPHA[i, :i] @ ku[:i]), y.g + h * (ALPHA[i, :i] @ kg[:i])) if i else y
-            b.settle(ti, U.u, U.g)
+            b.balance_massless(ti, U.u, U.g)
             W = State(h * (LOWER[i, :i] @ ku[:i]), h * (LOWER[i, :i] @ kg[:i]))
             V = State(U.u + W.u, U.g + W.g)
             G, Gg, P = b.remainder(ti, U)
@@ -148,7 +148,7 @@ class Step:
         return error if np.isfinite(error) else np.inf
 
     def _rate(self, t: float, U: State, G: Array, border: Array, before: float, dt: float) -> Array:
-        """du/dt with the true M(U), by conjugate gradients scaled with the diagonal."""
+        """du/dt with the exact M(U), by conjugate gradients scaled with the diagonal."""
         b = self.balance
         M, free, fixed = b.ops.matrix(b.mass(U.u)), b.fixed.free, b.fixed.dofs
         rate = np.zeros(U.u.size)
@@ -161,12 +161,12 @@ class Step:
         return rate
 
     def at(self, theta: float) -> State:
-        """The state at t + theta h, by the method's own continuous extension."""
+        """The state at t + theta h, by the method's continuous extension."""
         weights = dense_weights(theta)
         return State(self.y.u + self.h * (weights @ self.ku), self.y.g + self.h * (weights @ self.kg))
 
     def energies(self, theta: float) -> Array:
-        """Energy of every ledger entry from t to t + theta h, J; closes with `at` to rounding."""
+        """Energy of every ledger entry from t to t + theta h, J; consistent with `at` to rounding."""
         weights = dense_weights(theta)
         return self.h * (weights @ self.P)
 

@@ -1,4 +1,4 @@
-"""How a transient solution changes with parameters of the problem: tangents from the assembled operators."""
+"""Sensitivities of a transient solution to parameters of the problem, from the assembled operators."""
 
 from __future__ import annotations
 
@@ -26,13 +26,13 @@ if TYPE_CHECKING:
 
 Array = NDArray[Any]
 
-#: Half the difference of temperature over which slopes of sources and heat capacities are taken, K.
+#: Half the temperature difference for slopes of sources and heat capacities, K.
 _BUMP = 0.1
 
 
 @dataclass(frozen=True)
 class Perturbed:
-    """A problem that differs from the base one by a small ``step`` of a parameter; ``initial``: its start, degC."""
+    """A problem with a parameter changed by a small ``step``; ``initial``: initial temperature, degC."""
 
     problem: Conduction
     step: float
@@ -55,16 +55,16 @@ class Tangents:
     reservoirs: Array
 
     def at(self, points: Any) -> Array:
-        """Tangents at points (n_points, 2): (n_parameters, n_times, n_points)."""
+        """Sensitivities at points (n_points, 2): (n_parameters, n_times, n_points)."""
         value = located(self.operators, points).value()
         parameters, times, size = self.values.shape
         return (value @ self.values.reshape(-1, size).T).T.reshape(parameters, times, -1)
 
 
 def stage_times(breaks: Sequence[float], first: float = 3.0, growth: float = 1.7, longest: float = 80.0) -> Array:
-    """Times at which `tangents` wants the base solution: every step's start, first stage and end.
+    """Times at which `tangents` needs the base solution: start, first stage and end of every step.
 
-    Steps grow from ``first`` (s) by ``growth`` to ``longest`` after every break, where data jump; breaks include the
+    Steps grow from ``first`` (s) by ``growth`` to ``longest`` after every break, where data jump. Breaks include the
     first and the last time.
 
     >>> stage_times([0.0, 10.0], first=4.0, growth=1.5).round(2)
@@ -76,7 +76,7 @@ def stage_times(breaks: Sequence[float], first: float = 3.0, growth: float = 1.7
         while sum(sizes) < end - start:
             sizes.append(min(first * growth ** len(sizes), longest))
         scale = (end - start) / sum(sizes)
-        if len(sizes) > 1 and scale < 0.75:  # the last step would overshoot by far: spread what is left
+        if len(sizes) > 1 and scale < 0.75:  # the last step would be far too long: distribute the rest
             sizes = sizes[:-1]
             scale = (end - start) / sum(sizes)
         t = start
@@ -91,17 +91,16 @@ def stage_times(breaks: Sequence[float], first: float = 3.0, growth: float = 1.7
 def tangents(
     base: Conduction, times: Array, values: Array, reservoirs: Array, perturbed: Sequence[Perturbed]
 ) -> Tangents:
-    """Tangents along a known solution of ``base``.
+    """Sensitivities along a known solution of ``base``.
 
-    M ds/dt = -(dF/du) s + [F(y; p + step) - F(y; p)]/step - (dM/dp) du/dt, linear in s, so that all parameters share
-    one factorisation per step. dF/du holds conduction, films and the slopes of sources and heat capacities with
-    temperature.
+    M ds/dt = -(dF/du) s + [F(y; p + step) - F(y; p)]/step - (dM/dp) du/dt is linear in s: all parameters share one
+    factorisation per step. dF/du contains conduction, films and the temperature slopes of sources and heat capacities.
 
     Parameters
     ----------
-    base : the problem; its boundaries may not be `Fixed`.
-    times : (n_times,) s as `stage_times` gives them; values (n_times, n), reservoirs (n_times, m): the solution there.
-    perturbed : the same problem on the same mesh object with one parameter changed each.
+    base : the problem, without `Fixed` boundaries.
+    times : (n_times,) s from `stage_times`; values (n_times, n), reservoirs (n_times, m): the solution at these times.
+    perturbed : problems on the same mesh object, each with one changed parameter.
 
     Raises
     ------
@@ -114,10 +113,10 @@ def tangents(
         if column.problem.operators is not ops:
             raise InputError("a perturbed problem must be on the base problem's own mesh", field="perturbed")
     with one_thread():
-        return _march(base, times, values, reservoirs, perturbed)
+        return _integrate(base, times, values, reservoirs, perturbed)
 
 
-def _march(
+def _integrate(
     base: Conduction, times: Array, values: Array, reservoirs: Array, perturbed: Sequence[Perturbed]
 ) -> Tangents:
     ops, n, m, count = base.operators, base.operators.size, reservoirs.shape[1], len(perturbed)
@@ -141,7 +140,7 @@ def _march(
     derivatives[0] = s
     for first in range(0, len(times) - 1, 2):
         h = times[first + 2] - times[first]
-        # Data are seen from inside the step: a jump at its end belongs to the next one.
+        # Data are limits from inside the step: a jump at its end belongs to the next step.
         inside = [times[first + 1], times[first + 2] - 1e-9 * max(1.0, times[first + 2])]
         slopes: list[Array] = []
         for stage, t in enumerate(inside):
@@ -153,7 +152,7 @@ def _march(
             start = s + (1 - GAMMA) * h * slopes[0] if stage else s
             right = direct(t, y) - _linear(balance, start)
             guess = slopes[0] if stage else solve(right)
-            # The slope of sources and capacities is small against the rest: one correction of a guess takes it in.
+            # The slope of sources and capacities is small compared with the rest: one correction of a guess is enough.
             for _ in range(2):
                 hot = right.copy()
                 hot[:n] += slope @ (start[:n] + GAMMA * h * guess[:n])
@@ -173,7 +172,7 @@ def _linear(balance: HeatBalance, s: Array) -> Array:
 
 
 def _slope(balance: HeatBalance, t: float, y: State, rate: Array | None) -> csr_matrix:
-    """d(heat of the sources - M du/dt)/d(temperature), (n, n); rate: du/dt where M varies."""
+    """d(heat of the sources - M du/dt)/d(temperature), (n, n); rate: du/dt if M varies."""
     data = np.zeros(balance.ops.nnz)
     for load in balance.loads:
         if isinstance(load, SourceLoad) and not load.static:

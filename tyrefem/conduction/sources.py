@@ -43,7 +43,7 @@ class SourceLoad(Load):
         return np.full(self.dofs.shape, value) if isinstance(value, float) else value
 
     def slope(self, t: float, u: Array, bump: float) -> Array:
-        """Operator values of d(load)/d(temperature), by differences of so many K either way."""
+        """Operator values of d(load)/d(temperature), by central differences over +-``bump`` K."""
         rise = np.zeros(u.size)
         rise[self.dofs] = (self.at_nodes(t, u + bump) - self.at_nodes(t, u - bump)) / (2 * bump)
         return np.asarray(self._ops.mass(self.name) * rise[self._ops.indices])
@@ -58,7 +58,7 @@ class SourceLoad(Load):
 
 
 class Sources(Load):
-    """Volumetric sources of several subdomains in one product: most of the time of a small product is the call."""
+    """Volumetric sources of several subdomains in one product, as small products cost mostly their call."""
 
     def __init__(self, ops: Operators, loads: Sequence[SourceLoad]) -> None:
         self.loads, self.slot = loads, [load.slot for load in loads]

@@ -1,4 +1,4 @@
-"""The factored matrices of a step's implicit stages, M + gamma h S with the reservoirs bordering it."""
+"""Factorised matrices M + gamma h S of a step's implicit stages, with the reservoirs as border."""
 
 from __future__ import annotations
 
@@ -17,7 +17,7 @@ GAMMA = 0.435866521508459
 
 
 class StageMatrix:
-    """M + gamma h S with the reservoirs bordering it, factored once and reduced to their few unknowns."""
+    """M + gamma h S with the reservoirs as border, factorised once and condensed to the reservoirs' unknowns."""
 
     def __init__(self, balance: HeatBalance, h: float) -> None:
         b, free, fixed = balance, balance.fixed.free, balance.fixed.dofs
@@ -42,7 +42,7 @@ class StageMatrix:
             self.schur = np.diag(b.C) + gh * b.D - border[free].T @ self.E
 
     def solve(self, ru: Array, rg: Array, k_fixed: Array, ku: Array, kg: Array) -> None:
-        """Solve one stage in place: ku (n,), kg (m,), the rates at fixed unknowns being given."""
+        """Solve one stage in place: ku (n,), kg (m,), with given rates of the fixed unknowns."""
         right = ru if self.all_free else ru[self.free]
         if self.to_fixed is not None:
             right = right - self.to_fixed @ k_fixed
@@ -61,14 +61,14 @@ class StageMatrix:
 
 
 class StageMatrices:
-    """The few most recent factored stage matrices, by step size."""
+    """The latest factorised stage matrices, by step size."""
 
     def __init__(self, keep: int = 6) -> None:
         self._kept: OrderedDict[tuple[int, float], StageMatrix] = OrderedDict()
         self._keep, self.factorisations, self._past_solves = keep, 0, 0
 
     def get(self, balance: HeatBalance, h: float) -> StageMatrix:
-        """The matrix of a step size, factored now if need be."""
+        """The matrix of a step size, factorised if it is not cached."""
         key = (balance.version, h)
         if key not in self._kept:
             for old in [k for k in self._kept if k[0] != balance.version]:
@@ -85,5 +85,5 @@ class StageMatrices:
 
     @property
     def solves(self) -> int:
-        """Linear solves so far."""
+        """Number of linear solves."""
         return self._past_solves + sum(matrix.solves for matrix in self._kept.values())

@@ -1,4 +1,4 @@
-"""From what a user states to the heat balance: every name is looked up here."""
+"""From a user's problem to the heat balance, with a check of every name."""
 
 from __future__ import annotations
 
@@ -29,7 +29,7 @@ def balance_of(
     reservoirs: Mapping[str, Reservoir],
     states: AddedStates | None = None,
 ) -> HeatBalance:
-    """The heat balance of a stated problem; InputError names what does not fit the mesh."""
+    """The heat balance of a problem; InputError for names that are not in the mesh."""
     numbers = {name: i for i, name in enumerate(reservoirs)}
     loads: list[tuple[Entry, Load]] = []
     fixed: list[tuple[Entry, Surface, Datum]] = []

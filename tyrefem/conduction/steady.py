@@ -15,7 +15,7 @@ _MOST = 60
 
 
 def solve_steady(balance: HeatBalance, y: State, t: float, tolerance: float = 1e-9) -> State:
-    """Solve 0 = -S u + B g + G(t, u) from a first guess; `tolerance` is the last correction in K.
+    """Solve 0 = -S u + B g + G(t, u) from a first guess; `tolerance` is for the last correction, K.
 
     Raises SolverError if Newton's method with step halving does not converge.
     """
@@ -64,7 +64,7 @@ def _residual(balance: HeatBalance, t: float, y: State) -> np.ndarray:
 
 
 def _correction(balance: HeatBalance, t: float, y: State, residual: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
-    """Newton's correction; slopes of user functions by differences in T."""
+    """Newton correction; slopes of user functions by differences in T."""
     balance.freeze(t, y)
     free = balance.fixed.free
     unknown = np.concatenate((free, y.u.size + np.arange(y.g.size)))
@@ -77,9 +77,9 @@ def _correction(balance: HeatBalance, t: float, y: State, residual: np.ndarray) 
 
 
 def anchored(balance: HeatBalance, outside: set[int], t: float) -> bool:
-    """Whether a given temperature holds the body: fixed, by a film, convection or radiation, or through a reservoir.
+    """True if a given temperature fixes the level: by Fixed, film, convection, radiation, or through a reservoir.
 
-    `outside` numbers the reservoirs that exchange heat, directly or in a chain, with a given temperature.
+    `outside` holds the numbers of reservoirs that exchange heat with a given temperature, directly or in a chain.
     """
     if balance.fixed.dofs.size:
         return True

@@ -1,4 +1,4 @@
-"""How films, fluxes, radiation and natural convection act on the unknowns."""
+"""Loads of films, fluxes, radiation and natural convection on the unknowns."""
 
 from __future__ import annotations
 
@@ -20,7 +20,7 @@ STEFAN_BOLTZMANN = 5.67e-8
 
 
 class FilmLoad(Load):
-    """h (sink - T), the sink a temperature or a reservoir."""
+    """h (sink - T), with a temperature or a reservoir as sink."""
 
     def __init__(self, surface: Surface, film: Film, field: str, reservoir: int | None) -> None:
         self.s, self.reservoir = surface, reservoir
@@ -35,9 +35,9 @@ class FilmLoad(Load):
         self.row = linear.add_film(self.s, self.h0, self.reservoir)
         self.total = float(self.row.sum())
 
-    def forget(self) -> None:
-        self.h.forget()
-        self.sink.forget()
+    def clear_cache(self) -> None:
+        self.h.clear_cache()
+        self.sink.clear_cache()
 
     def stale(self, t: float, y: State) -> bool:
         if self.h.constant:
@@ -49,7 +49,7 @@ class FilmLoad(Load):
 
     def remainder(self, t: float, y: State, G: Array, Gg: Array) -> float:
         s, r = self.s, self.reservoir
-        flux, more = self.beyond(t, y)
+        flux, more = self.excess(t, y)
         changed = more != 0.0 if isinstance(more, float) else more.any()
         if r is not None and not changed:
             return 0.0
@@ -62,8 +62,8 @@ class FilmLoad(Load):
             Gg[r] -= power
         return power
 
-    def beyond(self, t: float, y: State) -> tuple[Any, Any]:
-        """What is not in the frozen part, q = flux - more T: W/m2 and W/m2/K, numbers or values at the points."""
+    def excess(self, t: float, y: State) -> tuple[Any, Any]:
+        """Remainder beside the frozen part, q = flux - more T: W/m2 and W/m2/K, numbers or values at the points."""
         h = self.h(t)
         more = h - self.h0
         return (h * self.sink(t) if self.reservoir is None else more * float(y.g[self.reservoir])), more
@@ -73,7 +73,7 @@ class FilmLoad(Load):
         return float(back - self.row @ y.u[self.s.dofs])
 
     def coupling(self, t: float, u: Array) -> tuple[float, float]:
-        """Integrals of h T and of h over the surface now, W and W/K."""
+        """Integrals of h T and of h over the surface at this time, W and W/K."""
         weighted = self.s.weight * self.h(t)
         return float(weighted @ (self.s.trace @ u[self.s.dofs])), float(weighted.sum())
 
@@ -88,12 +88,12 @@ class FluxLoad(Load):
         self.static = self._given.constant and not flux.of_temperature
         self.timed = not self.static
 
-    def forget(self) -> None:
-        self._given.forget()
+    def clear_cache(self) -> None:
+        self._given.clear_cache()
 
     @property
     def of_temperature(self) -> bool:
-        """Does it depend on the surface's temperature?"""
+        """True if the flux depends on the surface's temperature."""
         return self._of_temperature is not None
 
     def value(self, t: float, u: Array) -> Any:
@@ -124,8 +124,8 @@ class RadiationLoad(Load):
         self.surroundings = Datum(radiation.surroundings, surface.x, f"{field}.surroundings", low=-273.15)
         self.timed = not self.surroundings.constant
 
-    def forget(self) -> None:
-        self.surroundings.forget()
+    def clear_cache(self) -> None:
+        self.surroundings.clear_cache()
 
     def slopes(self, t: float, y: State) -> Array:
         """Quadrature values of -dq/dT."""
@@ -149,7 +149,7 @@ class RadiationLoad(Load):
         return float(-self.row @ y.u[self.s.dofs])
 
 
-#: Half the difference of temperature over which the slope of the heat flux is taken, K.
+#: Half the temperature difference for the slope of the heat flux, K.
 _BUMP = 0.05
 
 
@@ -166,7 +166,7 @@ class ConvectionLoad(Load):
         return np.asarray(h * (T - self.sink))
 
     def _slopes(self, t: float, y: State) -> Array:
-        """Quadrature values of -dq/dT; never negative, which would feed the body."""
+        """Quadrature values of -dq/dT, at least 0: a negative value would be unstable."""
         T = self.s.trace @ y.u[self.s.dofs]
         slopes = (self._loss(T + _BUMP, t) - self._loss(T - _BUMP, t)) / (2 * _BUMP)
         return np.asarray(np.maximum(slopes, 0.0))
@@ -176,7 +176,8 @@ class ConvectionLoad(Load):
         self.row = linear.add_film(self.s, self.h0)
 
     def stale(self, t: float, y: State) -> bool:
-        # The largest film decides: near the sink's temperature the slope of natural convection is steep but small.
+        # The largest film is the criterion: near the sink's temperature the slope of natural convection is steep but
+        # small.
         now = self._slopes(t, y)
         return bool(np.max(np.abs(now - self.h0)) > STALE * max(np.max(now), np.max(self.h0)))
 

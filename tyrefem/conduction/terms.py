@@ -1,4 +1,4 @@
-"""What the terms of the heat equation say of themselves: sources, films, fluxes, exchanges, heat capacities."""
+"""Interfaces of the terms of the heat equation: sources, films, fluxes, exchanges, heat capacities."""
 
 from __future__ import annotations
 
@@ -11,9 +11,9 @@ from scipy.sparse import csr_matrix
 
 Array = NDArray[Any]
 
-#: Part of a frozen coefficient by which it may be off before it is renewed.
+#: Relative change of a frozen coefficient above which it is frozen anew.
 STALE = 0.2
-#: Half the difference of temperature over which slopes of user functions are taken, K.
+#: Half the temperature difference for slopes of user functions, K.
 SLOPE_STEP = 1e-4
 
 
@@ -37,21 +37,21 @@ class Storage(Protocol):
 
 
 class Added(Protocol):
-    """States beside the temperatures: `tyrefem.conduction.added_states.AddedStates`."""
+    """Additional states with a rate: `tyrefem.conduction.added_states.AddedStates`."""
 
     @property
     def initial(self) -> Array:
-        """(k,) at the start."""
+        """(k,) initial values."""
         ...
 
     @property
     def scale(self) -> Array:
-        """(k,) changes that matter as much as 1 K."""
+        """(k,) changes of the same importance as 1 K."""
         ...
 
     @property
     def show(self) -> Callable[[Array], None]:
-        """What is called with the states before loads are evaluated."""
+        """The function that receives the states before loads are evaluated."""
         ...
 
 
@@ -61,7 +61,7 @@ class Boundary(Protocol):
     dofs: Array
 
     def exchange(self, h: Any) -> tuple[Array, Array]:
-        """Places and operator values of int h v T dA; h: a number or values at the points, W/m2/K."""
+        """Positions and operator values of int h v T dA; h: a number or values at the points, W/m2/K."""
         ...
 
     def load(self, q: Any) -> Array:
@@ -89,7 +89,7 @@ class Load(ABC):
     """One term of the equation. `slot` is its line in the ledger of powers into the body (W)."""
 
     slot: Any = -1
-    #: The condition or source that a user stated; loads of one cause act alike.
+    #: The user's condition or source; loads of the same cause are equal.
     cause: Any = None
     timed = False
     static = False
@@ -98,19 +98,19 @@ class Load(ABC):
         """Add the frozen linear part."""
 
     def stale(self, t: float, y: State) -> bool:
-        """Whether the frozen part differs by more than a fifth from what it should be now."""
+        """True if the frozen part differs by more than a fifth from its present value."""
         return False
 
     @abstractmethod
     def remainder(self, t: float, y: State, G: Array, Gg: Array) -> Any:
-        """Add what the linear part leaves out to G (body) and Gg (reservoirs); return the power, W."""
+        """Add the remainder beside the linear part to G (body) and Gg (reservoirs); return the power, W."""
 
     def linear_power(self, y: State) -> float:
         """Power of the frozen linear part, W into the body."""
         return 0.0
 
-    def forget(self) -> None:  # noqa: B027 - most remember nothing
-        """Forget data that are remembered for a time: the added states have changed."""
+    def clear_cache(self) -> None:  # noqa: B027 - most cache nothing
+        """Clear data cached for a time, as the added states have changed."""
 
     def jacobian(self, t: float, y: State) -> csr_matrix | None:
         """d(remainder)/du (n, n) at the state of the freeze, where it is not zero."""

@@ -19,15 +19,15 @@ from tyrefem.conduction.terms import State
 
 Array = NDArray[Any]
 
-# Local error allowed per kelvin of tolerance, set so that the global error stays within the tolerance.
+# Local error allowed per kelvin of tolerance; with it the global error stays within the tolerance.
 _SHARE = 0.25
 _RUNG = 2.0 ** (2 / 3)
 
 
 class Integration:
-    """One run from times[0] to times[-1]; `run` may be interrupted and leaves what was finished.
+    """One run from times[0] to times[-1]; an interrupted `run` keeps the finished part.
 
-    The data are taken as continuous between breakpoints: each phase sees its own limits from inside.
+    Data are continuous between breakpoints: at its limits a phase uses data from inside.
     """
 
     def __init__(
@@ -67,12 +67,12 @@ class Integration:
         low, high = first + inside, last - inside
         self._low = low
         self._jump(low)
-        b.settle(low, self.y.u, self.y.g)
+        b.balance_massless(low, self.y.u, self.y.g)
         b.freeze(low, self.y)
-        self._look(first, self.y)
+        self._update_peaks(first, self.y)
         t, h = first, self._first_step(low, last - first)
         while t < last:
-            h = self._rung(min(h, self.max_step))
+            h = self._ladder_step(min(h, self.max_step))
             remaining = last - t
             h_now = remaining if h >= remaining * (1 - 1e-9) else min(h, 0.5 * remaining) if 2 * h > remaining else h
             step = Step(b, t, h_now, self.y)
@@ -84,7 +84,7 @@ class Integration:
                 if h < 1e-13 * max(abs(t), last - first):
                     raise SolverError(f"the time step vanished at t = {t:.6g} s (error estimate {error:.3g} K)")
                 continue
-            # One rung more would not be worth its factorisation: wait until the step may grow by two.
+            # A growth by one ladder step does not repay its factorisation: wait until two are possible.
             grown = h_now * (min(4.0, factor) if not 1 <= factor < _RUNG**2 else 1.0)
             h = max(h, h_now) if h_now < h and factor >= 1 else grown
             t_new = last if h_now == remaining else t + h_now
@@ -96,12 +96,12 @@ class Integration:
                 b.freeze(min(max(t, low), high), self.y)
 
     @staticmethod
-    def _rung(h: float) -> float:
-        """The step of the geometric ladder just below h, so that factors are met again."""
+    def _ladder_step(h: float) -> float:
+        """The step on the geometric ladder just below h, so that factors can be used again."""
         return _RUNG ** math.floor(math.log(h) / math.log(_RUNG) + 1e-9)
 
     def _jump(self, t: float) -> None:
-        """Bring the prescribed nodes to their value at the start of a phase and book the heat of the jump."""
+        """Set the prescribed nodes to their values at the start of a phase and record the heat of the jump."""
         b = self.balance
         target = b.fixed(t)
         for slot, part in b.fixed.parts:
@@ -122,7 +122,7 @@ class Integration:
         b, n = self.balance, len(self.values)
         due = np.searchsorted(self.times, t_new, side="right")
         end = step.at(1.0)
-        b.settle(seen, end.u, end.g)
+        b.balance_massless(seen, end.u, end.g)
         for i in range(n, due):
             theta = (self.times[i] - t) / step.h if self.times[i] < t_new else 1.0
             self._output(step, theta, end if theta >= 1.0 else None, seen)
@@ -131,28 +131,28 @@ class Integration:
         self.kept += b.reservoir_stored(step.y.g, end.g)
         self.y = end
         self.accepted += 1
-        self._look(t_new, self.y)
+        self._update_peaks(t_new, self.y)
 
     def _output(self, step: Step, theta: float, end: State | None, seen: float) -> None:
         b = self.balance
         y = end if end is not None else step.at(theta)
         t = min(max(step.t + theta * step.h, self._low), seen)
         if end is None and theta > 0:
-            b.settle(t, y.u, y.g)
+            b.balance_massless(t, y.u, y.g)
         slope = step.slope(theta)
-        self._look(self.times[len(self.values)], y)
+        self._update_peaks(self.times[len(self.values)], y)
         self.values.append(y.u.copy())
         self.gas.append(y.g.copy())
         self.tally.record(
             self.energy + step.energies(theta),
             b.powers(t, y, slope),
             self.stored + b.stored(step.y.u, y.u),
-            b.storing(y.u, slope),
+            b.storage_power(y.u, slope),
             self.kept + b.reservoir_stored(step.y.g, y.g),
         )
 
-    def _look(self, t: float, y: State) -> None:
-        """Remember the hottest points."""
+    def _update_peaks(self, t: float, y: State) -> None:
+        """Update the hottest points."""
         for j, dofs in enumerate(self._regions):
             u = y.u if dofs is None else y.u[dofs]
             i = int(np.argmax(u))

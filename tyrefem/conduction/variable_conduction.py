@@ -1,4 +1,4 @@
-"""Conduction whose conductivity depends on temperature."""
+"""Conduction with a temperature-dependent conductivity."""
 
 from __future__ import annotations
 
@@ -17,7 +17,7 @@ Array = NDArray[Any]
 
 
 class VariableConduction(Load):
-    """Conduction whose k depends on temperature: K(T) u = K0 u + the remainder kept here."""
+    """Conduction with k(T): K(T) u = K0 u + a remainder."""
 
     def __init__(self, ops: Operators, name: str, material: Material) -> None:
         self.name, self.k = name, material.conductivity

@@ -15,7 +15,7 @@ import numpy as np
 from numpy.typing import NDArray
 from scipy.interpolate import CubicSpline
 
-from tyrefem.conduction.fixed_steps import quick
+from tyrefem.conduction.fixed_steps import fixed_step_solution
 from tyrefem.conduction.points import located
 from tyrefem.conduction.sensitivity import Tangents, stage_times
 from tyrefem.diagnose.unknowns import Unknown
@@ -111,7 +111,7 @@ def fixed_step_run(
     """Simulate a study's drive on fixed steps, read ``every`` s; ``like``, ``near``: see `RollingTyre`."""
     tyre = RollingTyre(study, like, near=near)
     times = stage_times([*tyre.drive.starts, tyre.drive.end])
-    return FixedStepRun(study, tyre, times, *quick(tyre.problem, times, tyre.drive.initial), every)
+    return FixedStepRun(study, tyre, times, *fixed_step_solution(tyre.problem, times, tyre.drive.initial), every)
 
 
 def time_grid(times: Array, every: float) -> Array:

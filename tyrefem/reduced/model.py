@@ -116,7 +116,7 @@ class ReducedModel(Brief):
         for side in self.base.boundaries:
             surface = ops.surface(side)
             data = np.zeros(ops.nnz)
-            where, value = surface.even_exchange
+            where, value = surface.unit_exchange
             np.add.at(data, where, value)
             row = np.zeros(ops.size)
             row[surface.dofs] = surface.load(1.0)
