@@ -19,7 +19,7 @@ from tyrefem.conduction.fixed_steps import fixed_step_solution
 from tyrefem.conduction.points import located
 from tyrefem.conduction.sensitivity import Tangents, stage_times
 from tyrefem.diagnose.unknowns import Unknown
-from tyrefem.geometry.wall import inside
+from tyrefem.geometry.wall import inside_mesh
 from tyrefem.inputs.study import StudyData
 from tyrefem.mechanics.nearby_cycles import NearbyCycles
 from tyrefem.simulation.rolling_tyre import RollingTyre
@@ -62,7 +62,7 @@ class FixedStepRun:
 
     def at(self, s: Array, depth: Array) -> Array:
         """(n_grid, n_places) degC at stations and depths (n_places,), m."""
-        points = inside(self.tyre.study.section, self.tyre.mesh.size, s, depth)
+        points = inside_mesh(self.tyre.study.section, self.tyre.mesh.size, s, depth)
         return self.dense((located(self.tyre.problem.operators, points).value() @ self.values.T).T)
 
     @cached_property
@@ -88,7 +88,7 @@ def sensor_points(study: StudyData, tyre: RollingTyre) -> Array:
     places = true_places(study)
     section = tyre.study.section
     s, depth = section.locate(np.array(list(places.values())).reshape(-1, 2))
-    return inside(section, tyre.mesh.size, s, depth)
+    return inside_mesh(section, tyre.mesh.size, s, depth)
 
 
 def read(study: StudyData, grid: Array, at_sensors: Array | None, lumped: dict[str, Array]) -> dict[str, Array]:

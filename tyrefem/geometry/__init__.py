@@ -1,6 +1,6 @@
 """Cross-sections of tyres: a meridian and layers along it, read from ``geometry/NAME.toml``.
 
-Knows nothing of materials, drives and runs.
+This package does not import materials, drives and runs.
 """
 
 from tyrefem.geometry.builder import build, load

@@ -1,4 +1,4 @@
-"""From a section's card to the section: solves for what the card gives indirectly."""
+"""From a section's card to the section: solves for dimensions that the card gives indirectly."""
 
 from __future__ import annotations
 
@@ -34,14 +34,14 @@ def load(reference: object, *, near: Path | None = None, half: bool = True) -> S
     data, path, name = load_card("section", reference, near)
     card = SectionCard.check(data, file=path)
     try:
-        _refuse_idle_width(reference, card, near)
+        _check_nominal_width(reference, card, near)
         return build(card, name=name, half=half)
     except InputError as error:
         raise error.within(file=path) from None
 
 
-def _refuse_idle_width(reference: object, card: SectionCard, near: Path | None) -> None:
-    """Raise `InputError` where a nominal width is laid over a card whose section does not follow it."""
+def _check_nominal_width(reference: object, card: SectionCard, near: Path | None) -> None:
+    """Raise `InputError` for a changed nominal width if the width of the card's section does not depend on it."""
     parameters = card.parameters
     changes = reference if isinstance(reference, Mapping) else {}
     if "nominal_width" not in changes.get("parameters", {}) or "line" in changes:
@@ -72,7 +72,7 @@ def _on_points(card: SectionCard, name: str, half: bool) -> Section:
     assert parameters.shoulder_s is not None
     line = SplineLine(card.line.points, parameters.shoulder_s)
     if parameters.outer_diameter is not None:
-        # The points keep their shape; the whole line moves along r until the diameter is right.
+        # The points keep their shape; the whole line is shifted along r to give the diameter.
         outside = Layup(_layers(card, line), card.line.reference).faces(0.0)[-1]
         shift = parameters.outer_diameter / 2 - float(outside) - card.line.points[0][0]
         line = SplineLine(tuple((r + shift, z) for r, z in card.line.points), parameters.shoulder_s)
@@ -88,7 +88,7 @@ def _on_two_arcs(card: SectionCard, name: str, half: bool) -> Section:
     length = parameters.meridian_length
 
     def with_shoulder(x: float) -> Section:
-        # The layers depend on lengths along the arcs only, so the arcs may first be drawn about the axis.
+        # The layers depend on lengths along the arcs only, so the arcs may first be drawn at any radius from the axis.
         line = TwoArcs(0.0, *arcs, x, length)
         outside = Layup(_layers(card, line), card.line.reference).faces(0.0)[-1]
         line = replace(line, crown_midline_radius=_crown_midline_radius(card, float(outside)))
@@ -101,7 +101,7 @@ def _on_two_arcs(card: SectionCard, name: str, half: bool) -> Section:
 
 
 def _crown_midline_radius(card: SectionCard, outside: float) -> float:
-    """y_m from the diameter, ``outside`` being the distance from the meridian to the tread at the crown."""
+    """y_m from the diameter; ``outside`` is the distance from the meridian to the tread surface at the crown."""
     given, diameter = card.parameters.crown_midline_radius, card.parameters.outer_diameter
     if given is None:
         assert diameter is not None
@@ -118,7 +118,7 @@ def _crown_midline_radius(card: SectionCard, outside: float) -> float:
 
 
 def _with_width(width: float, crown_radius: float, with_shoulder: Callable[[float], Section]) -> Section:
-    """The section whose shoulder lies where the overall width comes out as asked."""
+    """The section with the shoulder position that gives the overall width."""
     from scipy.optimize import brentq
 
     reached: list[tuple[float, float]] = []
@@ -172,7 +172,7 @@ def _section(card: SectionCard, name: str, half: bool, line: Line) -> Section:
 
 
 def _grooved(card: SectionCard, layers: tuple[Layer, ...], outer: Division) -> tuple[Layer, ...]:
-    """The layers with the grooves cut out of the outermost."""
+    """The layers with grooves cut out of the outermost one."""
     grooves = card.grooves
     if grooves is None or grooves.width == 0:
         return layers
@@ -233,7 +233,7 @@ def _division(parts: tuple[PartCard, ...], marks: dict[str, float], length: floa
 
 
 def _end(part: PartCard, marks: dict[str, float], length: float, field: str) -> float:
-    """Where a part ends [m]: at a mark, so far from the crown, or (negative) so far before the bead."""
+    """End of a part [m]: a mark, a length from the crown, or (negative) a length from the bead."""
     if isinstance(part.to, str):
         return marks[part.to]
     assert part.to is not None
@@ -248,7 +248,7 @@ def _end(part: PartCard, marks: dict[str, float], length: float, field: str) -> 
 
 
 def _profile(layer: LayerCard, regions: Division, scale: Mapping[str, float], length: float, field: str) -> Profile:
-    """The layer's thickness: table stretched to the meridian, each entry times its region's factor."""
+    """The layer's thickness: the table stretched to the meridian, with every entry scaled by its region's factor."""
     stations = np.asarray(layer.s)
     if layer.stretch and stations[-1] > 0:
         stations = stations * (length / stations[-1])

@@ -1,4 +1,4 @@
-"""The file of a section, ``geometry/NAME.toml``, as a validated card."""
+"""The validated card of a section file, ``geometry/NAME.toml``."""
 
 from __future__ import annotations
 
@@ -42,7 +42,7 @@ def _points(value: Any) -> tuple[tuple[float, float], ...]:
 
 
 def _end(value: Any) -> float | str:
-    """A mark's name, or a length along the meridian; a negative one counts back from the bead."""
+    """A mark's name, or a length along the meridian; a negative length is measured from the bead."""
     if isinstance(value, str) and value.replace("_", "").isalpha():
         if value not in MARKS:
             raise InputError(f"no mark '{value}'{nearest(value, MARKS)}; or a length like '2.2 in'")
@@ -61,9 +61,9 @@ Scale = Annotated[float, Unit("1", gt=0)]
 
 
 class PartCard(Card):
-    """A named part of the meridian, from where the one before ends up to ``to``; the last has no ``to``.
+    """A named part of the meridian, from the end of the previous part to ``to``; the last part has no ``to``.
 
-    ``to`` is a mark, a length from the crown, or a negative length: so far before the bead.
+    ``to`` is a mark, a length from the crown, or a negative length, measured from the bead.
     """
 
     name: Text
@@ -71,7 +71,7 @@ class PartCard(Card):
 
 
 class LineCard(Card):
-    """How the meridian is drawn, and where it lies across the thickness."""
+    """Form of the meridian, and its position within the thickness."""
 
     form: Annotated[Literal["two-arcs", "points"], Field(alias="kind")]
     reference: Text
@@ -82,7 +82,7 @@ class LineCard(Card):
 class LayerCard(Card):
     """A layer's thickness at stations along the meridian, and its regions.
 
-    With ``stretch`` the table is for a meridian that ends at its last station, and follows ``meridian_length``.
+    With ``stretch`` the table's last station is the end of a meridian, and the table scales with ``meridian_length``.
     """
 
     name: Text
@@ -95,7 +95,7 @@ class LayerCard(Card):
 
 
 class ParametersCard(Card):
-    """The named numbers of a section: what a design study changes."""
+    """The named dimensions of a section, which a design study changes."""
 
     nominal_width: PositiveLength
     outer_diameter: PositiveLength | None = None
@@ -115,9 +115,9 @@ class ParametersCard(Card):
 
 
 class GroovesCard(Card):
-    """Circumferential grooves, cut through the outermost layer: middles ``at`` along the meridian, all one ``width``.
+    """Circumferential grooves in the outermost layer: middles ``at`` along the meridian, all of the same ``width``.
 
-    ``boundary`` names what their walls and bottoms belong to. A width of 0 leaves the tread smooth.
+    ``boundary`` is the boundary of their walls and bottoms. A width of 0 gives a smooth tread.
     """
 
     at: Lengths
@@ -127,7 +127,7 @@ class GroovesCard(Card):
 
 
 class WrapCard(Card):
-    """The ``region`` in which plies leave the inner layer, run across the layers and on into the turn-up."""
+    """The ``region`` in which plies leave the inner layer, cross the other layers and continue in the turn-up."""
 
     region: Text
     source: Text
@@ -147,7 +147,7 @@ class RatingCard(Card):
 
 
 class SectionCard(Card):
-    """A section file: a line, named parameters, layers from the inside to the outside, boundaries, the rating.
+    """A section file: line, dimensions, layers from the inside to the outside, boundaries, rating.
 
     >>> from tyrefem.library import load
     >>> card = SectionCard.check(load("section", "nasa-22x5.5-8pr")[0])
@@ -167,8 +167,8 @@ class SectionCard(Card):
     rating: RatingCard | None = None
 
     @model_validator(mode="after")
-    def _one_way(self) -> SectionCard:
-        """Each number is given in one way, and what the kind of line needs is there."""
+    def _check_dimensions(self) -> SectionCard:
+        """Check that every dimension is given once, and that the line's kind has its dimensions."""
         given = {name for name, value in self.parameters if value is not None}
         needs, refuses = _BY_KIND[self.line.form]
         for name in sorted(needs - given):

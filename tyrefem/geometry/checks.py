@@ -1,4 +1,4 @@
-"""Can these layers be laid along this line? Folding, crossing and missing places are refused with the reason."""
+"""Checks that the layers fit the meridian: no folding, no crossing, no gaps."""
 
 from __future__ import annotations
 
@@ -13,22 +13,22 @@ Array = NDArray[np.float64]
 
 
 def check_possible(section: Layered) -> None:
-    """Raise `InputError` with field and reason unless the layers can be laid along the meridian."""
-    _ends(section)
+    """Raise `InputError` with field and reason if the layers cannot be laid along the meridian."""
+    _check_ends(section)
     length = section.line.length
     s = stations(section, 0.0, length, length / 120)
-    _no_folding(section, np.concatenate([s, _both_sides(section.breaks)]))
-    _apart(section, s)
-    _belts(section, s)
+    _check_folding(section, np.concatenate([s, _beside_kinks(section.breaks)]))
+    _check_crossing(section, s)
+    _check_belts(section, s)
 
 
-def _both_sides(breaks: tuple[float, ...]) -> Array:
-    """Just before and just behind every kink, where the curvature may jump."""
+def _beside_kinks(breaks: tuple[float, ...]) -> Array:
+    """Stations just before and just after every kink, where the curvature may jump."""
     inner = np.asarray(breaks[1:-1])
     return np.concatenate([inner * (1 - 1e-12), inner * (1 + 1e-12)])
 
 
-def _ends(section: Layered) -> None:
+def _check_ends(section: Layered) -> None:
     length = section.line.length
     for layer in section.layers:
         if abs(layer.regions.ends[-1] - length) > 1e-9:
@@ -42,7 +42,7 @@ def _ends(section: Layered) -> None:
         raise InputError(f"'{taken.pop()}' is the name of another boundary", field="boundaries")
 
 
-def _no_folding(section: Layered, s: Array) -> None:
+def _check_folding(section: Layered, s: Array) -> None:
     faces = section.interfaces(s)
     stretch = 1 + section.line.curvature(s) * faces
     if (stretch <= 1e-3).any():
@@ -55,8 +55,8 @@ def _no_folding(section: Layered, s: Array) -> None:
         )
 
 
-def _belts(section: Layered, s: Array) -> None:
-    """Regions with 'belt' in their name end before the section turns inwards again."""
+def _check_belts(section: Layered, s: Array) -> None:
+    """Check that regions with 'belt' in their name end before the section turns inwards."""
     widest = float(s[int(np.argmax(section.line.position(s)[:, 1]))])
     for index, layer in enumerate(section.layers):
         for name, _, end in layer.regions.parts():
@@ -68,8 +68,8 @@ def _belts(section: Layered, s: Array) -> None:
                 )
 
 
-def _apart(section: Layered, s: Array) -> None:
-    """The half outline must stay above the axis, on its own side of the mid plane, and not cross itself."""
+def _check_crossing(section: Layered, s: Array) -> None:
+    """Check that the half outline is above the axis and on its side of the mid plane, and does not cross itself."""
     inner, outer = face(section, 0, s), face(section, len(section.layers), s)
     both = np.concatenate([inner, outer])
     if both[:, 0].min() <= 0:
@@ -88,11 +88,11 @@ def _apart(section: Layered, s: Array) -> None:
 
 
 def _crosses_itself(polygon: Array) -> bool:
-    """Whether two edges of a closed polygon that are not neighbours cross."""
+    """True if two edges of a closed polygon that are not neighbours cross."""
     a, b = polygon, np.roll(polygon, -1, axis=0)
 
     def turn(p: Array, q: Array, x: Array) -> Array:
-        """Sign of the side of p -> q (n, 1, 2) on which x (1, n, 2) lies."""
+        """Sign of the side of p -> q (n, 1, 2) for points x (1, n, 2)."""
         along, to = (q - p)[:, None], x[None] - p[:, None]
         return np.sign(along[..., 0] * to[..., 1] - along[..., 1] * to[..., 0])
 

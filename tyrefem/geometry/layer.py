@@ -1,8 +1,8 @@
-"""A quantity tabulated along the meridian, such as a layer's thickness.
+"""The layers of a section: thickness along the meridian, named parts and pieces; and the rating of the tyre.
 
-Names along the meridian: which region or boundary a place belongs to.
+A `Profile` holds a tabulated quantity, a `Division` the names along the meridian.
 
-What a section is made of: layers, their pieces, and the rating of the tyre; and how these are read.
+`Layered` is what measures, outlines, checks and warnings read of a section.
 """
 
 from __future__ import annotations
@@ -21,17 +21,17 @@ from tyrefem.geometry.meridian import Line
 Array = NDArray[np.float64]
 
 
-#: No layer of any tyre is thinner or thicker [m]; beyond that elements degenerate.
+#: Smallest and largest thickness of a layer [m], for all tyres; beyond it elements degenerate.
 THINNEST, THICKEST = 1e-5, 1.0
 
 
 @dataclass(frozen=True)
 class Profile(Stated):
-    """Values at stations ``s`` along the meridian [m], even in ``s``.
+    """Values at stations ``s`` along the meridian [m], symmetric in ``s``.
 
     Parameters
     ----------
-    s : stations, rising, none twice [m]; the profile is held constant outside them.
+    s : stations, strictly increasing [m]; the profile is constant outside them.
     values : one value per station [m].
     interpolation : ``"linear"``, or ``"pchip"`` (smooth, and monotone between stations).
 
@@ -83,7 +83,7 @@ class Profile(Stated):
         return np.asarray(np.interp(x, self.s, self.values))
 
     def slope(self, s: ArrayLike) -> Array:
-        """d value/ds at ``s`` (any shape); at a kink, the slope towards larger ``|s|``."""
+        """d value/ds at ``s`` (any shape); at a kink, the slope on the side of larger ``|s|``."""
         s = np.asarray(s, dtype=float)
         stations, x = np.asarray(self.s), np.abs(s)
         inside = (x >= stations[0]) & (x < stations[-1])
@@ -99,16 +99,16 @@ class Profile(Stated):
 
 @dataclass(frozen=True)
 class Division:
-    """The meridian cut into named parts, from the crown to the bead.
+    """Named parts of the meridian, from the crown to the bead.
 
     Parameters
     ----------
-    names : one per part.
-    ends : where each part ends, rising [m]; the last is the end of the section.
+    names : of the parts.
+    ends : of the parts, increasing [m]; the last is the end of the section.
 
     Raises
     ------
-    InputError : a part that ends before it begins, and so never appears.
+    InputError : a part that ends before its start, which thus has no length.
 
     >>> outer = Division(("tread", "sidewall"), (0.05, 0.15))
     >>> outer.at([0.02, 0.05, -0.1]).tolist()
@@ -134,11 +134,11 @@ class Division:
         return np.asarray(self.names)[np.searchsorted(np.asarray(self.ends[:-1]) + 1e-12, s)]
 
     def cut(self, start: float, end: float, name: str) -> Division:
-        """The same with what lies between two stations under another name.
+        """The division with another name between two stations.
 
         Raises
         ------
-        InputError : the stretch is not all within one part.
+        InputError : the interval is not within one part.
 
         >>> Division(("tread",), (0.1,)).cut(0.02, 0.03, "groove").parts()
         [('tread', 0.0, 0.02), ('groove', 0.02, 0.03), ('tread', 0.03, 0.1)]
@@ -157,7 +157,7 @@ class Division:
         return Division(tuple(part for part, _ in pieces), tuple(stop for _, stop in pieces))
 
     def parts(self) -> list[tuple[str, float, float]]:
-        """(name, start, end) of each part, neighbours of the same name joined."""
+        """(name, start, end) of each part; neighbours of the same name are joined."""
         parts: list[tuple[str, float, float]] = []
         start = 0.0
         for name, end in zip(self.names, self.ends, strict=True):
@@ -171,7 +171,7 @@ class Division:
 
 @dataclass(frozen=True)
 class Layer:
-    """One layer from crown to bead: its thickness along the meridian and the regions it is cut into.
+    """One layer from crown to bead: its thickness along the meridian and its regions.
 
     >>> Layer("rubber", Profile((0.0,), (0.01,)), Division(("tread", "sidewall"), (0.05, 0.15))).name
     'rubber'
@@ -184,7 +184,7 @@ class Layer:
 
 @dataclass(frozen=True)
 class Piece:
-    """Part of one layer between two stations, all of one region."""
+    """Part of one layer between two stations, within one region."""
 
     layer: int
     start: float
@@ -194,9 +194,9 @@ class Piece:
 
 @dataclass(frozen=True)
 class Rating:
-    """What the tyre is rated for, and the bead wire. SI units.
+    """Rated load and pressure, nominal size, and bead wire. SI units.
 
-    ``width`` and ``diameter`` are the nominal ones of the deflection law, ``bead_wire_area`` is per bundle.
+    ``width`` and ``diameter`` are the nominal ones of the deflection law; ``bead_wire_area`` is per bundle.
     """
 
     width: float
@@ -214,7 +214,7 @@ class Rating:
 
 
 class Layered(Protocol):
-    """Layers along a meridian, as measures, outlines, checks and warnings read them; a `Section` is one."""
+    """Data of layers along a meridian that measures, outlines, checks and warnings read; a `Section` has them."""
 
     @property
     def name(self) -> str: ...

@@ -1,6 +1,6 @@
-"""How the layers lie on the meridian: where it runs across their thickness.
+"""Position of the layers relative to the meridian, across the thickness.
 
-A ply that runs round the bead: down inside it, across the layers below it, up again as the turn-up.
+Also the course of a ply around the bead: down inside it, across the layers below it, up again as the turn-up.
 """
 
 from __future__ import annotations
@@ -17,20 +17,20 @@ from tyrefem.geometry.layer import Layer, Layered
 Array = NDArray[np.float64]
 
 
-#: Readings of the meridian that are not the midline of a layer.
+#: Positions of the meridian other than a layer's midline.
 READINGS = ("total", "inner", "outer")
 
 
 @dataclass(frozen=True)
 class Layup:
-    """Layers from the inside to the outside, and the reading of the meridian.
+    """Layers from the inside to the outside, and the position of the meridian among them.
 
     Parameters
     ----------
-    layers : from the inside to the outside, names all different.
-    reference : the layer whose midline the meridian is, ``"total"`` for the middle of the whole thickness,
+    layers : from the inside to the outside, with different names.
+    reference : the layer whose midline is the meridian; ``"total"`` for the middle of the whole thickness;
         ``"inner"`` or ``"outer"`` for a face.
-    as_built : the layers that the meridian was drawn for, where they have become thinner; None: ``layers``.
+    as_built : if worn, the layers before wear, which place the meridian; None: ``layers``.
 
     Raises
     ------
@@ -67,7 +67,7 @@ class Layup:
         return next((i for i, layer in enumerate(self.layers) if "carcass" in layer.regions.names), None)
 
     def faces(self, s: ArrayLike) -> Array:
-        """Distance from the meridian to the inner face, then each layer's outer face: (n_layers + 1, ...) [m]."""
+        """Distance from the meridian to the inner face and to each layer's outer face: (n_layers + 1, ...) [m]."""
         s = np.asarray(s, dtype=float)
         return self._stacked(*[np.stack([layer.thickness(s) for layer in layers]) for layers in self._now_and_built])
 
@@ -99,7 +99,7 @@ class Layup:
 
 
 def _heights(rises: Array) -> Array:
-    """Heights above the inner face from the thicknesses of the layers."""
+    """Heights of the faces above the inner face, from the thicknesses of the layers."""
     return np.concatenate([np.zeros((1, *rises.shape[1:])), np.cumsum(rises, axis=0)])
 
 
@@ -107,17 +107,17 @@ def _heights(rises: Array) -> Array:
 class Wrap:
     """The strip of a section in which cords turn from along the meridian to across it and back.
 
-    The strip is one stretch of the meridian in layers that lie on each other. In the innermost and the outermost of
-    them the cords run on circles about the strip's inner corners, between these straight across:
+    The strip is one interval of the meridian in neighbouring layers. In the innermost and the outermost of them the
+    cords follow circles about the strip's inner corners; in the layers between they run straight across:
 
         d = (|dy|, ds) / hypot(ds, dy)    along the meridian and outwards
 
-    ds from the strip's beginning, along a line parallel to the meridian; dy from the nearest of the layers between,
-    0 in these.
+    ds is the distance from the strip's start, along a line parallel to the meridian; dy the distance from the nearest
+    of the layers between, 0 inside these.
 
     Raises
     ------
-    InputError : no such region, or its parts do not lie on each other.
+    InputError : no such region, or its parts are not neighbours.
 
     >>> from tyrefem.geometry import load
     >>> wrap = load("passenger-205-55r16").wrapping
@@ -146,18 +146,18 @@ class Wrap:
 
     @cached_property
     def layers(self) -> tuple[int, ...]:
-        """Numbers of the layers that it crosses."""
+        """Indices of the layers that the strip crosses."""
         return tuple(piece.layer for piece in self.section.pieces if piece.region == self.region)
 
     @property
     def thickness(self) -> float:
-        """Of the ply below the bead, m."""
+        """Thickness of the ply below the bead, m."""
         start, end = self._stretch
         return end - start
 
     def direction(self, s: ArrayLike, y: ArrayLike) -> tuple[Array, Array]:
-        """Parts along the meridian (towards larger s) and along its normal of the cords' unit vector at places
-        (s, y), y from the meridian; along the meridian outside the strip."""
+        """Unit vector of the cords at positions (s, y), y from the meridian: components along the meridian (towards
+        larger s) and along its normal. Outside the strip it is along the meridian."""
         s, y = np.broadcast_arrays(np.asarray(s, dtype=float), np.asarray(y, dtype=float))
         start, end = self._stretch
         x = np.abs(s)
@@ -168,6 +168,6 @@ class Wrap:
         aside = y - np.clip(y, inner, outer)
         below = (x - start) * (1 + self.section.line.curvature(s) * y)
         length = np.maximum(np.hypot(aside, below), 1e-12)
-        # Down inside, up outside: what is along the meridian inside runs back outside.
+        # Down on the inside, up on the outside: the direction along the meridian is reversed.
         forward = np.where(here, -aside / length, 1.0) * np.where(s < 0, -1.0, 1.0)
         return forward, np.where(here, below / length, 0.0)

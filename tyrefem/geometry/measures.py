@@ -23,7 +23,7 @@ def _integral(section: Layered, start: float, end: float, density: Callable[[Arr
 
 
 def _over_pieces(section: Layered, region: str | None, radius_power: int) -> float:
-    """Integral of r^power dA, power 0 or 1, across the layers in closed form: a polynomial in y."""
+    """Integral of r^power dA, power 0 or 1; across the layers it is a polynomial in y, integrated in closed form."""
     if region is not None:
         section.require_region(region)
     line, total = section.line, 0.0
@@ -98,7 +98,7 @@ def overall_width(section: Layered) -> float:
     for _ in range(6):
         best = int(np.argmax(z(samples)))
         low, high = samples[max(best - 1, 0)], samples[min(best + 1, len(samples) - 1)]
-        # The best sample stays one of them: it may be a kink of the thickness.
+        # The best sample is kept if it is the largest: it may be at a kink of the thickness.
         samples = np.unique(np.concatenate([np.linspace(low, high, 60), samples[[best]]]))
     return 2 * float(z(samples).max())
 

@@ -1,4 +1,4 @@
-"""The reference line of a section, the meridian: two circular arcs, as the NASA report idealises a tyre."""
+"""The meridian (reference line) of a section as two circular arcs, as in the NASA report."""
 
 from __future__ import annotations
 
@@ -98,7 +98,7 @@ class TwoArcs(Stated):
 
     @property
     def breaks(self) -> tuple[float, ...]:
-        """Where the curvature jumps [m]."""
+        """Stations where the curvature jumps [m]."""
         return (self.shoulder_s,)
 
     @cached_property
@@ -130,7 +130,7 @@ class TwoArcs(Stated):
         return np.where(x <= self.shoulder_s, x / self.crown_radius, beyond)
 
     def position(self, s: ArrayLike) -> Array:
-        """(r, z) at ``s``, shape (..., 2) [m]; negative ``s`` is the other side, beyond the bead the arc goes on."""
+        """(r, z) at ``s``, shape (..., 2) [m]; negative ``s`` is the other side; beyond the bead the arc continues."""
         s = np.asarray(s, dtype=float)
         crown, sidewall = self._centres()
         on_crown = np.abs(s)[..., None] <= self.shoulder_s
@@ -155,7 +155,7 @@ class TwoArcs(Stated):
     def nearest(self, points: ArrayLike) -> tuple[Array, Array]:
         """Foot (s, y) of points (..., 2): arc length, and signed distance along the outward normal [m].
 
-        Exact. Points past the bead are put on the arc carried on beyond it (``|s| > length``).
+        Exact. Points past the bead are projected on the continued arc (``|s| > length``).
         """
         points = np.asarray(points, dtype=float)
         side = np.where(points[..., 1] < 0, -1.0, 1.0)

@@ -1,4 +1,4 @@
-"""Polygons of regions and polylines of boundaries, for drawing and for meshing."""
+"""Polygons of regions and polylines of boundaries, for pictures and meshes."""
 
 from __future__ import annotations
 
@@ -14,7 +14,7 @@ _MIRROR = np.array([1.0, -1.0])
 
 
 def stations(section: Layered, start: float, end: float, spacing: float) -> Array:
-    """Stations from start to end no further apart than ``spacing``, every kink of the geometry among them."""
+    """Stations from start to end at most ``spacing`` apart, with all kinks of the geometry."""
     knots = np.unique([start, *(s for s in section.breaks if start + 1e-9 < s < end - 1e-9), end])
     runs = [np.linspace(a, b, max(2, int(np.ceil((b - a) / spacing - 1e-9)) + 1))[:-1] for a, b in pairwise(knots)]
     return np.concatenate([*runs, knots[-1:]])
@@ -74,7 +74,7 @@ def boundary_lines(section: Layered, name: str, spacing: float) -> list[Array]:
 
 
 def _ribs(section: Layered, start: float, end: float) -> list[tuple[float, float]]:
-    """What grooves leave of a stretch of the outer face."""
+    """Intervals of the outer face between grooves."""
     ribs, begin = [], start
     for low, high in section.grooves:
         if start <= low < end:

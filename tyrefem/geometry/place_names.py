@@ -7,7 +7,7 @@ if TYPE_CHECKING:
 
 
 def place(section: Section, s: float, depth: float, region: str = "") -> str:
-    """A place on the section in words: where along the meridian, and how deep; ``region`` where it is known.
+    """Description of a place on the section: position along the meridian, and depth; ``region`` if it is known.
 
     >>> from tyrefem.geometry import load
     >>> place(load("nasa-22x5.5-8pr"), 0.0, 0.0015)

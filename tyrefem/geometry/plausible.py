@@ -1,4 +1,4 @@
-"""Is this section likely? What can be built but is perhaps not meant is a warning; what cannot is `possible`'s."""
+"""Warnings for unlikely sections, which can be built but may be mistakes; `checks` has the errors."""
 
 from __future__ import annotations
 
@@ -12,20 +12,20 @@ from tyrefem.errors import InputWarning
 from tyrefem.geometry.layer import Layered
 
 Array = NDArray[np.float64]
-#: A table that goes on further beyond the meridian's end, over its length, was made for another one (a judgement).
+#: Length of a table beyond the meridian's end, over its length, from which it was made for another one (a judgement).
 OVERHANG = 0.05
-#: Width of the section over its nominal width, with room: shipped tyres 1.01 to 1.15, cars 0.96 to 1.06 by standards.
+#: Range of section width over nominal width: shipped tyres have 1.01 to 1.15, cars 0.96 to 1.06 by standards.
 WIDTH = (0.85, 1.25)
-#: Rated width and diameter over the section's own, with room.
+#: Range of rated width and diameter over those of the section.
 RATED = (0.85, 1.15)
-#: A stretch of the meridian that turns less, rad, is the rounding of its points: 0.1 mm in 6 mm are 1.9 deg.
+#: Smallest turn of the meridian, rad, that is not rounding of its points: 0.1 mm in 6 mm are 1.9 deg.
 ROUNDING = np.radians(3.0)
-#: Curvature of a kink over the meridian's mean; its turn at least, rad. The shipped lines reach 2.1 (judgements).
+#: Kinks: smallest curvature over the meridian's mean; smallest turn, rad. Shipped lines reach 2.1 (judgements).
 KINK, CORNER = 5.0, np.radians(10.0)
 
 
 def warnings_of(section: Layered) -> tuple[InputWarning, ...]:
-    """What is unlikely in a section, with the field of its card.
+    """Warnings for unlikely values of a section, with the fields of its card.
 
     >>> from tyrefem.geometry import load
     >>> warnings_of(load("passenger-205-55r16"))
@@ -79,15 +79,15 @@ def _widths(section: Layered) -> Iterator[InputWarning]:
 
 
 def _meridian(section: Layered) -> Iterator[InputWarning]:
-    """Kinks, and stretches bent the wrong way: a wall under pressure is drawn outwards, and turns there.
+    """Kinks, and intervals with the wrong curvature: pressure moves a wall outwards and turns it there.
 
-    The meridian of a tyre is convex from the crown on and may be hollow towards the bead, once.
+    The meridian of a tyre is convex from the crown and may be hollow once, towards the bead.
     """
     s = np.linspace(0.0, section.line.length, 2001)
     curvature = section.line.curvature(s)
     turns = curvature * s[1]
     stretches = [(first, last, float(turns[first:last].sum())) for first, last in _stretches(turns)]
-    # Hollow: all but the stretch towards the bead.
+    # Hollow intervals, except the one towards the bead.
     wrong = [
         f"s = {s[first] * 1e3:.0f} to {s[last - 1] * 1e3:.0f} mm ({np.degrees(-turn):.0f} deg)"
         for number, (first, last, turn) in enumerate(stretches)
@@ -105,7 +105,7 @@ def _meridian(section: Layered) -> Iterator[InputWarning]:
 
 
 def _stretches(turns: Array) -> list[tuple[int, int]]:
-    """(first, last + 1) of the stretches of one sign that turn by more than rounding does; the others join them."""
+    """(first, last + 1) of intervals of one sign that turn by more than rounding; the others are joined to these."""
     borders = [0, *(np.flatnonzero(np.diff(np.sign(turns)) != 0) + 1).tolist(), len(turns)]
     stretches: list[tuple[int, int]] = []
     for first, last in pairwise(borders):
@@ -120,7 +120,7 @@ def _stretches(turns: Array) -> list[tuple[int, int]]:
 
 
 def _kinks(section: Layered, s: Array, curvature: Array) -> Iterator[str]:
-    """Corners in words: tighter than the wall is thick, or far tighter than the rest of the line."""
+    """Descriptions of corners: radius smaller than the wall thickness, or far smaller than elsewhere on the line."""
     thickness = section.total_thickness(s)
     mean = float(np.abs(curvature).mean())
     tight = np.abs(curvature) > np.minimum(1 / thickness, KINK * mean)

@@ -20,7 +20,7 @@ from tyrefem.geometry.meridian import Line
 from tyrefem.geometry.plausible import warnings_of
 
 Array = NDArray[np.float64]
-#: Name of what is cut out of the outermost layer: no region, not meshed.
+#: Name of the material cut out of the outermost layer: no region, not meshed.
 GROOVE = "groove"
 
 
@@ -28,26 +28,26 @@ GROOVE = "groove"
 class Section(Brief, Stated):
     """An axisymmetric cross-section in (r, z) [m], r from the wheel's axis, z from the mid plane.
 
-    A place is (s, depth): ``s`` along the meridian from the crown, negative on the other side, and ``depth`` from
-    the inner surface along the meridian's normal. With y the distance from the meridian and kappa its curvature,
-    an area element is (1 + kappa y) ds dy.
+    A position is (s, depth): ``s`` along the meridian from the crown, negative on the other side; ``depth`` from the
+    inner surface along the meridian's normal. With y the distance from the meridian and kappa its curvature, an area
+    element is (1 + kappa y) ds dy.
 
     Parameters
     ----------
-    name : what the section is called.
+    name : of the section.
     line : the meridian.
     layers : from the inside to the outside.
-    reference : where the meridian lies: mid-thickness of the layer of this name, or of the whole (``"total"``),
-        or on the ``"inner"`` or ``"outer"`` face.
-    outer : boundaries along the outer face; the end face at the bead takes the last one.
+    reference : position of the meridian: mid-thickness of the layer of this name, or of all layers (``"total"``), or
+        the ``"inner"`` or ``"outer"`` face.
+    outer : boundaries along the outer face; the end face at the bead belongs to the last one.
     rating : rated load and pressure, bead wire; None where unknown.
     nominal_width : w of the report's shear formula and of the shoulder [m].
     inner_volume : measured air volume of the whole tyre [m3]; None: from the geometry.
     flange_radius : of the rim's flange [m]; None where unknown.
-    groove_boundary : boundary of the walls and bottoms of the parts of the outermost layer that are named `GROOVE`.
+    groove_boundary : boundary of the walls and bottoms of grooves, the parts of the outermost layer named `GROOVE`.
     half : only z >= 0, with the boundary ``symmetry`` at the mid plane.
-    wrap : region in which plies run round the bead, across the layers; None: there is none.
-    as_built : the layers before wear; None: ``layers``. They place the meridian.
+    wrap : region in which plies run around the bead, across the layers; None: no such region.
+    as_built : the layers before wear, which place the meridian; None: ``layers``.
 
     Raises
     ------
@@ -88,7 +88,7 @@ class Section(Brief, Stated):
 
     @cached_property
     def _hash(self) -> int:
-        """Of all that a section is given; caches are keyed by sections."""
+        """Hash of all fields; caches use sections as keys."""
         return hash(tuple(getattr(self, field.name) for field in fields(self)))
 
     def _facts(self) -> Mapping[str, Any]:
@@ -123,7 +123,7 @@ class Section(Brief, Stated):
 
     @cached_property
     def pieces(self) -> tuple[Piece, ...]:
-        """Parts of layers between stations on the side z >= 0, each of one region."""
+        """Parts of layers between stations on the side z >= 0, each within one region."""
         return tuple(
             Piece(index, start, end, name)
             for index, layer in enumerate(self.layers)
@@ -137,7 +137,7 @@ class Section(Brief, Stated):
         return tuple((start, end) for name, start, end in self.layers[-1].regions.parts() if name == GROOVE)
 
     def in_groove(self, s: ArrayLike) -> NDArray[np.bool_]:
-        """Whether stations lie across a groove; on its walls they do not."""
+        """True for stations inside a groove; its walls are not inside."""
         x = np.abs(np.asarray(s, dtype=float))
         inside = np.zeros(x.shape, dtype=bool)
         for start, end in self.grooves:
@@ -146,7 +146,7 @@ class Section(Brief, Stated):
 
     @cached_property
     def breaks(self) -> tuple[float, ...]:
-        """Stations that a mesh or an integral must not step over: names change, or the geometry has a kink [m]."""
+        """Stations at which elements and integrals must end: a name changes, or the geometry has a kink [m]."""
         stations = {0.0, self.line.length, self.line.shoulder_s, *self.line.breaks, *self.outer.ends}
         for layer in self.layers:
             stations.update(layer.regions.ends, layer.thickness.s)
@@ -166,28 +166,28 @@ class Section(Brief, Stated):
 
     @cached_property
     def warnings(self) -> tuple[InputWarning, ...]:
-        """What can be built but is perhaps not meant: tables beyond the meridian, kinks, ratings of another tyre."""
+        """Unlikely values: tables beyond the meridian, kinks, ratings of another tyre."""
         return warnings_of(self)
 
     @cached_property
     def wrapping(self) -> Wrap | None:
-        """How the plies run in the region `wrap`; None: there is none."""
+        """Direction of the plies in the region `wrap`; None: no such region."""
         return None if self.wrap is None else Wrap(self, self.wrap)
 
     def require_region(self, name: str) -> None:
-        """Raise `InputError` unless ``name`` is a region."""
+        """Raise `InputError` if ``name`` is not a region."""
         if name not in self.regions:
             raise InputError(f"section '{self.name}' has no region '{name}'{nearest(name, self.regions)}")
 
     # Places
 
-    def _x(self, s: ArrayLike) -> Array:
-        """Stations as the section knows them: a half section folds the other side over."""
+    def _stations(self, s: ArrayLike) -> Array:
+        """Stations in the section's coordinates: |s| for a half section."""
         s = np.asarray(s, dtype=float)
         return np.abs(s) if self.half else s
 
     def interfaces(self, s: ArrayLike) -> Array:
-        """Distance from the meridian to the inner face, each layer's outer face in turn: (n_layers + 1, ...) [m]."""
+        """Distance from the meridian to the inner face and to each layer's outer face: (n_layers + 1, ...) [m]."""
         return self._layup.faces(s)
 
     def interface_slopes(self, s: ArrayLike) -> Array:
@@ -195,8 +195,8 @@ class Section(Brief, Stated):
         return self._layup.slopes(s)
 
     def thickness(self, name: str, s: ArrayLike) -> Array:
-        """Thickness of a layer at ``s``; or of a region, zero where it is absent [m]. A layer's name goes first."""
-        s = self._x(s)
+        """Thickness of a layer at ``s``, or of a region (zero where it is absent) [m]. Layer names take precedence."""
+        s = self._stations(s)
         for layer in self.layers:
             if layer.name == name:
                 return layer.thickness(s)
@@ -206,32 +206,32 @@ class Section(Brief, Stated):
 
     def total_thickness(self, s: ArrayLike) -> Array:
         """Thickness of all layers at ``s`` [m]."""
-        faces = self.interfaces(self._x(s))
+        faces = self.interfaces(self._stations(s))
         return np.asarray(faces[-1] - faces[0])
 
     def rubber_thickness(self, s: ArrayLike) -> Array:
-        """Thickness at stations ``s``, to the bottom where there is a groove [m]."""
-        faces = self.interfaces(self._x(s))
+        """Thickness at stations ``s``, in a groove up to its bottom [m]."""
+        faces = self.interfaces(self._stations(s))
         return np.asarray(np.where(self.in_groove(s), faces[-2], faces[-1]) - faces[0])
 
     def place(self, s: ArrayLike, depth: ArrayLike) -> Array:
-        """(r, z) of places ``s``, ``depth`` from the inner surface, shape (..., 2) [m]."""
-        s, depth = np.broadcast_arrays(self._x(s), np.asarray(depth, dtype=float))
+        """(r, z) of positions ``s``, ``depth`` from the inner surface, shape (..., 2) [m]."""
+        s, depth = np.broadcast_arrays(self._stations(s), np.asarray(depth, dtype=float))
         y = self.interfaces(s)[0] + depth
         return np.asarray(self.line.position(s) + y[..., None] * self.line.normal(s))
 
     def locate(self, points: ArrayLike) -> tuple[Array, Array]:
-        """(s, depth) of points (..., 2), the inverse of `place`; also for points somewhat outside.
+        """(s, depth) of points (..., 2), the inverse of `place`; also for points slightly outside.
 
-        A half section folds points with z < 0 over, so ``s`` is never negative there.
+        A half section mirrors points with z < 0, so ``s`` is never negative there.
         """
         s, y = self.line.nearest(points)
-        s = self._x(s)
+        s = self._stations(s)
         return s, y - self.interfaces(s)[0]
 
     def ply_direction(self, points: ArrayLike) -> Array:
-        """Unit vectors (..., 2) in (r, z) along which a radial ply runs at points (..., 2): the meridian's; in the
-        region `wrap` round the bead."""
+        """Unit vectors (..., 2) in (r, z) along a radial ply at points (..., 2): along the meridian; in the region
+        `wrap` around the bead."""
         s, y = self.line.nearest(points)
         normal = self.line.normal(s)
         along = np.stack([-normal[..., 1], normal[..., 0]], axis=-1)
@@ -254,13 +254,13 @@ class Section(Brief, Stated):
         ``midline_offset(s, depth)``, or ``midline_offset(points)`` with points (..., 2). The carcass is the layer
         with the region ``carcass``; without one, the distance is from the meridian.
         """
-        s, depth = self.locate(place) if depth is None else (self._x(place), np.asarray(depth, dtype=float))
+        s, depth = self.locate(place) if depth is None else (self._stations(place), np.asarray(depth, dtype=float))
         faces = self.interfaces(s)
         return np.asarray(faces[0] + depth - self.carcass_offset(s))
 
     def carcass_offset(self, s: ArrayLike) -> Array:
         """Distance of the carcass midline from the meridian, outwards positive [m]; zero if the line is the midline."""
-        s = self._x(s)
+        s = self._stations(s)
         index = self._layup.carcass
         if index is None:
             return np.zeros_like(s)
@@ -268,8 +268,8 @@ class Section(Brief, Stated):
         return np.asarray((faces[index] + faces[index + 1]) / 2)
 
     def region_at(self, s: ArrayLike, depth: ArrayLike) -> NDArray[np.str_]:
-        """The region at (s, depth), same shape; beyond the surface, that of the nearest layer; `GROOVE` in a groove."""
-        s, depth = np.broadcast_arrays(self._x(s), np.asarray(depth, dtype=float))
+        """The region at (s, depth), same shape; beyond a surface that of the nearest layer; `GROOVE` in a groove."""
+        s, depth = np.broadcast_arrays(self._stations(s), np.asarray(depth, dtype=float))
         faces = self.interfaces(s)
         index = sum(
             (np.asarray(depth > faces[k] - faces[0]).astype(int) for k in range(1, len(self.layers))),
@@ -278,11 +278,11 @@ class Section(Brief, Stated):
         return np.asarray(np.choose(index, [layer.regions.at(s) for layer in self.layers]))
 
     def contains(self, points: ArrayLike, tolerance: float = 1e-9) -> NDArray[np.bool_]:
-        """Whether points (..., 2) lie in the section, its surface included."""
+        """True for points (..., 2) in the section or on its surface."""
         points = np.asarray(points, dtype=float)
         s, depth = self.locate(points)
         inside = (np.abs(s) <= self.line.length + tolerance) & (depth >= -tolerance)
-        inside &= depth <= self.rubber_thickness(self._x(s)) + tolerance
+        inside &= depth <= self.rubber_thickness(self._stations(s)) + tolerance
         return inside & (points[..., 1] >= -tolerance) if self.half else inside
 
     # Shape
@@ -293,25 +293,25 @@ class Section(Brief, Stated):
         return outlines.region_outlines(self, region, spacing)
 
     def boundary_line(self, name: str, spacing: float = 5e-4) -> list[Array]:
-        """Open polylines (n, 2) of a boundary; the end face at the bead belongs to the last of the outer face."""
+        """Open polylines (n, 2) of a boundary; the last of the outer face includes the end face at the bead."""
         if name not in self.boundaries:
             raise InputError(f"section '{self.name}' has no boundary '{name}'{nearest(name, self.boundaries)}")
         return outlines.boundary_lines(self, name, spacing)
 
     def area(self, region: str | None = None) -> float:
-        """Area of a region, or of the section [m2]; of the half that is there, if half."""
+        """Area of a region or of the section [m2]; for a half section, of that half."""
         return measures.area(self, region)
 
     def volume(self, region: str | None = None) -> float:
-        """Volume of the ring of a region, or of the section: the integral of 2 pi r dA [m3]."""
+        """Volume of the ring of a region or of the section: the integral of 2 pi r dA [m3]."""
         return measures.volume(self, region)
 
     def inner_surface_area(self) -> float:
-        """Area of the inner surface of revolution [m2]; of the half that is there, if half."""
+        """Area of the inner surface of revolution [m2]; for a half section, of that half."""
         return measures.inner_surface_area(self)
 
     def gas_volume(self) -> float:
-        """Air inside the tyre, closed by a cylinder from bead to bead [m3]; half of it, if half.
+        """Volume of air inside the tyre, closed by a cylinder from bead to bead [m3]; for a half section, half of it.
 
         A measured ``inner_volume`` replaces the computed one.
         """
@@ -339,9 +339,10 @@ class Section(Brief, Stated):
         return self.layers if self.as_built is None else self.as_built
 
     def worn(self, region: str, fraction: float) -> Section:
-        """The section with a fraction of a region's thickness worn off its outside; everything else stays in place.
+        """The section with a fraction of a region's thickness removed from its outside; all other parts keep their
+        place.
 
-        The thickness goes over into the neighbour's between two stations of the layer's table.
+        Between two stations of the layer's table the thickness changes gradually to that of the neighbouring region.
 
         Raises
         ------
@@ -375,5 +376,5 @@ class Section(Brief, Stated):
         return replace(self, half=True)
 
     def summary(self) -> dict[str, Any]:
-        """The numbers a person asks for first, SI; areas and volumes of the half that is there, if half."""
+        """Main dimensions, SI; areas and volumes of a half section are those of that half."""
         return measures.summary(self)

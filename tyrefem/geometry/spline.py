@@ -1,4 +1,4 @@
-"""The reference line of a section through measured points."""
+"""The meridian of a section through measured points."""
 
 from __future__ import annotations
 
@@ -20,16 +20,16 @@ _GAUSS = np.polynomial.legendre.leggauss(8)
 class SplineLine(Stated):
     """A smooth meridian through points (r, z) from the crown to the bead.
 
-    A cubic spline over the chord length, symmetric at the crown, re-expressed by its arc length.
+    A cubic spline over the chord length, symmetric at the crown, reparametrised by its arc length.
 
     Parameters
     ----------
     points : (r, z) pairs [m], the first on the mid plane (z = 0).
-    shoulder_s : where the tread ends, along the arc [m].
+    shoulder_s : end of the tread, along the arc [m].
 
     Raises
     ------
-    InputError : fewer than three points, a point twice, the first off the mid plane, shoulder off the line.
+    InputError : fewer than three points, a repeated point, the first not at z = 0, the shoulder outside the line.
 
     >>> angles = np.linspace(0.0, 2.0, 41)
     >>> arc = SplineLine(tuple((0.2 + 0.1 * np.cos(a), 0.1 * np.sin(a)) for a in angles), 0.06)
@@ -63,7 +63,7 @@ class SplineLine(Stated):
 
         points = np.asarray(self.points, dtype=float)
         chord = np.concatenate([[0.0], np.cumsum(np.linalg.norm(np.diff(points, axis=0), axis=1))])
-        # Symmetry at the crown: r' = 0 and z'' = 0; at the bead the last piece goes on smoothly.
+        # Symmetry at the crown: r' = 0 and z'' = 0; at the bead the last two pieces are one cubic.
         ends_r: Any = ((1, 0.0), "not-a-knot")
         ends_z: Any = ((2, 0.0), "not-a-knot")
         r = CubicSpline(chord, points[:, 0], bc_type=ends_r)
@@ -92,7 +92,7 @@ class SplineLine(Stated):
 
     @property
     def breaks(self) -> tuple[float, ...]:
-        """Where the line is less smooth: the points, and the shoulder [m]."""
+        """Stations where the line is less smooth: the points, and the shoulder [m]."""
         return (*self._knots[1:-1].tolist(), self.shoulder_s)
 
     def _parameter(self, x: Array) -> Array:
@@ -111,7 +111,7 @@ class SplineLine(Stated):
         return t
 
     def _frame(self, s: ArrayLike) -> tuple[Array, Array, Array]:
-        """Point, unit tangent (towards the bead) and curvature at |s|; straight on beyond the bead."""
+        """Point, unit tangent (towards the bead) and curvature at |s|; beyond the bead a straight line."""
         x = np.abs(np.asarray(s, dtype=float))
         t = self._parameter(x.ravel()).reshape(x.shape)
         _, r, z = self._curve

@@ -1,4 +1,4 @@
-"""The wall of a tyre from its inner to its outer surface: where a gradient through it is taken."""
+"""The wall of a tyre between its inner and outer surface, for gradients through the thickness."""
 
 from __future__ import annotations
 
@@ -11,7 +11,7 @@ from numpy.typing import NDArray
 from tyrefem.geometry import Section
 
 Array = NDArray[np.float64]
-#: Stations along the meridian; both ends are left out.
+#: Number of stations along the meridian; both ends are left out.
 STATIONS = 41
 
 
@@ -19,7 +19,7 @@ STATIONS = 41
 class Wall:
     """Stations s (k,) m along the meridian, thickness (k,) m, and both surfaces there (k, 2) in (r, z), m.
 
-    Across a groove the wall ends at its bottom.
+    In a groove the wall ends at its bottom.
     """
 
     s: Array
@@ -28,17 +28,17 @@ class Wall:
     outer: Array
 
 
-def inside(section: Section, size: float, s: Array, depth: Array) -> Array:
-    """(r, z) of places moved by the sag of straight-sided elements of a size (m) at most: in the mesh."""
+def inside_mesh(section: Section, size: float, s: Array, depth: Array) -> Array:
+    """(r, z) of positions (s, depth), moved into a mesh of straight-sided elements of a size (m): at most a sagitta."""
     return np.asarray(section.place(*section.clamp(s, depth, size**2 / 0.1)))
 
 
 @functools.lru_cache(maxsize=32)
 def wall_of(section: Section, size: float) -> Wall:
-    """The wall of a section on a mesh of a size (m); remembered for the 32 latest."""
+    """The wall of a section on a mesh of a size (m). The 32 latest are kept."""
     lowest = 0.0 if section.half else -section.line.length
     s = np.linspace(lowest, section.line.length, STATIONS)[1:-1]
     thickness = section.rubber_thickness(s)
     surfaces = [section.place(s, depth) for depth in (np.zeros_like(s), thickness)]
-    inner, outer = (inside(section, size, *section.locate(surface)) for surface in surfaces)
+    inner, outer = (inside_mesh(section, size, *section.locate(surface)) for surface in surfaces)
     return Wall(s, thickness, inner, outer)

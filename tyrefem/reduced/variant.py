@@ -10,7 +10,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from tyrefem.conduction.field import Peak
-from tyrefem.geometry.wall import inside
+from tyrefem.geometry.wall import inside_mesh
 from tyrefem.inputs.study import StudyData
 from tyrefem.reduced.readout import Readout
 from tyrefem.simulation.heat_budget import HeatBudget
@@ -89,7 +89,7 @@ class Variant:
             return {}
         model, section, stated = self.readout.solution.batch.model, self.study.section, tuple(places.values())
         built_in = model.sensor_places.get(
-            (section, stated), lambda: inside(section, self.tyre.mesh.size, *section.locate(np.array(stated)))
+            (section, stated), lambda: inside_mesh(section, self.tyre.mesh.size, *section.locate(np.array(stated)))
         )
         return recorded(self.study, self.times, self.readout.at(built_in)[:, self.number])
 

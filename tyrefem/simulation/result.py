@@ -15,7 +15,7 @@ from tyrefem.brief import SHOWN, Brief
 from tyrefem.conduction.field import History
 from tyrefem.conduction.points import OutsideMeshError, as_points
 from tyrefem.geometry.meshing.sagitta import snapped
-from tyrefem.geometry.wall import inside, wall_of
+from tyrefem.geometry.wall import inside_mesh, wall_of
 from tyrefem.simulation.effect_states import StateHistory
 from tyrefem.simulation.heat_budget import HeatBudget, whole_tyre
 from tyrefem.simulation.phases import PhaseState, deep_contacts, phase_states
@@ -131,7 +131,9 @@ class ResultData(Brief):
     def _inside(self, points: ArrayLike) -> Array:
         """Points moved by the sag of straight-sided elements at most, so that a surface point is in the mesh."""
         section = self.study.section
-        return inside(section, self.tyre.mesh.size, *section.locate(np.asarray(points, dtype=float).reshape(-1, 2)))
+        return inside_mesh(
+            section, self.tyre.mesh.size, *section.locate(np.asarray(points, dtype=float).reshape(-1, 2))
+        )
 
     @property
     def sensor_points(self) -> Array:

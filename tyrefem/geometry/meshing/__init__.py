@@ -1,4 +1,4 @@
-"""Meshes of sections, structured or from gmsh, with the section's own names; and meshes from files."""
+"""Meshes of sections, structured or from gmsh, with the section's names; and meshes from files."""
 
 from tyrefem.geometry.meshing.mesh import MESHERS, TyreMesh, build
 from tyrefem.geometry.meshing.mesh_files import read, read_for, write

@@ -1,4 +1,4 @@
-"""A section as blocks for an unstructured mesher: each layer cut at every mark, all sides given as points."""
+"""A section as blocks for an unstructured mesher: each layer is cut at every mark; all sides are points."""
 
 from __future__ import annotations
 
@@ -13,9 +13,9 @@ from tyrefem.geometry.outlines import face
 from tyrefem.geometry.section import Section
 
 Array = NDArray[np.float64]
-#: Edges on the outer face are this share of the size: the road's film cools it within millimetres.
+#: Edges on the outer face over the size: the road's film cools the face within millimetres.
 SURFACE_SHARE = 0.5
-#: Where one boundary gives way to another the surface temperature bends sharply: shorter still, growing away.
+#: Near a change of boundary the surface temperature bends sharply: edges are still shorter and grow away from it.
 CHANGE_SHARE, GROWTH = 0.25, 0.3
 
 
@@ -23,8 +23,8 @@ CHANGE_SHARE, GROWTH = 0.25, 0.3
 class Blocks:
     """Sides of the blocks of a half section as points, both ends included.
 
-    ``along[i, k]`` (n, 2) runs on face i (0 inside) over span k of the meridian, ``across[i, k]`` through layer i
-    at station k; ``spans`` are the stations.
+    ``along[i, k]`` (n, 2) is on face i (0 inside) over span k of the meridian; ``across[i, k]`` goes through layer i
+    at station k. ``spans`` are the stations.
     """
 
     spans: Array
@@ -32,12 +32,12 @@ class Blocks:
     across: dict[tuple[int, int], Array]
 
     def middle(self, k: int) -> float:
-        """The station in the middle of span k, where names are looked up."""
+        """The middle station of span k, where names are evaluated."""
         return float(self.spans[k] + self.spans[k + 1]) / 2
 
 
 def make_blocks(section: Section, size: float, through: int) -> Blocks:
-    """Blocks whose sides have edges near ``size``, shorter in thin layers and at the outer face."""
+    """Blocks with edges near ``size``, shorter in thin layers and at the outer face."""
     length, n = section.line.length, len(section.layers)
     spans = np.array([0.0, *section.marks, length])
     kinks = knots(section, size)
@@ -60,7 +60,7 @@ def make_blocks(section: Section, size: float, through: int) -> Blocks:
 
 
 def _edge_length(section: Section, i: int, s: Array, size: float, through: int) -> Array:
-    """Wanted edge on face i: a layer on either side has room for ``through`` elements."""
+    """Target edge length on face i, with ``through`` elements through each adjacent layer."""
     n = len(section.layers)
     wanted = np.full_like(s, size)
     if i == n:

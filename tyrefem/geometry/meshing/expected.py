@@ -1,4 +1,4 @@
-"""How many nodes a mesh will have, before anything of it is laid."""
+"""Expected number of nodes of a mesh, without meshing."""
 
 from __future__ import annotations
 
@@ -7,19 +7,19 @@ import numpy as np
 from tyrefem.geometry.meshing.mapped import ASPECT, grid_lines
 from tyrefem.geometry.section import Section
 
-#: Nodes of gmsh's triangles over area / size^2 away from thin layers, and of thin ones over n^2/t times the length
-#: (four shipped sections, 8 to 1 mm: estimates are 0.7 to 1.2 times what gmsh makes).
+#: Nodes of gmsh's triangles: over area / size^2 away from thin layers; in thin layers over n^2/t times the length.
+#: Estimates are 0.7 to 1.2 times gmsh's numbers (four shipped sections, 8 to 1 mm).
 PER_AREA, THIN = 2.0, 2.5
-#: Nodes of quadratic elements over the corners of them, a little more than there are.
+#: Nodes of quadratic elements over their corners; slightly more than the actual ratio.
 QUADRATIC = 4
-#: Meshes that the area alone shows to have more nodes than this are not counted line by line.
+#: Above this number of nodes, by area alone, lines are not counted.
 COUNTED = 4e6
 
 
 def expected_nodes(section: Section, size: float, *, mesher: str = "mapped", through: int = 1) -> float:
-    """Corners of elements: of the structured mesh its lines counted, of gmsh's to a factor of two.
+    """Number of element corners: exact lines for the structured mesh, within a factor of two for gmsh.
 
-    gmsh's elements are as long as wide: a layer of thickness t with n elements through it takes n^2/t of them per
+    gmsh's elements are as long as wide: a layer of thickness t with n elements through it needs n^2/t elements per
     length of the meridian.
 
     >>> from tyrefem.geometry.meshing import build

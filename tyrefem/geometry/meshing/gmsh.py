@@ -1,4 +1,4 @@
-"""The unstructured mesher, through pygmsh; the only module that imports pygmsh and gmsh (GPL)."""
+"""The unstructured mesher, by pygmsh; the only module that imports pygmsh and gmsh (GPL)."""
 
 from __future__ import annotations
 
@@ -18,7 +18,7 @@ from tyrefem.geometry.meshing.blocks import Blocks, make_blocks
 from tyrefem.geometry.meshing.groups import mirrored, named_from
 from tyrefem.geometry.section import Section
 
-#: What makes two runs give the same mesh, and what makes gmsh quiet.
+#: Options for reproducible meshes and a silent gmsh.
 _OPTIONS = {
     "General.Terminal": 0,
     "General.NumThreads": 1,
@@ -33,7 +33,7 @@ _BY_CELL = {
     "quad": {"Mesh.Algorithm": 8, "Mesh.RecombineAll": 1, "Mesh.SubdivisionAlgorithm": 1},
 }
 
-#: gmsh has one global model: threads take turns.
+#: gmsh has one global model: threads use it one after the other.
 _LOCK = threading.Lock()
 #: gmsh element types -> meshio cell, number of nodes.
 _CELLS = {1: ("line", 2), 2: ("triangle", 3), 3: ("quad", 4)}
@@ -56,7 +56,7 @@ def gmsh_mesh(section: Section, size: float, cell: str, through: int) -> Any:
         try:
             _draw(pygmsh.geo.Geometry(), half, blocks).generate_mesh(dim=2)
             raw = _extract()
-        except Exception as error:  # gmsh raises plain Exception for whatever it cannot do
+        except Exception as error:  # gmsh raises plain Exception for all its failures
             raise InputError(f"gmsh cannot mesh section '{section.name}': {error}", field="mesher") from error
     mesh = named_from(raw, regions=half.regions, boundaries=half.boundaries)
     return mesh if section.half else mirrored(mesh)
@@ -67,7 +67,7 @@ def _draw(geometry: Any, section: Section, blocks: Blocks) -> Any:
     points: dict[bytes, Any] = {}
 
     def lines(side: NDArray[np.float64]) -> list[Any]:
-        """One CAD line per edge, so that both meshers share the outline's points."""
+        """One CAD line per edge, so that both meshers have the same points on the outline."""
         for place in side:
             if place.tobytes() not in points:
                 points[place.tobytes()] = geometry.add_point((float(place[0]), float(place[1]), 0.0))
@@ -135,7 +135,7 @@ def _extract() -> Any:
 
 @contextlib.contextmanager
 def _gmsh(options: dict[str, float]) -> Iterator[Any]:
-    """pygmsh with gmsh started, quiet and without its signal handler; left as it was found."""
+    """pygmsh with gmsh started, silent and without its signal handler; afterwards gmsh has its previous state."""
     pygmsh, gmsh = _load()
     running = bool(gmsh.isInitialized())
     if not running:
@@ -159,16 +159,16 @@ def _gmsh(options: dict[str, float]) -> Iterator[Any]:
 
 
 def _ignore_broken_pipes() -> None:
-    """As Python does. gmsh undoes it when it starts: writing to a dead worker then ends this process without a word."""
+    """Ignore SIGPIPE as Python does. gmsh resets it at start; a write to a dead worker would then end this process."""
     if hasattr(signal, "SIGPIPE") and signal.getsignal(signal.SIGPIPE) == signal.SIG_IGN:
-        # Python's own call may only be made by the main thread.
+        # Python allows this call in the main thread only.
         set_handler = ctypes.pythonapi.PyOS_setsig
         set_handler.argtypes, set_handler.restype = (ctypes.c_int, ctypes.c_void_p), ctypes.c_void_p
         set_handler(signal.SIGPIPE, int(signal.SIG_IGN))
 
 
 def gmsh_works() -> bool:
-    """Whether the mesher and the system libraries it needs are there."""
+    """True if the mesher and its system libraries can be loaded."""
     try:
         _load()
     except MissingLibraryError:
@@ -177,7 +177,7 @@ def gmsh_works() -> bool:
 
 
 def _load() -> tuple[Any, Any]:
-    """pygmsh and gmsh, or an error that says what to install."""
+    """pygmsh and gmsh; an error names what to install."""
     try:
         import gmsh
         import pygmsh

@@ -1,6 +1,6 @@
-"""Named groups of a meshio mesh, from whichever way its format keeps them, onto a scikit-fem mesh.
+"""Named groups of a meshio mesh, of any format, on a scikit-fem mesh.
 
-Put names on a mesh: regions by element, boundaries by the two nodes of a facet; and mirror a half.
+Regions are named by element, boundaries by the two nodes of a facet. A half mesh can be mirrored.
 """
 
 from __future__ import annotations
@@ -20,7 +20,7 @@ Indices = NDArray[np.int64]
 def named_mesh(points: Array, elements: Indices, regions: Mapping[str, Indices], edges: Mapping[str, Indices]) -> Any:
     """scikit-fem mesh from points (n, 2), elements (n, 3 or 4), element indices per region, node pairs per boundary.
 
-    Elements that run clockwise are turned round; nodes that no element uses are dropped.
+    Clockwise elements are reversed; nodes without elements are dropped.
 
     Raises
     ------
@@ -43,7 +43,7 @@ def named_mesh(points: Array, elements: Indices, regions: Mapping[str, Indices],
     ).with_boundaries({name: find_facets(mesh, new_number[pairs]) for name, pairs in edges.items()})
 
 
-def bare_edges(elements: Indices, named: Iterable[Indices]) -> Indices:
+def unnamed_edges(elements: Indices, named: Iterable[Indices]) -> Indices:
     """Node pairs (n, 2) that belong to one element (n, 3 or 4) only and to none of the named boundaries."""
     pairs = np.sort(np.stack([elements, np.roll(elements, -1, axis=1)], axis=-1).reshape(-1, 2), axis=1)
     single, counts = np.unique(pairs, axis=0, return_counts=True)
@@ -76,7 +76,7 @@ def facet_nodes(mesh: Any, name: str) -> Indices:
 
 
 def mirrored(mesh: Any, symmetry: str = "symmetry") -> Any:
-    """The whole from the half z >= 0: its mirror image joined at the nodes with z = 0, same names."""
+    """The full mesh from the half z >= 0: joined with its mirror image at the nodes with z = 0, same names."""
     points, elements = mesh.p.T, np.asarray(mesh.t.T, dtype=np.int64)
     n = len(points)
     on_plane = np.zeros(n, dtype=bool)
@@ -92,12 +92,12 @@ def mirrored(mesh: Any, symmetry: str = "symmetry") -> Any:
     return named_mesh(all_points, np.concatenate([elements, image[elements]]), regions, edges)
 
 
-#: Corners of the cells that can be read; sides of quadratic ones are taken as straight.
+#: Corners of the cells that can be read; sides of quadratic cells become straight.
 CORNERS = {"triangle": 3, "triangle6": 3, "triangle7": 3, "quad": 4, "quad8": 4, "quad9": 4}
 EDGES = ("line", "line3")
 
 
-#: Prefix of cell data that marks a group with 1, in formats that know no names.
+#: Prefix of cell data that is 1 in a group, for formats without names.
 MARKS = {"region": CORNERS, "boundary": EDGES}
 
 
@@ -113,16 +113,16 @@ def named_from(
 
     Parameters
     ----------
-    found : meshio mesh; its groups may be gmsh physical names, cell sets, MED families, ``region:``/``boundary:``
+    raw : meshio mesh; its groups may be gmsh physical names, cell sets, MED families, ``region:``/``boundary:``
         cell data, or (boundaries only) point sets.
     points : (n, 2) coordinates to use instead of the file's first two.
-    names : names of the file -> names wanted.
-    regions, boundaries : names that must be there.
+    names : names in the file -> new names.
+    regions, boundaries : required names.
 
     Raises
     ------
-    InputError : a name is missing (with the nearest one found), an element in no or two regions, a facet of the
-        surface in no or two boundaries, cells that are not all triangles or all quadrilaterals.
+    InputError : a missing name (with the nearest one in the file), an element in no or two regions, a surface facet
+        in no or two boundaries, cells that are not all triangles or all quadrilaterals.
     """
     blocks = [index for index, block in enumerate(raw.cells) if block.type in CORNERS and len(block.data)]
     kinds = {CORNERS[raw.cells[index].type] for index in blocks}
@@ -145,13 +145,13 @@ def named_from(
     _known_names(raw, names)
     points = raw.points[:, :2] if points is None else points
     regions_found = {name: np.unique(np.concatenate(parts)) for name, parts in faces.items()}
-    _one_each(regions_found, len(elements), "element", "region")
+    _check_membership(regions_found, len(elements), "element", "region")
     _required(regions, regions_found, "region")
     try:
         mesh = named_mesh(points, elements, regions_found, {})
     except ValueError as error:
         raise InputError(f"its elements do not make a mesh: {error}") from error
-    # find_facets counts nodes of the mesh, which dropped those without an element.
+    # find_facets counts nodes of the mesh, in which nodes without elements are dropped.
     number = np.full(len(points), -1, dtype=np.int64)
     used = np.unique(elements)
     number[used] = np.arange(len(used))
@@ -171,7 +171,7 @@ def named_from(
     named = {name: facets for name, facets in named.items() if len(facets)}
     _required(boundaries, named, "boundary")
     places = {name: np.searchsorted(surface, facets) for name, facets in named.items()}
-    _one_each(places, len(surface), "side of the surface", "boundary", mesh.p[:, mesh.facets[0, surface]])
+    _check_membership(places, len(surface), "side of the surface", "boundary", mesh.p[:, mesh.facets[0, surface]])
     return mesh.with_boundaries(named)
 
 
@@ -218,10 +218,10 @@ def _required(wanted: Iterable[str], available: Mapping[str, Any], what: str) ->
             )
 
 
-def _one_each(
+def _check_membership(
     groups: Mapping[str, Indices], count: int, thing: str, what: str, at: NDArray[np.float64] | None = None
 ) -> None:
-    """Every element or facet belongs to one group, no more and no less."""
+    """Raise an error if an element or facet belongs to no group or to several."""
     times = np.zeros(count, dtype=np.int64)
     for members in groups.values():
         times[members] += 1

@@ -1,8 +1,8 @@
-"""The structured grid on a section: stations along the meridian, rows through the layers.
+"""The structured mesher: quadrilaterals along the layers, without further libraries.
 
-Node spacing along a line: stations whose gaps follow a wanted size.
+Its grid has stations along the meridian and rows through the layers.
 
-The structured mesher: quadrilaterals laid along the layers, everywhere available.
+Node spacing along a line follows a given local size.
 """
 
 from __future__ import annotations
@@ -15,19 +15,19 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
-from tyrefem.geometry.meshing.groups import bare_edges, mirrored, named_mesh
+from tyrefem.geometry.meshing.groups import mirrored, named_mesh, unnamed_edges
 from tyrefem.geometry.outlines import stations
 from tyrefem.geometry.section import GROOVE, Section
 
 Array = NDArray[np.float64]
 
 
-#: A kink of the geometry nearer than this share of the size to another grid line gets none of its own.
+#: A kink of the geometry closer than this share of the size to another grid line has no grid line.
 KINK_SHARE = 0.25
 
 
 def knots(section: Section, size: float) -> Array:
-    """Stations that need a line of the mesh of ``size`` [m]: all marks, and the kinks not too near to another one."""
+    """Stations with a grid line at ``size`` [m]: all marks, and kinks that are not too close to another one."""
     kept = [0.0, *section.marks, section.line.length]
     for s in section.breaks:
         if min(abs(s - other) for other in kept) > KINK_SHARE * size:
@@ -36,9 +36,9 @@ def knots(section: Section, size: float) -> Array:
 
 
 def graded(start: float, end: float, size: Callable[[Array], Array], least: int = 1) -> Array:
-    """Stations from start to end, both included, with local gaps near ``size(s)`` or smaller.
+    """Stations from start to end, both included, with gaps of about ``size(s)`` or smaller.
 
-    The number of gaps is the integral of ds/size(s), rounded up; each gap holds an equal share of it.
+    The number of gaps is the integral of ds/size(s), rounded up; all gaps have the same share of it.
 
     >>> graded(0.0, 1.0, lambda s: np.full_like(s, 0.3)).round(9).tolist()
     [0.0, 0.25, 0.5, 0.75, 1.0]
@@ -53,7 +53,7 @@ def graded(start: float, end: float, size: Callable[[Array], Array], least: int 
 
 
 def rows_needed(thickness: float, first: float, largest: float) -> int:
-    """Fewest rows through ``thickness`` that begin at ``first`` and grow geometrically to ``largest`` at most."""
+    """Smallest number of rows through ``thickness`` that grow geometrically from ``first`` up to ``largest``."""
     for rows in range(1, 1000):
         if np.diff(row_fractions(thickness, first, rows)).max() * thickness <= largest * (1 + 1e-9):
             return rows
@@ -61,9 +61,9 @@ def rows_needed(thickness: float, first: float, largest: float) -> int:
 
 
 def row_fractions(thickness: float, first: float, rows: int) -> Array:
-    """Row borders, 0 to 1 from the coarse to the fine side, the last row ``first`` thick, the others growing.
+    """Row borders, 0 to 1 from the coarse to the fine side: the last row has thickness ``first``, the others grow.
 
-    Where ``thickness`` has room for less than ``rows`` rows of ``first``, all rows are equal.
+    If ``thickness`` is less than ``rows`` times ``first``, all rows are equal.
 
     >>> row_fractions(3.0, 1.0, 3).round(9).tolist()
     [0.0, 0.333333333, 0.666666667, 1.0]
@@ -73,7 +73,7 @@ def row_fractions(thickness: float, first: float, rows: int) -> Array:
 
 
 def _ratio(thickness: float, first: float, rows: int) -> float:
-    """Growth q with first (q^rows - 1)/(q - 1) = thickness, at least 1; by bisection."""
+    """Growth q >= 1 with first (q^rows - 1)/(q - 1) = thickness; by bisection."""
     if rows == 1 or thickness <= first * rows:
         return 1.0
     low, high, powers = 1.0, 1.0 + thickness / first, np.arange(rows)
@@ -84,11 +84,11 @@ def _ratio(thickness: float, first: float, rows: int) -> float:
     return (low + high) / 2
 
 
-#: Rows next to the road and the rim are this share of the size: a strong film cools them within millimetres.
+#: Rows next to the road and the rim over the size: a strong film cools them within millimetres.
 SURFACE_SHARE = 0.25
 
 
-#: Thickest row away from the surface over the size: heat sources jump where layers meet.
+#: Thickest row away from the surface over the size: heat sources jump between layers.
 CORE_SHARE = 1.0
 
 
@@ -96,7 +96,7 @@ CORE_SHARE = 1.0
 ASPECT = 10.0
 
 
-#: Growth of the gaps away from a place where one boundary gives way to another.
+#: Growth of the gaps away from a change of boundary.
 GROWTH = 0.3
 
 
@@ -104,7 +104,7 @@ GROWTH = 0.3
 class MappedGrid:
     """Stations (n_columns + 1,), and heights of the nodes above the meridian (n_rows + 1, n_columns + 1) [m].
 
-    ``layer`` is the layer of each row.
+    ``layer`` is the layer index of each row.
     """
 
     s: Array
@@ -113,7 +113,7 @@ class MappedGrid:
 
 
 def make_grid(section: Section, size: float, through: int) -> MappedGrid:
-    """Rows and stations for a size [m]: conforming to every layer, region and boundary."""
+    """Rows and stations for a size [m], conforming to every layer, region and boundary."""
     rows = [_rows(section, index, size, through) for index in range(len(section.layers))]
     s = _stations(section, size, rows)
     faces = section.interfaces(s)
@@ -127,7 +127,7 @@ def make_grid(section: Section, size: float, through: int) -> MappedGrid:
 
 
 def grid_lines(section: Section, size: float, through: int) -> tuple[int, int]:
-    """How many lines `make_grid` lays across the meridian and along it."""
+    """Number of lines of `make_grid` across the meridian and along it."""
     rows = [_rows(section, index, size, through) for index in range(len(section.layers))]
     return len(_stations(section, size, rows)), sum(rows) + 1
 
@@ -190,7 +190,7 @@ def mapped_mesh(section: Section, size: float, cell: str, through: int) -> Any:
     edges = _edges(half, grid, node)
     if half.grooves:
         elements, names = elements[names != GROOVE], names[names != GROOVE]
-        walls = bare_edges(elements, edges.values())
+        walls = unnamed_edges(elements, edges.values())
         edges[half.groove_boundary] = np.concatenate([edges[half.groove_boundary], walls])
     regions = {name: np.flatnonzero(names == name) for name in half.regions}
     mesh = named_mesh(points, elements, regions, edges)

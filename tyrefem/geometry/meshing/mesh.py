@@ -1,6 +1,6 @@
-"""A mesh of a section: a scikit-fem mesh with names, and what it was made from.
+"""A mesh of a section: a scikit-fem mesh with names, its section and mesher.
 
-One way in: a section and a size give a mesh, whichever mesher makes it.
+`build` makes a mesh from a section and a size with any mesher.
 """
 
 from __future__ import annotations
@@ -25,8 +25,8 @@ Array = NDArray[np.float64]
 
 @dataclass(frozen=True, eq=False)
 class PlyDirection:
-    """Unit vector along the meridian at points (2, n): the direction of the plies, which turn in the section's region
-    `wrap`."""
+    """Unit vector along the meridian at points (2, n): the direction of the plies; in the section's region `wrap` the
+    plies turn."""
 
     section: Section
 
@@ -42,9 +42,9 @@ class TyreMesh(Brief, Stated):
     ----------
     mesh : scikit-fem ``MeshQuad`` or ``MeshTri``; ``mesh.subdomains`` are the section's regions,
         ``mesh.boundaries`` its boundaries.
-    section : what was meshed.
+    section : the meshed section.
     mesher : ``"mapped"``, ``"gmsh"`` or ``"file"``.
-    size : largest edge along the meridian that was asked for [m].
+    size : target for the largest edge along the meridian [m].
     cell : ``"quad"`` or ``"tri"``.
     """
 
@@ -111,7 +111,7 @@ class TyreMesh(Brief, Stated):
 
         Raises
         ------
-        InputError : a station cuts through elements; stations of ``section.breaks`` never do.
+        InputError : a station inside elements; stations of ``section.breaks`` are always between elements.
         """
         s = self._stations
         middle = (s.mean(axis=0) > start) & (s.mean(axis=0) < end)
@@ -140,7 +140,7 @@ class TyreMesh(Brief, Stated):
 
     @cached_property
     def along_meridian(self) -> PlyDirection:
-        """The direction of the plies; the same function every time."""
+        """The direction of the plies, always the same function."""
         return PlyDirection(self.section)
 
     @cached_property
@@ -195,15 +195,15 @@ def build(
     ----------
     section : half or full; the mesh of a full section is its half and the mirror image.
     mesher : ``"mapped"`` (structured) or ``"gmsh"`` (unstructured, needs the ``gmsh`` extra).
-    size : largest edge along the meridian [m]; every other size of the mesh is in proportion.
+    size : largest edge along the meridian [m]; all other sizes of the mesh are proportional to it.
     cell : ``"quad"`` or ``"tri"``; by default quadrilaterals when mapped, triangles from gmsh.
     through : fewest elements through every layer.
 
     Raises
     ------
-    InputError : unknown mesher or cell, a size out of range or too coarse for the section; more nodes than linear
-        elements on them have memory for.
-    MissingLibraryError : gmsh is asked for and cannot be loaded.
+    InputError : unknown mesher or cell; a size out of range or too coarse for the section; more nodes than memory for
+        linear elements.
+    MissingLibraryError : gmsh cannot be loaded.
 
     >>> from tyrefem.geometry import load
     >>> tyre = build(load("nasa-22x5.5-8pr"), size=4e-3)
@@ -242,7 +242,7 @@ def build(
 
 
 def _check_memory(section: Section, mesher: str, size: float, through: int) -> None:
-    """A size in the wrong unit is found before it fills the memory."""
+    """Raise an error for a mesh that exceeds the memory, e.g. because of a wrong unit."""
 
     def needed(size: float) -> float:
         return matrices(expected_nodes(section, size, mesher=mesher, through=through))

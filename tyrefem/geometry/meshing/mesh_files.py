@@ -18,13 +18,13 @@ from tyrefem.output import note_input
 from tyrefem.output.file import MARK
 from tyrefem.quantity import parse
 
-#: Which coordinates of the file are the radius and the axial position (or x and y of a planar mesh).
+#: Indices of the file's coordinates for radius and axial position (or x and y of a planar mesh).
 AXES = {"rz": (0, 1), "zr": (1, 0), "xy": (0, 1), "yz": (1, 2), "zy": (2, 1), "xz": (0, 2), "zx": (2, 0)}
-#: A mesh and its section may differ by this share of a region's area before it is taken for a mistake.
+#: Largest difference of a region's area between a mesh and its section, over the area.
 AREA_TOLERANCE = 0.1
-#: Formats in which `write` keeps names, with what meshio needs to know.
+#: Formats in which `write` keeps names, with the options for meshio.
 WRITTEN: dict[str, dict[str, Any]] = {
-    # Format 2.2 is the one that every reader of gmsh files knows.
+    # Format 2.2 can be read by all programs that read gmsh files.
     ".msh": {"file_format": "gmsh22"},
     ".vtu": {},
     ".vtk": {},
@@ -46,14 +46,15 @@ def read(
     ----------
     path : any format that meshio reads; groups may be gmsh physical names, cell sets, MED families, point sets
         (boundaries), or cell data ``region:NAME`` and ``boundary:NAME`` that are 1 in the group.
-    names : names in the file -> names wanted.
-    axes : which coordinates are (r, z): ``"rz"`` and ``"xy"`` the first two, ``"zr"`` the second and the first.
+    names : names in the file -> new names.
+    axes : indices of (r, z): ``"rz"`` and ``"xy"`` for the first two, ``"zr"`` for the second and the first.
     unit : unit of the coordinates, e.g. ``"mm"``.
-    regions, boundaries : names that must be there; every element and every facet of the surface must be named.
+    regions, boundaries : required names; every element and every surface facet must belong to one.
 
     Raises
     ------
-    InputError : unreadable file, unknown unit, a name missing, parts without a name; says what was found.
+    InputError : unreadable file, unknown unit, a missing name, parts without a name; the message lists the file's
+    names.
     """
     path = Path(path)
     if axes not in AXES:
@@ -84,11 +85,11 @@ def read_for(
     axes: str = "rz",
     unit: str = "m",
 ) -> TyreMesh:
-    """A mesh from a file for a section: has the section's names, and about its areas.
+    """A mesh from a file for a section, with the section's names and about its areas.
 
     Raises
     ------
-    InputError : as `read`; a region's area differs by more than a tenth, as with a wrong unit; r is negative.
+    InputError : errors of `read`; an area differs by more than a tenth, as with a wrong unit; r is negative.
     """
     mesh = read(path, names=names, axes=axes, unit=unit, regions=section.regions, boundaries=section.boundaries)
     if mesh.p[0].min() < 0:
@@ -108,7 +109,7 @@ def read_for(
 
 
 def write(mesh: Any, path: str | Path) -> Path:
-    """Write a mesh with its names; `read` gives it back.
+    """Write a mesh with its names, for `read`.
 
     gmsh files (``.msh``) hold physical names; VTK files (``.vtu``, ``.vtk``) cell data
     ``region:NAME`` and ``boundary:NAME``.
@@ -119,7 +120,7 @@ def write(mesh: Any, path: str | Path) -> Path:
 
     Raises
     ------
-    InputError : a format that does not keep names, or the file cannot be written.
+    InputError : a format without names, or the file cannot be written.
     """
     import meshio
 
@@ -153,14 +154,14 @@ def write(mesh: Any, path: str | Path) -> Path:
             meshio.write(
                 path, meshio.Mesh(points, cells, cell_data=data, field_data=field_data), **WRITTEN[path.suffix]
             )
-    except (Exception, SystemExit) as error:  # each format has its own kinds
+    except (Exception, SystemExit) as error:  # each format raises other errors
         raise InputError(f"cannot be written: {error}", file=path) from error
-    _mark(path)
+    _name_writer(path)
     return path
 
 
-def _mark(path: Path) -> None:
-    """Say in a comment of the format who wrote the file."""
+def _name_writer(path: Path) -> None:
+    """Name the program that wrote the file, in a comment of the format."""
     if path.suffix == ".vtk":
         path.write_bytes(path.read_bytes().replace(b"written by meshio", MARK + b", by meshio", 1))
         return
@@ -177,7 +178,7 @@ def _meshio_mesh(path: Path) -> Any:
     note_input(path)
     printed = io.StringIO()
     try:
-        # meshio prints what is wrong and ends the process where other libraries raise.
+        # meshio prints its errors and ends the process where other libraries raise.
         with contextlib.redirect_stdout(printed), contextlib.redirect_stderr(printed):
             return meshio.read(path)
     except (Exception, SystemExit) as error:

@@ -1,4 +1,4 @@
-"""Points between a section's curved outline and the straight edges that a mesh has in its place."""
+"""Points between a section's curved outline and the straight edges of its mesh."""
 
 from __future__ import annotations
 
@@ -9,23 +9,23 @@ from tyrefem.errors import InputError
 from tyrefem.geometry.meshing.mesh import TyreMesh
 
 Array = NDArray[np.float64]
-#: m. Coordinates that a person types are rounded; and what rounding leaves of a sagitta.
+#: Tolerances, m: of coordinates that a person rounds, and of a sagitta due to rounding.
 ROUNDED = 1e-6
-#: Places of an edge where the outline is looked at.
+#: Number of points of an edge at which the outline is evaluated.
 ALONG = np.linspace(0.0, 1.0, 65)
-#: Points that are looked at together.
+#: Number of points evaluated together.
 TOGETHER = 2000
 
 
 def snapped(tyre: TyreMesh, points: ArrayLike) -> Array:
     """Points (n, 2) outside a mesh, moved to the nearest point of its edge.
 
-    A point counts as one of the mesh if it lies within the section's outline and is no further from the nearest edge
-    than that edge's sagitta, about h^2/(8 R) for an edge of length h on an outline of radius R.
+    A point belongs to the mesh if it is within the section's outline and its distance from the nearest edge is at most
+    that edge's sagitta, about h^2/(8 R) for an edge of length h on an outline of radius R.
 
     Raises
     ------
-    InputError : a point is further outside; names it, its distance, and what the edge there leaves of the section.
+    InputError : a point is further outside; the message has its distance and the sagitta of the nearest edge.
 
     >>> from tyrefem.geometry import load
     >>> from tyrefem.geometry.meshing import build
@@ -36,11 +36,12 @@ def snapped(tyre: TyreMesh, points: ArrayLike) -> Array:
     """
     places = np.asarray(points, dtype=float).reshape(-1, 2)
     return np.concatenate(
-        [_moved(tyre, places[first : first + TOGETHER]) for first in range(0, len(places), TOGETHER)] or [places]
+        [_moved_to_edge(tyre, places[first : first + TOGETHER]) for first in range(0, len(places), TOGETHER)]
+        or [places]
     )
 
 
-def _moved(tyre: TyreMesh, points: Array) -> Array:
+def _moved_to_edge(tyre: TyreMesh, points: Array) -> Array:
     ends = np.asarray(tyre.mesh.p.T[tyre.mesh.facets[:, tyre.mesh.boundary_facets()].T])
     start, along = ends[:, 0], ends[:, 1] - ends[:, 0]
     part = np.clip(((points[:, None] - start) * along).sum(axis=2) / (along**2).sum(axis=1), 0.0, 1.0)
