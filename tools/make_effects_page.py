@@ -44,8 +44,8 @@ sd = { warmer_by = "2 delta_degC" }      # optional: its standard deviation, for
 Every quantity is (base + sum of addends) x product of factors; films take resistances in series last. Effects whose
 amplitudes are all 0 change nothing. Values beyond the bounds are refused, and effects without meaning in a study.
 
-Each parameter has an *sd*, its standard deviation before any data: the effect's typical size. Bounds are in a
-[table](evidence/tables/effect-parameters.csv). A *shape* does nothing while the amplitude is 0. An "estimate" is a
+Each parameter has an *sd*, its standard deviation before any data: the effect's typical size. Meanings and bounds: see
+the [table](evidence/tables/effect-parameters.csv). A *shape* does nothing while the amplitude is 0. An "estimate" is a
 judgement, not a measurement. Pictures show what one sd changes in the readings of `example-validation` (22x5.5 8PR,
 2700 lbf, 83 psi, 20 mph for 600 s, then at rest; noise of a thermocouple 0.5 K).
 
@@ -115,22 +115,21 @@ def _entry(effect: type[Effect]) -> str:
             f"### {effect.name}\n",
             f"{effect.sentence}\n",
             f"    {equation(effect)}\n",
-            *(f"- `{name}`: {text}." for name, text in _parameters(effect).items()),
-            f"\nSource: {effect.source}." + (f" Drawn {where}." if where else "") + "\n",
+            f"{_parameters(effect)}",
+            f"Source: {effect.source}." + (f" Drawn {where}." if where else "") + "\n",
             f"![Signature](pictures/effect-{effect.name}.png)\n",
         ]
     )
 
 
-def _parameters(effect: type[Effect]) -> dict[str, str]:
-    """Meaning and prior of every parameter, the choices after them."""
-    texts = {
-        parameter.name: f"{parameter.prior.meaning}; {'' if parameter.prior.amplitude else 'shape, '}"
-        f"sd {parameter.prior.text(parameter.prior.scale)}"
-        for parameter in effect.parameters()
-    }
-    choices = {row[0]: row for row in parameter_rows(effect) if row[0] not in texts}
-    return texts | {name: "; ".join(filter(None, (row[1], row[3]))) for name, row in choices.items()}
+def _parameters(effect: type[Effect]) -> str:
+    """Every parameter with its prior sd, the choices after them."""
+    priors = {parameter.name: parameter.prior for parameter in effect.parameters()}
+    texts = [
+        f"`{name}` ({'' if prior.amplitude else 'shape, '}sd {prior.text(prior.scale)})"
+        for name, prior in priors.items()
+    ]
+    return ", ".join([*texts, *(f"`{row[0]}`" for row in parameter_rows(effect) if row[0] not in priors)]) + "."
 
 
 def bounds() -> str:

@@ -12,7 +12,7 @@ from tyrefem.effects.tyre import StudyOfTyre, Tyre
 
 
 class BrakeDisc(Effect):
-    """m c dT_d/dt = power - (G + UA) T_d;  rim: C dT_rim/dt -> C dT_rim/dt + G T_d, T_d above rim and air.
+    """m c dT_d/dt = power - (G + UA) T_d;  rim: C dT_rim/dt -> C dT_rim/dt + G T_d.
 
     T_d: what braking warms the disc by, above rim and air, whose own warming is neglected beside it.
     """
