@@ -116,10 +116,16 @@ def _entry(effect: type[Effect]) -> str:
             f"{effect.sentence}\n",
             f"    {equation(effect)}\n",
             f"{_parameters(effect)}",
-            f"Source: {effect.source}." + (f" Drawn {where}." if where else "") + "\n",
+            f"{_source(effect)}." + (f" Drawn {where}." if where else "") + "\n",
             f"![Signature](pictures/effect-{effect.name}.png)\n",
         ]
     )
+
+
+def _source(effect: type[Effect]) -> str:
+    """The source; an estimate says so itself."""
+    estimate = effect.source.startswith("estimate")
+    return effect.source[0].upper() + effect.source[1:] if estimate else f"Source: {effect.source}"
 
 
 def _parameters(effect: type[Effect]) -> str:
