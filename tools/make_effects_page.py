@@ -41,8 +41,8 @@ from = "diagnosis of run-1.csv"          # optional: where the value comes from
 sd = { warmer_by = "2 delta_degC" }      # optional: its standard deviation, for reports only
 ```
 
-Every quantity is (base + sum of addends) x product of factors; films take resistances in series last. Effects whose
-amplitudes are all 0 change nothing. Values beyond the bounds are refused, and effects without meaning in a study.
+Every quantity is (base + sum of addends) x product of factors; films take resistances in series last. Refused are
+values beyond the bounds, an effect twice, and effects without meaning in a study.
 
 Each parameter has an *sd*, its standard deviation before any data: the effect's typical size. Meanings and bounds: see
 the [table](evidence/tables/effect-parameters.csv). A *shape* does nothing while the amplitude is 0. An "estimate" is a
@@ -86,8 +86,8 @@ ports read them with `tyre.state(self, name, t)`. Copy `tyrefem/effects/brake_di
 `tests/effects/drying_tread.py`.
 
 - A state is a number, or an array with one value per place, as `initial_states` returns it (default 0).
-- One error-controlled step of third order takes states and temperatures together. The error of a state stays below the
-  study's tolerance times `scale`, the change that matters as much as 1 K.
+- One error-controlled step of third order takes states and temperatures together; `scale` is the change of a state that
+  matters as much as 1 K.
 - `temperatures` gives `surface("road")`, `region("tread")`, `at(points)` and `reservoir("contained-air")` in degC.
 - `result.states` holds every state over time; `summary.json` its start, end, least and largest value.
 - A diagnosis simulates such an effect in full; reduced and real-time models refuse it.

@@ -28,11 +28,12 @@ BLUE, RUST = "#0b5fa5", "#b3400e"
 
 
 def purpose(module: str) -> str:
-    """The first sentence of a module's docstring."""
+    """The first sentence of a module's docstring, up to its first colon."""
     path = ROOT / Path(*module.split("."))
     file = path.with_suffix(".py") if path.with_suffix(".py").is_file() else path / "__init__.py"
     docstring = ast.get_docstring(ast.parse(file.read_text(encoding="utf-8"))) or ""
-    return " ".join(docstring.split("\n\n")[0].split()).replace("``", "`")
+    sentence = " ".join(docstring.split("\n\n")[0].split()).replace("``", "`")
+    return sentence.partition(": ")[0].rstrip(".")
 
 
 def table(modules: Sequence[str], form: Callable[[str], str]) -> str:
