@@ -54,9 +54,9 @@ def test_a_locked_wheel_is_equations_12_and_13():
 
 
 def test_meeting_is_between_tread_and_road():
-    assert passage().meeting(80.0, 80.0) == pytest.approx(80.0)
+    assert passage().frictionless_temperature(80.0, 80.0) == pytest.approx(80.0)
     b_t, b_r = RUBBER.effusivity, ASPHALT.effusivity
-    assert passage().meeting(80.0, 20.0) == pytest.approx((b_t * 80 + b_r * 20) / (b_t + b_r))
+    assert passage().frictionless_temperature(80.0, 20.0) == pytest.approx((b_t * 80 + b_r * 20) / (b_t + b_r))
 
 
 def test_a_skid_starts_as_equation_5_and_ends_at_the_road_s_mean_rise():

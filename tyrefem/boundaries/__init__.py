@@ -1,8 +1,8 @@
-"""What the tyre gives its heat to: road, outside air, contained air, rim. One class per law, found by existing.
+"""The tyre's surroundings, to which it loses heat: road, outside air, contained air, rim. One class per law.
 
-A law is a `Law` subclass in a module of this package; its ``law`` key in a study's ``[boundaries]`` picks it.
+A law is a `Law` subclass in a module of this package; its ``law`` key in a study's ``[boundaries]`` selects it.
 
-Knows nothing of drives, effects and runs.
+This package does not import drives, effects and runs.
 """
 
 from __future__ import annotations
@@ -25,7 +25,7 @@ CAL = 41840.0
 
 
 class Law(Card):
-    """A boundary law. Subclasses name their ``side`` and carry ``law: Literal["name"]``."""
+    """A boundary law. Subclasses set their ``side`` and ``law: Literal["name"]``."""
 
     side: ClassVar[str] = ""
     if TYPE_CHECKING:
@@ -34,7 +34,7 @@ class Law(Card):
 
 @dataclass(frozen=True)
 class Contact:
-    """The tread point's contact with the road: speed m/s, footprint length m, tread W/m/K and J/m3/K."""
+    """Contact of a tread point with the road: speed m/s, footprint length m, tread W/m/K and J/m3/K."""
 
     speed: float
     footprint_length: float
@@ -63,7 +63,7 @@ def laws(side: str) -> dict[str, type[Law]]:
 
 @dataclass(frozen=True)
 class LawOf:
-    """Annotation of a study's boundary: a table whose ``law`` names one of a side's laws."""
+    """Annotation of a study's boundary: a table whose ``law`` is one of a side's laws."""
 
     side: str
     default: str

@@ -1,6 +1,6 @@
-"""One tread point through its revolutions: what is lost by averaging the road's film in time.
+"""Error of averaging the road's film in time, from one tread point over its revolutions.
 
-One point of the tread: a strip of rubber through its thickness, and what it meets in a revolution.
+A tread point is a strip of rubber through the tread's thickness, with its boundary conditions of a revolution.
 """
 
 from __future__ import annotations
@@ -19,16 +19,16 @@ from tyrefem.boundaries.road_film import half_space_film, propagation_depth
 from tyrefem.conduction import Conduction, Film, Fixed, Material
 from tyrefem.errors import InputError
 
-#: Instantaneous film in contact over the mean one: this close to perfect contact, which loses 0.08 % of the heat.
+#: Instantaneous film in contact over the mean film: so close to perfect contact that 0.08 % of the heat is missing.
 PERFECT = 1000.0
 
 
 @dataclass(frozen=True)
 class TreadPoint:
-    """A tread point and what it meets in one revolution. SI units, degC.
+    """A tread point and its boundary conditions of one revolution. SI units, degC.
 
-    ``inner_temperature`` holds the tread's inner side; None insulates it, and ``heat_source`` (W/m3) heats the rubber.
-    ``air_film`` is the report's 5.44 + 1.674 v where it is None. Raises InputError for what cannot be.
+    ``inner_temperature`` is that of the tread's inner side (None: insulated); ``heat_source`` (W/m3) heats the rubber.
+    The default of ``air_film`` is the report's 5.44 + 1.674 v. Raises InputError for impossible values.
 
     >>> round(TreadPoint(speed=10.0, footprint_length=0.14).contact_time, 4)
     0.014
@@ -72,7 +72,7 @@ class TreadPoint:
 
     @property
     def mean_film(self) -> float:
-        """H_c, the exact mean over a contact with a road that keeps its temperature, W/m2/K."""
+        """H_c, the exact mean over a contact with a road of constant temperature, W/m2/K."""
         return half_space_film(self.speed, self.footprint_length, self.conductivity, self.heat_capacity)
 
     @property
@@ -90,7 +90,7 @@ class TreadPoint:
 
     @functools.cached_property
     def mesh(self) -> Any:
-        """A strip one element wide, x from the inner side to the surface, fine where a contact reaches."""
+        """A strip of one element's width, x from the inner side to the surface, fine at the depth of a contact."""
         import skfem
 
         reach = propagation_depth(self.contact_time, self.conductivity, self.heat_capacity)
@@ -105,7 +105,7 @@ class TreadPoint:
         return mesh.with_subdomains({"tread": lambda p: p[0] >= 0}).with_boundaries(sides)
 
     def conduction(self, films: Film | Sequence[Film]) -> Conduction:
-        """The strip as a conduction problem under films on its surface, planar."""
+        """Planar conduction problem of the strip with films on its surface."""
         sides: dict[str, Any] = {"surface": films}
         if self.inner_temperature is not None:
             sides["inner"] = Fixed(self.inner_temperature)
@@ -113,7 +113,7 @@ class TreadPoint:
         return Conduction(self.mesh, rubber, sides, {"tread": self.heat_source}, axisymmetric=False)
 
     def averaged(self, film: float | None = None) -> Conduction:
-        """The strip under f H_c + (1 - f) h_air; ``film`` is another H_c than the exact mean."""
+        """The strip under f H_c + (1 - f) h_air; ``film`` replaces the exact mean H_c."""
         road = self.mean_film if film is None else film
         return self.conduction(
             [
@@ -128,7 +128,7 @@ Array = NDArray[Any]
 
 @dataclass(frozen=True, eq=False)
 class PeriodicState:
-    """The state that repeats every revolution: nodes x (m from the inner side), temperatures degC, W/m2 to the road."""
+    """The periodic state of a revolution: nodes x (m from the inner side), temperatures degC, W/m2 to the road."""
 
     x: Array
     before_contact: Array
@@ -138,15 +138,15 @@ class PeriodicState:
 
 
 def periodic_state(point: TreadPoint) -> PeriodicState:
-    """Temperatures that one revolution brings back, by finite elements in depth and exactly in time.
+    """Periodic temperatures of one revolution, by finite elements in depth and exactly in time.
 
-    Each phase is linear, C dT/dt = f - A T, so with A v = l C v it maps T to P T + d; the state of period
-    P2 P1 is one linear solve. No revolution has to be waited for.
+    Each phase is linear, C dT/dt = f - A T, so with A v = l C v it maps T to P T + d. The state of period P2 P1
+    is one linear solve, without a simulation of revolutions.
     """
     ops = point.conduction(Film(0.0, 0.0)).operators
     x, node = np.unique(np.round(ops.points[0] / point.thickness, 12), return_inverse=True)
     onto = np.zeros((ops.size, x.size))
-    onto[np.arange(ops.size), node] = 1.0  # Nodes side by side have one temperature.
+    onto[np.arange(ops.size), node] = 1.0  # Nodes at equal depth have one temperature.
     width = float(np.ptp(ops.points[1]))
     along, across = ops.conduction("tread", None)
     C = point.heat_capacity * (onto.T @ ops.matrix(ops.mass("tread")) @ onto) / width
@@ -170,7 +170,7 @@ def periodic_state(point: TreadPoint) -> PeriodicState:
 
 @dataclass(frozen=True, eq=False)
 class _PhaseMap:
-    """T -> map T + shift at the phase's end, T -> mean_map T + mean_shift averaged over it."""
+    """T -> map T + shift at the phase's end, and T -> mean_map T + mean_shift as its time average."""
 
     map: Array
     shift: Array
@@ -196,10 +196,10 @@ class _PhaseMap:
 
 @dataclass(frozen=True)
 class AveragingError:
-    """The averaged boundary against every contact resolved, at periodic steady state; degC, W/m2, m.
+    """The averaged boundary compared with resolved contacts, in the periodic state; degC, W/m2, m.
 
-    ``mean_temperature`` and ``averaged_temperature`` are at ``depths`` below the surface; ``swing`` is how far one
-    contact cools the surface, K.
+    ``mean_temperature`` and ``averaged_temperature`` are at ``depths`` below the surface; ``swing`` is the drop of the
+    surface temperature in one contact, K.
     """
 
     point: TreadPoint
@@ -226,9 +226,9 @@ class AveragingError:
 def averaging_error(
     point: TreadPoint, depths: Sequence[float] = (0.0, 0.5e-3, 1e-3, 2e-3, 5e-3), film: float | None = None
 ) -> AveragingError:
-    """Compare the time-averaged road film with every contact resolved.
+    """Compare the time-averaged road film with resolved contacts.
 
-    ``depths`` in m below the surface; ``film`` is the H_c to average, the exact half-space mean where it is None.
+    ``depths`` in m below the surface; ``film`` is the averaged H_c, by default the exact half-space mean.
     Raises InputError for a depth outside the tread.
 
     >>> error = averaging_error(TreadPoint(speed=50 / 3.6, footprint_length=0.14))
@@ -257,7 +257,7 @@ def averaging_error(
 
 
 def averaging_sweep(point: TreadPoint, speeds: Iterable[float], lengths: Iterable[float]) -> list[AveragingError]:
-    """`averaging_error` at every speed (m/s) of every footprint length (m), length by length."""
+    """`averaging_error` at every speed (m/s) of every footprint length (m), with the lengths in the outer loop."""
     speeds = list(speeds)
     return [
         averaging_error(replace(point, speed=speed, footprint_length=length)) for length in lengths for speed in speeds

@@ -1,4 +1,4 @@
-"""The gas inside the tyre: one temperature, warmed by the inner surface."""
+"""The gas inside the tyre: one temperature, heated by the inner surface."""
 
 from __future__ import annotations
 
@@ -25,26 +25,26 @@ class ContainedAirLaw(Law):
     side: ClassVar[str] = "contained_air"
     #: 1e-4 cal/(cm2 s K), appendix I: gentle mixing by the carcass's motion.
     film: Annotated[FilmCoefficient, AIR_FILM] = 1e-4 * CAL
-    #: Start temperature; the drive's initial temperature where not given.
+    #: Initial temperature; by default the drive's initial temperature.
     initial: Temperature | None = None
 
     def start(self, initial: float) -> float:
-        """The gas's temperature at the start of a drive whose initial temperature is given, degC."""
+        """Initial temperature of the gas, degC, for the initial temperature of the drive."""
         return initial if self.initial is None else self.initial
 
     @property
-    def held_at(self) -> float:
-        """Temperature of a gas without a heat capacity, degC. A law that holds the gas overrides it.
+    def fixed_temperature(self) -> float:
+        """Temperature of a gas without a heat capacity, degC. A law with a fixed gas temperature overrides it.
 
         Raises
         ------
-        NotImplementedError : the gas has a heat capacity; its temperature is that of a run.
+        NotImplementedError : the gas has a heat capacity; its temperature follows from a run.
         """
         raise NotImplementedError(f"the contained air's law '{self.law}' does not hold its temperature")
 
     @abstractmethod
     def heat_capacity(self, volume: float, pressure: float, temperature: float) -> float | None:
-        """J/K of a volume (m3) filled to a gauge pressure (Pa) at a temperature (degC); None: it stays as it is."""
+        """J/K of a volume (m3) filled to a gauge pressure (Pa) at a temperature (degC); None: fixed temperature."""
 
 
 class Gas(ContainedAirLaw):
@@ -61,7 +61,7 @@ class Gas(ContainedAirLaw):
 
 
 class Report(ContainedAirLaw):
-    """The report's air: 0.0013 g/cm3 and 0.24 cal/g/K whatever the inflation pressure (appendix I)."""
+    """The report's air: 0.0013 g/cm3 and 0.24 cal/g/K at any inflation pressure (appendix I)."""
 
     law: Literal["report"]
     density: Annotated[float, Unit("kg/m**3", gt=0)] = 1.3
@@ -73,20 +73,20 @@ class Report(ContainedAirLaw):
 
 
 class Held(ContainedAirLaw):
-    """A gas held at ``temperature``, as by a measured history or a large reservoir."""
+    """A gas of constant ``temperature``, as measured or of a large reservoir."""
 
     law: Literal["held"]
     temperature: Temperature
 
     @property
-    def held_at(self) -> float:
+    def fixed_temperature(self) -> float:
         """The given temperature, degC."""
         return self.temperature
 
     def start(self, initial: float) -> float:
-        """Where it is held, degC."""
+        """The given temperature, degC."""
         return self.temperature
 
     def heat_capacity(self, volume: float, pressure: float, temperature: float) -> None:
-        """None: it stays as it is."""
+        """None: fixed temperature."""
         return

@@ -1,6 +1,6 @@
-"""A half-space of one material as sliding contacts see it: how well it conducts and how much heat it holds.
+"""A half-space of one material for sliding contacts: its thermal properties.
 
-How much of the friction heat still goes into a slider that has slid some way.
+Also the share of friction heat that still enters a slider after some sliding distance.
 """
 
 from __future__ import annotations
@@ -12,7 +12,7 @@ from tyrefem.errors import InputError, nearest
 
 
 def positive(**given: float) -> None:
-    """Every given number is finite and more than zero; InputError names the first that is not.
+    """Check that all numbers are finite and positive; InputError names the first that is not.
 
     >>> positive(length=0.04)
     """
@@ -22,7 +22,7 @@ def positive(**given: float) -> None:
 
 
 def not_negative(**given: float) -> None:
-    """Every given number is finite and at least zero; InputError names the first that is not.
+    """Check that all numbers are finite and at least zero; InputError names the first that is not.
 
     >>> not_negative(distance=0.0)
     """
@@ -38,7 +38,7 @@ class Solid:
     Parameters
     ----------
     conductivity : K, W/m/K. density : rho, kg/m3. specific_heat : c, J/kg/K.
-    source : where the numbers come from.
+    source : of the numbers.
 
     Raises InputError for a number that is not finite and positive.
 
@@ -66,7 +66,7 @@ class Solid:
 
     @property
     def effusivity(self) -> float:
-        """sqrt(K rho c), W s^(1/2)/m2/K: heat flux at the surface is shared in this proportion."""
+        """sqrt(K rho c), W s^(1/2)/m2/K: two bodies share the heat flux in proportion to it."""
         return math.sqrt(self.conductivity * self.heat_capacity)
 
 
@@ -79,7 +79,7 @@ TEAK = Solid(0.16, 730.0, 1382.0, "Roberts, Temperature rise when rubber slides;
 ICE = Solid(2.2, 916.0, 2090.0, "Roberts, Temperature rise when rubber slides")
 
 
-#: Not in the paper: published conductivities of asphalt go from 0.7 to 2 W/m/K with stone and voids.
+#: Not in the paper: published conductivities of asphalt are 0.7 to 2 W/m/K, depending on stone and voids.
 ASPHALT = Solid(0.75, 2115.0, 920.0, "estimate, common handbook values")
 
 
@@ -100,14 +100,14 @@ def solid(name: str) -> Solid:
 def share_into_slider(length: float, slid: float, slider: Solid, track: Solid) -> float:
     """F_r/F_0 = (2 K_r/(pi K_w)) sqrt(k_w t_c/(k_r T))   (9), with t_c/T = l/L at constant speed.
 
-    The slider's surface stands at equation 1's rise since the start: the worst case, the real share is less. For rubber
-    on teak the factor before sqrt(l/L) is 0.96 (10). Valid for l much less than L.
+    The slider's surface has equation 1's rise since the start. This is the worst case; the real share is less. For
+    rubber on teak the factor before sqrt(l/L) is 0.96 (10). Valid for l much less than L.
 
     Parameters
     ----------
-    length : l of the slider, m. slid : L, the whole way slid, m, at least the length.
+    length : l of the slider, m. slid : L, the total sliding distance, m, at least the length.
 
-    Returns a number. Raises InputError for lengths that are not positive or a way shorter than the slider.
+    Returns a number. Raises InputError for lengths that are not positive or a distance shorter than the slider.
     Source: Roberts, *Temperature rise when rubber slides*.
 
     >>> from tyrefem.boundaries.friction_names import RUBBER, TEAK

@@ -1,11 +1,11 @@
-"""Temperature rise of a track under a rubber pad that slides over it.
+"""Temperature rise of a track under a sliding rubber pad.
 
-Equation numbers are those of A. D. Roberts, *Temperature rise when rubber slides*, who takes the expressions from
+Equation numbers are those of A. D. Roberts, *Temperature rise when rubber slides*, with expressions from
 H. S. Carslaw and J. C. Jaeger, *Conduction of heat in solids* (1959).
 
-Valid for all of them: friction work becomes heat evenly over the pad; properties do not depend on temperature; heat
-flows across the surface only, so the Peclet number v l/k is much more than 1 and both bodies are thicker than the heat
-goes, about sqrt(4 k l/v) into the track. A phase change (melting ice) or decomposition is outside of them.
+Assumptions: friction work becomes heat evenly over the pad; properties do not depend on temperature; heat flows
+normal to the surface only. So the Peclet number v l/k is much more than 1, and both bodies are thicker than the depth
+of the heat, about sqrt(4 k l/v) in the track. Phase change (melting ice) and decomposition are not included.
 """
 
 from __future__ import annotations
@@ -14,7 +14,7 @@ import math
 
 from tyrefem.boundaries.friction import Solid, not_negative, positive
 
-#: Mean over the pad's length of a rise that grows with the square root of the distance from its front edge.
+#: Mean over the pad's length of a rise proportional to the square root of the distance from its front edge.
 MEAN_OF_EXIT = 2.0 / 3.0
 
 
@@ -24,7 +24,7 @@ def heat_flux(force: float, speed: float, length: float, breadth: float) -> floa
     Parameters
     ----------
     force : friction force f, N. speed : v, m/s.
-    length, breadth : of the pad along and across the way, m.
+    length, breadth : of the pad along and across the sliding direction, m.
 
     Returns W/m2. Raises InputError for a negative force or speed, or a length or breadth that is not positive.
 
@@ -39,7 +39,7 @@ def heat_flux(force: float, speed: float, length: float, breadth: float) -> floa
 def surface_rise(flux: float, time: float, track: Solid) -> float:
     """Surface rise of a half-space after a constant flux for a time, (2 F_0/K) sqrt(k t/pi)   (1).
 
-    No heat goes into the slider: it conducts far less, or has been warmed by sliding (see `share_into_slider`).
+    No heat enters the slider: it conducts far less, or is already warm from sliding (see `share_into_slider`).
 
     Parameters
     ----------
@@ -58,7 +58,7 @@ def surface_rise(flux: float, time: float, track: Solid) -> float:
 def exit_rise(force: float, speed: float, length: float, breadth: float, track: Solid) -> float:
     """Rise of the track from the front edge to the exit edge, (2 f/b) sqrt(v/(rho c pi K l))   (3).
 
-    Equation 1 with equation 2 and t = l/v; parameters as in `heat_flux`, none of the heat goes into the slider.
+    Equation 1 with equation 2 and t = l/v; parameters as in `heat_flux`, no heat enters the slider.
 
     Returns K. Raises InputError as `heat_flux`.
 
@@ -90,9 +90,9 @@ def exit_rise_of_stress(stress: float, speed: float, length: float, track: Solid
 
 
 def fall_off(distance: float, length: float) -> float:
-    """Rise of the track a distance d behind the exit edge, over that at the edge   (4).
+    """Rise of the track at a distance d behind the exit edge, over the rise at the edge   (4).
 
-    sqrt((l+d)/l) [1 - sqrt(1 - l/(l+d))], written without its cancellation as sqrt(l)/(sqrt(l+d) + sqrt(d)). The free
+    sqrt((l+d)/l) [1 - sqrt(1 - l/(l+d))], in the form sqrt(l)/(sqrt(l+d) + sqrt(d)) without cancellation. The free
     surface loses no heat to the air.
 
     Parameters
@@ -110,7 +110,7 @@ def fall_off(distance: float, length: float) -> float:
 
 
 def distance_of_fall_off(ratio: float, length: float) -> float:
-    """Distance behind the pad at which the rise is a given share of that at the exit edge: equation 4 solved for d.
+    """Distance behind the pad at which the rise is a given share of the exit edge's rise: equation 4 solved for d.
 
     d = l (1 - q^2)^2/(4 q^2) for the ratio q.
 
@@ -129,9 +129,9 @@ def distance_of_fall_off(ratio: float, length: float) -> float:
 
 
 def share_into(body: Solid, other: Solid) -> float:
-    """Share of the heat that goes into one of two bodies that touch everywhere since the start.
+    """Share of the heat that enters one of two bodies in full contact since the start.
 
-    b/(b + b'), b the effusivities: what equation 5 says about the flux. Half for equal bodies.
+    b/(b + b'), b the effusivities, from the flux of equation 5. Half for equal bodies.
 
     >>> from tyrefem.boundaries.friction_names import RUBBER, TEAK
     >>> round(share_into(TEAK, RUBBER), 3)
@@ -143,8 +143,8 @@ def share_into(body: Solid, other: Solid) -> float:
 def shared_rise(flux: float, time: float, first: Solid, second: Solid) -> float:
     """Rise of the interface of two conductors, 2 F_0/(K1 sqrt(k2) + K2 sqrt(k1)) sqrt(k1 k2 t/pi)   (5).
 
-    For a slider that is as cold as the track and has touched it for the same time: the start of sliding. Later less
-    heat goes into the slider and equation 1 is approached.
+    For a slider as cold as the track and in contact for the same time: the start of sliding. Later less heat enters
+    the slider, and the rise approaches equation 1.
 
     Parameters
     ----------
@@ -165,7 +165,7 @@ def shared_rise(flux: float, time: float, first: Solid, second: Solid) -> float:
 def largest_friction(rise: float, speed: float, length: float, breadth: float, track: Solid) -> float:
     """Friction force at which the exit edge reaches a rise, T_d b sqrt(rho c pi K l)/(2 sqrt(v))   (13).
 
-    With the rise T_d at which the rubber decomposes (or ice melts) it is the largest friction there can be (Ettles,
+    With the rise T_d at which the rubber decomposes (or ice melts) it is the largest possible friction (Ettles,
     Tire Sci. Technol. 14, 1986, 44).
 
     Parameters

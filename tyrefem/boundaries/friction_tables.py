@@ -1,6 +1,6 @@
-"""Roberts' tables 2 (rubber on wood) and 3 (rubber on ice) beside what the equations say.
+"""Roberts' tables 2 (rubber on wood) and 3 (rubber on ice) with the results of the equations.
 
-The numbers are in ``studies/roberts-sliding``; its README says which of them the paper does not print.
+The numbers are in ``studies/roberts-sliding``; its README lists those that are not printed in the paper.
 """
 
 from __future__ import annotations
@@ -16,7 +16,7 @@ from tyrefem.measured.cases import Case, read_cases
 from tyrefem.quantity import parse
 
 STUDY = "roberts-sliding"
-#: A printed prediction follows from its inputs if it is so near: five are (1.9 % at most), two are not (23, 90 %).
+#: Largest deviation of a printed prediction that agrees with its inputs: five do (1.9 % at most), two not (23, 90 %).
 PRINTED_TOLERANCE = 0.025
 #: Corrected rises of table 3 are printed in whole kelvins.
 ICE_ROUNDING = 0.5
@@ -24,7 +24,7 @@ ICE_ROUNDING = 0.5
 
 @dataclass(frozen=True)
 class WoodRow:
-    """One row of table 2. SI; rises at `behind` the exit edge; `printed` is the paper's own prediction."""
+    """One row of table 2. SI; rises at `behind` the exit edge; `printed` is the paper's prediction."""
 
     name: str
     length: float
@@ -49,16 +49,16 @@ class WoodRow:
 
     @property
     def deviation(self) -> float:
-        """Predicted less observed, K."""
+        """Predicted minus observed, K."""
         return self.predicted - self.observed
 
     @property
     def follows(self) -> bool:
-        """Does the printed prediction follow from the printed inputs?"""
+        """True if the printed prediction agrees with the printed inputs."""
         return abs(self.predicted / self.printed - 1.0) <= PRINTED_TOLERANCE
 
     def summary(self) -> dict[str, str | float | bool]:
-        """Measured beside predicted, for a table or JSON; `deviation` is relative to the observed rise."""
+        """Measured and predicted rise, for a table or JSON; `deviation` is relative to the observed rise."""
         return {
             "name": self.name,
             "observed_K": self.observed,
@@ -73,7 +73,7 @@ class WoodRow:
 
 @dataclass(frozen=True)
 class IceRow:
-    """One row of table 3. SI; rise `measured` behind the pad, `corrected` by the paper to the exit edge; no load."""
+    """One row of table 3. SI; `measured` rise behind the pad, `corrected` by the paper to the exit edge; no load."""
 
     name: str
     length: float
@@ -85,8 +85,8 @@ class IceRow:
     melting: str
 
     @property
-    def own_distance(self) -> float:
-        """Distance behind the pad that equation 4 needs for this row's correction, m."""
+    def distance_of_correction(self) -> float:
+        """Distance behind the pad with which equation 4 gives this row's correction, m."""
         return distance_of_fall_off(self.measured / self.corrected, self.length)
 
     def predicted(self, distance: float) -> float:
@@ -94,7 +94,7 @@ class IceRow:
         return self.measured / fall_off(distance, self.length)
 
     def follows(self, distance: float) -> bool:
-        """Does it round to the printed, corrected rise?"""
+        """True if the prediction rounds to the printed, corrected rise."""
         return abs(self.predicted(distance) - self.corrected) <= ICE_ROUNDING
 
     @property
@@ -107,7 +107,7 @@ class IceRow:
         return exit_rise_of_stress(self.friction * pressure, self.speed, self.length, ICE)
 
     def summary(self, distance: float, pressure: float) -> dict[str, str | float | bool]:
-        """Measured beside equation 4 at a distance (m) and equation 12 at a pressure (Pa)."""
+        """Measured rise, equation 4 at a distance (m), and equation 12 at a pressure (Pa)."""
         return {
             "name": self.name,
             "measured_K": self.measured,
@@ -122,10 +122,10 @@ class IceRow:
 
 
 def ice_distance(rows: tuple[IceRow, ...]) -> float:
-    """The one distance behind the pad that agrees with every correction of table 3, m.
+    """The distance behind the pad that agrees with all corrections of table 3, m.
 
-    The paper does not print it. Each row bounds the ratio of equation 4, since the corrected rise is rounded; the
-    middle of what all rows allow is taken.
+    The paper does not print it. The corrected rise is rounded, so each row gives bounds of equation 4's ratio. The
+    result is the middle of the range that all rows allow.
 
     Raises InputError if no distance fits all rows.
 
@@ -140,9 +140,9 @@ def ice_distance(rows: tuple[IceRow, ...]) -> float:
 
 
 def wood_rows(path: Path | None = None) -> tuple[WoodRow, ...]:
-    """The rows of table 2; ``path`` to another table with the same columns.
+    """The rows of table 2; ``path``: another table with the same columns.
 
-    Raises InputError for a table that cannot be read, a column that is missing or not a quantity.
+    Raises InputError for an unreadable table, a missing column or a cell that is not a quantity.
 
     >>> [row.follows for row in wood_rows()].count(True)
     5
@@ -154,7 +154,7 @@ def wood_rows(path: Path | None = None) -> tuple[WoodRow, ...]:
 
 
 def ice_rows(path: Path | None = None) -> tuple[IceRow, ...]:
-    """The rows of table 3; as `wood_rows`.
+    """The rows of table 3; parameters and errors as in `wood_rows`.
 
     >>> [row.corrected for row in ice_rows()]
     [7.0, 15.0, 21.0]

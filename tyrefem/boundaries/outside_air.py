@@ -61,7 +61,7 @@ class AirFilmTable(OutsideAirLaw):
         return self
 
     def warnings(self) -> tuple[InputWarning, ...]:
-        """Films of the table that are unlikely."""
+        """Unlikely films of the table."""
         films = enumerate(self._columns()[1])
         unlikely = [AIR_FILM.warning(film, f"table.{number}") for number, film in films]
         return super().warnings() + tuple(filter(None, unlikely))

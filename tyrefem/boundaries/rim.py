@@ -1,4 +1,4 @@
-"""The rim under the bead: held at a temperature, or a lumped body with its own heat capacity."""
+"""The rim under the bead: a fixed temperature, or a lumped body with a heat capacity."""
 
 from __future__ import annotations
 
@@ -19,7 +19,7 @@ class RimLaw(Law):
     side: ClassVar[str] = "rim"
     film: Annotated[FilmCoefficient, CONTACT_FILM] = 0.5 * CAL
     contact_resistance: Annotated[float, Unit("m**2*K/W", ge=0)] = 0.0
-    #: Rim temperature (at the start, for a lumped rim); the drive's where not given.
+    #: Rim temperature (initial, for a lumped rim); by default the drive's.
     temperature: Temperature | None = None
 
     @property

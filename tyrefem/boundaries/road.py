@@ -15,13 +15,13 @@ from tyrefem.quantity import Unit
 class RoadLaw(Law):
     """Film between tread and road during contact.
 
-    On a cross-section the road acts for f = L / (2 pi r_r) of the revolution: f H_c to the road's temperature and
-    (1 - f) h_air to the ambient (Cattani et al. 2023; Clark & Dodge 1980, appendix I). At standstill no point of the
-    tread represents the whole ring, and the road takes nothing.
+    On a cross-section the road acts for the share f = L / (2 pi r_r) of the revolution: f H_c to the road temperature
+    and (1 - f) h_air to the ambient (Cattani et al. 2023; Clark & Dodge 1980, appendix I). At standstill no point of
+    the tread represents the whole ring, and no heat goes to the road.
     """
 
     side: ClassVar[str] = "road"
-    #: Road temperature; the ambient where neither this nor the drive says.
+    #: Road temperature; by default the drive's, else the ambient.
     temperature: Temperature | None = None
     #: Fraction of the revolution on the road, in place of the footprint's.
     fraction: Annotated[float, Unit("1", ge=0, le=1)] | None = None
@@ -43,7 +43,7 @@ class ConstantRoadFilm(RoadLaw):
 
 
 class OfTread(RoadLaw):
-    """A film that follows from the tread's lambda and C: the tread card's at 25 degC unless given here."""
+    """A film computed from the tread's lambda and C: by default those of the tread card at 25 degC."""
 
     conductivity: Annotated[float, Unit("W/m/K", gt=0), CONDUCTIVITY] | None = None
     heat_capacity: Annotated[float, Unit("J/m**3/K", gt=0), SOLID_CAPACITY] | None = None
@@ -68,7 +68,7 @@ class HalfSpace(OfTread):
     """Two half-spaces suddenly in contact, H_c = (2/sqrt(pi)) sqrt(lambda C v / L) b_road / (b_road + b_tyre).
 
     The defaults are estimates for dense asphalt: handbooks give 0.8 to 2 W/m/K and 1.8e6 to 2.4e6 J/m3/K, and for dry
-    concrete much the same (1.7 W/m/K, 2.1e6 J/m3/K). A wet, cracked or porous road differs: give your own.
+    concrete nearly the same (1.7 W/m/K, 2.1e6 J/m3/K). A wet, cracked or porous road differs: give its values.
     """
 
     law: Literal["half-space"]

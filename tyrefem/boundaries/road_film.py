@@ -8,7 +8,7 @@ from tyrefem.errors import InputError
 
 
 def _number(value: float, field: str, *, zero: bool = False) -> float:
-    """The value, if it is a finite number above zero (or zero where that has a meaning)."""
+    """The value, if it is a finite number above zero (or zero where zero is allowed)."""
     try:
         number = float(value)
     except (TypeError, ValueError):
@@ -19,9 +19,9 @@ def _number(value: float, field: str, *, zero: bool = False) -> float:
 
 
 def propagation_depth(time: float, conductivity: float, heat_capacity: float) -> float:
-    """Depth to which a contact cools the tread, p = sqrt(4 lambda t / C), m (Cattani et al. 2023, eq 8).
+    """Depth of tread that a contact cools, p = sqrt(4 lambda t / C), m (Cattani et al. 2023, eq 8).
 
-    Knee of a triangular profile; holds while p is small against the tread's thickness. ``time`` since first touch, s;
+    Knee of a triangular profile; valid while p is small against the tread's thickness. ``time`` since first contact, s;
     ``conductivity`` W/m/K; ``heat_capacity`` J/m3/K. Raises InputError for a number that is not positive.
 
     >>> round(propagation_depth(0.14 / 2.7, 0.25, 2e6) * 1e3, 3)
@@ -57,7 +57,7 @@ def effusivity(conductivity: float, heat_capacity: float) -> float:
 def triangular_film(speed: float, footprint_length: float, conductivity: float, heat_capacity: float) -> float:
     """H_c = sqrt(lambda C v / FL), W/m2/K: mean over a contact of a triangular profile (Cattani et al. 2023, eq 12).
 
-    ``speed`` m/s, ``footprint_length`` m, the tread's W/m/K and J/m3/K. The road keeps its temperature. Raises
+    ``speed`` m/s, ``footprint_length`` m, the tread's W/m/K and J/m3/K. The road temperature is constant. Raises
     InputError.
 
     >>> round(triangular_film(150 / 3.6, 0.14, 0.25, 2e6), 2)
@@ -73,7 +73,7 @@ def half_space_film(
     """H_c = (2/sqrt(pi)) sqrt(lambda C v / FL) b_road / (b_road + b_tyre), W/m2/K: two half-spaces suddenly in contact.
 
     The exact mean over the contact (Carslaw & Jaeger, *Conduction of heat in solids*, 1959, 2.15), per kelvin between
-    tread and road before they touch. ``road_effusivity`` in J/m2/K/s^0.5; infinite for a road that keeps its
+    tread and road before contact. ``road_effusivity`` in J/m2/K/s^0.5; infinite for a road of constant
     temperature. Perfect contact over the whole footprint; both bodies deep against `propagation_depth`. Raises
     InputError.
 
@@ -98,7 +98,7 @@ def radial_deflection(load: float, radial_stiffness: float) -> float:
 
 
 def hedekel_length(deflection: float, radius: float, correction: float = 1.0) -> float:
-    """FL = c 2 sqrt(dz (2 R - dz)), m: chord that the road cuts from the free circle (Cattani et al. 2023, eq 13).
+    """FL = c 2 sqrt(dz (2 R - dz)), m: chord of the free circle on the road (Cattani et al. 2023, eq 13).
 
     ``deflection`` dz and free ``radius`` R in m, dz at most R; ``correction`` c is a measured factor. Raises
     InputError.

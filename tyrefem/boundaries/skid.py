@@ -1,11 +1,11 @@
-"""One passage through a sliding contact: tread and road cross it at their own speeds and share its heat.
+"""One passage through a sliding contact: tread and road pass it at different speeds and share its heat.
 
-A locked wheel on asphalt: rise of the contact, and friction that stops growing where rubber decomposes.
+Also a locked wheel on asphalt: rise of the contact, and the limit of friction where rubber decomposes.
 
 Roberts states that for a car skidding faster than 50 km/h the rise in the contact "can be in excess of 200 degC" and
 that decomposition limits friction (after Ettles, 1986). He prints none of the inputs: every number here is an estimate.
 
-Surface of a half-space that rubs on a passing road: the closed form beside a section's finite elements.
+The surface of a half-space that rubs on a passing road is a closed form to compare with a section's finite elements.
 """
 
 from __future__ import annotations
@@ -25,14 +25,15 @@ from tyrefem.errors import InputError
 
 @dataclass(frozen=True)
 class Passage:
-    """Tread and road in a footprint of length L, the one passing at w r, the other at v cos(a). SI units.
+    """Tread and road in a footprint of length L: the tread passes at w r, the road at v cos(a). SI units.
 
-    Each is warmed as a half-space for the time it takes, L/(its speed). Heat divides so that both surfaces agree: as
-    b_t sqrt(w r) to b_r sqrt(v). That is the effusivities (5) at small slip, and all of it into the road for a wheel
-    that has been locked for longer than L/v (1, 3). ``tread``, ``road`` are effusivities b, J/m2/K/s^0.5.
+    Each is heated as a half-space during its passage, L/(its speed). The heat divides as b_t sqrt(w r) to b_r sqrt(v),
+    which gives equal surface temperatures. At small slip this is the ratio of effusivities (5). For a wheel locked for
+    longer than L/v all heat enters the road (1, 3). ``tread``, ``road`` are effusivities b, J/m2/K/s^0.5.
 
     Sources: Carslaw & Jaeger, *Conduction of heat in solids* (1959); Roberts, eqs 1, 3, 5; the division by speeds is
-    Jaeger's of moving sources (1942). Raises InputError for what is not positive (``rolling_speed`` may be 0).
+    from Jaeger's moving sources (1942). Raises InputError for numbers that are not positive (``rolling_speed`` may be
+    0).
 
     >>> rolling = Passage(660.0, 1730.0, 0.2, 10.0, 10.0)
     >>> round(rolling.tread_share, 3), round(rolling.exit_rise(1e6), 1)
@@ -57,28 +58,31 @@ class Passage:
 
     @property
     def tread_share(self) -> float:
-        """Share of the friction heat that the tread takes, b_t sqrt(w r)/(b_t sqrt(w r) + b_r sqrt(v))."""
+        """Share of the friction heat that enters the tread, b_t sqrt(w r)/(b_t sqrt(w r) + b_r sqrt(v))."""
         tread, road = self._weights
         return tread / (tread + road)
 
-    def meeting(self, tread: Any, road: float) -> Any:
-        """Temperature of the contact without friction, degC, from those of tread (array or number) and road before."""
+    def frictionless_temperature(self, tread: Any, road: float) -> Any:
+        """Contact temperature without friction, degC, from those of tread (array or number) and road before contact."""
         share = self.tread_share
         return share * tread + (1.0 - share) * road
 
     def exit_rise(self, flux: Any) -> Any:
-        """Rise at the exit edge over `meeting`, 2 F_0 sqrt(L/pi)/(b_t sqrt(w r) + b_r sqrt(v)), K, from W/m2."""
+        """Rise at the exit edge over `frictionless_temperature`, K, for a flux F_0 in W/m2.
+
+        2 F_0 sqrt(L/pi)/(b_t sqrt(w r) + b_r sqrt(v))
+        """
         return flux * 2.0 * math.sqrt(self.length / math.pi) / sum(self._weights)
 
     def largest_flux(self, decomposition: float, tread: Any, road: float) -> Any:
-        """F_0 with which the exit edge reaches a temperature (13), W/m2; temperatures in degC, negative if passed."""
-        return (decomposition - self.meeting(tread, road)) / self.exit_rise(1.0)
+        """F_0 with which the exit edge reaches a temperature (13), W/m2; temperatures in degC; negative if exceeded."""
+        return (decomposition - self.frictionless_temperature(tread, road)) / self.exit_rise(1.0)
 
     def road_age(self, since: float) -> tuple[float, float]:
         """(oldest, mean over exit) of the road under a wheel locked ``since`` s: s, and mean rise over exit rise.
 
-        Road has been under it for L/v, or since it locked; its mean rise is 2/3 of that at the exit edge, all of it
-        where every point has been there for the same time.
+        The road has been in contact for L/v, or since the wheel locked. Its mean rise is 2/3 of that at the exit edge;
+        it is equal to it if all points have been in contact for the same time.
         """
         if not since >= 0:
             raise InputError(f"must be at least 0 s, not {since!r}", field="since")
@@ -86,10 +90,10 @@ class Passage:
         return crossed * self.length / self.road_speed, 1.0 - (1.0 - MEAN_OF_EXIT) * crossed
 
     def skid_film(self, since: float) -> float:
-        """Film between a locked wheel's tread and the road that passes under it, W/m2/K: F_0 over the mean rise (1, 3).
+        """Film between a locked wheel's tread and the road passing under it, W/m2/K: F_0 over the mean rise (1, 3).
 
-        (b_r sqrt(pi)/2)/sqrt(t) at first, with which heat divides as in (5); (3/4) b_r sqrt(pi v/L) from t = L/v on.
-        The first hundredth of L/v counts as one time.
+        At first (b_r sqrt(pi)/2)/sqrt(t), with which heat divides as in (5); from t = L/v on (3/4) b_r sqrt(pi v/L).
+        In the first hundredth of L/v the film is constant.
 
         >>> round(Passage(660.0, 1730.0, 0.2, 0.0, 10.0).skid_film(1.0))
         16262
@@ -100,12 +104,12 @@ class Passage:
 
 @dataclass(frozen=True)
 class LockedWheel:
-    """One footprint that slides without rolling; all heat goes into the road, as after some lengths of sliding.
+    """A footprint that slides without rolling; all heat enters the road, as after some lengths of sliding.
 
     Parameters
     ----------
     friction : coefficient of friction before decomposition (estimate).
-    pressure : on the rubber that touches, Pa: 220 kPa inflation over a land share of 0.7 (estimate).
+    pressure : on the rubber in contact, Pa: 220 kPa inflation over a land share of 0.7 (estimate).
     length : footprint length, m (estimate).
     decomposition_rise : T_d above the road, K: 350 degC on a road of 20 degC (estimate).
     road : `ASPHALT`, itself an estimate.
@@ -128,18 +132,18 @@ class LockedWheel:
         positive(pressure=self.pressure, length=self.length, decomposition_rise=self.decomposition_rise)
 
     def uncapped_exit_rise(self, speed: float) -> float:
-        """Rise at the exit edge if friction stayed what it is (12), K; speed in m/s."""
+        """Rise at the exit edge with constant friction (12), K; speed in m/s."""
         return exit_rise_of_stress(self.friction * self.pressure, speed, self.length, self.road)
 
     def friction_at(self, speed: float) -> float:
-        """Coefficient of friction at a speed in m/s: the given one, or less where equation 13 allows less."""
+        """Coefficient of friction at a speed in m/s: the given one, or less if equation 13 limits it."""
         if self.uncapped_exit_rise(speed) <= self.decomposition_rise:
             return self.friction
         force = largest_friction(self.decomposition_rise, speed, self.length, 1.0, self.road)
         return force / (self.pressure * self.length)
 
     def exit_rise(self, speed: float) -> float:
-        """Rise at the exit edge, K, at most the decomposition's."""
+        """Rise at the exit edge, K, limited to that of decomposition."""
         return min(self.uncapped_exit_rise(speed), self.decomposition_rise)
 
     def mean_rise(self, speed: float) -> float:
@@ -156,7 +160,7 @@ class LockedWheel:
         return self.speed_of_exit_rise(self.decomposition_rise)
 
 
-#: What the estimates may be at most and at least; nothing in them was fitted to the 200 K.
+#: Bounds of the estimates; none was fitted to the 200 K.
 MILD = LockedWheel(friction=0.6, pressure=200e3, length=0.10)
 SEVERE = LockedWheel(friction=1.0, pressure=400e3, length=0.20)
 
@@ -164,7 +168,7 @@ SEVERE = LockedWheel(friction=1.0, pressure=400e3, length=0.20)
 Array = NDArray[np.float64]
 
 
-#: Steps of the integration: a rise is right to 1e-4 (see tests/sliding).
+#: Steps of the integration: the error of a rise is 1e-4 (see tests/sliding).
 STEPS = 240
 
 
@@ -176,11 +180,11 @@ def half_space_surface(
     initial: float,
     effusivity: float,
 ) -> Array:
-    """Surface of a half-space at ``times`` (n,) s after it was at ``initial`` degC everywhere.
+    """Surface temperature of a half-space at ``times`` (n,) s after a uniform temperature ``initial`` degC.
 
     T(t) = T_0 + 1/(b sqrt(pi)) times the integral of q(s)/sqrt(t - s) ds, q = F_0 - H (T - T_sink)   (Duhamel)
 
-    solved with q linear between times that grow geometrically.
+    solved with q linear between geometrically growing times.
 
     Parameters
     ----------
@@ -208,7 +212,7 @@ def half_space_surface(
 
 
 def _weights(grid: Array) -> Array:
-    """Integral of q(s)/sqrt(t - s) up to the last time as weights on q; over the first interval q is constant."""
+    """Integral of q(s)/sqrt(t - s) up to the last time, as weights of q; in the first interval q is constant."""
     left = grid[-1] - grid
     root = np.sqrt(left)
     whole = 2.0 * (root[:-1] - root[1:])

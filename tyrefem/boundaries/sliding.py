@@ -1,4 +1,4 @@
-"""Friction of the tread on the road: what a sliding contact rubs with, and how hot rubber may get."""
+"""Friction of the tread on the road, and the temperature limit of rubber."""
 
 from __future__ import annotations
 
@@ -16,12 +16,12 @@ Friction = Annotated[float, Unit("1", ge=0, le=5)]
 
 
 class SlidingLaw(Law):
-    """Friction heat mu p v_s of a contact, W/m2, where a phase of the drive has slip; nothing where it has none.
+    """Friction heat mu p v_s of a contact, W/m2, in phases of the drive with slip; zero in other phases.
 
-    ``pressure`` is the load over the modelled footprint where it is not given, so that all friction heat is
-    mu F_z v_s. The road is that of a road law that names one, else that law's defaults (`HalfSpace`). Friction falls
-    where it would make the contact's exit edge hotter than ``decomposition_temperature`` (Roberts, eq 13); 350 degC is
-    an estimate, as is every default here.
+    The default of ``pressure`` is the load over the modelled footprint, so that the total friction heat is mu F_z v_s.
+    The road's values are given here, or those of the road law, or its defaults (`HalfSpace`). Friction decreases where
+    it would heat the contact's exit edge above ``decomposition_temperature`` (Roberts, eq 13). 350 degC is an estimate,
+    as are all defaults here.
     """
 
     side: ClassVar[str] = "sliding"
@@ -32,11 +32,11 @@ class SlidingLaw(Law):
 
     @abstractmethod
     def friction(self, sliding_speed: float, rolling_speed: float) -> float:
-        """Friction force over load, before decomposition limits it; speeds of the tread over the road and through the
-        footprint, m/s."""
+        """Friction force over load, without the limit of decomposition; speeds of the tread over the road and through
+        the footprint, m/s."""
 
     def road_effusivity(self, road: RoadLaw) -> float:
-        """b of the road, J/m2/K/s^0.5: given here, else that of the road law, else its default."""
+        """b of the road, J/m2/K/s^0.5: given here, or that of the road law, or its default."""
         named = road if isinstance(road, HalfSpace) else HalfSpace(law="half-space")
         return effusivity(
             self.road_conductivity or named.road_conductivity, self.road_heat_capacity or named.road_heat_capacity
@@ -44,7 +44,7 @@ class SlidingLaw(Law):
 
 
 class ConstantFriction(SlidingLaw):
-    """One coefficient at every slip: the force that is used, over the load. At small slip 0.8 is an upper bound."""
+    """The same coefficient at every slip: used force over load. At small slip 0.8 is an upper bound."""
 
     law: Literal["constant"]
     coefficient: Friction = 0.8
@@ -55,10 +55,10 @@ class ConstantFriction(SlidingLaw):
 
 
 class Brush(SlidingLaw):
-    """mu (1 - (1 - x)^3), x = v_s/(w r)/``full_slip`` up to 1: bristles that stick in front and slide behind.
+    """mu (1 - (1 - x)^3), x = v_s/(w r)/``full_slip`` up to 1: bristles stick at the front and slide at the rear.
 
-    The brush of even bristles under a parabolic pressure (Pacejka, *Tire and Vehicle Dynamics*, ch. 3): force times
-    sliding speed is the heat. ``full_slip``, where the whole footprint slides, is 0.15 (estimate).
+    The brush of uniform bristles under a parabolic pressure (Pacejka, *Tire and Vehicle Dynamics*, ch. 3); force times
+    sliding speed is the heat. At ``full_slip`` the whole footprint slides: 0.15 (estimate).
     """
 
     law: Literal["brush"]

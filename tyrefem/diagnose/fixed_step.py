@@ -100,7 +100,7 @@ def read(study: StudyData, grid: Array, at_sensors: Array | None, lumped: dict[s
     """
     readings = dict(lumped) if at_sensors is None else recorded(study, grid, at_sensors) | lumped
     if GAS not in readings:
-        held = study.card.boundaries.contained_air.held_at
+        held = study.card.boundaries.contained_air.fixed_temperature
         readings[GAS] = np.full(len(grid), held)
     return readings
 

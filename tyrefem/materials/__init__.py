@@ -1,4 +1,4 @@
 """Materials: cards, properties over temperature, tan delta, cord layers.
 
-Knows nothing of drives and runs.
+This package does not import drives and runs.
 """

@@ -30,7 +30,7 @@ from tyrefem.materials.properties import PropertyTable, Softening, Sourced, colu
 from tyrefem.quantity import Unit
 
 Array = NDArray[np.float64]
-#: From absolute zero to the highest temperature that a card may name, degC.
+#: From absolute zero to the highest temperature allowed on a card, degC.
 _RUBBER = (-273.15, 2000.0)
 
 
@@ -64,22 +64,22 @@ class Conductivity(Sourced):
         return [PropertyTable(listed[0], values) for values in listed[1:]]
 
     def warnings(self) -> tuple[InputWarning, ...]:
-        """Unlikely numbers, those of the table too."""
+        """Unlikely numbers, including those of the table."""
         tables = self._tables() if self.table is not None else []
         return super().warnings() + tuple(warning for table in tables for warning in table.unlikely(CONDUCTIVITY))
 
     @property
     def uncertain_fields(self) -> tuple[tuple[str, ...], ...]:
-        """Along and across the plies are two numbers."""
+        """The values along and across the plies are two independent numbers."""
         return ("value",), ("along",), ("across",), ("table",)
 
     @property
     def orthotropic(self) -> bool:
-        """Does it differ along and across the plies?"""
+        """True if values along and across the plies differ."""
         return self.along is not None or (self.table is not None and len(self._tables()) == 2)
 
     def law(self) -> Any:
-        """What the conduction solver takes: a number, a pair, or a function of temperature, W/m/K."""
+        """Conductivity for the conduction solver, W/m/K: a number, a pair, or a function of temperature."""
         if self.value is not None:
             return self.value
         if self.along is not None:
@@ -116,7 +116,7 @@ class Scalar(Sourced):
             raise error.within(field=field) from None
 
     def warnings(self) -> tuple[InputWarning, ...]:
-        """The unlikely number, or those of the table."""
+        """The unlikely number, or unlikely numbers of the table."""
         law = self.law()
         if isinstance(law, PropertyTable):
             return super().warnings() + law.unlikely(self.LIKELY)
@@ -165,9 +165,9 @@ class LossTangent(Sourced):
     """tan delta and its temperature law.
 
     ``exponential``: tan d = value exp(-rate (T - at))  (Clark & Dodge 1980, table 3, note 5, with
-    rate = 0.0148 per kelvin); ``constant``; ``table``: rows ``[T, tan delta]``; ``frequency``: the table or Prony
-    series of ``frequency`` with its shift says everything. With the other laws ``frequency`` carries them from its
-    reference frequency to others; without it tan delta is the same at every frequency.
+    rate = 0.0148 per kelvin); ``constant``; ``table``: rows ``[T, tan delta]``; ``frequency``: only the table or Prony
+    series of ``frequency`` with its shift. With the other laws ``frequency`` converts tan delta from its reference
+    frequency to others; without it tan delta is the same at all frequencies.
     """
 
     law: Literal["exponential", "constant", "table", "frequency"] = "exponential"
@@ -193,7 +193,7 @@ class LossTangent(Sourced):
         return self
 
     def warnings(self) -> tuple[InputWarning, ...]:
-        """Unlikely numbers, those of the table or master curve too."""
+        """Unlikely numbers, including those of the table or master curve."""
         warnings = super().warnings()
         if self.law == "table":
             return warnings + self._tabulated.unlikely(LOSS_TANGENT)
@@ -204,7 +204,7 @@ class LossTangent(Sourced):
 
     @property
     def uncertain_fields(self) -> tuple[tuple[str, ...], ...]:
-        """What the law multiplies by: none in a Prony series, where moduli and times make it."""
+        """The factor of the law; none for a Prony series, in which moduli and times give tan delta."""
         fields = {"table": "table", "frequency": "frequency.table"}
         return ((fields.get(self.law, "value"),),)
 
@@ -214,7 +214,7 @@ class LossTangent(Sourced):
 
     @functools.cached_property
     def over_frequency(self) -> Loss:
-        """tan delta(f, T): called with a frequency, Hz, and temperatures, degC."""
+        """tan delta(f, T), a function of frequency, Hz, and temperatures, degC."""
         return loss_over_frequency(self, self.frequency, master=self.law == "frequency")
 
     def __call__(self, temperature: Array | float) -> Array:
@@ -227,7 +227,7 @@ class LossTangent(Sourced):
         value = self.value or 0.0
         if self.law == "constant":
             return np.full_like(np.asarray(temperature, dtype=float), value)
-        # A rejected trial step may stray far: outside these bounds no rubber has a tan delta to speak of.
+        # Rejected trial steps may have extreme temperatures: beyond these bounds the law is not meaningful.
         bounded = np.minimum(np.maximum(temperature, _RUBBER[0]), _RUBBER[1])
         return np.asarray(value * np.exp(-(self.rate or 0.0) * (bounded - self.at)))
 
@@ -241,7 +241,7 @@ class Cord(Sourced):
 
     @property
     def uncertain_fields(self) -> tuple[tuple[str, ...], ...]:
-        """The modulus: an angle is not known to some per cent of itself."""
+        """The modulus; an angle has no relative standard deviation."""
         return (("ply_shear_modulus",),)
 
 
@@ -254,14 +254,14 @@ class ThermalExpansion(Sourced):
 
     @property
     def uncertain_fields(self) -> tuple[tuple[str, ...], ...]:
-        """Compound and cords expand each for itself."""
+        """Compound and cords expand independently."""
         return ("coefficient",), ("cords",)
 
 
 class MaterialCard(Card):
     """One compound or composite. Read with `material`.
 
-    ``softening`` acts on every modulus of the compound; cords have their own, in their own table, or none.
+    ``softening`` applies to all moduli of the compound; cords have a table of softening too, or do not soften.
     """
 
     kind: ClassVar[str] = "material"
@@ -281,11 +281,11 @@ class MaterialCard(Card):
 
     @property
     def softens(self) -> bool:
-        """Does any modulus depend on temperature?"""
+        """True if a modulus depends on temperature."""
         return any(part is not None and part.softening is not None for part in (self, self.cord, self.cords))
 
     def warmed(self, temperature: float) -> MaterialCard:
-        """The card with the moduli that it has at a temperature, degC."""
+        """The card with its moduli at a temperature, degC."""
         changes: dict[str, Any] = {}
         if self.softening is not None:
             factor = self.softening(temperature)

@@ -1,4 +1,4 @@
-"""A construction: cord layers in the section that holds them. Do they fit, and what does the tyre weigh?"""
+"""Cord layers in their section: check that they fit, and the masses of the regions."""
 
 from __future__ import annotations
 
@@ -20,7 +20,7 @@ Array = NDArray[np.float64]
 
 
 def region_thickness(section: Section, region: str) -> Array:
-    """Least and greatest thickness [m] of the layer where it is this region, over all its pieces."""
+    """Smallest and largest thickness [m] of the layer within this region, over all its pieces."""
     section.require_region(region)
     if section.wrapping is not None and region == section.wrap:
         return np.full(2, section.wrapping.thickness)
@@ -35,7 +35,7 @@ def region_thickness(section: Section, region: str) -> Array:
 
 
 def check_cords_fit(card: MaterialCard, section: Section, region: str) -> None:
-    """Raise `InputError` where the card's cords cannot lie in the region: too thick, too dense, or lifted too far.
+    """Raise `InputError` for cords that do not fit the region: too thick, too dense, or lifted too far.
 
     >>> from tyrefem.materials.card import material
     >>> from tyrefem.geometry import load
@@ -68,13 +68,13 @@ def check_cords_fit(card: MaterialCard, section: Section, region: str) -> None:
 def masses(section: Section, materials: Mapping[str, MaterialCard], temperature: float = 25.0) -> dict[str, float]:
     """Mass of the whole tyre by region [kg]: volume of the ring x density at a temperature (degC).
 
-    The tread counts as drawn, without grooves.
+    The tread has no grooves here.
     """
     return {region: volume * materials[region].density.at(temperature) for region, volume in _whole_volumes(section)}
 
 
 @functools.lru_cache(maxsize=32)
 def _whole_volumes(section: Section) -> tuple[tuple[str, float], ...]:
-    """(region, volume) of the whole tyre, m3; remembered for the 32 latest sections, which studies share."""
+    """(region, volume) of the whole tyre, m3. The values of the 32 latest sections are kept for all studies."""
     whole = section.as_full()
     return tuple((region, whole.volume(region)) for region in whole.regions)

@@ -1,4 +1,4 @@
-"""Stiffness on a material card: the rubber's strain-energy law, and the cords of a cord-rubber layer."""
+"""Stiffness on a material card: the rubber's strain-energy law, and the cords of cord-rubber layers."""
 
 from __future__ import annotations
 
@@ -15,16 +15,16 @@ from tyrefem.quantity import Unit
 
 Modulus = Annotated[float, Unit("Pa", gt=0, le=1e12)]
 Constant = Annotated[float, Unit("Pa", ge=-1e9, le=1e9)]
-#: Round cords side by side in every layer: no more of them fit (pi / (2 sqrt 3)).
+#: Largest volume fraction of round cords side by side in layers (pi / (2 sqrt 3)).
 DENSEST = math.pi / (2 * math.sqrt(3))
-#: Bulk modulus over shear modulus where the card gives none.
+#: Default of bulk modulus over shear modulus.
 BULK_RATIO = 100.0
-#: Constants of the strain-energy laws that are in proportion to the shear modulus.
+#: Constants of the strain-energy laws proportional to the shear modulus.
 SHEAR_CONSTANTS = ("shear_modulus", "c10", "c01", "c20", "c30")
 
 
 class RubberLaw(Card):
-    """What every strain-energy law carries; subclasses give the constants. Bulk modulus: 100 G where not given."""
+    """Common part of strain-energy laws; subclasses add the constants. Default of the bulk modulus: 100 G."""
 
     bulk_modulus: Modulus | None = None
     source: Text
@@ -37,7 +37,7 @@ class RubberLaw(Card):
 
     @property
     def uncertain_fields(self) -> tuple[tuple[str, ...], ...]:
-        """What ``relative_sd`` speaks of: all shear constants have one factor; a bulk modulus that is given stays."""
+        """Fields of ``relative_sd``: all shear constants have one factor; a given bulk modulus does not change."""
         return (SHEAR_CONSTANTS,)
 
     @property
@@ -46,12 +46,12 @@ class RubberLaw(Card):
         return self.bulk_modulus or BULK_RATIO * self.initial_shear_modulus
 
     def warnings(self) -> tuple[InputWarning, ...]:
-        """An unlikely shear modulus, whatever constants it follows from."""
+        """An unlikely shear modulus, computed from the constants."""
         field = "shear_modulus" if hasattr(self, "shear_modulus") else "c10"
         return super().warnings() + tuple(filter(None, [SHEAR_MODULUS.warning(self.initial_shear_modulus, field)]))
 
     def times(self, factor: float) -> Self:
-        """The law with every shear constant times a factor; a bulk modulus that is given stays."""
+        """The law with all shear constants times a factor; a given bulk modulus does not change."""
         names = [name for name in SHEAR_CONSTANTS if hasattr(self, name)]
         return self.model_copy(update={name: factor * getattr(self, name) for name in names})
 
@@ -59,8 +59,8 @@ class RubberLaw(Card):
     def _hard_to_compress(self) -> Self:
         if self.bulk_modulus is not None and self.bulk_modulus < 10 * self.initial_shear_modulus:
             raise InputError(
-                f"must be 10 times the shear modulus ({self.initial_shear_modulus:.3g} Pa) or more: rubber hardly"
-                " changes its volume",
+                f"must be 10 times the shear modulus ({self.initial_shear_modulus:.3g} Pa) or more: rubber is nearly"
+                " incompressible",
                 field="bulk_modulus",
             )
         return self
@@ -112,7 +112,7 @@ class Yeoh(RubberLaw):
 
     @model_validator(mode="after")
     def _stable(self) -> Self:
-        # dW/dI1 = c10 + 2 c20 x + 3 c30 x^2 must stay positive for every x = I1 - 3 >= 0.
+        # dW/dI1 = c10 + 2 c20 x + 3 c30 x^2 must be positive for all x = I1 - 3 >= 0.
         if self.c30 < 0 or (self.c20 < 0 and self.c20**2 >= 3 * self.c10 * self.c30):
             raise InputError(
                 "the rubber loses its stiffness when stretched: c30 >= 0, and for c20 < 0 c20^2 < 3 c10 c30, is needed",
@@ -137,19 +137,19 @@ class Cords(Card):
 
     Parameters
     ----------
-    modulus : of a cord in tension [Pa]; ``compression_modulus``: in compression, the same where not given.
+    modulus : of a cord in tension [Pa]; ``compression_modulus``: in compression, by default the same.
     diameter : of one cord [m].
     ends : cords per metre across them, at ``angle_radius``, all plies of the layer together [1/m].
-    plies : cord layers that the ends are spread over.
+    plies : number of cord layers for these ends.
     angle : to the circumference [rad], 0 to 90 deg. angle_radius : where angle and ends are given [m].
     pairs : half of the cords at +angle, half at -angle.
-    thickness_share : part of the layer's thickness that holds the cords.
-    loss_tangent : of the cords themselves; where not given they lose nothing.
-    softening : of the cords as they warm; where not given they keep their modulus.
+    thickness_share : share of the layer's thickness that contains the cords.
+    loss_tangent : of the cords; by default they lose no energy.
+    softening : of the cords with temperature; by default their modulus is constant.
 
     Raises
     ------
-    InputError : an angle beyond 0 to 90 deg, cords that touch, a lifted angle without its radius.
+    InputError : an angle beyond 0 to 90 deg, touching cords, a lifted angle without its radius.
 
     >>> belt = Cords.check({"modulus": "110 GPa", "diameter": "0.6 mm", "ends": "862 1/m", "angle": "22 deg",
     ...                     "angle_radius": "303 mm", "source": "estimate: example"})
@@ -199,7 +199,7 @@ class Cords(Card):
 
     @property
     def uncertain_fields(self) -> tuple[tuple[str, ...], ...]:
-        """What ``relative_sd`` speaks of: the moduli in tension and compression have one factor."""
+        """Fields of ``relative_sd``: the moduli in tension and compression have one factor."""
         return (("modulus", "compression_modulus"),)
 
     @property
@@ -217,7 +217,7 @@ class Cords(Card):
 
         Raises
         ------
-        InputError : the cords are thicker than the layer, or denser than round cords can be packed.
+        InputError : the cords are thicker than the layer, or denser than round cords can be.
         """
         room = thickness * self.thickness_share
         if room < self.diameter * (1 - 1e-9):

@@ -29,18 +29,18 @@ class ShiftCard(Card):
 
 
 class OfFrequency(Card):
-    """What every law carries: the ``reference`` frequency at which the card's law of temperature holds; a source."""
+    """Common part of all laws: the ``reference`` frequency, for which the card's temperature law is valid; a source."""
 
     reference: Frequency = 10.0
     source: Text
 
-    def alone(self) -> Loss | None:
-        """tan delta without the card's law of temperature; None for a law that only scales."""
+    def master_curve(self) -> Loss | None:
+        """tan delta without the card's temperature law; None for a law that only scales it."""
         return None
 
-    def over(self, law: Any) -> Loss:
+    def scaled_by(self, law: Any) -> Loss:
         """tan delta = law(T) m(f, T) / m(reference, T)."""
-        master = self.alone()
+        master = self.master_curve()
         assert master is not None
         return Relative(law, master, self.reference)
 
@@ -51,7 +51,7 @@ class Power(OfFrequency):
     law: Literal["power"]
     exponent: Annotated[float, Unit("1", ge=-0.9, le=1)]
 
-    def over(self, law: Any) -> Loss:
+    def scaled_by(self, law: Any) -> Loss:
         """tan delta = law(T) (f / reference)^exponent."""
         return PowerLaw(law, self.exponent, self.reference)
 
@@ -73,7 +73,7 @@ class LossFrequencyTable(OfFrequency):
         frequencies, values = columns(self.table, ("Hz", "1"))
         return FrequencyTable(frequencies, values, self.shift.law() if self.shift else None)
 
-    def alone(self) -> Loss:
+    def master_curve(self) -> Loss:
         """The table."""
         return self._tabulated
 
@@ -104,7 +104,7 @@ class PronySeries(OfFrequency):
         moduli, times = zip(*pairs, strict=True)
         return Prony(self.equilibrium, moduli, times, self.shift.law() if self.shift else None)
 
-    def alone(self) -> Loss:
+    def master_curve(self) -> Loss:
         """The series."""
         return self._prony
 
@@ -113,8 +113,8 @@ LossFrequency = Annotated[Power | LossFrequencyTable | PronySeries, Field(discri
 
 
 def loss_over_frequency(law: Any, frequency: OfFrequency | None, *, master: bool) -> Loss:
-    """tan delta(f, T) of a card whose law of temperature is ``law``; ``master``: the frequency law says it all."""
+    """tan delta(f, T) of a card with the temperature law ``law``; ``master``: the frequency law replaces it."""
     if frequency is None:
         return OfTemperature(law)
-    alone = frequency.alone() if master else None
-    return frequency.over(law) if alone is None else alone
+    master_curve = frequency.master_curve() if master else None
+    return frequency.scaled_by(law) if master_curve is None else master_curve

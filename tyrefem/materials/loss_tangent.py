@@ -23,7 +23,7 @@ class Loss(Protocol):
 
 @dataclass(frozen=True)
 class Shift:
-    """Williams, Landel and Ferry: log10 a_T = -c1 (T - T_ref) / (c2 + T - T_ref); held where c2 + T - T_ref < 10 K.
+    """Williams, Landel and Ferry: log10 a_T = -c1 (T - T_ref) / (c2 + T - T_ref); constant for c2 + T - T_ref < 10 K.
 
     >>> float(Shift(17.44, 51.6, -50.0)(np.array(-50.0)))
     1.0
@@ -40,7 +40,7 @@ class Shift:
 
 @dataclass(frozen=True)
 class OfTemperature:
-    """A law of temperature alone, e.g. the ``loss_tangent`` of a material card, or a number."""
+    """A law of temperature only, e.g. the ``loss_tangent`` of a material card, or a number."""
 
     law: Callable[[Array], Array] | float
 
@@ -69,7 +69,8 @@ class PowerLaw:
 
 @dataclass(frozen=True)
 class Relative:
-    """tan d = law(T) m(f, T) / m(f_ref, T): what ``law`` says at f_ref, carried to other frequencies by ``master``.
+    """tan d = law(T) m(f, T) / m(f_ref, T): ``law`` gives the value at f_ref, ``master`` its ratio at other
+    frequencies.
 
     >>> maxwell = Prony(1.0, (2.0,), (1.0,))
     >>> round(float(Relative(0.1, maxwell, 0.5 / np.pi)(0.5 / np.pi, np.array(20.0))), 9)

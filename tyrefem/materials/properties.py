@@ -1,6 +1,6 @@
-"""A property of a card: its source, and its table over temperature or frequency.
+"""Properties of a card: source, tables over temperature or frequency, and softening.
 
-How a modulus falls as a material warms.
+Softening is the decrease of a modulus with temperature.
 """
 
 from __future__ import annotations
@@ -22,15 +22,15 @@ Array = NDArray[np.float64]
 
 
 class Sourced(Card):
-    """A property: every one names its source; a guess says ``estimate: ...``."""
+    """A property with its source; the source of a guess is ``estimate: ...``."""
 
     source: Text
-    #: Relative standard deviation of the number, where the source or an estimate gives one.
+    #: Relative standard deviation of the number, from the source or an estimate.
     relative_sd: Annotated[float, Unit("1", ge=0, lt=1)] | None = None
 
     @property
     def uncertain_fields(self) -> tuple[tuple[str, ...], ...]:
-        """Fields that ``relative_sd`` speaks of: those of one group have one factor, every group its own."""
+        """Groups of fields to which ``relative_sd`` applies: one factor per group."""
         return ("value",), ("table",)
 
 
@@ -55,12 +55,12 @@ class PropertyTable:
         return tuple(filter(None, rows))[:1]
 
 
-#: What the first column of a table holds, by its unit.
+#: Quantity in the first column of a table, by its unit.
 FIRST = {"degC": "temperatures", "Hz": "frequencies"}
 
 
 def columns(rows: list[list[Any]], units: tuple[str, ...]) -> list[tuple[float, ...]]:
-    """Columns of a table of quantities whose first column, temperature (degC) or frequency (Hz), must rise."""
+    """Columns of a table of quantities; the first, temperature (degC) or frequency (Hz), must increase."""
     if len(rows) < 2:
         raise InputError("needs at least two rows", field="table")
     parsed = []
@@ -79,19 +79,19 @@ def columns(rows: list[list[Any]], units: tuple[str, ...]) -> list[tuple[float, 
     return parsed_columns
 
 
-#: Range in which an exponential law is used, degC; held beyond.
+#: Temperature range of an exponential law, degC; constant beyond.
 _COLDEST, _HOTTEST = -50.0, 250.0
 
 
 class Softening(Sourced):
-    """Modulus at a temperature over the modulus that the card gives.
+    """Modulus at a temperature over the modulus of the card.
 
-    ``exponential``: m = exp(-rate (T - at)), so that the card's modulus is that at the temperature ``at``;
+    ``exponential``: m = exp(-rate (T - at)), so ``at`` is the temperature of the card's modulus;
     ``table``: rows ``[T, m]``, linear between them and constant beyond.
 
     Raises
     ------
-    InputError : a law without its numbers, a table whose temperatures do not rise.
+    InputError : a law without its numbers, a table whose temperatures do not increase.
 
     >>> law = Softening.check({"rate": "0.004 1/delta_degC", "source": "estimate: example"})
     >>> law(25.0), round(law(75.0), 4)
@@ -115,7 +115,7 @@ class Softening(Sourced):
 
     @property
     def uncertain_fields(self) -> tuple[tuple[str, ...], ...]:
-        """The rate: a table is relative, and has no one number."""
+        """The rate; a table is relative and has no single number."""
         return (("rate",),)
 
     @functools.cached_property

@@ -1,4 +1,4 @@
-"""What every strain law reads of the material cards: only that can change its strain cycles."""
+"""The data of material cards that each strain law reads: only these change its strain cycles."""
 
 from __future__ import annotations
 
@@ -10,7 +10,7 @@ if TYPE_CHECKING:
 
     Cards = Mapping[str, MaterialCard]
 
-#: Tables of a card that only a strain law can read.
+#: Tables of a card that only strain laws read.
 STIFFNESS = ("shear_modulus", "youngs_modulus", "cord", "elasticity", "cords")
 #: Tables of the cards that the arcs read, by region.
 ARCS = {
@@ -21,14 +21,14 @@ ARCS = {
 }
 
 
-def of_arcs(cards: Cards) -> dict[str, tuple[str, ...]]:
-    """The plies and rubber of the report's five zones."""
+def read_by_arcs(cards: Cards) -> dict[str, tuple[str, ...]]:
+    """Plies and rubber of the report's five zones."""
     return {region: tables for region, tables in ARCS.items() if region in cards}
 
 
-def of_elements(cards: Cards) -> dict[str, tuple[str, ...]]:
-    """Compound and cords of every region, as `tyrefem.mechanics.solid.tyre_body` takes them; tan delta where cords
-    lose heat too.
+def read_by_elements(cards: Cards) -> dict[str, tuple[str, ...]]:
+    """Compound and cords of every region, as in `tyrefem.mechanics.solid.tyre_body`; also tan delta if cords lose
+    energy.
     """
     fields: dict[str, list[str]] = {region: [] for region in cards}
     for region, card in cards.items():
@@ -49,31 +49,31 @@ def of_elements(cards: Cards) -> dict[str, tuple[str, ...]]:
     return {region: tuple(dict.fromkeys(tables)) for region, tables in fields.items()}
 
 
-def of_given(cards: Cards) -> dict[str, tuple[str, ...]]:
-    """Nothing: the study gives the energies."""
+def read_by_given(cards: Cards) -> dict[str, tuple[str, ...]]:
+    """No data: the study gives the energies."""
     return {}
 
 
-def of_all(cards: Cards) -> dict[str, tuple[str, ...]]:
-    """Everything: of a law that says nothing of what it reads."""
+def read_by_unknown_law(cards: Cards) -> dict[str, tuple[str, ...]]:
+    """All data, for a law without an entry here."""
     return {region: tuple(type(card).model_fields) for region, card in cards.items()}
 
 
-#: Strain law -> region -> tables that it reads; one that is not here may read all.
+#: Strain law -> region -> tables that it reads; a law without an entry may read all tables.
 READS: dict[str, Callable[[Cards], dict[str, tuple[str, ...]]]] = {
-    "arcs": of_arcs,
-    "barrel": of_elements,
-    "fem": of_elements,
-    "given": of_given,
+    "arcs": read_by_arcs,
+    "barrel": read_by_elements,
+    "fem": read_by_elements,
+    "given": read_by_given,
 }
 
 
 def tables_read(law: str, cards: Cards) -> dict[str, tuple[str, ...]]:
     """Region -> tables of its card that a strain law reads."""
-    return READS.get(law, of_all)(cards)
+    return READS.get(law, read_by_unknown_law)(cards)
 
 
 def values_read(law: str, cards: Cards) -> dict[str, tuple[Any, ...]]:
-    """Region -> what a strain law reads of its card: two studies with the same have the same strain cycles."""
+    """Region -> values that a strain law reads of its card; equal values give equal strain cycles."""
     reads = tables_read(law, cards)
     return {region: tuple(getattr(cards[region], table) for table in tables) for region, tables in reads.items()}

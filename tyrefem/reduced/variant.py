@@ -99,7 +99,7 @@ class Variant:
         history = self.readout.reservoirs(self.number).get(GAS)
         if history is not None:
             return history
-        return np.full(len(self.times), self.study.card.boundaries.contained_air.held_at)
+        return np.full(len(self.times), self.study.card.boundaries.contained_air.fixed_temperature)
 
     @property
     def rim_temperature(self) -> Array | None:

@@ -172,7 +172,7 @@ class ResultData(Brief):
         """Contained-air temperature, (n_times,) degC."""
         if GAS in self.history.reservoirs:
             return np.asarray(self.history.reservoirs[GAS])
-        return np.full(len(self.times), self.study.card.boundaries.contained_air.held_at)
+        return np.full(len(self.times), self.study.card.boundaries.contained_air.fixed_temperature)
 
     @functools.cached_property
     def gas_pressure(self) -> Array:

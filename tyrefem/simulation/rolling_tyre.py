@@ -138,7 +138,7 @@ class RollingTyre(Surroundings):
     def _films(self) -> dict[str, list[Any]]:
         """Side -> its films, and what slip adds."""
         laws = self.study.card.boundaries
-        gas = GAS if self._gas_capacity is not None else laws.contained_air.held_at
+        gas = GAS if self._gas_capacity is not None else laws.contained_air.fixed_temperature
 
         rim = RIM if isinstance(laws.rim, LumpedRim) else self._of_time(self.rim_temperature)
         air = self._of_time(self.ambient)

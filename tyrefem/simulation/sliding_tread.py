@@ -149,8 +149,8 @@ class SlidingTread:
     def exit_edge(self, t: float, T: Array) -> Array:
         """Temperature at the exit edge of the contact, degC, from the surface's T (n,).
 
-        Rolling: `Passage.meeting` plus the rise of the passage (1, 3, 5). Locked: the rise of the surface over the
-        road, which is the mean over the contact, times exit over mean.
+        Rolling: `Passage.frictionless_temperature` plus the rise of the passage (1, 3, 5). Locked: the rise of the
+        surface over the road, which is the mean over the contact, times exit over mean.
         """
         passage, road = self.passage(t), self.surroundings.road_temperature(t)
         if passage is None:
@@ -158,4 +158,4 @@ class SlidingTread:
         since = self.drive.locked_since(t)
         if since is not None:
             return np.asarray(road + (np.asarray(T) - road) / passage.road_age(max(t - since, 0.0))[1])
-        return np.asarray(passage.meeting(T, road) + passage.exit_rise(self.friction_flux(t, T)))
+        return np.asarray(passage.frictionless_temperature(T, road) + passage.exit_rise(self.friction_flux(t, T)))
