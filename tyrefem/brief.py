@@ -1,4 +1,4 @@
-"""What a large object says of itself in a few lines; and what of it is stored."""
+"""Short descriptions of large objects, and pickles without cached values."""
 
 from __future__ import annotations
 
@@ -8,15 +8,15 @@ from dataclasses import fields, is_dataclass
 from pathlib import Path
 from typing import Any
 
-#: Lines of a `repr` at most, and letters of a line.
+#: Largest number of lines of a `repr`, and of characters of a line.
 LINES, WIDTH = 20, 110
-#: Names or values of a list that are shown.
+#: Number of names or values of a list in a description.
 SHOWN = 6
 _INDENT = "  "
 
 
 class Brief:
-    """A class whose `repr` has at most 20 lines; a subclass says in `_facts` what a person wants to know of it.
+    """A class whose `repr` has at most 20 lines; a subclass gives its main facts in `_facts`.
 
     >>> from dataclasses import dataclass
     >>> import numpy as np
@@ -32,17 +32,17 @@ class Brief:
 
     def __init_subclass__(cls, **options: Any) -> None:
         super().__init_subclass__(**options)
-        # A dataclass would write its own, with every number of every array.
+        # A dataclass would add a `repr` with all numbers of all arrays.
         if "__repr__" not in cls.__dict__:
             cls.__repr__ = Brief.__repr__  # type: ignore[method-assign]
 
     def _title(self) -> str:
-        """What stands behind the name of the class: what it is called, mostly."""
+        """Text after the name of the class, mostly the object's name."""
         name = getattr(self, "name", "")
         return name if isinstance(name, str) else ""
 
     def _facts(self) -> Mapping[str, Any]:
-        """Heading -> what stands behind it; text as it is, everything else by `short`."""
+        """Heading -> text or value; values are shortened by `short`."""
         if not is_dataclass(self):
             return {}
         return {field.name: getattr(self, field.name) for field in fields(self) if field.repr and field.name != "name"}
@@ -67,13 +67,13 @@ def lines(heading: str, facts: Mapping[str, Any]) -> str:
 
 
 def cut(text: str, width: int = WIDTH) -> str:
-    """One line of at most so many letters."""
+    """One line of at most ``width`` characters."""
     line = " ".join(text.splitlines()) if "\n" in text else text
     return line if len(line) <= width else f"{line[: width - 3]}..."
 
 
 def short(value: Any) -> str:
-    """A value in a few words, whatever it is.
+    """A value in a few words, for values of any type.
 
     >>> import numpy as np
     >>> short(0.123456789), short(np.zeros((3, 2))), short({"tread": 1, "bead": 2}), short(list(range(50)))
@@ -99,7 +99,7 @@ def short(value: Any) -> str:
 
 
 def _in_line(thing: Brief) -> str:
-    """Its name; of what has none the first facts."""
+    """The object's name, or its first facts if it has no name."""
     heading = heading_of(thing)
     if thing._title():
         return cut(heading, 80)
@@ -108,7 +108,7 @@ def _in_line(thing: Brief) -> str:
 
 
 def listed(names: Iterable[Any]) -> str:
-    """The first few of a list, with their number if there are more."""
+    """The first few entries of a list, and the number of entries if there are more."""
     every = list(names)
     words = ", ".join(short(entry) for entry in every[:SHOWN])
     if len(every) <= SHOWN:
@@ -123,8 +123,8 @@ def _array(array: Any) -> str:
     return f"array {array.shape}, {low:.6g} to {high:.6g}"
 
 
-class Stated:
-    """A dataclass that is stored, and sent to other processes, without what it has worked out."""
+class PickledFields:
+    """A dataclass that is pickled with its fields only, without cached values."""
 
     def __getstate__(self) -> dict[str, Any]:
         return {field.name: self.__dict__[field.name] for field in fields(self)}  # type: ignore[arg-type]

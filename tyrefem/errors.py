@@ -1,4 +1,4 @@
-"""Errors that a user can act on: one sentence that names the file, the field and what is allowed."""
+"""Errors that a user can correct: one sentence with the file, the field and the allowed values."""
 
 from __future__ import annotations
 
@@ -17,7 +17,7 @@ class InputError(ValueError):
     ----------
     message : what is wrong and what is allowed.
     field : dotted name of the field, e.g. ``drive.speed``.
-    file : the file it was read from.
+    file : the file with the input.
 
     >>> print(InputError("must be positive", field="drive.speed", file="study.toml"))
     study.toml: drive.speed: must be positive
@@ -28,14 +28,14 @@ class InputError(ValueError):
         super().__init__(": ".join(str(part) for part in (file, field, message) if part))
 
     def within(self, *, field: str | None = None, file: str | Path | None = None) -> InputError:
-        """The same error, placed in an enclosing field and file."""
+        """The same error, with the names of an enclosing field and file."""
         joined = ".".join(part for part in (field, self.field) if part)
         return InputError(self.message, field=joined or None, file=self.file or file)
 
 
 @dataclass(frozen=True)
 class InputWarning:
-    """Input that can be worked with, but is perhaps not what was meant. ``field`` and ``file`` as of `InputError`.
+    """Input that is allowed, but is probably a mistake. ``field`` and ``file`` as in `InputError`.
 
     >>> print(InputWarning("is unlikely", "density.value").within(field="materials.tread", file="study.toml"))
     study.toml: materials.tread.density.value: is unlikely
@@ -46,7 +46,7 @@ class InputWarning:
     file: str | Path | None = None
 
     def within(self, *, field: str | None = None, file: str | Path | None = None) -> InputWarning:
-        """The same warning, placed in an enclosing field and file."""
+        """The same warning, with the names of an enclosing field and file."""
         joined = ".".join(part for part in (field, self.field) if part)
         return replace(self, field=joined or None, file=self.file or file)
 
@@ -55,7 +55,7 @@ class InputWarning:
 
 
 class MissingLibraryError(InputError):
-    """A feature needs a library that this machine does not have or cannot load."""
+    """A feature needs a library that is not installed or cannot be loaded."""
 
 
 def quoted(words: Iterable[str], allowed: Iterable[str]) -> str:
@@ -70,7 +70,7 @@ def quoted(words: Iterable[str], allowed: Iterable[str]) -> str:
 
 
 def nearest(word: str, allowed: Iterable[str]) -> str:
-    """`"; did you mean 'x'?"` for the closest allowed word, or the list of what is allowed.
+    """`"; did you mean 'x'?"` for the closest allowed word, or the list of allowed words.
 
     >>> nearest("carcas", ["carcass", "tread"])
     "; did you mean 'carcass'? Allowed: carcass, tread"

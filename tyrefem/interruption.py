@@ -1,4 +1,4 @@
-"""Ctrl-C: what is kept is named by whoever knows it, and short work that must not be cut in two is finished first."""
+"""Ctrl-C: a message about the finished work that is kept, and a delay until short work is finished."""
 
 from __future__ import annotations
 
@@ -10,11 +10,11 @@ from typing import Any
 
 
 class Interrupted(KeyboardInterrupt):
-    """Ctrl-C, and what is kept of the work; only ``except KeyboardInterrupt`` catches it.
+    """Ctrl-C with a message about the finished work; only ``except KeyboardInterrupt`` catches it.
 
     Parameters
     ----------
-    kept : a clause: what is finished, and where it is. at : how far the work was, e.g. "300 s".
+    kept : a clause: the finished work, and its place. at : progress of the work, e.g. "300 s".
 
     >>> print(Interrupted("what is finished is in results", at="300 s"))
     interrupted at 300 s; what is finished is in results
@@ -27,11 +27,11 @@ class Interrupted(KeyboardInterrupt):
 
 @contextmanager
 def keeping(kept: str | Callable[[], str]) -> Iterator[None]:
-    """Ctrl-C within the block says what is kept; what an inner block has said stands.
+    """On Ctrl-C within the block, raise `Interrupted` with the finished work; that of an inner block has precedence.
 
     Parameters
     ----------
-    kept : a clause such as "3 of 7 cases are in campaign.csv", or a function that gives it when it is needed.
+    kept : a clause such as "3 of 7 cases are in campaign.csv", or a function that returns it.
 
     >>> try:
     ...     with keeping("the tables are in results"):
@@ -45,16 +45,16 @@ def keeping(kept: str | Callable[[], str]) -> Iterator[None]:
     except Interrupted:
         raise
     except KeyboardInterrupt as interruption:
-        with held_back():
+        with interruption_delayed():
             clause = kept if isinstance(kept, str) else kept()
             raise Interrupted(clause) from interruption
 
 
 @contextmanager
-def held_back() -> Iterator[None]:
-    """Ctrl-C waits until the block has ended; only for short work, and only where the main thread does it.
+def interruption_delayed() -> Iterator[None]:
+    """Delay Ctrl-C until the end of the block; only for short work, and only in the main thread.
 
-    >>> with held_back():
+    >>> with interruption_delayed():
     ...     finished = "in one piece"
     """
     before = signal.getsignal(signal.SIGINT)

@@ -11,21 +11,21 @@ from tyrefem.cards import merged, read_toml
 from tyrefem.errors import InputError, nearest
 
 FOLDERS = {"section": "geometry", "material": "materials", "study": "studies", "sweep": "studies"}
-#: Kinds that are a folder each, named by it, with this file in it.
+#: Kinds of card that are a folder with this file in it; the folder's name is the card's name.
 FILES = {"study": "study.toml", "sweep": "sweep.toml"}
-#: Environment variable with the user's own library folders, separated as in PATH.
+#: Environment variable with the user's library folders, separated as in PATH.
 SEARCH_PATH = "TYREFEM_PATH"
 
 
 def shipped() -> Path:
-    """The folder that holds the shipped ``geometry``, ``materials`` and ``studies``."""
+    """The folder with the shipped ``geometry``, ``materials`` and ``studies``."""
     package = Path(__file__).resolve().parent
     installed = package / "shipped"
     return installed if installed.is_dir() else package.parent
 
 
 def roots(near: Path | None = None) -> Iterator[Path]:
-    """Library folders in the order they are searched: beside the study, here, the user's, the shipped one."""
+    """Library folders in search order: the study's, the current, the user's, the shipped one."""
     if near is not None:
         yield near
         yield near.parent
@@ -37,7 +37,7 @@ def roots(near: Path | None = None) -> Iterator[Path]:
 
 
 def names(kind: str, near: Path | None = None) -> dict[str, Path]:
-    """Every card of a kind that can be found by name, with its file; earlier folders win.
+    """All cards of a kind by name, with their files; earlier folders have precedence.
 
     >>> "nasa-tread" in names("material")
     True
@@ -55,7 +55,7 @@ def find(kind: str, name: str, near: Path | None = None) -> Path:
 
     Raises
     ------
-    InputError : nothing by that path or name; says the nearest name.
+    InputError : no such path or name; the message has the nearest name.
     """
     path = _path(name)
     looks_like_path = path.suffix == ".toml" or os.sep in name or name in (".", "..")
@@ -79,15 +79,15 @@ def find(kind: str, name: str, near: Path | None = None) -> Path:
 def _path(name: str) -> Path:
     try:
         return Path(name).expanduser()
-    except RuntimeError:  # "~nobody": no such user, so it is taken as it stands
+    except RuntimeError:  # "~name" of an unknown user is taken literally
         return Path(name)
 
 
 def load(kind: str, reference: object, near: Path | None = None) -> tuple[dict[str, Any], Path, str]:
     """Plain data, file and name of a referenced card.
 
-    ``reference`` is a name or path, or a table ``{base = NAME, ...}`` whose other keys are laid
-    over that card.
+    ``reference`` is a name or path, or a table ``{base = NAME, ...}`` whose other keys replace those
+    of that card.
     """
     card, changes = _split(kind, reference)
     path = find(kind, card, near)
@@ -96,7 +96,7 @@ def load(kind: str, reference: object, near: Path | None = None) -> tuple[dict[s
 
 
 def _split(kind: str, reference: object) -> tuple[str, Mapping[str, Any]]:
-    """The card that a reference names, and what is laid over it."""
+    """The card that a reference names, and the changes to it."""
     changes: Mapping[str, Any] = {}
     if isinstance(reference, Mapping):
         if not isinstance(reference.get("base"), str):
@@ -109,7 +109,7 @@ def _split(kind: str, reference: object) -> tuple[str, Mapping[str, Any]]:
 
 
 def over(kind: str, reference: object, present: object, data: Mapping[str, Any]) -> dict[str, Any] | None:
-    """`load`'s data of a reference, from the data at hand of ``present``; None: they are of another card.
+    """`load`'s data of a reference, from the available data of ``present``; None for another card.
 
     ``present`` is a reference to the same card without changes.
 
@@ -121,7 +121,7 @@ def over(kind: str, reference: object, present: object, data: Mapping[str, Any])
 
 
 def located(kind: str, reference: Any, near: Path | None = None) -> Any:
-    """The reference as it must be written elsewhere: a card that is not found by name there gets its whole path."""
+    """The reference for use in another folder: a card that is not found by name there gets its full path."""
     name = reference["base"] if isinstance(reference, Mapping) else reference
     path = find(kind, name, near).resolve()
     if not path.is_relative_to(shipped().resolve()):

@@ -1,4 +1,4 @@
-"""Worker processes that simulate side by side, and end quietly when their parent is interrupted."""
+"""Worker processes for simultaneous simulations, which end silently when their parent is interrupted."""
 
 from __future__ import annotations
 
@@ -14,30 +14,30 @@ from typing import Any
 
 from threadpoolctl import threadpool_limits
 
-from tyrefem.interruption import held_back
+from tyrefem.interruption import interruption_delayed
 
 
-class _DeafProcess(SpawnProcess):
-    """A process that never sees Ctrl-C, not even while it starts: it is the parent's alone."""
+class _ProcessWithoutCtrlC(SpawnProcess):
+    """A process that never receives Ctrl-C, not even during its start: only the parent does."""
 
     def start(self) -> None:
-        """Start it with the signal blocked, which it inherits."""
-        # A tracker that starts together with it would lift the block.
+        """Start it with the signal blocked; the process inherits this."""
+        # A tracker process started here would unblock the signal, so it is started before.
         resource_tracker.ensure_running()
         with _blocked():
             super().start()
 
 
 class _Context(SpawnContext):
-    Process = _DeafProcess
+    Process = _ProcessWithoutCtrlC
 
 
 @contextmanager
 def processes(count: int, begin: Callable[..., None] | None = None, *given: Any) -> Iterator[ProcessPoolExecutor]:
-    """So many fresh processes with one thread for linear algebra each; ``begin(*given)`` starts every one.
+    """``count`` new processes with one thread for linear algebra each; every one starts with ``begin(*given)``.
 
-    Ctrl-C is the parent's alone: workers never see it, and are ended with whatever they are at when the parent leaves
-    the block by an exception. They end themselves where the parent is killed.
+    Only the parent receives Ctrl-C. If the parent leaves the block by an exception, workers are terminated, even during
+    a simulation. If the parent is killed, they end themselves.
 
     >>> with processes(1) as pool:
     ...     pool.submit(abs, -3).result()
@@ -49,9 +49,9 @@ def processes(count: int, begin: Callable[..., None] | None = None, *given: Any)
         yield pool
         pool.shutdown()
     except BaseException:
-        with held_back():
-            # Nobody wants the simulations that are still running. Tasks that wait are not cancelled: Python 3.11's pool
-            # prints a traceback when it finds such among those whose processes have ended.
+        with interruption_delayed():
+            # Running simulations are no longer needed. Waiting tasks are not cancelled: Python 3.11's pool
+            # prints a traceback for cancelled tasks of ended processes.
             pool.shutdown(wait=False)
             for worker in set(active_children()) - before:
                 worker.terminate()
@@ -59,7 +59,7 @@ def processes(count: int, begin: Callable[..., None] | None = None, *given: Any)
 
 
 def _begin(begin: Callable[..., None] | None, given: tuple[Any, ...]) -> None:
-    # Where a signal cannot be blocked, as on Windows, it is ignored at least.
+    # Where a signal cannot be blocked, as on Windows, it is ignored.
     signal.signal(signal.SIGINT, signal.SIG_IGN)
     threading.Thread(target=_end_with_parent, daemon=True).start()
     threadpool_limits(1, user_api="blas")
@@ -68,7 +68,7 @@ def _begin(begin: Callable[..., None] | None, given: tuple[Any, ...]) -> None:
 
 
 def _end_with_parent() -> None:
-    """A parent that was killed cannot end its workers: they see to it themselves."""
+    """End a worker when its parent is killed, as the parent cannot end it then."""
     parent = parent_process()
     if parent is not None:
         parent.join()
@@ -76,7 +76,7 @@ def _end_with_parent() -> None:
 
 
 def end_children() -> None:
-    """End every process that this one has started by `multiprocessing`; for a parent that is about to leave."""
+    """Terminate all processes that this one has started by `multiprocessing`; for a parent about to exit."""
     for child in active_children():
         with suppress(OSError):
             child.terminate()
@@ -84,7 +84,7 @@ def end_children() -> None:
 
 @contextmanager
 def _blocked() -> Iterator[None]:
-    """Block Ctrl-C for this thread, and for what it starts."""
+    """Block Ctrl-C for this thread and for processes started by it."""
     if not hasattr(signal, "pthread_sigmask"):
         yield
         return

@@ -22,7 +22,7 @@ if TYPE_CHECKING:
     from pydantic_core import CoreSchema
 
 _NUMBER = re.compile(r"^\s*([-+]?(?:\d+\.?\d*|\.\d+)(?:[eE][-+]?\d+)?)\s*(.*?)\s*$", re.DOTALL)
-#: Names joined by * / and small powers: pint would work out 9**9**9 for as long as it takes.
+#: Names joined by * / and small powers only: pint would compute 9**9**9 without end.
 _UNIT = re.compile(
     r"(?:1\s*/)?(?:[^\W\d][\w°%]*+|[°%][^\W\d]*+|[()\s/·]|\*(?!\*)|[⁻⁰¹²³⁴]+"
     r"|(?:\*\*|\^)\s*\(?\s*-?\d(?:\.\d+)?\s*\)?(?!\d|\s*(?:\*\*|\^)))+"
@@ -43,7 +43,7 @@ _EXAMPLES = {
 
 @functools.cache
 def registry() -> pint.UnitRegistry[Any]:
-    """The one pint registry, kept in pint's own disk cache where that can be written."""
+    """The only pint registry, with pint's disk cache if that can be written."""
     import pint
 
     try:
@@ -53,12 +53,12 @@ def registry() -> pint.UnitRegistry[Any]:
 
 
 def parse(value: object, unit: str) -> float:
-    """The SI value (in ``unit``) of a quantity that a person wrote.
+    """The SI value (in ``unit``) of a quantity written by a person.
 
     Parameters
     ----------
-    value : text such as ``"20 mph"``, a pint quantity, or a bare number where ``unit`` is ``"1"``.
-    unit : what is wanted; ``"degC"`` for a temperature, ``"delta_degC"`` for a difference of temperatures.
+    value : text such as ``"20 mph"``, a pint quantity, or a number without unit if ``unit`` is ``"1"``.
+    unit : target unit; ``"degC"`` for a temperature, ``"delta_degC"`` for a difference of temperatures.
 
     Raises
     ------
@@ -76,7 +76,7 @@ def parse(value: object, unit: str) -> float:
 
 @functools.lru_cache(maxsize=4096)
 def _parse_text(value: str, unit: str) -> float:
-    """The same text is asked for again and again when a study is varied."""
+    """`_parse` of a text, with a cache: variants of a study parse the same text many times."""
     return _parse(value, unit)
 
 
@@ -112,7 +112,8 @@ def _split(value: object, unit: str, wanted: str) -> tuple[float, str]:
 
 
 def written(value: Any) -> Any:
-    """A value as a file has it: pint quantities and paths as text, numpy's numbers as Python's; tables and lists anew.
+    """A value as written in a file: pint quantities and paths as text, numpy's numbers as Python's; tables and lists
+    copied.
 
     >>> written({"speed": registry().Quantity(25, "mph"), "at": [registry().Quantity(2.5, "mm")]})
     {'speed': '25 mph', 'at': ['2.5 mm']}
@@ -137,14 +138,14 @@ def _with_unit(number: Any, unit: str) -> Any:
 
 
 def _unit_text(units: Any) -> str:
-    """What a file says of a pint unit: its symbol where that is ASCII and read as the same unit, else its name."""
+    """Text of a pint unit for a file: its symbol if that is ASCII and parses to the same unit, else its name."""
     name, symbol = f"{units:D}", f"{units:~D}"
     if name == "dimensionless":
         return ""
     try:
-        if symbol.isascii() and _named(symbol) == _named(name):
+        if symbol.isascii() and _pint_name(symbol) == _pint_name(name):
             return symbol
-    except Exception:  # pint raises many kinds; whoever reads the value says what is wrong with its unit
+    except Exception:  # pint raises many kinds; the reader of the value reports a wrong unit
         return name
     return name.replace("degree_Celsius", "degC").replace("degree_Fahrenheit", "degF")
 
@@ -155,7 +156,7 @@ def _convert(magnitude: float, text: str, unit: str, value: object, wanted: str)
     if not _UNIT.fullmatch(text) or re.search(r"\)\s*(?:\*\*|\^)", text):
         raise InputError(f"'{text}' in {value!r} is not a unit; expected {wanted}")
     try:
-        given = _named(text)
+        given = _pint_name(text)
     except Exception as error:  # pint raises many kinds for text that is not a unit
         raise InputError(f"unknown unit '{text}' in {value!r}; expected {wanted}") from error
     if unit == "delta_degC" and given in ("degree_Celsius", "degree_Fahrenheit"):
@@ -177,31 +178,31 @@ def _convert(magnitude: float, text: str, unit: str, value: object, wanted: str)
 
 
 @functools.lru_cache(maxsize=512)
-def _named(text: str) -> str:
-    """What pint calls a unit; raises as pint does."""
+def _pint_name(text: str) -> str:
+    """pint's name of a unit; raises pint's errors."""
     return str(registry().parse_units(text))
 
 
 def _converted(magnitude: float, text: str, unit: str) -> float:
-    """A study is read again for every variant of it, with mostly the same units: pint is asked once."""
+    """Conversion with cached factors: every variant of a study is read with mostly the same units."""
     factor = _factor(text, unit)
-    return _by_pint(magnitude, text, unit) if factor is None else magnitude * factor
+    return _convert_with_pint(magnitude, text, unit) if factor is None else magnitude * factor
 
 
 @functools.lru_cache(maxsize=512)
 def _factor(text: str, unit: str) -> float | None:
-    """What pint multiplies by; None for a unit with an offset."""
-    return None if _by_pint(0.0, text, unit) != 0.0 else _by_pint(1.0, text, unit)
+    """pint's conversion factor; None for a unit with an offset."""
+    return None if _convert_with_pint(0.0, text, unit) != 0.0 else _convert_with_pint(1.0, text, unit)
 
 
-def _by_pint(magnitude: float, text: str, unit: str) -> float:
+def _convert_with_pint(magnitude: float, text: str, unit: str) -> float:
     units = registry()
     target = "dimensionless" if unit == "1" else unit
     return float(units.Quantity(magnitude, units.parse_units(text)).to(target).magnitude)
 
 
 def convert(value: float, unit: str, to: str) -> float:
-    """An SI number in another unit, for showing it to a person.
+    """An SI number in another unit, for output to a person.
 
     >>> round(convert(0.0254, "m", "in"), 6)
     1.0
@@ -212,7 +213,7 @@ def convert(value: float, unit: str, to: str) -> float:
 
 @dataclass(frozen=True)
 class Unit:
-    """Annotation of a card's field: text with a unit in, SI float out, within bounds.
+    """Annotation of a card's field: input is text with a unit, the value an SI float within bounds.
 
     ``Annotated[float, Unit("m", gt=0)]`` accepts ``"0.6 in"`` and holds ``0.01524``.
     """
@@ -244,7 +245,7 @@ class Unit:
 
 @dataclass(frozen=True)
 class Ramp:
-    """A quantity that goes from ``start`` to ``end``, linear in time. SI.
+    """A quantity that changes from ``start`` to ``end``, linear in time. SI.
 
     >>> Ramp(0.0, 10.0).at(0.25)
     2.5
@@ -255,9 +256,9 @@ class Ramp:
 
     @property
     def constant(self) -> bool:
-        """Does it stay the same?"""
+        """True if start and end are equal."""
         return self.start == self.end
 
     def at(self, fraction: float) -> float:
-        """The value at a fraction of the time that it takes."""
+        """The value at a fraction of the ramp's time."""
         return self.start + (self.end - self.start) * fraction

@@ -1,4 +1,4 @@
-"""What a question needs of a study: stated by the question, checked before anything is computed."""
+"""Requirements of a question on a study, checked before any computation."""
 
 from __future__ import annotations
 
@@ -8,19 +8,19 @@ from typing import Any
 
 from tyrefem.errors import InputError
 
-#: Names of cases that an error lists.
+#: Number of case names in an error.
 LISTED = 5
 
 
 @dataclass(frozen=True)
 class Requirements:
-    """What a question needs of a study; every question is asked of a single drive, never of a table of cases.
+    """Requirements of a question on a study; the study must have a single drive, not a table of cases.
 
     Parameters
     ----------
     question : the question as the subject of a sentence, e.g. "a diagnosis".
-    measured : it needs measured runs: a table that is given, or the study's ``[[measured]]`` entries.
-    fitted : where the study has ``[[measured]]`` entries, at least one of them must not be held out.
+    measured : measured runs are needed: from a given table, or from the study's ``[[measured]]`` entries.
+    fitted : at least one of the study's ``[[measured]]`` entries must not be held out.
 
     >>> from tyrefem import study
     >>> Requirements("a diagnosis", measured=True).check(study("nasa-22x5.5-8pr"))
@@ -34,13 +34,13 @@ class Requirements:
     fitted: bool = False
 
     def check(self, study: Any, table: object = None) -> None:
-        """Refuse a study that the question cannot be asked of; ``table``: measured runs given beside the study.
+        """Check a study for the question; ``table``: measured runs given in addition to the study.
 
         Raises
         ------
-        InputError : a campaign; no measured runs; every run held out. It names the file, the field, and what to do.
+        InputError : a campaign; no measured runs; all runs held out. It names the file, the field, and the remedy.
         """
-        # A comparison takes anything that runs and has sensors: only a study has cases.
+        # A comparison accepts any object that runs and has sensors; only a study has cases.
         if getattr(study, "is_campaign", False):
             raise self._campaign(study)
         if table is not None:
@@ -54,11 +54,11 @@ class Requirements:
             self.check_fitted(study, [entry.hold_out for entry in study.measured])
 
     def check_fitted(self, study: Any, held_out: Sequence[bool]) -> None:
-        """Refuse runs that are all held out: ``held_out`` of each.
+        """Check that not all runs are held out; ``held_out``: a flag for each run.
 
         Raises
         ------
-        InputError : all of them are.
+        InputError : all runs are held out.
         """
         if all(held_out):
             which = "the only run is" if len(held_out) == 1 else f"all {len(held_out)} runs are"

@@ -14,7 +14,7 @@ from tyrefem.diagnose.effort import CASE, check_effort
 from tyrefem.diagnose.forward_model import ForwardModel
 from tyrefem.diagnose.isolability import planned
 from tyrefem.errors import InputError
-from tyrefem.estimates.work import LongWorkWarning, warn_of
+from tyrefem.estimates.work import LongWorkWarning, warn_if_long
 from tyrefem.mechanics.footprint.press import press
 from tyrefem.realtime.certificate import export
 from tyrefem.sweep.sweep import sweep
@@ -44,13 +44,13 @@ def work_stops(monkeypatch: pytest.MonkeyPatch) -> None:
 )
 def test_how_long_is_said_in_fitting_units(seconds: float, words: str) -> None:
     with pytest.warns(LongWorkWarning, match=f"work will take about {words}$"):
-        warn_of(seconds, "work")
+        warn_if_long(seconds, "work")
 
 
 def test_ten_minutes_are_not_long() -> None:
     with warnings.catch_warnings():
         warnings.simplefilter("error")
-        warn_of(600.0, "work")
+        warn_if_long(600.0, "work")
 
 
 RANGE = {"drive.speed": ("10 mph", "40 mph")}

@@ -1,10 +1,10 @@
-"""Values that are worked out once and remembered: bounded, keyed by value, safe on threads.
+"""Computed values that are kept: bounded, keyed by value, safe on threads.
 
-Knows nothing of what it remembers.
+The caches are independent of what they hold.
 
-A pure function of a few hashable values takes `functools.lru_cache` with a size. Everything else takes a `Cache`:
-values that depend on arrays or meshes, values that must be dropped, values that belong to one object. An object may
-keep what follows from its own fields in a `functools.cached_property`. Nobody writes into the `__dict__` of another
+A pure function of a few hashable values uses `functools.lru_cache` with a size. All other cases use a `Cache`: values
+that depend on arrays or meshes, values that must be dropped, values that belong to one object. An object may keep
+values computed from its fields in a `functools.cached_property`. No code writes into the `__dict__` of another
 object. `tests/architecture/test_caches.py` checks these rules.
 """
 

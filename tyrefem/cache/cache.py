@@ -14,19 +14,19 @@ Value = TypeVar("Value")
 class Cache(Generic[Value]):
     """The most recently used values of a computation, at most ``size`` of them.
 
-    A key is a hashable value that holds all that the computation depends on. Arrays enter a key by their `Content`,
-    what is large by its `fingerprint`. Never use ``id(...)`` in a key: the memory of an object that is gone serves
-    another one.
+    A key is a hashable value with all inputs of the computation. In a key an array is replaced by its `Content`, a
+    large object by its `fingerprint`. ``id(...)`` must not be part of a key: after an object is deleted, another one
+    may have the same id.
 
-    Threads share a cache safely. The lock is free during a computation, so a computation may use the cache itself.
-    Two threads may compute one value at the same time; both get the value that was stored first. A pickled cache comes
-    back empty.
+    Threads can share a cache. The lock is not held during a computation, so a computation may use the cache. Two
+    threads may compute one value at the same time; both get the value that was stored first. A pickled cache is
+    restored empty.
 
     Parameters
     ----------
-    size : greatest number of values that the cache keeps.
-    shared : find also the values that the cache no longer keeps, as long as something else holds them. Such values
-        must take weak references.
+    size : largest number of values in the cache.
+    shared : also find values that the cache has dropped, while other objects still refer to them. Such values must
+        support weak references.
 
     Raises
     ------
@@ -45,14 +45,14 @@ class Cache(Generic[Value]):
         if size < 1:
             raise ValueError(f"a cache holds one value or more, not {size}")
         self.size = size
-        #: How often a value was there, and how often it had to be computed.
+        #: Number of lookups that found a value, and of those that computed it.
         self.hits = self.misses = 0
         self._values: OrderedDict[Hashable, Value] = OrderedDict()
         self._held: WeakValueDictionary[Hashable, Value] | None = WeakValueDictionary() if shared else None
         self._lock = Lock()
 
     def get(self, key: Hashable, compute: Callable[[], Value]) -> Value:
-        """The value of a key, computed if it is not there; the least recently used value then makes room."""
+        """The value of a key, computed if it is not stored; a full cache then drops the least recently used value."""
         with self._lock:
             known = self._find(key)
             if known is not None:
@@ -65,7 +65,7 @@ class Cache(Generic[Value]):
             return self._keep(key, value) if known is None else known[0]
 
     def clear(self) -> None:
-        """Forget all values and counts."""
+        """Remove all values and counts."""
         with self._lock:
             self._values.clear()
             if self._held is not None:

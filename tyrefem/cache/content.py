@@ -1,4 +1,4 @@
-"""The numbers of an array as a cache's key."""
+"""The numbers of an array as a key of a cache."""
 
 from __future__ import annotations
 
@@ -7,7 +7,7 @@ from typing import Any
 
 import numpy as np
 
-#: So many bytes at either end of the numbers make the hash: a cache is asked at every step of a run.
+#: Number of bytes at either end of the numbers in the hash, which must be fast: lookups occur at every step of a run.
 SAMPLE = 128
 
 
@@ -15,8 +15,8 @@ SAMPLE = 128
 class Content:
     """All numbers of an array with their type and shape: equal for equal arrays only.
 
-    A lookup copies and compares the numbers, which takes about as long as a sum over them. What is large, or looked up
-    once per run, enters a key by its `tyrefem.cache.fingerprint`.
+    A lookup copies and compares the numbers, which takes about as long as their sum. Arrays that are large, or looked
+    up once per run, are better represented by their `tyrefem.cache.fingerprint`.
 
     >>> import numpy as np
     >>> Content.of(np.arange(4)) == Content.of(np.arange(4))
@@ -31,7 +31,7 @@ class Content:
 
     @classmethod
     def of(cls, array: Any) -> Content:
-        """The content of an array as it is now."""
+        """The present content of an array."""
         array = np.asarray(array)
         return cls(array.dtype.str, array.shape, array.tobytes())
 

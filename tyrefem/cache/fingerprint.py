@@ -1,4 +1,4 @@
-"""The content of arrays in a few bytes: what stands for them in a cache's key."""
+"""A digest of arrays, for the key of a cache."""
 
 from __future__ import annotations
 

@@ -1,6 +1,6 @@
 """The base of every file a person writes: validated, immutable, with errors that name file and field.
 
-Knows files and units, and no tyre.
+It holds files and units, and is independent of tyres.
 """
 
 from __future__ import annotations
@@ -21,14 +21,14 @@ from tyrefem.output import note_input
 from tyrefem.quantity import Unit
 
 Text = Annotated[str, Field(min_length=1)]
-#: The largest tyre made is 4 m in diameter; far beyond it, coordinates lose the digits that elements need.
+#: The largest tyre is 4 m in diameter; far beyond, coordinates have too few digits for elements.
 PositiveLength = Annotated[float, Unit("m", gt=0, le=20)]
 Temperature = Annotated[float, Unit("degC", le=2000)]
 FilmCoefficient = Annotated[float, Unit("W/m**2/K", ge=0)]
 
 
 class Card(Brief, BaseModel):
-    """A table of a TOML file. Unknown keys are refused with the nearest spelling."""
+    """A table of a TOML file. Unknown keys are errors that name the nearest key."""
 
     model_config = ConfigDict(frozen=True, extra="forbid", arbitrary_types_allowed=True)
     kind: ClassVar[str] = "card"
@@ -37,7 +37,7 @@ class Card(Brief, BaseModel):
         return str(getattr(self, "name", None) or getattr(self, "title", None) or "")
 
     def _facts(self) -> Mapping[str, Any]:
-        """What is set, with its SI unit, in the order of the fields; where it is from at last."""
+        """The given values with their SI units, in the order of the fields; the source is last."""
         names = sorted(type(self).model_fields, key=lambda name: name in ("source", "notes"))
         values = {name: getattr(self, name) for name in names if name not in ("name", "title")}
         units = _units(type(self))
@@ -62,17 +62,17 @@ class Card(Brief, BaseModel):
 
     @classmethod
     def check(cls, data: Any, file: str | Path | None = None) -> Self:
-        """Validate plain data; the first thing wrong becomes one `InputError`."""
+        """Validate plain data; the first error is raised as `InputError`."""
         try:
             return cls.model_validate(data)
         except ValidationError as error:
             raise _one_error(error, file) from None
 
     def warnings(self) -> tuple[InputWarning, ...]:
-        """What is possible but unlikely in this table and in the tables within it; field names as in the file.
+        """Unlikely values in this table and in its subtables; field names as in the file.
 
-        Every field annotated with `Plausible` is held against its range. A subclass whose numbers are more than
-        fields adds to these.
+        Every field annotated with `Plausible` is compared with its range. A subclass whose numbers are not only
+        fields extends the list.
         """
         unlikely = [
             range_.warning(getattr(self, name), key)
@@ -88,7 +88,7 @@ class Card(Brief, BaseModel):
         return (*filter(None, unlikely), *below)
 
     def checked(self, before: Mapping[str, Any], data: Mapping[str, Any], file: str | Path | None = None) -> Self:
-        """`check` of data, where this card was made of ``own``: tables that the two share are not read again."""
+        """`check` of data, where this card was made of ``before``: shared tables are not validated again."""
         kept: dict[str, Any] = dict(data)
         for key in type(self).model_fields:
             if key in before and key in data and before[key] is data[key]:
@@ -129,7 +129,7 @@ def _allowed(card: type[Card]) -> frozenset[str]:
 
 @functools.cache
 def _units(card: type[Card]) -> dict[str, str]:
-    """Field -> unit that its number is in; none for pure numbers."""
+    """Field -> unit of its number; none for pure numbers."""
     units = {}
     for name, field in card.model_fields.items():
         marks = [*field.metadata, *(mark for kind in get_args(field.annotation) for mark in get_args(kind)[1:])]
@@ -162,7 +162,7 @@ def _one_error(error: ValidationError, file: str | Path | None) -> InputError:
 
 
 def read_toml(path: str | Path) -> dict[str, Any]:
-    """A TOML file as plain data; a file that is not TOML is an `InputError` with the line."""
+    """A TOML file as plain data; `InputError` with the line if it is not valid TOML."""
     path = Path(path)
     note_input(path)
     try:
@@ -178,16 +178,16 @@ def read_toml(path: str | Path) -> dict[str, Any]:
 
 @functools.lru_cache(maxsize=64)
 def _parsed(path: Path, *_state: int) -> dict[str, Any]:
-    """A file as it was in this state: time of change, size, number."""
+    """The content of a file with this state: modification time, size, inode number."""
     return tomllib.loads(path.read_text(encoding="utf-8-sig"))
 
 
-#: Ways of giving one property: a table that is laid over another in one of them drops the other ways.
+#: Alternative keys of a property: a change with some of them removes the others.
 FORMS = ({"value"}, {"along", "across"}, {"table"}, {"shear_modulus"}, {"c10", "c01", "c20", "c30"})
 
 
 def merged(base: Mapping[str, Any], changes: Mapping[str, Any]) -> dict[str, Any]:
-    """``base`` with ``changes`` laid over it, tables merged key by key, everything else replaced.
+    """``base`` with ``changes``: tables are merged key by key, all other values replaced.
 
     >>> merged({"k": {"value": "1 W/m/K", "source": "a"}}, {"k": {"along": "2 W/m/K", "across": "1 W/m/K"}})
     {'k': {'source': 'a', 'along': '2 W/m/K', 'across': '1 W/m/K'}}
@@ -208,7 +208,7 @@ def merged(base: Mapping[str, Any], changes: Mapping[str, Any]) -> dict[str, Any
 
 
 def _entries(base: list[Any], changes: Mapping[str, Any], field: str) -> list[Any]:
-    """A list with changes laid over the entries that they number from 0: ``layers.2.regions.0.to``."""
+    """A list with changes to entries given by their number from 0: ``layers.2.regions.0.to``."""
     result = list(base)
     for number, value in changes.items():
         if not (number.isdigit() and int(number) < len(base)):

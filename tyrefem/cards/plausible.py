@@ -1,7 +1,7 @@
-"""Numbers that are possible but unlikely: the ranges that a card's numbers are held against, with their sources.
+"""Ranges of likely values for the numbers of cards, with their sources.
 
-A number outside is a warning, not an error: a unit slipped by 1000, a decimal point, a modulus for a density. Zero,
-where a card allows it, says that something is not there and is never warned of.
+A number outside is a warning, not an error. Typical causes are a unit wrong by 1000, a decimal point, or a modulus in
+place of a density. Zero, where a card allows it, means absent and gives no warning.
 """
 
 from __future__ import annotations
@@ -13,7 +13,7 @@ from tyrefem.errors import InputWarning
 
 @dataclass(frozen=True)
 class Plausible:
-    """Annotation of a card's field beside its `Unit`: the range in which it is likely, in that unit, and who says so.
+    """Annotation of a card's field beside its `Unit`: the likely range, in that unit, and its source.
 
     >>> print(Plausible(100.0, 8000.0, "kg/m**3", "a book").warning(1.18, "density"))
     density: 1.18 kg/m3 is unlikely; likely are 100 to 8000 kg/m3 (a book); check the unit
@@ -25,7 +25,7 @@ class Plausible:
     source: str
 
     def warning(self, value: float, field: str) -> InputWarning | None:
-        """The warning of a value in SI, if it is outside."""
+        """The warning for a value in SI, if it is outside the range."""
         if value == 0 or self.low <= value <= self.high:
             return None
         unit = "" if self.unit == "1" else f" {self.unit.replace('**', '').replace('*', ' ')}"

@@ -12,7 +12,7 @@ import typer
 
 from tyrefem.cli.show import complete_names
 from tyrefem.errors import InputError, nearest
-from tyrefem.interruption import held_back
+from tyrefem.interruption import interruption_delayed
 
 DEFAULTS = {"study": "nasa-22x5.5-8pr", "section": "nasa-22x5.5-8pr", "material": "nasa-tread"}
 
@@ -40,7 +40,7 @@ def new(
     place_of_output(target.parent)
     files = {target: source} | {target.parent / name: source.parent / name for name in _companions(kind, source)}
     first_line, note = _of_the_other_tyre(kind, source)
-    with held_back():
+    with interruption_delayed():
         for place, file in files.items():
             with atomic_path(place) as temporary:
                 shutil.copyfile(file, temporary)

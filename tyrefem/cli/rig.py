@@ -10,7 +10,7 @@ import typer
 from tyrefem.cli.common import ForceOption, JsonOption, QuietOption, print_json, warn
 from tyrefem.cli.progress import progress
 from tyrefem.errors import InputError, Interrupted
-from tyrefem.interruption import held_back
+from tyrefem.interruption import interruption_delayed
 from tyrefem.output.folder import results_folder
 
 group = typer.Typer(
@@ -163,7 +163,7 @@ def layers(
         except KeyboardInterrupt:
             if not finished:
                 raise
-            with held_back():
+            with interruption_delayed():
                 save_layer_table(LayerStudy(tuple(finished), tuple(finished.values())), folder, complete=False)
             raise Interrupted(f"{len(finished)} of {len(counts)} fits are in {folder / 'layers.csv'}") from None
         comparison = LayerStudy(tuple(finished), tuple(finished.values()))

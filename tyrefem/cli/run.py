@@ -22,7 +22,7 @@ from tyrefem.cli.common import (
 )
 from tyrefem.cli.progress import progress
 from tyrefem.errors import InputError, Interrupted
-from tyrefem.interruption import held_back, keeping
+from tyrefem.interruption import interruption_delayed, keeping
 from tyrefem.output.folder import results_folder
 
 if TYPE_CHECKING:
@@ -74,7 +74,7 @@ def _single(study: Study, folder: Path, pictures: bool, vtk: bool, revolved: boo
     reached = f"{result.times[-1]:g} s" if result.history.interrupted else ""
     tables = f"the tables up to {reached}" if reached else "the tables"
     with keeping(f"{tables} are in {folder}, pictures and VTK files are not complete"):
-        with held_back():
+        with interruption_delayed():
             result.save(folder)
         if vtk:
             result.to_vtk(folder / "vtk", revolved=revolved)

@@ -12,7 +12,7 @@ from tyrefem.errors import InputError, nearest, quoted
 from tyrefem.measured import MeasuredRun
 from tyrefem.measured.columns import parts
 from tyrefem.measured.frame import frame_table, is_frame
-from tyrefem.measured.table import MeasuredTable, no_column, read
+from tyrefem.measured.table import MeasuredTable, missing_columns_error, read
 
 #: Temperatures that are computed with the sensors and measured like them, but at no place in the rubber.
 OUTSIDE_THE_RUBBER = ("contained-air", "rim")
@@ -136,7 +136,7 @@ class ColumnNames:
         for names, purpose in ((self.rename, "to rename"), (self.ignore, "to ignore")):
             missing = [name for name in names if name not in {*columns, *self.rename.values()}]
             if missing:
-                raise no_column(missing, purpose, dict.fromkeys(parts(name)[0] for name in columns))
+                raise missing_columns_error(missing, purpose, dict.fromkeys(parts(name)[0] for name in columns))
 
 
 def _table(entry: MeasuredEntryLike, given: ColumnNames, at_hand: dict[str, MeasuredTable]) -> MeasuredTable:
@@ -149,7 +149,7 @@ def _table(entry: MeasuredEntryLike, given: ColumnNames, at_hand: dict[str, Meas
     for names, purpose in ((entry.rename, "to rename"), (entry.ignore, "to ignore")):
         missing = whole.missing(names)
         if missing:
-            raise no_column(missing, purpose, whole.columns, whole.file)
+            raise missing_columns_error(missing, purpose, whole.columns, whole.file)
     return whole
 
 

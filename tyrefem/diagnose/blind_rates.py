@@ -23,7 +23,7 @@ from tyrefem.diagnose.sensitivities import responses, unknowns_of
 from tyrefem.diagnose.synthetic import synthetic_mesh
 from tyrefem.errors import InputError
 from tyrefem.inputs.study import StudyData
-from tyrefem.interruption import held_back, keeping
+from tyrefem.interruption import interruption_delayed, keeping
 from tyrefem.output import atomic_path, jsonable
 from tyrefem.processes import processes
 from tyrefem.requirements import Requirements
@@ -294,7 +294,7 @@ def run_blind(
             test = BlindTest(study, count, seed, known, reduced, mesh)
             for number, row in _answers(test, left, workers):
                 rows[number] = row
-                with held_back(), atomic_path(store / f"{tag}-{number:05d}.json") as temporary:
+                with interruption_delayed(), atomic_path(store / f"{tag}-{number:05d}.json") as temporary:
                     temporary.write_text(json.dumps(row), encoding="utf-8")
                 if tick:
                     tick(len(rows))

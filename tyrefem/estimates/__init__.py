@@ -1,4 +1,4 @@
-"""Memory and time of work, estimated before it begins.
+"""Memory and time of work, estimated before its start.
 
-Knows numbers of nodes, times and variants, and no tyre.
+The inputs are numbers of nodes, times and variants; the package is independent of tyres.
 """

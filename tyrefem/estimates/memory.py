@@ -1,4 +1,4 @@
-"""How much memory work may still take on this machine."""
+"""Memory available on this machine."""
 
 from __future__ import annotations
 
@@ -6,17 +6,17 @@ import contextlib
 import os
 from pathlib import Path
 
-#: Bytes taken for free where the machine says nothing.
+#: Default of free memory, bytes, if the machine gives no value.
 UNKNOWN = 8 * 2**30
-#: A limit of a control group beyond this is none: version 1 writes the largest number that it has.
+#: A larger limit of a control group is no limit: version 1 writes the largest possible number.
 NO_LIMIT = 2**60
 
 
 def free_memory(root: Path = Path("/")) -> float:
-    """Bytes that this process may still take: the least of what the machine, its control group and `ulimit` leave.
+    """Bytes available to this process: the smallest of the limits by machine, control group and `ulimit`.
 
-    Linux says it in ``/proc/meminfo`` (MemAvailable) and ``/sys/fs/cgroup`` (versions 1 and 2); elsewhere the whole
-    memory of the machine is taken, and `UNKNOWN` where not even that is known.
+    On Linux they are in ``/proc/meminfo`` (MemAvailable) and ``/sys/fs/cgroup`` (versions 1 and 2). Elsewhere the total
+    memory of the machine is used, or `UNKNOWN`.
 
     Parameters
     ----------
@@ -41,7 +41,7 @@ def _of_machine(root: Path) -> float | None:
 
 
 def _of_groups(root: Path) -> list[float]:
-    """What the control groups of this process leave, and those above them."""
+    """Free memory of the control groups of this process and of those above them."""
     free: list[float] = []
     for line in _text(root / "proc/self/cgroup").splitlines():
         _, _, rest = line.partition(":")
@@ -53,7 +53,7 @@ def _of_groups(root: Path) -> list[float]:
         else:
             continue
         inside = base / path.strip().lstrip("/")
-        # In a container its own group is the root, whatever the path says outside.
+        # Inside a container its group is the root; the path is that of the host.
         for group in [inside, *[parent for parent in inside.parents if base in (parent, *parent.parents)]]:
             most, now = _number(group / limit), _number(group / used)
             if most is not None and most < NO_LIMIT:
@@ -62,7 +62,7 @@ def _of_groups(root: Path) -> list[float]:
 
 
 def _cached(group: Path) -> float:
-    """Bytes of files that a group has read and would give back."""
+    """Bytes of cached files of a group, which it can release."""
     for line in _text(group / "memory.stat").splitlines():
         name, _, value = line.partition(" ")
         if name in ("inactive_file", "total_inactive_file") and value.strip().isdigit():
@@ -71,7 +71,7 @@ def _cached(group: Path) -> float:
 
 
 def _of_process(root: Path) -> float | None:
-    """What ``ulimit -v`` leaves."""
+    """Free memory under ``ulimit -v``."""
     try:
         import resource
     except ImportError:  # not on Windows

@@ -1,7 +1,7 @@
-"""How much memory and time work will take, said before it begins: refused if it does not fit, warned of if it is long.
+"""Estimates of memory and time before work starts: an error if it does not fit, a warning if it is long.
 
-Every constant was measured with this code: processor time of one core (Xeon, 2.1 GHz class), one thread, peaks of
-resident memory. Estimates are good to a factor of two to three; docs/performance.md has them beside measured runs.
+All constants were measured with this code: processor time of one core (Xeon, 2.1 GHz class), one thread, peaks of
+resident memory. Estimates are within a factor of two to three; docs/performance.md compares them with measured runs.
 """
 
 from __future__ import annotations
@@ -17,17 +17,17 @@ from tyrefem.errors import InputError
 from tyrefem.estimates import memory
 
 GIB = 2.0**30
-#: s; work that takes longer is warned of.
+#: s; longer work gives a warning.
 LONG = 600.0
-#: Bytes that are not worth a look at the machine.
+#: Smaller amounts of memory, bytes, are not checked.
 SMALL = 64 * 2**20
-#: Readings of a run at most: a table of more rows is opened by no spreadsheet.
+#: Largest number of readings of a run: spreadsheets cannot open larger tables.
 MOST_READINGS = 1_000_000
 
 # Conduction: 22x5.5 8PR at mesh sizes 12 to 0.35 mm (767 to 248 000 unknowns), P2: 4.1 to 4.6 kB an unknown for the
 # operators; six factors of 1.1 kB (banded, or sparse below 30 000 unknowns), growing by 0.2 kB with every doubling.
 OPERATORS, FACTORS, FACTOR, GROWTH, WIDE = 4.4e3, 6, 1.1e3, 0.2e3, 2**15
-#: Copies of the history that are held at once: list, array, and what readings are taken of (measured 2.8).
+#: Copies of the history in memory together: list, array, and input of the readings (measured 2.8).
 COPIES = 3
 # s: per step and unknown (1.4e-6 for the report's tyres, 4e-6 with tan delta over frequency), per factorisation and
 # unknown^1.5, per reading and per reading and unknown (8 and 3 mm, 0.02 to 5 s), per written field and unknown.
@@ -38,28 +38,28 @@ STEPS, STEPS_AT, FACTORISATIONS = 60.0, 0.01, 12.0
 # Mechanics per node of nine-node elements: inflation and footprint of the radials (1500 to 9800 nodes): 38 to 45 kB,
 # 1 ms (the truck, inflated in 13 load steps: 6 ms), a further load 0.2 ms; in large motion (passenger) 0.47 MB, 90 ms.
 BODY, INFLATE, LOAD, LARGE_BODY, LARGE = 45e3, 2e-3, 2e-4, 0.47e6, 0.09
-#: Bytes per node that an inflated tyre keeps (nine pressures of the passenger), and how many of them are kept.
+#: Bytes per node that an inflated tyre keeps (nine pressures of the passenger), and the number of tyres kept.
 KEPT, REMEMBERED = 25e3, 16
-#: A mesh's own bytes per vertex (31 000 to 62 000 vertices).
+#: Bytes of a mesh per vertex (31 000 to 62 000 vertices).
 VERTEX = 650.0
-# Sweeps of 50 000 and 200 000 variants of one to four numbers: bytes of a variant and of each number that it changes,
-# with all its 43 answers and the table of them.
+# Sweeps of 50 000 and 200 000 variants of one to four numbers: bytes of a variant and of each changed number,
+# with all its 43 answers and their table.
 VARIANT, CHANGE = 6.5e3, 200.0
-#: s, a variant of a reduced model; full runs that training and certification cost.
+#: s, a variant of a reduced model; number of full runs for training and certification.
 REDUCED, TRAINING = 3e-3, 30
-#: Bytes per byte of a table that is read (200 000 rows: 17 of temperatures, 40 of cases).
+#: Bytes of memory per byte of a table (200 000 rows: 17 for temperatures, 40 for cases).
 TEXT = 20.0
-#: Roundings of a run in a row: 2e5 steps lose sqrt(2e5) units in the last place (measured: 75 after 6000 steps).
+#: Number of steps for the rounding limit: 2e5 steps lose sqrt(2e5) units in the last place (measured: 75 after 6000).
 ROUNDINGS = 450.0
 
 
 class LongWorkWarning(UserWarning):
-    """What is about to begin takes long."""
+    """The next work takes long."""
 
 
 @dataclass(frozen=True)
 class Estimate:
-    """What work will take: ``memory``, bytes at its peak, and ``time``, s on one core.
+    """Estimate of work: ``memory``, bytes at its peak, and ``time``, s on one core.
 
     >>> (Estimate(2 * GIB, 60.0) + Estimate(1 * GIB, 840.0)).words
     'about 3.0 GiB and 15 minutes'
@@ -73,12 +73,12 @@ class Estimate:
 
     @property
     def words(self) -> str:
-        """For people."""
+        """Memory and time as text."""
         return f"about {gib(self.memory)} and {duration(self.time)}"
 
 
 def gib(size: float) -> str:
-    """Bytes for people.
+    """Bytes as text.
 
     >>> gib(3.2e9), gib(1.5e14), gib(1e6)
     ('3.0 GiB', '140,000 GiB', '0.00093 GiB')
@@ -90,7 +90,7 @@ def gib(size: float) -> str:
 
 
 def duration(seconds: float) -> str:
-    """A time for people, to two digits.
+    """A time as text, with two digits.
 
     >>> duration(25), duration(1500), duration(7e4), duration(1e7)
     ('25 s', '25 minutes', '19 hours', '120 days')
@@ -101,16 +101,16 @@ def duration(seconds: float) -> str:
     return f"{float(f'{min(seconds, 1e300) / 86400:.2g}'):,.0f} days"
 
 
-# -- what is done about it -------------------------------------------------------------------------------------------
+# -- checks and warnings ---------------------------------------------------------------------------------------------
 
 
 def check_memory(needed: float, what: str, fits: Callable[[float], str] | str = "") -> None:
-    """Refuse work that does not fit in the free memory.
+    """Raise an error for work that does not fit into the free memory.
 
     Parameters
     ----------
-    needed : bytes. what : the number and what it makes, e.g. ``"0.3 mm makes 330,000 unknowns"``.
-    fits : what would fit, in words, or a function of the free bytes that says it.
+    needed : bytes. what : the number and its result, e.g. ``"0.3 mm makes 330,000 unknowns"``.
+    fits : text with a value that would fit, or a function of the free bytes that returns it.
 
     Raises
     ------
@@ -120,11 +120,11 @@ def check_memory(needed: float, what: str, fits: Callable[[float], str] | str = 
         return
     free = memory.free_memory()
     if needed > free:
-        refuse(needed, free, what, fits(free) if callable(fits) else fits)
+        raise_memory_error(needed, free, what, fits(free) if callable(fits) else fits)
 
 
 def check_readings(span: float, every: float, field: str, most: int = MOST_READINGS) -> None:
-    """Raise `InputError` for more readings of so many s than a table may have.
+    """Raise `InputError` if a span (s) has more readings of an interval (s) than a table may have.
 
     >>> check_readings(600.0, 5.0, "output.every")
     """
@@ -135,8 +135,8 @@ def check_readings(span: float, every: float, field: str, most: int = MOST_READI
     raise InputError(f"{made}; {allowed}", field=field)
 
 
-def refuse(needed: float, free: float, what: str, fits: str = "", workers: int = 1) -> NoReturn:
-    """Raise the `InputError` of `check_memory`; ``free``: for each of so many workers."""
+def raise_memory_error(needed: float, free: float, what: str, fits: str = "", workers: int = 1) -> NoReturn:
+    """Raise the `InputError` of `check_memory`; ``free``: bytes for each of the ``workers``."""
     each = "" if workers == 1 else f" for each of {workers} workers"
     remedies = [fits] if fits else []
     remedies += ["fewer workers have more each"] if workers > 1 else []
@@ -144,14 +144,14 @@ def refuse(needed: float, free: float, what: str, fits: str = "", workers: int =
     raise InputError(f"{what}; that takes about {gib(needed)} of memory, and {gib(free)} are free{each}{room}")
 
 
-def warn_of(seconds: float, what: str, more: str = "") -> None:
-    """Warn of work that takes longer than `LONG`; on the command line it is a line on stderr."""
+def warn_if_long(seconds: float, what: str, more: str = "") -> None:
+    """Warn of work that takes longer than `LONG`; the command line prints one line on stderr."""
     if seconds > LONG:
         warnings.warn(f"{what} will take about {duration(seconds)}{more}", LongWorkWarning, stacklevel=3)
 
 
 def smallest(fits: Callable[[float], bool], low: float, high: float, digits: int = 2) -> float | None:
-    """The smallest number between low and high that fits, rounded up to some digits; None: not even the largest does.
+    """The smallest number between low and high that fits, rounded up to some digits; None: no number fits.
 
     >>> smallest(lambda size: 1 / size**2 < 90, 0.01, 1.0)
     0.11
@@ -165,7 +165,7 @@ def smallest(fits: Callable[[float], bool], low: float, high: float, digits: int
 
 
 def rounded_down(value: float, digits: int = 2) -> float:
-    """A positive number to so many digits, not above it.
+    """A positive number rounded down to some digits.
 
     >>> rounded_down(1234567.0)
     1200000.0
@@ -181,7 +181,7 @@ def _rounded_up(value: float, digits: int = 2) -> float:
     return float(f"{math.ceil(value / unit - 1e-9) * unit:.{digits}g}")
 
 
-# -- what it takes ---------------------------------------------------------------------------------------------------
+# -- estimates -------------------------------------------------------------------------------------------------------
 
 
 def matrices(unknowns: float) -> float:
@@ -191,31 +191,31 @@ def matrices(unknowns: float) -> float:
 
 
 def history(unknowns: float, times: float) -> float:
-    """Bytes of the temperatures of a run at the times that it keeps."""
+    """Bytes of the temperatures of a run at its output times."""
     return COPIES * 8.0 * unknowns * times
 
 
 def steps(phases: int, tolerance: float) -> float:
-    """Time steps of a drive of so many phases to a tolerance, K."""
+    """Number of time steps of a drive with some phases, for a tolerance in K."""
     return STEPS * phases * (STEPS_AT / tolerance) ** (1 / 3)
 
 
-def march(unknowns: float, times: float, phases: int, tolerance: float, fields: int = 0) -> Estimate:
-    """A transient run of a conduction problem: matrices, steps, readings, and fields that are written out."""
+def transient_run(unknowns: float, times: float, phases: int, tolerance: float, fields: int = 0) -> Estimate:
+    """A transient run of a conduction problem: matrices, steps, readings, and written fields."""
     time = steps(phases, tolerance) * unknowns * STEP + FACTORISATIONS * phases * FACTORISATION * unknowns**1.5
     time += times * (READING + READ_UNKNOWN * unknowns) + fields * FIELD * unknowns
     return Estimate(matrices(unknowns) + history(unknowns, times), time)
 
 
 def mechanics(nodes: float, inflations: int = 1, loads: int = 1, *, large: bool = False) -> Estimate:
-    """Inflation and footprint by finite elements of so many nodes; ``large``: in large motion."""
+    """Inflation and footprint by finite elements with ``nodes`` nodes; ``large``: in large motion."""
     kept = min(inflations, REMEMBERED) - 1
     body, load = (LARGE_BODY, LARGE) if large else (BODY, LOAD)
     return Estimate(nodes * (body + kept * KEPT), nodes * (inflations * INFLATE + loads * load))
 
 
 def contact(nodes: float, harmonics: float, angles: float, components: int = 2) -> float:
-    """Bytes of a footprint's compliance: of tread nodes in every harmonic, and of all points that may touch."""
+    """Bytes of a footprint's compliance: of tread nodes in every harmonic, and of all points of possible contact."""
     loaded = components * nodes
     return 8.0 * (2 * (harmonics + 1) * loaded**2 + 3 * (loaded * angles) ** 2)
 
@@ -226,10 +226,10 @@ def variants(count: int, numbers: int) -> float:
 
 
 def smallest_tolerance(hottest: float) -> float:
-    """K: no time integration of temperatures up to ``hottest``, degC, keeps a smaller error in double precision.
+    """Smallest possible error, K, of a time integration of temperatures up to ``hottest``, degC, in double precision.
 
-    Every step rounds; the roundings of N steps add up to sqrt(N) units in the last place. At 1e-11 K a drive takes
-    some 1e5 steps.
+    Every step rounds; the rounding errors of N steps add up to sqrt(N) units in the last place. At 1e-11 K a drive
+    has about 1e5 steps.
 
     >>> f"{smallest_tolerance(100.0):.0e}"
     '1e-11'

@@ -14,7 +14,7 @@ from typing import Any, Protocol
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
-from tyrefem.brief import Stated
+from tyrefem.brief import PickledFields
 from tyrefem.errors import InputError
 from tyrefem.geometry.meridian import Line
 
@@ -26,7 +26,7 @@ THINNEST, THICKEST = 1e-5, 1.0
 
 
 @dataclass(frozen=True)
-class Profile(Stated):
+class Profile(PickledFields):
     """Values at stations ``s`` along the meridian [m], symmetric in ``s``.
 
     Parameters

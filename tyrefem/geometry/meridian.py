@@ -9,7 +9,7 @@ from typing import Protocol
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
-from tyrefem.brief import Stated
+from tyrefem.brief import PickledFields
 from tyrefem.errors import InputError
 
 Array = NDArray[np.float64]
@@ -31,7 +31,7 @@ class Line(Protocol):
 
 
 @dataclass(frozen=True)
-class TwoArcs(Stated):
+class TwoArcs(PickledFields):
     """Crown arc and sidewall arc, tangent to each other at the shoulder (NASA report, appendix A).
 
     R_c = crown_radius, theta_c = asin(x_c/R_c), S_c = R_c theta_c, y_m - y_c = R_c (1 - cos theta_c);   (A1-A3)

@@ -10,7 +10,7 @@ from typing import Any
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
-from tyrefem.brief import Brief, Stated
+from tyrefem.brief import Brief, PickledFields
 from tyrefem.errors import InputError, InputWarning, nearest
 from tyrefem.geometry import measures, outlines
 from tyrefem.geometry.checks import check_possible
@@ -25,7 +25,7 @@ GROOVE = "groove"
 
 
 @dataclass(frozen=True)
-class Section(Brief, Stated):
+class Section(Brief, PickledFields):
     """An axisymmetric cross-section in (r, z) [m], r from the wheel's axis, z from the mid plane.
 
     A position is (s, depth): ``s`` along the meridian from the crown, negative on the other side; ``depth`` from the

@@ -9,7 +9,7 @@ from typing import Any
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
-from tyrefem.brief import Stated
+from tyrefem.brief import PickledFields
 from tyrefem.errors import InputError
 
 Array = NDArray[np.float64]
@@ -17,7 +17,7 @@ _GAUSS = np.polynomial.legendre.leggauss(8)
 
 
 @dataclass(frozen=True)
-class SplineLine(Stated):
+class SplineLine(PickledFields):
     """A smooth meridian through points (r, z) from the crown to the bead.
 
     A cubic spline over the chord length, symmetric at the crown, reparametrised by its arc length.

@@ -1,6 +1,6 @@
-"""Measured temperature histories, read as loggers write them.
+"""Measured temperature histories in the formats of loggers.
 
-Knows no tyre and no study.
+The package is independent of tyres and studies.
 """
 
 from tyrefem.measured.run import MeasuredRun

@@ -13,13 +13,13 @@ from tyrefem.measured.columns import is_time
 from tyrefem.measured.lines import decode
 
 _HEADING = re.compile(r"^\s*([^\[\]]+?)\s*(?:\[([^\[\]]*)\])?\s*$")
-#: Columns that are for people, not values of the study.
+#: Columns for people, not values of the study.
 LABELS = ("name", "note")
 
 
 @dataclass(frozen=True)
 class Case:
-    """One row: its name, its note, and the values it lays over the study."""
+    """One row: its name, its note, and its changes to the study."""
 
     name: str
     note: str
@@ -31,11 +31,11 @@ def read_cases(path: Path) -> tuple[Case, ...]:
     """The cases of a CSV file.
 
     The heading names each column: ``name``, optionally ``note``, and dotted names such as ``drive.load [lbf]``, whose
-    unit is put behind every number. Lines that begin with ``#`` are comments; an empty cell leaves the study's value.
+    unit is added to every number. Lines that begin with ``#`` are comments; an empty cell keeps the study's value.
 
     Raises
     ------
-    InputError : unreadable, no ``name`` column, a row of another length, a name missing or given twice.
+    InputError : unreadable, no ``name`` column, a row of another length, a missing or repeated name.
 
     >>> import tempfile
     >>> file = Path(tempfile.mkdtemp()) / "cases.csv"
@@ -64,14 +64,14 @@ def read_cases(path: Path) -> tuple[Case, ...]:
 
 
 def looks_like_cases(path: Path) -> bool:
-    """Is the first row of a CSV file the heading of a table of cases, not that of thermocouple histories?"""
+    """True if the first row of a CSV file is the heading of a table of cases, not of thermocouple histories."""
     lines = _content(path)
     cells = [cell.strip() for cell in lines[0][1].split(",")] if lines else []
     return "name" in cells and not any(is_time(cell) for cell in cells)
 
 
 def _content(path: Path) -> list[tuple[int, str]]:
-    """The lines that are neither blank nor comments, with their numbers in the file."""
+    """The lines that are not blank or comments, with their numbers in the file."""
     lines = enumerate(re.split("\r\n|\r|\n", decode(path)), 1)
     return [(number, line) for number, line in lines if line.strip() and not line.lstrip().startswith("#")]
 

@@ -1,6 +1,6 @@
 """Cells as numbers: empty is no reading, decimal comma or point, all else an error with its line.
 
-What a column's heading says: ``shoulder inner [degF]`` is the sensor "shoulder inner", in degF.
+A column's heading has its name and unit: ``shoulder inner [degF]`` is the sensor "shoulder inner", in degF.
 """
 
 from __future__ import annotations
@@ -30,24 +30,24 @@ _HEADING = re.compile(r"^(?P<name>.*?)\s*(?:\[(?P<square>[^][]*)\]|\((?P<round>[
 _TIME = re.compile(r"^(?:(?:elapsed[ _]?)?(?:time|t)|time[ _]?stamp|date[ _/]?time)$", re.IGNORECASE)
 
 
-#: Quantities that loggers write beside temperatures, by their SI unit. No angle: "deg" may stand for degC.
+#: Quantities that loggers write beside temperatures, by their SI unit. Angles are not included: "deg" may be degC.
 _CHANNELS = ("Pa", "m/s", "N", "m", "kg", "s", "Hz", "W", "J", "m/s**2")
 
 
-# The degree sign in its look-alikes, and as it arrives after a wrong decoding.
+# The degree sign, similar characters, and its form after a wrong decoding.
 _TEMPERATURE = re.compile(r"^(?:deg(?:rees?|\.)?[\s_]*|[°º˚Â�'*]*\s*)(\w+)$", re.IGNORECASE)
 
 
 @dataclass(frozen=True)
 class Heading:
-    """A column: its name, its unit, and its place in the row."""
+    """A column: its name, its unit, and its index in the row."""
 
     name: str
     unit: str
     column: int
 
     def to_degC(self, values: NDArray[np.float64]) -> NDArray[np.float64]:
-        """degC of readings in this column's unit.
+        """Readings in this column's unit, converted to degC.
 
         >>> Heading("crown", "degF", 1).to_degC(np.array([212.0])).tolist()
         [100.0]
@@ -72,7 +72,7 @@ def parts(text: str) -> tuple[str, str | None]:
 
 @functools.lru_cache(maxsize=256)
 def is_channel(text: str) -> bool:
-    """Whether a heading's unit is that of a pressure, speed, force, length, power...: no sensor of temperature.
+    """True if a heading's unit is one of pressure, speed, force, length, power...: the column is no temperature sensor.
 
     >>> [is_channel(text) for text in ("air [kPa]", "speed [km/h]", "load (lbf)", "crown [degC]", "crown [mV]")]
     [True, True, True, False, False]
@@ -92,13 +92,13 @@ def is_channel(text: str) -> bool:
 
 
 def is_time(text: str) -> bool:
-    """Whether a heading is the time column: ``time [s]``, ``Time (min)``, ``t [h]``, but not ``T [degC]``."""
+    """True for the heading of a time column: ``time [s]``, ``Time (min)``, ``t [h]``, but not ``T [degC]``."""
     name, unit = parts(text)
     return bool(_TIME.match(name)) and _temperature(unit or "") is None
 
 
 def _temperature(unit: str) -> str | None:
-    """degC, degF or K, if that is what a unit says."""
+    """degC, degF or K for a unit of temperature, else None."""
     match = _TEMPERATURE.match(unit)
     return _LETTERS.get(match[1].lower()) if match else None
 
@@ -141,22 +141,22 @@ def temperature_unit(text: str) -> str:
     return known
 
 
-#: What loggers and spreadsheets write for "no reading", in small letters.
+#: Texts of loggers and spreadsheets for "no reading", in small letters.
 NO_READING = frozenset(("", "nan", "na", "n/a", "#n/a", "null", "none", "-", "--", "---"))
 
 
-#: degC; above it stands the code of an open thermocouple, not a tyre.
+#: degC; higher values are the code of an open thermocouple.
 HOTTEST = 2000.0
 _NUMBER = re.compile(r"[-+]?(?:\d+[.,]?\d*|[.,]\d+)(?:[eE][-+]?\d+)?", re.ASCII)
 _PLAIN = re.compile(r"[0-9.eE+\-\n]*")
 
 
 def numbers(cells: Sequence[str], lines: Sequence[int], column: str, file: Path, *, gaps: bool) -> NDArray[np.float64]:
-    """(n,) floats of one column; NaN where there is no reading.
+    """(n,) floats of one column; NaN for no reading.
 
     Raises
     ------
-    InputError : text, an infinite number, or (without ``gaps``) an empty cell; says line and column.
+    InputError : text, an infinite number, or (without ``gaps``) an empty cell; the message has line and column.
     """
     quick = _plain_numbers(cells, gaps)
     if quick is not None:
@@ -166,7 +166,7 @@ def numbers(cells: Sequence[str], lines: Sequence[int], column: str, file: Path,
         if gaps and cell.lower() in NO_READING:
             continue
         if _NUMBER.fullmatch(cell) is None:
-            raise InputError(f"{_place(lines[index], column)}: {_wrong(cell, gaps)}", file=file)
+            raise InputError(f"{_place(lines[index], column)}: {_reason(cell, gaps)}", file=file)
         values[index] = float(cell.replace(",", "."))
         if not np.isfinite(values[index]):
             raise InputError(f"{_place(lines[index], column)}: {cell[:30]!r} is not finite", file=file)
@@ -174,7 +174,7 @@ def numbers(cells: Sequence[str], lines: Sequence[int], column: str, file: Path,
 
 
 def _plain_numbers(cells: Sequence[str], gaps: bool) -> NDArray[np.float64] | None:
-    """The column at once where it has only plain numbers (ten times faster); None where a closer look is needed."""
+    """The whole column if it has only plain numbers (ten times faster); None if cells need a closer check."""
     if _PLAIN.fullmatch("\n".join(cells)) is None or (not gaps and "" in cells):
         return None
     try:
@@ -184,7 +184,7 @@ def _plain_numbers(cells: Sequence[str], gaps: bool) -> NDArray[np.float64] | No
     return None if np.isinf(values).any() else values
 
 
-def _wrong(cell: str, gaps: bool) -> str:
+def _reason(cell: str, gaps: bool) -> str:
     if cell.lower().lstrip("+-") in ("inf", "infinity"):
         return f"{cell!r} is not finite; leave the cell empty where there is no reading"
     if cell.lower() in NO_READING:
@@ -201,12 +201,12 @@ def _place(line: int, column: str) -> str:
     return f"line {line}, column '{column[:60]}'"
 
 
-def one_decimal_mark(rows: Sequence[Sequence[str]], lines: Sequence[int], columns: Sequence[int], file: Path) -> None:
-    """Refuse a table that mixes decimal points and decimal commas: one of them is a thousands mark.
+def check_decimal_mark(rows: Sequence[Sequence[str]], lines: Sequence[int], columns: Sequence[int], file: Path) -> None:
+    """Raise an error for a table with decimal points and decimal commas: one of them is a thousands separator.
 
     Raises
     ------
-    InputError : says the first line of either kind.
+    InputError : the message has the first line of each kind.
     """
     marks = "".join(cell for row in rows for cell in row)
     if "," not in marks:
@@ -226,12 +226,12 @@ def one_decimal_mark(rows: Sequence[Sequence[str]], lines: Sequence[int], column
             )
 
 
-def plausible(heading: Heading, degC: NDArray[np.float64], lines: Sequence[int], file: Path) -> None:
-    """Refuse what no thermocouple in a tyre can have read.
+def check_plausible(heading: Heading, degC: NDArray[np.float64], lines: Sequence[int], file: Path) -> None:
+    """Raise an error for readings that no thermocouple in a tyre can have.
 
     Raises
     ------
-    InputError : below absolute zero, or above 2000 degC; says line and column.
+    InputError : below absolute zero, or above 2000 degC; the message has line and column.
     """
     for index in np.flatnonzero((degC < -273.15 - 1e-9) | (degC > HOTTEST))[:1]:
         cold = degC[index] < 0.0

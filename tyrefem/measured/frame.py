@@ -1,4 +1,4 @@
-"""A measured table that is a pandas DataFrame already: the same columns, checks and errors as in a file."""
+"""A measured table as a pandas DataFrame, with the same columns, checks and errors as a file."""
 
 from __future__ import annotations
 
@@ -15,12 +15,12 @@ from tyrefem.measured.table import MeasuredTable, read
 if TYPE_CHECKING:
     import pandas as pd
 
-#: What an error calls the frame. Its line numbers are those of the frame written as CSV.
+#: Name of the frame in errors. Line numbers are those of the frame written as CSV.
 PLACE = Path("DataFrame (line 1: its column names)")
 
 
 def is_frame(table: object) -> bool:
-    """Is it a pandas DataFrame?"""
+    """True for a pandas DataFrame."""
     return hasattr(table, "to_csv") and hasattr(table, "columns")
 
 
@@ -29,8 +29,8 @@ def frame_table(
 ) -> MeasuredTable:
     """The runs of a frame with the columns of a file: ``time [s]`` (or the index so named), perhaps ``run``, sensors.
 
-    So are a result's own `readings`. A frame without a column ``run`` is one run, "measured". Options and errors: see
-    `tyrefem.measured.read_table`.
+    A result's `readings` have this form. A frame without a column ``run`` is one run, "measured". Options and errors:
+    see `tyrefem.measured.read_table`.
 
     >>> import pandas as pd
     >>> run, = frame_table(pd.DataFrame({"time [min]": [0, 1, 2], "crown [degF]": [77.0, None, 95.0]})).runs
@@ -38,7 +38,7 @@ def frame_table(
     ('measured', [0.0, 60.0, 120.0], [25.0, nan, 35.0])
     """
     with tempfile.TemporaryDirectory(prefix="tyrefem-") as folder:
-        # Read as a file is, so that a frame and a file can never differ in what they allow.
+        # It is read like a file, so that a frame and a file follow the same rules.
         file = Path(folder) / "measured.csv"
         _flat(frame).to_csv(file, index=False, lineterminator="\n", date_format="%Y-%m-%dT%H:%M:%S.%f")
         try:
@@ -49,7 +49,7 @@ def frame_table(
 
 
 def _flat(frame: pd.DataFrame) -> pd.DataFrame:
-    """The frame with an index that is the time or the run as a column; a result's `readings` with their units."""
+    """The frame with time or run from its index as a column; a result's `readings` get their units."""
     if frame.columns.nlevels > 1:
         raise InputError("its columns have several levels; wanted: one name each, like 'crown [degC]'", file=PLACE)
     levels = [name for name in frame.index.names if isinstance(name, str) and (is_time(name) or name.lower() == "run")]
@@ -60,5 +60,5 @@ def _flat(frame: pd.DataFrame) -> pd.DataFrame:
 
 
 def _in_degC(name: str) -> str:
-    """The heading of a column of `Result.readings`, which says no unit."""
+    """The heading, with its unit, of a column of `Result.readings`, which has none."""
     return name if parts(name)[1] or name.lower() == "run" else f"{name} [degC]"

@@ -13,9 +13,9 @@ from tyrefem.estimates.work import TEXT, check_memory
 from tyrefem.measured.columns import is_time, parts
 from tyrefem.output import note_input
 
-#: Above this size a table is a mistake (a video, a raw waveform): 5 million rows of 10 sensors fit in.
+#: Largest size of a table; larger files are mistakes (a video, a raw waveform). 5 million rows of 10 sensors fit.
 LARGEST_BYTES = 400_000_000
-#: How many lines of free text a logger may write above its heading.
+#: Largest number of lines of free text above the heading.
 LONGEST_PREAMBLE = 100
 DELIMITERS = "\t;,"
 _CONTROL = re.compile("[\x00-\x08\x0e-\x1f]")
@@ -68,14 +68,14 @@ def decode(path: Path) -> str:
 
 
 def split(path: Path) -> Lines:
-    """The cells of a table. Blank lines, and lines that begin with ``#`` or ``//``, are no rows.
+    """The cells of a table. Blank lines, and lines that begin with ``#`` or ``//``, are not rows.
 
     A line that begins with ``;`` is a row (in a semicolon table its first cell is empty), not a comment.
-    Up to 100 lines of free text may stand before the heading, the first line with a time column.
+    Up to 100 lines of free text may precede the heading, which is the first line with a time column.
 
     Raises
     ------
-    InputError : what `decode` raises; no time column; rows longer or shorter than the heading.
+    InputError : errors of `decode`; no time column; rows longer or shorter than the heading.
     """
     lines = re.split("\r\n|\r|\n", decode(path))
     comments, content = [], []
@@ -95,7 +95,7 @@ def split(path: Path) -> Lines:
 
 
 def _heading(content: list[tuple[int, str]], path: Path) -> tuple[int, str]:
-    """Place and delimiter of the first line with a time column, one with a unit before one without."""
+    """Index and delimiter of the first line with a time column; lines with a unit have precedence."""
     without_unit = None
     for position, (number, line) in enumerate(content[:LONGEST_PREAMBLE]):
         for delimiter in DELIMITERS:

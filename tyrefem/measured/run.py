@@ -1,4 +1,4 @@
-"""One measured run: the histories of its sensors on one clock."""
+"""One measured run: the histories of its sensors with common times."""
 
 from __future__ import annotations
 
@@ -22,12 +22,12 @@ class MeasuredRun:
 
     Parameters
     ----------
-    name : the run's name: its ``run`` cell, else the file's name without suffix.
+    name : of the run: its ``run`` cell, else the file's name without suffix.
     times : (n,) s, strictly increasing.
     temperatures : (n, sensors) degC, one column per sensor; NaN = no reading.
-    file : where it was read from, None for data made in memory.
-    comments : comment and preamble lines of the file, without their mark.
-    channels : headings of the columns that hold another quantity than a temperature (speed, pressure); left out.
+    file : the source, None for data made in memory.
+    comments : comment and preamble lines of the file, without their marks.
+    channels : headings of columns with other quantities than temperatures (speed, pressure), which are left out.
     """
 
     name: str
@@ -43,15 +43,15 @@ class MeasuredRun:
         return tuple(map(str, self.temperatures.columns))
 
     def shifted(self, seconds: float) -> MeasuredRun:
-        """The same run with ``seconds`` added to its clock."""
+        """The same run with ``seconds`` added to its times."""
         return replace(self, times=self.times + seconds) if seconds else self
 
     def renamed(self, names: Mapping[str, str]) -> MeasuredRun:
-        """The same run with its columns named otherwise: column -> sensor. Names that no column has do nothing.
+        """The same run with renamed columns: column -> sensor. Names without a column are ignored.
 
         Raises
         ------
-        InputError : two columns of one name.
+        InputError : two columns with the same name.
         """
         new = [names.get(sensor, sensor) for sensor in self.sensors]
         twice = next((name for name in new if new.count(name) > 1), None)

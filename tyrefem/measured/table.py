@@ -13,12 +13,12 @@ from tyrefem.errors import InputError, nearest, quoted
 from tyrefem.measured.columns import (
     TIME_UNITS,
     Heading,
+    check_decimal_mark,
+    check_plausible,
     is_channel,
     is_time,
     numbers,
-    one_decimal_mark,
     parts,
-    plausible,
     temperature_unit,
     time_unit,
 )
@@ -26,7 +26,7 @@ from tyrefem.measured.lines import Lines, split
 from tyrefem.measured.run import MeasuredRun
 from tyrefem.measured.timestamps import are_timestamps, microseconds
 
-#: s; 30 years. A larger time is a calendar time, which needs ``time_offset``.
+#: s; 30 years. A larger time is a calendar time and needs ``time_offset``.
 LONGEST_TIME = 1e9
 #: "Unit" of a time column that holds timestamps.
 STAMPED = "ISO 8601"
@@ -39,11 +39,11 @@ def read_table(
     rename: Mapping[str, str] | None = None,
     ignore: Iterable[str] = (),
 ) -> tuple[MeasuredRun, ...]:
-    """The runs of a thermocouple table as loggers write it.
+    """The runs of a thermocouple table in the format of loggers.
 
     The heading has ``time [s]`` (or min, h, ms), perhaps ``run``, and one column per sensor with its unit:
     ``crown [degC]``, ``[degF]`` or ``[K]``. Timestamps (ISO 8601) count from the first row of their run. Columns in
-    a unit of pressure, speed, force, length or power are no sensors and are left out (`MeasuredRun.channels`).
+    a unit of pressure, speed, force, length or power are not sensors and are left out (`MeasuredRun.channels`).
     Comma, semicolon or tab between columns; decimal comma or point; UTF-8, UTF-16 or Latin-1. Empty, ``NaN``, ``-``,
     ``--`` = no reading. ``#`` and ``//`` begin a comment.
 
@@ -52,7 +52,7 @@ def read_table(
     path : the CSV file.
     time_offset : s, added to every time of the table (model time = table time + offset).
     rename : column name -> sensor name.
-    ignore : column names to leave out, for temperatures that are no sensor's.
+    ignore : column names to leave out, for temperatures of other things than sensors.
 
     Returns
     -------
@@ -60,7 +60,7 @@ def read_table(
 
     Raises
     ------
-    InputError : anything unclear, with file, line and column; a column to rename that is not there.
+    InputError : unclear content, with file, line and column; an unknown column to rename.
 
     >>> import tempfile
     >>> file = Path(tempfile.mkdtemp()) / "run-1.csv"
@@ -73,13 +73,13 @@ def read_table(
     table = read(path, time_offset=time_offset, rename=given, ignore=ignore)
     missing = table.missing(given)
     if missing:
-        raise no_column(missing, "to rename", table.columns, table.file)
+        raise missing_columns_error(missing, "to rename", table.columns, table.file)
     return table.runs
 
 
 @dataclass(frozen=True, eq=False)
 class MeasuredTable:
-    """The runs of a file, and the headings of all its columns, those left out too."""
+    """The runs of a file, and the headings of all its columns, including ignored ones."""
 
     file: Path
     runs: tuple[MeasuredRun, ...]
@@ -91,7 +91,7 @@ class MeasuredTable:
         return tuple(parts(text)[0] for text in self.headings if text)
 
     def missing(self, names: Iterable[str]) -> list[str]:
-        """Those of some names that no column has, with or without its unit."""
+        """The names that are no column, with or without its unit."""
         return [name for name in names if name not in self.columns and name not in self.headings]
 
 
@@ -102,7 +102,7 @@ def read(
     rename: Mapping[str, str] | None = None,
     ignore: Iterable[str] = (),
 ) -> MeasuredTable:
-    """`read_table` for a caller that checks itself whether the columns to rename and to ignore are there."""
+    """`read_table` for a caller that checks the names of ``rename`` and ``ignore`` itself."""
     import pandas as pd
 
     file = Path(path)
@@ -113,7 +113,7 @@ def read(
     if not lines.rows:
         raise InputError("has a heading but no readings", file=file)
     time, sensors = columns.time, columns.sensors
-    one_decimal_mark(lines.rows, lines.numbers, [time.column, *(sensor.column for sensor in sensors)], file)
+    check_decimal_mark(lines.rows, lines.numbers, [time.column, *(sensor.column for sensor in sensors)], file)
     cells = list(zip(*lines.rows, strict=True))
     readings = {sensor.name: _readings(sensor, cells[sensor.column], lines, file) for sensor in sensors}
     runs = []
@@ -129,8 +129,10 @@ def read(
     return MeasuredTable(file, tuple(runs), lines.heading)
 
 
-def no_column(names: Iterable[str], purpose: str, columns: Iterable[str], file: Path | None = None) -> InputError:
-    """The error that columns are not there: all of them, each with the nearest one."""
+def missing_columns_error(
+    names: Iterable[str], purpose: str, columns: Iterable[str], file: Path | None = None
+) -> InputError:
+    """The error for missing columns: all of them, each with the nearest name."""
     missing, known = list(names), list(columns)
     if len(missing) == 1:
         return InputError(f"no column '{missing[0]}' {purpose}{nearest(missing[0], known)}", file=file)
@@ -139,7 +141,7 @@ def no_column(names: Iterable[str], purpose: str, columns: Iterable[str], file: 
 
 @dataclass(frozen=True)
 class _Columns:
-    """The time column, the place of the run column, the sensors, the headings of other quantities."""
+    """The time column, the index of the run column, the sensors, the headings of other quantities."""
 
     time: Heading
     run: int | None
@@ -202,7 +204,7 @@ def _columns(lines: Lines, rename: dict[str, str], ignore: frozenset[str], file:
 def _times(
     cells: Sequence[str], lines: Lines, time: Heading, runs: Mapping[str, NDArray[np.intp]], offset: float, file: Path
 ) -> dict[str, NDArray[np.float64]]:
-    """Run -> its times, s. Timestamps count from the first row of their run."""
+    """Run -> its times, s. Timestamps are relative to the first row of their run."""
     shown = lines.heading[time.column]
     if time.unit == STAMPED:
         stamps = microseconds(cells, lines.numbers, shown, file)
@@ -222,12 +224,12 @@ def _readings(heading: Heading, cells: Sequence[str], lines: Lines, file: Path) 
     degC = heading.to_degC(numbers(cells, lines.numbers, shown, file, gaps=True))
     if not np.isfinite(degC).any():
         raise InputError(f"column '{shown[:60]}' has no reading in any row", file=file)
-    plausible(heading, degC, lines.numbers, file)
+    check_plausible(heading, degC, lines.numbers, file)
     return degC
 
 
 def _rows_of_runs(cells: Sequence[str] | None, lines: Lines, file: Path) -> dict[str, NDArray[np.intp]]:
-    """Run -> its rows; a table without a run column is one run, named like the file."""
+    """Run -> its rows; a table without a run column is one run with the name of the file."""
     if cells is None:
         return {file.stem: np.arange(len(lines.rows))}
     rows_of: dict[str, list[int]] = {}

@@ -1,4 +1,4 @@
-"""Times written as ISO 8601 timestamps: ``2024-05-01T12:30:01.5+02:00``, with a blank in place of the T too."""
+"""Times as ISO 8601 timestamps: ``2024-05-01T12:30:01.5+02:00``, also with a blank in place of the T."""
 
 from __future__ import annotations
 
@@ -16,7 +16,7 @@ _TIMESTAMP = re.compile(r"\d{4}-\d{2}-\d{2}[T ]\d{2}:\d{2}")
 
 
 def are_timestamps(cells: Sequence[str]) -> bool:
-    """Whether a column of times holds timestamps: its first cell that is not empty does.
+    """True if the first cell of a column of times that is not empty is a timestamp.
 
     >>> are_timestamps(["", "2024-05-01 12:30:01"]), are_timestamps(["0.5"]), are_timestamps([])
     (True, False, False)
@@ -29,7 +29,7 @@ def microseconds(cells: Sequence[str], lines: Sequence[int], column: str, file: 
 
     Raises
     ------
-    InputError : no timestamp, or some with and some without their offset from UTC; says line and column.
+    InputError : no timestamp, or offsets from UTC in some of them only; the message has line and column.
     """
     times: list[datetime] = []
     for cell, line in zip(cells, lines, strict=True):

@@ -10,7 +10,7 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 
 from tyrefem.boundaries.contained_air import ATMOSPHERE
-from tyrefem.brief import Brief, Stated
+from tyrefem.brief import Brief, PickledFields
 from tyrefem.errors import InputError
 from tyrefem.inputs.drive import Drive
 from tyrefem.inputs.loading import GivenFootprint, LoadCase, load_case
@@ -32,7 +32,7 @@ Weights = tuple[tuple[int, int, float], ...]
 
 
 @dataclass(frozen=True, eq=False)
-class CycleSchedule(Brief, Stated):
+class CycleSchedule(Brief, PickledFields):
     """The strain cycles of a drive: for each phase the load cases at ``knots`` fractions of it.
 
     Between knots the strain energy is interpolated linearly in time.

@@ -1,6 +1,6 @@
-"""Files that are either complete or not there: written under a temporary name, then moved into place.
+"""Files that are either complete or absent: written under a temporary name, then moved.
 
-Knows nothing of what is in the files.
+The package is independent of the content of the files.
 """
 
 from __future__ import annotations
@@ -19,54 +19,54 @@ from typing import Any
 
 import tyrefem
 from tyrefem.errors import InputError
-from tyrefem.interruption import held_back
+from tyrefem.interruption import interruption_delayed
 
 
 def versions() -> dict[str, str]:
-    """Versions of this package, of Python and of the libraries that decide the numbers."""
+    """Versions of this package, of Python and of the libraries that influence the results."""
     packages = {"tyrefem": tyrefem.__version__, "python": platform.python_version()}
     return packages | {name: importlib.metadata.version(name) for name in ("numpy", "scipy", "scikit-fem", "pint")}
 
 
-#: Start of the names under which files are written until they are complete.
+#: Prefix of the temporary names of incomplete files.
 TEMPORARY = ".tyrefem-"
 
 
 class WriteGuard:
-    """Who may refuse a file before it is written, and learns of it afterwards. This one lets everything pass."""
+    """May refuse a file before it is written, and is informed afterwards. This base class allows all files."""
 
     def before_writing(self, path: Path) -> None:
-        """Called before ``path`` is replaced; raises `InputError` to refuse."""
+        """Called before ``path`` is replaced; raises `InputError` to refuse it."""
 
     def after_writing(self, path: Path) -> None:
         """Called when ``path`` is complete."""
 
-    def takes_summary(self, path: Path, data: dict[str, Any]) -> bool:
-        """Does the guard write this JSON file itself, with more in it?"""
+    def writes_summary(self, path: Path, data: dict[str, Any]) -> bool:
+        """True if the guard writes this JSON file itself, with additional data."""
         return False
 
 
-_NOBODY = WriteGuard()
+_NO_GUARD = WriteGuard()
 
 
-#: The command in work and the files that it has read: one command at a time in a process.
-_guard = _NOBODY
+#: The guard of the running command, and the files that it has read: one command at a time in a process.
+_guard = _NO_GUARD
 _read: dict[Path, None] = {}
 
 
-#: Folders that complete files were moved into, in this order; an interruption names the last.
+#: Folders of complete files, in the order of writing; the message of an interruption names the last.
 _written: dict[Path, None] = {}
 
 
-#: What a folder says of itself, whether or not there is a result in it.
+#: Name of the file that describes a folder, with or without a result.
 SUMMARY = "summary.json"
 
 
 @contextmanager
 def guarded(guard: WriteGuard | None) -> Iterator[None]:
-    """Every file that is written in this block is first shown to ``guard``; None: to nobody."""
+    """Check every file written in this block with ``guard``; None: without checks."""
     global _guard
-    before, _guard = _guard, guard or _NOBODY
+    before, _guard = _guard, guard or _NO_GUARD
     try:
         yield
     finally:
@@ -75,7 +75,7 @@ def guarded(guard: WriteGuard | None) -> Iterator[None]:
 
 @contextmanager
 def reading() -> Iterator[None]:
-    """The files read in this block are the inputs of one command, and `written_to` is about what it writes."""
+    """Record the files read in this block as inputs of one command, and the folders that it writes for `written_to`."""
     before = dict(_read)
     _read.clear()
     _written.clear()
@@ -87,18 +87,18 @@ def reading() -> Iterator[None]:
 
 
 def note_input(path: str | Path) -> None:
-    """A file of the user's is read: no command writes it."""
+    """Record a user's file as input: no command may overwrite it."""
     _read[Path(path).absolute()] = None
 
 
 def inputs_read() -> tuple[Path, ...]:
-    """The files read so far by this command."""
+    """The files that this command has read so far."""
     return tuple(_read)
 
 
 def written_to() -> Path | None:
-    """The folder that this command has last moved a complete file into; None: nothing is written yet."""
-    # Temporary folders are gone.
+    """The folder of the latest complete file of this command; None: no file yet."""
+    # Temporary folders no longer exist.
     return next((folder for folder in reversed(_written) if folder.is_dir()), None)
 
 
@@ -109,26 +109,26 @@ def _note_written(path: Path) -> None:
 
 
 def begin_writing(path: Path) -> None:
-    """A file is going to be written in place, or taken up from an earlier try.
+    """Announce a file that is written in place, or continued from an earlier attempt.
 
     Raises
     ------
-    InputError : it is not this command's to write.
+    InputError : the command may not write this file.
     """
     _guard.before_writing(path)
 
 
 def end_writing(path: Path) -> None:
-    """A file written in place is complete."""
+    """Report a file written in place as complete."""
     _guard.after_writing(path)
 
 
 def place_of_output(path: str | Path) -> Path:
-    """The whole path of a folder for results.
+    """The absolute path of a folder for results.
 
     Raises
     ------
-    InputError : a file or a link to nothing is in its place, or in the place of a folder above it.
+    InputError : the path, or a folder above it, is a file or a broken link.
     """
     whole = Path(os.path.abspath(path))
     place = whole
@@ -142,12 +142,12 @@ def place_of_output(path: str | Path) -> Path:
 
 
 def _temporary(path: Path) -> Path:
-    """A free name in the same folder (so that moving is atomic), with the same suffix."""
+    """An unused name in the same folder (for an atomic move), with the same suffix."""
     return path.with_name(f"{TEMPORARY}{secrets.token_hex(4)}{path.suffix}")
 
 
 def remove_temporary(folder: Path) -> None:
-    """Remove what a killed command left half-written in ``folder``; nobody may be writing there."""
+    """Remove incomplete files of a killed command from ``folder``; no other command may be writing there."""
     for path in folder.glob(f"{TEMPORARY}{'[0-9a-f]' * 8}*"):
         if path.is_dir() and not path.is_symlink():
             shutil.rmtree(path, ignore_errors=True)
@@ -167,13 +167,13 @@ def _cannot_be_written(path: Path, temporary: Path) -> Iterator[None]:
 
 @contextmanager
 def atomic_path(path: str | Path) -> Iterator[Path]:
-    """A temporary path beside ``path``; it becomes ``path`` if the block ends well, else it is removed.
+    """A temporary path beside ``path``: moved to ``path`` if the block succeeds, else removed.
 
-    The folder is made if missing. A reader never sees half a file, and an older file survives a failure.
+    Missing folders are created. A reader never sees an incomplete file, and an older file survives a failure.
 
     Raises
     ------
-    InputError : the folder or the file cannot be written, or is not this command's to write.
+    InputError : the folder or the file cannot be written, or the command may not write this file.
 
     >>> import tempfile
     >>> target = Path(tempfile.mkdtemp()) / "out" / "summary.json"
@@ -189,24 +189,24 @@ def atomic_path(path: str | Path) -> Iterator[Path]:
         path.parent.mkdir(parents=True, exist_ok=True)
         try:
             yield temporary
-            with held_back():
+            with interruption_delayed():
                 os.replace(temporary, path)
                 _note_written(path)
                 _guard.after_writing(path)
         finally:
-            with held_back(), suppress(OSError):
+            with interruption_delayed(), suppress(OSError):
                 temporary.unlink(missing_ok=True)
 
 
 @contextmanager
 def atomic_folder(folder: str | Path) -> Iterator[Path]:
-    """A temporary folder; if the block ends well its files are moved into ``folder``, else it is removed.
+    """A temporary folder: its files are moved into ``folder`` if the block succeeds, else it is removed.
 
-    Files of the same name are replaced one by one; other files in ``folder`` stay.
+    Files of the same name are replaced individually; other files in ``folder`` stay.
 
     Raises
     ------
-    InputError : the folder cannot be written, or a file is in the place of a folder.
+    InputError : the folder cannot be written, or a file has the name of a folder.
     """
     folder = Path(os.path.abspath(folder))
     temporary = folder / f"{TEMPORARY}{secrets.token_hex(4)}"
@@ -218,18 +218,18 @@ def atomic_folder(folder: str | Path) -> Iterator[Path]:
             files = sorted(path for path in temporary.rglob("*") if path.is_file())
             for file in files:
                 _guard.before_writing(folder / file.relative_to(temporary))
-            # All of them or none: a file of this run beside one of the last would tell of neither.
-            with held_back():
+            # All files or none: files of two runs together would belong to neither.
+            with interruption_delayed():
                 for file in files:
                     _move(file, folder / file.relative_to(temporary))
         finally:
-            with held_back():
+            with interruption_delayed():
                 shutil.rmtree(temporary, ignore_errors=True)
 
 
 def _move(file: Path, target: Path) -> None:
     target.parent.mkdir(parents=True, exist_ok=True)
-    if target.suffix == ".json" and _guard.takes_summary(target, json.loads(file.read_text(encoding="utf-8"))):
+    if target.suffix == ".json" and _guard.writes_summary(target, json.loads(file.read_text(encoding="utf-8"))):
         return
     os.replace(file, target)
     _note_written(target)
@@ -237,7 +237,7 @@ def _move(file: Path, target: Path) -> None:
 
 
 def jsonable(value: Any) -> Any:
-    """Plain data that JSON can hold: numpy scalars made Python's, NaN and infinity made null."""
+    """Plain data for JSON: numpy scalars become Python's, NaN and infinity become null."""
     if isinstance(value, Mapping):
         return {str(key): jsonable(entry) for key, entry in value.items()}
     if isinstance(value, list | tuple):
@@ -250,9 +250,9 @@ def jsonable(value: Any) -> Any:
 
 
 def write_json(data: dict[str, Any], path: Path) -> Path:
-    """Write JSON whole or not at all."""
+    """Write JSON completely or not at all."""
     plain = jsonable(data)
-    if not _guard.takes_summary(Path(os.path.abspath(path)), plain):
+    if not _guard.writes_summary(Path(os.path.abspath(path)), plain):
         with atomic_path(path) as temporary:
             temporary.write_text(json.dumps(plain, indent=1) + "\n", encoding="utf-8")
     return path

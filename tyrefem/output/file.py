@@ -1,4 +1,4 @@
-"""A single file of results: a picture, a mesh, a model. It replaces only what this tool has made."""
+"""A single result file: a picture, a mesh, a model. It replaces only files of this tool."""
 
 from __future__ import annotations
 
@@ -11,11 +11,11 @@ from pathlib import Path
 from tyrefem.errors import InputError
 from tyrefem.output import WriteGuard, guarded, inputs_read, place_of_output
 
-#: Forms of a picture, by the file's ending.
+#: Picture formats, by the file's suffix.
 PICTURES = (".png", ".pdf", ".svg")
-#: What stands in every single file that is written: in a picture's metadata, a comment of an archive or a mesh.
+#: Mark in every single file that is written: in a picture's metadata, or a comment of an archive or a mesh.
 MARK = b"tyrefem"
-#: Bytes at a file's beginning and end that are searched for it.
+#: Number of bytes at a file's start and end that are searched for the mark.
 SEARCHED = 1 << 16
 
 
@@ -27,12 +27,12 @@ def results_file(
 
     Parameters
     ----------
-    suffixes : that it may have, e.g. ``(".png", ".pdf")``. also : further files that the command writes.
-    force : replace a file that this tool has not made.
+    suffixes : allowed ones, e.g. ``(".png", ".pdf")``. also : further files that the command writes.
+    force : replace a file that was not made by this tool.
 
     Raises
     ------
-    InputError : another suffix, a folder or a link to nothing in its place, a folder that cannot be written, a foreign
+    InputError : another suffix, a folder or a broken link of that name, a folder that cannot be written, a foreign
         file, an input of this command.
     """
     path = Path(path)
@@ -48,7 +48,7 @@ def results_file(
 
 
 class _FileGuard(WriteGuard):
-    """Refuses what this command has read."""
+    """Refuses to overwrite files that this command has read."""
 
     def check(self, path: Path, *, force: bool) -> None:
         place_of_output(path.parent)
@@ -64,7 +64,7 @@ class _FileGuard(WriteGuard):
             raise InputError("exists and was not made by tyrefem; replace it with --force", file=path, field="--out")
 
     def before_writing(self, path: Path) -> None:
-        """Refuse an input."""
+        """Raise an error for an input."""
         for file in inputs_read():
             with suppress(OSError):
                 if os.path.samefile(path, file):
@@ -72,7 +72,7 @@ class _FileGuard(WriteGuard):
 
 
 def made_by_this_tool(path: Path) -> bool:
-    """Does the file bear our mark?"""
+    """True if the file has this tool's mark."""
     with suppress(OSError), path.open("rb") as stream:
         first = stream.read(SEARCHED)
         stream.seek(max(path.stat().st_size - SEARCHED, 0))
@@ -81,6 +81,6 @@ def made_by_this_tool(path: Path) -> bool:
 
 
 def mark_archive(path: Path) -> None:
-    """Put the mark into a zip archive, as its comment."""
+    """Add the mark to a zip archive, as its comment."""
     with zipfile.ZipFile(path, "a") as archive:
         archive.comment = MARK

@@ -1,9 +1,9 @@
-"""A folder of results that tells one run of one command, and never costs the user a file.
+"""A folder with the results of one run of one command, in which the user's files are safe.
 
-``summary.json`` in the folder lists the files that the command wrote, with a checksum each. A file that is not listed,
-or that was changed since, is the user's: no command replaces or removes it unless it is told to (``--force``). A file
-that the command read is never written, whatever is asked. Files of an earlier run that this one did not write again
-are removed at the end. While a command writes, ``complete`` is false.
+``summary.json`` in the folder lists the files that the command wrote, each with a checksum. All other files, and
+files changed since then, are the user's: commands replace or remove them only with ``--force``. A file that the
+command has read is never overwritten. At the end, files of an earlier run that this run did not write are removed.
+While a command writes, ``complete`` is false.
 """
 
 from __future__ import annotations
@@ -18,7 +18,7 @@ from pathlib import Path
 from typing import Any
 
 from tyrefem.errors import InputError
-from tyrefem.interruption import held_back
+from tyrefem.interruption import interruption_delayed
 from tyrefem.output import (
     SUMMARY,
     TEMPORARY,
@@ -30,10 +30,10 @@ from tyrefem.output import (
     write_json,
 )
 
-#: Keys of ``summary.json`` that belong to the folder, not to the answer.
+#: Keys of ``summary.json`` that belong to the folder, not to the result.
 COMMAND, COMPLETE, FILES, CHECKSUMS, WRITING = "command", "complete", "files", "checksums", "writing"
 BOOKKEEPING = (COMMAND, COMPLETE, FILES, CHECKSUMS, WRITING)
-#: Foreign files that an error names one by one.
+#: Largest number of foreign files in an error.
 NAMED = 5
 
 
@@ -53,16 +53,16 @@ def results_folder(
     force: bool = False,
     keeps: Sequence[str] = (),
 ) -> Iterator[Path]:
-    """Open a folder for the results of one command; everything is checked before any computing.
+    """Open a folder for the results of one command, with all checks before any computing.
 
     Parameters
     ----------
-    folder : made if missing, and removed again if nothing was written into it.
+    folder : created if missing, and removed again if it stays empty.
     command : that writes, e.g. ``"run"``.
-    names : files that it may write, relative to the folder, with ``*`` where a part is not known yet.
-    inputs : files that the command reads, besides those that were read already.
+    names : files that it may write, relative to the folder, with ``*`` for parts that are not known yet.
+    inputs : files that the command reads, besides those already read.
     force : replace foreign files of these names, and another command's results.
-    keeps : names of files with finished work for a later try: the folder is marked at once, and they stay.
+    keeps : names of files with finished work for a later attempt: the folder is marked at once, and they stay.
 
     Raises
     ------
@@ -79,14 +79,14 @@ def results_folder(
                 with guarded(guard):
                     guard.mark(keeps)
                     yield Path(folder)
-                with held_back():
+                with interruption_delayed():
                     guard.finish()
             except BaseException:
-                with held_back(), suppress(OSError, InputError):
-                    guard.leave()
+                with interruption_delayed(), suppress(OSError, InputError):
+                    guard.restore()
                 raise
     finally:
-        with held_back():
+        with interruption_delayed():
             for path in made:
                 with suppress(OSError):
                     path.rmdir()
@@ -94,8 +94,8 @@ def results_folder(
 
 @contextmanager
 def _locked(folder: Path) -> Iterator[None]:
-    """Hold the folder for this process alone, until it ends, however it ends."""
-    from filelock import FileLock, Timeout  # brings asyncio with it
+    """Lock the folder for this process until the process ends, even by a crash."""
+    from filelock import FileLock, Timeout  # imports asyncio
 
     lock = FileLock(folder / f"{TEMPORARY}lock")
     try:
@@ -112,14 +112,14 @@ def _locked(folder: Path) -> Iterator[None]:
     try:
         yield
     finally:
-        with held_back():
+        with interruption_delayed():
             with suppress(OSError):
                 os.unlink(lock.lock_file)
             lock.release()
 
 
 class ResultsFolder(WriteGuard):
-    """One command's hold on its folder: what is whose, and what was written. Made by `results_folder`."""
+    """A folder used by one command: owners of its files, and written files. Made by `results_folder`."""
 
     def __init__(
         self,
@@ -137,21 +137,21 @@ class ResultsFolder(WriteGuard):
         self.force = force
         self._keeps = tuple(keeps)
         self._inputs = tuple(inputs)
-        self._earlier_text = self._text()
-        self._earlier = _bookkept(self._earlier_text)
+        self._earlier_summary_text = self._summary_text()
+        self._earlier = _summary_content(self._earlier_summary_text)
         self._written: dict[str, str] = {}
-        self._begun: list[str] = []
+        self._being_written: list[str] = []
         self._summary: dict[str, Any] = {}
         for parent in {Path(name).parent.as_posix() for name in self.names}:
             for place in self.folder.glob(parent) if parent != "." else [self.folder]:
                 remove_temporary(place)
-        #: Files that an earlier run of this tool left here, unchanged since, and their checksums.
+        #: Unchanged files of an earlier run of this tool, with their checksums.
         self._listed = self._listed_before()
 
     # -- before any computing ----------------------------------------------------------------------------------------
 
     def check(self) -> None:
-        """Refuse a folder in which something of the user's would be lost."""
+        """Raise an error if a file of the user would be lost."""
         present = self._matching(self.names)
         for name in present:
             self._refuse_input(self.folder / name)
@@ -170,28 +170,28 @@ class ResultsFolder(WriteGuard):
         if foreign:
             listed = ", ".join(foreign[:NAMED]) + (", ..." if len(foreign) > NAMED else "")
             raise InputError(
-                f"'tyrefem {self.command}' would overwrite what it did not write, or what has changed since: {listed};"
-                " choose another folder, or replace with --force",
+                f"'tyrefem {self.command}' would overwrite files that it did not write, or that have changed since:"
+                f" {listed}; choose another folder, or replace with --force",
                 file=self.folder,
                 field="--out",
             )
 
     def mark(self, names: Sequence[str]) -> None:
-        """Say in ``summary.json`` that the folder is not complete, and which files are being written."""
-        new = [name for name in names if name not in self._begun]
+        """Record in ``summary.json`` that the folder is incomplete, and the files being written."""
+        new = [name for name in names if name not in self._being_written]
         if new:
-            self._begun += new
+            self._being_written += new
             self._write_summary(complete=False)
 
     # -- while it writes ---------------------------------------------------------------------------------------------
 
     def before_writing(self, path: Path) -> None:
-        """Refuse an input and a foreign file; mark the folder as incomplete."""
+        """Raise an error for an input or a foreign file; mark the folder as incomplete."""
         self._refuse_input(path)
         name = self._name(path)
         if name is None:
             return
-        known = name == SUMMARY or name in self._listed or name in self._written or _matches(name, self._begun)
+        known = name == SUMMARY or name in self._listed or name in self._written or _matches(name, self._being_written)
         if os.path.lexists(path) and not known and not self.force:
             raise InputError(
                 f"was not written by 'tyrefem {self.command}', or has changed since; see --force", file=path
@@ -199,13 +199,13 @@ class ResultsFolder(WriteGuard):
         self.mark([next((each for each in self.names if fnmatchcase(name, each)), name)])
 
     def after_writing(self, path: Path) -> None:
-        """Note a file that is complete."""
+        """Record a complete file."""
         name = self._name(path)
         if name is not None and name != SUMMARY:
             self._written[name] = checksum(path)
 
-    def takes_summary(self, path: Path, data: dict[str, Any]) -> bool:
-        """``summary.json`` is written here: with the answer's part, the list of files and whether they are complete."""
+    def writes_summary(self, path: Path, data: dict[str, Any]) -> bool:
+        """Write ``summary.json``: the result's part, the list of files and whether they are complete."""
         if self._name(path) != SUMMARY:
             return False
         self._summary = data
@@ -215,8 +215,8 @@ class ResultsFolder(WriteGuard):
     # -- at the end --------------------------------------------------------------------------------------------------
 
     def finish(self) -> None:
-        """Remove what is left of the earlier run, and say that the folder is complete."""
-        if not self._begun and not self._summary:
+        """Remove remaining files of the earlier run, and mark the folder as complete."""
+        if not self._being_written and not self._summary:
             return
         kept = {str(name) for name in self._summary.get(FILES, [])}
         for name in sorted(set(self._listed) - set(self._written) - kept - {SUMMARY}):
@@ -225,14 +225,14 @@ class ResultsFolder(WriteGuard):
                 del self._listed[name]
         self._write_summary(complete=bool(self._summary.get(COMPLETE, True)))
 
-    def leave(self) -> None:
-        """After a failure or an interruption: the folder as it was, or marked as incomplete."""
+    def restore(self) -> None:
+        """After a failure or an interruption: restore the folder, or mark it as incomplete."""
         if self._written or self._summary:
             self._write_summary(complete=False)
-        elif self._begun and self._earlier_text is None:
+        elif self._being_written and self._earlier_summary_text is None:
             (self.folder / SUMMARY).unlink(missing_ok=True)
-        elif self._begun:
-            (self.folder / SUMMARY).write_text(str(self._earlier_text), encoding="utf-8")
+        elif self._being_written:
+            (self.folder / SUMMARY).write_text(str(self._earlier_summary_text), encoding="utf-8")
 
     def _write_summary(self, *, complete: bool) -> None:
         self._refuse_input(self.folder / SUMMARY)
@@ -245,14 +245,14 @@ class ResultsFolder(WriteGuard):
             COMPLETE: complete,
             FILES: list(sums),
             CHECKSUMS: sums,
-            **({} if complete else {WRITING: self._begun}),
+            **({} if complete else {WRITING: self._being_written}),
         }
         with guarded(None):
             write_json(data, self.folder / SUMMARY)
 
     # -- what is whose -----------------------------------------------------------------------------------------------
 
-    def _text(self) -> str | None:
+    def _summary_text(self) -> str | None:
         with suppress(OSError, UnicodeDecodeError):
             return (self.folder / SUMMARY).read_text(encoding="utf-8")
         return None
@@ -261,13 +261,13 @@ class ResultsFolder(WriteGuard):
         sums, writing = self._earlier.get(CHECKSUMS), self._earlier.get(WRITING)
         sums = sums if isinstance(sums, dict) else {}
         begun = self._matching(map(str, writing)) if isinstance(writing, list) else []
-        now = {name: self._sum(name) for name in {*sums, *begun, *([SUMMARY] if self._earlier else [])}}
+        now = {name: self._checksum(name) for name in {*sums, *begun, *([SUMMARY] if self._earlier else [])}}
         return {
             name: value for name, value in now.items()
             if value is not None and (name == SUMMARY or name in begun or value == sums[name])
         }  # fmt: skip
 
-    def _sum(self, name: str) -> str | None:
+    def _checksum(self, name: str) -> str | None:
         if Path(name).is_absolute() or ".." in Path(name).parts:
             return None
         with suppress(OSError):
@@ -275,13 +275,13 @@ class ResultsFolder(WriteGuard):
         return None
 
     def _matching(self, names: Iterable[str]) -> list[str]:
-        """Files of these names in the folder, and links of these names that lead nowhere."""
+        """Files of these names in the folder, and broken links of these names."""
         patterns = [name for name in names if name and not Path(name).is_absolute() and ".." not in Path(name).parts]
         matching = {path.relative_to(self.folder).as_posix() for each in patterns for path in self.folder.glob(each)}
         return sorted(matching | {each for each in patterns if os.path.lexists(self.folder / each)})
 
     def _name(self, path: Path) -> str | None:
-        """A file's name relative to the folder; None: it is elsewhere."""
+        """A file's name relative to the folder; None: it is in another folder."""
         with suppress(ValueError):
             return Path(os.path.abspath(path)).relative_to(self.folder).as_posix()
         return None
@@ -312,8 +312,8 @@ def _matches(name: str, patterns: Iterable[str]) -> bool:
     return any(fnmatchcase(name, each) for each in patterns)
 
 
-def _bookkept(text: str | None) -> dict[str, Any]:
-    """The content of a ``summary.json`` that `ResultsFolder` wrote; empty: it is somebody else's, or none."""
+def _summary_content(text: str | None) -> dict[str, Any]:
+    """The content of a ``summary.json`` that `ResultsFolder` wrote; empty: none, or a foreign one."""
     try:
         data = json.loads(text or "")
     except ValueError:

@@ -260,8 +260,8 @@ class _Tool:
         run, workers = RunEstimate.of(study), getattr(self.scheduler, "workers", 1)
         if isinstance(self.scheduler, Here | Local):
             run.check(workers)
-        seconds = RUNS * run.march.time / workers + CYCLES * run.mechanics.time + STEPPING * self.horizon
-        estimate.warn_of(seconds, f"training and certifying a real-time model of {self.study.name}")
+        seconds = RUNS * run.transient_run.time / workers + CYCLES * run.mechanics.time + STEPPING * self.horizon
+        estimate.warn_if_long(seconds, f"training and certifying a real-time model of {self.study.name}")
 
     def full(self, courses: Sequence[Course], what: str) -> list[ExamRun]:
         """Full runs of drives."""

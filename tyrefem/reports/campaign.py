@@ -8,7 +8,7 @@ from glob import escape
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
-from tyrefem.interruption import held_back
+from tyrefem.interruption import interruption_delayed
 from tyrefem.output import atomic_path, versions, write_json
 from tyrefem.reports.figures.style import FONT, TITLE, add_axes, figure, line_style, plain, png, short, tidy, title
 from tyrefem.reports.run_files import run_files, write_tables
@@ -49,13 +49,13 @@ def run_campaign(
     for case, outcome in campaign.runs(progress):
         try:
             if not isinstance(outcome, str):
-                with held_back():
+                with interruption_delayed():
                     write_tables(outcome, folder / "cases" / case.name)
                 if each is not None:
                     each(outcome, folder / "cases" / case.name)
         finally:
             # A case whose pictures were interrupted is finished all the same.
-            with held_back():
+            with interruption_delayed():
                 rows.append(row(case, outcome))
                 table = _write_table(campaign, rows, folder)
     return table

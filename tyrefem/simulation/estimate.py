@@ -79,18 +79,18 @@ class RunEstimate:
         return 1 if feedback is None else min(USUAL_RUNS, feedback.iterations)
 
     @property
-    def march(self) -> Estimate:
+    def transient_run(self) -> Estimate:
         """Of the temperatures, in one run."""
         card = self.study.card
-        return estimate.march(
+        return estimate.transient_run(
             self.unknowns, self.readings, len(card.drive.phases), card.numerics.tolerance, card.output.fields
         )
 
     @property
     def total(self) -> Estimate:
         """Of all."""
-        march = self.march
-        return self.mechanics + Estimate(march.memory, march.time * self._runs)
+        transient_run = self.transient_run
+        return self.mechanics + Estimate(transient_run.memory, transient_run.time * self._runs)
 
     def check(self, workers: int = 1) -> None:
         """Refuse a study of which so many runs side by side do not fit in the free memory.
@@ -109,7 +109,7 @@ class RunEstimate:
         blamed = self._output(free) if kept > needed / 2 else None
         field, what, fits = blamed if blamed and blamed[2] else self._meshed(free)
         try:
-            estimate.refuse(needed, free, what, fits, workers)
+            estimate.raise_memory_error(needed, free, what, fits, workers)
         except InputError as error:
             raise error.within(field=field, file=self.study.file) from None
 
@@ -121,7 +121,7 @@ class RunEstimate:
         parts = [f"{self.unknowns:,.0f} unknowns", f"{many:,.0f} time steps", f"{self.readings:,.0f} readings"]
         if self.mechanics.time > self.total.time / 2:
             parts.append("most of it strain cycles by finite elements")
-        estimate.warn_of(self.total.time, f"a run of {self.study.name} ({', '.join(parts)})")
+        estimate.warn_if_long(self.total.time, f"a run of {self.study.name} ({', '.join(parts)})")
 
     def _output(self, free: float) -> tuple[str, str, str]:
         """Field, what it makes, what would fit: too many readings."""

@@ -121,7 +121,7 @@ class Answering:
         if self._trains(expected):
             time = (estimate.TRAINING * run.total.time + expected * estimate.REDUCED) / workers
             more = f" by a reduced model, or {estimate.duration(full)} by full runs if none can be certified"
-        estimate.warn_of(time, f"{self.at_most}{expected:,} variants of {self.plan.study.name}", more)
+        estimate.warn_if_long(time, f"{self.at_most}{expected:,} variants of {self.plan.study.name}", more)
 
     def _make(self) -> None:
         from tyrefem.reduced.model import NotReducibleError

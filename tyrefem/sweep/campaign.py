@@ -85,7 +85,7 @@ class CampaignData(Brief):
                 times.append(RunEstimate.of(self.case_study(case)).total.time)
         if times:
             mean = sum(times) / len(times)
-            estimate.warn_of(mean * len(self.cases), f"{len(self.cases):,} cases of {self.study.name}")
+            estimate.warn_if_long(mean * len(self.cases), f"{len(self.cases):,} cases of {self.study.name}")
 
     def outcome(self, case: Case) -> ResultData | str:
         """The result of a case, or why there is none."""

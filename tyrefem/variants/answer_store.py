@@ -18,7 +18,7 @@ import numpy as np
 from tyrefem import library
 from tyrefem.effects import catalogue
 from tyrefem.inputs.study import StudyData
-from tyrefem.interruption import held_back
+from tyrefem.interruption import interruption_delayed
 from tyrefem.output import atomic_path, jsonable
 
 #: Folder within ``--out`` that holds finished simulations until the command is done.
@@ -60,7 +60,7 @@ class AnswerStore:
 
     def keep(self, name: str, question: Any, answer: Any) -> None:
         """Keep an answer: an array or a tuple of several."""
-        with held_back(), atomic_path(self._file(name, question)) as temporary:
+        with interruption_delayed(), atomic_path(self._file(name, question)) as temporary:
             np.savez(temporary, *(answer if isinstance(answer, tuple) else (answer,)))
 
     @property

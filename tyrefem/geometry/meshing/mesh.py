@@ -14,7 +14,7 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
-from tyrefem.brief import Brief, Stated
+from tyrefem.brief import Brief, PickledFields
 from tyrefem.errors import InputError, nearest
 from tyrefem.estimates.work import check_memory, matrices, smallest
 from tyrefem.geometry.meshing.expected import expected_nodes
@@ -35,7 +35,7 @@ class PlyDirection:
 
 
 @dataclass(frozen=True)
-class TyreMesh(Brief, Stated):
+class TyreMesh(Brief, PickledFields):
     """A mesh of a section in (r, z) [m].
 
     Parameters

@@ -253,7 +253,7 @@ def press(
         study = study.replace({"mesh.section": "full"})
     mesh = mechanical_mesh(study, large=balanced)
     nodes = QUADRATIC * mesh.n_nodes
-    estimate.warn_of(estimate.mechanics(nodes, large=balanced).time, f"the footprint of {nodes:,} nodes")
+    estimate.warn_if_long(estimate.mechanics(nodes, large=balanced).time, f"the footprint of {nodes:,} nodes")
     tyre = inflate(study, pressure, mesh)
     pressing = Pressing(tyre.state, road)
     if not balanced:
