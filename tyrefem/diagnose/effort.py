@@ -29,5 +29,5 @@ def check_effort(model: ForwardModel, what: str, share: float, workers: int = 1)
     for number in range(len(model.drives)):
         full, fitted = (RunEstimate.of(model.driven(study, number)) for study in (model.study, model.coarse))
         full.check(side_by_side)
-        seconds += FITTED * fitted.transient_run.time + OWN * full.march.time + CYCLES * full.mechanics.time
+        seconds += FITTED * fitted.transient_run.time + OWN * full.transient_run.time + CYCLES * full.mechanics.time
     estimate.warn_if_long(seconds * share / max(workers, 1), what)
