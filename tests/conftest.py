@@ -11,6 +11,13 @@ from typing import Any
 import pytest
 from hypothesis import settings
 
+# Child processes that may not keep bytecode would compile the package each time: a quarter of a short command.
+os.environ.pop("PYTHONDONTWRITEBYTECODE", None)
+# Side by side, one thread of linear algebra each: more would only wait for each other.
+if "PYTEST_XDIST_WORKER" in os.environ:
+    for _name in ("OMP_NUM_THREADS", "OPENBLAS_NUM_THREADS", "MKL_NUM_THREADS"):
+        os.environ.setdefault(_name, "1")
+
 # The same examples at every run; HYPOTHESIS_PROFILE=explore looks at new ones.
 settings.register_profile("reproducible", derandomize=True, deadline=None)
 settings.register_profile("explore", deadline=None, max_examples=1000)

@@ -4,9 +4,12 @@ from __future__ import annotations
 
 import json
 import os
+import signal
 from pathlib import Path
+from typing import Any
 
 import pytest
+from filelock import FileLock
 
 from tyrefem.errors import InputError
 from tyrefem.output import atomic_folder, atomic_path, note_input, reading, write_json
@@ -172,6 +175,24 @@ def test_two_commands_at_once_are_one_too_many(tmp_path: Path) -> None:
         run(tmp_path, "readings.csv")
     run(tmp_path, "readings.csv")
     assert files(tmp_path) == {"summary.json", "readings.csv"}
+
+
+def test_ctrl_c_while_the_folder_is_locked_leaves_nothing(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    acquire = FileLock.acquire
+
+    def interrupted(lock: FileLock, timeout: float) -> Any:
+        acquired = acquire(lock, timeout)
+        signal.raise_signal(signal.SIGINT)
+        return acquired
+
+    monkeypatch.setattr(FileLock, "acquire", interrupted)
+    before = signal.signal(signal.SIGINT, signal.default_int_handler)
+    try:
+        with pytest.raises(KeyboardInterrupt):
+            run(tmp_path / "out", "readings.csv")
+    finally:
+        signal.signal(signal.SIGINT, before)
+    assert not (tmp_path / "out").exists()
 
 
 def test_an_interrupted_answer_says_so_itself(tmp_path: Path) -> None:

@@ -99,23 +99,25 @@ def _locked(folder: Path) -> Iterator[None]:
 
     lock = FileLock(folder / f"{TEMPORARY}lock")
     try:
-        folder.mkdir(parents=True, exist_ok=True)
-        lock.acquire(timeout=0)
-    except Timeout:
-        raise InputError(
-            "another command is writing into this folder; wait for it, or choose another folder",
-            file=folder,
-            field="--out",
-        ) from None
-    except OSError as error:
-        raise InputError(f"cannot be written: {error.strerror or error}", file=folder, field="--out") from None
-    try:
+        try:
+            folder.mkdir(parents=True, exist_ok=True)
+            with interruption_delayed():
+                lock.acquire(timeout=0)
+        except Timeout:
+            raise InputError(
+                "another command is writing into this folder; wait for it, or choose another folder",
+                file=folder,
+                field="--out",
+            ) from None
+        except OSError as error:
+            raise InputError(f"cannot be written: {error.strerror or error}", file=folder, field="--out") from None
         yield
     finally:
         with interruption_delayed():
-            with suppress(OSError):
-                os.unlink(lock.lock_file)
-            lock.release()
+            if lock.is_locked:
+                with suppress(OSError):
+                    os.unlink(lock.lock_file)
+                lock.release()
 
 
 class ResultsFolder(WriteGuard):

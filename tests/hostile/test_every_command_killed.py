@@ -1,0 +1,43 @@
+"""Every command that computes, killed, and on a full disk."""
+
+from __future__ import annotations
+
+import os
+import resource
+import shutil
+import signal
+from pathlib import Path
+
+import pytest
+from command_processes import COMPUTING, ended, started, waited, writing
+from content import content, half_written, one_line, unchanged
+from every_command import Command
+
+
+@pytest.mark.parametrize("command", COMPUTING, ids=lambda command: command.name)
+def test_killed_and_again(command: Command, here: Path) -> None:
+    before = content(here)
+    out = command.out(here / "new")
+    running = started(command, out)
+    waited(running, writing, out)
+    if running.poll() is None:
+        os.killpg(running.pid, signal.SIGKILL)
+    ended(running)
+    code, err = ended(started(command, out))
+    assert code == 0, err
+    unchanged(before, here)
+    assert half_written(here) == []
+
+
+@pytest.mark.parametrize("command", COMPUTING, ids=lambda command: command.name)
+def test_full_disk(command: Command, here: Path) -> None:
+    before = content(here)
+    out = command.out(here / "new")
+    # No file may grow beyond this: what a full disk does to a program.
+    code, err = ended(started(command, out, lambda: resource.setrlimit(resource.RLIMIT_FSIZE, (1000, 1000))))
+    assert code == 2, err
+    one_line(err)
+    assert "cannot be written" in err
+    unchanged(before, here)
+    assert half_written(here) == []
+    shutil.rmtree(out.parent, ignore_errors=True)
