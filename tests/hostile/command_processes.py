@@ -12,12 +12,13 @@ from pathlib import Path
 
 from every_command import Command, commands
 
+Process = subprocess.Popen[str]
 #: Commands that compute something.
 COMPUTING = [each for each in commands() if "quiet" in each.options]
 
 
-def started(command: Command, out: Path, prepare: Callable[[], None] | None = None) -> subprocess.Popen[str]:
-    """The command as a process, and group, of its own."""
+def started(command: Command, out: Path, prepare: Callable[[], None] | None = None, **variables: str) -> Process:
+    """The command as a process, and group, of its own; with further environment variables."""
 
     def begin() -> None:
         # A shell that runs the tests in the background has them ignore it.
@@ -27,7 +28,7 @@ def started(command: Command, out: Path, prepare: Callable[[], None] | None = No
 
     return subprocess.Popen(
         [sys.executable, "-m", "tyrefem", *command.line(out)], stdout=subprocess.PIPE, stderr=subprocess.PIPE,
-        text=True, start_new_session=True, preexec_fn=begin,
+        text=True, start_new_session=True, preexec_fn=begin, env=os.environ | variables,
     )  # fmt: skip
 
 
@@ -47,13 +48,13 @@ def writing(out: Path) -> bool:
     return any(path.is_file() and path.name not in (".tyrefem-lock", "summary.json") for path in out.rglob("*"))
 
 
-def waited(running: subprocess.Popen[str], moment: Callable[[Path], bool], out: Path) -> None:
+def waited(running: Process, moment: Callable[[Path], bool], out: Path) -> None:
     until = time.monotonic() + 120
     while running.poll() is None and not moment(out) and time.monotonic() < until:
         time.sleep(0.01)
 
 
-def ended(running: subprocess.Popen[str]) -> tuple[int, str]:
+def ended(running: Process) -> tuple[int, str]:
     """Exit code and stderr."""
     try:
         _, err = running.communicate(timeout=120)

@@ -33,8 +33,13 @@ def test_killed_and_again(command: Command, here: Path) -> None:
 def test_full_disk(command: Command, here: Path) -> None:
     before = content(here)
     out = command.out(here / "new")
-    # No file may grow beyond this: what a full disk does to a program.
-    code, err = ended(started(command, out, lambda: resource.setrlimit(resource.RLIMIT_FSIZE, (1000, 1000))))
+
+    def full() -> None:
+        """No file may grow beyond this: what a full disk does to a program."""
+        resource.setrlimit(resource.RLIMIT_FSIZE, (1000, 1000))
+
+    # Python itself would leave bytecode that is cut short.
+    code, err = ended(started(command, out, full, PYTHONDONTWRITEBYTECODE="1"))
     assert code == 2, err
     one_line(err)
     assert "cannot be written" in err
