@@ -114,7 +114,7 @@ def share_into_slider(length: float, slid: float, slider: Solid, track: Solid) -
     >>> round(share_into_slider(0.04, 1.0, RUBBER, TEAK), 3)
     0.193
     """
-    _slid_far_enough(length, slid)
+    _check_sliding_distance(length, slid)
     ratio = slider.conductivity / track.conductivity * math.sqrt(track.diffusivity / slider.diffusivity)
     return 2.0 / math.pi * ratio * math.sqrt(length / slid)
 
@@ -127,11 +127,11 @@ def share_of_like_solids(length: float, slid: float) -> float:
     >>> share_of_like_solids(0.04, 1.0)
     0.2
     """
-    _slid_far_enough(length, slid)
+    _check_sliding_distance(length, slid)
     return math.sqrt(length / slid)
 
 
-def _slid_far_enough(length: float, slid: float) -> None:
+def _check_sliding_distance(length: float, slid: float) -> None:
     positive(length=length, slid=slid)
     if slid < length:
         raise InputError(f"must be at least the slider's length, {length:g} m, not {slid:g} m", field="slid")

@@ -154,7 +154,7 @@ def _words(result: Pressed) -> str:
         f"  harmonics           {footprint.harmonics}, error {footprint.error:.2%} (allowed {result.tolerance:.0%}); "
         f"{tyre.body.rings.n_nodes} nodes",
         "  motion              {}; linear strains leave out {:.0%} of themselves on average, {:.0%} in the {}".format(
-            "large, in balance" if result.balanced else "linear about the inflated tyre", *result.left_out
+            "large, in balance" if result.balanced else "linear about the inflated tyre", *result.linearisation_error
         ),
     ]
     lines += [f"  {value.words}" for value in result.published]

@@ -27,7 +27,7 @@ class Budget(Brief):
     lost, lost_power : by boundary, positive outwards; the sum over all conditions of the boundary.
     lost_by_condition, lost_power_by_condition : by (boundary, index of the condition).
     reservoir_stored : by reservoir, J.
-    reservoir_gained : by reservoir, J from its exchanges and its own power.
+    reservoir_gained : by reservoir, J from its exchanges and its power.
     residual : generated - stored - lost of the body, J.
     reservoir_residual : received + gained - stored of every reservoir, J.
     throughput : J, sum of |generated| + |lost| + |gained|, the reference of the residuals.
@@ -66,8 +66,8 @@ class Budget(Brief):
     def imbalance(self) -> float:
         """Largest residual of body and reservoirs over the largest throughput, or over the floor if that is larger."""
         worst = max(float(np.max(np.abs(r))) for r in (self.residual, *self.reservoir_residual.values()))
-        turned_over = max(float(np.max(self.throughput)), self.floor)
-        return worst / turned_over if turned_over > 0 else worst
+        reference = max(float(np.max(self.throughput)), self.floor)
+        return worst / reference if reference > 0 else worst
 
 
 class Tally:

@@ -54,10 +54,10 @@ class DirectHeat:
         """Load -> (n_parameters,): 1/step if a parameter adds it, -1/step if a parameter replaces it."""
         shares_of: dict[Load, Array] = {}
         for column, (other, step) in enumerate(zip(self.others, self.steps, strict=True)):
-            for sign, mine, theirs in ((1, other, self.base), (-1, self.base, other)):
-                known = {_identity(theirs, load) for load in theirs.acting}
-                for load in mine.acting:
-                    if _identity(mine, load) not in known:
+            for sign, balance, reference in ((1, other, self.base), (-1, self.base, other)):
+                known = {_identity(reference, load) for load in reference.acting}
+                for load in balance.acting:
+                    if _identity(balance, load) not in known:
                         shares_of.setdefault(load, np.zeros(len(self.others)))[column] = sign / step
         return shares_of
 
@@ -133,13 +133,19 @@ class _Change:
     def between(cls, base: HeatBalance, other: HeatBalance, step: float) -> _Change:
         """The change from one balance to another."""
 
-        def change(ours: Array, theirs: Array) -> Array | None:
-            return None if np.array_equal(ours, theirs) else (theirs - ours) / step
+        def change(base_value: Array, changed_value: Array) -> Array | None:
+            return None if np.array_equal(base_value, changed_value) else (changed_value - base_value) / step
 
-        differ = [(ours, other.capacities[name]) for name, ours in base.capacities.items()]
-        differ = [(ours, theirs) for ours, theirs in differ if ours.c != theirs.c]
+        differ = [(base_value, other.capacities[name]) for name, base_value in base.capacities.items()]
+        differ = [
+            (base_value, changed_value) for base_value, changed_value in differ if base_value.c != changed_value.c
+        ]
         variable = [pair for pair in differ if not (pair[0].constant and pair[1].constant)]
-        M = sum((theirs.data - ours.data) / step for ours, theirs in differ if ours.constant and theirs.constant)
+        M = sum(
+            (changed_value.data - base_value.data) / step
+            for base_value, changed_value in differ
+            if base_value.constant and changed_value.constant
+        )
         S = change(base.S_data, other.S_data)
         return cls(
             base,
@@ -158,7 +164,10 @@ class _Change:
         if self.M is not None:
             body -= self.M @ rate
         if self.capacities:
-            more = np.sum([theirs.mass(y.u) - ours.mass(y.u) for ours, theirs in self.capacities], axis=0)
+            more = np.sum(
+                [changed_value.mass(y.u) - base_value.mass(y.u) for base_value, changed_value in self.capacities],
+                axis=0,
+            )
             body -= self.base.ops.matrix(more / self.step) @ rate
         if self.B is not None:
             body += self.B @ y.g

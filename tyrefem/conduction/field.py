@@ -73,16 +73,20 @@ class Field(Brief):
         x = np.asarray(self.operators.basis.mapping.F(place.local[:, :, None], tind=place.elements))[:, :, 0]
         flux = np.empty((T.size, 2))
         for name, material in self.materials.items():
-            here = np.flatnonzero(np.isin(place.elements, self.operators.elements(name)))
-            if not here.size:
+            in_region = np.flatnonzero(np.isin(place.elements, self.operators.elements(name)))
+            if not in_region.size:
                 continue
-            k = material.conductivity(T[here]) if callable(material.conductivity) else material.conductivity
+            k = material.conductivity(T[in_region]) if callable(material.conductivity) else material.conductivity
             k1, k2 = k if isinstance(k, (tuple, list)) else (k, k)
-            d = np.array([[1.0], [0.0]]) if material.direction is None else np.asarray(material.direction(x[:, here]))
-            along = d[0] * slope[0, here] + d[1] * slope[1, here]
-            across = -d[1] * slope[0, here] + d[0] * slope[1, here]
-            flux[here, 0] = -(d[0] * k1 * along - d[1] * k2 * across)
-            flux[here, 1] = -(d[1] * k1 * along + d[0] * k2 * across)
+            d = (
+                np.array([[1.0], [0.0]])
+                if material.direction is None
+                else np.asarray(material.direction(x[:, in_region]))
+            )
+            along = d[0] * slope[0, in_region] + d[1] * slope[1, in_region]
+            across = -d[1] * slope[0, in_region] + d[0] * slope[1, in_region]
+            flux[in_region, 0] = -(d[0] * k1 * along - d[1] * k2 * across)
+            flux[in_region, 1] = -(d[1] * k1 * along + d[0] * k2 * across)
         return flux
 
     def flux_through(self, boundary: str) -> float:

@@ -27,9 +27,9 @@ class StageSolver:
         self.h, self.n, self.m = h, balance.ops.size, heat.size
         self.heat, self.version = heat, balance.version
         self.factor = ordering.factor(balance.M_data + h * balance.S_data)
-        self.back = h * balance.B.T
+        self.reservoir_columns = h * balance.B.T
         self.through = self.factor.solve(h * balance.B) if self.m else np.zeros((self.n, 0))
-        small = np.diag(heat) + h * balance.D - self.back @ self.through
+        small = np.diag(heat) + h * balance.D - self.reservoir_columns @ self.through
         self.inverse = np.linalg.inv(small)
 
     def is_valid_for(self, balance: HeatBalance, h: float, heat: Array) -> bool:
@@ -41,7 +41,7 @@ class StageSolver:
         body = self.factor.solve(np.ascontiguousarray(right[: self.n]))
         if not self.m:
             return body
-        gas = self.inverse @ (right[self.n :] + self.back @ body)
+        gas = self.inverse @ (right[self.n :] + self.reservoir_columns @ body)
         return np.concatenate([body + self.through @ gas, gas])
 
 

@@ -60,10 +60,10 @@ class BlockFactor:
         below = np.where(row + b - column <= width, as_strided(flat[b:], *layout), 0.0)[:-1]
         (invert,) = get_lapack_funcs(("trtri",), (flat,))
         inverse = np.array([invert(block.T, lower=0)[0].T for block in diagonal])
-        back = inverse.transpose(0, 2, 1)
-        self._first, self._last = inverse[0], back[-1]
+        transposed = inverse.transpose(0, 2, 1)
+        self._first, self._last = inverse[0], transposed[-1]
         self._down = np.concatenate([-inverse[1:] @ below, inverse[1:]], axis=2)
-        self._up = np.concatenate([back[:-1], -back[:-1] @ below.transpose(0, 2, 1)], axis=2)
+        self._up = np.concatenate([transposed[:-1], -transposed[:-1] @ below.transpose(0, 2, 1)], axis=2)
 
     def solve(self, right: Array) -> Array:
         """x (n, m) with L L^T x = right."""

@@ -89,7 +89,7 @@ class Conduction:
             name: list(c) if isinstance(c, (list, tuple)) else [c] for name, c in (boundaries or {}).items()
         }
         check_partition(self.operators, self.regions)
-        self._balance()  # Looks up every name now, so that a wrong one is reported where it was written.
+        self._balance()  # Checks all names now, so that the error comes with the input.
 
     @property
     def mesh(self) -> Any:

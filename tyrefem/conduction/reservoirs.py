@@ -50,8 +50,8 @@ class ExchangeLoad(Load):
         return float(power)
 
     def linear_power(self, y: State) -> float:
-        back = 0.0 if self.partner is None else y.g[self.partner]
-        return float(self.h0 * (back - y.g[self.owner]))
+        partner_temperature = 0.0 if self.partner is None else y.g[self.partner]
+        return float(self.h0 * (partner_temperature - y.g[self.owner]))
 
 
 class PowerLoad(Load):

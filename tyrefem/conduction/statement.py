@@ -85,6 +85,6 @@ def check_partition(ops: Operators, regions: Mapping[str, Material]) -> None:
             )
     left = np.flatnonzero(count == 0)
     if left.size:
-        spare = [s for s, e in (ops.mesh.subdomains or {}).items() if s not in regions and np.isin(e, left).any()]
-        hint = f" (in {', '.join(sorted(spare))})" if spare else ""
+        unassigned = [s for s, e in (ops.mesh.subdomains or {}).items() if s not in regions and np.isin(e, left).any()]
+        hint = f" (in {', '.join(sorted(unassigned))})" if unassigned else ""
         raise InputError(f"{left.size} elements belong to no region{hint}", field="regions")

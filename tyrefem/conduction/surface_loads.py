@@ -69,8 +69,8 @@ class FilmLoad(Load):
         return (h * self.sink(t) if self.reservoir is None else more * float(y.g[self.reservoir])), more
 
     def linear_power(self, y: State) -> float:
-        back = 0.0 if self.reservoir is None else self.total * y.g[self.reservoir]
-        return float(back - self.row @ y.u[self.s.dofs])
+        from_reservoir = 0.0 if self.reservoir is None else self.total * y.g[self.reservoir]
+        return float(from_reservoir - self.row @ y.u[self.s.dofs])
 
     def coupling(self, t: float, u: Array) -> tuple[float, float]:
         """Integrals of h T and of h over the surface at this time, W and W/K."""
@@ -84,12 +84,12 @@ class FluxLoad(Load):
     def __init__(self, surface: Surface, flux: Flux, field: str) -> None:
         self.s, self._field = surface, f"{field}.q"
         self._of_temperature: Any = flux.q if flux.of_temperature else None
-        self._given = Datum(0.0 if flux.of_temperature else flux.q, surface.x, self._field)
-        self.static = self._given.constant and not flux.of_temperature
+        self._datum = Datum(0.0 if flux.of_temperature else flux.q, surface.x, self._field)
+        self.static = self._datum.constant and not flux.of_temperature
         self.timed = not self.static
 
     def clear_cache(self) -> None:
-        self._given.clear_cache()
+        self._datum.clear_cache()
 
     @property
     def of_temperature(self) -> bool:
@@ -99,7 +99,7 @@ class FluxLoad(Load):
     def value(self, t: float, u: Array) -> Any:
         """The flux at the surface's points, W/m2: a number or (n,)."""
         if self._of_temperature is None:
-            return self._given(t)
+            return self._datum(t)
         T = self.s.trace @ u[self.s.dofs]
         return checked(self._of_temperature(self.s.x, t, T), T.size, self._field, t)
 

@@ -46,14 +46,14 @@ class VariableConduction(Load):
         return any(bool(np.any(np.abs(k - k0) > STALE * k0)) for k, k0 in zip(self.values(y.u), self.k0, strict=True))
 
     def remainder(self, t: float, y: State, G: Array, Gg: Array) -> float:
-        for slope, back, k, k0 in zip(self.q.slopes, self.q.slopes_t, self.values(y.u), self.k0, strict=True):
-            G -= back @ (self.q.weight * (k - k0) * (slope @ y.u))
+        for slope, transposed, k, k0 in zip(self.q.slopes, self.q.slopes_t, self.values(y.u), self.k0, strict=True):
+            G -= transposed @ (self.q.weight * (k - k0) * (slope @ y.u))
         return 0.0
 
     def jacobian(self, t: float, y: State) -> csr_matrix | None:
         q, pairs = self.q, zip(self.values(y.u), self.values(y.u + SLOPE_STEP), strict=True)
         rises = [(bumped - k) / SLOPE_STEP for k, bumped in pairs]
         return -sum(
-            back @ diags(q.weight * rise * (slope @ y.u)) @ q.value
-            for slope, back, rise in zip(q.slopes, q.slopes_t, rises, strict=True)
+            transposed @ diags(q.weight * rise * (slope @ y.u)) @ q.value
+            for slope, transposed, rise in zip(q.slopes, q.slopes_t, rises, strict=True)
         )

@@ -196,10 +196,10 @@ def _grooved(card: SectionCard, layers: tuple[Layer, ...], outer: Division) -> t
 
 def _marks(card: SectionCard, line: Line) -> dict[str, float]:
     """Named stations along the meridian."""
-    back = {"bead_start": card.parameters.bead_length, "rim_start": card.parameters.rim_length}
+    from_bead = {"bead_start": card.parameters.bead_length, "rim_start": card.parameters.rim_length}
     return {
         "shoulder": line.shoulder_s,
-        **{mark: line.length - length for mark, length in back.items() if length is not None},
+        **{mark: line.length - length for mark, length in from_bead.items() if length is not None},
     }
 
 

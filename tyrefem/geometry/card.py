@@ -21,7 +21,7 @@ def _lengths(value: Any) -> tuple[float, ...]:
             raise InputError("a table of numbers needs the two keys 'unit' and 'values'")
         unit, value = " " + value["unit"], value["values"]
         if isinstance(value, list | tuple) and not all(_is_number(item) for item in value):
-            raise InputError("'values' must be a list of numbers; their unit stands in 'unit'")
+            raise InputError("'values' must be a list of numbers, with their unit in 'unit'")
     if not isinstance(value, list | tuple) or not value:
         raise InputError("must be a list like ['0 in', '0.3 in'] or { unit = 'in', values = [0, 0.3] }")
     return tuple(parse(f"{item!r}{unit}" if unit else item, "m") for item in value)

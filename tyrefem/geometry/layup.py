@@ -69,17 +69,17 @@ class Layup:
     def faces(self, s: ArrayLike) -> Array:
         """Distance from the meridian to the inner face and to each layer's outer face: (n_layers + 1, ...) [m]."""
         s = np.asarray(s, dtype=float)
-        return self._stacked(*[np.stack([layer.thickness(s) for layer in layers]) for layers in self._now_and_built])
+        return self._stacked(*[np.stack([layer.thickness(s) for layer in layers]) for layers in self._worn_and_built])
 
     def slopes(self, s: ArrayLike) -> Array:
         """d/ds of `faces`, same shape."""
         s = np.asarray(s, dtype=float)
         return self._stacked(
-            *[np.stack([layer.thickness.slope(s) for layer in layers]) for layers in self._now_and_built]
+            *[np.stack([layer.thickness.slope(s) for layer in layers]) for layers in self._worn_and_built]
         )
 
     @property
-    def _now_and_built(self) -> list[tuple[Layer, ...]]:
+    def _worn_and_built(self) -> list[tuple[Layer, ...]]:
         return [self.layers] if self.as_built is None else [self.layers, self.as_built]
 
     def _stacked(self, rises: Array, built: Array | None = None) -> Array:
@@ -164,10 +164,10 @@ class Wrap:
         faces = self.section.interfaces(x)
         first, last = self.layers[0], self.layers[-1]
         inner, outer = (faces[first + 1], faces[last]) if last > first else (faces[first], faces[last + 1])
-        here = (x >= start) & (x <= end + 1e-9) & (y >= faces[first]) & (y <= faces[last + 1])
-        aside = y - np.clip(y, inner, outer)
+        in_strip = (x >= start) & (x <= end + 1e-9) & (y >= faces[first]) & (y <= faces[last + 1])
+        offset = y - np.clip(y, inner, outer)
         below = (x - start) * (1 + self.section.line.curvature(s) * y)
-        length = np.maximum(np.hypot(aside, below), 1e-12)
+        length = np.maximum(np.hypot(offset, below), 1e-12)
         # Down on the inside, up on the outside: the direction along the meridian is reversed.
-        forward = np.where(here, -aside / length, 1.0) * np.where(s < 0, -1.0, 1.0)
-        return forward, np.where(here, below / length, 0.0)
+        forward = np.where(in_strip, -offset / length, 1.0) * np.where(s < 0, -1.0, 1.0)
+        return forward, np.where(in_strip, below / length, 0.0)

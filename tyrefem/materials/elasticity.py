@@ -56,7 +56,7 @@ class RubberLaw(Card):
         return self.model_copy(update={name: factor * getattr(self, name) for name in names})
 
     @model_validator(mode="after")
-    def _hard_to_compress(self) -> Self:
+    def _check_bulk_modulus(self) -> Self:
         if self.bulk_modulus is not None and self.bulk_modulus < 10 * self.initial_shear_modulus:
             raise InputError(
                 f"must be 10 times the shear modulus ({self.initial_shear_modulus:.3g} Pa) or more: rubber is nearly"

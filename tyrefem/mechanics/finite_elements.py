@@ -50,11 +50,13 @@ class GaussPoints:
         """(..., n) values (..., n_elements, n_points) at points (2, n) in (r, z) of the undeformed section: the mean of
         the four nearest Gauss points of the region, weighted with 1 / distance^2."""
         members = self.rings.mesh.subdomains[region]
-        here = values[..., members, :].reshape(*values.shape[:-2], -1)
-        count = min(NEAREST, here.shape[-1])
+        region_values = values[..., members, :].reshape(*values.shape[:-2], -1)
+        count = min(NEAREST, region_values.shape[-1])
         distance, nearest = self._tree(region).query(np.asarray(points, dtype=float).T, k=count)
         weights = 1 / (distance.reshape(-1, count) ** 2 + SMALLEST)
-        return np.asarray((weights * here[..., nearest.reshape(-1, count)]).sum(axis=-1) / weights.sum(axis=-1))
+        return np.asarray(
+            (weights * region_values[..., nearest.reshape(-1, count)]).sum(axis=-1) / weights.sum(axis=-1)
+        )
 
     def _tree(self, region: str) -> Any:
         if region not in self._trees:

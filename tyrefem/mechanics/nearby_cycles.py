@@ -102,12 +102,12 @@ class NearbyCycles:
         InputError : a load, deflection or number that the tyre cannot take.
         """
         changes: list[tuple[str, float]] = []
-        back: dict[str, Any] = {}
+        unchanged_numbers: dict[str, Any] = {}
         for number in self.numbers:
             if (factor := _factor(study, number)) != 1.0:
                 changes.append((number.key, math.log(factor) / math.log1p(number.sd)))
-                back |= dict(zip(number.keys, number.written, strict=True))
-        if not same_cycles(study.replace(back, self.study), self.study):
+                unchanged_numbers |= dict(zip(number.keys, number.written, strict=True))
+        if not same_cycles(study.replace(unchanged_numbers, self.study), self.study):
             return None
         schedule, driven = self.schedule, KnotSolver(study)
         neighbours = [(self._neighbours[key], share) for key, share in changes]

@@ -262,11 +262,11 @@ class ResultsFolder(WriteGuard):
     def _listed_before(self) -> dict[str, str]:
         sums, writing = self._earlier.get(CHECKSUMS), self._earlier.get(WRITING)
         sums = sums if isinstance(sums, dict) else {}
-        begun = self._matching(map(str, writing)) if isinstance(writing, list) else []
-        now = {name: self._checksum(name) for name in {*sums, *begun, *([SUMMARY] if self._earlier else [])}}
+        being_written = self._matching(map(str, writing)) if isinstance(writing, list) else []
+        now = {name: self._checksum(name) for name in {*sums, *being_written, *([SUMMARY] if self._earlier else [])}}
         return {
             name: value for name, value in now.items()
-            if value is not None and (name == SUMMARY or name in begun or value == sums[name])
+            if value is not None and (name == SUMMARY or name in being_written or value == sums[name])
         }  # fmt: skip
 
     def _checksum(self, name: str) -> str | None:

@@ -44,12 +44,12 @@ def make_blocks(section: Section, size: float, through: int) -> Blocks:
     along: dict[tuple[int, int], Array] = {}
     for i in range(n + 1):
 
-        def wanted(s: Array, i: int = i) -> Array:
+        def target_size(s: Array, i: int = i) -> Array:
             return _edge_length(section, i, s, size, through) / _stretch(section, i, s)
 
         for k, (start, end) in enumerate(pairwise(spans)):
             stops = np.unique([start, *(s for s in kinks if start + 1e-9 < s < end - 1e-9), end])
-            runs = [graded(a, b, wanted)[:-1] for a, b in pairwise(stops)]
+            runs = [graded(a, b, target_size)[:-1] for a, b in pairwise(stops)]
             along[i, k] = face(section, i, np.concatenate([*runs, stops[-1:]]))
     across = {(i, k): _across(section, i, s, size, through) for i in range(n) for k, s in enumerate(spans)}
     for (i, k), points in across.items():
@@ -62,14 +62,14 @@ def make_blocks(section: Section, size: float, through: int) -> Blocks:
 def _edge_length(section: Section, i: int, s: Array, size: float, through: int) -> Array:
     """Target edge length on face i, with ``through`` elements through each adjacent layer."""
     n = len(section.layers)
-    wanted = np.full_like(s, size)
+    target_size = np.full_like(s, size)
     if i == n:
         changes = np.array([end for _, _, end in section.outer.parts()])
         away = np.abs(np.asarray(s)[:, None] - changes).min(axis=1)
-        wanted = np.minimum(SURFACE_SHARE * size, CHANGE_SHARE * size + GROWTH * away)
+        target_size = np.minimum(SURFACE_SHARE * size, CHANGE_SHARE * size + GROWTH * away)
     for layer in section.layers[max(i - 1, 0) : i + 1]:
-        wanted = np.minimum(wanted, layer.thickness(s) / through)
-    return np.asarray(wanted)
+        target_size = np.minimum(target_size, layer.thickness(s) / through)
+    return np.asarray(target_size)
 
 
 def _stretch(section: Section, i: int, s: Array) -> Array:
@@ -85,8 +85,8 @@ def _across(section: Section, i: int, s: float, size: float, through: int) -> Ar
     at = np.array([s])
     first, last = (float(_edge_length(section, j, at, size, through)[0]) for j in (i, i + 1))
 
-    def wanted(y: Array) -> Array:
+    def target_size(y: Array) -> Array:
         return np.minimum(size, np.minimum(first + GROWTH * (y - low), last + GROWTH * (high - y)))
 
-    y = graded(low, high, wanted, through)
+    y = graded(low, high, target_size, through)
     return np.asarray(section.line.position(s) + y[:, None] * section.line.normal(s))

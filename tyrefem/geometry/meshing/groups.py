@@ -209,8 +209,8 @@ def _known_names(raw: Any, names: Mapping[str, str] | None) -> None:
             raise InputError(f"the file has no group '{name}'{nearest(name, known)}", field="names")
 
 
-def _required(wanted: Iterable[str], available: Mapping[str, Any], what: str) -> None:
-    for name in wanted:
+def _required(required: Iterable[str], available: Mapping[str, Any], what: str) -> None:
+    for name in required:
         if name not in available:
             hint = nearest(name, available) if available else "; it has no named groups of this kind"
             raise InputError(

@@ -154,7 +154,7 @@ def _stations(section: Section, size: float, rows: list[int]) -> Array:
     length = section.line.length
     changes = np.array([end for _, _, end in section.outer.parts()])
 
-    def wanted(s: Array) -> Array:
+    def target_size(s: Array) -> Array:
         rise = SURFACE_SHARE * size + GROWTH * np.abs(s[:, None] - changes).min(axis=1)
         thin = np.full_like(s, size)
         for index, (layer, count) in enumerate(zip(section.built_layers, rows, strict=True)):
@@ -165,7 +165,7 @@ def _stations(section: Section, size: float, rows: list[int]) -> Array:
             thin = np.minimum(thin, ASPECT * row)
         return np.minimum(np.minimum(size, rise), thin)
 
-    runs = [graded(a, b, wanted)[:-1] for a, b in pairwise(knots(section, size))]
+    runs = [graded(a, b, target_size)[:-1] for a, b in pairwise(knots(section, size))]
     return np.concatenate([*runs, [length]])
 
 

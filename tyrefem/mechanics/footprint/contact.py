@@ -122,11 +122,11 @@ class Pressing(TyreOnRoad):
     def gaps(self, grid: ContactGrid, displacement: Array, distance: float) -> tuple[Array, Array]:
         """Gaps and normals at the centres of the hats; the free tyre's gap is averaged over the hat by two points."""
         offset, free = grid.step / math.sqrt(6), np.zeros_like(displacement)
-        ahead, here, behind = (
+        before_centre, centre, after_centre = (
             self.road.gaps(grid.places(free, shift), distance)[0] for shift in (offset, 0.0, -offset)
         )
         gaps, normals = self.road.gaps(grid.places(displacement, 0.0), distance)
-        return gaps + (ahead + behind) / 2 - here, normals
+        return gaps + (before_centre + after_centre) / 2 - centre, normals
 
     def at_load(self, load: float, harmonics: int, start: Footprint | None = None) -> Footprint:
         """The footprint under a load, N, on both sides of the tyre: Newton on the deflection.

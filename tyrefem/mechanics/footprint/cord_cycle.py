@@ -57,12 +57,12 @@ def cord_cycles(tyre: Inflation, cycle: StrainHarmonics, count: int = 181) -> tu
 
 def _greatest(tyre: Inflation, cycle: StrainHarmonics, region: str, layer: CordLayer, angles: Array) -> CordCycle:
     members = np.asarray(tyre.body.mesh.subdomains[region])
-    here = tyre.deformation[:, :, members]
+    deformation = tyre.deformation[:, :, members]
     known = layer.cord_stiffness is not None
-    stretch = layer.stretch(here)
-    inflated = layer.tension(here) if known else layer.stress_in_layer(here)
+    stretch = layer.stretch(deformation)
+    inflated = layer.tension(deformation) if known else layer.stress_in_layer(deformation)
     stiffness = np.asarray(layer.cord_stiffness if known else layer.stiffness)
-    carried = (np.einsum("ij...,j...->i...", here, direction) / stretch for direction in layer.directions)
+    carried = (np.einsum("ij...,j...->i...", deformation, direction) / stretch for direction in layer.directions)
     strains = [cycle.along(direction, angles, members) for direction in carried]
     if cycle.footprint.balanced is None:
         slope = (stiffness * np.where(stretch >= 1, 1.0, layer.compression) * stretch)[..., None]

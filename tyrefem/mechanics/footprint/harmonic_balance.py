@@ -80,12 +80,12 @@ class Balance:
             raise InputError("give exactly one of 'deflection' and 'load'")
         self.pressing.check_harmonics(self.harmonics)
         ladder = (*(n for n in LADDER if n < self.harmonics), self.harmonics)
-        moment, footprint = self._way(deflection, load, ladder[0]), None
+        moment, footprint = self._load_steps(deflection, load, ladder[0]), None
         for count in ladder:
             start = self.motion.refined(moment, count)
             balanced = self.motion.balance(start, moment.deflection, self.tolerance, load)
             if balanced is None:
-                raise self._stuck(moment, deflection, load, f" with {count} harmonics")
+                raise self._no_balance_error(moment, deflection, load, f" with {count} harmonics")
             moment, before, footprint = balanced, footprint, self.motion.footprint(balanced)
             if before is not None:
                 footprint = footprint.compared(before)
@@ -94,33 +94,33 @@ class Balance:
         assert footprint is not None
         return replace(footprint, stiffness=self.motion.stiffness(moment))
 
-    def _way(self, deflection: float | None, load: float | None, harmonics: int) -> DeflectedState:
+    def _load_steps(self, deflection: float | None, load: float | None, harmonics: int) -> DeflectedState:
         """Load steps from the free tyre to near a deflection or a load; the motion limits their size."""
         pressing, motion = self.pressing, self.motion
         if deflection is not None:
             pressing.check(deflection)
-            whole, slope = deflection, 1.0
+            total, slope = deflection, 1.0
         else:
             assert load is not None
             linear = pressing.at_load(load, harmonics)
-            whole, slope = linear.deflection, load / linear.deflection
-        now, step = motion.free(harmonics, whole), whole
+            total, slope = linear.deflection, load / linear.deflection
+        now, step = motion.free(harmonics, total), total
         self.path[:] = [(0.0, 0.0)]
         for _ in range(self.steps):
-            left = whole - now.deflection if load is None else (load - now.load) / slope
-            if abs(left) <= NEAR * whole * (load is not None):
+            left = total - now.deflection if load is None else (load - now.load) / slope
+            if abs(left) <= NEAR * total * (load is not None):
                 return now
-            ahead = min(now.deflection + max(-step, min(left, step)), motion.largest_deflection)
-            if ahead == now.deflection:
+            next_deflection = min(now.deflection + max(-step, min(left, step)), motion.largest_deflection)
+            if next_deflection == now.deflection:
                 raise InputError(
                     f"the tyre cannot carry {load:.5g} N: the crown meets the rim at {now.load:.5g} N "
                     f"({now.deflection * 1e3:.4g} mm)",
                     field="load",
                 )
-            reached = motion.balance(now, ahead, ON_THE_WAY)
+            reached = motion.balance(now, next_deflection, ON_THE_WAY)
             if reached is None:
-                step = abs(ahead - now.deflection) / 2
-                if step < SMALLEST * whole:
+                step = abs(next_deflection - now.deflection) / 2
+                if step < SMALLEST * total:
                     break
                 continue
             made = reached.deflection - now.deflection
@@ -129,12 +129,12 @@ class Balance:
                 slope = max(steeper, 0.1 * slope)
             now, step = reached, 2 * abs(made)
             self.path.append((now.deflection, now.load))
-        raise self._stuck(now, deflection, load, "")
+        raise self._no_balance_error(now, deflection, load, "")
 
     @staticmethod
-    def _stuck(now: DeflectedState, deflection: float | None, load: float | None, how: str) -> InputError:
-        wanted = f"{load:.5g} N" if deflection is None else f"{deflection * 1e3:.4g} mm of deflection"
+    def _no_balance_error(now: DeflectedState, deflection: float | None, load: float | None, how: str) -> InputError:
+        target = f"{load:.5g} N" if deflection is None else f"{deflection * 1e3:.4g} mm of deflection"
         return InputError(
-            f"the balance in large motion reaches {now.deflection * 1e3:.4g} mm ({now.load:.5g} N), not {wanted}{how}",
+            f"the balance in large motion reaches {now.deflection * 1e3:.4g} mm ({now.load:.5g} N), not {target}{how}",
             field="load" if deflection is None else "deflection",
         )

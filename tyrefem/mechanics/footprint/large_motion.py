@@ -136,9 +136,9 @@ class LargeMotion:
             step = newton_step(touching, closed, tangent, gaps, INNER, enough)
             change = self._gradient_change(outside, step)
             if count == 0 and change > AHEAD:
-                ahead = AHEAD / change * (deflection - start.deflection)
-                gaps = gaps + normal_components * (deflection - start.deflection - ahead)
-                deflection = start.deflection + ahead
+                reduced_step = AHEAD / change * (deflection - start.deflection)
+                gaps = gaps + normal_components * (deflection - start.deflection - reduced_step)
+                deflection = start.deflection + reduced_step
                 closed = touching.closed(gaps, forces, forces > 0)
                 step = newton_step(touching, closed, tangent, gaps, INNER, enough)
                 change = self._gradient_change(outside, step)

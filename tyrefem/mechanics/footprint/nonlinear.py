@@ -58,21 +58,21 @@ class NonlinearForces:
         return self.law or state.law or GreenLaw(self.harmonics.elements, state.stress, state.tangent, state.bulk)
 
     @functools.cached_property
-    def _at_rest(self) -> Array:
+    def _inflated_forces(self) -> Array:
         """Forces of the inflated state: the reaction of the rim."""
-        rest = NonlinearForces(self.harmonics, 0, self.law)
+        static = NonlinearForces(self.harmonics, 0, self.law)
         forces = np.zeros((self.highest + 1, self.harmonics.elements.n_dofs))
-        forces[0] = rest._total(forces[:1], False)[0][0]
+        forces[0] = static._total(forces[:1], False)[0][0]
         return forces
 
     def at(self, amplitudes: Array) -> Tangent:
         """Forces of displacement amplitudes (highest + 1, n_dofs), N per radian, and their derivative."""
         forces, response, wall = self._total(amplitudes, True)
-        return Tangent(self, forces - self._at_rest, response, wall)
+        return Tangent(self, forces - self._inflated_forces, response, wall)
 
     def forces(self, amplitudes: Array) -> Array:
         """(highest + 1, n_dofs) forces without derivative, N per radian."""
-        return np.asarray(self._total(amplitudes, False)[0] - self._at_rest)
+        return np.asarray(self._total(amplitudes, False)[0] - self._inflated_forces)
 
     def __call__(self, amplitudes: Array) -> Array:
         """(highest + 1, n_dofs) forces, N per radian, minus the linear ones of `Harmonics`."""

@@ -102,7 +102,7 @@ class Pressed(Brief):
         return StrainHarmonics(self.footprint)
 
     @functools.cached_property
-    def left_out(self) -> tuple[float, float, str]:
+    def linearisation_error(self) -> tuple[float, float, str]:
         """Ratio of Green's strain minus its linear part to the linear part (`StrainHarmonics.coarseness`): root mean
         square by volume, largest value of an element, and the region of that element."""
         coarse = self.cycle.coarseness()
@@ -113,7 +113,7 @@ class Pressed(Brief):
 
     @functools.cached_property
     def loss(self) -> RevolutionLoss | None:
-        """Loss per revolution at `speed` and the drive's initial temperature; None: the wheel stands."""
+        """Loss per revolution at `speed` and the drive's initial temperature; None: the wheel is at rest."""
         from tyrefem.mechanics.footprint.loss import RevolutionLoss
 
         if not self.speed:
@@ -185,7 +185,9 @@ class Pressed(Brief):
             "harmonics": footprint.harmonics,
             "error": footprint.error,
             "balanced": self.balanced,
-            "left_out_by_linear_strains": dict(zip(("mean", "greatest", "region"), self.left_out, strict=True)),
+            "left_out_by_linear_strains": dict(
+                zip(("mean", "greatest", "region"), self.linearisation_error, strict=True)
+            ),
             "tolerance": self.tolerance,
             "unstable_harmonics": list(footprint.unstable),
             "mesh": {**self.mesh.summary(), "nodes_of_nine_node_elements": self.tyre.body.rings.n_nodes},

@@ -18,7 +18,7 @@ class BarrelByElements(StrainLaw):
     title: ClassVar[str] = "barrel FEM"
     by_elements: ClassVar[bool] = True
     assumption: ClassVar[tuple[str, str]] = (
-        "Every meridian deflected alike, by finite elements",
+        "The same deflection of all meridians, by finite elements",
         "The section is inflated in large displacement and the whole tyre pressed inside a rigid cylinder, as the "
         "report assumes: each hoop is shortened, none is bent flat. Nothing of it is compared with a measured tyre.",
     )

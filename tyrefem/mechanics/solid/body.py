@@ -45,7 +45,7 @@ class Prestressed(Brief):
     fixed : boundaries without displacement.
     pressurised, tread : boundary under pressure; boundary that may touch the road.
     support : sparse (3 n_nodes, 3 n_nodes) stiffness of the body's support, N/m per radian, component c of (r, z, t)
-        of node i at 3 i + c; alike for every harmonic. None: nothing but ``fixed``.
+        of node i at 3 i + c; the same for all harmonics. None: only ``fixed``.
     rim_top : largest radius of the rim, m, where it is more than that of ``fixed``.
     symmetric : boundary on the mid plane of a half section, where u_z = 0; a mesh without it is a full section.
     law : stress in further motions of any size (`solid.finite_law`); None: linear in Green's strain.
@@ -75,7 +75,7 @@ class Body(Brief):
     Parameters
     ----------
     mesh : skfem ``MeshQuad`` in (r, z), m, undeformed; subdomains and boundaries named.
-    parts : region -> what it is made of; every element belongs to one region.
+    parts : region -> its material; every element belongs to one region.
     held : boundary -> fixed components: ``"rz"``, ``"r"`` or ``"z"``.
     pressurised : boundaries under the following pressure.
     flanges : rigid rings on which the body may lie.
@@ -154,15 +154,15 @@ class Body(Brief):
     def _sum_of_parts(self, deformation: Array, method: str, axes: tuple[int, ...]) -> tuple[Array, Array]:
         """A quantity of the compounds and of the cords, and the same with the cords weighted by their loss."""
         shape = (*axes, *self.rings.weights.shape)
-        total, losing = np.zeros(shape), np.zeros(shape)
+        total, dissipating = np.zeros(shape), np.zeros(shape)
         for name, part in self.parts.items():
             members = self.mesh.subdomains[name]
-            here = deformation[:, :, members]
-            rubber = getattr(part.compound, method)(here)
-            cords = sum((getattr(layer, method)(here) for layer in part.cords), np.zeros(()))
+            part_deformation = deformation[:, :, members]
+            rubber = getattr(part.compound, method)(part_deformation)
+            cords = sum((getattr(layer, method)(part_deformation) for layer in part.cords), np.zeros(()))
             total[..., members, :] = rubber + cords
-            losing[..., members, :] = rubber + part.cord_loss * cords
-        return total, losing
+            dissipating[..., members, :] = rubber + part.cord_loss * cords
+        return total, dissipating
 
     def energy(self, displacement: Array) -> float:
         """Elastic energy per radian, J."""
@@ -234,9 +234,9 @@ class Body(Brief):
 
     def _tangent(self, f: Array, p: Array, volume: Array) -> tuple[Array, Array]:
         """J c without the bulk stiffness, and the dissipating part of it."""
-        tangent, losing = self._sum_of_parts(f, "tangent", (6, 6))
+        tangent, dissipating = self._sum_of_parts(f, "tangent", (6, 6))
         ones = over(outer(UNIT, UNIT) - 2 * SYMMETRIC_UNIT, p.shape)
-        return tangent + p * volume * ones, losing
+        return tangent + p * volume * ones, dissipating
 
     def _strains(self, displacement: Array, f: Array) -> tuple[Array, Array]:
         """Matrix (n_elements, n_points, 4, 18) from displacements to e_rr, e_zz, e_tt, g_rz; gradients as deformed."""
@@ -285,11 +285,11 @@ class Body(Brief):
         """The deformed state as the start of a small further motion."""
         f = self.deformation(displacement)
         stress, p, volume = self._stresses(f)
-        tangent, losing = self._tangent(f, p, volume)
+        tangent, dissipating = self._tangent(f, p, volume)
         fixed = tuple(name for name, components in self.held.items() if set(components) == {"r", "z"})
         bulk = self.bulk[:, None] * volume
         return Prestressed(
-            self.deformed_mesh(displacement), stress / volume, tangent / volume, bulk, losing / volume, pressure,
+            self.deformed_mesh(displacement), stress / volume, tangent / volume, bulk, dissipating / volume, pressure,
             fixed=fixed, pressurised=self.pressurised,
             support=self._support(displacement, 3) if self.flanges else None,
             rim_top=max((flange.centre[0] + flange.radius for flange in self.flanges), default=0.0),

@@ -70,9 +70,9 @@ def equilibrium_inside(
         free = np.setdiff1d(body.free, held)
         size = pressure * np.linalg.norm(body.load(now)[body.free]) + np.linalg.norm(residual[held])
         history.append(float(np.linalg.norm(residual[free]) / size) if size else 0.0)
-        shut = np.abs(gaps[closed]).max(initial=0.0) <= CLOSED * radius
+        gaps_closed = np.abs(gaps[closed]).max(initial=0.0) <= CLOSED * radius
         converged = history[-1] <= choice.tolerance or largest_change <= ROUND_OFF * radius
-        if converged and shut and np.isfinite(largest_change) and (closed == before).all():
+        if converged and gaps_closed and np.isfinite(largest_change) and (closed == before).all():
             return now, np.where(closed, -residual[2 * nodes], 0.0), tuple(history)
         if not np.isfinite(history[-1]):
             break

@@ -35,7 +35,7 @@ class StressResponse:
     Parameters
     ----------
     stress : (e, q, m, 9) P, N m per radian; components 3 k + i with direction k of the force and i of the gradient.
-    tangent : (e, q, m, 9, 9) A. volume : (e, q, m, 9) V. Empty where only the stress was asked for.
+    tangent : (e, q, m, 9, 9) A. volume : (e, q, m, 9) V. Empty if only the stress is computed.
     functions : (e, q, 3) 1, xi, eta. bulk : (e, 3, 3) bulk stiffness between them.
     """
 
@@ -177,10 +177,10 @@ class BodyLaw:
         gathered = np.empty((*axes, *deformation.shape[2:]))
         for name, part in self._parts.items():
             members = self.members[name]
-            here = deformation[:, :, members]
-            total = getattr(part.compound, method)(here)
+            part_deformation = deformation[:, :, members]
+            total = getattr(part.compound, method)(part_deformation)
             for layer in part.cords:
-                total = total + getattr(layer, method)(here)
+                total = total + getattr(layer, method)(part_deformation)
             gathered[..., members, :, :] = total
         return gathered
 
@@ -194,17 +194,17 @@ class BodyLaw:
             part = slice(k, k + CHUNK)
             f = _deformation(gradient[:, :, part])
             inverse = _points(_inverse(f), 2)
-            whole = np.einsum("ijeqm,jkeq->ikeqm", f, self.inflated)
-            j = determinant(whole)
+            total_deformation = np.einsum("ijeqm,jkeq->ikeqm", f, self.inflated)
+            j = determinant(total_deformation)
             p = functions @ (self._bulk @ (functions.transpose(0, 2, 1) @ (weights * (j - 1))))
-            six = self._sum_of_parts(whole, "stress", (6,))
+            six = self._sum_of_parts(total_deformation, "stress", (6,))
             six[:3] += p * j
             tau = _points(six[PLACE] * weights, 2)
             shape = (*inverse.shape[:3], 9)
             stress[:, :, part] = (tau @ inverse.swapaxes(-1, -2)).reshape(shape)
             if tangent:
                 volume[:, :, part] = (inverse.swapaxes(-1, -2) * (j * weights)[..., None, None]).reshape(shape)
-                c = self._sum_of_parts(whole, "tangent", (6, 6)) + p * j * over(PRESSED, p.shape)
+                c = self._sum_of_parts(total_deformation, "tangent", (6, 6)) + p * j * over(PRESSED, p.shape)
                 strains = np.zeros((*shape[:3], 6, 9))
                 for row, (i, m) in enumerate(PAIRS):
                     strains[..., row, 3 * i : 3 * i + 3] += inverse[..., m]

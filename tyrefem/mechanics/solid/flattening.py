@@ -69,7 +69,7 @@ class Flattened:
     @property
     def force(self) -> float:
         """Force of the cylinder on the whole circumference of both halves, N: dW/dD of the potential W."""
-        return float(self._whole * self.forces.sum())
+        return float(self._full_circumference * self.forces.sum())
 
     @functools.cached_property
     def stiffness(self) -> float:
@@ -85,10 +85,10 @@ class Flattened:
         change = np.zeros(matrix.shape[0])
         change[held] = -1.0
         change[free] = -splu(matrix[free][:, free].tocsc()).solve((matrix @ change)[free])
-        return float(-self._whole * (matrix @ change)[held].sum())
+        return float(-self._full_circumference * (matrix @ change)[held].sum())
 
     @property
-    def _whole(self) -> float:
+    def _full_circumference(self) -> float:
         return 2 * math.pi * (2 if self.tyre.half else 1)
 
     @functools.cached_property

@@ -92,10 +92,10 @@ class Inflation(Brief):
         tensions = {}
         for region, part in self.body.parts.items():
             members = self.body.mesh.subdomains[region]
-            here, weights = self.deformation[:, :, members], self.body.rings.weights[members]
+            deformation, weights = self.deformation[:, :, members], self.body.rings.weights[members]
             for layer in part.cords:
-                tension = None if layer.cord_stiffness is None else _spread(layer.tension(here), weights)
-                strain, stress = _spread(layer.stretch(here) - 1, weights), layer.stress_in_layer(here)
+                tension = None if layer.cord_stiffness is None else _spread(layer.tension(deformation), weights)
+                strain, stress = _spread(layer.stretch(deformation) - 1, weights), layer.stress_in_layer(deformation)
                 tensions[region] = LayerTension(region, strain, _spread(stress, weights), tension)
         return tensions
 
@@ -111,10 +111,10 @@ class Inflation(Brief):
         if part is None or not part.cords:
             raise InputError("the body has no region 'bead' with wires")
         members = self.body.mesh.subdomains["bead"]
-        here = self.deformation[:, :, members]
+        deformation = self.deformation[:, :, members]
         weights = self.body.rings.weights[members] / self.body.rings.points[0][members]
         # First Piola stress times undeformed area: tau_tt / F_tt.
-        stress = sum(layer.stress(here)[2] for layer in part.cords) / here[2, 2]
+        stress = sum(layer.stress(deformation)[2] for layer in part.cords) / deformation[2, 2]
         return float((stress * weights).sum()) / (1 if self.half else 2)
 
     def summary(self) -> dict[str, float]:

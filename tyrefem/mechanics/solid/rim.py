@@ -14,7 +14,7 @@ from tyrefem.mechanics.solid.elements import Indices, Rings, edge_functions
 Array = NDArray[np.float64]
 #: Radius of a flange, m, if the section gives none. Estimate: rims have 8 to 13 mm.
 FLANGE_RADIUS = 10e-3
-#: The boundary that the seat holds, and the one that may touch the flange; facets so many radii away never do.
+#: The boundary fixed by the seat, and the one that may touch the flange; facets more radii away than this never do.
 SEAT, FLANGE = "rim_seat", "rim_flange"
 REACH = 4.0
 #: Pressure of the flange per depth, Pa/m. Estimate: at 5 MPa, more than any bead bears, the depth is 10 um.
@@ -132,11 +132,11 @@ def on_rim(mesh: Any, radius: float, rim: str = "rim", outside: str = "outside_a
     seat, face = Rings(mesh).boundary(rim), np.asarray(boundaries.get(outside, []), dtype=np.int64)
     lying, flanges = [], []
     for side in (1, -1):
-        here = seat[side * mesh.p[1, mesh.facets[:, seat]].mean(axis=0) > 0]
+        side_facets = seat[side * mesh.p[1, mesh.facets[:, seat]].mean(axis=0) > 0]
         outer = face[side * mesh.p[1, mesh.facets[:, face]].mean(axis=0) > 0]
-        if len(np.intersect1d(mesh.facets[:, here], mesh.facets[:, outer])) != 1:
+        if len(np.intersect1d(mesh.facets[:, side_facets], mesh.facets[:, outer])) != 1:
             continue
-        up, down = _chain(mesh, outer, here), _chain(mesh, here, outer)
+        up, down = _chain(mesh, outer, side_facets), _chain(mesh, side_facets, outer)
         below = np.cumsum(np.hypot(*np.diff(mesh.p[:, down[1]], axis=1)))
         held = max(min(int(np.abs(below - radius).argmin()) + 1, len(down[1]) - 2), 0)
         touching = np.concatenate([down[1][held::-1], up[1][1:]])
@@ -173,7 +173,7 @@ def _tangent_circle(points: Array, side: int, radius: float) -> tuple[tuple[floa
     along = away[:, 0] / np.hypot(*away[:, 0])
     outwards = side * np.array([-along[1], along[0]])
     height, distance = outwards @ away, (away**2).sum(axis=0)
-    fits = np.divide(distance, 2 * height, out=np.full(height.shape, np.inf), where=height > 1e-9)
-    size = float(min(radius, fits.min()))
+    radii = np.divide(distance, 2 * height, out=np.full(height.shape, np.inf), where=height > 1e-9)
+    size = float(min(radius, radii.min()))
     centre = points[:, 0] + size * outwards
     return (float(centre[0]), float(centre[1])), size
