@@ -213,9 +213,9 @@ class Study(studies.StudyData):
         >>> design.table["feasible"].tolist()
         [True, False]
         """
-        from tyrefem.sweep.design import asked_of
+        from tyrefem.sweep.design import run_design_study
 
-        return with_verbs(Design, asked_of(self, vary, **options))
+        return with_verbs(Design, run_design_study(self, vary, **options))
 
     def campaign(self) -> Campaign:
         """The cases of the study's table, each a study of its own."""

@@ -159,13 +159,13 @@ def test_blind_and_isolability_go_on(here: Path) -> None:
     # The third answer of a worker is waited for when the first two are kept.
     third = "tyrefem.variants.answer_store:AnswerStore.keep:3"
     line = clean(here, interrupted("isolability", "hidden-effect", *coarse, at=third, folder=here))
-    assert line == "tyrefem: interrupted; 2 finished simulations are kept; the same command goes on from there\n"
+    assert line == "tyrefem: interrupted; 2 finished simulations are kept; the same command resumes from there\n"
     # The two have the same runs: what the first has finished serves the second.
     (here / "out").rename(here / "blind")
     (here / "blind/summary.json").unlink()
     coarse, last = (*coarse[:-1], "blind"), "tyrefem.diagnose.evaluations:Evaluations.of:1"
     line = clean(here, interrupted("blind", "hidden-effect", "--cases", "1", "--force", *coarse, at=last, folder=here))
-    assert line == "tyrefem: interrupted; 0 of 1 cases are finished; the same command goes on from there\n"
+    assert line == "tyrefem: interrupted; 0 of 1 cases are finished; the same command resumes from there\n"
     assert len(list((here / "blind/.progress").rglob("*.npz"))) == 2
 
 
@@ -220,11 +220,11 @@ def test_a_comparison_goes_on(here: Path) -> None:
     lines = done.err.splitlines()
     assert done.code == 130
     assert lines[0].startswith("tyrefem: 45 simulations: 3 drives as driven; 42 with one uncertain input changed")
-    assert lines[1:] == ["tyrefem: interrupted; 5 finished simulations are kept; the same command goes on from there"]
+    assert lines[1:] == ["tyrefem: interrupted; 5 finished simulations are kept; the same command resumes from there"]
     done = interrupted(*command, at="tyrefem.reports.comparison:pictures:1", folder=here)
     lines = done.err.splitlines()
     assert done.code == 130
     assert lines[0].endswith("; 2 are taken up from an interrupted comparison")
-    assert lines[1:] == ["tyrefem: interrupted; 45 finished simulations are kept; the same command goes on from there"]
+    assert lines[1:] == ["tyrefem: interrupted; 45 finished simulations are kept; the same command resumes from there"]
     assert main([*command, "--quiet"]) == 0
     assert not (here / "out/.progress").exists()

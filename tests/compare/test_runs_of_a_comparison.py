@@ -74,7 +74,7 @@ def test_an_interrupted_comparison_goes_on(
     with pytest.raises(KeyboardInterrupt):
         quick.compare(measured, reduced="never", store=store, progress=stop)
     assert store.count == 5
-    assert store.kept == "5 finished simulations are kept; the same command goes on from there"
+    assert store.kept == "5 finished simulations are kept; the same command resumes from there"
     counted.made.clear()
     again = quick.compare(measured, reduced="never", store=AnswerStore(tmp_path / "kept"), begin=said.append)
     # The drive itself is run again, for its mesh and operators.

@@ -37,9 +37,9 @@ def case(tmp_path_factory: pytest.TempPathFactory) -> Case:
             owner.diagnose(largest=1, looks=2, store=store, progress=interrupted)
         first = len(computed)
         diagnosis = owner.diagnose(largest=1, looks=2, store=store)
-    taken_up = store.taken_up
+    resumed = store.resumed
     kept = Path(shutil.copytree(folder / "progress", folder / "kept"))
     shutil.copytree(folder / "progress-2", folder / "kept-2")
     store.clear()
     diagnosis.save(folder / "out")
-    return Case(owner, diagnosis, folder / "out", computed[:first], computed[first:], kept, taken_up)
+    return Case(owner, diagnosis, folder / "out", computed[:first], computed[first:], kept, resumed)

@@ -37,7 +37,7 @@ class Case:
     first: list[int]
     second: list[int]
     kept: Path
-    taken_up: int
+    resumed: int
 
 
 def study(folder: Path) -> tf.Study:

@@ -141,7 +141,7 @@ def test_the_page_needs_nothing_else_and_begins_with_the_verdict(case: Case) -> 
 def test_an_interrupted_diagnosis_takes_up_what_was_finished(case: Case) -> None:
     assert case.first == [0, 1]
     assert case.second == [2, *range(len(RUNS))], "the rest belongs to the second look at the data"
-    assert case.taken_up == FINISHED
+    assert case.resumed == FINISHED
     assert not case.folder.with_name("progress").exists()
 
 

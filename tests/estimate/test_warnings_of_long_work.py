@@ -23,7 +23,8 @@ from tyrefem.variants.plan import plan_of
 NASA = "nasa-22x5.5-8pr"
 STOP = "work begins"
 BEGINNINGS = (
-    "simulation.run.simulate", "sweep.answering.Answering._make", "sweep.answering.Answering._run",
+    "simulation.run.simulate",
+    "sweep.evaluation.VariantEvaluation._train_model", "sweep.evaluation.VariantEvaluation._run_in_full",
     "realtime.certificate.RollingTyre", "diagnose.blind_rates.evaluating", "mechanics.solid.inflation.inflate",
 )  # fmt: skip
 

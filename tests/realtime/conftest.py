@@ -44,6 +44,6 @@ def exported(tmp_path_factory: pytest.TempPathFactory) -> Exported:
         },
     )
     file = tmp_path_factory.mktemp("realtime") / "tyre.npz"
-    settings = ExportSettings(TablePoints(9, 11, 4), learn=3, fresh=2)
+    settings = ExportSettings(TablePoints(9, 11, 4), training=3, fresh=2)
     certificate = export(study, file, ranges=RANGES, duration=80.0, tolerance=0.3, settings=settings)
     return Exported(study, file, certificate)

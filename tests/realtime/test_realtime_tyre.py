@@ -13,8 +13,8 @@ import pytest
 
 import tyrefem
 from tyrefem.realtime import tyre as realtime
-from tyrefem.realtime.certificate import Exam, sit
-from tyrefem.realtime.inputs import Box, Course, random_course
+from tyrefem.realtime.certificate import DriveTask, perform_drive
+from tyrefem.realtime.inputs import Box, BoxDrive, random_drive
 from tyrefem.realtime.tyre import GAMMA, PHI, PHI_2, Inputs, RealTimeTyre, inverse
 from tyrefem.variants.task import bundle
 
@@ -40,7 +40,7 @@ def test_a_course_of_its_own_agrees_with_a_full_run(exported):
     """Steps and ramps written here, not drawn by the certificate's own generator."""
     first = [[8.0, 12e3, 560e3, 20.0, 30.0], [0.0, 12e3, 560e3, 20.0, 30.0], [0.0, 10e3, 560e3, 25.0, 15.0]]
     last = [[8.0, 12e3, 560e3, 20.0, 30.0], [0.0, 12e3, 560e3, 20.0, 30.0], [11.0, 13e3, 540e3, 25.0, 15.0]]
-    course = Course(np.array([0.0, 40.0, 55.0, 90.0]), np.array(first), np.array(last), 22.0)
+    course = BoxDrive(np.array([0.0, 40.0, 55.0, 90.0]), np.array(first), np.array(last), 22.0)
     result = course.study(exported.study).run()
     tyre = RealTimeTyre(exported.file)
     tyre.reset(22.0)
@@ -215,7 +215,7 @@ def test_random_courses_stay_in_their_box():
         {"speed": (0, 10), "load": (1e3, 2e3), "pressure": (1e5, 2e5), "ambient": (0, 30), "road_temperature": (5, 5)}
     )
     for seed in range(20):
-        course = random_course(box, 200.0, seed)
+        course = random_drive(box, 200.0, seed)
         both = np.vstack([course.first, course.last])
         assert (both >= box.low - 1e-9).all()
         assert (both <= box.high + 1e-9).all()
@@ -231,8 +231,8 @@ def test_random_courses_stay_in_their_box():
 def test_rolling_to_rest_has_no_drag_of_rounding(exported):
     low = [0.1 + 0.2, 1.0e4, 5.5e5, 20.0, 20.0]
     # Three steps of a tenth: the ramp ends at some 1e-17 m/s and not at rest.
-    course = Course(np.array([0.0, 30.0]), np.array([low]), np.array([[0.1 + 0.2 - 0.3, *low[1:]]]), 20.0)
-    found = sit(Exam(bundle(exported.study), course, 1.0, 4)).answers["rolling_resistance"]
+    course = BoxDrive(np.array([0.0, 30.0]), np.array([low]), np.array([[0.1 + 0.2 - 0.3, *low[1:]]]), 20.0)
+    found = perform_drive(DriveTask(bundle(exported.study), course, 1.0, 4)).answers["rolling_resistance"]
     assert course.last[0, 0] > 0
     assert found[-1] == 0.0
     assert 5.0 < found[1:-1].max() < 1000.0

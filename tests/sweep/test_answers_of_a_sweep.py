@@ -81,7 +81,7 @@ def test_a_time_that_is_never_reached_is_the_longest(swept: Sweep, tyre: Study) 
     cool = Sweep(replace(swept.plan, limits={"hottest_degC": LimitCard(below=35.0)}), swept.outcomes)
     assert 0 < cool.table["feasible"].sum() < len(cool.table)
     told = Responses(cool).words
-    assert "Time to the temperature asked for of those: never." in told
+    assert "Time to the given temperature of those: never." in told
     latest = front(swept.table.assign(feasible=True), {TIME_TO: "max", "hottest_degC": "max"})
     assert latest[TIME_TO].isna().sum() == 1
     assert latest["hottest_degC"].max() == swept.table["hottest_degC"].max()
@@ -174,12 +174,12 @@ def test_tornado_moves_every_number_alone(tyre: Study) -> None:
     assert (table["less"] < 0).all()
     assert table["range"].is_monotonic_decreasing
     assert table["nominal"].iloc[0] == pytest.approx(tyre.run().history.maximum.temperature, abs=1e-6)
-    assert "is moved most by materials." in found.words[0]
+    assert "depends most on materials." in found.words[0]
 
 
 def test_tornado_takes_the_tolerances_that_cards_state(tyre: Study) -> None:
     plan = tornado_plan(tyre)
-    assert plan.how["tolerances"] == tyre.uncertainty
+    assert plan.sampling["tolerances"] == tyre.uncertainty
     assert len(plan.variants) == 2 * len(tyre.uncertainty) + 1
     with pytest.raises(InputError, match="did you mean 'tread'"):
         tornado_plan(tyre, {"materials.tred.loss_tangent.value": 0.2})
@@ -202,7 +202,7 @@ def test_a_sample_of_all_uncertain_numbers_moves_a_shared_card_as_one(tyre: Stud
     assert other not in plan.row(0)
     with pytest.raises(InputError, match=r"uncertain: 5 standard deviations of 'materials\..*reach zero"):
         plan_of(study, {}, uncertain=5, sample="latin-hypercube", count=4)
-    with pytest.raises(InputError, match=r"uncertain: the numbers of 'materials.tread', which is swapped"):
+    with pytest.raises(InputError, match=r"uncertain: 'materials.tread' varies as a whole"):
         plan_of(study, {"materials.tread": ["nasa-tread", "rubber-tread-aircraft"]}, uncertain=1)
 
 
@@ -276,7 +276,7 @@ def test_an_interrupted_search_goes_on_without_running_anything_twice(tyre: Stud
     assert again.asked == 1  # the study as it is
     assert first.asked == len(one.table) + 1
     assert other.changes == one.changes
-    assert other.swept.taken_up == len(one.table)
+    assert other.swept.resumed == len(one.table)
 
 
 class Optimist:
@@ -300,7 +300,7 @@ def made(monkeypatch: pytest.MonkeyPatch) -> list[Optimist]:
             yield {place: Answered({"hottest_degC": low, "gas_pressure_Pa": 0.0}, "reduced")}
 
     monkeypatch.setattr("tyrefem.reduced.surrogate.surrogate", surrogate)
-    monkeypatch.setattr("tyrefem.sweep.answering.by_model", by_model)
+    monkeypatch.setattr("tyrefem.sweep.evaluation.by_model", by_model)
     return models
 
 
@@ -310,7 +310,7 @@ def test_what_a_reduced_model_finds_keeps_its_limits_in_a_full_run(tyre: Study, 
     found = optimum(plan, OptimiseCard(maximise="hottest_degC", runs=400), scheduler=scheduler)
     assert 39.7 < found.full["hottest_degC"] < 40.0
     assert scheduler.asked == 2  # the study as it is, and the best variant
-    assert "good to 0.5 K" in found.words[-1]
+    assert "error of 0.5 K" in found.words[-1]
     assert found.swept.certificate == Optimist.certificate
     assert len(made) == 1
     by = found.table["by"]
@@ -338,8 +338,8 @@ def test_how_it_is_carried_out_is_said_by_name_or_in_one(tyre: Study, tmp_path: 
     one, other = sweep(plan, how), sweep(plan, scheduler=Formula(sum), reduced="never")
     assert ticks == [("variants", 0, 2), ("variants", 1, 2), ("variants", 2, 2)]
     assert one.table["hottest_degC"].tolist() == other.table["hottest_degC"].tolist() == [10.0, 11.0]
-    assert sweep(plan, how, progress=None).taken_up == 2
-    assert sweep(plan, how, progress=None, restart=True).taken_up == 0
+    assert sweep(plan, how, progress=None).resumed == 2
+    assert sweep(plan, how, progress=None, restart=True).resumed == 0
     assert len(ticks) == 3
     assert how.within("envelope").folder == tmp_path / "envelope"
     wrong = {"reduced": "never", "tolerance": "positive", "foldr": "did you mean 'folder'"}
@@ -446,8 +446,8 @@ def test_tornado_moves_stiffness_too_and_a_shared_card_as_one(tyre: Study) -> No
     study = tyre.replace({**shared, **idle})
     key, other = (f"materials.{one}.shear_modulus.value" for one in ("tread", "sidewall"))
     plan = tornado_plan(study)
-    assert key in plan.how["tolerances"]
-    assert other not in plan.how["tolerances"]
+    assert key in plan.sampling["tolerances"]
+    assert other not in plan.sampling["tolerances"]
     moved = [one for one in plan.variants if key in one]
     assert [set(one) for one in moved] == [{key, other}, {key, other}]
     found = Tornado(sweep(tornado_plan(study, {other: 0.2})), ("hottest_degC",))
@@ -456,7 +456,7 @@ def test_tornado_moves_stiffness_too_and_a_shared_card_as_one(tyre: Study) -> No
     both = study.replace(dict(moved[1])).run().history.maximum.temperature
     assert row["nominal"] + row["more"] == pytest.approx(both, abs=1e-6)
     assert abs(row["more"]) > 0.01
-    assert plan.how["left_out"] == [
+    assert plan.sampling["left_out"] == [
         "left out, as the strain law 'arcs' does not read them: materials.bead.shear_modulus.value"
     ]
 

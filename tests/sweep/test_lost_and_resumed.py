@@ -186,5 +186,5 @@ def test_a_lost_scheduler_costs_only_what_was_running(
     assert 3 <= len(found.outcomes) < 8
     rest = sweep(plan, folder=tmp_path / "out", reduced="never")
     assert rest.complete
-    assert rest.taken_up == len(found.outcomes)
+    assert rest.resumed == len(found.outcomes)
     assert rest.table["hottest_degC"].tolist() == pytest.approx(whole.table["hottest_degC"].tolist(), abs=1e-9)

@@ -37,7 +37,7 @@ def test_a_grid_from_flags_to_tables_and_page(tmp_path: Path, capsys: pytest.Cap
     assert summary["complete"]
     assert summary["sample"]["finished"] == {"full": 4, "reduced": 0, "failed": 0}
     page = (tmp_path / "sweep.html").read_text()
-    assert page.index("What the variants say") < page.index("data:image/png")
+    assert page.index("Answers and main effects") < page.index("data:image/png")
     assert "http" not in page.split("</style>")[1]
     # The same command runs nothing again.
     assert main([*command, "--json", "--no-pictures"]) == 0
@@ -78,7 +78,7 @@ loads = ["2000 lbf", "2700 lbf"]
     page = (out / "sweep.html").read_text()
     for heading in (
         "Optimum",
-        "What the variants say",
+        "Answers and main effects",
         "Sobol indices",
         "Which tolerance matters",
         "Safe operating envelope",
@@ -162,7 +162,7 @@ def test_bad_input_is_one_line_before_anything_runs(
         (["slow,10,2000", "also,10.0,2000"], [], "variants 'slow' and 'also' are the same"),
         (["slow,10,2000", "fast,20"], [], "line 3 has 2 cells, the heading 3"),
         (["slow,10,2000", "fast,quick,2000"], [], "variant 'fast' with drive.speed = 'quick mph'"),
-        (["slow,10,2000", "fast,20,2000"], ["--minimise", "mass_kg"], "optimise: searches within [vary]"),
+        (["slow,10,2000", "fast,20,2000"], ["--minimise", "mass_kg"], "optimise: needs [vary]"),
     ],
 )
 def test_a_list_that_makes_no_sense_is_refused(

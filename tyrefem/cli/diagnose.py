@@ -97,8 +97,8 @@ def diagnose(
         return
     from tyrefem.diagnose.words import verdict_words
 
-    if store.taken_up:
-        typer.echo(f"{store.taken_up} simulations were taken up from an interrupted diagnosis")
+    if store.resumed:
+        typer.echo(f"{store.resumed} simulations were taken up from an interrupted diagnosis")
     first, *rest = verdict_words(diagnosis)
     for sentence in (f"{diagnosis.verdict.upper()}: {first}", *rest):
         typer.echo(sentence)

@@ -219,7 +219,7 @@ def _by_runs(
     """The runs of studies, those with a changed input by a reduced model where it holds."""
     model = work.reduced == "auto" and worth(followed(studies), work.settings)
     if work.store is not None:
-        work.store.take_up(store_key(next(iter(studies.values()))))
+        work.store.resume(store_key(next(iter(studies.values()))))
     with Runs(studies, keys, known, work.executor, work.store, work.done(len(studies))) as runs:
         verdict = runs.noted if model else None
         refused = verdict is not None and verdict.dtype.kind == "U"

@@ -281,7 +281,7 @@ def run_blind(
     progress = ProgressStore(folder / PROGRESS)
 
     def kept() -> str:
-        return f"{len(rows)} of {count} cases are finished; the same command goes on from there"
+        return f"{len(rows)} of {count} cases are finished; the same command resumes from there"
 
     with keeping(kept):
         if left:

@@ -27,7 +27,7 @@ class ProgressStore(AnswerStore):
 
     def open(self, model: ForwardModel) -> int:
         """Find what was left for this model, and drop what was left for any other; how many answers there are."""
-        return self.take_up(key_of(model))
+        return self.resume(key_of(model))
 
     def look(self, number: int) -> ProgressStore:
         """The store of a further look at the same data; this one for the first."""

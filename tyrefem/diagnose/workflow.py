@@ -88,7 +88,7 @@ def _look(
     if work.known is None:
         check_effort(model, f"the diagnosis of {study.name}", 1.0, work.workers)
     if work.store is not None and work.store.open(model):
-        work.tick(f"taking up {work.store.taken_up} simulations")
+        work.tick(f"taking up {work.store.resumed} simulations")
     unknowns, nuisance = unknowns_of(study, {name for run in trials for name in run.parts()}, candidates, settings)
     with evaluating(model, work.workers, work.store) as evaluations:
         known = tuple(work.known or responses(evaluations, unknowns, work.tick))

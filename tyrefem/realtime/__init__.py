@@ -1,4 +1,4 @@
-"""Real-time models: certified, exported, stepped with numpy alone, packed as FMU.
+"""Real-time models: training and certificate, export to a file, time steps with numpy alone, export as FMU.
 
-Knows nothing of sweeps, diagnoses and reports.
+This package does not import sweeps, diagnoses or reports.
 """

@@ -1,7 +1,4 @@
-"""A real-time model trained on full runs of drives in its box, and certified on fresh ones.
-
-Full runs that a real-time model learns from and is examined by.
-"""
+"""Training of a real-time model on full runs of drives in its box, and its certificate on validation runs."""
 
 from __future__ import annotations
 
@@ -20,7 +17,7 @@ from tyrefem.estimates import work as estimate
 from tyrefem.inputs.study import StudyData
 from tyrefem.output import versions
 from tyrefem.realtime.export import arrays_of, outputs_of, write
-from tyrefem.realtime.inputs import NAMES, Box, Course, box_of, random_course, steady
+from tyrefem.realtime.inputs import NAMES, Box, BoxDrive, box_of, random_drive, steady
 from tyrefem.realtime.settings import ExportSettings
 from tyrefem.realtime.tables import Probe
 from tyrefem.realtime.tyre import STANDSTILL, RealTimeTyre
@@ -39,25 +36,30 @@ Array = NDArray[np.float64]
 
 
 @dataclass(frozen=True, eq=False)
-class Exam:
-    """A drive to be run in full: what it teaches, and what a real-time model has to answer."""
+class DriveTask:
+    """A drive to be run in full, for snapshots and for comparison with the real-time model.
+
+    Parameters
+    ----------
+    packed : the study. drive : the inputs over time. every : interval of the readings, s. fields : snapshots to take.
+    """
 
     packed: Bundle
-    course: Course
+    drive: BoxDrive
     every: float
     fields: int
 
 
 @dataclass(frozen=True, eq=False)
 class RealTimeCertificate:
-    """Largest differences between the real-time model, stepped by 1 s, and full runs that it had not learnt from.
+    """Largest differences between the real-time model, stepped by 1 s, and full runs that were not used in training.
 
     Parameters
     ----------
-    steady, driven : output -> K, or N, under steady inputs and under drives of steps and ramps. worst : of all
-    temperatures, K. tolerance : what was asked for, K. cases : fresh runs of either kind. trained_on : full runs.
-    duration : of every drive, s. tables : largest error of a film and of a heat source between the tables' points,
-    over the largest there.
+    steady, driven : output -> K, or N, for steady inputs and for drives of steps and ramps. worst : of all
+    temperatures, K. tolerance : allowed difference, K. cases : validation runs of either kind. trained_on : number of
+    training runs. duration : of every drive, s. tables : largest relative error of films and of heat sources between
+    the points of the tables.
     """
 
     steady: Mapping[str, float]
@@ -71,12 +73,12 @@ class RealTimeCertificate:
 
 
 @dataclass(frozen=True, eq=False)
-class ExamRun:
-    """What a full run of an exam's drive says.
+class DriveRun:
+    """Snapshots and outputs of a full run of a drive.
 
     Parameters
     ----------
-    snapshots : what it teaches. hot : nodes that are the hottest at some time. times : of its readings, (n,) s.
+    snapshots : fields and heat sources. hot : nodes that are the hottest at some time. times : of the readings, (n,) s.
     answers : output -> (n,) degC, or N.
     """
 
@@ -87,7 +89,7 @@ class ExamRun:
 
 
 class LastTyre(threading.local):
-    """The tyre that a thread ran last, from which the next run takes what is the same; every thread has its own."""
+    """The tyre that this thread ran last; the next run reuses the parts that are the same."""
 
     tyre: RollingTyre | None = None
 
@@ -95,12 +97,12 @@ class LastTyre(threading.local):
 _last = LastTyre()
 
 
-def sit(exam: Exam) -> ExamRun | Failed:
-    """Done in a worker: run the drive of an exam in full."""
+def perform_drive(task: DriveTask) -> DriveRun | Failed:
+    """Run in a worker: a full run of a drive."""
     from tyrefem.conduction import SolverError
 
     try:
-        study = exam.course.study(unpacked(exam.packed), exam.every)
+        study = task.drive.study(unpacked(task.packed), task.every)
         result = run(study, like=_last.tyre)
     except (InputError, SolverError) as error:
         return Failed(str(error))
@@ -112,23 +114,23 @@ def sit(exam: Exam) -> ExamRun | Failed:
     # A ramp to rest may end at a speed of rounding.
     resistance = np.divide(power, speed, out=np.zeros_like(power), where=speed >= STANDSTILL)
     answers = columns | {"hottest": values.max(axis=1), "rolling_resistance": resistance}
-    return ExamRun(snapshots(result, exam.fields), np.unique(values.argmax(axis=1)), result.times, answers)
+    return DriveRun(snapshots(result, task.fields), np.unique(values.argmax(axis=1)), result.times, answers)
 
 
-def differences(tyre: RealTimeTyre, course: Course, full: ExamRun, step: float = 1.0) -> dict[str, float]:
-    """Output -> largest difference to a full run, at its readings on whole steps, K or N."""
-    tyre.reset(course.initial)
+def differences(tyre: RealTimeTyre, drive: BoxDrive, full: DriveRun, step: float = 1.0) -> dict[str, float]:
+    """Output -> largest difference to a full run, K or N, at the readings that lie on whole steps."""
+    tyre.reset(drive.initial)
     times, answers = full.times, full.answers
     due = {round(float(t) / step): i for i, t in enumerate(times) if abs(t / step - round(t / step)) < 1e-6 and t > 0}
     worst = dict.fromkeys(answers, 0.0)
     for number in range(1, max(due) + 1):
-        outputs = tyre.step(step, *course.inputs((number - 1) * step, number * step))
+        outputs = tyre.step(step, *drive.inputs((number - 1) * step, number * step))
         if number not in due:
             continue
         i = due[number]
         for name, value in zip(tyre.names, outputs, strict=True):
-            # At a jump the heat of the full run is that before it, its speed that after it.
-            if name in answers and (name != "rolling_resistance" or not course.jumps(number * step)):
+            # At a jump the full run gives the heat before it and the speed after it.
+            if name in answers and (name != "rolling_resistance" or not drive.jumps(number * step)):
                 worst[name] = max(worst[name], abs(float(value) - float(answers[name][i])))
     return worst
 
@@ -136,27 +138,25 @@ def differences(tyre: RealTimeTyre, course: Course, full: ExamRun, step: float =
 def certificate(
     errors: Sequence[Mapping[str, float]], tolerance: float, trained: int, duration: float, tables: dict[str, float]
 ) -> RealTimeCertificate:
-    """Of errors of steady drives, the first half, and of changing ones."""
+    """The certificate from errors of steady drives (first half) and of random drives (second half)."""
     half = len(errors) // 2
-    kinds = [
-        {name: max(course[name] for course in part) for name in part[0]} for part in (errors[:half], errors[half:])
-    ]
+    kinds = [{name: max(error[name] for error in part) for name in part[0]} for part in (errors[:half], errors[half:])]
     worst = max(error for kind in kinds for name, error in kind.items() if name != "rolling_resistance")
     return RealTimeCertificate(
         kinds[0], kinds[1], worst, tolerance, (half, len(errors) - half), trained, duration, tables
     )
 
 
-#: What a real-time model needs of a study.
+#: Requirements of a real-time model on a study.
 NEEDS = Requirements("a real-time model")
 
 
-#: What it costs: full runs of drives of several phases in runs of one, strain cycles by finite elements for the tables,
-#: s of stepping per s of a drive (8PR at 12 and 3 mm, drives of 60 to 20 000 s: 0.8 to 1.2 times what was measured).
+#: Cost: equivalent full runs of one phase, strain cycles by finite elements for the tables, and s of stepping per s of
+#: a drive (8PR at 12 and 3 mm, drives of 60 to 20 000 s: 0.8 to 1.2 times the measured time).
 RUNS, CYCLES, STEPPING = 25.0, 10.0, 2e-3
 
 
-#: Readings of a full run at most: the longer the drive, the rarer.
+#: Readings of a full run at most.
 READINGS = 900
 
 
@@ -175,55 +175,55 @@ def export(
 
     Parameters
     ----------
-    path : ``.npz`` file. ranges : input -> (from, to), see `box_of`. tolerance : K, of every temperature of fresh full
-    runs. duration : of the drives it learns from and is certified with, s; that of the study's drive.
-    settings : numbers of the method.
+    path : ``.npz`` file. ranges : input -> (from, to), see `box_of`. tolerance : K, of every temperature in the
+    validation runs. duration : of all drives, s; default: duration of the study's drive. settings : numbers of the
+    method.
 
     Raises
     ------
-    InputError : a campaign; the box holds loads that the tyre cannot carry; a study that a reduced model cannot follow;
-        the tolerance was not reached, or is less than the study's own; more than there is memory for.
+    InputError : the study is a campaign; the tyre cannot carry a load of the box; a reduced model cannot follow the
+        study; the tolerance was not reached, or is below `numerics.tolerance`; the memory is too small.
     """
     NEEDS.check(study)
     if study.card.mechanics.feedback is not None:
         raise InputError("a real-time model has no feedback of temperature on the strain cycle", field="mechanics")
-    tick = progress or (lambda what, done, total: None)
+    report = progress or (lambda what, done, total: None)
     scheduler, settings = scheduler or Here(), settings or ExportSettings()
     if tolerance < study.tolerance:
         raise InputError(
-            f"{tolerance:g} K is less than the time error of the full runs themselves: must be at least "
-            f"numerics.tolerance, {study.tolerance:g} K",
+            f"{tolerance:g} K is less than the time error of the full runs; must be at least numerics.tolerance, "
+            f"{study.tolerance:g} K",
             field="tolerance",
         )
     box, horizon = box_of(study, ranges), float(duration or study.card.drive.end)
-    tick("tables", 0, 1)
-    tool = _Tool(study, box, horizon, settings, tick, scheduler)
-    tick("tables", 1, 1)
+    report("tables", 0, 1)
+    training = _Training(study, box, horizon, settings, report, scheduler)
+    report("tables", 1, 1)
     seed, count = settings.seed, settings.fresh
     cube = np.random.default_rng(seed).random((settings.rounds * count, 5))
-    courses = [steady(box, place, horizon) for place in _corners()]
-    courses += [random_course(box, horizon, 1000 * seed + k) for k in range(settings.learn)]
-    learnt, between = tool.full(courses, "training"), tool.tables.errors(tool.probe)
+    drives = [steady(box, place, horizon) for place in _corners()]
+    drives += [random_drive(box, horizon, 1000 * seed + k) for k in range(settings.training)]
+    runs, between = training.full(drives, "training"), training.tables.errors(training.probe)
     for number in range(settings.rounds):
-        arrays = tool.model(learnt)
+        arrays = training.model(runs)
         fresh = [steady(box, place, horizon) for place in cube[number * count : (number + 1) * count]]
-        fresh += [random_course(box, horizon, 2000 * seed + number * count + k) for k in range(count)]
-        full = tool.full(fresh, "certifying")
-        about = tool.about()
+        fresh += [random_drive(box, horizon, 2000 * seed + number * count + k) for k in range(count)]
+        full = training.full(fresh, "certifying")
+        about = training.about()
         with tempfile.TemporaryDirectory() as folder:
             tyre = RealTimeTyre(write(Path(folder) / "tyre.npz", arrays, about))
-        errors = [differences(tyre, course, history) for course, history in zip(fresh, full, strict=True)]
-        checked = certificate(errors, tolerance, len(learnt), horizon, between)
+        errors = [differences(tyre, drive, history) for drive, history in zip(fresh, full, strict=True)]
+        checked = certificate(errors, tolerance, len(runs), horizon, between)
         if checked.worst <= tolerance:
             write(path, arrays, {**about, "certificate": vars(checked)})
             return checked
-        learnt += full
+        runs += full
     name, error = max(
         ((n, e) for history in errors for n, e in history.items() if n != "rolling_resistance"), key=_second
     )
     raise NotReducibleError(
-        f"after {checked.trained_on} full runs fresh ones still differ by {error:.3g} K at '{name}'; allowed: "
-        f"{tolerance:g} K: a smaller box or a larger tolerance"
+        f"after {checked.trained_on} training runs the error in the validation runs is {error:.3g} K at '{name}'; "
+        f"allowed: {tolerance:g} K: choose a smaller box or a larger tolerance"
     )
 
 
@@ -232,61 +232,61 @@ def _second(pair: tuple[str, float]) -> float:
 
 
 def _corners() -> list[Array]:
-    """The middle; all that warms together, and all that cools."""
+    """The middle of the box, its warmest and its coldest corner."""
     warm = np.array([name != "pressure" for name in NAMES], dtype=float)
     return [np.full(5, 0.5), warm, 1 - warm]
 
 
 @dataclass(eq=False)
-class _Tool:
+class _Training:
     study: StudyData
     box: Box
     horizon: float
     settings: ExportSettings
-    tick: Callable[[str, int, int], None]
+    report: Callable[[str, int, int], None]
     scheduler: Scheduler
 
     def __post_init__(self) -> None:
         self.every = max(1.0, float(np.ceil(self.horizon / READINGS)))
         middle = steady(self.box, np.full(5, 0.5), self.horizon).study(self.study, self.every)
-        self._expect(middle)
+        self._check_cost(middle)
         self.base = RollingTyre(middle)
         self.probe = Probe(self.study, self.box, self.base, self.settings.points)
         self.tables = self.probe.tables()
         self.packed = bundle(self.study)
 
-    def _expect(self, study: StudyData) -> None:
-        """Refuse full runs that do not fit side by side in memory; warn of long work."""
+    def _check_cost(self, study: StudyData) -> None:
+        """Raise `InputError` if the parallel runs do not fit in memory; warn of long work."""
         run, workers = RunEstimate.of(study), getattr(self.scheduler, "workers", 1)
         if isinstance(self.scheduler, Here | Local):
             run.check(workers)
         seconds = RUNS * run.transient_run.time / workers + CYCLES * run.mechanics.time + STEPPING * self.horizon
         estimate.warn_if_long(seconds, f"training and certifying a real-time model of {self.study.name}")
 
-    def full(self, courses: Sequence[Course], what: str) -> list[ExamRun]:
-        """Full runs of drives."""
-        exams = [Exam(self.packed, course, self.every, self.settings.fineness.fields) for course in courses]
-        runs: dict[int, ExamRun] = {}
-        for place, outcome in self.scheduler.outcomes(sit, exams):
+    def full(self, drives: Sequence[BoxDrive], what: str) -> list[DriveRun]:
+        """Full runs of drives, in their order."""
+        tasks = [DriveTask(self.packed, drive, self.every, self.settings.fineness.fields) for drive in drives]
+        runs: dict[int, DriveRun] = {}
+        for place, outcome in self.scheduler.outcomes(perform_drive, tasks):
             if isinstance(outcome, Failed):
                 raise InputError(f"a full run failed: {outcome.reason}")
             runs[place] = outcome
-            self.tick(what, len(runs), len(exams))
-        return [runs[place] for place in range(len(exams))]
+            self.report(what, len(runs), len(tasks))
+        return [runs[place] for place in range(len(tasks))]
 
-    def model(self, learnt: Sequence[ExamRun]) -> dict[str, Any]:
-        """Arrays of a model of what was learnt."""
-        taught = [run.snapshots for run in learnt]
-        none = np.zeros((0, taught[0].fields.shape[1]))
+    def model(self, runs: Sequence[DriveRun]) -> dict[str, Any]:
+        """Arrays of a model trained on full runs."""
+        snapshot_sets = [run.snapshots for run in runs]
+        none = np.zeros((0, snapshot_sets[0].fields.shape[1]))
         self.reduced = trained(
-            self.base, [*taught, Snapshots(none, self._sources(taught))], fineness=self.settings.fineness
+            self.base, [*snapshot_sets, Snapshots(none, self._sources(snapshot_sets))], fineness=self.settings.fineness
         )
-        hot = np.unique(np.concatenate([run.hot for run in learnt]))
+        hot = np.unique(np.concatenate([run.hot for run in runs]))
         return arrays_of(self.reduced, self.probe, self.tables, hot)
 
-    def _sources(self, taught: Sequence[Snapshots]) -> Array:
-        """Heat sources at all loads and pressures of the tables, at a cold, a middling and a hot field."""
-        ends = np.array([lesson.fields[-1] for lesson in taught])
+    def _sources(self, snapshot_sets: Sequence[Snapshots]) -> Array:
+        """Heat sources at all loads and pressures of the tables, for a cold, a medium and a hot field."""
+        ends = np.array([snapshot_set.fields[-1] for snapshot_set in snapshot_sets])
         order = np.argsort(ends.max(axis=1))
         ops, sources = self.base.problem.operators, []
         for field in ends[[order[0], order[len(order) // 2], order[-1]]]:
@@ -304,7 +304,7 @@ class _Tool:
         return start
 
     def about(self) -> dict[str, Any]:
-        """What the file says of itself."""
+        """Data about the model for the file: study, box, outputs, start values."""
         balance = reduced_balance(self.reduced, self.base)
         return {
             "study": self.study.name,

@@ -1,4 +1,4 @@
-"""A reduced model with its tables as one file that `tyrefem.realtime.tyre` steps with numpy alone."""
+"""File of a real-time model: reduced model and tables, stepped by `tyrefem.realtime.tyre` with numpy alone."""
 
 from __future__ import annotations
 
@@ -27,16 +27,16 @@ Array = NDArray[np.float64]
 
 
 def arrays_of(model: ReducedModel, probe: Probe, tables: Tables, hot: Array) -> dict[str, Any]:
-    """Everything that `tyrefem.realtime.tyre` reads, ``about`` apart.
+    """All arrays that `tyrefem.realtime.tyre` reads, except ``about``.
 
-    The modes are turned so that sum C M = 1 and sum k K is diagonal: then a film is all that changes in the matrix.
+    The modes are rotated so that sum C M = 1 and sum k K is diagonal: only films change the matrix then.
 
     Parameters
     ----------
-    hot : numbers of the nodes among which the hottest is looked for.
+    hot : numbers of the nodes among which the hottest is searched.
     """
-    study, chosen = probe.study, probe.middle()
-    balance = reduced_balance(model, chosen.tyre)
+    study, middle = probe.study, probe.middle()
+    balance = reduced_balance(model, middle.tyre)
     m, n = model.size, len(balance.start)
     low = np.linalg.inv(np.linalg.cholesky(balance.M[:m, :m]))
     rates, turned = np.linalg.eigh(low @ balance.K[:m, :m] @ low.T)
@@ -94,7 +94,7 @@ def _read(model: ReducedModel, study: StudyData, balance: ReducedBalance) -> tup
     for name in places:
         lags.append(study.sensors[name].lag + sum(effect.lag_addend(name) for effect in study.effects))
         if any(effect.offset(name) or effect.channel(name) != name or effect.clock() for effect in study.effects):
-            raise InputError("effects act on the logger: a real-time model knows lags only", field="effects")
+            raise InputError("effects act on the logger; a real-time model can represent lags only", field="effects")
     lumped = list(balance.reservoirs)
     if RIM in lumped:
         rows = np.vstack([rows, np.eye(len(balance.start))[model.size + lumped.index(RIM)]])
@@ -112,24 +112,24 @@ def sampled(model: ReducedModel) -> Array:
 
 
 def _starts(probe: Probe) -> Array:
-    """Start temperature of gas and rim; NaN: the tyre's."""
+    """Start temperature of contained air and rim, degC; NaN: that of the tyre."""
     first, second = (probe.middle(initial).start[1:] for initial in (20.0, 30.0))
     return np.where(first == second, first, np.nan)
 
 
 def _gas(study: StudyData, tyre: RollingTyre) -> Array:
-    """Heat capacity of the contained air: c0 + c1 (p + p_atm) / T, J/K; empty where its temperature is held."""
+    """Coefficients c0, c1 of the air's heat capacity c0 + c1 (p + p_atm) / T, J/K; empty for a given temperature."""
     law, volume, effects = study.card.boundaries.contained_air, study.section.gas_volume(), tyre.acting
 
     def capacity(pressure: float, temperature: float) -> float | None:
         heat_capacity = law.heat_capacity(volume, pressure, temperature)
         return None if heat_capacity is None else effects.gas_capacity(heat_capacity)
 
-    tried = [(1e5, 20.0), (8e5, 20.0), (3e5, 60.0)]
-    values = [value for value in (capacity(*state) for state in tried) if value is not None]
+    states = [(1e5, 20.0), (8e5, 20.0), (3e5, 60.0)]
+    values = [value for value in (capacity(*state) for state in states) if value is not None]
     if not values:
         return np.zeros(0)
-    density = [(pressure + ATMOSPHERE) / (temperature + KELVIN) for pressure, temperature in tried]
+    density = [(pressure + ATMOSPHERE) / (temperature + KELVIN) for pressure, temperature in states]
     slope = (values[1] - values[0]) / (density[1] - density[0])
     base = values[0] - slope * density[0]
     if abs(base + slope * density[2] - values[2]) > 1e-6 * values[2]:
@@ -138,11 +138,11 @@ def _gas(study: StudyData, tyre: RollingTyre) -> Array:
 
 
 def write(path: str | Path, arrays: Mapping[str, Any], about: Mapping[str, Any]) -> Path:
-    """Write the file whole or not at all.
+    """Write the file; a failure leaves no partial file.
 
     Parameters
     ----------
-    about : study, box, outputs, certificate: what `tyrefem.realtime.tyre.RealTimeTyre.about` says.
+    about : study, box, outputs, certificate: the content of `tyrefem.realtime.tyre.RealTimeTyre.about`.
     """
     path = Path(path)
     text = json.dumps(jsonable({"format": FORMAT, **about}))

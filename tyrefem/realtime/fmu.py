@@ -1,11 +1,6 @@
-"""modelDescription.xml of a real-time model: FMI 2.0, co-simulation.
+"""A real-time model as an FMU (FMI 2.0, co-simulation): modelDescription.xml, C source, and a compiled library.
 
-The numbers of one tyre as a C header.
-
-A real-time model as an FMU (FMI 2.0, co-simulation): C source, compiled where a compiler is at hand.
-
-Whoever imports it needs neither Python nor numpy. `tyrefem.realtime.fmu.write_fmu` makes it from the file of `tyrefem
-export`.
+The importing tool needs neither Python nor numpy. `write_fmu` makes the FMU from a file of `tyrefem export`.
 """
 
 from __future__ import annotations
@@ -37,7 +32,7 @@ IDENTIFIER = "tyre"
 
 #: Value references: inputs from 0 on; as in tyre.c.
 INITIAL, CLAMP, OUTSIDE, OUTPUT = 5, 6, 7, 10
-WHAT = {
+MEANINGS = {
     "speed": "speed of the wheel's axle",
     "load": "vertical load",
     "pressure": "cold gauge pressure, at the temperature of the start",
@@ -53,14 +48,14 @@ _UNITS = {
 
 
 def variable_names(tyre: RealTimeTyre) -> list[str]:
-    """Names of the outputs in the FMU, in the order of `tyre.names`: hyphens, which some tools refuse, made _."""
+    """Names of the outputs in the FMU, in the order of `tyre.names`; hyphens and spaces become underscores."""
     return [name.replace("-", "_").replace(" ", "_") for name in tyre.names]
 
 
 def description(tyre: RealTimeTyre, guid: str) -> str:
-    """The XML text."""
+    """The text of modelDescription.xml."""
     variables = [
-        _real(k, name, "input", unit, WHAT[name], tyre.about["start"][name], tyre.box[name])
+        _real(k, name, "input", unit, MEANINGS[name], tyre.about["start"][name], tyre.box[name])
         for k, (name, unit) in enumerate(INPUTS.items())
     ]
     start = tyre.about["initial"]
@@ -162,9 +157,9 @@ def data_header(tyre: RealTimeTyre, guid: str) -> str:
         "BOX": list(tyre.box.values()),
         "EVEN": data["even"],
         "RATES": data["rates"],
-        "CAPACITY": _some(data["capacity"]),
-        "LUMPED_GIVEN": _some(~np.isnan(lumped)),
-        "LUMPED_START": _some(np.nan_to_num(lumped)),
+        "CAPACITY": _at_least_one(data["capacity"]),
+        "LUMPED_GIVEN": _at_least_one(~np.isnan(lumped)),
+        "LUMPED_START": _at_least_one(np.nan_to_num(lumped)),
         "GAS": gas if len(gas) else np.zeros(2),
         "EXCHANGE": data["exchange"].reshape(-1, n * n),
         "EXCHANGE_LOAD": data["exchange_load"],
@@ -181,7 +176,7 @@ def data_header(tyre: RealTimeTyre, guid: str) -> str:
         "POWER": data["power"],
         "LOSS": data["loss_table"],
         "READ": data["read"] if len(data["read"]) else np.zeros((1, n)),
-        "LAG": _some(data["lag"]),
+        "LAG": _at_least_one(data["lag"]),
         "HOT": data["hot"].reshape(-1, m),
         "PHI": PHI,
         "PHI_2": PHI_2,
@@ -192,8 +187,8 @@ def data_header(tyre: RealTimeTyre, guid: str) -> str:
     return "\n".join(lines) + "\n"
 
 
-def _some(values: Any) -> Any:
-    """C has no arrays of nothing."""
+def _at_least_one(values: Any) -> Any:
+    """The values, or a zero if there are none: C has no empty arrays."""
     return values if len(values) else np.zeros(1)
 
 
@@ -212,7 +207,7 @@ def _lines(values: list[float], width: int = 8) -> list[list[float]]:
     return [values[k : k + width] for k in range(0, len(values), width)]
 
 
-#: Compilers looked for, in this order.
+#: C compilers that are tried, in this order.
 COMPILERS = ("cc", "gcc", "clang")
 _SYSTEMS = {"linux": ("linux", ".so"), "darwin": ("darwin", ".dylib"), "win32": ("win", ".dll")}
 
@@ -222,12 +217,13 @@ def write_fmu(model: str | Path, path: str | Path, *, compiler: str | None = Non
 
     Parameters
     ----------
-    model : ``.npz`` file of `tyrefem export`. path : ``.fmu`` file. compiler : a C compiler; without, the first of
-        `COMPILERS` that is found. With none the FMU holds its source only, which the importing tool compiles.
+    model : ``.npz`` file of `tyrefem export`. path : ``.fmu`` file. compiler : a C compiler; default: the first of
+        `COMPILERS` that is installed. Without a compiler the FMU holds the C source only, and the importing tool
+        compiles it.
 
     Raises
     ------
-    InputError : not a real-time model, or the compiler failed.
+    InputError : the file is not a real-time model, or the compiler failed.
     """
     try:
         tyre = RealTimeTyre(model)
@@ -259,7 +255,7 @@ def _compiled(compiler: str, folder: Path) -> None:
     system, suffix = _SYSTEMS.get(sys.platform, ("linux", ".so"))
     place = folder / "binaries" / f"{system}{64 if sys.maxsize > 2**32 else 32}"
     if platform.machine().lower() not in ("x86_64", "amd64", "i386", "i686"):
-        # FMI 2.0 knows these folders for x86 only: elsewhere the importing tool compiles.
+        # FMI 2.0 defines these folders for x86 only: on other machines the importing tool compiles.
         return
     place.mkdir(parents=True)
     command = [compiler, "-std=c99", "-O3", "-shared", "-fPIC", "-fvisibility=hidden", "-o"]

@@ -1,4 +1,4 @@
-"""Drives in a box of inputs: steady ones, ones of steps and ramps; as a study writes them and a clock sees them."""
+"""Drives within a box of inputs, steady or of steps and ramps: as a study and as inputs of time steps."""
 
 from __future__ import annotations
 
@@ -16,21 +16,21 @@ from tyrefem.realtime.tyre import INPUTS, Inputs
 
 Array = NDArray[np.float64]
 NAMES = tuple(INPUTS)
-#: Ranges where none are given: factors on the study's largest value (the lower one on its smallest), and kelvin.
+#: Default ranges: factors on the study's smallest and largest value, and differences in K.
 FACTORS = {"speed": (0.0, 1.5), "load": (0.5, 1.25), "pressure": (0.8, 1.2)}
 AROUND = {"ambient": (-20.0, 20.0), "road_temperature": (-20.0, 40.0)}
-#: Keys of a study's drive that every drive in the box keeps.
+#: Keys of a study's drive that are the same in every drive of the box.
 KEPT = ("drum_diameter", "rim_temperature")
-#: Parts of a random drive, and the shortest, s.
+#: Parts of a random drive at most, and the shortest part, s.
 PARTS, SHORTEST = 6, 20.0
-#: Phases of a study by which a ramp of load or pressure is written: strain cycles are linear between nine points of
-#: each, and that should cost nothing here.
+#: A ramp of load or pressure becomes so many phases of the study: within each the strain cycles are interpolated
+#: between nine points, which keeps their error small.
 SPLIT = 3
 
 
 @dataclass(frozen=True)
 class Box:
-    """Ranges of the inputs, SI: name -> (low, high) in the order of `NAMES`; equal ends: the input is fixed."""
+    """Ranges of the inputs, SI: name -> (low, high) in the order of `NAMES`; with equal ends the input is fixed."""
 
     ranges: Mapping[str, tuple[float, float]]
 
@@ -50,15 +50,15 @@ class Box:
 
 
 def box_of(study: StudyData, given: Mapping[str, tuple[Any, Any]] | None = None) -> Box:
-    """The box round a study's drive: `FACTORS` and `AROUND`, and what is given in their place.
+    """The box of inputs around a study's drive; given ranges replace those of `FACTORS` and `AROUND`.
 
     Parameters
     ----------
-    given : input -> (from, to), as a study writes them or in SI.
+    given : input -> (from, to), as in a study file or in SI.
 
     Raises
     ------
-    InputError : an unknown input, a range the wrong way round, a number that no tyre has.
+    InputError : an unknown input, a range from a higher to a lower value, a load or speed that is not positive.
 
     >>> import tyrefem
     >>> box_of(tyrefem.study("nasa-22x5.5-8pr"), {"load": ("10 kN", "14 kN")}).ranges["load"]
@@ -111,13 +111,13 @@ def _around(study: StudyData, name: str) -> tuple[float, float]:
 
 
 @dataclass(frozen=True, eq=False)
-class Course:
-    """A drive in the box.
+class BoxDrive:
+    """A drive within the box: inputs that are linear in time within each part, with jumps between parts.
 
     Parameters
     ----------
-    ends : (n + 1,) s, of its parts. first, last : (n, 5) inputs at the start and the end of each part, between which
-        they are linear in time. initial : degC.
+    ends : (n + 1,) s, times at which parts begin and end. first, last : (n, 5) inputs at the start and the end of each
+        part. initial : initial temperature, degC.
     """
 
     ends: Array
@@ -127,11 +127,11 @@ class Course:
 
     @property
     def steady(self) -> bool:
-        """Do the inputs stay what they are?"""
+        """Are the inputs constant?"""
         return len(self.first) == 1 and bool((self.first == self.last).all())
 
     def inputs(self, begin: float, end: float) -> tuple[Inputs, Inputs]:
-        """Inputs at the start and the end of a step, as they are within it."""
+        """Inputs at the start and the end of a time step, as limits from within the step."""
         part = min(int(np.searchsorted(self.ends, (begin + end) / 2, side="right")) - 1, len(self.first) - 1)
         length, change = self.ends[part + 1] - self.ends[part], self.last[part] - self.first[part]
         both = (self.first[part] + change * float(np.clip((t - self.ends[part]) / length, 0, 1)) for t in (begin, end))
@@ -139,11 +139,11 @@ class Course:
         return first, last
 
     def jumps(self, t: float) -> bool:
-        """Does a part begin at a time?"""
+        """Does a part begin at this time?"""
         return bool(np.abs(self.ends[:-1] - t).min() < 1e-6)
 
     def study(self, study: StudyData, every: float = 1.0) -> StudyData:
-        """The study with this drive, read every so many seconds."""
+        """The study with this drive; ``every``: interval of the readings, s."""
         phases = []
         for k, (a, b) in enumerate(zip(self.first, self.last, strict=True)):
             length = self.ends[k + 1] - self.ends[k]
@@ -172,27 +172,27 @@ def _kept(study: StudyData) -> dict[str, Any]:
     drive = study.data["drive"]
     phases = drive.get("phases", [{}])
     if any("slip" in key for part in (drive, *phases) for key in part):
-        raise InputError("a real-time model knows no slip", field="drive")
+        raise InputError("a real-time model has no slip", field="drive")
     kept = {**{key: drive[key] for key in KEPT if key in drive}}
     for phase in phases:
         for key in KEPT:
             if key in phase and kept.setdefault(key, phase[key]) != phase[key]:
                 raise InputError(f"'{key}' must be the same in every phase", field="drive.phases")
     if isinstance(kept.get("rim_temperature"), Mapping):
-        raise InputError("must not change: it is no input of a real-time model", field="drive.rim_temperature")
+        raise InputError("must be constant: it is not an input of a real-time model", field="drive.rim_temperature")
     return kept
 
 
-def steady(box: Box, place: Array, duration: float) -> Course:
-    """Steady inputs at a place of the unit cube, from the ambient temperature on."""
+def steady(box: Box, place: Array, duration: float) -> BoxDrive:
+    """A drive with the constant inputs at a point of the unit cube; it starts at the ambient temperature."""
     values = box.at(place)[None]
-    return Course(np.array([0.0, duration]), values, values, float(values[0, NAMES.index("ambient")]))
+    return BoxDrive(np.array([0.0, duration]), values, values, float(values[0, NAMES.index("ambient")]))
 
 
-def random_course(box: Box, duration: float, seed: int) -> Course:
-    """Parts of random length; at the start of each about half of the inputs jump or begin to ramp to new values.
+def random_drive(box: Box, duration: float, seed: int) -> BoxDrive:
+    """A drive with parts of random length; in each about half of the inputs jump or ramp to new values.
 
-    A quarter of new values are ends of their range: the worst is there.
+    A quarter of the new values are ends of their range, where errors are largest.
     """
     rng = np.random.default_rng(seed)
     count = max(min(PARTS, int(duration / SHORTEST)), 1)
@@ -213,4 +213,4 @@ def random_course(box: Box, duration: float, seed: int) -> Course:
         last.append(target)
         now = target
     ambient = NAMES.index("ambient")
-    return Course(ends, np.array(first), np.array(last), float(first[0][ambient]))
+    return BoxDrive(ends, np.array(first), np.array(last), float(first[0][ambient]))

@@ -1,4 +1,4 @@
-"""What the inputs do to a tyre, as tables: films over speed, load, pressure; strain energy over load, pressure."""
+"""Tables of a real-time model: films over speed, load and pressure; strain energy over load and pressure."""
 
 from __future__ import annotations
 
@@ -12,7 +12,7 @@ from numpy.typing import NDArray
 from tyrefem.errors import InputError
 from tyrefem.inputs.study import StudyData
 from tyrefem.mechanics.strain_laws import strain_law
-from tyrefem.realtime.inputs import NAMES, Box, Course
+from tyrefem.realtime.inputs import NAMES, Box, BoxDrive
 from tyrefem.realtime.settings import COSTLY, TablePoints
 from tyrefem.realtime.tyre import STANDSTILL, CubicTable
 from tyrefem.reduced.balance import ReducedBalance, reduced_balance
@@ -21,24 +21,24 @@ from tyrefem.simulation.heat_source import HeatSource
 from tyrefem.simulation.rolling_tyre import RollingTyre
 
 Array = NDArray[np.float64]
-#: Points over the root of load, and pressure, of the deflection: it costs nothing.
+#: Points of the deflection's table over the root of load, and over pressure.
 BENDS = 61, 13
-#: degC: tan delta between these, every so many kelvin.
+#: Range of the table of tan delta, degC, and its spacing, K.
 COLD, HOT, FINE = -60.0, 300.0, 0.5
 
 
 @dataclass(frozen=True, eq=False)
 class Tables:
-    """Even in the root of speed, the root of the load law's deflection, and pressure; one point where nothing varies.
+    """Tables equally spaced in the root of speed, the root of deflection, and pressure; a fixed input has one point.
 
-    Over the deflection, not the load: where the strain law has a kink, it is at a deflection whatever the pressure.
+    The axis is deflection, not load: a kink of a strain law is at the same deflection for all pressures.
 
     Parameters
     ----------
     axes : name -> (n,) sqrt(m/s), sqrt(m), Pa. films : (n_speed, n_bend, n_pressure, n_exchanges) W/m2/K or W/K.
-    standing : (n_exchanges,) of a wheel that stands. heat : (n_bend, n_pressure, nodes of all zones) W/m3 per m/s and
-    unit of tan delta. sinks : (n_exchanges, 4): c + a ambient + b road temperature + d initial temperature.
-    bends : (n_load, n_pressure, 1) sqrt(m), the root of the deflection over ``bend_axes``: the root of load, and Pa.
+    standing : (n_exchanges,) films of a standing wheel. heat : (n_bend, n_pressure, nodes of all zones) W/m3 per m/s
+    and unit of tan delta. sinks : (n_exchanges, 4): c, a, b, d of c + a ambient + b road + d initial temperature.
+    bends : (n_load, n_pressure, 1) sqrt(m), the root of the deflection. bend_axes : the root of load, and Pa.
     """
 
     axes: dict[str, Array]
@@ -54,7 +54,7 @@ class Tables:
         return _ends(*self.axes.values())
 
     def arrays(self, nodes: Array | slice = slice(None)) -> dict[str, Array]:
-        """As the file holds them, the heat at some of the nodes."""
+        """Arrays for the file, with the heat at these nodes."""
         return {
             "film_table": self.films,
             "film_axes": self._ends,
@@ -67,7 +67,7 @@ class Tables:
         }
 
     def errors(self, probe: Probe, count: int = 24, seed: int = 5) -> dict[str, float]:
-        """Largest error of a film and of a heat source between the points, over the largest there."""
+        """Largest relative error of films and of heat sources at random inputs of the box."""
         places = probe.box.at(np.random.default_rng(seed).random((count, 5)))
         speeds = np.maximum(places[:, 0], 1e-3)
         films, heats = probe.at(speeds, places[:, 1:3])
@@ -85,11 +85,11 @@ class Tables:
 
 @dataclass(frozen=True, eq=False)
 class Probe:
-    """Asks a study's tyre what its films, sinks and strain energies are.
+    """Evaluates films, sinks and strain energies of a study's tyre.
 
     Parameters
     ----------
-    base : a tyre of the study, whose mesh is taken. points : of the tables; None: as many as the strain law allows.
+    base : a tyre of the study; its mesh is used. points : of the tables; None: chosen by the cost of the strain law.
     """
 
     study: StudyData
@@ -97,42 +97,42 @@ class Probe:
     base: RollingTyre
     points: TablePoints | None = None
 
-    def balance(self, course: Course) -> ReducedBalance:
-        """The tyre on a drive, with one even mode: what acts on it is all that is asked for."""
+    def balance(self, drive: BoxDrive) -> ReducedBalance:
+        """The tyre's heat balance on a drive, with the uniform mode only: films, sinks and sources are all it gives."""
         even = ReducedModel(self.base, np.ones((self.base.problem.operators.size, 1)), {}, np.zeros((0, 0)))
-        return reduced_balance(even, RollingTyre(course.study(self.study), self.base))
+        return reduced_balance(even, RollingTyre(drive.study(self.study), self.base))
 
     def middle(self, initial: float | None = None, **inputs: float) -> ReducedBalance:
-        """The tyre with the inputs in the middle of the box but for some."""
+        """The tyre's heat balance with all inputs in the middle of the box, except those given."""
         values = self.box.at(np.full(5, 0.5))
         for name, value in inputs.items():
             values[NAMES.index(name)] = value
         start = self.study.card.drive.initial if initial is None else initial
-        return self.balance(Course(np.array([0.0, 1.0]), values[None], values[None], start))
+        return self.balance(BoxDrive(np.array([0.0, 1.0]), values[None], values[None], start))
 
     def at(self, speeds: Array, pairs: Array) -> tuple[Array, Array]:
-        """(n_pairs, n_speeds, n_exchanges) films and (n_pairs, n_nodes) heat at (load, pressure) and speeds.
+        """Films (n_pairs, n_speeds, n_exchanges) and heat (n_pairs, n_nodes) at pairs (load, pressure) and speeds.
 
-        One drive does it: a part of a second for every pair, through which the speed rises.
+        A single drive has a part of 1 s for every pair, in which the speed rises.
         """
         top = max(self.box.ranges["speed"][1], STANDSTILL)
         first = np.tile(self.box.at(np.full(5, 0.5)), (len(pairs) + 1, 1))
-        # The first pair comes again at the end: what acts must not depend on the time.
+        # The first pair is repeated at the end, to detect films that depend on time.
         first[:, [NAMES.index("load"), NAMES.index("pressure")]] = np.vstack([pairs, pairs[:1]])
         last = first.copy()
         first[:, 0], last[:, 0] = 0.0, top
-        balance = self.balance(Course(np.arange(len(first) + 1.0), first, last, float(first[0, 3])))
+        balance = self.balance(BoxDrive(np.arange(len(first) + 1.0), first, last, float(first[0, 3])))
         _plain(balance)
-        # A speed of nothing is that of a wheel that just turns, unless it is asked for alone: standing is apart.
+        # Speed 0 stands for a wheel that barely rolls; alone it stands for a standing wheel.
         least = 0.0 if len(speeds) == 1 and speeds[0] == 0 else 1e-9
         shares = np.clip(speeds / top, least, 1 - 1e-9)
         films = np.array([[balance.coefficients(k + share)[0] for share in shares] for k in range(len(first))])
         if not np.allclose(films[0], films[-1], rtol=1e-6):
-            raise InputError("films change with time: a real-time model knows its inputs only", field="effects")
+            raise InputError("films change with time; in a real-time model only the inputs may", field="effects")
         return films[:-1], np.array([_per_metre(balance.tyre, k + 0.5) for k in range(len(pairs))])
 
     def sinks(self) -> Array:
-        """(n_exchanges, 4): every sink is c + a ambient + b road temperature + d initial temperature."""
+        """Coefficients c, a, b, d of every sink, c + a ambient + b road + d initial temperature: (n_exchanges, 4)."""
 
         def sinks(ambient: float, road: float, initial: float) -> Array:
             return self.middle(initial, ambient=ambient, road_temperature=road).coefficients(0.5)[1]
@@ -146,7 +146,7 @@ class Probe:
 
         Raises
         ------
-        InputError : a load that the tyre cannot carry at a pressure of the box; films that change with time.
+        InputError : the tyre cannot carry a load at a pressure of the box; films change with time.
         """
         costly = strain_law(self.study).by_elements
         points = self.points or (COSTLY if costly else TablePoints())
@@ -159,7 +159,7 @@ class Probe:
         def bend(load: float, pressure: float) -> float:
             return float(np.sqrt(law.deflection(load, pressure, rating))) if load > 0 else 0.0
 
-        # The box's corners are asked first: a load that the tyre cannot carry is said as such.
+        # Corners of the box first: they raise the clear error of a load that the tyre cannot carry.
         self.at(np.ones(1), np.array([(load, pressure) for load in (low, high) for pressure in (least, most)]))
         axes = {
             "speed": _axis(*(float(np.sqrt(limit)) for limit in self.box.ranges["speed"]), count=points.speed),
@@ -186,7 +186,7 @@ def _ends(*axes: Array) -> Array:
 
 
 def _per_metre(tyre: RollingTyre, t: float) -> Array:
-    """(nodes of all zones,) energy lost per revolution, per unit of tan delta, x revolutions per metre: J/m3/m."""
+    """Energy lost per metre of road and unit of tan delta, (nodes of all zones,) J/m3/m."""
     parts, motion = [], tyre.motion(t)
     for zone, source in tyre.hysteresis.items():
         rate = source.lost_per_revolution * motion.revolutions_per_second / motion.speed
@@ -197,18 +197,20 @@ def _per_metre(tyre: RollingTyre, t: float) -> Array:
 def _plain(balance: ReducedBalance) -> None:
     for zone, source in balance.tyre.sources.items():
         if type(source) is not HeatSource:
-            raise InputError("effects act on the heat: a real-time model knows the strain cycle's", field="effects")
+            raise InputError(
+                "effects act on the heat source; a real-time model has the strain cycle's heat only", field="effects"
+            )
         if source.over_frequency is not None:
             raise InputError(
-                f"tan delta of '{zone}' depends on frequency: a real-time model knows that on temperature only",
+                f"tan delta of '{zone}' depends on frequency; in a real-time model it depends on temperature only",
                 field="materials",
             )
     if any(balance.powers(0.0)):
-        raise InputError("effects heat the rim or the air: a real-time model knows its inputs only", field="effects")
+        raise InputError("effects heat the rim or the air; a real-time model has no such heat", field="effects")
 
 
 def loss_tables(tyre: RollingTyre, samples: Sequence[tuple[str, int]]) -> tuple[Array, Array]:
-    """(n_laws, n_temperatures) tan delta every `FINE` kelvin, and the law of every sample, from (zone, samples)."""
+    """tan delta every `FINE` K, (n_laws, n_temperatures), and the law of every sample; ``samples``: (zone, count)."""
     grid = np.arange(COLD, HOT + FINE / 2, FINE)
     laws: dict[bytes, int] = {}
     rows: list[Array] = []

@@ -1,6 +1,6 @@
-"""A tyre's temperatures in real time: a reduced model read from one file, stepped with numpy and nothing else.
+"""A tyre's temperatures in real time: a reduced model, read from a file and stepped with numpy alone.
 
-This module imports only numpy and the standard library: copy it beside the file and use both without tyrefem.
+This module imports only numpy and the standard library: copy it beside the file to use both without tyrefem.
 
     from realtime import Inputs, RealTimeTyre
     tyre = RealTimeTyre("tyre.npz")
@@ -43,15 +43,15 @@ PHI = (
 )
 #: (z - 1 + e^-z)/z^2 the same way: heat that changes linearly during a step.
 PHI_2 = (0.1608, 0.14191575456053127, 0.19728424543946896)
-#: Longer steps are split, s: into equal parts.
+#: s: longer steps are split into equal parts.
 LONGEST = 5.0
-#: Slower wheels stand, m/s: the road takes heat from a tread that turns only.
+#: m/s: a slower wheel stands; the road cools a rolling tread only.
 STANDSTILL = 1e-6
 
 
 @dataclass(frozen=True)
 class Inputs:
-    """What acts on the tyre during a step: m/s, N, Pa (gauge, cold), degC, degC (None: as the ambient)."""
+    """Inputs of a step: m/s, N, Pa (gauge, cold), degC, degC (None: the ambient temperature)."""
 
     speed: float
     load: float
@@ -61,21 +61,21 @@ class Inputs:
 
 
 class RealTimeTyre:
-    """A tyre that is stepped: y' = f(y, inputs), y the modes of the temperature field, the contained air and the rim.
+    """A real-time model of a tyre: y' = f(y, inputs), y = (modes of the temperature field, contained air, rim).
 
     Parameters
     ----------
-    file : written by `tyrefem export`. clamp : move inputs that are outside the certified box to its edge, and say so
-        in `clamped`, in place of raising.
+    file : written by `tyrefem export`. clamp : move inputs outside the certified box to its edge and list them in
+        `clamped`, instead of raising.
 
     Raises
     ------
-    ValueError : not such a file, or of another format.
+    ValueError : the file is not a real-time model, or has another format.
     """
 
     def __init__(self, file: str | Path, *, clamp: bool = False) -> None:
         try:
-            # Opened here: numpy leaves what is no whole archive open.
+            # Opened here, as numpy does not close a damaged archive.
             with open(file, "rb") as stream, zipfile.ZipFile(stream), np.load(stream, allow_pickle=False) as stored:
                 data = {name: stored[name] for name in stored.files}
             about = json.loads(str(data.pop("about")))
@@ -90,9 +90,9 @@ class RealTimeTyre:
         self._data = self.arrays = data
         self.names: list[str] = [output["name"] for output in about["outputs"]]
         self.units: list[str] = [output["unit"] for output in about["outputs"]]
-        #: Input -> the range that the model was certified in, SI.
+        #: Input -> certified range, SI.
         self.box = {name: (float(low), float(high)) for name, (low, high) in about["box"].items()}
-        # Every array is looked up once: a step takes a few dozen microseconds.
+        # Arrays become attributes: a step takes a few dozen microseconds.
         self._rates, self._exchange = data["rates"], data["exchange"].reshape(len(data["exchange"]), -1)
         self._size, self._n = len(data["rates"]), len(data["rates"]) + len(data["capacity"])
         self._samples, self._heating = data["at_samples"], data["heating"]
@@ -105,7 +105,7 @@ class RealTimeTyre:
         hot = np.zeros((len(data["hot"]), self._n))
         hot[:, : self._size] = data["hot"]
         self._rows = np.vstack([self._read, hot])
-        self._slow = np.flatnonzero(self._lag > 0)
+        self._lagging = np.flatnonzero(self._lag > 0)
         self.reset()
 
     def __repr__(self) -> str:
@@ -114,54 +114,54 @@ class RealTimeTyre:
         return f"RealTimeTyre at {self.time:g} s, {self._size} modes, {known} outputs\n  certified for {box}"
 
     def reset(self, temperature: float | None = None) -> None:
-        """Everything at one temperature, degC (without: that of the study); the first step fills the tyre."""
+        """Set all temperatures to one value, degC (default: that of the study); the first step inflates the tyre."""
         start = float(self.about["initial"] if temperature is None else temperature)
         self.time, self._start, self._filled = 0.0, start, math.nan
         lumped = self._data["lumped_start"]
         self._y = np.concatenate([start * self._data["even"], np.where(np.isnan(lumped), start, lumped)])
         self._air_start = float(self._y[self._size]) if len(self._data["gas"]) else float(self._data["held"])
-        self._late = np.full(len(self._slow), start)
-        self._key: tuple[float, ...] = ()
+        self._lagged = np.full(len(self._lagging), start)
+        self._matrices_key: tuple[float, ...] = ()
         self._inputs: Inputs | None = None
         self._mass = np.concatenate([np.ones(self._size), self._data["capacity"]])
 
     @property
     def state(self) -> Array:
-        """Everything that the next step and the outputs depend on, to be kept and given back."""
-        now = [math.nan] * len(INPUTS) if self._inputs is None else _five(self._inputs)
-        return np.concatenate([[self.time, self._start, self._filled, *now], self._y, self._late])
+        """The complete state of the model; assign it to return to this state."""
+        now = [math.nan] * len(INPUTS) if self._inputs is None else _values(self._inputs)
+        return np.concatenate([[self.time, self._start, self._filled, *now], self._y, self._lagged])
 
     @state.setter
     def state(self, state: Array) -> None:
-        kept, first = np.array(state, dtype=float), 3 + len(INPUTS)
-        if kept.shape != (first + self._n + len(self._slow),):
-            raise ValueError(f"a state of this model has {first + self._n + len(self._slow)} numbers")
-        self.reset(float(kept[1]))
-        self.time, filled = float(kept[0]), float(kept[2])
-        self._y, self._late = kept[first : first + self._n], kept[first + self._n :]
+        numbers, first = np.array(state, dtype=float), 3 + len(INPUTS)
+        if numbers.shape != (first + self._n + len(self._lagging),):
+            raise ValueError(f"a state of this model has {first + self._n + len(self._lagging)} numbers")
+        self.reset(float(numbers[1]))
+        self.time, filled = float(numbers[0]), float(numbers[2])
+        self._y, self._lagged = numbers[first : first + self._n], numbers[first + self._n :]
         if not math.isnan(filled):
             self._fill(filled)
-        if not math.isnan(kept[3]):
-            self._inputs = Inputs(*kept[3:first].tolist())
+        if not math.isnan(numbers[3]):
+            self._inputs = Inputs(*numbers[3:first].tolist())
             load, pressure = self._inputs.load, self._inputs.pressure
-            self._per_metre = self._heat(self._bent(load, pressure), pressure)
+            self._per_metre = self._heat(self._deflection_root(load, pressure), pressure)
 
     def _fill(self, pressure: float) -> None:
-        """Heat capacity of the contained air: that of the gas filled in at the start, as in a full run."""
+        """Set the air's heat capacity from the pressure at the start, as in a full run."""
         self._filled = pressure
         gas = self._data["gas"]
         if len(gas):
             self._mass[self._size] = gas[0] + gas[1] * (pressure + ATMOSPHERE) / (self._air_start + KELVIN)
 
     def checked(self, inputs: Inputs) -> Inputs:
-        """Inputs that are within the box.
+        """The inputs, moved into the box if ``clamp`` is set.
 
         Raises
         ------
-        ValueError : an input that is no number; one outside the box, unless ``clamp`` is set.
+        ValueError : an input is not a number, or is outside the box and ``clamp`` is not set.
         """
         within, self.clamped = [], []
-        for (name, (low, high)), value in zip(self.box.items(), _five(inputs), strict=True):
+        for (name, (low, high)), value in zip(self.box.items(), _values(inputs), strict=True):
             near = 1e-9 * max(abs(low), abs(high))
             if not low - near <= value <= high + near:
                 message = f"{name} = {value:g} is outside {low:g} to {high:g} {INPUTS[name]}"
@@ -172,14 +172,14 @@ class RealTimeTyre:
         return Inputs(*within)
 
     def step(self, dt: float, inputs: Inputs, later: Inputs | None = None) -> Array:
-        """Go on by ``dt`` seconds; the `outputs` after it.
+        """Advance by ``dt`` seconds and return the `outputs`.
 
-        Inputs stay the same, or go linearly to those at the end of the step, ``later``: temperatures do so, speed, load
-        and pressure act by their mean.
+        The inputs are constant, or linear in time up to ``later`` at the end of the step. Speed, load and pressure
+        then act by their mean over each part of the step.
 
         Raises
         ------
-        ValueError : an input outside the certified box, or a step that is not positive.
+        ValueError : an input is outside the certified box, or the step is not positive.
         """
         if not 0 < dt < math.inf:
             raise ValueError(f"a step must be positive, not {dt:g} s")
@@ -189,49 +189,52 @@ class RealTimeTyre:
         if math.isnan(self._filled):
             self._fill(first.pressure)
         parts = math.ceil(dt / LONGEST - 1e-9)
-        a, b = np.array(_five(first)), np.array(_five(last))
+        a, b = np.array(_values(first)), np.array(_values(last))
         for k in range(parts):
-            self._go(dt / parts, a + (b - a) * (k / parts), a + (b - a) * ((k + 1) / parts))
+            self._advance(dt / parts, a + (b - a) * (k / parts), a + (b - a) * ((k + 1) / parts))
         if last != self._inputs:
-            self._inputs, self._per_metre = last, self._heat(self._bent(last.load, last.pressure), last.pressure)
+            self._inputs, self._per_metre = (
+                last,
+                self._heat(self._deflection_root(last.load, last.pressure), last.pressure),
+            )
         return self.outputs
 
-    def _go(self, h: float, first: Array, last: Array) -> None:
+    def _advance(self, h: float, first: Array, last: Array) -> None:
         speed, load, pressure = ((first[:3] + last[:3]) / 2).tolist()
-        A, inverse, sinks, heat = self._at(h, speed, load, pressure)
+        A, inverse, sinks, heat = self._matrices(h, speed, load, pressure)
         m, y, mass = self._size, self._y, self._mass
-        before = self._read[self._slow] @ y if len(self._slow) else y
+        before = self._read[self._lagging] @ y if len(self._lagging) else y
         constant = sinks @ (1.0, first[3], first[4], self._start)
         rate = constant - A @ y
-        made = heat * self._loss_tangent(y)
-        rate[:m] += self._heating @ made
+        source = heat * self._loss_tangent(y)
+        rate[:m] += self._heating @ source
         u = inverse @ rate
         change = PHI[0] * u
         for b in PHI[1:]:
             u = inverse @ (mass * u)
             change += b * u
         guess = y + h * change
-        more = sinks @ (1.0, last[3], last[4], self._start) - constant
-        more[:m] += self._heating @ (heat * self._loss_tangent(guess) - made)
-        u = inverse @ more
+        change_of_rate = sinks @ (1.0, last[3], last[4], self._start) - constant
+        change_of_rate[:m] += self._heating @ (heat * self._loss_tangent(guess) - source)
+        u = inverse @ change_of_rate
         change = PHI_2[0] * u
         for b in PHI_2[1:]:
             u = inverse @ (mass * u)
             change += b * u
         self._y = guess + h * change
         self.time += h
-        if len(self._slow):
-            # Exact for a temperature that is linear during the step.
-            after, lag = self._read[self._slow] @ self._y, self._lag[self._slow]
+        if len(self._lagging):
+            # Exact if the temperature is linear in time during the step.
+            after, lag = self._read[self._lagging] @ self._y, self._lag[self._lagging]
             behind = lag * (after - before) / h
-            self._late = after - behind + (self._late - before + behind) * np.exp(-h / lag)
+            self._lagged = after - behind + (self._lagged - before + behind) * np.exp(-h / lag)
 
-    def _at(self, h: float, speed: float, load: float, pressure: float) -> tuple[Array, Array, Array, Array]:
-        """K + sum h R, the inverse of a step, heat from (1, ambient, road, start), heat per unit of tan delta."""
+    def _matrices(self, h: float, speed: float, load: float, pressure: float) -> tuple[Array, Array, Array, Array]:
+        """K + sum h R, the step's inverse matrix, sink heat per (1, ambient, road, start), heat per tan delta."""
         key = h, speed, load, pressure, self._filled
-        if self._key != key:
-            bent = self._bent(load, pressure)
-            films = self._films(math.sqrt(speed), bent, pressure)
+        if self._matrices_key != key:
+            root = self._deflection_root(load, pressure)
+            films = self._films(math.sqrt(speed), root, pressure)
             if speed < STANDSTILL:
                 films = self._data["film_standing"]
             A = (films @ self._exchange).reshape(self._n, self._n)
@@ -239,16 +242,16 @@ class RealTimeTyre:
             W = GAMMA * h * A
             W.flat[:: self._n + 1] += self._mass
             sinks = self._data["exchange_load"].T @ (films[:, None] * self._data["sink"])
-            self._key = key
-            self._known = A, inverse(W), sinks, speed * self._heat(bent, pressure)
-        return self._known
+            self._matrices_key = key
+            self._kept_matrices = A, inverse(W), sinks, speed * self._heat(root, pressure)
+        return self._kept_matrices
 
-    def _bent(self, load: float, pressure: float) -> float:
-        """Root of the deflection."""
+    def _deflection_root(self, load: float, pressure: float) -> float:
+        """Root of the deflection, sqrt(m)."""
         return float(self._bend(math.sqrt(load), pressure)[0])
 
     def _loss_tangent(self, y: Array) -> Array:
-        """tan delta at the samples."""
+        """tan delta at the sample nodes."""
         place = (self._samples @ y[: self._size] - self._cold) * self._per_kelvin
         place = np.minimum(np.maximum(place, 0.0), self._last)
         left = place.astype(np.intp)
@@ -261,13 +264,13 @@ class RealTimeTyre:
     def outputs(self) -> Array:
         """Values of `names` in `units`: sensors, rim, contained air, hottest point, pressure, rolling resistance.
 
-        The last two follow from the inputs of the last step: NaN before the first.
+        Pressure and rolling resistance use the inputs of the last step; they are NaN before the first step.
         """
         outputs = np.empty(len(self.names))
-        seen, inputs = self._rows @ self._y, self._inputs
+        read_out, inputs = self._rows @ self._y, self._inputs
         read = len(self._read)
-        outputs[:read] = seen[:read]
-        outputs[self._slow] = self._late
+        outputs[:read] = read_out[:read]
+        outputs[self._lagging] = self._lagged
         air = float(self._y[self._size]) if len(self._data["gas"]) else self._air_start
         pressure = resistance = math.nan
         if inputs is not None:
@@ -275,17 +278,17 @@ class RealTimeTyre:
             resistance = 0.0
             if inputs.speed >= STANDSTILL:
                 resistance = float(self._power @ (self._per_metre * self._loss_tangent(self._y)))
-        outputs[read:] = air, seen[read:].max(), pressure, resistance
+        outputs[read:] = air, read_out[read:].max(), pressure, resistance
         return outputs
 
 
-def _five(inputs: Inputs) -> list[float]:
+def _values(inputs: Inputs) -> list[float]:
     road = inputs.ambient if inputs.road_temperature is None else inputs.road_temperature
     return [inputs.speed, inputs.load, inputs.pressure, inputs.ambient, road]
 
 
 class CubicTable:
-    """Values on even axes: cubic through the four nearest points of every axis, fewer where an axis has fewer."""
+    """Table on equally spaced axes: cubic through the four nearest points of every axis, or all if there are fewer."""
 
     def __init__(self, values: Array, axes: Array) -> None:
         self.shape, self.axes = values.shape, [tuple(axis) for axis in np.asarray(axes)[:, :2].tolist()]
@@ -304,7 +307,7 @@ class CubicTable:
 
 
 def lagrange(u: float, width: int) -> Array:
-    """Weights of values at 0, 1, ..., width - 1 in their polynomial at u.
+    """Lagrange weights at u for values at 0, 1, ..., width - 1.
 
     >>> lagrange(0.5, 2).tolist(), lagrange(1.5, 4).tolist()
     ([0.5, 0.5], [-0.0625, 0.5625, 0.5625, -0.0625])
@@ -318,7 +321,7 @@ def lagrange(u: float, width: int) -> Array:
 
 
 def inverse(W: Array) -> Array:
-    """Inverse of a symmetric positive matrix by two halves: half the time of LAPACK's general one at this size.
+    """Inverse of a symmetric positive definite matrix by blocks: here twice as fast as LAPACK's general inverse.
 
     >>> inverse(np.array([[2.0, 1.0], [1.0, 2.0]])).round(6).tolist()
     [[0.666667, -0.333333], [-0.333333, 0.666667]]

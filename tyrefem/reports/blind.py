@@ -30,7 +30,7 @@ def save(rates: Blind, folder: Path) -> None:
     InputError : the folder cannot be written.
     """
     count = len(rates.rows)
-    with keeping(f"{count} of {count} cases are finished; the same command goes on from there"):
+    with keeping(f"{count} of {count} cases are finished; the same command resumes from there"):
         write_json(rates.to_dict(), folder / "blind.json")
         with atomic_path(folder / "blind.png") as temporary:
             temporary.write_bytes(png(picture(rates)))

@@ -62,7 +62,7 @@ def _responses(answer: Responses) -> Iterator[tuple[str, str, Figure]]:
     if len(finished(swept)) < 2:
         return
     axes = numeric(swept)
-    averaged = swept.plan.how.get("sample") == "grid" and len(swept.plan.varied) > 2
+    averaged = swept.plan.sampling.get("sample") == "grid" and len(swept.plan.varied) > 2
     mean = "; mean over the other numbers" if averaged else ""
     for name in judged(swept, answer.wanted):
         order = [number for number in main_effects(swept, name)["number"] if number in axes]

@@ -96,7 +96,7 @@ def of_sample(sweep: Sweep) -> dict[str, Any]:
     """The variants of the sample and who answered them."""
     certificate = sweep.certificate
     return {
-        **sweep.plan.how,
+        **sweep.plan.sampling,
         "variants": len(sweep.plan.variants),
         "finished": {
             "full": len(sweep.answered) - sweep.reduced,
@@ -115,7 +115,7 @@ def of_sample(sweep: Sweep) -> dict[str, Any]:
         },
         "why_full_runs": sweep.why_full,
         "seconds": sweep.seconds,
-        "taken_up": sweep.taken_up,
+        "taken_up": sweep.resumed,
     }
 
 
@@ -135,7 +135,7 @@ def how_answered(sweep: Sweep) -> str:
     """How many variants, in which time, by what."""
     certificate = sweep.certificate
     words = f"{len(sweep.outcomes)} of {len(sweep.plan.variants)} variants in {sweep.seconds:.1f} s"
-    words += f", {sweep.taken_up} of them taken up" if sweep.taken_up else ""
+    words += f", {sweep.resumed} of them taken up" if sweep.resumed else ""
     if certificate is not None:
         words += (
             f"; {sweep.reduced} by a reduced model from {certificate.trained_on - certificate.amended} runs"

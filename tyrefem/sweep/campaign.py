@@ -1,4 +1,4 @@
-"""A campaign: one study, a table of cases, one table of answers."""
+"""A campaign: a study, a table of cases, and a table of their answers."""
 
 from __future__ import annotations
 
@@ -19,13 +19,13 @@ from tyrefem.simulation.run import run
 if TYPE_CHECKING:
     from tyrefem.simulation.result import ResultData
 
-#: Cases that are looked at to judge how long all will take.
-LOOKED_AT = 10
+#: Cases from which the time of all cases is estimated.
+SAMPLED_CASES = 10
 
 
 @dataclass(frozen=True, eq=False)
 class CampaignData(Brief):
-    """The cases of a study, each a study of its own. Made by `Study.campaign`."""
+    """The cases of a study; each case is a study. `Study.campaign` makes it."""
 
     study: StudyData
     cases: tuple[Case, ...]
@@ -47,7 +47,7 @@ class CampaignData(Brief):
 
         Raises
         ------
-        InputError : the study names none, or the table or a case of it is wrong (file and line).
+        InputError : the study names no table, or the table or a case is invalid (with file and line).
         """
         for case in study.cases:
             study.case_study(case)
@@ -55,17 +55,17 @@ class CampaignData(Brief):
 
     @classmethod
     def case_of(cls, study: StudyData, name: str) -> StudyData:
-        """The study of the case of that name: `Study.case`."""
+        """The study of a case by its name, as `Study.case`."""
         return study.case(name)
 
     def case_study(self, case: Case) -> StudyData:
-        """The study of one case."""
+        """The study of a case."""
         return self.study.case_study(case)
 
     def runs(self, progress: Callable[[int, int], None] | None = None) -> Iterator[tuple[Case, ResultData | str]]:
-        """Run the cases in their order; a case that fails gives its reason in place of a result.
+        """Run the cases in their order and yield (case, result); a failed case gives its reason instead of a result.
 
-        An interruption (Ctrl-C) yields the part of the case that is finished, then raises ``KeyboardInterrupt``.
+        An interruption (Ctrl-C) yields the finished part of the running case, then raises ``KeyboardInterrupt``.
         """
         self._warn()
         for number, case in enumerate(self.cases):
@@ -77,28 +77,28 @@ class CampaignData(Brief):
                 raise KeyboardInterrupt
 
     def _warn(self) -> None:
-        """Of long work, judged by some of the cases."""
-        some = self.cases[:: max(len(self.cases) // LOOKED_AT, 1)]
+        """Warn of long work; the time is estimated from some of the cases."""
+        some = self.cases[:: max(len(self.cases) // SAMPLED_CASES, 1)]
         times: list[float] = []
         for case in some:
-            with suppress(InputError):  # a case that is wrong is a row of the table that says so
+            with suppress(InputError):  # an invalid case becomes a row with its failure
                 times.append(RunEstimate.of(self.case_study(case)).total.time)
         if times:
             mean = sum(times) / len(times)
             estimate.warn_if_long(mean * len(self.cases), f"{len(self.cases):,} cases of {self.study.name}")
 
     def outcome(self, case: Case) -> ResultData | str:
-        """The result of a case, or why there is none."""
+        """The result of a case, or the reason of its failure."""
         try:
             return run(self.case_study(case), partial=True)
         except (InputError, SolverError) as error:
             return str(error)
-        except Exception as error:  # one case's defect must not cost the others; it is named as what it is
+        except Exception as error:  # a defect in a case must not stop the other cases
             return f"defect, please report: {type(error).__name__}: {error}"
 
 
 def row(case: Case, outcome: ResultData | str) -> dict[str, Any]:
-    """One case as a row of the campaign's table; a failed case has only its name and ``failure``."""
+    """A case as a row of the campaign's table; a failed case has only its name, note and ``failure``."""
     if isinstance(outcome, str):
         return {"case": case.name, "note": case.note, "failure": outcome}
     phase, peak = outcome.phases[-1], outcome.extremes.iloc[0]

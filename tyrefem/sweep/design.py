@@ -1,7 +1,4 @@
-"""A design study: everything that a sweep file asks of a study, checked before anything runs, and the answers.
-
-What a sweep file asks of a study, checked before anything runs.
-"""
+"""A design study: the questions of a sweep file, checked before anything runs, and their answers."""
 
 from __future__ import annotations
 
@@ -18,7 +15,7 @@ from tyrefem.sweep.envelope import Envelope
 from tyrefem.sweep.optimum import Optimum, optimum
 from tyrefem.sweep.pareto import ParetoFront
 from tyrefem.sweep.part import DesignPart
-from tyrefem.sweep.question import SweepQuestion, further_apart, questions_of, sweep_questions
+from tyrefem.sweep.question import SweepQuestion, questions_of, sweep_questions, with_further_tables
 from tyrefem.sweep.responses import Responses, judged
 from tyrefem.sweep.sobol_indices import Indices
 from tyrefem.sweep.sweep import Sweep, sweep
@@ -39,9 +36,9 @@ class DesignData(Brief):
 
     Parameters
     ----------
-    study, card : what was asked. swept : the variants of the sample; None: none were asked for.
-    optimum : the answer, else None. answers : key of a question -> its answer. interrupted : why some were not
-        reached; empty: none.
+    study, card : the study and its sweep file. swept : the variants of the sample; None: no sample.
+    optimum : result of the search, or None. answers : key of a question -> its answer. interrupted : why the study
+        is incomplete; empty: it is complete.
     """
 
     study: StudyData
@@ -56,12 +53,12 @@ class DesignData(Brief):
 
     def _facts(self) -> Mapping[str, Any]:
         swept = {} if self.swept is None else self.swept._facts()
-        sentences = {part.name: next(iter(part.words), "nothing to tell") for part in self.parts}
+        sentences = {part.name: next(iter(part.words), "no statement") for part in self.parts}
         return {**swept, **sentences, **({"interrupted": self.interrupted} if self.interrupted else {})}
 
     @property
     def parts(self) -> tuple[DesignPart, ...]:
-        """All answers, in the order in which they are told."""
+        """All answers, in the order of the report."""
         parts: list[DesignPart] = []
         if self.optimum is not None:
             parts.append(self.optimum)
@@ -73,42 +70,42 @@ class DesignData(Brief):
 
     @property
     def tornado(self) -> Tornado | None:
-        """Which tolerance matters, if asked for."""
+        """The effects of the tolerances; None: not in the sweep file."""
         answer = self.answers.get(Tornado.name)
         return answer if isinstance(answer, Tornado) else None
 
     @property
     def envelope(self) -> Envelope | None:
-        """The safe operating envelope, if asked for."""
+        """The safe operating envelope; None: not in the sweep file."""
         answer = self.answers.get(Envelope.name)
         return answer if isinstance(answer, Envelope) else None
 
     @property
     def table(self) -> pd.DataFrame:
-        """A row per variant: see `Sweep.table`; without a sample those that the optimiser evaluated."""
+        """A row per variant, see `Sweep.table`; without a sample the variants of the search."""
         if self.swept is not None:
             return self.swept.table
         if self.optimum is not None:
             return self.optimum.table
-        raise InputError("no variants were asked for")
+        raise InputError("the sweep file has neither a sample nor [optimise]: there is no table of variants")
 
     @property
     def pareto(self) -> pd.DataFrame:
-        """The variants that no other beats: see `tyrefem.sweep.pareto.front`."""
+        """The variants on the Pareto front, see `tyrefem.sweep.pareto.front`."""
         from tyrefem.sweep.pareto import front
 
         return front(self.table, dict(self.card.pareto))
 
     @property
     def indices(self) -> Indices | None:
-        """Sobol indices, of a Saltelli sample."""
-        if self.swept is None or self.swept.plan.how.get("sample") != "saltelli" or not self.swept.complete:
+        """Sobol indices; None without a complete Saltelli sample."""
+        if self.swept is None or self.swept.plan.sampling.get("sample") != "saltelli" or not self.swept.complete:
             return None
         return Indices(self.swept, tuple(judged(self.swept, self.card.answers)))
 
     @property
     def failed(self) -> dict[str, str]:
-        """Variant -> why it has no answers."""
+        """Variant -> reason of its failure."""
         return {} if self.swept is None else self.swept.failed
 
     @property
@@ -117,17 +114,17 @@ class DesignData(Brief):
         return [line for part in self.parts for line in part.words]
 
 
-#: What a sweep needs of a study.
+#: Requirements of a sweep on a study.
 NEEDS = Requirements("a sweep")
 
 
 @dataclass(frozen=True, eq=False)
 class Questions:
-    """What a sweep file asks of a study; all of it makes sense.
+    """The checked questions of a sweep file about a study.
 
     Parameters
     ----------
-    plan : the variants of the sample, maybe none, with what varies. further : questions with a table of their own.
+    plan : varied numbers and the variants of the sample, possibly none. further : questions with separate tables.
     """
 
     study: StudyData
@@ -137,31 +134,31 @@ class Questions:
 
     @property
     def words(self) -> str:
-        """One line of what would be run."""
+        """A line that describes the planned work."""
         parts = [f"{len(self.plan.variants)} variants"] if self.card.sampled else []
         if self.card.optimise is not None:
             parts.append(f"an optimum of {self.card.optimise.answer} by {self.card.optimise.runs} variants at most")
         parts += [question.words for question in self.further]
         return f"{', '.join(parts)}; study {self.study.name}"
 
-    def answered(self, how: Execution | None = None, **options: Unpack[ExecutionOptions]) -> DesignData:
-        """Run what is needed; parameters as of `tyrefem.sweep.sweep.sweep`. Ctrl-C keeps what is finished.
+    def answered(self, execution: Execution | None = None, **options: Unpack[ExecutionOptions]) -> DesignData:
+        """Run the variants and answer the questions; parameters as in `tyrefem.sweep.sweep.sweep`.
 
-        A `Local` scheduler used as a context manager keeps its processes from one question to the next.
+        Ctrl-C keeps the finished variants. A `Local` scheduler used as a context manager keeps its processes.
         """
-        card, how = self.card, (how or Execution()).given(options)
+        card, execution = self.card, (execution or Execution()).given(options)
         swept = best = None
         answers: dict[str, DesignPart] = {}
         interrupted = ""
         try:
             if card.sampled:
-                swept = sweep(self.plan, how)
+                swept = sweep(self.plan, execution)
                 interrupted = swept.interrupted
             if card.optimise is not None and not interrupted:
-                best = optimum(self.plan, card.optimise, how.within(Optimum.name), known=swept)
+                best = optimum(self.plan, card.optimise, execution.within(Optimum.name), known=swept)
             for question in self.further:
                 if not interrupted:
-                    answers[question.key] = question.answered(how.within(question.key))
+                    answers[question.key] = question.answered(execution.within(question.key))
                     interrupted = getattr(answers[question.key], "interrupted", "")
         except KeyboardInterrupt:
             interrupted = "interrupted"
@@ -171,17 +168,20 @@ class Questions:
 
 
 def questions(study: StudyData, card: SweepCard, near: Path | None = None) -> Questions:
-    """What a sweep file asks, or the first thing that makes no sense.
+    """The checked questions of a sweep file about a study.
 
     Raises
     ------
-    InputError : a campaign; a name, value or answer that the study does not have; two variants that are the same.
+    InputError : the study is a campaign, has no such name, value or answer, or two variants are equal.
     """
     NEEDS.check(study)
     plan = planned(study, card, near)
     if card.optimise is not None:
         if not plan.varied:
-            raise InputError("searches within [vary], and a list has none: its best are on the front", field="optimise")
+            raise InputError(
+                "needs [vary]; a list of variants has none: its best variants are on the Pareto front",
+                field="optimise",
+            )
         try:
             check_answer(card.optimise.answer, study, card.time_to)
         except InputError as error:
@@ -189,31 +189,38 @@ def questions(study: StudyData, card: SweepCard, near: Path | None = None) -> Qu
     return Questions(study, card, plan, questions_of(study, card))
 
 
-def asked_of(study: StudyData, vary: Mapping[str, Any] | None = None, **options: Any) -> DesignData:
-    """The answers to what `card_of` takes, carried out as `Execution` says: `Study.sweep`.
+def run_design_study(study: StudyData, vary: Mapping[str, Any] | None = None, **options: Any) -> DesignData:
+    """Run a design study from Python values, for `Study.sweep`.
+
+    Parameters
+    ----------
+    vary, options : as in `card_of`; ``options`` may also have the fields of `Execution`.
 
     Raises
     ------
-    InputError : a name that is neither a key of a sweep file nor a field of `Execution`; as of `questions`.
+    InputError : an option is neither a key of a sweep file nor a field of `Execution`; errors of `questions`.
     """
     known = [each.name for each in fields(Execution)]
     allowed = [*known, *SweepCard.model_fields, *sweep_questions()]
     for name in options:
         if name not in allowed:
-            raise InputError(f"nothing is called '{name}' here{nearest(name, allowed)}", field="sweep")
+            raise InputError(f"unknown option '{name}'{nearest(name, allowed)}", field="sweep")
     run = {name: options.pop(name) for name in known if name in options}
     if isinstance(run.get("folder"), str):
         run["folder"] = Path(run["folder"])
-    how = Execution(**run)
+    execution = Execution(**run)
     if options.get("case") is not None:
         study = study.case(options["case"])
-    return questions(study, card_of(study, vary, **further_apart(options))).answered(how)
+    return questions(study, card_of(study, vary, **with_further_tables(options))).answered(execution)
 
 
 def loaded(name: str, changes: Mapping[str, Any] | None = None, **options: Any) -> Questions:
-    """The questions of a sweep file by name or path, the study's values changed by dotted names.
+    """The questions of a sweep file, by name or path.
 
-    ``said``: keys of the file said otherwise; tables (``vary``, ``limits``) are laid over the file's.
+    Parameters
+    ----------
+    changes : dotted name -> value, changes of the study. options : keys that replace those of the file; tables
+        (``vary``, ``limits``) are merged with the file's.
 
     >>> loaded("crown-angle").words
     '100 variants, an optimum of mass_kg by 160 variants at most; study nasa-22x5.5-8pr'
@@ -226,7 +233,7 @@ def loaded(name: str, changes: Mapping[str, Any] | None = None, **options: Any) 
     for key, value in options.items():
         both = isinstance(value, Mapping) and isinstance(data.get(key), Mapping)
         data[key] = {**data[key], **value} if both else value
-    card = SweepCard.check(further_apart(data), path)
+    card = SweepCard.check(with_further_tables(data), path)
     try:
         return questions(card.load_study(path.parent, changes), card, path.parent)
     except InputError as error:

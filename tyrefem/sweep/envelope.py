@@ -1,8 +1,6 @@
-"""The safe operating envelope: over load and pressure, the largest speed that keeps the tyre below a limit.
+"""The safe operating envelope: the largest speed below a limit, over load and pressure.
 
-Loads, pressures and speeds at which a tyre may be driven: what an envelope looks at.
-
-The speed at which one answer reaches its limit: false position kept within bisection.
+The speed at which an answer reaches its limit comes from false position, safeguarded by bisection.
 """
 
 from __future__ import annotations
@@ -16,14 +14,14 @@ from tyrefem.errors import InputError
 from tyrefem.inputs.changes import scaled, value_at
 from tyrefem.inputs.study import StudyData
 from tyrefem.quantity import parse
-from tyrefem.sweep.answering import Evaluator
+from tyrefem.sweep.evaluation import Evaluator
 from tyrefem.sweep.question import SweepQuestion
 from tyrefem.variants.answer_units import name_of, shown
 from tyrefem.variants.answers import check_answer
 from tyrefem.variants.card import EnvelopeCard, SweepCard
 from tyrefem.variants.execution import Execution, ExecutionOptions
 from tyrefem.variants.outcomes import Failed, Outcome
-from tyrefem.variants.plan import Plan, sensible
+from tyrefem.variants.plan import Plan, check_changes
 from tyrefem.variants.varied import Varied
 
 if TYPE_CHECKING:
@@ -31,16 +29,16 @@ if TYPE_CHECKING:
 
     from tyrefem.reduced.surrogate import SurrogateCertificate
 
-#: Loads where none are given: shares of the study's own.
+#: Default loads, as shares of the study's load.
 SHARES = (0.5, 0.75, 1.0, 1.25)
 
 
 def checked_pairs(study: StudyData, card: EnvelopeCard) -> list[tuple[str, str]]:
-    """Loads and pressures of an envelope, as written; every one of them is something that the study takes.
+    """Pairs of load and pressure of an envelope, as written; the study accepts each of them.
 
     Raises
     ------
-    InputError : as of `envelope`.
+    InputError : as in `envelope`.
     """
     try:
         check_answer(card.answer, study)
@@ -51,9 +49,9 @@ def checked_pairs(study: StudyData, card: EnvelopeCard) -> list[tuple[str, str]]
     pressures = card.pressures or (str(_given(study, "pressure")),)
     for field, unit, values in (("loads", "N", loads), ("pressures", "Pa", pressures)):
         if len({_parsed(value, unit, field) for value in values}) < len(values):
-            raise InputError("one of them is given twice", field=f"envelope.{field}")
+            raise InputError("a value is given twice", field=f"envelope.{field}")
     pairs = [(load, pressure) for load in loads for pressure in pressures]
-    sensible(study, [("", operating(pair, card.fastest)) for pair in pairs])
+    check_changes(study, [("", operating_point(pair, card.fastest)) for pair in pairs])
     return pairs
 
 
@@ -61,7 +59,10 @@ def speed_range(card: EnvelopeCard) -> tuple[float, float]:
     """Slowest and fastest speed searched, m/s."""
     low, high = (_parsed(text, "m/s", name) for name, text in (("slowest", card.slowest), ("fastest", card.fastest)))
     if not 0 < low < high:
-        raise InputError(f"'{card.slowest}' to '{card.fastest}' is no range of speeds", field="envelope.slowest")
+        raise InputError(
+            f"must be positive and below 'fastest'; '{card.slowest}' to '{card.fastest}' is no range of speeds",
+            field="envelope.slowest",
+        )
     return low, high
 
 
@@ -69,7 +70,7 @@ def _given(study: StudyData, name: str) -> Any:
     try:
         return value_at(study.data, f"drive.{name}", study.folder)
     except InputError as error:
-        raise InputError(f"the study gives no one {name}: name them", field=f"envelope.{name}s") from error
+        raise InputError(f"the study has no single {name}; give a list", field=f"envelope.{name}s") from error
 
 
 def _shares(study: StudyData) -> list[str]:
@@ -77,7 +78,9 @@ def _shares(study: StudyData) -> list[str]:
     try:
         return [scaled(load, share, significant=4) for share in SHARES]
     except InputError as error:
-        raise InputError(f"the study gives no one load: {error.message}; name them", field="envelope.loads") from None
+        raise InputError(
+            f"the study has no single load: {error.message}; give a list", field="envelope.loads"
+        ) from None
 
 
 def _parsed(text: str, unit: str, field: str) -> float:
@@ -87,17 +90,17 @@ def _parsed(text: str, unit: str, field: str) -> float:
         raise error.within(field=f"envelope.{field}") from None
 
 
-def operating(pair: tuple[str, str], speed: str) -> dict[str, str]:
-    """What a study changes to be driven at a load, a pressure and a speed."""
+def operating_point(pair: tuple[str, str], speed: str) -> dict[str, str]:
+    """Changes of the study for a pair (load, pressure) and a speed."""
     return {"drive.load": pair[0], "drive.pressure": pair[1], "drive.speed": speed}
 
 
-#: The speed is found to this share of the range searched, or the answer to this share of the limit.
+#: The search ends at this share of the range of speeds, or when the answer is this close to the limit (relative).
 FINE = 1e-3
 
 
 class SpeedSearch:
-    """The speed at which one answer reaches the limit."""
+    """Search for the speed at which an answer reaches the limit."""
 
     def __init__(self, low: float, high: float, limit: float) -> None:
         self.low, self.high, self.limit, self.fine = low, high, limit, FINE * (high - low)
@@ -108,7 +111,7 @@ class SpeedSearch:
 
     @property
     def next(self) -> float:
-        """Speed to try."""
+        """The next speed to evaluate, m/s."""
         if math.isnan(self.at_low):
             return self.low
         if math.isnan(self.at_high):
@@ -120,11 +123,11 @@ class SpeedSearch:
 
     @property
     def speed(self) -> float:
-        """Speed found; NaN: none."""
+        """The largest speed below the limit, m/s; NaN: none."""
         return self._speed
 
-    def take(self, outcome: Outcome, answer: str) -> None:
-        """An outcome at `next`."""
+    def record(self, outcome: Outcome, answer: str) -> None:
+        """Use the outcome at the speed `next`."""
         speed = self.next
         if isinstance(outcome, Failed):
             self.failure, self.settled, self._speed = outcome.reason, True, math.nan
@@ -140,7 +143,7 @@ class SpeedSearch:
                 self.settled, self.value, self._speed = True, value, self.high
         elif value < self.limit:
             self.low, self.at_low, self.value, self._speed = speed, value, value, speed
-            # Illinois: an end that stays twice counts half, so that the other one moves.
+            # Illinois rule: if an end stays twice, its distance to the limit is halved.
             self.at_high = self.limit + (self.at_high - self.limit) / 2 if self._kept > 0 else self.at_high
             self._kept = max(self._kept, 0) + 1
         else:
@@ -153,23 +156,23 @@ class SpeedSearch:
             self.settled = close and not math.isnan(self._speed)
 
 
-#: Rounds of bisection and interpolation at most.
+#: Rounds of the search at most.
 ROUNDS = 14
 
 
-#: Runs per load and pressure that are expected, to judge whether training pays.
+#: Expected runs per load and pressure, to decide whether to train a reduced model.
 EXPECTED = 7
 
 
 @dataclass(frozen=True, eq=False)
 class Envelope:
-    """What a tyre may be driven at.
+    """The largest safe speeds of a tyre.
 
     Parameters
     ----------
-    study : the study. card : what was asked. runs : how many. certificate : of a reduced model, if one answered.
-    table : a row per load and pressure: as written and in SI, ``speed_m_s`` (NaN: the limit is broken at any speed
-        searched), ``at_limit`` (False: it is kept even at the highest), the answer there, ``tkph`` = load x speed in
+    study : the study. card : the question. runs : number of runs. certificate : of the reduced model, if it was used.
+    table : a row per load and pressure: both as written and in SI, ``speed_m_s`` (NaN: above the limit at all speeds),
+        ``at_limit`` (False: below the limit even at the highest speed), the answer there, ``tkph`` = load x speed in
         t km/h, ``by``, ``error_K``, ``failure``.
     """
 
@@ -185,10 +188,9 @@ class Envelope:
 
     @property
     def rating(self) -> pd.DataFrame:
-        """Per pressure: the load x speed, t km/h, that is safe at every load tried (a TKPH-like rating).
+        """Per pressure: load x speed, t km/h, that is safe at every load (similar to a TKPH rating).
 
-        The product is smallest at one of the loads; below it the tyre is below the limit at all of them. NaN: at some
-        load no speed is.
+        It is the smallest product over the loads. NaN: at some load no speed is safe.
         """
         groups = self.table.groupby("pressure", sort=False)
         return groups["tkph"].min().where(groups["speed_m_s"].count() == groups.size()).rename("tkph").reset_index()
@@ -204,15 +206,15 @@ class Envelope:
         safe = self.rating.dropna(subset=["tkph"]).to_dict("records")
         rated = [f"{row['tkph']:.0f} t km/h at {row['pressure']}" for row in safe]
         if rated:
-            sentences.append(f"Load times speed that is safe at every one of these loads: {', '.join(rated)}.")
+            sentences.append(f"Load times speed that is safe at all of these loads: {', '.join(rated)}.")
         by = f"{self.runs} full runs"
         if self.certificate is not None:
-            by = f"{self.runs} variants by a reduced model, temperatures good to {self.certificate.worst:.2g} K"
-        sentences.append(f"Found by {by}.")
+            by = f"{self.runs} variants by a reduced model, error of temperatures {self.certificate.worst:.2g} K"
+        sentences.append(f"Computed by {by}.")
         return sentences
 
     def to_dict(self) -> dict[str, Any]:
-        """JSON-ready."""
+        """Content for JSON."""
         return {
             "asked": self.card.model_dump(),
             "rows": self.table.to_dict("records"),
@@ -233,16 +235,16 @@ def _speed_words(row: Mapping[Any, Any]) -> str:
 
 
 def envelope(
-    study: StudyData, card: EnvelopeCard, how: Execution | None = None, **options: Unpack[ExecutionOptions]
+    study: StudyData, card: EnvelopeCard, execution: Execution | None = None, **options: Unpack[ExecutionOptions]
 ) -> Envelope:
     """The largest speed at which an answer stays below a limit, for every load and pressure.
 
-    The answer must rise with speed. All pairs are searched at once: each round runs one speed of every pair that is not
-    settled, by false position kept within bisection (the Illinois rule). how, said : as of `tyrefem.sweep.sweep.sweep`.
+    The answer must rise with speed. Each round runs a speed for every pair that is not settled, by false position with
+    the Illinois rule, safeguarded by bisection. execution, options : as in `tyrefem.sweep.sweep.sweep`.
 
     Raises
     ------
-    InputError : speeds that are no range, an unknown answer, a load or pressure that the study refuses.
+    InputError : the speeds are no range, the answer is unknown, or the study refuses a load or pressure.
     """
     import pandas as pd
 
@@ -251,18 +253,18 @@ def envelope(
     sizes = [(parse(load, "N"), parse(pressure, "Pa")) for load, pressure in pairs]
     searches = [SpeedSearch(low, high, card.below) for _ in pairs]
     plan = Plan(study, _box(sizes, low, high), (), (), {}, None, {"sample": "envelope"})
-    how = (how or Execution()).given(options)
+    execution = (execution or Execution()).given(options)
     by: list[str] = [""] * len(pairs)
-    with Evaluator(plan, how) as evaluate:
+    with Evaluator(plan, execution) as evaluate:
         evaluate.train(EXPECTED * len(pairs))
         for _ in range(ROUNDS):
             waiting = [n for n, search in enumerate(searches) if not search.settled]
-            how.tick("envelope", len(searches) - len(waiting), len(searches))
+            execution.report_progress("envelope", len(searches) - len(waiting), len(searches))
             if not waiting:
                 break
-            outcomes = evaluate([operating(pairs[n], f"{searches[n].next:.6g} m/s") for n in waiting])
+            outcomes = evaluate([operating_point(pairs[n], f"{searches[n].next:.6g} m/s") for n in waiting])
             for n, outcome in zip(waiting, outcomes, strict=True):
-                searches[n].take(outcome, card.answer)
+                searches[n].record(outcome, card.answer)
                 by[n] = "" if isinstance(outcome, Failed) else outcome.by
     error = {"reduced": evaluate.certificate.worst if evaluate.certificate else math.nan, "full": 0.0}
     rows = [
@@ -276,17 +278,17 @@ def envelope(
             "at_limit": search.bracketed,
             card.answer: search.value,
             "tkph": newton / 9806.65 * search.speed * 3.6,
-            "by": how,
-            "error_K": error.get(how, math.nan),
+            "by": answered_by,
+            "error_K": error.get(answered_by, math.nan),
             "failure": search.failure,
         }
-        for (load, pressure), (newton, pascal), search, how in zip(pairs, sizes, searches, by, strict=True)
+        for (load, pressure), (newton, pascal), search, answered_by in zip(pairs, sizes, searches, by, strict=True)
     ]
     return Envelope(study, card, pd.DataFrame(rows), len(evaluate.outcomes), evaluate.certificate, evaluate.why_full)
 
 
 def _box(sizes: list[tuple[float, float]], low: float, high: float) -> tuple[Varied, ...]:
-    """What a reduced model would have to cover."""
+    """The box of speeds, loads and pressures for a reduced model."""
     box = [Varied("drive.speed", "m/s", low=low, high=high)]
     for key, unit, values in (
         ("drive.load", "N", [a for a, _ in sizes]),
@@ -298,7 +300,7 @@ def _box(sizes: list[tuple[float, float]], low: float, high: float) -> tuple[Var
 
 
 class EnvelopeQuestion(SweepQuestion):
-    """``[envelope]``: the largest speed that keeps the tyre below a limit, over loads and pressures."""
+    """``[envelope]``: the largest speed below a limit, over loads and pressures."""
 
     key: ClassVar[str] = Envelope.name
     table: ClassVar[type[EnvelopeCard]] = EnvelopeCard
@@ -309,9 +311,9 @@ class EnvelopeQuestion(SweepQuestion):
 
     @property
     def words(self) -> str:
-        """How many loads and pressures."""
+        """The planned work: number of loads and pressures."""
         return f"an envelope of {len(self.pairs)} loads and pressures"
 
-    def answered(self, how: Execution) -> Envelope:
+    def answered(self, execution: Execution) -> Envelope:
         """See `envelope`."""
-        return envelope(self.study, self.limits, how)
+        return envelope(self.study, self.limits, execution)

@@ -1,7 +1,4 @@
-"""The best variant: the smallest or largest answer within what varies, under limits.
-
-The search for the best variant: differential evolution under limits.
-"""
+"""The best variant: the smallest or largest answer under limits, by differential evolution."""
 
 from __future__ import annotations
 
@@ -14,7 +11,7 @@ from typing import TYPE_CHECKING, Any, Unpack
 import numpy as np
 from numpy.typing import NDArray
 
-from tyrefem.sweep.answering import Evaluator
+from tyrefem.sweep.evaluation import Evaluator
 from tyrefem.sweep.sweep import Sweep
 from tyrefem.variants.answer_units import difference_unit, name_of, shown
 from tyrefem.variants.answers import NEVER, check_answer
@@ -32,35 +29,35 @@ Array = NDArray[np.float64]
 
 
 #: The search ends when the population's answers differ by this share of their mean.
-ALIKE = 1e-4
+CONVERGED = 1e-4
 
 
-#: Violation, in shares of the limit, of a variant that has no answers.
+#: Violation of a failed variant, in shares of a limit.
 FAILED = 1e3
 
 
-#: Known variants that a search may begin with.
+#: Known variants in the first generation, at most.
 MOST_KNOWN = 10
 
 
-#: Width of the rim around a range, as a share of it, that counts as its end.
-RIM = 0.15
+#: Margin around a range, as a share of it, that is mapped to its end.
+MARGIN = 0.15
 
 
 def best_known(known: Sweep | None, card: OptimiseCard) -> list[Array]:
-    """Places of known variants that keep the limits, the best first; at most a third of a generation is wanted."""
+    """Points of the known variants that keep the limits, the best first."""
     if known is None:
         return []
     plan = known.plan
-    fine = [n for n, outcome in known.answered.items() if violation(outcome, plan.limits) == 0]
-    order = sorted(fine, key=lambda n: (objective(known.outcomes[n], card), n))
+    feasible = [n for n, outcome in known.answered.items() if violation(outcome, plan.limits) == 0]
+    order = sorted(feasible, key=lambda n: (objective(known.outcomes[n], card), n))
     return [
         np.array([_place(number, plan.variants[n][number.key]) for number in plan.varied]) for n in order[:MOST_KNOWN]
     ]
 
 
 def _place(varied: Varied, value: Any) -> float:
-    """The coordinate of a value in the search: its number in a list, or its place between both ends."""
+    """The coordinate of a value in the search: its number in a list, or its position between both ends."""
     if varied.values:
         return float(varied.values.index(value))
     number = float(varied.of(value))
@@ -71,8 +68,10 @@ def _place(varied: Varied, value: Any) -> float:
     )
 
 
-def evolve(evaluate: Evaluator, card: OptimiseCard, tick: Callable[[str, int, int], None], known: list[Array]) -> str:
-    """Ask for generations until they are alike or `card.runs` are used up; why it ended, in words."""
+def evolve(
+    evaluate: Evaluator, card: OptimiseCard, report_progress: Callable[[str, int, int], None], known: list[Array]
+) -> str:
+    """Evaluate generations until they converge or `card.runs` is reached; returns the reason of the end."""
     from scipy.optimize import NonlinearConstraint, differential_evolution
     from scipy.stats import qmc
 
@@ -85,7 +84,7 @@ def evolve(evaluate: Evaluator, card: OptimiseCard, tick: Callable[[str, int, in
         return evaluate([_variant(varied, column) for column in np.atleast_2d(x.T)])
 
     def aim(x: Array) -> Array:
-        tick("optimum", min(len(evaluate.outcomes), card.runs), card.runs)
+        report_progress("optimum", min(len(evaluate.outcomes), card.runs), card.runs)
         return np.array([objective(outcome, card) for outcome in outcomes(x)])
 
     def broken(x: Array) -> Array:
@@ -94,17 +93,17 @@ def evolve(evaluate: Evaluator, card: OptimiseCard, tick: Callable[[str, int, in
     first = qmc.LatinHypercube(len(varied), seed=np.random.default_rng(card.seed)).random(count) * most
     for number, place in enumerate(known[: count // 3]):
         first[number] = place
-    # A search takes steps that leave the box for misses: with a rim of clipped places its edges are reached.
-    rim = np.where(whole, 0.0, RIM)
+    # The search rejects points outside its bounds; a margin of clipped points lets it reach the edges of the box.
+    margin = np.where(whole, 0.0, MARGIN)
     search = differential_evolution(
         aim,
-        list(zip(-rim, most + rim, strict=True)),
+        list(zip(-margin, most + margin, strict=True)),
         integrality=whole,
         init=np.where(whole, np.round(first), first),
         maxiter=max(card.runs // count - 1, 1),
         constraints=NonlinearConstraint(broken, -np.inf, 0.0) if limits else (),
         seed=card.seed,
-        tol=ALIKE,
+        tol=CONVERGED,
         polish=False,
         updating="deferred",
         vectorized=True,
@@ -122,7 +121,7 @@ def _variant(varied: Sequence[Varied], x: Array) -> dict[str, Any]:
 
 
 def objective(outcome: Outcome, card: OptimiseCard) -> float:
-    """What is minimised; a time never reached is the longest, a failure the worst."""
+    """The number to minimise; a time that is not reached is the longest, a failure is infinite."""
     if isinstance(outcome, Failed):
         return math.inf
     value = float(outcome.answers[card.answer])
@@ -131,9 +130,9 @@ def objective(outcome: Outcome, card: OptimiseCard) -> float:
 
 
 def violation(outcome: Outcome, limits: Mapping[str, LimitCard], margins: Mapping[str, float] | None = None) -> float:
-    """By how much limits are broken together, in shares of each; 0: kept.
+    """Sum of the relative violations of the limits; 0: all are kept.
 
-    ``margins``: answer -> what a reduced model's may be wrong by; its answers have to keep the limits by that much.
+    ``margins``: answer -> error of the reduced model; its answers must keep the limits with this margin.
 
     >>> violation(Answered({"hottest_degC": 99.0}), {"hottest_degC": LimitCard(below=90.0)})
     0.1
@@ -151,23 +150,23 @@ def violation(outcome: Outcome, limits: Mapping[str, LimitCard], margins: Mappin
 
 
 def _beyond(value: float, bound: float) -> float:
-    """How far beyond a bound, which itself is not allowed."""
+    """Relative excess over a bound; the bound itself is not allowed."""
     return 0.0 if value < bound else max((value - bound) / max(abs(bound), 1e-12), 1e-9)
 
 
-#: Candidates that are run in full, in the order of what they promise, until one keeps the limits.
+#: Best variants that are run in full, one after the other, until one keeps the limits.
 CANDIDATES = 5
 
 
 @dataclass(frozen=True, eq=False)
 class Optimum:
-    """What a search found.
+    """Result of a search.
 
     Parameters
     ----------
-    swept : every evaluated variant, in the order of the search. card : what was asked.
+    swept : all evaluated variants, in the order of the search. card : the question.
     best : number of the best variant that keeps the limits; None: none does. full : its answers by a full run.
-    nominal : outcome of the study as it is. exhaustive : every combination was tried. ended : why the search ended.
+    nominal : outcome of the unchanged study. exhaustive : all combinations were evaluated. ended : why it ended.
     """
 
     swept: Sweep
@@ -183,12 +182,12 @@ class Optimum:
 
     @property
     def answer(self) -> str:
-        """What was minimised or maximised."""
+        """The answer that was minimised or maximised."""
         return self.card.answer
 
     @functools.cached_property
     def table(self) -> pd.DataFrame:
-        """Every evaluated variant, as `Sweep.table`, with ``best_so_far`` of those that keep the limits."""
+        """All evaluated variants, as `Sweep.table`, with ``best_so_far`` among those that keep the limits."""
         table = self.swept.table
         if self.answer not in table:
             return table.assign(best_so_far=np.nan)
@@ -197,13 +196,13 @@ class Optimum:
 
     @property
     def changes(self) -> dict[str, Any]:
-        """What to change in the study to get the best variant."""
+        """Changes of the study that give the best variant."""
         return {} if self.best is None else dict(self.swept.plan.variants[self.best])
 
     @property
     def where(self) -> str:
-        """`changes` to four digits, for people."""
-        return ", ".join(f"{key} = {_brief(value)}" for key, value in self.changes.items())
+        """`changes` as text, with four digits."""
+        return ", ".join(f"{key} = {_four_digits(value)}" for key, value in self.changes.items())
 
     @property
     def words(self) -> list[str]:
@@ -232,11 +231,11 @@ class Optimum:
         if certificate is not None:
             stated = certificate.errors.get(self.answer)
             error = "" if stated is None else f"; {name_of(self.answer)} to ±{shown(self.answer, stated, 2)}"
-            sentences.append(f"The search used a reduced model, good to {certificate.worst:.2g} K{error}.")
+            sentences.append(f"The search used a reduced model with an error of {certificate.worst:.2g} K{error}.")
         return sentences
 
     def to_dict(self) -> dict[str, Any]:
-        """JSON-ready."""
+        """Content for JSON."""
         return {
             "asked": self.card.model_dump(exclude_none=True),
             "limits": {name: limit.model_dump(exclude_none=True) for name, limit in self.swept.plan.limits.items()},
@@ -254,21 +253,21 @@ class Optimum:
 def optimum(
     plan: Plan,
     card: OptimiseCard,
-    how: Execution | None = None,
+    execution: Execution | None = None,
     *,
     known: Sweep | None = None,
     **options: Unpack[ExecutionOptions],
 ) -> Optimum:
-    """Search by differential evolution (Storn & Price 1997; scipy), listed values as whole numbers.
+    """Search by differential evolution (Storn & Price 1997; scipy); listed values are integers.
 
-    Limits by Lampinen's rule (2002): a variant that keeps them beats one that does not, of two that do not the one that
-    breaks them less. Where everything that varies is listed and `card.runs` allows, every combination is tried. The
-    best variant is run in full before it is named.
+    Limits follow Lampinen's rule (2002): a variant that keeps them is better than a variant that violates them; of two
+    that violate them the smaller violation is better. If all varied numbers are listed and `card.runs` allows, every
+    combination is evaluated. The best variant is confirmed by a full run.
 
     Parameters
     ----------
-    plan : its study, `varied`, `limits` and time to a temperature. how, said : as of `tyrefem.sweep.sweep.sweep`.
-    known : variants of the same box that have answers: the best of them are in the first generation.
+    plan : its study, `varied`, `limits` and ``time_to``. execution, options : as in `tyrefem.sweep.sweep.sweep`.
+    known : evaluated variants of the same box; the best of them enter the first generation.
 
     Raises
     ------
@@ -276,9 +275,9 @@ def optimum(
     """
     for name in (card.answer, *plan.limits):
         check_answer(name, plan.study, plan.time_to)
-    how = (how or Execution()).given(options)
-    with Evaluator(plan, how) as evaluate:
-        nominal = Evaluator(plan, Execution(how.scheduler))([{}])[0]
+    execution = (execution or Execution()).given(options)
+    with Evaluator(plan, execution) as evaluate:
+        nominal = Evaluator(plan, Execution(execution.scheduler))([{}])[0]
         evaluate.train(card.runs)
         exhaustive = (
             all(number.values for number in plan.varied)
@@ -288,16 +287,16 @@ def optimum(
             evaluate(grid(plan.varied))
             ended = ""
         else:
-            ended = evolve(evaluate, card, how.tick, best_known(known, card))
+            ended = evolve(evaluate, card, execution.report_progress, best_known(known, card))
         best, full = _verified(evaluate, card)
     swept = Sweep(
-        evaluate.table_plan, evaluate.outcomes, evaluate.certificate, evaluate.why_full, taken_up=evaluate.taken_up
+        evaluate.table_plan, evaluate.outcomes, evaluate.certificate, evaluate.why_full, resumed=evaluate.resumed
     )
     return Optimum(swept, card, best, full, nominal, exhaustive, ended)
 
 
-def _brief(value: Any) -> str:
-    """A written quantity to four digits; anything else as it is."""
+def _four_digits(value: Any) -> str:
+    """A written quantity with four digits; other values unchanged."""
     if isinstance(value, float):
         return f"{value:.4g}"
     number, space, unit = str(value).partition(" ")
@@ -308,7 +307,7 @@ def _brief(value: Any) -> str:
 
 
 def words_of(limits: Mapping[str, LimitCard]) -> str:
-    """Limits as a person reads them.
+    """Limits as text.
 
     >>> words_of({"hottest_degC": LimitCard(below=90.0)})
     'highest temperature < 90 °C'
@@ -321,12 +320,12 @@ def words_of(limits: Mapping[str, LimitCard]) -> str:
 
 
 def _verified(evaluate: Evaluator, card: OptimiseCard) -> tuple[int | None, Mapping[str, Any]]:
-    """The most promising variant whose full run keeps the limits, and what that run answers."""
+    """The best variant whose full run keeps the limits, and the answers of that run."""
     limits = evaluate.plan.limits
     outcomes = evaluate.outcomes
     answered = [n for n, outcome in outcomes.items() if isinstance(outcome, Answered)]
-    fine = [n for n in answered if violation(outcomes[n], limits, evaluate.margins) == 0]
-    for n in sorted(fine, key=lambda n: (objective(outcomes[n], card), n))[:CANDIDATES]:
+    feasible = [n for n in answered if violation(outcomes[n], limits, evaluate.margins) == 0]
+    for n in sorted(feasible, key=lambda n: (objective(outcomes[n], card), n))[:CANDIDATES]:
         (full,) = evaluate([evaluate.variants[n]], full=True)
         if isinstance(full, Answered) and violation(full, limits) == 0:
             return n, full.answers

@@ -1,4 +1,4 @@
-"""The Pareto front: variants that no other one beats in every respect."""
+"""The Pareto front: variants that no other variant dominates."""
 
 from __future__ import annotations
 
@@ -18,19 +18,19 @@ if TYPE_CHECKING:
     from tyrefem.sweep.sweep import Sweep
 
 Array = NDArray[np.float64]
-#: What a designer weighs, unless he says otherwise: all the smaller the better.
-USUAL = ("hottest_degC", "rolling_resistance_coefficient", "mass_kg")
+#: Default aims, all minimised.
+DEFAULT_AIMS = ("hottest_degC", "rolling_resistance_coefficient", "mass_kg")
 
 
 def undominated(values: Array) -> NDArray[np.bool_]:
-    """Which rows (n, k) no other row beats: at most as large in every column, smaller in one.
+    """Which rows (n, k) no other row dominates: at most as large in every column, and smaller in at least one.
 
     >>> undominated(np.array([[1.0, 2.0], [2.0, 1.0], [2.0, 2.0]])).tolist()
     [True, True, False]
     """
     kept = np.zeros(len(values), dtype=np.bool_)
     best = np.empty((0, values.shape[1]))
-    # Sorted, a row can only be beaten by one before it: the front so far is all it has to be held against.
+    # In sorted order only an earlier row can dominate a row: compare it with the front so far.
     for i in np.lexsort(values.T[::-1]):
         worse = (best <= values[i]).all(axis=1)
         if not (worse & (best < values[i]).any(axis=1)).any():
@@ -39,25 +39,25 @@ def undominated(values: Array) -> NDArray[np.bool_]:
     return kept
 
 
-def usual_aims(table: pd.DataFrame) -> dict[str, str]:
-    """Temperature, rolling resistance and mass, all the smaller the better, where they vary."""
+def default_aims(table: pd.DataFrame) -> dict[str, str]:
+    """Temperature, rolling resistance and mass, all minimised, if they vary."""
     feasible = table[table["feasible"]]
-    return {name: "min" for name in USUAL if name in feasible and feasible[name].nunique() > 1}
+    return {name: "min" for name in DEFAULT_AIMS if name in feasible and feasible[name].nunique() > 1}
 
 
 def front(table: pd.DataFrame, aims: Mapping[str, str] | None = None) -> pd.DataFrame:
-    """The rows of a sweep's table on the Pareto front, feasible ones only, sorted by the first aim.
+    """The feasible rows of a sweep's table on the Pareto front, sorted by the first aim.
 
     Parameters
     ----------
-    aims : answer -> "min" or "max"; by default temperature, rolling resistance and mass, where they vary.
+    aims : answer -> "min" or "max"; default: temperature, rolling resistance and mass, if they vary.
 
     Raises
     ------
-    InputError : an answer that the table does not have, an aim that is neither.
+    InputError : the table does not have the answer, or an aim is neither "min" nor "max".
     """
     feasible = table[table["feasible"]]
-    aims = aims or usual_aims(table)
+    aims = aims or default_aims(table)
     for name, aim in aims.items():
         if name not in table:
             raise InputError(f"no answer '{name}'{nearest(name, table.columns)}", field="pareto")
@@ -71,18 +71,18 @@ def front(table: pd.DataFrame, aims: Mapping[str, str] | None = None) -> pd.Data
 
 @dataclass(frozen=True, eq=False)
 class ParetoFront:
-    """The front of a sweep; ``aims`` as of `front`."""
+    """The Pareto front of a sweep; ``aims`` as in `front`."""
 
     swept: Sweep
     aims: Mapping[str, str]
 
     name = "pareto"
-    heading = "What is given up for what"
+    heading = "Pareto front"
 
     @property
     def chosen(self) -> dict[str, str]:
         """Answer -> aim."""
-        return dict(self.aims) or usual_aims(self.swept.table)
+        return dict(self.aims) or default_aims(self.swept.table)
 
     @property
     def table(self) -> pd.DataFrame:
@@ -100,7 +100,7 @@ class ParetoFront:
             return []
         feasible = int(self.swept.table["feasible"].sum())
         together = ", ".join(("" if aim == "min" else "large ") + name_of(name) for name, aim in aims.items())
-        sentences = [f"{len(table)} of {feasible} variants are beaten by none in {together} together."]
+        sentences = [f"{len(table)} of {feasible} variants are not dominated in {together}."]
         best: dict[str, tuple[Mapping[str, Any], list[str]]] = {}
         for name, aim in aims.items():
             row = extreme(table, name, least=aim == "min")
@@ -111,5 +111,5 @@ class ParetoFront:
         return sentences
 
     def to_dict(self) -> dict[str, Any]:
-        """JSON-ready."""
+        """Content for JSON."""
         return {"aims": self.chosen, "variants": self.table["variant"].tolist(), "words": self.words}

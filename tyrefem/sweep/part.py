@@ -1,3 +1,5 @@
+"""Interface of an answer in a design study."""
+
 from __future__ import annotations
 
 from typing import TYPE_CHECKING, Any, Protocol
@@ -7,10 +9,10 @@ if TYPE_CHECKING:
 
 
 class DesignPart(Protocol):
-    """One answer: a table and words. Its folder of finished variants and its files have its ``name``.
+    """An answer of a design study: a table and sentences. ``name`` is the name of its folder and files.
 
-    Its pictures are what is registered for its class with `tyrefem.reports.sweep_figures.figures`; a class that sets
-    ``drawn = False`` has none.
+    Its pictures are registered for its class with `tyrefem.reports.sweep_figures.figures`; a class without pictures
+    sets ``drawn = False``.
     """
 
     name: str
@@ -18,14 +20,14 @@ class DesignPart(Protocol):
 
     @property
     def table(self) -> pd.DataFrame:
-        """To take away."""
+        """The table of the answer."""
         ...
 
     @property
     def words(self) -> list[str]:
-        """Sentences."""
+        """The answer in sentences."""
         ...
 
     def to_dict(self) -> dict[str, Any]:
-        """JSON-ready."""
+        """Content for JSON."""
         ...

@@ -1,4 +1,4 @@
-"""A question of a sweep file that has a table of its own: one class in a module of this package, found by existing."""
+"""Questions with separate tables in a sweep file; a class in any module of this package adds a question."""
 
 from __future__ import annotations
 
@@ -19,22 +19,22 @@ from tyrefem.variants.execution import Execution
 
 
 class SweepQuestion(ABC):
-    """A question about a study: what it would run, and its answer.
+    """A question about a study: the planned work, and the answer.
 
     Parameters
     ----------
-    study : the study as it is. table : the question's own table. card : the whole sweep file.
+    study : the unchanged study. table : the table of the question. card : the whole sweep file.
 
     Raises
     ------
-    InputError : when made: something in the table makes no sense for the study.
+    InputError : the table is invalid for the study.
     """
 
-    #: Its table in a sweep file, its keyword of ``study.sweep``, and the name of its answer's files.
+    #: Name of its table in a sweep file, of its keyword in ``study.sweep``, and of its answer's files.
     key: ClassVar[str] = ""
-    #: What the table may say.
+    #: Model of the table.
     table: ClassVar[type[Card]] = Card
-    #: Its place among the answers.
+    #: Position among the answers.
     place: ClassVar[int] = 9
 
     @abstractmethod
@@ -43,16 +43,16 @@ class SweepQuestion(ABC):
     @property
     @abstractmethod
     def words(self) -> str:
-        """What would be run: "a tornado of 5 tolerances"."""
+        """The planned work, e.g. "a tornado of 5 tolerances"."""
 
     @abstractmethod
-    def answered(self, how: Execution) -> DesignPart:
-        """Run it. ``how`` keeps finished variants in a folder of the question's own."""
+    def answered(self, execution: Execution) -> DesignPart:
+        """Answer the question. ``execution`` has a separate folder for its finished variants."""
 
 
 @functools.cache
 def sweep_questions() -> dict[str, type[SweepQuestion]]:
-    """Every question by its key, in the order in which they are told.
+    """All questions by key, in the order of the report.
 
     >>> list(sweep_questions())
     ['tornado', 'envelope']
@@ -68,8 +68,8 @@ def sweep_questions() -> dict[str, type[SweepQuestion]]:
     }
 
 
-def further_apart(data: Mapping[str, Any]) -> dict[str, Any]:
-    """A sweep file's content with the tables of further questions under ``further``, where `SweepCard` takes them."""
+def with_further_tables(data: Mapping[str, Any]) -> dict[str, Any]:
+    """A sweep file's content with the tables of further questions moved to ``further``, as `SweepCard` has them."""
     keys = [key for key in sweep_questions() if key in data and key not in SweepCard.model_fields]
     rest = {key: value for key, value in data.items() if key not in keys}
     further = {key: data[key] for key in keys if data[key] is not None}
@@ -77,11 +77,11 @@ def further_apart(data: Mapping[str, Any]) -> dict[str, Any]:
 
 
 def questions_of(study: StudyData, card: SweepCard) -> tuple[SweepQuestion, ...]:
-    """The questions that a sweep file asks.
+    """The questions of a sweep file.
 
     Raises
     ------
-    InputError : an unknown question, or a table that makes no sense for the study; names the table.
+    InputError : an unknown question, or a table that is invalid for the study; names the table.
     """
     known = sweep_questions()
     for key in card.further:

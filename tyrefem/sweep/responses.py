@@ -1,4 +1,4 @@
-"""What a sweep's table says at first sight: the best and the worst variant, and what moves an answer."""
+"""Summary of a sweep's table: range of every answer, and main effects of the varied numbers."""
 
 from __future__ import annotations
 
@@ -15,16 +15,16 @@ from tyrefem.variants.answers import NEVER, TIME_TO
 if TYPE_CHECKING:
     import pandas as pd
 
-#: Answers that are drawn and judged, unless a sweep file says otherwise.
-USUAL = ("hottest_degC", "rolling_resistance_coefficient")
-#: A number with more values than this has its effect from a straight line, not from means at its levels.
+#: Default answers in pictures and tables.
+DEFAULT_ANSWERS = ("hottest_degC", "rolling_resistance_coefficient")
+#: The effect of a number with more values than this comes from a linear fit, else from means at its levels.
 MOST_LEVELS = 12
 
 
 def judged(sweep: Sweep, wanted: tuple[str, ...] = ()) -> list[str]:
-    """Answers that are drawn and judged: those wanted, else the usual ones; only such that vary."""
+    """Answers in pictures and tables: those wanted, else the default ones, if they vary."""
     table = finished(sweep)
-    names = wanted or (*USUAL, *([TIME_TO] if sweep.plan.time_to is not None else []))
+    names = wanted or (*DEFAULT_ANSWERS, *([TIME_TO] if sweep.plan.time_to is not None else []))
     return [name for name in names if name in table and table[name].nunique() > 1]
 
 
@@ -34,7 +34,7 @@ def finished(sweep: Sweep) -> pd.DataFrame:
 
 
 def numeric(sweep: Sweep) -> list[str]:
-    """Headings of the varied numbers that make an axis."""
+    """Headings of the varied numbers that can be an axis."""
     table = sweep.table
     return [
         varied.heading
@@ -44,11 +44,11 @@ def numeric(sweep: Sweep) -> list[str]:
 
 
 def main_effects(sweep: Sweep, answer: str) -> pd.DataFrame:
-    """How far each varied number moves an answer on average over the others; the strongest first.
+    """Main effect of each varied number on an answer, averaged over the others; the largest first.
 
     Columns ``number``, ``low``, ``high`` (its ends; of a card or word the values with the lowest and highest mean) and
-    ``effect``, the answer's change from one to the other. From means at the levels where they are few, else from a
-    straight line fitted to all numbers together.
+    ``effect``, the answer's change from low to high. Effects come from means at the levels if these are few, else from
+    a linear fit to all numbers.
     """
     import pandas as pd
 
@@ -84,7 +84,7 @@ def _slopes(table: pd.DataFrame, names: list[str], answer: str) -> dict[str, flo
 
 
 def words(sweep: Sweep, wanted: tuple[str, ...] = ()) -> list[str]:
-    """The answer in sentences: range of every judged answer, where, and what moves it."""
+    """Sentences: range of every reported answer, with its variants, and the main effects."""
     sentences = []
     table = finished(sweep)
     keeping = int(table["feasible"].sum())
@@ -102,7 +102,7 @@ def words(sweep: Sweep, wanted: tuple[str, ...] = ()) -> list[str]:
             unit = difference_unit(answer)
             moved = "; ".join(_moved(row, unit) for row in effects.to_dict("records"))
             some = ", where it is reached" if table[answer].isna().any() else ""
-            sentences.append(f"What moves the {name_of(answer)}, on average over the others{some}: {moved}.")
+            sentences.append(f"Main effects on the {name_of(answer)}, averaged over the others{some}: {moved}.")
     return sentences
 
 
@@ -112,26 +112,26 @@ def _moved(row: Mapping[Any, Any], unit: str) -> str:
 
 
 def extreme(table: pd.DataFrame, answer: str, *, least: bool) -> Mapping[str, Any]:
-    """The row with the smallest or largest answer; a time that was never reached is the largest."""
+    """The row with the smallest or largest answer; a time that is not reached is the largest."""
     values = table[answer].fillna(NEVER).to_numpy(dtype=float)
     place = int(values.argmin() if least else values.argmax())
     return {str(name): value for name, value in table.iloc[place].items()}
 
 
 def named(sweep: Sweep, row: Any) -> str:
-    """A variant with what it changes."""
+    """A variant with its values, as text."""
     headings = [varied.heading for varied in sweep.plan.varied]
     values = ", ".join(f"{short(name)} {_value(row[name])}{_unit(name)}" for name in headings if name in row)
     return f"variant {row['variant']}: {values}" if values else f"variant {row['variant']}"
 
 
 def capital(words: str) -> str:
-    """A sentence's beginning."""
+    """The text with a capital first letter."""
     return words[:1].upper() + words[1:]
 
 
 def short(heading: str) -> str:
-    """A varied name without its unit and the table it stands in."""
+    """A varied name without its unit and its first table."""
     return heading.split(" [")[0].split(".", 1)[-1]
 
 
@@ -146,17 +146,17 @@ def _value(value: Any) -> str:
 
 @dataclass(frozen=True, eq=False)
 class Responses:
-    """The variants of a sweep and what moves their answers; ``wanted``: the answers that are drawn and judged."""
+    """Answers of a sweep and their main effects; ``wanted``: the answers in pictures and tables."""
 
     swept: Sweep
     wanted: tuple[str, ...] = ()
 
     name = "sweep"
-    heading = "What the variants say"
+    heading = "Answers and main effects"
 
     @property
     def table(self) -> pd.DataFrame:
-        """See `Sweep.table`."""
+        """Table of the variants, see `Sweep.table`."""
         return self.swept.table
 
     @property
@@ -165,7 +165,7 @@ class Responses:
         return words(self.swept, self.wanted)
 
     def to_dict(self) -> dict[str, Any]:
-        """JSON-ready."""
+        """Content for JSON."""
         main = {
             answer: main_effects(self.swept, answer).to_dict("records") for answer in judged(self.swept, self.wanted)
         }

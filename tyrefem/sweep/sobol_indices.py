@@ -1,4 +1,4 @@
-"""Sobol indices: which share of an answer's variance comes from which number, alone and together with others."""
+"""Sobol indices: the share of an answer's variance from each number, alone and with its interactions."""
 
 from __future__ import annotations
 
@@ -17,25 +17,25 @@ from tyrefem.variants.samples import problem
 if TYPE_CHECKING:
     import pandas as pd
 
-#: Half a 95 % interval of a total index beyond which the sample is too small to say much.
+#: Largest half width of a 95 % interval of a total index; beyond it the sample is too small.
 WIDE = 0.15
 
 
 def indices(swept: Sweep, answer: str) -> pd.DataFrame:
-    """First-order and total indices of an answer with their 95 % intervals; the largest total first.
+    """First-order and total Sobol indices of an answer with 95 % intervals; the largest total first.
 
     S_i = Var(E(y | x_i)) / Var(y), T_i = E(Var(y | x_~i)) / Var(y) (Saltelli et al. 2010, by SALib; intervals by its
     bootstrap), numbers uniform in their ranges and independent.
 
     Raises
     ------
-    InputError : the variants are no Saltelli sample, or some failed or were not run: the estimate needs every one.
+    InputError : the variants are not a Saltelli sample, or some have no answer: the estimate needs all of them.
     """
     import pandas as pd
     from SALib.analyze import sobol
 
     plan = swept.plan
-    if plan.how.get("sample") != "saltelli":
+    if plan.sampling.get("sample") != "saltelli":
         raise InputError("Sobol indices need sample = 'saltelli'", field="sample")
     values = [answer_of(swept.outcomes.get(n), answer) for n in range(len(plan.variants))]
     missing = sum(value is None or value != value for value in values)
@@ -48,7 +48,7 @@ def indices(swept: Sweep, answer: str) -> pd.DataFrame:
         analysis = dict.fromkeys(("S1", "S1_conf", "ST", "ST_conf"), nothing)
     else:
         analysis = sobol.analyze(
-            problem(plan.varied), y, calc_second_order=False, seed=plan.how["seed"], print_to_console=False
+            problem(plan.varied), y, calc_second_order=False, seed=plan.sampling["seed"], print_to_console=False
         )
     table = pd.DataFrame(
         {
@@ -73,7 +73,7 @@ class Indices:
     heading = "Sobol indices"
 
     @functools.cached_property
-    def _found(self) -> dict[str, pd.DataFrame | str]:
+    def _tables_or_reasons(self) -> dict[str, pd.DataFrame | str]:
         results: dict[str, pd.DataFrame | str] = {}
         for answer in self.answers:
             try:
@@ -84,12 +84,12 @@ class Indices:
 
     @property
     def tables(self) -> dict[str, pd.DataFrame]:
-        """Answer -> its indices, of those that could be estimated."""
-        return {answer: result for answer, result in self._found.items() if not isinstance(result, str)}
+        """Answer -> its indices, for all answers with an estimate."""
+        return {answer: result for answer, result in self._tables_or_reasons.items() if not isinstance(result, str)}
 
     @functools.cached_property
     def table(self) -> pd.DataFrame:
-        """All of them, the answer in the first column."""
+        """All indices; the first column is the answer."""
         import pandas as pd
 
         parts = [part.assign(answer=answer) for answer, part in self.tables.items()]
@@ -100,7 +100,7 @@ class Indices:
     def words(self) -> list[str]:
         """The answer in sentences."""
         sentences = []
-        for answer, result in self._found.items():
+        for answer, result in self._tables_or_reasons.items():
             if isinstance(result, str):
                 sentences.append(f"No Sobol indices of the {name_of(answer)}: {result}.")
                 continue
@@ -111,13 +111,13 @@ class Indices:
             wide = float(result["total_95"].max())
             alone = 100 * float(result["first"].sum())
             sentences.append(
-                f"Variance of the {name_of(answer)}, with all that each number takes part in: {shares}. Numbers acting"
-                f" alone make {alone:.0f} % of it."
+                f"Shares in the variance of the {name_of(answer)}, with interactions: {shares}. First-order effects"
+                f" explain {alone:.0f} % of it."
             )
             if wide > WIDE:
-                sentences.append(f"Intervals of up to ±{100 * wide:.0f} % are wide: take a larger base.")
+                sentences.append(f"Intervals of up to ±{100 * wide:.0f} % are wide: use a larger base sample.")
         return sentences
 
     def to_dict(self) -> dict[str, Any]:
-        """JSON-ready."""
+        """Content for JSON."""
         return {"rows": self.table.to_dict("records"), "words": self.words}

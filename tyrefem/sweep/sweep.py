@@ -1,4 +1,4 @@
-"""A sweep: every variant answered wherever the scheduler has room, kept as it is finished, one table of answers."""
+"""A sweep: evaluation of all variants of a plan on a scheduler, and the table of their answers."""
 
 from __future__ import annotations
 
@@ -12,7 +12,7 @@ import numpy as np
 
 from tyrefem.brief import Brief
 from tyrefem.errors import InputError, nearest
-from tyrefem.sweep.answering import Answering
+from tyrefem.sweep.evaluation import VariantEvaluation
 from tyrefem.variants.dask_cluster import ClusterLostError
 from tyrefem.variants.execution import Execution, ExecutionOptions
 from tyrefem.variants.outcomes import Answered, Failed, Outcome
@@ -26,13 +26,14 @@ if TYPE_CHECKING:
 
 @dataclass(frozen=True, eq=False)
 class Sweep(Brief):
-    """The answers of a plan's variants, as far as they are finished.
+    """The outcomes of a plan's finished variants.
 
     Parameters
     ----------
     plan : the variants. outcomes : number -> `Answered` or `Failed`.
-    certificate : of the reduced model; None: every answer is that of a full run. why_full : why none was used.
-    seconds : wall time. taken_up : how many were finished before. interrupted : why some were not run; empty: all were.
+    certificate : of the reduced model; None: all answers are from full runs. why_full : why no model was used.
+    seconds : wall time. resumed : variants that were finished before. interrupted : why the sweep is incomplete; empty:
+        it is complete.
     """
 
     plan: Plan
@@ -40,7 +41,7 @@ class Sweep(Brief):
     certificate: SurrogateCertificate | None = None
     why_full: str = ""
     seconds: float = 0.0
-    taken_up: int = 0
+    resumed: int = 0
     interrupted: str = ""
 
     def _title(self) -> str:
@@ -53,14 +54,17 @@ class Sweep(Brief):
             "variants": f"{len(self.outcomes)} of {len(self.plan.variants)} finished, {len(self.failed)} failed",
             "answers": self.answers,
             "answered by": f"{len(self.outcomes) - reduced} full runs"
-            + (f", {reduced} by the reduced model, good to {self.certificate.worst:.2g} K" if self.certificate else ""),
+            + (f", {reduced} by the reduced model, error {self.certificate.worst:.2g} K" if self.certificate else ""),
             "wall time": f"{self.seconds:.3g} s",
         }
 
     @functools.cached_property
     def table(self) -> pd.DataFrame:
-        """A row per finished variant: its values, its answers, ``by``, ``error_K`` (largest error of a temperature on
-        fresh full runs; 0 for a full run), ``feasible``, ``failure`` (empty: none)."""
+        """A row per finished variant: its values and answers, ``by``, ``error_K``, ``feasible``, ``failure``.
+
+        ``error_K`` is the largest error of a temperature in the validation runs, 0 for a full run. ``failure`` is empty
+        without a failure.
+        """
         import pandas as pd
 
         rows = [self._row(number) for number in sorted(self.outcomes)]
@@ -74,7 +78,7 @@ class Sweep(Brief):
                     table[name] = numbers
         last = {name: table.pop(name) for name in ("by", "error_K", "failure")}
         last["failure"] = last["failure"].fillna("")
-        feasible = (last["failure"] == "") & self._kept(table)
+        feasible = (last["failure"] == "") & self._within_limits(table)
         return table.assign(by=last["by"], error_K=last["error_K"], feasible=feasible, failure=last["failure"])
 
     def _row(self, number: int) -> dict[str, Any]:
@@ -84,18 +88,18 @@ class Sweep(Brief):
         error = self.certificate.worst if outcome.by == "reduced" and self.certificate else 0.0
         return values | dict(outcome.answers) | {"by": outcome.by, "error_K": error, "failure": ""}
 
-    def _kept(self, table: pd.DataFrame) -> Any:
-        kept = np.ones(len(table), dtype=bool)
+    def _within_limits(self, table: pd.DataFrame) -> Any:
+        within = np.ones(len(table), dtype=bool)
         for name, limit in self.plan.limits.items():
             if name not in table:
                 raise InputError(f"no answer '{name}'{nearest(name, self.answers)}", field="limits")
             values = table[name].to_numpy(dtype=float)
             if limit.below is not None:
-                kept &= values < limit.below
+                within &= values < limit.below
             if limit.above is not None:
-                # A time that was never reached is later than any.
-                kept &= ~(values <= limit.above)
-        return kept
+                # A time that is not reached (NaN) is later than any.
+                within &= ~(values <= limit.above)
+        return within
 
     @functools.cached_property
     def answers(self) -> list[str]:
@@ -104,56 +108,56 @@ class Sweep(Brief):
 
     @functools.cached_property
     def answered(self) -> dict[int, Answered]:
-        """Number -> the answers of a variant that has some."""
+        """Number -> outcome, of all variants with answers."""
         return {number: outcome for number, outcome in self.outcomes.items() if isinstance(outcome, Answered)}
 
     @property
     def reduced(self) -> int:
-        """How many variants the reduced model answered."""
+        """Number of variants that the reduced model answered."""
         return sum(outcome.by == "reduced" for outcome in self.answered.values())
 
     @property
     def failed(self) -> dict[str, str]:
-        """Variant -> why it has no answers."""
+        """Variant -> reason of its failure."""
         outcomes = sorted(self.outcomes.items())
         return {self.plan.names[n]: outcome.reason for n, outcome in outcomes if isinstance(outcome, Failed)}
 
     @property
     def complete(self) -> bool:
-        """Has every variant an outcome?"""
+        """Do all variants have an outcome?"""
         return len(self.outcomes) == len(self.plan.variants)
 
 
-def sweep(plan: Plan, how: Execution | None = None, **options: Unpack[ExecutionOptions]) -> Sweep:
-    """Answer every variant that is not finished yet.
+def sweep(plan: Plan, execution: Execution | None = None, **options: Unpack[ExecutionOptions]) -> Sweep:
+    """Evaluate all variants of a plan that are not finished yet.
 
     Parameters
     ----------
-    how : see `Execution`. said : its fields by name (``scheduler``, ``folder``, ``restart``, ``reduced``,
-        ``tolerance``, ``progress``), in place of it or to say some of it otherwise.
+    execution : see `Execution`. options : its fields by name (``scheduler``, ``folder``, ``restart``, ``reduced``,
+        ``tolerance``, ``progress``, ``settings``); they replace those of ``execution``.
 
-    Ctrl-C, or a cluster that is lost, ends the sweep with what is finished; `Sweep.interrupted` says why.
+    Ctrl-C or the loss of the cluster ends the sweep with the finished variants; `Sweep.interrupted` has the reason.
 
     Raises
     ------
-    InputError : the folder holds another sweep; ``always``, and no reduced model could be certified.
+    InputError : the folder holds another sweep; ``reduced`` is ``always`` and no model could be certified.
     """
     began, interrupted, numbers = time.perf_counter(), "", range(len(plan.variants))
-    how = (how or Execution()).given(options)
-    work = Answering(plan, how, plan.variants, plan.digest)
+    execution = (execution or Execution()).given(options)
+    work = VariantEvaluation(plan, execution, plan.variants, plan.digest)
     try:
         with work:
             for number in numbers:
-                work.take_up(number)
-            how.tick("variants", len(work.outcomes), len(numbers))
+                work.resume(number)
+            execution.report_progress("variants", len(work.outcomes), len(numbers))
             left = [number for number in numbers if number not in work.outcomes]
             if left:
                 work.train(len(left))
-            for finished in work.answer(left):
-                how.tick("variants", finished, len(numbers))
+            for finished in work.evaluate(left):
+                execution.report_progress("variants", finished, len(numbers))
     except KeyboardInterrupt:
         interrupted = "interrupted"
     except ClusterLostError as error:
         interrupted = str(error)
     seconds = time.perf_counter() - began
-    return Sweep(plan, work.outcomes, work.certificate, work.why_full, seconds, work.taken_up, interrupted)
+    return Sweep(plan, work.outcomes, work.certificate, work.why_full, seconds, work.resumed, interrupted)

@@ -1,4 +1,4 @@
-"""Which tolerance matters: every uncertain number moved alone, down and up."""
+"""Tornado: every uncertain number changed alone, down and up by its tolerance."""
 
 from __future__ import annotations
 
@@ -18,7 +18,7 @@ from tyrefem.variants.answer_units import difference_unit, name_of, shown
 from tyrefem.variants.card import SweepCard, TornadoCard
 from tyrefem.variants.execution import Execution
 from tyrefem.variants.outcomes import Failed, answer_of
-from tyrefem.variants.plan import Plan, sensible
+from tyrefem.variants.plan import Plan, check_changes
 from tyrefem.variants.varied import DIGITS
 
 if TYPE_CHECKING:
@@ -26,12 +26,14 @@ if TYPE_CHECKING:
 
 
 def tolerances(study: StudyData, only: Mapping[str, float] | None = None) -> tuple[UncertainNumber, ...]:
-    """The numbers to move, with their relative tolerances as sd: those given, or all that cards and study state a
-    standard deviation for and that can matter. A card's number is one in all regions that take it from that card.
+    """The uncertain numbers with their relative tolerances as sd.
+
+    Default: all numbers that affect answers and for which cards or study state a standard deviation. A card's number is
+    the same in all regions that use the card.
 
     Raises
     ------
-    InputError : none stated; a name that the study has not.
+    InputError : no tolerance is stated, or the study has no such name.
     """
     uncertain = [number for number in study.uncertain_numbers if not number.idle]
     if only:
@@ -45,7 +47,7 @@ def tolerances(study: StudyData, only: Mapping[str, float] | None = None) -> tup
 
 
 def tornado_plan(study: StudyData, given: Mapping[str, float] | None = None, time_to: float | None = None) -> Plan:
-    """The study as it is, then every number at 1 - tolerance and 1 + tolerance, the others as they are."""
+    """Plan of the unchanged study, then each number alone times 1 - tolerance and 1 + tolerance."""
     variants: list[dict[str, Any]] = [{}]
     names = ["as it is"]
     numbers = tolerances(study, given)
@@ -53,8 +55,8 @@ def tornado_plan(study: StudyData, given: Mapping[str, float] | None = None, tim
         for sign, word in ((-1, "less"), (1, "more")):
             variants.append(number.changes(1 + sign * number.sd, DIGITS))
             names.append(f"{number.key}, {number.sd:.3g} {word}")
-    sensible(study, list(zip(names, variants, strict=True)))
-    how = {
+    check_changes(study, list(zip(names, variants, strict=True)))
+    sampling = {
         "sample": "tolerances",
         "count": len(variants),
         "seed": None,
@@ -62,16 +64,16 @@ def tornado_plan(study: StudyData, given: Mapping[str, float] | None = None, tim
         "also": {number.key: list(number.regions[1:]) for number in numbers if len(number.regions) > 1},
         "left_out": [] if given else left_out(study.uncertain_numbers),
     }
-    return Plan(study, (), tuple(variants), tuple(names), {}, time_to, how)
+    return Plan(study, (), tuple(variants), tuple(names), {}, time_to, sampling)
 
 
 @dataclass(frozen=True, eq=False)
 class Tornado:
-    """How far every tolerance alone moves the answers.
+    """Effect of every tolerance alone on the answers.
 
     Parameters
     ----------
-    swept : of `tornado_plan`. answers : the answers that are judged.
+    swept : sweep of `tornado_plan`. answers : the reported answers.
     """
 
     swept: Sweep
@@ -82,29 +84,29 @@ class Tornado:
 
     @functools.cached_property
     def table(self) -> pd.DataFrame:
-        """Per answer and number: ``nominal``, ``less`` and ``more`` (changes of the answer), ``range``; widest first.
+        """Per answer and number: ``nominal``, ``less`` and ``more`` (changes of the answer), ``range``; largest first.
 
-        ``tolerance`` is the share by which the number was moved; ``also`` the other regions of its card, moved with
-        it; all else is in the answer's unit.
+        ``tolerance`` is the relative change of the number. ``also`` has the other regions of its card, which change
+        too. The other columns are in the answer's unit.
         """
         import pandas as pd
 
         plan, rows = self.swept.plan, []
         for answer in self.answers:
             base = self._value(0, answer)
-            for n, key in zip(range(1, len(plan.variants), 2), plan.how["tolerances"], strict=True):
+            for n, key in zip(range(1, len(plan.variants), 2), plan.sampling["tolerances"], strict=True):
                 less, more = (self._value(m, answer) - base for m in (n, n + 1))
                 width = max(less, more, 0.0) - min(less, more, 0.0) if math.isfinite(less + more) else math.nan
                 rows.append(
                     {
                         "answer": answer,
                         "number": key,
-                        "tolerance": plan.how["tolerances"][key],
+                        "tolerance": plan.sampling["tolerances"][key],
                         "nominal": base,
                         "less": less,
                         "more": more,
                         "range": width,
-                        "also": ", ".join(plan.how["also"].get(key, ())),
+                        "also": ", ".join(plan.sampling["also"].get(key, ())),
                         "failure": "; ".join(filter(None, (self._failure(m) for m in (0, n, n + 1)))),
                     }
                 )
@@ -117,11 +119,11 @@ class Tornado:
 
     @property
     def interrupted(self) -> str:
-        """Why some variants were not run; empty: all were."""
+        """Why the sweep is incomplete; empty: it is complete."""
         return self.swept.interrupted
 
     def of(self, answer: str) -> pd.DataFrame:
-        """The rows of one answer, widest first."""
+        """The rows of an answer, the largest range first."""
         table = self.table
         return table[table["answer"] == answer].drop(columns="answer").reset_index(drop=True)
 
@@ -145,7 +147,7 @@ class Tornado:
             together = math.sqrt(sum((row["range"] / 2) ** 2 for row in rows))
             others = [f"{row['number']} (±{row['range'] / 2:.2g})" for row in rows[1:3] if row["range"] > 0]
             sentences += [
-                f"The {name_of(answer)}, {shown(answer, first['nominal'])} as it is, is moved most by "
+                f"The {name_of(answer)}, {shown(answer, first['nominal'])} in the unchanged study, depends most on "
                 + f"{first['number']}: ±{first['range'] / 2:.2g} {unit}".rstrip()
                 + f" for ±{100 * first['tolerance']:.3g} %"
                 + "".join(f", then {clause}" for clause in others)
@@ -154,16 +156,16 @@ class Tornado:
             if len(rows) > 1:
                 sentences.append(f"All {len(rows)} together, if independent: ±{together:.2g} {unit}".rstrip() + ".")
         failed = self.swept.failed
-        sentences += [f"{clause[0].upper()}{clause[1:]}." for clause in self.swept.plan.how["left_out"]]
+        sentences += [f"{clause[0].upper()}{clause[1:]}." for clause in self.swept.plan.sampling["left_out"]]
         return sentences + ([f"{len(failed)} of {len(self.swept.plan.variants)} runs failed."] if failed else [])
 
     def to_dict(self) -> dict[str, Any]:
-        """JSON-ready."""
+        """Content for JSON."""
         return {"rows": self.table.to_dict("records"), "failures": self.swept.failed, "words": self.words}
 
 
 class TornadoQuestion(SweepQuestion):
-    """``[tornado]``: every uncertain number alone, less and more by its tolerance."""
+    """``[tornado]``: every uncertain number changed alone, down and up by its tolerance."""
 
     key: ClassVar[str] = Tornado.name
     table: ClassVar[type[TornadoCard]] = TornadoCard
@@ -174,10 +176,10 @@ class TornadoQuestion(SweepQuestion):
 
     @property
     def words(self) -> str:
-        """How many tolerances."""
+        """The planned work: number of tolerances."""
         return f"a tornado of {(len(self.plan.variants) - 1) // 2} tolerances"
 
-    def answered(self, how: Execution) -> Tornado:
-        """By full runs: so few variants do not pay for a reduced model."""
-        swept = sweep(self.plan, how, reduced="never")
+    def answered(self, execution: Execution) -> Tornado:
+        """Run the variants in full: they are too few to train a reduced model."""
+        swept = sweep(self.plan, execution, reduced="never")
         return Tornado(swept, self.answers or tuple(judged(swept)) or ("hottest_degC",))

@@ -1,4 +1,4 @@
-"""What varies: variants of a study, where they run, where their answers are kept.
+"""Variants of a study: what varies, where variants run, where their answers are stored.
 
-Knows nothing of the questions that are asked of them.
+This package does not import sweeps, reduced models, comparisons or diagnoses.
 """

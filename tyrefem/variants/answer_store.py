@@ -1,4 +1,4 @@
-"""Finished simulations kept on disk, so that an interrupted command takes them up again."""
+"""Finished simulations on disk: an interrupted command resumes with them."""
 
 from __future__ import annotations
 
@@ -21,32 +21,32 @@ from tyrefem.inputs.study import StudyData
 from tyrefem.interruption import interruption_delayed
 from tyrefem.output import atomic_path, jsonable
 
-#: Folder within ``--out`` that holds finished simulations until the command is done.
+#: Folder within ``--out`` that holds finished simulations until the command ends.
 PROGRESS = ".progress"
 
 
 @dataclass(eq=False)
 class AnswerStore:
-    """Answers (arrays) by question, in a folder; all of one key, that says what else they depend on.
+    """Answers (arrays) by question, in a folder; the key identifies everything else that they depend on.
 
-    ``taken_up``: how many answers an interrupted command had left when the store was opened.
+    ``resumed``: number of answers that an interrupted command had left.
     """
 
     folder: Path
-    taken_up: int = 0
+    resumed: int = 0
     _place: Path | None = field(default=None, repr=False)
 
-    def take_up(self, key: str) -> int:
-        """Find what was left for this key, and drop what was left for any other; how many answers there are."""
+    def resume(self, key: str) -> int:
+        """Open the answers of a key, delete those of other keys, and return the number of answers."""
         self._place = self.folder / key[:16]
         for other in self.folder.glob("*"):
             if other != self._place:
                 shutil.rmtree(other, ignore_errors=True)
-        self.taken_up = self.count
-        return self.taken_up
+        self.resumed = self.count
+        return self.resumed
 
     def known(self, name: str, question: Any) -> Any:
-        """The answer to a question, arrays as they were; None where there is none that can be read."""
+        """The answer to a question, an array or a tuple of arrays; None if there is no readable answer."""
         try:
             with np.load(self._file(name, question), allow_pickle=False) as kept:
                 arrays = tuple(kept[f"arr_{number}"] for number in range(len(kept.files)))
@@ -59,24 +59,24 @@ class AnswerStore:
         return self._place is not None and self._file(name, question).is_file()
 
     def keep(self, name: str, question: Any, answer: Any) -> None:
-        """Keep an answer: an array or a tuple of several."""
+        """Store an answer: an array or a tuple of arrays."""
         with interruption_delayed(), atomic_path(self._file(name, question)) as temporary:
             np.savez(temporary, *(answer if isinstance(answer, tuple) else (answer,)))
 
     @property
     def count(self) -> int:
-        """How many answers are kept now."""
+        """Number of stored answers."""
         return len(list(self._place.glob("[!.]*.npz"))) if self._place else 0
 
     @property
     def kept(self) -> str:
-        """What an interruption says of it."""
+        """Sentence for the message of an interruption."""
         if not self.count:
             return "no simulation is finished yet"
-        return f"{self.count} finished simulations are kept; the same command goes on from there"
+        return f"{self.count} finished simulations are kept; the same command resumes from there"
 
     def clear(self) -> None:
-        """Remove everything: the command is done."""
+        """Delete the folder, at the end of the command."""
         shutil.rmtree(self.folder, ignore_errors=True)
 
     def _file(self, name: str, question: Any) -> Path:
@@ -86,18 +86,18 @@ class AnswerStore:
 
 @functools.cache
 def effects_source() -> str:
-    """Digest of the effects' own files: a user may change one between two tries."""
+    """Digest of the effects' files: a user may change an effect before resuming."""
     files = {str(sys.modules[effect.__module__].__file__) for effect in catalogue().values()}
     return digest([Path(file).read_text(encoding="utf-8") for file in sorted(files)])
 
 
 def digest(content: Any) -> str:
-    """Of anything that JSON can hold."""
+    """SHA-256 of content that JSON can represent."""
     return hashlib.sha256(json.dumps(content, sort_keys=True).encode()).hexdigest()
 
 
 def plain(value: Any) -> Any:
-    """A question as JSON can hold it: numbers exactly, an unknown in full, a study with its cards."""
+    """A question as JSON content: numbers exactly, unknowns with all fields, studies with their cards."""
     if isinstance(value, StudyData):
         return _study(value)
     if isinstance(value, Mapping):

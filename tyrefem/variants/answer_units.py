@@ -1,8 +1,8 @@
-"""Answers as people read them: a name in words, a unit, a number."""
+"""Answers in words: name, number, unit."""
 
 from __future__ import annotations
 
-#: Answers that have words of their own.
+#: Words for answers whose name alone is not clear.
 WORDS = {
     "hottest_degC": "highest temperature",
     "rolling_resistance_coefficient": "rolling resistance coefficient",
@@ -10,7 +10,7 @@ WORDS = {
     "contained-air_degC": "contained air at the end",
     "gradient_K_m": "steepest gradient through the carcass",
     "mass_kg": "mass",
-    "time_to_limit_s": "time to the temperature asked for",
+    "time_to_limit_s": "time to the given temperature",
 }
 _UNITS = {
     "_degC": "°C", "_K_m": "K/m", "_Pa": "Pa", "_kg": "kg", "_J": "J", "_N": "N", "_time_s": "s", "_limit_s": "s",
@@ -19,7 +19,7 @@ _UNITS = {
 
 
 def shown(name: str, value: float, digits: int = 4) -> str:
-    """An answer as a person reads it; NaN is a time that was never reached.
+    """An answer as text with its unit; NaN (a temperature that was not reached) is "never".
 
     >>> shown("hottest_degC", 81.234), shown("rolling_resistance_coefficient", 0.01)
     ('81.23 °C', '0.01')
@@ -40,7 +40,7 @@ def name_of(answer: str) -> str:
 
 
 def unit_of(name: str) -> str:
-    """Unit of an answer, from the end of its name; temperatures in °C, shares and coefficients none."""
+    """Unit of an answer, from the end of its name; °C for temperatures, empty for shares and coefficients."""
     for end, unit in _UNITS.items():
         if name.endswith(end):
             return unit
@@ -48,5 +48,5 @@ def unit_of(name: str) -> str:
 
 
 def difference_unit(name: str) -> str:
-    """Unit of a difference of two such answers: of temperatures K."""
+    """Unit of the difference between two answers; K for temperatures."""
     return "K" if name.endswith("_degC") else unit_of(name)

@@ -1,8 +1,7 @@
-"""What is asked of every variant: numbers of a finished run, one short function each.
+"""Answers: the numbers that are computed from every finished variant.
 
-A new answer is one more function with `answer` above it, which says beforehand how its answers are called.
-
-What an answer may ask of a run: a full one's `Result` has it, and so has a variant of a reduced model.
+A function decorated with `answer` adds answers; the decorator takes their names. `FinishedRun` is the interface that
+these functions may use: results of full runs and variants of reduced models have it.
 """
 
 from __future__ import annotations
@@ -29,11 +28,11 @@ if TYPE_CHECKING:
 Answers = dict[str, Any]
 
 
-#: Present only where a temperature to be reached was given.
+#: This answer exists only if a temperature (``time_to``) is given.
 TIME_TO = "time_to_limit_s"
 
 
-#: Stands for a time that was never reached, s: later than any.
+#: s, in place of the time of a temperature that was not reached: later than any time.
 NEVER = 1e9
 Function = Callable[["FinishedRun", float | None], Answers]
 
@@ -44,7 +43,7 @@ _FUNCTIONS: list[tuple[Function, Names]] = []
 
 
 def answer(names: Names) -> Callable[[Function], Function]:
-    """Add a function to what every variant is asked; ``names``: of its answers, before anything has run."""
+    """Add a function to the answers of every variant; ``names``: gives their names for a study without a run."""
 
     def add(function: Function) -> Function:
         _FUNCTIONS.append((function, names))
@@ -54,11 +53,11 @@ def answer(names: Names) -> Callable[[Function], Function]:
 
 
 def answers(result: FinishedRun, time_to: float | None = None) -> Answers:
-    """Every answer of a run by name, the unit at its end; SI units and degC.
+    """All answers of a run: name, ending in its unit -> value in SI units or degC.
 
     Parameters
     ----------
-    time_to : temperature, degC, whose first reaching anywhere in the tyre is asked for.
+    time_to : degC; `TIME_TO` is the time at which any point of the tyre first reaches this temperature.
     """
     values: Answers = {}
     for function, _ in _FUNCTIONS:
@@ -67,7 +66,7 @@ def answers(result: FinishedRun, time_to: float | None = None) -> Answers:
 
 
 def answer_names(study: StudyData, time_to: float | None = None) -> list[str]:
-    """Names of the numbers that `answers` will give of a study, without running it.
+    """Names of the numbers in `answers` of a study, without running it.
 
     >>> import tyrefem
     >>> answer_names(tyrefem.study("nasa-22x5.5-8pr"))[:3]
@@ -78,10 +77,10 @@ def answer_names(study: StudyData, time_to: float | None = None) -> list[str]:
 
 
 def check_answer(name: str, study: StudyData, time_to: float | None = None) -> None:
-    """Raise `InputError`, with the nearest name, for an answer that a study has not."""
+    """Raise `InputError`, with the nearest name, if a study has no such answer."""
     known = answer_names(study, time_to)
     if not any(fnmatch.fnmatchcase(name, pattern) for pattern in known):
-        hint = "; it needs a temperature to be reached: 'time_to'" if name == TIME_TO else nearest(name, known)
+        hint = "; it needs a temperature: 'time_to'" if name == TIME_TO else nearest(name, known)
         raise InputError(f"no answer '{name}'{hint}")
 
 
@@ -92,7 +91,7 @@ def check_answer(name: str, study: StudyData, time_to: float | None = None) -> N
     ]
 )
 def hottest(result: FinishedRun, _: float | None) -> Answers:
-    """Highest temperature over the run, its place and time; per region."""
+    """Highest temperature over the run with its place and time, and the highest per region."""
     peaks = dict(result.peaks)
     peak = peaks.pop("tyre")
     along, depth = result.place_of(peak)
@@ -108,7 +107,7 @@ def hottest(result: FinishedRun, _: float | None) -> Answers:
 
 @answer(lambda study: [f"{name}{end}" for end in ("_degC", "_max_degC") for name in study.sensors])
 def sensors(result: FinishedRun, _: float | None) -> Answers:
-    """Every sensor at the end and at its highest."""
+    """Temperature of every sensor at the end, and its maximum."""
     read = result.recorded
     return {f"{name}_degC": float(series[-1]) for name, series in read.items()} | {
         f"{name}_max_degC": float(series.max()) for name, series in read.items()
@@ -122,7 +121,7 @@ def sensors(result: FinishedRun, _: float | None) -> Answers:
     ]
 )
 def gas(result: FinishedRun, _: float | None) -> Answers:
-    """Contained air at the end; a lumped rim."""
+    """Contained air at the end, and a lumped rim."""
     values = {
         f"{GAS}_degC": float(result.gas_temperature[-1]),
         "gas_pressure_Pa": result.pressure_at(len(result.times) - 1),
@@ -133,7 +132,7 @@ def gas(result: FinishedRun, _: float | None) -> Answers:
 
 @answer(lambda _: ["gradient_K_m", "gradient_s_m"])
 def gradient(result: FinishedRun, _: float | None) -> Answers:
-    """Steepest mean gradient from the inner to the outer surface at the end, K/m, and where."""
+    """Steepest mean gradient from the inner to the outer surface at the end, K/m, and its station, m."""
     s, steep = result.wall_gradient
     i = int(np.argmax(steep))
     return {"gradient_K_m": float(steep[i]), "gradient_s_m": float(s[i])}
@@ -156,13 +155,13 @@ def resistance(result: FinishedRun, _: float | None) -> Answers:
     lambda study: [
         *(f"stored_{region}_share" for region in study.section.regions),
         *(f"lost_{name}_share" for name in ("road contact", "air at the tread", "outside air", "contained air", "rim")),
-        # Slip and effects lose heat in ways of their own.
+        # Slip and effects may add other heat losses.
         *(["lost_*_share"] if study.effects or any(map(slides, study.card.drive.phases)) else []),
         "heat_J",
     ]
 )
 def shares(result: FinishedRun, _: float | None) -> Answers:
-    """Parts of the heat budget over all heat that came into the rubber."""
+    """Shares of the heat budget in the total heat that entered the rubber."""
     budget = result.end_budget
     made = budget.made
     values = {
@@ -194,7 +193,7 @@ def drive(result: FinishedRun, _: float | None) -> Answers:
 
 @answer(lambda _: [TIME_TO])
 def time_to_limit(result: FinishedRun, time_to: float | None) -> Answers:
-    """When the hottest node first reaches a temperature, s; NaN: not within the drive. Linear between readings."""
+    """Time at which the hottest node first reaches a temperature, s, linear between readings; NaN: not reached."""
     if time_to is None:
         return {}
     highest = result.highest
@@ -212,17 +211,19 @@ Array = NDArray[np.float64]
 
 
 class FinishedRun(Protocol):
-    """A finished run, as far as answers look at it. An answer that needs more takes it from the whole `Result`, which
-    a reduced variant makes when it is first asked for: right, but slower."""
+    """Interface of a finished run for answers.
+
+    A reduced variant also has all other attributes of a `Result`; their first use computes the whole result, slowly.
+    """
 
     @property
     def study(self) -> StudyData:
-        """What was run."""
+        """The study of the run."""
         ...
 
     @property
     def tyre(self) -> RollingTyre:
-        """Its drive, load cases and materials."""
+        """The rolling tyre: drive, load cases and materials."""
         ...
 
     @property
@@ -241,17 +242,17 @@ class FinishedRun(Protocol):
 
     @property
     def recorded(self) -> Mapping[str, Array]:
-        """Sensor -> what the logger recorded, (n,) degC."""
+        """Sensor -> recorded temperature, (n,) degC."""
         ...
 
     @property
     def gas_temperature(self) -> Array:
-        """Contained air, (n,) degC."""
+        """Temperature of the contained air, (n,) degC."""
         ...
 
     @property
     def rim_temperature(self) -> Array | None:
-        """A lumped rim, (n,) degC; None: not lumped."""
+        """Temperature of a lumped rim, (n,) degC; None: the rim is not lumped."""
         ...
 
     def pressure_at(self, i: int) -> float:
@@ -260,20 +261,20 @@ class FinishedRun(Protocol):
 
     @property
     def wall_gradient(self) -> tuple[Array, Array]:
-        """s (k,) m along the meridian, and |T inner - T outer| / thickness there at the end, K/m."""
+        """Stations s (k,) m along the meridian, and |T inner - T outer| / thickness there at the end, K/m."""
         ...
 
     @property
     def rolling_resistance(self) -> RollingResistance:
-        """Force and coefficient."""
+        """Rolling resistance: force and coefficient."""
         ...
 
     @property
     def end_budget(self) -> HeatBudget:
-        """Heat budget at the end; its series have one time at least, the last being the end."""
+        """Heat budget at the end; the last time of its series is the end."""
         ...
 
     @property
     def highest(self) -> Array:
-        """Hottest node over time, (n,) degC."""
+        """Temperature of the hottest node over time, (n,) degC."""
         ...

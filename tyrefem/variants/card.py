@@ -1,4 +1,4 @@
-"""The sweep file: which numbers of a study vary, how they are sampled, what the answers must keep to."""
+"""The sweep file: the numbers of a study that vary, their sampling, and limits on the answers."""
 
 from __future__ import annotations
 
@@ -16,12 +16,12 @@ if TYPE_CHECKING:
     from tyrefem.inputs.study import StudyData
 
 Sample = Literal["grid", "latin-hypercube", "sobol", "list", "saltelli"]
-#: Values of a continuous quantity in a grid, where the file does not say.
+#: Default number of values of a continuous quantity in a grid.
 LEVELS = 5
 
 
 class VaryCard(Card):
-    """How one dotted name of the study varies: listed values, a range, or a factor on what the study says.
+    """How a dotted name of the study varies: listed values, a range, or a factor on the study's value.
 
     >>> VaryCard.check({"from": "10 mph", "to": "40 mph", "levels": 4}).levels
     4
@@ -50,7 +50,7 @@ class VaryCard(Card):
 
 
 class LimitCard(Card):
-    """What an answer must keep to, in the answer's own unit (`hottest_degC` in degC)."""
+    """Limits of an answer, in the unit of the answer (`hottest_degC` in degC)."""
 
     kind: ClassVar[str] = "sweep"
     below: float | None = None
@@ -61,15 +61,15 @@ class LimitCard(Card):
         if self.below is None and self.above is None:
             raise InputError("give 'below', 'above' or both")
         if self.below is not None and self.above is not None and self.below <= self.above:
-            raise InputError(f"nothing is below {self.below:g} and above {self.above:g}")
+            raise InputError(f"no value is below {self.below:g} and above {self.above:g}")
         return self
 
 
 class TornadoCard(Card):
-    """Every uncertain number alone, less and more by its tolerance.
+    """Every uncertain number changed alone, down and up by its tolerance.
 
-    ``tolerances``: dotted name -> share of the number; by default one standard deviation of what cards and study state
-    and what can matter. A card's number is moved in every region that takes it from that card.
+    ``tolerances``: dotted name -> share of the number. Default: one standard deviation of every number for which cards
+    or study state it and that affects the answers. A card's number changes in all regions that use the card.
     """
 
     kind: ClassVar[str] = "sweep"
@@ -82,9 +82,9 @@ class TornadoCard(Card):
 
 
 class OptimiseCard(Card):
-    """The smallest (or largest) answer within what varies, under the limits.
+    """The smallest (or largest) answer within the varied ranges, under the limits.
 
-    ``runs``: variants that may be evaluated. ``seed``: of the search.
+    ``runs``: variants evaluated at most. ``seed``: of the search.
     """
 
     kind: ClassVar[str] = "sweep"
@@ -101,7 +101,7 @@ class OptimiseCard(Card):
 
     @property
     def answer(self) -> str:
-        """What is looked at."""
+        """The answer that is minimised or maximised."""
         answer = self.minimise or self.maximise
         assert answer is not None
         return answer
@@ -110,7 +110,8 @@ class OptimiseCard(Card):
 class EnvelopeCard(Card):
     """The largest speed, between ``slowest`` and ``fastest``, at which ``answer`` stays below a limit.
 
-    For every one of ``loads`` x ``pressures``; where not given, shares of the study's own load, and its own pressure.
+    It is computed for every pair of ``loads`` and ``pressures``. Default: shares of the study's load, and the study's
+    pressure.
     """
 
     kind: ClassVar[str] = "sweep"
@@ -127,16 +128,15 @@ class SweepCard(Card):
 
     Parameters
     ----------
-    study : name or path (relative to the file); ``case``: of a campaign, the case to take. change : values changed
-        first, for every variant.
-    sample : how variants are chosen; ``count`` of them (Latin hypercube, Sobol; Saltelli: the base), ``seed``;
-        ``cases``: CSV (list). Not given: a grid, or no variants but the optimiser's if there is ``[optimise]``.
-    vary : dotted name -> how it varies. uncertain : every uncertain number that can matter varies too, evenly within so
-        many standard deviations either way; a card's number in all regions that use the card.
-    limits : answer -> what it must keep to.
-    time_to : temperature whose first reaching is an answer (``time_to_limit_s``).
-    answers : what is drawn and judged; by default temperature and rolling resistance (and time to the limit).
-    pareto : answer -> "min" or "max"; by default temperature, rolling resistance and mass, all "min".
+    study : name or path (relative to the file). case : of a campaign. change : values changed in every variant.
+    sample : sampling method; ``count`` of variants (Latin hypercube, Sobol; Saltelli: the base), ``seed``; ``cases``:
+        CSV (list). Default: a grid, or only the optimiser's variants with ``[optimise]``.
+    vary : dotted name -> how it varies. uncertain : all uncertain numbers that affect the answers vary too, uniformly
+        within so many standard deviations; a card's number in all regions that use the card.
+    limits : answer -> its limits.
+    time_to : temperature; the time at which it is first reached is an answer (``time_to_limit_s``).
+    answers : answers in pictures and tables; default: temperature and rolling resistance (and ``time_to_limit_s``).
+    pareto : answer -> "min" or "max"; default: temperature, rolling resistance and mass, all "min".
     tornado, optimise, envelope : further questions; ``further``: tables of others, by name (`tyrefem.sweep.question`).
     """
 
@@ -163,7 +163,7 @@ class SweepCard(Card):
     @field_validator("vary", mode="before")
     @classmethod
     def _quoted(cls, data: Any) -> Any:
-        """TOML reads ``drive.speed = {...}`` as nested tables: both spellings are one name; a list is its values."""
+        """Nested tables (TOML's ``drive.speed = {...}``) as dotted names, and lists as ``values``."""
         table = flat(data) if isinstance(data, dict) else data
         if not isinstance(table, dict):
             return table
@@ -172,14 +172,14 @@ class SweepCard(Card):
     @field_validator("change")
     @classmethod
     def _dotted(cls, data: dict[str, Any]) -> dict[str, Any]:
-        """A whole table in place of one value would take the study's other values of it away."""
+        """Refuse a whole table: it would remove the study's other values of the table."""
         for key, value in data.items():
             if "." not in key and isinstance(value, dict):
                 raise InputError(f'write dotted names in quotes, e.g. "{key}.{next(iter(value), "...")}" = ...')
         return data
 
     def load_study(self, near: Path | None, changes: Mapping[str, Any] | None = None) -> StudyData:
-        """The study, with the file's changes and then others made; its path may be relative to a folder."""
+        """The study with the file's changes and then other changes; its path may be relative to a folder."""
         from tyrefem.inputs.study import study
 
         beside = None if near is None else near / self.study
@@ -188,17 +188,17 @@ class SweepCard(Card):
 
     @property
     def sampled(self) -> bool:
-        """Are variants chosen beforehand?"""
+        """Does the sweep have a sample of variants, apart from a search?"""
         return self.sample is not None or (self.varies and self.optimise is None)
 
     @property
     def varies(self) -> bool:
-        """Is there a box?"""
+        """Does any number vary?"""
         return bool(self.vary) or self.uncertain is not None
 
     @property
     def chosen(self) -> Sample:
-        """How they are."""
+        """The sampling method."""
         return self.sample or "grid"
 
     @model_validator(mode="after")
@@ -222,7 +222,7 @@ class SweepCard(Card):
 
 
 def flat(data: dict[str, Any], before: str = "") -> dict[str, Any]:
-    """Nested tables as dotted names, down to the tables that say how to vary.
+    """Nested tables as dotted names, down to the tables with the keys of `VaryCard`.
 
     >>> flat({"drive": {"speed": {"from": "1 m/s", "to": "2 m/s"}}})
     {'drive.speed': {'from': '1 m/s', 'to': '2 m/s'}}

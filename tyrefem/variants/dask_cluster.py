@@ -11,23 +11,23 @@ from tyrefem.errors import InputError, MissingLibraryError
 from tyrefem.variants.outcomes import Failed
 from tyrefem.variants.schedulers import AHEAD, Result
 
-#: So often a task of a cluster is run again after its worker was lost.
+#: A task is repeated so many times after its worker was lost.
 RETRIES = 3
-#: Seconds after which a cluster is asked how large it is now.
+#: Interval at which the number of workers is checked, s.
 TOP_UP = 5.0
-#: Seconds between looks for finished tasks of a cluster.
+#: Interval at which finished tasks are collected, s.
 POLL = 0.02
 
 
 class ClusterLostError(Exception):
-    """The cluster is gone; what it had finished is kept by whoever asked."""
+    """The connection to the cluster is lost; finished variants are kept."""
 
 
 class Dask:
     """A Dask cluster: ``tcp://host:port`` of a scheduler, or a `distributed.Client`.
 
-    A task whose worker dies is run again by another one; tasks are pure, so nothing is computed wrongly. A task that
-    takes its worker down again and again counts as failed, with the reason.
+    A task whose worker dies runs again on another worker; tasks are pure, so results do not change. A task that
+    repeatedly ends its worker counts as failed, with the reason.
 
     Parameters
     ----------
@@ -35,8 +35,8 @@ class Dask:
 
     Raises
     ------
-    MissingLibraryError : distributed is not installed. InputError : no scheduler answers there, or it has no workers.
-    ClusterLostError : from `outcomes`: the scheduler no longer answers, or all workers are gone.
+    MissingLibraryError : distributed is not installed. InputError : no scheduler at the address, or no workers.
+    ClusterLostError : from `outcomes`: the scheduler no longer answers, or all workers are lost.
     """
 
     def __init__(self, client: Any, timeout: float = 20.0, patience: float = 120.0) -> None:
@@ -47,11 +47,11 @@ class Dask:
             raise MissingLibraryError(
                 "a cluster needs the package 'distributed': pip install 'tyrefem[cluster]'", field="--scheduler"
             ) from None
-        self._own, self.patience = isinstance(client, str), patience
+        self._owns_client, self.patience = isinstance(client, str), patience
         if isinstance(client, str):
             address = client
             try:
-                # What is no address would leave a half-made client behind, which takes its time to go.
+                # Check the address first: a client of a bad address closes slowly.
                 get_address_host_port(address)
                 client = Client(address, timeout=timeout, set_as_default=False)
             except (OSError, ValueError) as error:
@@ -71,7 +71,7 @@ class Dask:
         import tyrefem
 
         def installed() -> str:
-            """Travels as code, so that a worker without the package can say so."""
+            """Version of tyrefem on a worker; sent as code, so that it works without the package."""
             from importlib import import_module
             from importlib.util import find_spec
 
@@ -89,35 +89,35 @@ class Dask:
             )
 
     def close(self) -> None:
-        """Leave the cluster, if the connection is our own."""
-        if self._own:
+        """Disconnect, unless the client was given."""
+        if self._owns_client:
             self.client.close()
 
     def outcomes(
         self, work: Callable[..., Result], tasks: Sequence[Any], common: Any = None
     ) -> Iterator[tuple[int, Result | Failed]]:
-        """Outcomes as they come."""
+        """Outcomes in the order in which tasks finish."""
         from distributed import as_completed
 
         shared = () if common is None else (self.client.submit(_same, common, pure=False),)
         waiting = iter(enumerate(tasks))
         places: dict[str, int] = {}
-        going = as_completed(loop=self.client.loop, with_results=True, raise_errors=False)
+        running = as_completed(loop=self.client.loop, with_results=True, raise_errors=False)
         counted_at, most = -TOP_UP, 0
         try:
             while True:
                 if time.monotonic() - counted_at > TOP_UP:
-                    # Workers may have come or gone.
+                    # The number of workers may have changed.
                     counted_at, most = time.monotonic(), AHEAD * max(self._threads(), 1)
                 for place, task in itertools.islice(waiting, max(most - len(places), 0)):
                     future = self.client.submit(work, task, *shared, pure=False, retries=RETRIES)
                     places[future.key] = place
-                    going.add(future)
+                    running.add(future)
                 if not places:
                     return
-                self._wait(going)
-                # Results are fetched in the background: one whose worker has died meanwhile is computed again.
-                future, result = next(going)
+                self._wait(running)
+                # Results are fetched in the background; a result that is lost with its worker is computed again.
+                future, result = next(running)
                 place = places.pop(future.key)
                 if future.status == "finished":
                     yield place, result
@@ -127,7 +127,7 @@ class Dask:
                     raise ClusterLostError(f"the Dask scheduler at {self.address} gave up its tasks ({future.status})")
         finally:
             if self.client.status == "running":
-                self.client.cancel([*going.futures, *shared])
+                self.client.cancel([*running.futures, *shared])
 
     @property
     def workers(self) -> int:
@@ -141,27 +141,27 @@ class Dask:
         except (OSError, RuntimeError):
             raise ClusterLostError(f"the Dask scheduler at {self.address} no longer answers") from None
 
-    def _wait(self, going: Any) -> None:
-        """Until a task is finished."""
-        seen = time.monotonic()
-        checked_at = seen
-        while not going.has_ready():
+    def _wait(self, running: Any) -> None:
+        """Wait until a task is finished."""
+        last_seen = time.monotonic()
+        checked_at = last_seen
+        while not running.has_ready():
             time.sleep(POLL)
             if time.monotonic() - checked_at > TOP_UP:
                 checked_at = time.monotonic()
                 if self._threads():
-                    seen = checked_at
-                elif checked_at - seen > self.patience:
+                    last_seen = checked_at
+                elif checked_at - last_seen > self.patience:
                     raise ClusterLostError(
-                        f"the Dask scheduler at {self.address} has had no worker for {checked_at - seen:.0f} s"
+                        f"the Dask scheduler at {self.address} has had no worker for {checked_at - last_seen:.0f} s"
                     )
 
 
 def _reason(result: Any) -> str:
-    """What a failed task of a cluster says: an exception, or (type, exception, traceback)."""
+    """Reason of a failed task, from an exception or (type, exception, traceback)."""
     return str(result[1] if isinstance(result, tuple) and len(result) > 1 else result)
 
 
 def _same(common: Any) -> Any:
-    """A task of a cluster: its result is had again where every worker that held it is lost."""
+    """A task that returns its argument: the cluster recomputes it if all workers that hold it are lost."""
     return common

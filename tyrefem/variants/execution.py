@@ -1,4 +1,4 @@
-"""How variants are answered: where they run, where the finished ones are kept, by what, and who is told."""
+"""Execution of variants: scheduler, folder of finished variants, reduced model, progress."""
 
 from __future__ import annotations
 
@@ -11,21 +11,21 @@ from typing import TypedDict
 from tyrefem.errors import InputError
 from tyrefem.variants.schedulers import Here, Scheduler
 
-#: Called with (what is done, finished, of how many).
-Tick = Callable[[str, int, int], None]
-#: When a reduced model answers.
+#: Called with (stage, finished, total).
+ProgressCallback = Callable[[str, int, int], None]
+#: When a reduced model is used.
 REDUCED = ("auto", "never", "always")
 
 
 @dataclass(frozen=True)
 class SweepSettings:
-    """Numbers of the method; no answer depends on them beyond the tolerance.
+    """Numbers of the method; answers depend on them only within the tolerance.
 
     Parameters
     ----------
-    single : up to so many variants, each is a piece of work of its own. piece : variants of a piece of work, at most.
-    fresh : full runs that a certificate is made of. trials : certificates that are tried. rounds : rounds of
-        corrections before the first certificate.
+    single : up to so many variants, every variant is a separate task. piece : variants of a task, at most.
+    fresh : validation runs of a certificate. trials : certificates that are tried. rounds : rounds of corrections
+        before the first certificate.
 
     Raises
     ------
@@ -52,25 +52,25 @@ class ExecutionOptions(TypedDict, total=False):
     restart: bool
     reduced: str
     tolerance: float
-    progress: Tick | None
+    progress: ProgressCallback | None
     settings: SweepSettings
 
 
 @dataclass(frozen=True)
 class Execution:
-    """How a sweep, a search or an envelope is carried out; its answers do not depend on it beyond ``tolerance``.
+    """Execution of a sweep, a search or an envelope; answers depend on it only within ``tolerance``.
 
     Parameters
     ----------
     scheduler : where variants run (`Here`, `Local`, `Dask`); None: this process.
-    folder : where finished variants are kept, to go on from; None: nowhere. restart : forget what it has.
-    reduced : ``never``: full runs only; ``auto``: a reduced model where many variants are asked for and it is
-        certified, full runs otherwise; ``always``: refuse where it is not certified. tolerance : K, of the certificate.
-    progress : called with (what is done, finished, of how many). settings : see `SweepSettings`.
+    folder : for finished variants, to resume from; None: they are not stored. restart : delete its content first.
+    reduced : ``never``: full runs only. ``auto``: a certified reduced model for many variants, else full runs.
+        ``always``: an error if the reduced model is not certified. tolerance : K, of the certificate.
+    progress : called with (stage, finished, total). settings : see `SweepSettings`.
 
     Raises
     ------
-    InputError : another word for ``reduced``; a tolerance that is not positive.
+    InputError : an unknown value of ``reduced``; a tolerance that is not positive.
 
     >>> Execution().given({"reduced": "never"}).reduced
     'never'
@@ -81,7 +81,7 @@ class Execution:
     restart: bool = False
     reduced: str = "auto"
     tolerance: float = 0.01
-    progress: Tick | None = None
+    progress: ProgressCallback | None = None
     settings: SweepSettings = SweepSettings()
 
     def __post_init__(self) -> None:
@@ -91,19 +91,19 @@ class Execution:
             raise InputError(f"must be positive, not {self.tolerance:g} K", field="tolerance")
 
     def given(self, options: ExecutionOptions) -> Execution:
-        """The same, with what is said otherwise."""
+        """The execution with some fields replaced."""
         return dataclasses.replace(self, **options) if options else self
 
     def within(self, name: str) -> Execution:
-        """The same for one of several questions: it keeps its variants in a folder of its own."""
+        """The execution with a subfolder for its variants, e.g. for one of several questions."""
         return self if self.folder is None else dataclasses.replace(self, folder=self.folder / name)
 
     @property
     def where(self) -> Scheduler:
-        """Runs variants."""
+        """The scheduler; this process by default."""
         return self.scheduler or Here()
 
-    def tick(self, what: str, done: int, total: int) -> None:
-        """Tell how far the work is."""
+    def report_progress(self, what: str, done: int, total: int) -> None:
+        """Call ``progress``, if there is one."""
         if self.progress is not None:
             self.progress(what, done, total)

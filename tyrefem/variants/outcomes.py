@@ -1,4 +1,4 @@
-"""What became of a variant: its answers, why it failed, or why a reduced model cannot follow it."""
+"""Outcomes of a variant: its answers, its failure, or the reason why a reduced model cannot represent it."""
 
 from __future__ import annotations
 
@@ -13,7 +13,7 @@ class Answered:
 
     Parameters
     ----------
-    answers : answer -> number or name, the unit at the end of the answer's name. by : a full run or a reduced model.
+    answers : answer -> value; the answer's name ends in its unit. by : a full run or a reduced model.
 
     >>> Answered({"hottest_degC": 61.5}, "reduced").entry
     {'answers': {'hottest_degC': 61.5}, 'by': 'reduced'}
@@ -30,7 +30,7 @@ class Answered:
 
 @dataclass(frozen=True)
 class Failed:
-    """Work without a result, and the reason in words.
+    """A failed variant or task, with the reason.
 
     >>> Failed("the tyre bursts").entry
     {'failure': 'the tyre bursts'}
@@ -46,7 +46,7 @@ class Failed:
 
 @dataclass(frozen=True)
 class NotReducible:
-    """A variant that a reduced model cannot follow, and the reason in words: a full run has to answer it."""
+    """A variant that a reduced model cannot represent, with the reason: it needs a full run."""
 
     reason: str
 
@@ -55,7 +55,7 @@ Outcome = Answered | Failed
 
 
 def outcome_of(entry: Mapping[str, Any]) -> Outcome:
-    """The outcome of an entry as files have it.
+    """The outcome from an entry of a file.
 
     >>> outcome_of({"variant": 3, "failure": "the tyre bursts"})
     Failed(reason='the tyre bursts')
@@ -66,5 +66,5 @@ def outcome_of(entry: Mapping[str, Any]) -> Outcome:
 
 
 def answer_of(outcome: Outcome | None, name: str) -> Any:
-    """An answer by name; None: the variant has no outcome, has failed, or has no such answer."""
+    """An answer by name; None if the variant has no outcome, has failed, or has no such answer."""
     return outcome.answers.get(name) if isinstance(outcome, Answered) else None

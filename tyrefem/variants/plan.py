@@ -1,4 +1,4 @@
-"""A plan: one study, what varies, and every variant of it. Refused before anything runs if it makes no sense."""
+"""A plan: a study, its varied numbers, and all variants; checked before anything runs."""
 
 from __future__ import annotations
 
@@ -17,7 +17,7 @@ from tyrefem.mechanics.cycle_schedule import check_cases
 from tyrefem.quantity import written
 from tyrefem.variants.answers import check_answer
 from tyrefem.variants.card import LimitCard, SweepCard, VaryCard
-from tyrefem.variants.samples import drawn, grid, listed, size_of, without_repeats
+from tyrefem.variants.samples import check_distinct, drawn, grid, listed, size_of
 from tyrefem.variants.task import Bundle, Task, bundle
 from tyrefem.variants.varied import Varied, uncertain, varied
 
@@ -28,9 +28,9 @@ class Plan:
 
     Parameters
     ----------
-    study : the study. varied : what varies; empty where the variants come from a list. variants : changes of each.
-    names : of the variants. limits : answer -> what it must keep to. time_to : see `answers`. how : of the sample, in
-        words that are recorded.
+    study : the study. varied : the varied numbers; empty if the variants come from a list. variants : changes of each.
+    names : of the variants. limits : answer -> its limits. time_to : see `answers`. sampling : description of the
+        sample, for the record.
     """
 
     study: StudyData
@@ -39,30 +39,30 @@ class Plan:
     names: tuple[str, ...]
     limits: Mapping[str, LimitCard]
     time_to: float | None
-    how: Mapping[str, Any]
+    sampling: Mapping[str, Any]
 
     @functools.cached_property
     def packed(self) -> Bundle:
-        """The study as it is sent to workers."""
+        """The study packed for workers."""
         return bundle(self.study)
 
     @functools.cached_property
     def digest(self) -> str:
-        """Of the study, its files, and every variant in its order."""
+        """Digest of the study, its files, and all variants in their order."""
         text = json.dumps([self.packed.digest, list(self.variants), self.time_to], sort_keys=True, default=str)
         return hashlib.sha256(text.encode()).hexdigest()[:16]
 
     @property
     def keys(self) -> list[str]:
-        """Dotted names that any variant changes, in order."""
+        """Dotted names that the variants change, in order."""
         return list(dict.fromkeys(key for variant in self.variants for key in variant))
 
     def task(self, number: int) -> Task:
-        """The work of a variant."""
+        """The task of a variant."""
         return Task(number, self.packed, self.variants[number], self.time_to)
 
     def row(self, number: int) -> dict[str, Any]:
-        """What a table shows of a variant: its name and the values that it has."""
+        """A variant's name and values, as a row of a table."""
         by_key, changes = {varied_number.key: varied_number for varied_number in self.varied}, self.variants[number]
         beside = {key for varied_number in self.varied for key, _ in varied_number.also}
         shown = {
@@ -74,12 +74,12 @@ class Plan:
 
 
 def planned(study: StudyData, card: SweepCard, near: Path | None = None) -> Plan:
-    """The variants that a sweep file asks for.
+    """The plan of a sweep file.
 
     Raises
     ------
-    InputError : a name that the study does not have, a value that it refuses, two variants that are the same; more
-        variants than there is memory for.
+    InputError : a name that the study does not have, a value that it refuses, two equal variants, or more variants
+        than fit in memory.
     """
     for name in (*card.limits, *card.answers, *card.pareto):
         try:
@@ -94,16 +94,16 @@ def planned(study: StudyData, card: SweepCard, near: Path | None = None) -> Plan
         variants, names = listed(path)
         chosen: tuple[Varied, ...] = ()
         try:
-            sensible(study, [(f"variant '{name}'", part) for name, part in zip(names, variants, strict=True)])
+            check_changes(study, [(f"variant '{name}'", part) for name, part in zip(names, variants, strict=True)])
         except InputError as error:
             raise error if error.file else error.within(file=path) from None
     else:
-        chosen = tuple(varied(study, key, part) for key, part in _outer_first(card.vary).items())
+        chosen = tuple(varied(study, key, part) for key, part in _outer_keys_first(card.vary).items())
         if card.uncertain is not None:
-            chosen += _beside(chosen, uncertain(study, card.uncertain))
+            chosen += _not_varied_otherwise(chosen, uncertain(study, card.uncertain))
         if card.sampled:
             size_of(chosen, card.chosen, card.count)
-        sensible(study, [("", part.changes(value)) for part in chosen for value in part.ends])
+        check_changes(study, [("", part.changes(value)) for part in chosen for value in part.ends])
         if not card.sampled:
             variants = []
         elif card.chosen == "grid":
@@ -113,21 +113,21 @@ def planned(study: StudyData, card: SweepCard, near: Path | None = None) -> Plan
             variants = drawn(chosen, card.chosen, card.count, card.seed)
         names = [str(number + 1) for number in range(len(variants))]
         if card.chosen != "saltelli":
-            without_repeats(variants, names)
+            check_distinct(variants, names)
     seed = card.seed if card.chosen in ("latin-hypercube", "sobol", "saltelli") else None
-    how: dict[str, Any] = {"sample": card.chosen if card.sampled else None, "count": len(variants), "seed": seed}
+    sampling: dict[str, Any] = {"sample": card.chosen if card.sampled else None, "count": len(variants), "seed": seed}
     if card.uncertain is not None:
         also = {part.key: [key for key, _ in part.also] for part in chosen if part.also}
-        how |= {"uncertain": card.uncertain, "also": also, "left_out": left_out(study.uncertain_numbers)}
-    return Plan(study, chosen, tuple(variants), tuple(names), dict(card.limits), card.time_to, how)
+        sampling |= {"uncertain": card.uncertain, "also": also, "left_out": left_out(study.uncertain_numbers)}
+    return Plan(study, chosen, tuple(variants), tuple(names), dict(card.limits), card.time_to, sampling)
 
 
-def _beside(chosen: Sequence[Varied], numbers: Sequence[Varied]) -> tuple[Varied, ...]:
-    """The uncertain numbers that do not vary otherwise.
+def _not_varied_otherwise(chosen: Sequence[Varied], numbers: Sequence[Varied]) -> tuple[Varied, ...]:
+    """The uncertain numbers that are not in ``chosen``.
 
     Raises
     ------
-    InputError : the card of one of them is swapped.
+    InputError : the card of an uncertain number varies as a whole.
     """
     named = {number.key for number in chosen}
     beside = tuple(number for number in numbers if not named & {number.key, *(key for key, _ in number.also)})
@@ -135,29 +135,32 @@ def _beside(chosen: Sequence[Varied], numbers: Sequence[Varied]) -> tuple[Varied
         for key in (number.key, *(key for key, _ in number.also)):
             outer = next((name for name in named if key.startswith(f"{name}.")), None)
             if outer is not None:
-                message = f"the numbers of '{outer}', which is swapped, have no one value to vary about ('{key}')"
+                message = f"'{outer}' varies as a whole, so its number '{key}' has no single value to vary about"
                 raise InputError(message, field="uncertain")
     return beside
 
 
-def _outer_first(vary: Mapping[str, VaryCard]) -> dict[str, VaryCard]:
-    """A swapped card or section before what varies in it, which it would wipe out otherwise."""
+def _outer_keys_first(vary: Mapping[str, VaryCard]) -> dict[str, VaryCard]:
+    """Cards and sections that vary as a whole first, then the numbers within them, so that these are not lost."""
     within = {key: outer for key in vary for outer in vary if key.startswith(f"{outer}.")}
     for key, outer in within.items():
         if vary[key].factor is not None:
-            raise InputError(f"a factor on what '{outer}' swaps has no meaning: give values", field=f"vary.{key}")
+            raise InputError(
+                f"'{outer}' varies as a whole, so a factor has no meaning here: give values", field=f"vary.{key}"
+            )
     if not within:
         return dict(vary)
     return dict(sorted(vary.items(), key=lambda entry: entry[0].count(".")))
 
 
 def card_of(study: StudyData, vary: Mapping[str, Any] | None = None, **options: Any) -> SweepCard:
-    """A sweep file's content from Python.
+    """The content of a sweep file from Python values.
 
-    ``vary``: e.g. ``{"drive.speed": ("10 mph", "40 mph"), "materials.tread": ["soft", "hard"]}``.
-
-    A pair (tuple) is a range, a third entry its levels, a list its values, a mapping what a sweep file would say.
-    ``said``: every other key of a sweep file; None: not said.
+    Parameters
+    ----------
+    vary : e.g. ``{"drive.speed": ("10 mph", "40 mph"), "materials.tread": ["soft", "hard"]}``. A tuple is a range, with
+        its levels as third entry; a list has the values; a mapping has the keys of a sweep file.
+    options : other keys of a sweep file; None: not given.
     """
     data = {key: value for key, value in options.items() if value is not None}
     if vary:
@@ -184,11 +187,11 @@ def _vary(value: Any) -> Any:
         return dict(zip(("from", "to", "levels"), plain, strict=False))
     if isinstance(plain, list):
         return {"values": plain}
-    raise InputError(f"a list of values or a tuple (from, to), not {value!r:.60}", field="vary")
+    raise InputError(f"must be a list of values or a tuple (from, to), not {value!r:.60}", field="vary")
 
 
-def sensible(study: StudyData, trials: Sequence[tuple[str, Mapping[str, Any]]]) -> None:
-    """Build the study and the load cases of each; the first that is refused names itself."""
+def check_changes(study: StudyData, trials: Sequence[tuple[str, Mapping[str, Any]]]) -> None:
+    """Build the study and load cases of every (name, changes); raise `InputError` that names the first refused."""
     for name, changes in trials:
         try:
             check_cases(study.replace(changes))

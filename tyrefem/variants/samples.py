@@ -1,4 +1,4 @@
-"""Which variants: grids, Latin hypercubes, Sobol sequences, Saltelli's sample, lists from CSV."""
+"""Samples of variants: grids, Latin hypercubes, Sobol sequences, Saltelli samples, lists from CSV."""
 
 from __future__ import annotations
 
@@ -13,13 +13,13 @@ from numpy.typing import NDArray
 
 from tyrefem.errors import InputError
 from tyrefem.estimates.work import check_memory, rounded_down, variants
-from tyrefem.variants.varied import Varied, alike
+from tyrefem.variants.varied import Varied, in_one_unit
 
 Array = NDArray[np.float64]
 
 
 def size_of(varied: Sequence[Varied], sample: str, count: int | None) -> int:
-    """How many variants a sample has, before any of them is made; raises as `check_size`.
+    """Number of variants of a sample, before any is built; raises as `check_size`.
 
     >>> size_of([Varied("a", levels=3), Varied("b", values=("x",))], "grid", None)
     3
@@ -39,11 +39,11 @@ def size_of(varied: Sequence[Varied], sample: str, count: int | None) -> int:
 
 
 def check_size(count: int, numbers: int, what: str, field: str) -> None:
-    """Refuse more variants than there is memory for, with all that is said of them.
+    """Check that a number of variants fits in memory.
 
     Raises
     ------
-    InputError : at ``field``; how many would fit.
+    InputError : at ``field``; the message states how many would fit.
     """
     words = f"{count:,}" if count < 10**15 else "more than 10^15"
     try:
@@ -57,7 +57,7 @@ def check_size(count: int, numbers: int, what: str, field: str) -> None:
 
 
 def grid(varied: Sequence[Varied]) -> list[dict[str, Any]]:
-    """Every combination of the levels, the last name running fastest.
+    """Every combination of the levels; the last name varies fastest.
 
     >>> grid([Varied("a", values=(1, 2)), Varied("b", values=("x",))])
     [{'a': 1, 'b': 'x'}, {'a': 2, 'b': 'x'}]
@@ -73,10 +73,10 @@ def _changes(varied: Sequence[Varied], values: Sequence[Any]) -> dict[str, Any]:
 
 
 def places(varied: Sequence[Varied], sample: str, count: int, seed: int) -> Array:
-    """Places in the unit cube, one row each: ``count`` of a Latin hypercube.
+    """Points in the unit cube, a row each: ``count`` of a Latin hypercube.
 
-    A Sobol sequence has a power of two of them, rounded up. Saltelli's sample (2010), which Sobol indices need, has
-    ``count``, a power of two, times the numbers and two more.
+    A Sobol sequence has ``count`` rounded up to a power of two. A Saltelli sample (2010), for Sobol indices, has
+    ``count`` x (numbers + 2) points; ``count`` must be a power of two.
     """
     from scipy.stats import qmc
 
@@ -95,17 +95,17 @@ def places(varied: Sequence[Varied], sample: str, count: int, seed: int) -> Arra
 
 
 def problem(varied: Sequence[Varied]) -> dict[str, Any]:
-    """What SALib wants to know: names and bounds (the unit cube: `Varied.at` takes it from there)."""
+    """Problem of SALib: names, and the unit cube as bounds; `Varied.at` maps its points to values."""
     return {"num_vars": len(varied), "names": [number.key for number in varied], "bounds": [[0.0, 1.0]] * len(varied)}
 
 
 def drawn(varied: Sequence[Varied], sample: str, count: int, seed: int) -> list[dict[str, Any]]:
-    """A sample as changes of the study."""
+    """The changes of all variants of a sample."""
     return [changes_at(varied, row) for row in places(varied, sample, count, seed)]
 
 
 def changes_at(varied: Sequence[Varied], place: Sequence[float] | Array) -> dict[str, Any]:
-    """Changes of the study at a place of the unit cube."""
+    """Changes of the study at a point of the unit cube."""
     return _changes(varied, [number.at(float(u)) for number, u in zip(varied, place, strict=True)])
 
 
@@ -114,7 +114,7 @@ def listed(path: Path) -> tuple[list[dict[str, Any]], list[str]]:
 
     Raises
     ------
-    InputError : no table of cases; two variants that are the same, in whatever units.
+    InputError : the file is not a table of cases, or two variants are equal, also in different units.
     """
     from tyrefem.measured.cases import read_cases
 
@@ -122,20 +122,20 @@ def listed(path: Path) -> tuple[list[dict[str, Any]], list[str]]:
     keys = list(dict.fromkeys(key for case in cases for key in case.changes))
     check_size(len(cases), len(keys), path.name, "cases")
     changes, names = [dict(case.changes) for case in cases], [case.name for case in cases]
-    columns = {key: alike([changes_of_case.get(key) for changes_of_case in changes]) for key in keys}
+    columns = {key: in_one_unit([changes_of_case.get(key) for changes_of_case in changes]) for key in keys}
     plain = [{key: columns[key][place] for key in changes_of_case} for place, changes_of_case in enumerate(changes)]
     try:
-        without_repeats(plain, names)
+        check_distinct(plain, names)
     except InputError as error:
         raise error.within(file=path) from None
     return changes, names
 
 
-def without_repeats(variants: Sequence[dict[str, Any]], names: Sequence[str]) -> None:
-    """Raise `InputError` naming two variants that are the same."""
-    seen: dict[str, str] = {}
+def check_distinct(variants: Sequence[dict[str, Any]], names: Sequence[str]) -> None:
+    """Raise `InputError` if two variants are equal."""
+    names_of_changes: dict[str, str] = {}
     for changes, name in zip(variants, names, strict=True):
         key = repr(sorted((key, str(value)) for key, value in changes.items()))
-        if key in seen:
-            raise InputError(f"variants '{seen[key]}' and '{name}' are the same: a variant is wanted once")
-        seen[key] = name
+        if key in names_of_changes:
+            raise InputError(f"variants '{names_of_changes[key]}' and '{name}' are the same: delete one of them")
+        names_of_changes[key] = name

@@ -1,4 +1,4 @@
-"""Where variants run: this process or several of this machine. All give outcomes as they are finished."""
+"""Schedulers: variants run in this process or in several processes of this machine; outcomes come as they finish."""
 
 from __future__ import annotations
 
@@ -19,27 +19,26 @@ if TYPE_CHECKING:
     from concurrent.futures import Executor, Future
 
 Result = TypeVar("Result")
-#: Tasks in flight per worker: enough to keep it busy, few enough that memory and a lost worker cost little.
+#: Submitted tasks per worker: enough to keep it busy, few enough to limit memory and the loss with a worker.
 AHEAD = 4
 
 
 class Scheduler(Protocol):
-    """Runs ``work(task)`` for every task; yields (place of the task, result) in the order they are finished.
+    """Runs ``work(task)`` for every task; yields (place of the task, result) in the order in which tasks finish.
 
-    The result of a task that took its worker down with it is `Failed`. With ``common``, something large that all tasks
-    need, ``work(task, common)``: it travels once per worker. One that runs several tasks at a time may say so by
-    ``workers``.
+    A task that ends its worker process gives `Failed`. ``common`` is large data for all tasks, sent once per worker;
+    with it ``work(task, common)`` is called. An attribute ``workers`` may state the number of parallel tasks.
     """
 
     def outcomes(
         self, work: Callable[..., Result], tasks: Sequence[Any], common: Any = None
     ) -> Iterator[tuple[int, Result | Failed]]:
-        """Outcomes as they come."""
+        """Outcomes in the order in which tasks finish."""
         ...
 
 
 class Here:
-    """One after the other in this process."""
+    """Runs tasks one after the other in this process."""
 
     workers = 1
 
@@ -52,9 +51,9 @@ class Here:
 
 
 class Local:
-    """So many processes of this machine. A task whose process dies is tried once more, alone.
+    """Runs tasks in ``workers`` processes of this machine. A task whose process dies is repeated once, alone.
 
-    As a context manager it keeps its processes from one call to the next, with what they have assembled.
+    As a context manager it keeps its processes, and their assembled operators, from call to call.
     """
 
     def __init__(self, workers: int) -> None:
@@ -74,7 +73,7 @@ class Local:
     def outcomes(
         self, work: Callable[..., Result], tasks: Sequence[Any], common: Any = None
     ) -> Iterator[tuple[int, Result | Failed]]:
-        """Outcomes as they come."""
+        """Outcomes in the order in which tasks finish."""
         from concurrent.futures.process import BrokenProcessPool
 
         left = dict.fromkeys(range(len(tasks)))
@@ -87,7 +86,7 @@ class Local:
                         yield place, outcome
                 except BrokenProcessPool:
                     self._broken()
-                    # One of these took its process, and with it the pool, down: nobody knows which.
+                    # One of the running tasks ended its process and the pool; it is unknown which, so run each alone.
                     for place in sorted(running.values()):
                         del left[place]
                         yield place, _alone(work, tasks[place], file)
@@ -123,7 +122,7 @@ class Local:
         yield self._pool
 
     def _broken(self) -> None:
-        """Forget processes that are of no more use."""
+        """Discard a broken pool of processes."""
         self._pool = None
         if self._kept is not None:
             self._kept.close()
@@ -136,12 +135,12 @@ def _alone(work: Callable[..., Result], task: Any, file: str | None) -> Result |
         try:
             return pool.submit(_worked, work, task, file).result()
         except BrokenProcessPool:
-            return Failed("its process died, alone too (out of memory?)")
+            return Failed("its process died twice, the second time alone (out of memory?)")
 
 
 @contextmanager
 def _filed(common: Any) -> Iterator[str | None]:
-    """A file from which processes of this machine read what is common to all tasks; its name tells its content."""
+    """A temporary file with the data common to all tasks, named by its digest; None without data."""
     if common is None:
         yield None
         return
@@ -152,7 +151,7 @@ def _filed(common: Any) -> Iterator[str | None]:
         yield str(path)
 
 
-#: What is common to the tasks that a process works on, by its digest.
+#: Digest -> common data of the tasks that a process works on.
 _common: Cache[Any] = Cache(1)
 
 

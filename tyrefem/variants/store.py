@@ -1,4 +1,4 @@
-"""Results of a sweep on disk: a line per variant, appended whole, so that a killed sweep goes on where it was."""
+"""Results of a sweep on disk: a line per variant, appended whole, so that a killed sweep can resume."""
 
 from __future__ import annotations
 
@@ -17,7 +17,7 @@ from tyrefem.output import begin_writing, end_writing, jsonable
 
 #: File of the lines, in the sweep's folder.
 NAME = "variants.jsonl"
-#: What a variant is kept under: its number in a plan, or what it changes.
+#: Key of a variant in the store: its number in a plan, or its changes.
 Name = int | str
 
 
@@ -25,9 +25,9 @@ Name = int | str
 class Store:
     """The finished variants of one plan.
 
-    The first line says which plan; every other one is ``{"variant": name, "answers": {...}}`` or ``{"variant": name,
-    "failure": "..."}``, or a ``{"note": name, "value": ...}``. A line is written in one piece and forced to disk; what
-    a kill tore off is cut away.
+    The first line identifies the plan. The others are ``{"variant": name, "answers": {...}}``, ``{"variant": name,
+    "failure": "..."}`` or ``{"note": name, "value": ...}``. A line is written at once and flushed to disk; an
+    incomplete last line of a killed sweep is removed.
 
     Parameters
     ----------
@@ -37,7 +37,7 @@ class Store:
     folder: Path
     digest: str
     done: dict[Name, dict[str, Any]] = field(default_factory=dict)
-    #: What else was noted, by name: the certificate of a reduced model.
+    #: Notes by name, e.g. the certificate of a reduced model.
     notes: dict[str, Any] = field(default_factory=dict)
     _file: Any = None
 
@@ -47,7 +47,7 @@ class Store:
         return self.folder / NAME
 
     def open(self, *, restart: bool = False) -> int:
-        """Take up what is there; the number of finished variants.
+        """Open the file, read the finished variants, and return their number.
 
         Raises
         ------
@@ -72,7 +72,7 @@ class Store:
         return len(self.done)
 
     def _read(self) -> int:
-        """Read every whole line; the number of bytes that they take."""
+        """Read all complete lines; returns their length in bytes."""
         content = self.path.read_bytes()
         whole = content.rfind(b"\n") + 1
         lines = content[:whole].splitlines()
@@ -87,20 +87,20 @@ class Store:
         if first.get("plan") != self.digest:
             raise InputError(
                 "holds the variants of another sweep (another study, version or plan); choose another folder with"
-                " --out, or begin anew with --restart",
+                " --out, or delete them with --restart",
                 file=self.path,
             )
         self.done, self.notes = done, notes
         return whole
 
     def add(self, outcomes: Mapping[Name, Mapping[str, Any]]) -> None:
-        """Keep the outcomes of some variants; a second one of the same variant is left out."""
+        """Store outcomes; a second outcome of the same variant is ignored."""
         entries = {n: {"variant": n, **outcome} for n, outcome in outcomes.items() if n not in self.done}
         self._write(*entries.values())
         self.done |= entries
 
     def note(self, name: str, value: Any) -> None:
-        """Keep something that belongs to all variants."""
+        """Store a value that belongs to all variants."""
         self._write({"note": name, "value": value})
         self.notes[name] = value
 
@@ -113,9 +113,9 @@ class Store:
             raise InputError(f"cannot be written: {error.strerror or error}", file=self.path) from None
 
     def close(self) -> None:
-        """No more lines."""
+        """Close the file."""
         if self._file is not None:
-            # What a full disk did not take was refused when it was written.
+            # A full disk was already reported at the write.
             with suppress(OSError):
                 self._file.close()
             self._file = None
@@ -132,5 +132,5 @@ class Store:
 
 
 def _shared(pairs: list[tuple[str, Any]]) -> dict[str, Any]:
-    """A mapping whose names are kept in memory once, for all variants; a null was written for NaN."""
+    """A mapping with names shared in memory between variants; null becomes NaN."""
     return {sys.intern(name): math.nan if value is None else value for name, value in pairs}

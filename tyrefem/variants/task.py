@@ -1,7 +1,4 @@
-"""A study with the files it needs, to be sent to another process or machine.
-
-One variant's work, done in a worker: build the study, run it, answer.
-"""
+"""Tasks for workers: a study packed with its files, and a variant's run from the packed study to its answers."""
 
 from __future__ import annotations
 
@@ -29,17 +26,17 @@ if TYPE_CHECKING:
 
 
 class VersionError(RuntimeError):
-    """The packer's and the worker's package differ."""
+    """The study was packed by another version of tyrefem than the worker's."""
 
 
 @dataclass(frozen=True)
 class Bundle:
-    """A study as plain data and the files beside it that are not shipped with the package.
+    """A study as plain data, with the files that are not shipped with the package.
 
     Parameters
     ----------
-    name : of the study. data : the study, its references into ``files``. files : name -> bytes.
-    version : of the package that packed it.
+    name : of the study. data : the study; its references point into ``files``. files : name -> bytes.
+    version : of the package that packed the study.
     """
 
     name: str
@@ -49,20 +46,20 @@ class Bundle:
 
     @property
     def digest(self) -> str:
-        """What the study says and all its files hold, shipped cards included by the package's version."""
+        """Digest of the study and its files; the package's version stands for the shipped cards."""
         heads = {name: hashlib.sha256(content).hexdigest() for name, content in sorted(self.files.items())}
         text = json.dumps([self.version, self.name, self.data, heads], sort_keys=True, default=str)
         return hashlib.sha256(text.encode()).hexdigest()[:16]
 
     def unpacked(self, folder: Path) -> StudyData:
-        """The study again, its files in a folder.
+        """The study, with its files written to a folder.
 
         Raises
         ------
-        VersionError : another version of the package would answer differently.
+        VersionError : the study was packed by another version of the package.
         """
         if self.version != tyrefem.__version__:
-            raise VersionError(f"asked by tyrefem {self.version}, but this worker has {tyrefem.__version__}")
+            raise VersionError(f"the study is from tyrefem {self.version}, but this worker has {tyrefem.__version__}")
         for name, content in self.files.items():
             # Another thread may be reading the same file.
             temporary = folder / f"{name}-{uuid.uuid4().hex}"
@@ -72,7 +69,7 @@ class Bundle:
 
 
 def bundle(study: StudyData) -> Bundle:
-    """Pack a study: whoever unpacks it needs no file of this machine.
+    """Pack a study with its files, for other processes or machines.
 
     >>> import tempfile, tyrefem
     >>> packed = bundle(tyrefem.study("nasa-22x5.5-8pr"))
@@ -80,7 +77,7 @@ def bundle(study: StudyData) -> Bundle:
     'nasa-22x5.5-8pr'
     """
     data: dict[str, Any] = copy.deepcopy(dict(study.data))
-    # What a variant does not need, and would have to bring files for.
+    # Variants do not need these tables, which refer to more files.
     for key in ("measured", "cases"):
         data.pop(key, None)
     files: dict[str, bytes] = {}
@@ -96,7 +93,7 @@ def bundle(study: StudyData) -> Bundle:
 
 
 def _packed(kind: str, reference: Any, near: Path | None, files: dict[str, bytes]) -> Any:
-    """The reference as it must be written where only the package and ``files`` are at hand."""
+    """The reference for a machine that has only the package and ``files``."""
     name = reference["base"] if isinstance(reference, Mapping) else reference
     path = library.find(kind, name, near).resolve()
     if not path.is_relative_to(library.shipped().resolve()):
@@ -139,7 +136,7 @@ def unpacked(packed: Bundle) -> StudyData:
 
     Raises
     ------
-    VersionError : another version of the package has packed it.
+    VersionError : the study was packed by another version of the package.
     """
     return _studies.get(packed.digest, lambda: packed.unpacked(_folder(packed.digest)))
 
@@ -149,7 +146,7 @@ _folders: list[tempfile.TemporaryDirectory[str]] = []
 
 
 def _folder(digest: str) -> Path:
-    """Where this process keeps the files of a bundle until it ends."""
+    """Folder of this process for the files of a bundle; deleted when the process ends."""
     with _folder_lock:
         if not _folders:
             _folders.append(tempfile.TemporaryDirectory(prefix="tyrefem-"))
@@ -163,25 +160,25 @@ REMEMBERED = 4
 
 
 class RecentTyres(threading.local):
-    """The tyres that a thread ran last, the latest first; every thread has its own.
+    """The tyres that this thread ran last, the latest first.
 
-    Mesh, operators and strain cycles serve the next variant where they are the same.
+    The next variant reuses their mesh, operators and strain cycles if these are the same.
     """
 
     def __init__(self) -> None:
         self.tyres: list[RollingTyre] = []
 
-    def most_alike(self, study: StudyData) -> RollingTyre | None:
-        """The tyre from which a study can take over most."""
-        return max(self.tyres, key=lambda tyre: _alike(study, tyre.study), default=None)
+    def most_similar(self, study: StudyData) -> RollingTyre | None:
+        """The tyre of which a study can reuse most."""
+        return max(self.tyres, key=lambda tyre: _similarity(study, tyre.study), default=None)
 
     def remember(self, tyre: RollingTyre) -> None:
-        """Keep a tyre; it must not hold those before it alive."""
+        """Keep a tyre, without its reference to an older tyre."""
         object.__setattr__(tyre, "like", None)
         forgotten = self.tyres[REMEMBERED - 1 :]
         self.tyres[:] = [tyre, *self.tyres[: REMEMBERED - 1]]
         if any(all(old.mesh is not kept.mesh for kept in self.tyres) for old in forgotten):
-            # A mesh that goes takes its operators with it, tens of MB that refer to each other.
+            # Free a dropped mesh with its operators now: tens of MB in reference cycles.
             del forgotten
             gc.collect()
 
@@ -189,8 +186,8 @@ class RecentTyres(threading.local):
 recent_tyres = RecentTyres()
 
 
-def _alike(study: StudyData, other: StudyData) -> tuple[bool, bool, int]:
-    """Same section; same strain cycle as far as the study says; how many materials are the same."""
+def _similarity(study: StudyData, other: StudyData) -> tuple[bool, bool, int]:
+    """(same section and mesh, same drive and mechanics, number of equal materials), for comparison."""
     same = [study.data.get(table) == other.data.get(table) for table in ("section", "mesh", "drive", "mechanics")]
     mine, theirs = study.data["materials"], other.data["materials"]
     return same[0] and same[1], same[2] and same[3], sum(mine[region] == theirs.get(region) for region in mine)
@@ -202,11 +199,11 @@ def perform_all(tasks: Sequence[Task]) -> tuple[Outcome, ...]:
 
 
 def perform(task: Task) -> Outcome:
-    """Run one variant in full; its failure must not cost the others.
+    """Run a variant in full; an error becomes `Failed`, so that the other variants continue.
 
     Raises
     ------
-    VersionError : another version of the package has packed it.
+    VersionError : the study was packed by another version of the package.
     """
     from tyrefem.conduction import SolverError
     from tyrefem.errors import InputError
@@ -215,7 +212,7 @@ def perform(task: Task) -> Outcome:
 
     try:
         study = unpacked(task.packed).replace(task.changes)
-        before = recent_tyres.most_alike(study)
+        before = recent_tyres.most_similar(study)
         if before is not None:
             study = unpacked(task.packed).replace(task.changes, like=before.study)
         result = run(study, like=before)

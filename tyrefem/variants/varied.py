@@ -1,4 +1,4 @@
-"""A varied quantity: from a place in the unit interval to a value as a study writes it."""
+"""A varied quantity: maps points of the unit interval to values of a study."""
 
 from __future__ import annotations
 
@@ -19,21 +19,21 @@ if TYPE_CHECKING:
     from tyrefem.inputs.study import StudyData
 
 _AMOUNT = re.compile(r"^\s*([-+]?(?:\d+\.?\d*|\.\d+)(?:[eE][-+]?\d+)?)\s*(.*?)\s*$", re.DOTALL)
-#: Significant digits of a value that is written out: a variant can be typed again.
+#: Significant digits of written values, so that a variant can be typed again.
 DIGITS = 9
 
 
 @dataclass(frozen=True)
 class Varied:
-    """One dotted name of a study and the values it takes.
+    """A dotted name of a study and its values.
 
     Parameters
     ----------
     key : dotted name. unit : of the numbers; empty for pure numbers, cards and words.
-    values : listed values, as written; empty where the quantity is continuous.
-    low, high : ends of a continuous range, in ``unit``. log : spaced by ratios. levels : values in a grid.
-    nominal : the value as the study has it; the numbers are factors on it.
-    also : other dotted names, and what stands there, that take the same factor: a card's number in other regions.
+    values : listed values, as written; empty for a continuous quantity.
+    low, high : ends of a continuous range, in ``unit``. log : logarithmic spacing. levels : values in a grid.
+    nominal : the study's value; the numbers are factors on it.
+    also : (dotted name, its value) of numbers with the same factor: the card's number in other regions.
     """
 
     key: str
@@ -47,7 +47,7 @@ class Varied:
     also: tuple[tuple[str, Any], ...] = ()
 
     def changes(self, value: Any) -> dict[str, Any]:
-        """Dotted name -> value, of a value as a study writes it.
+        """Dotted name -> value, for a value as in a study file.
 
         >>> ply = Varied("materials.ply.k", low=0.5, high=1.5, nominal="2 W", also=(("materials.wrap.k", "2 W"),))
         >>> ply.changes(ply.at(1.0))
@@ -59,7 +59,7 @@ class Varied:
         return {self.key: value, **{key: scaled(nominal_value, factor, DIGITS) for key, nominal_value in self.also}}
 
     def together(self, value: Any, others: Mapping[str, Any]) -> bool:
-        """Do other names have the factor that a value of this has?"""
+        """Do the names of ``also`` have the same factor as this value?"""
         factor = _ratio(value, self.nominal) if self.also else 1.0
         return all(
             math.isclose(_ratio(others[key], nominal_value), factor, rel_tol=1e-6) for key, nominal_value in self.also
@@ -67,18 +67,18 @@ class Varied:
 
     @property
     def heading(self) -> str:
-        """Column of a table: ``drive.speed [mph]``; of a factor ``NAME [x]``."""
+        """Heading of a table's column: ``drive.speed [mph]``; for a factor ``NAME [x]``."""
         unit = self.unit or ("x" if self.nominal is not None else "")
         return f"{self.key} [{unit}]" if unit else self.key
 
     def number(self, place: float) -> float:
-        """The number at a place of [0, 1] of a continuous range, in `unit`."""
+        """The number at a point of [0, 1] of a continuous range, in `unit`."""
         if self.log:
             return float(self.low * (self.high / self.low) ** place)
         return float(self.low + (self.high - self.low) * place)
 
     def at(self, place: float) -> Any:
-        """The value at a place of [0, 1], as a study writes it.
+        """The value at a point of [0, 1], as in a study file.
 
         >>> Varied("drive.speed", "mph", low=10.0, high=40.0).at(0.5)
         '25 mph'
@@ -90,14 +90,14 @@ class Varied:
         return self.written(self.number(place))
 
     def written(self, number: float) -> Any:
-        """A number of this quantity as a study writes it."""
+        """A number of this quantity, as in a study file."""
         rounded = float(f"{number:.{DIGITS}g}")
         if self.nominal is not None:
             return scaled(self.nominal, rounded, DIGITS)
         return f"{rounded:.{DIGITS}g} {self.unit}" if self.unit else rounded
 
     def of(self, value: Any) -> Any:
-        """What a table shows of a written value: its number in `unit` where it has one, else the value."""
+        """A written value for a table: its number in `unit` if it has one, else the value."""
         if self.values and not self.unit:
             return value if isinstance(value, int | float) else str(value)
         if self.nominal is not None:
@@ -105,7 +105,7 @@ class Varied:
         return _amount(value)[0]
 
     def contains(self, value: Any) -> bool:
-        """Is a value, as a study writes it, one that this takes?
+        """Is a written value within the range, or among the listed values?
 
         >>> Varied("drive.speed", "mph", low=10.0, high=40.0).contains("10 m/s")
         True
@@ -126,14 +126,14 @@ class Varied:
 
     @property
     def grid(self) -> list[Any]:
-        """Values of a grid, as a study writes them."""
+        """Values of a grid, as in a study file."""
         if self.values:
             return list(self.values)
         return [self.at(float(place)) for place in np.linspace(0.0, 1.0, self.levels)]
 
     @property
     def ends(self) -> list[Any]:
-        """Every listed value, or both ends: what is tried before anything is run."""
+        """All listed values, or both ends of the range: they are checked before anything runs."""
         return list(self.values) or [self.at(0.0), self.at(1.0)]
 
 
@@ -142,7 +142,7 @@ def varied(study: StudyData, key: str, card: VaryCard) -> Varied:
 
     Raises
     ------
-    InputError : the study has no such number, ends in different units, a logarithmic range through zero.
+    InputError : the study has no such number, the ends have different units, or a logarithmic range includes zero.
     """
     try:
         if card.values is not None:
@@ -164,11 +164,11 @@ def varied(study: StudyData, key: str, card: VaryCard) -> Varied:
 
 
 def uncertain(study: StudyData, deviations: float) -> list[Varied]:
-    """Every uncertain number of a study that can matter, evenly within so many standard deviations either way.
+    """The uncertain numbers of a study that affect answers, uniform within so many standard deviations.
 
     Raises
     ------
-    InputError : none is stated; a range that reaches zero.
+    InputError : no uncertain number is stated, or a range reaches zero.
     """
     varied_numbers = []
     for number in study.uncertain_numbers:
@@ -189,7 +189,7 @@ def uncertain(study: StudyData, deviations: float) -> list[Varied]:
 def _listed(key: str, values: list[Any]) -> Varied:
     amounts = [_AMOUNT.match(value) if isinstance(value, str) else None for value in values]
     units = {match[2] for match in amounts if match}
-    same = alike(values)
+    same = in_one_unit(values)
     for number, item in enumerate(same):
         if item in same[:number]:
             first, again = values[same.index(item)], values[number]
@@ -198,8 +198,8 @@ def _listed(key: str, values: list[Any]) -> Varied:
     return Varied(key, unit, tuple(values), levels=len(values))
 
 
-def alike(values: Sequence[Any]) -> list[Any]:
-    """The values as numbers in the unit of the first quantity among them, so that equal ones are the same.
+def in_one_unit(values: Sequence[Any]) -> list[Any]:
+    """The values as numbers in the unit of the first quantity among them, so that equal values compare equal.
 
     >>> alike(["10 mph", "4.4704 m/s", "10.0 mph"]), alike(["soft", "8 mm"])
     ([10.0, 10.0, 10.0], ['soft', 8.0])
@@ -236,5 +236,5 @@ def _ratio(value: Any, nominal: Any) -> float:
 
 
 def scaled_value(study: StudyData, key: str, factor: float, digits: int = DIGITS) -> Any:
-    """The value at a dotted name of a study times a factor, as a study writes it."""
+    """The study's value at a dotted name times a factor, as in a study file."""
     return scaled(value_at(study.data, key, study.folder), factor, digits)

@@ -1,6 +1,6 @@
-"""Variants answered and kept: by a certified reduced model where there is one, by full runs otherwise.
+"""Evaluation of variants by a certified reduced model or by full runs; finished variants are stored.
 
-Variants that are asked for one round after the other, as a search needs them: each is answered once and kept.
+`VariantEvaluation` evaluates the numbered variants of a plan, `Evaluator` the successive variants of a search.
 """
 
 from __future__ import annotations
@@ -24,36 +24,36 @@ from tyrefem.variants.task import Task, perform, perform_all
 if TYPE_CHECKING:
     from tyrefem.reduced.surrogate import Surrogate, SurrogateCertificate
 
-#: Fewer variants than this per number that varies are run in full: training would cost as much.
+#: With fewer variants than this per varied number, training would cost as much as full runs.
 WORTH_TRAINING = 12
 
 
-#: Under this name a sweep's folder keeps the certificate of the reduced model.
+#: Name of the note with the reduced model's certificate in a sweep's folder.
 CERTIFICATE = "certificate"
 
 
-class Answering:
-    """Answers variants of one study by number.
+class VariantEvaluation:
+    """Evaluates variants of a study by number.
 
     Parameters
     ----------
-    plan : the study, what varies (the box of a reduced model) and the time to a temperature.
-    how : see `Execution`. variants : number -> changes. digest : of what the folder may hold the outcomes of.
+    plan : the study, its varied numbers (the box of a reduced model), and ``time_to``.
+    execution : see `Execution`. variants : number -> changes. digest : identifies what the folder's outcomes belong to.
 
     ``outcomes``: number -> `Answered` or `Failed`.
-    ``certificate``: of the reduced model. ``reduced``: does it answer? ``why_full``: why there is none.
-    ``taken_up``: how many the folder had.
+    ``certificate``: of the reduced model. ``reduced``: is it used? ``why_full``: reason if it is not.
+    ``resumed``: number of outcomes that the folder had.
     """
 
-    #: Before the number of variants that is told beforehand.
+    #: Word before the number of variants in the warning of long work.
     at_most = ""
 
-    def __init__(self, plan: Plan, how: Execution, variants: Sequence[Mapping[str, Any]], digest: str) -> None:
-        self.plan, self.how, self.variants = plan, how, variants
+    def __init__(self, plan: Plan, execution: Execution, variants: Sequence[Mapping[str, Any]], digest: str) -> None:
+        self.plan, self.execution, self.variants = plan, execution, variants
         self.outcomes: dict[int, Outcome] = {}
         self.certificate: SurrogateCertificate | None = None
         self.why_full = ""
-        self.taken_up = 0
+        self.resumed = 0
         self.reduced = False
         self._digest = digest
         self._model: Surrogate | None = None
@@ -64,11 +64,13 @@ class Answering:
 
         Raises
         ------
-        InputError : it holds the outcomes of something else, or cannot be written.
+        InputError : the folder holds outcomes of another plan, or cannot be written.
         """
-        if self.how.folder is not None:
-            self._store = Store(self.how.folder, f"{self._digest}-{self.how.reduced}-{self.how.tolerance:g}")
-            self.taken_up = self._store.open(restart=self.how.restart)
+        if self.execution.folder is not None:
+            self._store = Store(
+                self.execution.folder, f"{self._digest}-{self.execution.reduced}-{self.execution.tolerance:g}"
+            )
+            self.resumed = self._store.open(restart=self.execution.restart)
             self.certificate = _certificate(self._store.notes.get(CERTIFICATE))
         return self
 
@@ -77,42 +79,42 @@ class Answering:
             self._store.close()
 
     def name(self, number: int) -> Name:
-        """Under what the folder keeps a variant."""
+        """Key of a variant in the folder."""
         return number
 
-    def take_up(self, number: int) -> None:
-        """Let a variant have the outcome that the folder has."""
+    def resume(self, number: int) -> None:
+        """Take a variant's outcome from the folder, if it is there."""
         known = None if self._store is None else self._store.done.get(self.name(number))
         if known is not None:
             self.outcomes[number] = outcome_of(known)
 
     def train(self, expected: int) -> None:
-        """Let a reduced model answer, if asked for and worth it, and certified within the tolerance.
+        """Train a reduced model if it is allowed, worth its cost, and certified within the tolerance.
 
-        One whose certificate the folder has is made again when a variant is missing.
+        If the folder has its certificate, the model is trained again only when variants are missing.
 
         Raises
         ------
-        NotReducibleError : there is none, and nothing else is allowed.
+        NotReducibleError : ``reduced`` is ``always``, and no model could be certified.
         """
-        self._expect(expected)
-        if self.how.reduced == "never":
+        self._check_cost(expected)
+        if self.execution.reduced == "never":
             return
         if not self._trains(expected):
             self.why_full = f"{expected} variants are too few to train for"
             return
         self.reduced = True
         if self.certificate is None:
-            self._make()
+            self._train_model()
 
     def _trains(self, expected: int) -> bool:
-        """Is a reduced model allowed, and worth training?"""
+        """Is a reduced model allowed and worth its training?"""
         enough = WORTH_TRAINING * max(len(self.plan.varied), 1)
-        return self.how.reduced == "always" or (self.how.reduced == "auto" and expected >= enough)
+        return self.execution.reduced == "always" or (self.execution.reduced == "auto" and expected >= enough)
 
-    def _expect(self, expected: int) -> None:
-        """Refuse runs that do not fit side by side in memory; warn of long work."""
-        where, run = self.how.where, RunEstimate.of(self.plan.study)
+    def _check_cost(self, expected: int) -> None:
+        """Raise `InputError` if the parallel runs do not fit in memory; warn of long work."""
+        where, run = self.execution.where, RunEstimate.of(self.plan.study)
         workers = max(min(getattr(where, "workers", 1), expected), 1)
         if isinstance(where, Here | Local):
             run.check(workers)
@@ -123,17 +125,21 @@ class Answering:
             more = f" by a reduced model, or {estimate.duration(full)} by full runs if none can be certified"
         estimate.warn_if_long(time, f"{self.at_most}{expected:,} variants of {self.plan.study.name}", more)
 
-    def _make(self) -> None:
+    def _train_model(self) -> None:
         from tyrefem.reduced.model import NotReducibleError
         from tyrefem.reduced.surrogate import surrogate
 
-        how = self.how
+        execution = self.execution
         try:
             self._model = surrogate(
-                self.plan, tolerance=how.tolerance, scheduler=how.where, progress=how.tick, settings=how.settings
+                self.plan,
+                tolerance=execution.tolerance,
+                scheduler=execution.where,
+                progress=execution.report_progress,
+                settings=execution.settings,
             )
         except NotReducibleError as error:
-            if how.reduced == "always":
+            if execution.reduced == "always":
                 raise
             self.reduced, self.why_full = False, str(error)
             return
@@ -141,19 +147,19 @@ class Answering:
         if self._store is not None:
             self._store.note(CERTIFICATE, asdict(self.certificate))
 
-    def answer(self, numbers: Sequence[int], *, full: bool = False) -> Iterator[int]:
-        """Answer variants; yields how many are finished after every piece. ``full``: none by the reduced model."""
+    def evaluate(self, numbers: Sequence[int], *, full: bool = False) -> Iterator[int]:
+        """Evaluate variants; yields the number of finished variants after every task. ``full``: by full runs only."""
         if self.reduced and self._model is None and not full and numbers:
-            self._make()
+            self._train_model()
         if self._model is not None and not full and numbers:
             variants = [self.variants[n] for n in numbers]
-            for by_place in by_model(self._model, self.plan, variants, self.how):
+            for by_place in by_model(self._model, self.plan, variants, self.execution):
                 yield self._keep({numbers[place]: outcome for place, outcome in by_place.items()})
-        yield from self._run([n for n in numbers if n not in self.outcomes], self.how.settings.piece)
+        yield from self._run_in_full([n for n in numbers if n not in self.outcomes], self.execution.settings.piece)
 
-    def _run(self, left: Sequence[int], most: int) -> Iterator[int]:
-        """Run variants in full, so many together that a scheduler is not kept busy by counting them."""
-        where, size = self.how.where, min(max(len(left) // self.how.settings.single, 1), most)
+    def _run_in_full(self, left: Sequence[int], most: int) -> Iterator[int]:
+        """Run variants in full, several in a task if they are many, to limit the scheduler's load."""
+        where, size = self.execution.where, min(max(len(left) // self.execution.settings.single, 1), most)
         if size == 1:
             for place, outcome in where.outcomes(perform, [self._task(n) for n in left]):
                 yield self._keep({left[place]: outcome})
@@ -166,14 +172,14 @@ class Answering:
             else:
                 yield self._keep(dict(zip(pieces[place], outcomes, strict=True)))
         if lost:
-            # One of them took its worker down: the others are not to suffer for it.
-            yield from self._run(lost, 1)
+            # A variant ended its worker: run the variants of this task separately.
+            yield from self._run_in_full(lost, 1)
 
     def _task(self, number: int) -> Task:
         return Task(number, self.plan.packed, self.variants[number], self.plan.time_to)
 
     def _keep(self, outcomes: Mapping[int, Outcome]) -> int:
-        """Take outcomes into memory and onto disk."""
+        """Store outcomes in memory and in the folder; returns the number of finished variants."""
         self.outcomes.update(outcomes)
         if self._store is not None:
             self._store.add({self.name(n): outcome.entry for n, outcome in outcomes.items()})
@@ -181,15 +187,15 @@ class Answering:
 
 
 def by_model(
-    trained: Surrogate, plan: Plan, variants: Sequence[Mapping[str, Any]], how: Execution
+    trained: Surrogate, plan: Plan, variants: Sequence[Mapping[str, Any]], execution: Execution
 ) -> Iterator[dict[int, Outcome]]:
-    """Outcomes of variants, by place, as pieces are finished; what could not be reduced is left out, for full runs."""
+    """Outcomes of variants by place, as tasks finish; variants that are `NotReducible` are left to full runs."""
     from tyrefem.reduced.training_rounds import ReducedTask, perform_reduced
 
-    packed, piece = trained.packed(plan.packed), how.settings.piece
+    packed, piece = trained.packed(plan.packed), execution.settings.piece
     firsts = range(0, len(variants), piece)
     tasks = [ReducedTask(list(variants[first : first + piece]), plan.time_to) for first in firsts]
-    for number, outcomes in how.where.outcomes(perform_reduced, tasks, packed):
+    for number, outcomes in execution.where.outcomes(perform_reduced, tasks, packed):
         if isinstance(outcomes, Failed):
             yield {}
             continue
@@ -203,35 +209,35 @@ def _certificate(noted: Mapping[str, Any] | None) -> SurrogateCertificate | None
     return None if noted is None else SurrogateCertificate(**noted)
 
 
-class Evaluator(Answering):
-    """Answers of variants of one study, by what they change.
+class Evaluator(VariantEvaluation):
+    """Evaluates variants of a study by their changes, for a search; each variant is evaluated once.
 
     Parameters
     ----------
-    plan : the study, what varies (the box of a reduced model) and the time to a temperature; it needs no variants.
-    how : see `Execution`. A search that asks for something else within the same box takes up what the folder has.
+    plan : the study, its varied numbers (the box of a reduced model), and ``time_to``; its variants are not used.
+    execution : see `Execution`. Searches within the same box share the outcomes in the folder.
     """
 
-    #: What was asked for, in its order.
+    #: Changes of all evaluated variants, in the order of the search.
     variants: list[Mapping[str, Any]]
     at_most = "up to "
 
-    def __init__(self, plan: Plan, how: Execution) -> None:
+    def __init__(self, plan: Plan, execution: Execution) -> None:
         boxes = [dataclasses.asdict(varied) for varied in plan.varied]
         text = json.dumps([plan.packed.digest, boxes, plan.time_to], sort_keys=True, default=str)
-        super().__init__(plan, how, [], hashlib.sha256(text.encode()).hexdigest()[:16])
+        super().__init__(plan, execution, [], hashlib.sha256(text.encode()).hexdigest()[:16])
         self._number: dict[str, int] = {}
         self._names: list[str] = []
 
     def name(self, number: int) -> str:
-        """What the variant changes, and whether a full run was asked for where there is a model."""
+        """Key of a variant in the folder: its changes, and "full" if a full run replaces the reduced model."""
         return self._names[number]
 
     def __call__(self, variants: Sequence[Mapping[str, Any]], *, full: bool = False) -> list[Outcome]:
-        """Outcomes of some variants, in their order; ``full``: none by the reduced model."""
+        """Outcomes of variants, in their order; ``full``: by full runs only."""
         numbers = [self._numbered(changes, full) for changes in variants]
         missing = [n for n in dict.fromkeys(numbers) if n not in self.outcomes]
-        for _ in self.answer(missing, full=full):
+        for _ in self.evaluate(missing, full=full):
             pass
         return [self.outcomes[n] for n in numbers]
 
@@ -241,16 +247,16 @@ class Evaluator(Answering):
             number = self._number[name] = len(self.variants)
             self.variants.append(dict(changes))
             self._names.append(name)
-            self.take_up(number)
+            self.resume(number)
         return self._number[name]
 
     @property
     def margins(self) -> Mapping[str, float]:
-        """Answer -> largest error of the reduced model in fresh full runs; empty without one."""
+        """Answer -> largest error of the reduced model in the validation runs; empty without a model."""
         return {} if self.certificate is None else self.certificate.errors
 
     @property
     def table_plan(self) -> Plan:
-        """A plan of what was asked for, in its order: what a table of it needs."""
+        """A plan with all evaluated variants, in the order of the search, for a table of them."""
         names = tuple(str(n + 1) for n in range(len(self.variants)))
         return dataclasses.replace(self.plan, variants=tuple(self.variants), names=names)
