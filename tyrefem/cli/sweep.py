@@ -27,7 +27,7 @@ from tyrefem.output.folder import results_folder
 #: Groups of options in the help.
 VARIANTS, ANSWERS = "Variants", "Answers"
 #: Failures that are told one by one.
-TOLD = 10
+FAILURES_SHOWN = 10
 
 
 def complete(incomplete: str) -> list[str]:
@@ -159,12 +159,12 @@ def sweep(
     Response curves and maps, Pareto front, Sobol indices, tornado, optimum, safe envelope. Finished variants are kept:
     the same command goes on where an interrupted or killed one was.
     """
-    from tyrefem.cli.sweep_flags import answered, asked, questions
+    from tyrefem.cli.sweep_flags import answered, questions, questions_of_flags
     from tyrefem.quantity import parse
     from tyrefem.reports.sweep_files import FILES, KEPT, save
     from tyrefem.variants.execution import Execution
 
-    given = asked(
+    given = questions_of_flags(
         vary=vary, uncertain=uncertain, sample=sample, count=count, seed=seed, cases=cases, limit=limit,
         time_to=time_to, answer=answer, pareto=pareto, indices=indices, tornado=tornado, tolerance_of=tolerance_of,
         minimise=minimise, maximise=maximise, runs=runs, envelope=envelope, loads=loads, pressures=pressures,
@@ -190,10 +190,10 @@ def sweep(
         for line in summary["words"]:
             typer.echo(line)
         typer.echo(f"results in {folder}" + (f"; read {folder / 'sweep.html'}" if pictures else ""))
-    for variant, reason in list(design.failed.items())[:TOLD]:
+    for variant, reason in list(design.failed.items())[:FAILURES_SHOWN]:
         fail(f"variant {variant}: {reason}")
-    if len(design.failed) > TOLD:
-        fail(f"... and {len(design.failed) - TOLD} more; all are in {folder / 'sweep.csv'}")
+    if len(design.failed) > FAILURES_SHOWN:
+        fail(f"... and {len(design.failed) - FAILURES_SHOWN} more; all are in {folder / 'sweep.csv'}")
     kept = f"what is finished is in {folder}, the same command goes on"
     if design.interrupted == "interrupted":
         raise Interrupted(kept)

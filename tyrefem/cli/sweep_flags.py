@@ -22,7 +22,7 @@ if TYPE_CHECKING:
     from tyrefem.variants.schedulers import Scheduler
 
 
-def asked(
+def questions_of_flags(
     *,
     vary: list[str] | None = None,
     uncertain: float | None = None,
@@ -211,7 +211,7 @@ def questions(
     from tyrefem import library
     from tyrefem.api import study as load
     from tyrefem.cards import read_toml
-    from tyrefem.sweep import design as asked
+    from tyrefem.sweep import design
     from tyrefem.variants.card import SweepCard
 
     path = Path(name)
@@ -219,12 +219,12 @@ def questions(
     if is_file or (path / "sweep.toml").is_file() or name in library.names("sweep"):
         file = library.find("sweep", name)
         stem = file.parent.resolve().name if file.name == "sweep.toml" else file.stem
-        return stem, asked.loaded(name, changes, **given, **({} if case is None else {"case": case}))
+        return stem, design.loaded(name, changes, **given, **({} if case is None else {"case": case}))
     if path.suffix != ".toml" and os.sep not in name and name not in library.names("study") and not path.is_dir():
         known = [*library.names("study"), *library.names("sweep")]
         raise InputError(f"no study or sweep named '{name}'{nearest(name, known)}")
     study = load(name, changes, case)
-    return study.name, asked.questions(study, SweepCard.check({"study": name, **given}), Path())
+    return study.name, design.questions(study, SweepCard.check({"study": name, **given}), Path())
 
 
 class _InterruptedError(Exception):

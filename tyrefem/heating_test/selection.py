@@ -131,9 +131,9 @@ class ParameterEstimate:
             return "poor"
         return "determined"
 
-    def holds(self, truth: float) -> bool:
+    def holds(self, value: float) -> bool:
         """Is a number inside the 95 % interval?"""
-        return self.low <= truth <= self.high
+        return self.low <= value <= self.high
 
     def to_dict(self) -> dict[str, Any]:
         """For tables and JSON."""

@@ -8,7 +8,7 @@ from typing import Any
 
 from tyrefem import library
 from tyrefem.errors import InputError, nearest
-from tyrefem.inputs.drive_table import RIVALS
+from tyrefem.inputs.drive_table import EXCLUSIVE_KEYS
 from tyrefem.quantity import written
 
 #: Tables whose text value is a reference to a card: changing something below it lays the change over the card.
@@ -53,7 +53,7 @@ def _change(data: dict[str, Any], key: str, value: Any) -> None:
         place[_index(place, last, key)] = value
     else:
         place[last] = value
-        _drop_rivals(parts, place)
+        _drop_exclusive(parts, place)
 
 
 def _parts(data: Mapping[str, Any], key: str) -> list[str]:
@@ -103,7 +103,7 @@ def _refuse_overridden(data: Mapping[str, Any], parts: list[str]) -> None:
     if parts[0] != "drive" or len(parts) < 2 or not isinstance(drive, Mapping):
         return
     phases = drive.get("phases")
-    same = {parts[1], *RIVALS.get(parts[1], ())}
+    same = {parts[1], *EXCLUSIVE_KEYS.get(parts[1], ())}
     if isinstance(phases, list) and phases and all(isinstance(p, Mapping) and same & set(p) for p in phases):
         names = [str(p.get("name", number)) for number, p in enumerate(phases)]
         raise InputError(
@@ -113,13 +113,13 @@ def _refuse_overridden(data: Mapping[str, Any], parts: list[str]) -> None:
         )
 
 
-def _drop_rivals(parts: list[str], place: dict[str, Any]) -> None:
+def _drop_exclusive(parts: list[str], place: dict[str, Any]) -> None:
     """Load and deflection say the same thing: setting one drops the other; so do a sensor's two ways of placing."""
-    rivals = RIVALS if parts[0] == "drive" else {}
+    exclusive_keys = EXCLUSIVE_KEYS if parts[0] == "drive" else {}
     if parts[0] == "sensors":
-        rivals = {"at": ["s", "depth"], "s": ["at"], "depth": ["at"]}
-    for rival in rivals.get(parts[-1], []):
-        place.pop(rival, None)
+        exclusive_keys = {"at": ["s", "depth"], "s": ["at"], "depth": ["at"]}
+    for exclusive_key in exclusive_keys.get(parts[-1], []):
+        place.pop(exclusive_key, None)
 
 
 def value_at(data: Mapping[str, Any], key: str, near: Any = None) -> Any:

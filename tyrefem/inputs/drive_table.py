@@ -11,7 +11,7 @@ from tyrefem.cards import Card
 from tyrefem.errors import InputError, nearest
 
 #: Keys that say the same thing: a phase's own takes the place of the drive's other.
-RIVALS = {
+EXCLUSIVE_KEYS = {
     "load": ["deflection"],
     "deflection": ["load"],
     "slip_ratio": ["slip_speed"],
@@ -45,7 +45,7 @@ class DriveTable(Card):
 def _filled(defaults: Mapping[str, Any], phase: Any, number: int, count: int) -> dict[str, Any]:
     if not isinstance(phase, Mapping):
         raise InputError("must be a table of keys", field=f"phases.{number}")
-    dropped = {rival for key, rivals in RIVALS.items() if key in phase for rival in rivals}
+    dropped = {other for key, others in EXCLUSIVE_KEYS.items() if key in phase for other in others}
     named = {"name": f"phase {number + 1}" if count > 1 else "rolling"}
     return named | {key: value for key, value in defaults.items() if key not in dropped} | dict(phase)
 
