@@ -61,8 +61,8 @@ spot_diameter = "10 mm"
 radius = "40 mm"
 [phases]
 idle = "10 s"
-heating = "60 s"
-cooling = "30 s"
+heating = "20 s"
+cooling = "10 s"
 [surroundings]
 ambient = "22 degC"
 characteristic_length = "100 mm"
