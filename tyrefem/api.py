@@ -1,6 +1,6 @@
-"""What people work with: a study and its answers, with their verbs.
+"""The public classes: a study and its results, with their methods.
 
-The classes that they stand on are data; each verb is one line that calls the room where the work is done.
+Their base classes hold data; each method is one line that calls the package that does the work.
 """
 
 from __future__ import annotations
@@ -30,15 +30,15 @@ Data = TypeVar("Data")
 
 
 def with_verbs(kind: type[Data], data: Any, **changes: Any) -> Data:
-    """The same data, some of its fields changed, as an object of ``kind``: a class with verbs on the data's own."""
+    """Copy data, with some fields changed, to ``kind``: a subclass of the data's class that has methods."""
     return kind(**({field.name: getattr(data, field.name) for field in fields(data)} | changes))
 
 
 class Result(result.ResultData):
-    """A run's result, and how to write and show it."""
+    """Result of a run, with methods to write and plot it."""
 
     def summary(self) -> dict[str, Any]:
-        """What `summary.json` holds: inputs, versions, mesh, tolerance, and the numbers that matter."""
+        """Contents of `summary.json`: inputs, versions, mesh, tolerance and main results."""
         from tyrefem.reports.run_files import summary
 
         return summary(self)
@@ -69,10 +69,10 @@ class Result(result.ResultData):
 
 
 class Campaign(campaign.CampaignData):
-    """The cases of a study, each a study of its own, whose results can be written and shown."""
+    """The cases of a study: each case is a study, whose result can be written and plotted."""
 
     def outcome(self, case: Case) -> Result | str:
-        """The result of a case, or why there is none."""
+        """The result of a case, or the reason why it failed."""
         outcome = super().outcome(case)
         return outcome if isinstance(outcome, str) else with_verbs(Result, outcome)
 
@@ -81,7 +81,7 @@ class Comparison(comparison.ComparisonData):
     """Deviations of a study from measurements, with `save`."""
 
     def save(self, folder: str | Path) -> Path:
-        """Write tables, pictures and a self-contained page into a folder; returns the page.
+        """Write tables, pictures and a self-contained page into a folder; return the page's path.
 
         Raises
         ------
@@ -93,21 +93,21 @@ class Comparison(comparison.ComparisonData):
 
 
 class Diagnosis(diagnosis.DiagnosisData):
-    """What a diagnosis says, with `to_dict` and `save`."""
+    """Result of a diagnosis, with `to_dict` and `save`."""
 
     @classmethod
     def of(cls, data: diagnosis.DiagnosisData) -> Diagnosis:
-        """The same diagnosis, and every further look at the same data, with verbs."""
+        """Convert a diagnosis, and every further look at the same data, to this class."""
         return with_verbs(cls, data, again=None if data.again is None else cls.of(data.again))
 
     def to_dict(self) -> dict[str, Any]:
-        """What `verdict.json` holds."""
+        """Contents of `verdict.json`."""
         from tyrefem.diagnose.record import record
 
         return record(self)
 
     def save(self, folder: str | Path) -> Path:
-        """Write verdict.json, amended.toml, tables, pictures and one self-contained page; returns the page.
+        """Write verdict.json, amended.toml, tables, pictures and one self-contained page; return the page's path.
 
         Raises
         ------
@@ -135,17 +135,17 @@ class Design(design.DesignData):
 
 
 class Identification(identification.IdentificationData):
-    """What a rig's tables say about its layers, with `words`, `to_dict` and `save`."""
+    """Layers identified from a rig's tables, with `words`, `to_dict` and `save`."""
 
     @cached_property
     def words(self) -> tuple[str, ...]:
-        """What the data cannot determine and what else a reader must know, a sentence each."""
+        """Sentences on what the data cannot determine, and on other limits of the result."""
         from tyrefem.heating_test.verdict import sentences
 
         return sentences(self)
 
     def to_dict(self) -> dict[str, Any]:
-        """What `rig.json` holds."""
+        """Contents of `rig.json`."""
         from tyrefem.heating_test.summary import summary
 
         return summary(self)
@@ -155,7 +155,7 @@ class Identification(identification.IdentificationData):
 
         Raises
         ------
-        InputError : the folder cannot be written, or there is no such base card.
+        InputError : the folder cannot be written, or the base card does not exist.
         """
         from tyrefem.reports.rig import save
 
@@ -163,7 +163,7 @@ class Identification(identification.IdentificationData):
 
 
 class Study(studies.StudyData):
-    """A study, and what can be asked of it. Made by `study`; changed by `replace`.
+    """A study, with methods to run, compare, diagnose and sweep it. `study` makes it; `replace` changes it.
 
     >>> coarse = study("nasa-22x5.5-8pr", {"mesh.size": "12 mm", "drive.duration": "60 s"})
     >>> f"{coarse.run().peaks['tyre'].temperature:.0f} degC"
@@ -172,13 +172,13 @@ class Study(studies.StudyData):
 
     def __post_init__(self, like: studies.StudyData | None, built: StudyParts | None) -> None:
         super().__post_init__(like, built)
-        # The data's room cannot know the strain laws; people are told here that there is none of that name.
+        # The data's package does not import the strain laws; this class checks their name.
         strain_law(self)
 
     def run(self, progress: Callable[[float], None] | None = None, *, partial: bool = False) -> Result:
         """Simulate the drive. ``progress`` is called with the time (s) after every step.
 
-        ``partial``: Ctrl-C gives back what is finished (``result.history.interrupted``); else it is raised.
+        ``partial``: return the finished part after Ctrl-C (``result.history.interrupted``); else raise it.
         """
         from tyrefem.simulation.estimate import RunEstimate
         from tyrefem.simulation.run import run
@@ -187,13 +187,13 @@ class Study(studies.StudyData):
         return with_verbs(Result, run(self, progress, partial=partial))
 
     def compare(self, table: Any = None, result: result.ResultData | None = None, **options: Any) -> Comparison:
-        """Deviation from measured tables: the one given, or the study's own. Options: see `tyrefem.compare.compare`."""
+        """Deviation from measured tables: ``table``, or the study's tables. Options: see `tyrefem.compare.compare`."""
         from tyrefem.compare import compare
 
         return with_verbs(Comparison, compare(self, table, result, **options))
 
     def diagnose(self, table: Any = None, **options: Any) -> Diagnosis:
-        """What the model is missing, judged by measured tables: the one given, or the study's own.
+        """Effects that the model lacks, inferred from measured tables: ``table``, or the study's tables.
 
         Options: see `tyrefem.diagnose.diagnose`.
         """
@@ -202,9 +202,9 @@ class Study(studies.StudyData):
         return Diagnosis.of(diagnose(self, table, **options))
 
     def sweep(self, vary: Mapping[str, Any] | None = None, **options: Any) -> Design:
-        """Many variants of the study, and what they say: response, Pareto front, tornado, indices, optimum, envelope.
+        """Compute many variants: response, Pareto front, tornado, Sobol indices, optimum, envelope.
 
-        ``vary``: dotted name -> tuple (from, to) or (from, to, levels), list of values, or what a sweep file says.
+        ``vary``: dotted name -> tuple (from, to) or (from, to, levels), list of values, or entry of a sweep file.
         Options: every other key of a sweep file (docs/sweeps.md), and those of
         `tyrefem.sweep.design.Questions.answered`.
 
@@ -218,18 +218,18 @@ class Study(studies.StudyData):
         return with_verbs(Design, run_design_study(self, vary, **options))
 
     def campaign(self) -> Campaign:
-        """The cases of the study's table, each a study of its own."""
+        """The cases of the study's table, each of them a study."""
         return Campaign.of(self)
 
 
 def study(name: str | Path, changes: Mapping[str, Any] | None = None, case: str | None = None) -> Study:
-    """The study of a name or path, with values changed by dotted names.
+    """Load a study by name or path; ``changes`` gives new values by dotted name.
 
-    ``case``: of a campaign, only this case; ``changes`` are then laid over the case's own values.
+    ``case``: case of a campaign; ``changes`` then change the case's values.
 
     Raises
     ------
-    InputError : no such study, or something wrong in it or in a card it names: file, field, what is allowed.
+    InputError : the study does not exist, or it or a card that it names has an error: file, field, what is allowed.
     """
     return Study.load(name, changes, case)
 
@@ -244,16 +244,16 @@ def identify(
     fineness: Fineness | None = None,
     progress: Callable[[], None] | None = None,
 ) -> Identification:
-    """Find conductivity and specific heat of every layer of a rig from its measured tables.
+    """Identify conductivity and specific heat of every layer of a rig from measured tables.
 
     Parameters
     ----------
-    rig : name, path or card. tables : CSV files whose runs are named like the card's; none: those beside the card.
-    tests, without, linear, fineness, progress : as of `tyrefem.heating_test.identification.identify`.
+    rig : name, path or card. tables : CSV files whose runs have the card's names; default: those beside the card.
+    tests, without, linear, fineness, progress : see `tyrefem.heating_test.identification.identify`.
 
     Raises
     ------
-    InputError : a card or table that cannot be used.
+    InputError : the card or a table cannot be used.
     """
     data = identification.identify(
         rig, tables, tests=tests, without=without, linear=linear, fineness=fineness, progress=progress

@@ -84,7 +84,7 @@ def test_before_anything_is_finished(here: Path, arguments: list[str], moment: s
 def test_a_run_keeps_what_it_reached(here: Path) -> None:
     long = ("--set", "mesh.size=8 mm", "--set", "output.every=2 s", "--out", "out", "--no-vtk")
     done = interrupted("run", NASA, *long, at=STEP, folder=here)
-    assert clean(here, done).endswith("s; what is finished is in out\n")
+    assert clean(here, done).endswith("s; finished files are in out\n")
     assert json.loads((here / "out/summary.json").read_text(encoding="utf-8"))["complete"] is False
     assert (here / "out/report.html").is_file()
 
@@ -135,7 +135,7 @@ def test_a_campaign_keeps_its_cases(here: Path) -> None:
 
 def test_rig_keeps_fits_and_tables(rig: Path) -> None:
     done = interrupted("rig", "simulate", "mine.toml", "--seed", "1", "--out", "sim", at=PICTURE, folder=rig)
-    assert clean(rig, done) == "tyrefem: interrupted; the tables are in sim, the pictures are not\n"
+    assert clean(rig, done) == "tyrefem: interrupted; sim has the tables, but not the pictures\n"
     assert {file.name for file in (rig / "sim").iterdir()} == {"low.csv", "summary.json"}
     layers = ("rig", "layers", "mine.toml", "sim/low.csv", "--out", "layers")
     line = clean(rig, interrupted(*layers, at="tyrefem.heating_test.identification:identify:2", folder=rig))
@@ -150,7 +150,7 @@ def test_rig_keeps_fits_and_tables(rig: Path) -> None:
 def test_press_keeps_its_tables(here: Path) -> None:
     command = ("press", NASA, "--set", "mechanics.strain=fem", "--set", "mesh.size=12 mm", "--out", "out", "--no-vtk")
     line = clean(here, interrupted(*command, at=PICTURE, folder=here))
-    assert line == "tyrefem: interrupted; the tables are in out, the pictures are not\n"
+    assert line == "tyrefem: interrupted; out has the tables, but not the pictures\n"
     assert (here / "out/press.json").is_file()
 
 
@@ -171,7 +171,7 @@ def test_blind_and_isolability_go_on(here: Path) -> None:
 
 def test_a_sweep_whose_page_is_not_drawn_goes_on(here: Path) -> None:
     line = clean(here, interrupted("sweep", NASA, *SPEEDS, "--workers", "1", "--out", "out", at=PICTURE, folder=here))
-    assert line == "tyrefem: interrupted; finished variants are in out, the same command goes on\n"
+    assert line == "tyrefem: interrupted; finished variants are in out; the same command resumes from there\n"
 
 
 def test_an_interruption_that_a_library_swallows_is_sent_again(here: Path) -> None:
@@ -184,11 +184,11 @@ def test_an_interruption_that_a_library_swallows_is_sent_again(here: Path) -> No
         "class Gone:\n"
         "    def __del__(self): os.kill(os.getpid(), signal.SIGINT)\n"
         "import tyrefem.cli.commands as commands\n"
-        "def performed(arguments):\n"
+        "def run_command_line(arguments):\n"
         "    Gone()\n"
         "    for _ in range(10**7): pass\n"
         "    return None, 0\n"
-        "commands.performed = performed\n"
+        "commands.run_command_line = run_command_line\n"
         "tyrefem.cli.main()\n"
     )
     (here / "program.py").write_text(code, encoding="utf-8")

@@ -86,7 +86,7 @@ def test_new_never_overwrites(own: Path, refused: Callable[..., str], capfd: pyt
 
 @pytest.mark.parametrize("name", ["../a", "a/b", "", ".hidden", "-x", "a b", "a.toml", "a\n"])
 def test_new_refuses_what_is_no_name(refused: Callable[..., str], name: str) -> None:
-    assert "is no name for a card" in refused("new", "study", "--", name)
+    assert "is not allowed as a card's name" in refused("new", "study", "--", name)
 
 
 def test_new_of_an_unknown_kind_or_card(refused: Callable[..., str]) -> None:

@@ -61,7 +61,7 @@ def test_a_law_without_an_answer_is_said_and_the_others_stand(here: Path, capfd:
     soft = "mechanics.load_law={law='vertical-stiffness', stiffness='110 N/mm', source='test'}"
     assert main(["strain", STUDY, "--law", "barrel", "--law", "fem", "--set", soft, *BRIEF]) == 0
     out, err = capfd.readouterr()
-    assert "warning: the strain law 'barrel' has no answer: 1.201e+04 N at 572.3 kPa: a deflection of 109.2 mm" in err
+    assert "warning: the strain law 'barrel' has no solution: 1.201e+04 N at 572.3 kPa: a deflection of 109.2 mm" in err
     assert err.count("\n") == 1
     lines = out.splitlines()
     assert any(line.split()[:2] == ["│", "deflection,"] for line in lines)

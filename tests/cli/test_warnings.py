@@ -84,11 +84,11 @@ class TestAnotherTyre:
     def copied(self, here: Path, capfd: pytest.CaptureFixture[str]) -> Path:
         assert main(["new", "study", "mine", "--from", RADIAL]) == 0
         out = capfd.readouterr().out
-        assert f"note: of section '{RADIAL}' and of no other (made_for): mechanics.load_law" in out
+        assert f"note: for section '{RADIAL}' only (made_for): mechanics.load_law" in out
         assert main(["new", "section", "wider", "--from", RADIAL]) == 0
-        assert f"note: of {RADIAL} and of no other tyre: rating" in capfd.readouterr().out
+        assert f"note: for {RADIAL} only: rating" in capfd.readouterr().out
         assert (
-            (here / "geometry/wider.toml").read_text(encoding="utf-8").startswith(f"# A copy of {RADIAL}; of {RADIAL}")
+            (here / "geometry/wider.toml").read_text(encoding="utf-8").startswith(f"# A copy of {RADIAL}; for {RADIAL}")
         )
         return here / "studies/mine/study.toml"
 
@@ -101,7 +101,7 @@ class TestAnotherTyre:
         copied.write_text(text.replace(f'section = "{RADIAL}"', 'section = "wider"'), encoding="utf-8")
         assert main(["check", str(copied)]) == 0
         (line,) = lines(capfd)
-        assert "made_for: mechanics.load_law, mechanics.footprint, mechanics.energy, published: these are of" in line
+        assert "made_for: mechanics.load_law, mechanics.footprint, mechanics.energy, published: these are for" in line
         assert main(["show", "study", RADIAL, "--set", "section=wider"]) == 0
         assert len(lines(capfd)) == 1
 

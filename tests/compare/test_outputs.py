@@ -95,7 +95,7 @@ def test_the_page_is_self_contained_escaped_and_begins_with_the_summary(folder, 
     assert all(source.startswith("data:image/png;base64,") for source in Page.sources)
     assert "<1>" not in text
     words = [word.strip() for word in Page.words if word.strip()]
-    assert words.index(comparison.summary) < words.index("Where they differ")
+    assert words.index(comparison.summary) < words.index("Deviations")
 
 
 def test_the_summary_is_one_honest_line(comparison):

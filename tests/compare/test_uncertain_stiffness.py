@@ -70,7 +70,8 @@ def test_what_cannot_matter_is_left_out_in_words(tmp_path: Path) -> None:
     assert "materials.bead.shear_modulus.value" not in set(found.inputs["key"])
     (note,) = [note for note in found.notes if "left out" in note]
     assert (
-        note == "Note: inputs left out, as the strain law 'arcs' does not read them: materials.bead.shear_modulus.value"
+        note
+        == "Note: inputs left out, because the strain law 'arcs' does not read them: materials.bead.shear_modulus.value"
     )
     html = found.save(tmp_path / "compared").read_text()
     assert "materials.bead.shear_modulus.value" in html

@@ -134,7 +134,7 @@ def test_the_page_needs_nothing_else_and_begins_with_the_verdict(case: Case) -> 
     )
     assert text.count('src="data:image/png;base64,') == len(pictures)
     first = text.index("The road is warmer than stated")
-    assert first < text.index("Where they differ")
+    assert first < text.index("Deviations")
     assert all(run in text for run in RUNS)
 
 
@@ -176,7 +176,7 @@ def test_the_command_goes_on_where_it_was_and_says_so(
     assert main(["diagnose", str(case.study.file), "--out", str(out), *flags]) == 0
     said, err = capfd.readouterr()
     assert err == ""
-    assert said.startswith(f"{len(list(case.kept.rglob('*.npz')))} simulations were taken up")
+    assert said.startswith(f"{len(list(case.kept.rglob('*.npz')))} simulations of an interrupted diagnosis were reused")
     assert "IDENTIFIED: The road is warmer than stated" in said
     assert str(out / "diagnosis.html") in said
     # Nothing hidden is left: neither what was kept, nor a temporary file.

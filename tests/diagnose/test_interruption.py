@@ -37,7 +37,7 @@ def test_interruption_keeps_what_is_finished_and_nothing_else(case: Case, tmp_pa
     assert running.returncode == 130
     assert said == ""
     assert err.startswith("tyrefem: interrupted; ")
-    assert "the same command goes on" in err
+    assert "the same command resumes from there" in err
     assert err.count("\n") == 1
     # The folder says that it is not complete, and has the finished simulations, whole.
     assert sorted(file.name for file in out.iterdir()) == [".progress", "summary.json"]

@@ -215,7 +215,7 @@ def test_a_name_that_is_taken_is_refused(own: Path) -> None:
 
 def test_a_folder_that_is_none(monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.setenv("TYREFEM_EFFECTS", "/nowhere/at/all")
-    with pytest.raises(tf.InputError, match="TYREFEM_EFFECTS names '/nowhere/at/all', which is no folder"):
+    with pytest.raises(tf.InputError, match="TYREFEM_EFFECTS names '/nowhere/at/all', which is not a folder"):
         catalogue()
 
 

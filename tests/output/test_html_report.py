@@ -137,7 +137,7 @@ def test_names_cannot_inject(quadratic, tmp_path):
 def test_interrupted_runs_say_so_on_top(stopped, written, tmp_path):
     text = Page(stopped.report(tmp_path / "report.html").read_text(encoding="utf-8")).text
     top = text[: text.index("Pictures")]
-    assert f"interrupted: it reached {number(stopped.times[-1])} s of 120 s" in top
+    assert f"interrupted at {number(stopped.times[-1])} s of 120 s" in top
     assert "(cut short)" in text
     assert "interrupted" not in Page(written).text
 

@@ -90,11 +90,11 @@ def test_the_contact_pressure_of_a_landing_is_that_of_its_end(landing: tf.Result
 def test_no_heat_closes_to_nothing(cold: tf.Result, tmp_path: Path) -> None:
     budget = cold.heat_budget
     assert budget.empty
-    assert budget.closing == "no heat is turned over"
+    assert budget.closing == "no heat is exchanged"
     assert budget.imbalance < 1e-3
-    assert "no heat is turned over" in " ".join(written(budget_figure(cold)))
+    assert "no heat is exchanged" in " ".join(written(budget_figure(cold)))
     assert "share of the" not in " ".join(written(budget_figure(cold)))
-    assert "no heat is turned over" in cold.report(tmp_path / "report.html").read_text()
+    assert "no heat is exchanged" in cold.report(tmp_path / "report.html").read_text()
 
 
 def test_a_tyre_that_cools_has_a_budget(standing: tf.Result) -> None:

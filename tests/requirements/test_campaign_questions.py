@@ -149,7 +149,7 @@ def test_show_prints_and_draws_one_case(
     assert 'load = "2000 lbf"' in capfd.readouterr().out
     assert main(["show", "strain", campaign, "--case", "light", "--out", "cycle.png"]) == 0
     assert "load_N                       8896.44" in capfd.readouterr().out
-    assert "--case: goes with study" in refused("show", "material", "nasa-tread", "--case", "light")
+    assert "--case: is for study" in refused("show", "material", "nasa-tread", "--case", "light")
 
 
 def test_a_campaign_run_as_a_whole_says_that_its_cases_are_left_out(campaign: str) -> None:

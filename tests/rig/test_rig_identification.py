@@ -71,8 +71,8 @@ def test_a_short_test_without_inner_view_says_what_it_cannot_determine() -> None
     assert {"carcass.conductivity", "carcass.specific_heat"} <= unknown
     assert sum(words.startswith("NOT DETERMINED") for words in found.words) == len(unknown)
     said = " ".join(found.words)
-    assert "There is no view of the inner face." in said
-    assert "The test is short: 60 s" in said
+    assert "No sensor measures the inner face." in said
+    assert "The test is short: the readings have 60 s" in said
     for name in unknown:
         one = found.by_name[name]
         assert one.holds(one.prior_value)

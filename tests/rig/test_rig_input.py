@@ -38,7 +38,7 @@ IMPOSSIBLE = [
     ('name = "carcass"', 'name = "tread"', "two layers are named 'tread'"),
     ("absorptance = 0.95", "absorptance = 1.2", "laser.absorptance"),
     ('value = "0.25 W/m/K"', 'value = "0 W/m/K"', "layers.0.conductivity.value"),
-    ('circumferential_radius = "300 mm"', 'circumferential_radius = "8 mm"', "cannot be bent"),
+    ('circumferential_radius = "300 mm"', 'circumferential_radius = "8 mm"', "cannot have this curvature"),
     ('face = "inner"', 'face = "innner"', "sensors.inner.face"),
     ('face = "inner"\n', "", "a camera needs 'face'"),
     ('window = "4 mm"                     #', 'windw = "4 mm" #', "did you mean 'window'"),
@@ -71,7 +71,7 @@ BAD = [
     (TABLE.replace("\n100,", "\n90,"), [], "times must increase"),
     (TABLE.replace("\n100,32.0", "\n100,hot"), [], "hot"),
     ("\n".join(TABLE.splitlines()[:6]), [], "fewer than 5 readings after 60 s"),
-    (TABLE + "2000,50,30,30\n", [], "goes on until 2000 s"),
+    (TABLE + "2000,50,30,30\n", [], "lasts until 2000 s"),
     (TABLE.replace("outer [degC]", "outer [degC],spare [degC]").replace("0,22", "0,1,22"), [], "line"),
     (TABLE.replace("interface", "couple"), ["--without", "interface"], "'couple' is no sensor of the rig"),
     (TABLE, ["--without", "inne"], "unknown sensor 'inne'; did you mean 'inner'"),
@@ -109,7 +109,7 @@ def test_tables_must_belong_to_the_card(here: Path) -> None:
         read(card, ["low.csv", "low.csv"])
     with pytest.raises(InputError, match="no table"):
         read(card, [])
-    with pytest.raises(InputError, match=r"none of low\.csv, high\.csv lies beside the card"):
+    with pytest.raises(InputError, match=r"none of low\.csv, high\.csv is beside the card"):
         tables(card, here / "elsewhere" / "rig.toml")
     with pytest.raises(InputError, match="no rig named"):
         load("trtlb")

@@ -106,7 +106,7 @@ def test_slopes_are_those_of_differences() -> None:
     twin, clock, run = Twin(card, sensors, COARSE), Clock(card.phases, 220.0), card.runs["high"]
     x = np.where(["specific_heat_slope" in name for name in parameters.names], 0.0, 0.4)
     fields = twin.fields(parameters.values(x), run, clock)
-    base = twin.seen(parameters.values(x), clock, fields)
+    base = twin.readings_of_fields(parameters.values(x), clock, fields)
     slopes = twin.slopes(parameters, x, run, clock, fields, base)
     for name in ("tread.conductivity", "tread.specific_heat_slope", "outer_film"):
         i = parameters.names.index(name)

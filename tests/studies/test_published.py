@@ -74,7 +74,7 @@ def test_a_run_tells_its_own_beside_them() -> None:
     assert only.value == result.rolling_resistance.coefficient
     assert result.summary()["published"] == [only.to_dict()]
     page = render(result)
-    assert "Beside published ranges" in page
+    assert "Comparison with published ranges" in page
     for cell in only.cells:
         assert html.escape(cell, quote=False) in html.unescape(page).replace("&", "&amp;")
     without = study.replace({"published": {}}).run()

@@ -457,7 +457,7 @@ def test_tornado_moves_stiffness_too_and_a_shared_card_as_one(tyre: Study) -> No
     assert row["nominal"] + row["more"] == pytest.approx(both, abs=1e-6)
     assert abs(row["more"]) > 0.01
     assert plan.sampling["left_out"] == [
-        "left out, as the strain law 'arcs' does not read them: materials.bead.shear_modulus.value"
+        "left out, because the strain law 'arcs' does not read them: materials.bead.shear_modulus.value"
     ]
 
 

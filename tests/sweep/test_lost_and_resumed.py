@@ -106,7 +106,7 @@ def test_ctrl_c_keeps_what_is_done_and_says_so(tmp_path: Path) -> None:
     _, said = running.communicate(timeout=60)
     assert running.returncode == 130
     assert "Traceback" not in said, said
-    assert "the same command goes on" in said
+    assert "the same command resumes from there" in said
     assert len((tmp_path / "sweep.csv").read_text().splitlines()) == finished(tmp_path) + 1
 
 

@@ -135,7 +135,7 @@ SPEEDS = ["--vary", "drive.speed=10 mph:20 mph"]
         ([*SPEEDS, "--sample", "sobl", "--count", "4"], "'sobl' is not allowed"),
         ([*SPEEDS, "--indices", "8"], "at least two numbers"),
         ([*SPEEDS, "--minimise", "mas_kg"], "did you mean 'mass_kg'"),
-        ([*SPEEDS, "--runs", "30"], "goes with --minimise"),
+        ([*SPEEDS, "--runs", "30"], "needs --minimise"),
         (["--tornado", "--tolerance-of", "materials.tred.density.value=5%"], "did you mean 'tread'"),
         (["--envelope", "hottest_degC<90", "--loads", "2 kg"], "envelope.loads"),
         (["--cases", "none.csv"], "none.csv"),

@@ -1,6 +1,6 @@
-"""The command line. Ctrl-C is taken care of before anything else is imported.
+"""The command line. It handles Ctrl-C before it imports anything else.
 
-The only room that reads arguments; no other room knows it.
+Only this package reads arguments; no other package imports it.
 """
 
 from __future__ import annotations
@@ -8,7 +8,7 @@ from __future__ import annotations
 import gc
 from typing import TYPE_CHECKING, Any
 
-from tyrefem.cli.ctrl_c import INTERRUPTED, CtrlC, interruption_in, line_of
+from tyrefem.cli.ctrl_c import INTERRUPTED, CtrlC, interruption_in, interruption_message
 from tyrefem.cli.line import fail
 
 if TYPE_CHECKING:
@@ -26,14 +26,14 @@ def __getattr__(name: str) -> Any:
 
 
 def main(arguments: list[str] | None = None) -> int:
-    """Run a command line and give its exit code; without ``arguments`` take the process's own and end it.
+    """Run a command line and return its exit code; without ``arguments``, run the process's arguments and exit.
 
-    0: done. 1: no solution, or a case of a campaign failed. 2: bad input, said in one line. 130: interrupted.
+    0: done. 1: no solution, or a case of a campaign failed. 2: bad input, reported in one line. 130: interrupted.
     """
-    # Importing makes many objects and no garbage: looking for it every 700 objects takes a tenth of a short run.
+    # Imports make many objects and no garbage: a collection every 700 objects takes a tenth of a short run.
     gc.set_threshold(100_000)
     with CtrlC(leaves=arguments is None) as ctrl_c:
-        message, code = _performed(arguments, ctrl_c)
+        message, code = _run(arguments, ctrl_c)
         if message:
             fail(message)
         if arguments is None:
@@ -41,20 +41,20 @@ def main(arguments: list[str] | None = None) -> int:
     return code
 
 
-def _performed(arguments: list[str] | None, ctrl_c: CtrlC) -> tuple[object, int]:
-    """The line that the command ends with, or none, and its exit code."""
+def _run(arguments: list[str] | None, ctrl_c: CtrlC) -> tuple[object, int]:
+    """The command's last line, or None, and its exit code."""
     try:
-        from tyrefem.cli.commands import performed
+        from tyrefem.cli.commands import run_command_line
 
-        message, code = performed(arguments)
+        message, code = run_command_line(arguments)
     except BaseException as error:
         ctrl_c.ignore()
         interruption = interruption_in(error)
-        # Whatever goes wrong after Ctrl-C, such as an import that was cut off, goes wrong because of it.
+        # An error after Ctrl-C, such as an import that was cut off, is caused by it.
         if interruption is None and not ctrl_c.pressed:
             raise
-        return line_of(interruption), INTERRUPTED
+        return interruption_message(interruption), INTERRUPTED
     ctrl_c.ignore()
     if ctrl_c.pressed and code != INTERRUPTED:
-        return f"interrupted: {message or 'all was done already'}", INTERRUPTED
+        return f"interrupted: {message or 'the command was already done'}", INTERRUPTED
     return message, code

@@ -1,4 +1,4 @@
-"""`tyrefem blind`: hide effects in made-up data for a study's sensors, and see how often the diagnosis is right."""
+"""`tyrefem blind`: diagnose synthetic data with hidden effects, and count how often the diagnosis is right."""
 
 from __future__ import annotations
 
@@ -26,8 +26,8 @@ from tyrefem.output.folder import results_folder
 
 def blind(
     study: StudyArgument,
-    cases: Annotated[int, typer.Option(min=1, max=10_000, help="How many cases.")] = 20,
-    seed: Annotated[int, typer.Option(min=0, help="Seed of what is hidden, and of the noise.")] = 1,
+    cases: Annotated[int, typer.Option(min=1, max=10_000, help="Number of cases.")] = 20,
+    seed: Annotated[int, typer.Option(min=0, help="Seed of the hidden effects and of the noise.")] = 1,
     changes: SetOption = None,
     case: CaseOption = None,
     out: Annotated[Path | None, typer.Option("--out", help="Folder; default: results/STUDY-blind.")] = None,
@@ -37,9 +37,9 @@ def blind(
     quiet: QuietOption = False,
     as_json: JsonOption = False,
 ) -> None:
-    """Hide effects in made-up data for this study's sensors and runs, and report how often the diagnosis is right.
+    """Hide effects in synthetic data for this study's sensors and runs; report how often the diagnosis is right.
 
-    Finished cases are kept: the same command goes on where an interrupted one was.
+    Finished cases are kept: the same command continues an interrupted one.
     """
     from tyrefem.api import study as load
     from tyrefem.diagnose.blind_rates import NEEDS, run_blind

@@ -1,4 +1,4 @@
-"""`tyrefem check`: is this file right?"""
+"""`tyrefem check`: check a file without running it."""
 
 from __future__ import annotations
 
@@ -14,7 +14,7 @@ from tyrefem.errors import InputError, nearest
 if TYPE_CHECKING:
     from tyrefem.rig import RigCard
 
-#: What may be checked by name too, in this order.
+#: Kinds of cards that may be checked by name, in this order.
 KINDS = ("study", "sweep", "section", "material")
 
 
@@ -26,13 +26,13 @@ def check(
         ),
     ],
 ) -> None:
-    """Check a file without running it; says the first thing that is wrong."""
+    """Check a file without running it; report its first error."""
     path = Path(file)
     if path.is_dir():
         names = ("rig.toml", "sweep.toml", "study.toml")
         path = path / next((name for name in names if (path / name).is_file()), "study.toml")
         if not path.is_file():
-            raise InputError("a folder without a study.toml, sweep.toml or rig.toml", file=file)
+            raise InputError("this folder has no study.toml, sweep.toml or rig.toml", file=file)
     if not os.path.lexists(path):
         from tyrefem import library
 
@@ -50,7 +50,7 @@ def _table(path: Path) -> str:
 
     if looks_like_cases(path):
         cases = read_cases(path)
-        return f"a table of {len(cases)} case(s); 'tyrefem check' of the study that names it checks their values too"
+        return f"a table of {len(cases)} case(s); to check their values, run 'tyrefem check' on the study that names it"
     runs = read_table(path)
     sensors = sorted({sensor for run in runs for sensor in run.sensors})
     readings = sum(int(run.temperatures.notna().sum().sum()) for run in runs)
@@ -113,7 +113,7 @@ def _card(path: Path) -> str:
 
 
 def _rig_tables(rig: RigCard, path: Path) -> str:
-    """The tables beside a rig's card: none at all is a rig to simulate, one that is missing an error."""
+    """Describe the tables beside a rig's card. No table: the rig is simulated only; some of them: an error."""
     from tyrefem.heating_test.card import tables
     from tyrefem.rig import read
 

@@ -1,4 +1,4 @@
-"""The commands, one module each, and what their errors say. Heavy imports happen inside the commands."""
+"""The commands, one module each, and the messages of their errors. Heavy imports happen inside the commands."""
 
 from __future__ import annotations
 
@@ -21,11 +21,11 @@ from tyrefem.output import reading
 
 
 class Stopped(BaseException):
-    """Ctrl-C on its way through the parser, which would make an exit without a word of it; caused by it."""
+    """Carries Ctrl-C through the parser, which would end the process without a message."""
 
 
 class Commands(TyperGroup):
-    """The group of all commands; lets Ctrl-C through."""
+    """The group of all commands; passes Ctrl-C on."""
 
     def make_context(self, *given: Any, **named: Any) -> Any:
         """Read the command line."""
@@ -69,7 +69,7 @@ def _options(
 
 
 def _register() -> None:
-    """Every module of the package that has a ``register`` is a command; ``ORDER`` is its place in the help."""
+    """Register every module of the package that has a ``register``; ``ORDER`` is its place in the help."""
     names = [entry.name for entry in pkgutil.iter_modules([str(Path(__file__).parent)]) if entry.name != "commands"]
     modules = [importlib.import_module(f"{__package__}.{name}") for name in names]
     commands = [module for module in modules if hasattr(module, "register")]
@@ -80,8 +80,8 @@ def _register() -> None:
 _register()
 
 
-def performed(arguments: list[str] | None) -> tuple[object, int]:
-    """Run a command line: the line that it ends with, or none, and its exit code."""
+def run_command_line(arguments: list[str] | None) -> tuple[object, int]:
+    """Run a command line; return its last line, or None, and its exit code."""
     try:
         with reading(), _warnings_shown():
             code = app(args=arguments, prog_name=app.info.name, standalone_mode=False)
@@ -92,13 +92,13 @@ def performed(arguments: list[str] | None) -> tuple[object, int]:
     except SystemExit as end:
         return None, end.code if isinstance(end.code, int) else 0
     except Exception as error:
-        return _other(error)
+        return _handled_error(error)
     return None, code if isinstance(code, int) else 0
 
 
 @contextmanager
 def _warnings_shown() -> Iterator[None]:
-    """Warnings of long work as one line on stderr."""
+    """Print each warning as one line on stderr."""
     with warnings.catch_warnings():
         usual = warnings.showwarning
 
@@ -113,14 +113,14 @@ def _warnings_shown() -> Iterator[None]:
         yield
 
 
-def _other(error: Exception) -> tuple[object, int]:
-    """Usage errors of the parser, and a solver that cannot go on; anything else is a defect and shows itself."""
+def _handled_error(error: Exception) -> tuple[object, int]:
+    """Handle usage errors of the parser and a solver without a solution; raise any other error, which is a defect."""
     name = type(error).__name__
     if isinstance(error, typer.Abort):
         return "interrupted; nothing was written", 130
     if name == "SolverError":
         return f"no solution: {error}", 1
-    # The parser's usage errors: the class lives in click or inside typer, depending on typer's version.
+    # The parser's usage errors: their class is in click or in typer, depending on typer's version.
     message, code = getattr(error, "format_message", None), getattr(error, "exit_code", None)
     if not callable(message) or not isinstance(code, int):
         raise error
@@ -129,4 +129,4 @@ def _other(error: Exception) -> tuple[object, int]:
         return None, code
     context = getattr(error, "ctx", None)
     command = context.command_path if context is not None else app.info.name
-    return f"{message()} ('{command} --help' tells more)", code
+    return f"{message()} (see '{command} --help')", code

@@ -1,4 +1,4 @@
-"""What the commands share: ``--set``, ``--force``, ``--quiet``, names to complete, JSON on stdout."""
+"""Options and helpers of all commands: ``--set``, ``--force``, ``--quiet``, shell completion, JSON on stdout."""
 
 from __future__ import annotations
 
@@ -14,7 +14,7 @@ from tyrefem.errors import InputError
 
 
 def warn(warnings: Iterable[object], printed: Collection[str] = ()) -> tuple[str, ...]:
-    """A line on stderr for every warning that was not said before; all of them as text."""
+    """Print every warning that is not in ``printed`` as a line on stderr; return all warnings as text."""
     lines = tuple(map(str, warnings))
     for line in dict.fromkeys(lines):
         if line not in printed:
@@ -23,7 +23,7 @@ def warn(warnings: Iterable[object], printed: Collection[str] = ()) -> tuple[str
 
 
 def complete_studies(incomplete: str) -> list[str]:
-    """Names of studies for shell completion."""
+    """Names of studies, for shell completion."""
     from tyrefem import library
 
     return [name for name in library.names("study") if name.startswith(incomplete)]
@@ -37,11 +37,11 @@ SetOption = Annotated[
     typer.Option("--set", metavar="KEY=VALUE", help="Change one value, e.g. drive.speed='25 mph'. Repeatable."),
 ]
 ForceOption = Annotated[
-    bool, typer.Option("--force", help="Replace files that are not this command's; an input is never replaced.")
+    bool, typer.Option("--force", help="Replace files that this command did not write; an input is never replaced.")
 ]
 QuietOption = Annotated[bool, typer.Option("--quiet", "-q", help="No progress on stderr.")]
 CaseOption = Annotated[
-    str | None, typer.Option("--case", metavar="NAME", help="Of a campaign, the case to take; --set is laid over it.")
+    str | None, typer.Option("--case", metavar="NAME", help="Use this case of a campaign; --set changes its values.")
 ]
 JsonOption = Annotated[bool, typer.Option("--json", help="Print the result as JSON on stdout, nothing else.")]
 
@@ -53,19 +53,19 @@ def _reduced(choice: str) -> str:
 
 
 ReducedOption = Annotated[
-    str, typer.Option(callback=_reduced, help="Reduced models where full runs bear them out: auto, never.")
+    str, typer.Option(callback=_reduced, help="Use reduced models that full runs confirm: auto, never.")
 ]
 
 
-IgnoreOption = Annotated[list[str] | None, typer.Option(help="A column of the tables to leave out. Repeatable.")]
+IgnoreOption = Annotated[list[str] | None, typer.Option(help="Leave out this column of the tables. Repeatable.")]
 RenameOption = Annotated[
     list[str] | None,
-    typer.Option(metavar="COLUMN=SENSOR", help="A column that the study calls otherwise. Repeatable."),
+    typer.Option(metavar="COLUMN=SENSOR", help="Name of a column's sensor in the study. Repeatable."),
 ]
 
 
 def renamed(pairs: list[str] | None) -> dict[str, str]:
-    """``COLUMN=SENSOR`` arguments as column -> sensor.
+    """Convert ``COLUMN=SENSOR`` arguments to column -> sensor.
 
     >>> renamed(["T1=crown-inner"])
     {'T1': 'crown-inner'}
@@ -80,7 +80,7 @@ def renamed(pairs: list[str] | None) -> dict[str, str]:
 
 
 def settings(pairs: list[str] | None) -> dict[str, Any]:
-    """``KEY=VALUE`` arguments as changes; a value that is TOML (number, list, table) is taken as such.
+    """Convert ``KEY=VALUE`` arguments to changes; a value in TOML (number, list, table) is parsed.
 
     >>> settings(["drive.speed=25 mph", "materials.tread.loss_tangent.value=0.25"])
     {'drive.speed': '25 mph', 'materials.tread.loss_tangent.value': 0.25}
@@ -99,7 +99,7 @@ def settings(pairs: list[str] | None) -> dict[str, Any]:
 
 
 def print_json(data: dict[str, Any]) -> None:
-    """JSON on stdout."""
+    """Print data as JSON on stdout."""
     import json
 
     from tyrefem.output import jsonable
@@ -108,5 +108,5 @@ def print_json(data: dict[str, Any]) -> None:
 
 
 def print_file(path: Path) -> None:
-    """A JSON file as it is on stdout."""
+    """Print a JSON file unchanged on stdout."""
     typer.echo(path.read_text(encoding="utf-8"), nl=False)

@@ -1,4 +1,4 @@
-"""`tyrefem compare`: computed against measured, in kelvin."""
+"""`tyrefem compare`: deviation of a study from measured tables, K."""
 
 from __future__ import annotations
 
@@ -36,7 +36,8 @@ from tyrefem.processes import processes
 def compare(
     study: StudyArgument,
     table: Annotated[
-        Path | None, typer.Argument(metavar="[TABLE]", help="CSV of thermocouple histories; default: the study's own.")
+        Path | None,
+        typer.Argument(metavar="[TABLE]", help="CSV of thermocouple histories; default: the study's tables."),
     ] = None,
     changes: SetOption = None,
     case: CaseOption = None,
@@ -53,9 +54,9 @@ def compare(
     quiet: QuietOption = False,
     as_json: JsonOption = False,
 ) -> None:
-    """Compare a study with measured tables: deviation per sensor, run and phase, against the validation uncertainty.
+    """Compare a study with measured tables: deviation and validation uncertainty of each sensor, run and phase.
 
-    Interrupted, the same command goes on where it was.
+    The same command continues an interrupted one.
     """
     from tyrefem.api import study as load
     from tyrefem.compare.validation import NEEDS
@@ -102,7 +103,7 @@ def compare(
 
 @contextmanager
 def _side_by_side(count: int) -> Iterator[Executor | None]:
-    """So many processes; none where one is enough."""
+    """An executor of ``count`` processes, or None if one process is enough."""
     if count < 2:
         yield None
         return

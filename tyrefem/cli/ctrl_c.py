@@ -1,4 +1,4 @@
-"""Ctrl-C on the command line, at whatever moment: one line that says what is kept, exit code 130."""
+"""Ctrl-C on the command line, at any moment: one line that names the kept files, and exit code 130."""
 
 from __future__ import annotations
 
@@ -18,14 +18,14 @@ if TYPE_CHECKING:
     from collections.abc import Callable
 
 INTERRUPTED = 130
-#: s that an interrupted process may take to end in good order; s until an interruption that went nowhere is sent again.
+#: Time that an interrupted process may take to end, s; time until a lost interruption is sent again, s.
 PATIENCE, MOMENT = 20.0, 0.01
 
 
 class CtrlC:
-    """What Ctrl-C does while a command runs, as a context manager; ``pressed``: it came.
+    """Context manager that handles Ctrl-C while a command runs; ``pressed`` is True after Ctrl-C.
 
-    Where somebody else handles the signal, or in other threads than the main one, nothing is changed.
+    It changes nothing if another handler is installed, or outside the main thread.
 
     Parameters
     ----------
@@ -40,9 +40,9 @@ class CtrlC:
         self.handles = in_main and signal.getsignal(signal.SIGINT) is signal.default_int_handler
         if self.handles:
             signal.signal(signal.SIGINT, self._interrupt)
-            self._unraisable, sys.unraisablehook = sys.unraisablehook, self._lost
+            self._unraisable, sys.unraisablehook = sys.unraisablehook, self._resend
             if self.leaves:
-                # Registered first, done last: what Python takes apart after that cannot be interrupted.
+                # Registered first, so executed last: Python's shutdown after it cannot be interrupted.
                 atexit.register(signal.signal, signal.SIGINT, signal.SIG_IGN)
         return self
 
@@ -55,36 +55,36 @@ class CtrlC:
         self.pressed = True
         raise KeyboardInterrupt
 
-    def _lost(self, lost: sys.UnraisableHookArgs, /) -> Any:
-        """Ctrl-C within a finaliser or a callback of a library goes nowhere: it is sent again."""
+    def _resend(self, lost: sys.UnraisableHookArgs, /) -> Any:
+        """Send Ctrl-C again if a finaliser or a callback of a library lost it."""
         if isinstance(lost.exc_value, KeyboardInterrupt):
-            # A moment later: here it would be lost again.
-            _later(MOMENT, _thread.interrupt_main)
+            # After a delay, because here it would be lost again.
+            _after(MOMENT, _thread.interrupt_main)
         else:
             self._unraisable(lost)
 
     def ignore(self) -> None:
-        """From here on nothing is said twice."""
+        """Ignore any further Ctrl-C, so that its message is printed once."""
         if self.handles:
             signal.signal(signal.SIGINT, signal.SIG_IGN)
 
     def leave(self, code: int) -> NoReturn:
-        """End the process; an interrupted one ends its workers too, and waits for nothing for long."""
+        """End the process. An interrupted process also ends its workers, and waits only for a limited time."""
         if self.pressed:
             if "tyrefem.processes" in sys.modules:
                 sys.modules["tyrefem.processes"].end_children()
-            _later(PATIENCE, os._exit, INTERRUPTED)
+            _after(PATIENCE, os._exit, INTERRUPTED)
         elif self.handles:
-            signal.signal(signal.SIGINT, _too_late)
-        # The handlers stay as they are: the interpreter has still to end.
+            signal.signal(signal.SIGINT, _interrupted_at_end)
+        # The handlers stay installed until the interpreter has ended.
         self.handles = False
-        # Python ends itself by the signal if the last text that it executed was interrupted.
+        # Python ends itself by the signal if the last code that it executed was interrupted.
         exec("")
         sys.exit(code)
 
 
 def interruption_in(error: BaseException) -> KeyboardInterrupt | None:
-    """The interruption that an error is, or comes from: the latest that knows what is kept; None: there is none.
+    """The interruption that caused an error, preferably the latest with a message; None: no interruption.
 
     >>> interruption_in(KeyboardInterrupt())
     KeyboardInterrupt()
@@ -98,8 +98,8 @@ def interruption_in(error: BaseException) -> KeyboardInterrupt | None:
     return interruption
 
 
-def line_of(interruption: KeyboardInterrupt | None) -> str:
-    """What an interruption says: what the command knows to be kept, or which files are complete."""
+def interruption_message(interruption: KeyboardInterrupt | None) -> str:
+    """The message of an interruption: the kept files, as far as the command knows them."""
     if isinstance(interruption, Interrupted):
         return str(interruption)
     output = sys.modules.get("tyrefem.output")
@@ -110,15 +110,15 @@ def line_of(interruption: KeyboardInterrupt | None) -> str:
     return f"interrupted; complete files are in {folder.relative_to(here) if folder.is_relative_to(here) else folder}"
 
 
-def _too_late(_number: int, _frame: object) -> NoReturn:
-    """The command is done; only its process is not."""
-    fail("interrupted at the very end; everything is written")
+def _interrupted_at_end(_number: int, _frame: object) -> NoReturn:
+    """Handle Ctrl-C between the end of the command and the end of its process."""
+    fail("interrupted at the end; all files are written")
     with suppress(OSError, ValueError):
         sys.stdout.flush()
     os._exit(INTERRUPTED)
 
 
-def _later(seconds: float, act: Callable[..., object], *given: object) -> None:
+def _after(seconds: float, act: Callable[..., object], *given: object) -> None:
     timer = threading.Timer(seconds, act, given)
     timer.daemon = True
     timer.start()

@@ -28,14 +28,15 @@ from tyrefem.errors import InputError, nearest
 from tyrefem.interruption import keeping
 from tyrefem.output.folder import results_folder
 
-#: More processes than this gain little: the fits wait for each other.
+#: More processes gain little, because the fits wait for each other.
 MOST_WORKERS = 4
 
 
 def diagnose(
     study: StudyArgument,
     table: Annotated[
-        Path | None, typer.Argument(metavar="[TABLE]", help="CSV of thermocouple histories; default: the study's own.")
+        Path | None,
+        typer.Argument(metavar="[TABLE]", help="CSV of thermocouple histories; default: the study's tables."),
     ] = None,
     changes: SetOption = None,
     case: CaseOption = None,
@@ -43,9 +44,12 @@ def diagnose(
     ignore: IgnoreOption = None,
     rename: RenameOption = None,
     workers: Annotated[int | None, typer.Option(min=1, help="Processes; default: one per core, at most 4.")] = None,
-    largest: Annotated[int, typer.Option(min=1, max=3, help="Most effects that may be missing at once.")] = 3,
+    largest: Annotated[int, typer.Option(min=1, max=3, help="Largest number of effects missing together.")] = 3,
     looks: Annotated[
-        int, typer.Option(min=1, max=9, help="Diagnoses at most, each of what the one before it left unexplained.")
+        int,
+        typer.Option(
+            min=1, max=9, help="Largest number of diagnoses; each diagnoses the study that the last one amended."
+        ),
     ] = 3,
     reduced: ReducedOption = "auto",
     strategy: Annotated[
@@ -55,9 +59,9 @@ def diagnose(
     quiet: QuietOption = False,
     as_json: JsonOption = False,
 ) -> None:
-    """Find where measurements and study disagree, name the missing effect, and write the study that has it.
+    """Find where measurements and study disagree, name the missing effect, and write the amended study.
 
-    Interrupted, the same command goes on where it was.
+    The same command continues an interrupted one.
     """
     from tyrefem.api import study as load
     from tyrefem.diagnose.evaluations import ProgressStore
@@ -98,7 +102,7 @@ def diagnose(
     from tyrefem.diagnose.words import verdict_words
 
     if store.resumed:
-        typer.echo(f"{store.resumed} simulations were taken up from an interrupted diagnosis")
+        typer.echo(f"{store.resumed} simulations of an interrupted diagnosis were reused")
     first, *rest = verdict_words(diagnosis)
     for sentence in (f"{diagnosis.verdict.upper()}: {first}", *rest):
         typer.echo(sentence)

@@ -1,4 +1,4 @@
-"""`tyrefem export`: a real-time model of a study in one file, certified; on request as an FMU too."""
+"""`tyrefem export`: write a certified real-time model of a study as one file, optionally as an FMU too."""
 
 from __future__ import annotations
 
@@ -29,7 +29,7 @@ if TYPE_CHECKING:
 
 
 def _range(text: str | None, name: str) -> dict[str, tuple[str, str]]:
-    """A range of an input.
+    """Parse the range of an input.
 
     >>> _range("0 mph:30 mph", "speed"), _range("83 psi", "pressure"), _range(None, "load")
     ({'speed': ('0 mph', '30 mph')}, {'pressure': ('83 psi', '83 psi')}, {})
@@ -49,20 +49,29 @@ def export(
         str | None, typer.Option(metavar="FROM:TO", help="Range of the speed; default: 0 to 1.5 times the study's.")
     ] = None,
     load: Annotated[
-        str | None, typer.Option(metavar="FROM:TO", help="Of the load; default: 0.5 to 1.25 times the study's.")
+        str | None, typer.Option(metavar="FROM:TO", help="Range of the load; default: 0.5 to 1.25 times the study's.")
     ] = None,
     pressure: Annotated[
-        str | None, typer.Option(metavar="FROM:TO", help="Of the cold gauge pressure; default: 0.8 to 1.2 times.")
+        str | None,
+        typer.Option(
+            metavar="FROM:TO", help="Range of the cold gauge pressure; default: 0.8 to 1.2 times the study's."
+        ),
     ] = None,
     ambient: Annotated[
-        str | None, typer.Option(metavar="FROM:TO", help="Of the ambient; default: 20 K about the study's.")
+        str | None,
+        typer.Option(
+            metavar="FROM:TO", help="Range of the ambient temperature; default: 20 K below to 20 K above the study's."
+        ),
     ] = None,
     road_temperature: Annotated[
-        str | None, typer.Option(metavar="FROM:TO", help="Of the road; default: 20 K below to 40 K above.")
+        str | None,
+        typer.Option(
+            metavar="FROM:TO", help="Range of the road temperature; default: 20 K below to 40 K above the study's."
+        ),
     ] = None,
-    tolerance: Annotated[str, typer.Option(help="Error of any temperature that the certificate allows.")] = "0.2 K",
+    tolerance: Annotated[str, typer.Option(help="Largest temperature error that the certificate allows.")] = "0.2 K",
     duration: Annotated[
-        str | None, typer.Option(help="Of the drives it is trained and certified with; default: the study's.")
+        str | None, typer.Option(help="Duration of the drives for training and certification; default: the study's.")
     ] = None,
     changes: SetOption = None,
     case: CaseOption = None,
@@ -74,9 +83,9 @@ def export(
 ) -> None:
     """Export a real-time model: inputs speed, load, pressure, ambient, road; outputs sensors, contained air.
 
-    It is trained on full runs of the study in the ranges, certified on fresh ones, and stepped by
+    Full runs of the study in the ranges train it; fresh full runs certify it. Its time steps run in
     tyrefem/realtime/tyre.py
-    with numpy alone.
+    and need only numpy.
     """
     from tyrefem.api import study as loaded
     from tyrefem.realtime.certificate import NEEDS
@@ -122,7 +131,7 @@ def export(
     for file in files.values():
         typer.echo(f"wrote {file} ({file.stat().st_size / 1e3:.0f} kB)")
     if fmu and not has_binary(files["fmu"]):
-        fail("no C compiler was found: the FMU holds its source only; the importing tool has to compile it")
+        fail("no C compiler is installed: the FMU holds only its source, which the importing tool has to compile")
 
 
 def _read(option: str, text: str, unit: str) -> float:
@@ -135,7 +144,7 @@ def _read(option: str, text: str, unit: str) -> float:
 
 
 def has_binary(path: Path) -> bool:
-    """Does an FMU hold a compiled library?"""
+    """True if an FMU holds a compiled library."""
     import zipfile
 
     with zipfile.ZipFile(path) as stored:
@@ -143,7 +152,7 @@ def has_binary(path: Path) -> bool:
 
 
 def words(certificate: RealTimeCertificate) -> list[str]:
-    """What a person reads of a certificate."""
+    """Lines of text that describe a certificate."""
     lines = [
         f"trained on {certificate.trained_on} full runs, certified on {certificate.cases[0]} steady and "
         f"{certificate.cases[1]} changing ones of {certificate.duration:g} s in steps of 1 s: "

@@ -1,4 +1,4 @@
-"""`tyrefem isolability`: before any data, which missing effects a study's sensors and runs can tell apart."""
+"""`tyrefem isolability`: effects that a study's sensors and runs can distinguish, computed before any measurement."""
 
 from __future__ import annotations
 
@@ -38,7 +38,7 @@ def isolability(
     quiet: QuietOption = False,
     as_json: JsonOption = False,
 ) -> None:
-    """Before any data: which effects the study's sensors and runs can tell apart, and how strong they must be."""
+    """Compute which effects the study's sensors and runs can distinguish, and how strong these must be."""
     from tyrefem.api import study as load
     from tyrefem.diagnose.evaluations import ProgressStore
     from tyrefem.diagnose.isolability import NEEDS

@@ -1,4 +1,4 @@
-"""`tyrefem list`: what can be named."""
+"""`tyrefem list`: names of cards, boundary laws and effects."""
 
 from __future__ import annotations
 
@@ -12,7 +12,7 @@ KINDS = {"sections": "section", "materials": "material", "studies": "study", "sw
 
 
 def complete_kinds(incomplete: str) -> list[str]:
-    """Kinds for shell completion."""
+    """Kinds, for shell completion."""
     return [kind for kind in [*KINDS, "laws", "effects"] if kind.startswith(incomplete)]
 
 

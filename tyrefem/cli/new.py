@@ -1,4 +1,4 @@
-"""`tyrefem new`: start a card of one's own from a shipped one."""
+"""`tyrefem new`: copy a shipped card into this folder."""
 
 from __future__ import annotations
 
@@ -20,23 +20,23 @@ DEFAULTS = {"study": "nasa-22x5.5-8pr", "section": "nasa-22x5.5-8pr", "material"
 def new(
     kind: Annotated[str, typer.Argument(help="study, section or material.")],
     name: Annotated[str, typer.Argument(help="Name of the new card: letters, digits, . _ -")],
-    copy_of: Annotated[
-        str | None, typer.Option("--from", help="The card to start from.", autocompletion=complete_names)
-    ] = None,
+    copy_of: Annotated[str | None, typer.Option("--from", help="Card to copy.", autocompletion=complete_names)] = None,
 ) -> None:
-    """Write a new study, section or material card into this folder, ready to be edited and found by name."""
+    """Copy a study, section or material card into this folder under a new name, to be edited."""
     from tyrefem import library
     from tyrefem.output import atomic_path, place_of_output
 
     if kind not in DEFAULTS:
         raise InputError(f"no kind '{kind}'{nearest(kind, DEFAULTS)}")
     if not re.fullmatch(r"\w[\w.-]*", name) or name.endswith(".toml"):
-        raise InputError(f"'{name}' is no name for a card; allowed: letters, digits, . _ -, not '.toml' at the end")
+        raise InputError(
+            f"'{name}' is not allowed as a card's name; allowed: letters, digits, . _ -, without '.toml' at the end"
+        )
     source = library.find(kind, copy_of or DEFAULTS[kind])
     folder = Path(library.FOLDERS[kind])
     target = folder / name / "study.toml" if kind == "study" else folder / f"{name}.toml"
     if os.path.lexists(target) or (kind == "study" and os.path.lexists(target.parent)):
-        raise InputError("exists already; nothing was written", file=target)
+        raise InputError("the file exists already; nothing was written", file=target)
     place_of_output(target.parent)
     files = {target: source} | {target.parent / name: source.parent / name for name in _companions(kind, source)}
     first_line, note = _of_the_other_tyre(kind, source)
@@ -53,28 +53,30 @@ def new(
 
 
 def _of_the_other_tyre(kind: str, source: Path) -> tuple[str, str]:
-    """What a copy must say of numbers that are one tyre's and no other's: a line for the file, one for the screen."""
+    """Notes on numbers that hold for one tyre only: a line for the copied file, and a line for the screen."""
     if kind == "study":
         from tyrefem.api import study
 
         try:
             copied = study(source)
         except InputError:
-            return "", ""  # what is wrong with it is the copy's to be mended
+            return "", ""  # the copy keeps the errors, to be corrected there
         section, names = copied.card.made_for or copied.new_section.name, ", ".join(copied.card.of_one_tyre)
         if not names:
             return "", ""
         line = (
-            f'made_for = "{section}"     # the section that these are of: {names}\n' if not copied.card.made_for else ""
+            f'made_for = "{section}"     # the section for which these were made: {names}\n'
+            if not copied.card.made_for
+            else ""
         )
-        return line, f"of section '{section}' and of no other (made_for): {names}; with another section the study warns"
+        return line, f"for section '{section}' only (made_for): {names}; with another section the study warns"
     if kind == "section":
         from tyrefem.cards import read_toml
 
         data: dict[str, Any] = read_toml(source)
         kept = [name for name in ("rating", "parameters.inner_volume") if _has(data, name)]
         if kept:
-            words = f"of {source.stem} and of no other tyre: {' and '.join(kept)}"
+            words = f"for {source.stem} only: {' and '.join(kept)}"
             return f"# A copy of {source.stem}; {words}.\n", words
     return "", ""
 
@@ -88,7 +90,7 @@ def _has(data: dict[str, Any], name: str) -> bool:
 
 
 def _companions(kind: str, source: Path) -> list[Path]:
-    """Files beside a study that it names: its tables and its mesh. A card further away stays where it is."""
+    """Files in a study's folder that the study names: tables and mesh. Cards in other folders are not copied."""
     from tyrefem.cards import read_toml
 
     if kind != "study":

@@ -28,7 +28,7 @@ if TYPE_CHECKING:
     from tyrefem.api import Study
     from tyrefem.mechanics.footprint.press import Pressed
 
-#: What may be given: option and unit.
+#: Options with a quantity: name and unit.
 OPTIONS = {
     "pressure": ("--pressure", "Pa"),
     "load": ("--load", "N"),
@@ -42,14 +42,20 @@ def press(
     study: StudyArgument,
     pressure: Annotated[str | None, typer.Option(help="Gauge pressure, e.g. '83 psi'.")] = None,
     load: Annotated[str | None, typer.Option(help="Load of the tyre, e.g. '12 kN'.")] = None,
-    deflection: Annotated[str | None, typer.Option(help="Instead of a load, e.g. '20 mm'.")] = None,
-    drum: Annotated[str | None, typer.Option(metavar="DIAMETER", help="On a drum, e.g. '1.7 m', or 'flat'.")] = None,
-    camber: Annotated[str | None, typer.Option(help="E.g. '2 deg'; positive: the side z > 0 comes down.")] = None,
+    deflection: Annotated[str | None, typer.Option(help="Deflection, instead of a load, e.g. '20 mm'.")] = None,
+    drum: Annotated[
+        str | None, typer.Option(metavar="DIAMETER", help="Drum's diameter, e.g. '1.7 m', or 'flat'.")
+    ] = None,
+    camber: Annotated[
+        str | None, typer.Option(help="Camber, e.g. '2 deg'; positive: the side z > 0 moves down.")
+    ] = None,
     at: Annotated[
-        list[str] | None, typer.Option(metavar="PLACE", help="Strain cycle here: 'r, z' or a region. Repeatable.")
+        list[str] | None,
+        typer.Option(metavar="PLACE", help="Write the strain cycle of this place: 'r, z' or a region. Repeatable."),
     ] = None,
     balanced: Annotated[
-        bool, typer.Option("--balanced", help="In large motion, not linear about the inflated tyre: slower.")
+        bool,
+        typer.Option("--balanced", help="Solve for large displacements, not linear about the inflated tyre: slower."),
     ] = False,
     pictures: Annotated[bool, typer.Option(help="Draw the PNG pictures.")] = True,
     vtk: Annotated[bool, typer.Option(help="Write the whole deformed tyre, tyre.vtu.")] = True,
@@ -60,7 +66,7 @@ def press(
     changes: SetOption = None,
     case: CaseOption = None,
 ) -> None:
-    """Inflate the tyre by finite elements and press it on the road; by default as in the drive's first phase."""
+    """Inflate the tyre by finite elements and press it on the road; default values are of the drive's first phase."""
     from tyrefem.api import study as load_study
     from tyrefem.mechanics.footprint.press import NEEDS
     from tyrefem.mechanics.footprint.press import press as pressed_by
@@ -88,7 +94,7 @@ def press(
     if result.footprint.unstable:
         many = ", ".join(map(str, result.footprint.unstable))
         where = result.footprint.unstable_place
-        fail(f"warning: motions of negative stiffness in harmonics {many}: the footprint there is in doubt ({where})")
+        fail(f"warning: the stiffness is negative in harmonics {many}: the footprint there is in doubt ({where})")
     if as_json:
         print_json(result.summary())
         return
@@ -109,7 +115,7 @@ def _read(name: str, text: str) -> float:
 
 
 def _placed(error: InputError, given: dict[str, float], study: Study) -> InputError:
-    """The error at the option that was given, or at the study's drive that gave the value."""
+    """The error with its field: the option, or the study's drive that has the value."""
     if error.field == "at":
         return InputError(error.message, field="--at")
     if error.field in given:
@@ -147,7 +153,7 @@ def _words(result: Pressed) -> str:
         f"{result.peak_pressure / 1e3:.0f} kPa peak",
         f"  rolling radius      {footprint.rolling_radius * 1e3:.2f} mm "
         f"(loaded {footprint.loaded_radius * 1e3:.2f} mm)",
-        "  rolling resistance  the wheel stands"
+        "  rolling resistance  none: the wheel does not roll"
         if loss is None
         else f"  rolling resistance  {loss.rolling_resistance:.1f} N, coefficient {loss.coefficient:.5f} at "
         f"{result.speed:.4g} m/s and {loss.temperature:.4g} degC",

@@ -1,4 +1,4 @@
-"""How far a command is: a bar on a terminal; elsewhere a line a minute on stderr; nothing with ``--quiet``."""
+"""Progress of a command: a bar on a terminal, else one line per minute on stderr; nothing with ``--quiet``."""
 
 from __future__ import annotations
 
@@ -10,15 +10,15 @@ from collections.abc import Callable, Iterator
 from contextlib import contextmanager
 from typing import Any
 
-#: What is done, how far, of how much (0: not known).
+#: Name of the stage, work done, total work (0: not known).
 Tick = Callable[[str, float, float], None]
-#: Seconds between the lines that are written where there is no terminal.
+#: Time between the lines without a terminal, s.
 EVERY = 60.0
 
 
 @contextmanager
 def progress(description: str, total: float = 0.0, *, quiet: bool = False) -> Iterator[Callable[[float], None]]:
-    """A function of how far the work is, of ``total``; without a total only the time is shown."""
+    """Show the progress of one stage. Yields a function of the work done; without ``total``, only time is shown."""
     with stages(quiet=quiet) as tick:
         tick(description, 0.0, total)
         yield lambda done: tick(description, done, total)
@@ -26,7 +26,7 @@ def progress(description: str, total: float = 0.0, *, quiet: bool = False) -> It
 
 @contextmanager
 def stages(*, quiet: bool = False, every: float = EVERY) -> Iterator[Tick]:
-    """A function of what is done now, how far, and of how much (0: not known)."""
+    """Show the progress of several stages. Yields a function of the stage, work done and total (0: not known)."""
     if quiet:
         yield lambda _what, _done, _total: None
     elif sys.stderr.isatty():
@@ -49,7 +49,7 @@ def _bars() -> Iterator[Tick]:
 
         def tick(what: str, done: float, total: float) -> None:
             if what not in tasks:
-                # A stage without a total, such as reading, leaves the screen when the next one begins.
+                # A stage without a total, such as reading, disappears when the next stage begins.
                 for name in endless:
                     shown.remove_task(tasks.pop(name))
                 endless[:] = [] if total else [what]
@@ -70,7 +70,7 @@ def _lines(every: float) -> Iterator[Tick]:
 
     def write() -> None:
         if hasattr(signal, "pthread_sigmask"):
-            # Ctrl-C is the main thread's, which may hold it back for a moment.
+            # The main thread handles Ctrl-C, and may delay it for a moment.
             signal.pthread_sigmask(signal.SIG_BLOCK, {signal.SIGINT})
         while not ended.wait(every):
             what, done, total = state

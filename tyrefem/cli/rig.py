@@ -1,4 +1,4 @@
-"""`tyrefem rig`: simulate the laser rig, identify layers from its tables, study the number of layers."""
+"""`tyrefem rig`: simulate the laser rig, identify layers from measured tables, compare numbers of layers."""
 
 from __future__ import annotations
 
@@ -21,7 +21,7 @@ group = typer.Typer(
 )
 RigArgument = Annotated[str, typer.Argument(metavar="RIG", help="A rig's name, rig.toml or folder, e.g. trtlab.")]
 OutOption = Annotated[Path | None, typer.Option("--out", help="Folder; default: results/rig-...")]
-#: Tests that a fit of one model usually computes, for the bar.
+#: Typical number of simulated tests in the fit of one model, for the progress bar.
 _USUAL = 16
 
 
@@ -30,12 +30,12 @@ def simulate(
     rig: RigArgument,
     out: OutOption = None,
     every: Annotated[str, typer.Option(help="Time between readings.")] = "5 s",
-    seed: Annotated[int | None, typer.Option(help="Of the instruments' noise; without it, none.")] = None,
+    seed: Annotated[int | None, typer.Option(help="Seed of the instruments' noise; default: no noise.")] = None,
     force: ForceOption = False,
     quiet: QuietOption = False,
     as_json: JsonOption = False,
 ) -> None:
-    """What the sensors would read in the card's tests: one table per run, pictures."""
+    """Simulate the sensors' readings in the card's tests: one table per run, pictures."""
     from tyrefem import rig as rigs
     from tyrefem.heating_test.card import beside
     from tyrefem.quantity import parse
@@ -78,19 +78,21 @@ def identify(
     out: OutOption = None,
     base: Annotated[
         list[str] | None,
-        typer.Option(help="Card with what a rig cannot know (loss tangent ...): CARD or LAYER=CARD. Repeatable."),
+        typer.Option(
+            help="Card with data that a rig cannot measure (loss tangent ...): CARD or LAYER=CARD. Repeatable."
+        ),
     ] = None,
-    without: Annotated[list[str] | None, typer.Option(help="A sensor of the card to do without. Repeatable.")] = None,
-    constant: Annotated[bool, typer.Option("--constant", help="No property may depend on temperature.")] = False,
+    without: Annotated[list[str] | None, typer.Option(help="Leave out this sensor of the card. Repeatable.")] = None,
+    constant: Annotated[bool, typer.Option("--constant", help="Properties that do not depend on temperature.")] = False,
     force: ForceOption = False,
     quiet: QuietOption = False,
     as_json: JsonOption = False,
 ) -> None:
-    """Conductivity and specific heat of every layer with 95 % intervals; what the tables cannot determine."""
+    """Identify every layer's conductivity and specific heat with 95 % intervals; list what remains undetermined."""
     from tyrefem import rig as rigs
     from tyrefem.heating_test.card import tables as tables_of
     from tyrefem.heating_test.layer_cards import bases
-    from tyrefem.heating_test.verdict import shown, spoken
+    from tyrefem.heating_test.verdict import name_in_words, shown
     from tyrefem.reports.rig import FILES, save
 
     card, file = rigs.load(rig)
@@ -115,14 +117,14 @@ def identify(
         print_json(identification.to_dict())
         return
     for estimate in identification.properties:
-        typer.echo(f"{spoken(estimate.name):34}{shown(estimate, 4):42}{estimate.verdict}")
+        typer.echo(f"{name_in_words(estimate.name):34}{shown(estimate, 4):42}{estimate.verdict}")
     for words in identification.words:
         typer.echo(f"- {words}")
     typer.echo(f"results in {folder}; read {folder / 'report.html'}")
     if chosen:
         typer.echo("material cards: " + ", ".join(str(folder / "materials" / f"{layer}.toml") for layer in chosen))
     else:
-        typer.echo("no material card written: --base names the card that gives loss tangent and stiffness")
+        typer.echo("no material card written: name the card with loss tangent and stiffness by --base")
 
 
 @group.command()
@@ -133,12 +135,12 @@ def layers(
     ] = None,
     out: OutOption = None,
     most: Annotated[int, typer.Option(min=1, help="Largest number of layers to fit.")] = 4,
-    seed: Annotated[int, typer.Option(min=0, help="Of the noise of simulated readings.")] = 1,
+    seed: Annotated[int, typer.Option(min=0, help="Seed of the noise of simulated readings.")] = 1,
     force: ForceOption = False,
     quiet: QuietOption = False,
     as_json: JsonOption = False,
 ) -> None:
-    """Fit one set of readings with 1, 2, 3 ... layers: what more layers improve."""
+    """Fit one set of readings with 1, 2, 3 ... layers, to see what more layers improve."""
     from tyrefem import rig as rigs
     from tyrefem.heating_test.card import tables as tables_of
     from tyrefem.heating_test.layer_study import LayerStudy, fits

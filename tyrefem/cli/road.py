@@ -1,4 +1,4 @@
-"""`tyrefem road`: the film between tread and road, its published tables, and what averaging it costs."""
+"""`tyrefem road`: film between tread and road, its published tables, and the error of averaging it."""
 
 from __future__ import annotations
 
@@ -24,7 +24,7 @@ road = typer.Typer(
 )
 Conductivity = Annotated[str, typer.Option("--conductivity", help="Tread's conductivity.")]
 HeatCapacity = Annotated[str, typer.Option("--heat-capacity", help="Tread's heat capacity by volume.")]
-#: No road, tread or contact has less or more, by unit: beyond, nothing of a table is resolved.
+#: Allowed range of each quantity, by unit: no road, tread or contact is outside.
 LEAST = {"m/s": 1e-6, "m": 1e-4, "W/m/K": 1e-4, "J/m**3/K": 1e3}
 HOTTEST = 2000.0
 MOST = {"m/s": 400.0, "m": 10.0, "W/m/K": 1e4, "J/m**3/K": 1e9}
@@ -42,8 +42,8 @@ def _positive(text: str, unit: str, option: str) -> float:
         raise error.within(field=option) from None
 
 
-def _printed(number: int) -> pd.DataFrame:
-    """A table of the paper."""
+def _paper_table(number: int) -> pd.DataFrame:
+    """Read a table of the paper."""
     import pandas as pd
 
     from tyrefem.library import shipped
@@ -53,16 +53,16 @@ def _printed(number: int) -> pd.DataFrame:
 
 @road.command()
 def table() -> None:
-    """Tables 1 and 2 of the paper: printed value, recomputed value and deviation."""
+    """Print tables 1 and 2 of the paper: printed value, recomputed value and deviation."""
     from tyrefem.boundaries.road_film import triangular_film
     from tyrefem.reports.figures.road import PAPER
 
     typer.echo("Table 1: v m/s, FL m, literature, printed, recomputed H_c W/m2/K, recomputed - literature")
-    for v, length, literature, printed in _printed(1).itertuples(index=False):
+    for v, length, literature, printed in _paper_table(1).itertuples(index=False):
         film = triangular_film(v, length, *PAPER)
         typer.echo(f"{v:8g} {length:6.2f} {literature:9.0f} {printed:9.0f} {film:11.2f} {film / literature - 1:+8.1%}")
     typer.echo("Table 2: v km/h, FL m, printed, recomputed H_c W/m2/K, recomputed - printed")
-    largest, count, printed_2 = 0.0, 0, _printed(2)
+    largest, count, printed_2 = 0.0, 0, _paper_table(2)
     lengths = [float(name.split("_")[1]) for name in printed_2.columns[1:]]
     for speed, *films in printed_2.itertuples(index=False):
         for length, printed in zip(lengths, films, strict=True):
@@ -81,7 +81,7 @@ def film(
     road_conductivity: Annotated[str | None, typer.Option(help="Road's conductivity; default: asphalt.")] = None,
     road_heat_capacity: Annotated[str | None, typer.Option(help="Road's heat capacity; default: asphalt.")] = None,
 ) -> None:
-    """Film coefficient of one contact by every law, and how deep it reaches into the tread."""
+    """Print the film coefficient of one contact by every law, and its penetration depth in the tread."""
     from tyrefem.boundaries import Contact, laws
     from tyrefem.boundaries.road_film import half_space_film, propagation_depth
 
@@ -94,18 +94,18 @@ def film(
     if road_heat_capacity is not None:
         of_road["road_heat_capacity"] = road_heat_capacity
     words = {
-        "constant": "the report's, at every speed",
+        "constant": "value of the NASA report, at every speed",
         "cattani": "sqrt(lambda C v/FL)",
-        "half-space": "exact, road of finite effusivity",
+        "half-space": "exact, road of its own effusivity",
     }
     lines = []
     for name, law in sorted(laws("road").items()):
         chosen: Any = law.check({"law": name} | (of_road if name == "half-space" else {}))
         lines.append(f"{name:16} {chosen.film(Contact(v, length, k, C)):10.1f} W/m2/K  {words.get(name, '')}".rstrip())
     ideal = half_space_film(v, length, k, C)
-    lines.append(f"{'half-space':16} {ideal:10.1f} W/m2/K  exact, road that keeps its temperature")
+    lines.append(f"{'half-space':16} {ideal:10.1f} W/m2/K  exact, road of constant temperature")
     depth = propagation_depth(length / v, k, C)
-    lines.append(f"{'contact':16} {length / v * 1e3:10.4g} ms, reaches {depth * 1e3:.4g} mm into the tread")
+    lines.append(f"{'contact':16} {length / v * 1e3:10.4g} ms, penetrates {depth * 1e3:.4g} mm into the tread")
     typer.echo("\n".join(lines))
 
 
@@ -120,7 +120,7 @@ def averaging(
     heat_capacity: HeatCapacity = "2e6 J/m**3/K",
     force: ForceOption = False,
 ) -> None:
-    """Averaging the film over the revolution against every contact resolved, over speed and footprint length."""
+    """Compare the film averaged over the revolution with every contact resolved, over speed and footprint length."""
     from tyrefem.boundaries.averaging import TreadPoint, averaging_sweep
     from tyrefem.quantity import Unit
     from tyrefem.reports.figures.road import averaging_figure
@@ -167,7 +167,7 @@ def figures(
     """Redraw figures 4 and 5 of the paper."""
     from tyrefem.reports.figures.road import film_figure
 
-    literature = _printed(1)
+    literature = _paper_table(1)
     points = list(zip(literature["speed_m_s"], literature["literature_Hc_W_m2K"], strict=True))
     with results_folder(out, "road figures", ("figure-4.png", "figure-5.png"), force=force) as folder:
         _save(film_figure([0.14], points), folder / "figure-4.png")

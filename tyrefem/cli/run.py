@@ -1,4 +1,4 @@
-"""`tyrefem run`: a study, or a campaign of cases, to a folder of results."""
+"""`tyrefem run`: simulate a study, or a campaign of cases, and write a folder of results."""
 
 from __future__ import annotations
 
@@ -44,7 +44,7 @@ def run(
 ) -> None:
     """Simulate a study: temperatures, heat budget, rolling resistance, VTK, pictures and a report.
 
-    A study with a table of cases runs them all, or the one of --case, and writes one table.
+    A study with a table of cases runs all cases, or the case of --case, and writes one table.
     """
     from tyrefem.api import study as load
     from tyrefem.reports.campaign import campaign_files
@@ -88,7 +88,7 @@ def _single(study: Study, folder: Path, pictures: bool, vtk: bool, revolved: boo
     if reached:
         if as_json:
             print_file(folder / "summary.json")
-        raise Interrupted(f"what is finished is in {folder}", at=reached)
+        raise Interrupted(f"finished files are in {folder}", at=reached)
 
 
 def _words(result: Result) -> str:
@@ -155,11 +155,11 @@ def _campaign(
 
 
 def _refuse_overlaid(campaign: CampaignData, values: dict[str, Any]) -> None:
-    """A value that the table sets again in every case would be changed in vain."""
+    """Refuse a change of a value that the table sets again in every case."""
     for key in values:
         if all(key in case.changes for case in campaign.cases):
             raise InputError(
-                f"every case of {campaign.study.card.cases} sets '{key}' itself: change it there", field="--set"
+                f"every case of {campaign.study.card.cases} sets '{key}': change it in that table", field="--set"
             )
 
 

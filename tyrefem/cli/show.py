@@ -15,12 +15,12 @@ from tyrefem.requirements import Requirements
 if TYPE_CHECKING:
     from tyrefem.api import Study
 
-#: Suffixes of a mesh.
+#: Suffixes of a mesh file.
 MESHES = (".msh", ".vtu", ".vtk")
 KINDS = ("section", "material", "study", "sweep", "mesh", "strain", "effect")
-#: Kinds that are shown of one case of a campaign.
+#: Kinds that take one case of a campaign.
 OF_A_CASE = ("study", "sweep", "mesh", "strain")
-#: What a drawing needs of a study.
+#: Parts of a study that a drawing needs.
 NEEDS = Requirements("a drawing")
 
 
@@ -57,10 +57,10 @@ def show(
     if kind not in KINDS:
         raise InputError(f"no kind '{kind}'{nearest(kind, KINDS)}")
     if case is not None and kind not in OF_A_CASE:
-        raise InputError(f"goes with {', '.join(OF_A_CASE)}, not with a {kind}", field="--case")
+        raise InputError(f"is for {', '.join(OF_A_CASE)}, not for a {kind}", field="--case")
     values = settings(changes)
     if out is not None and kind not in _SHOWN:
-        raise InputError(f"a {kind} is printed, not drawn: leave it away", field="--out")
+        raise InputError(f"a {kind} is printed, not drawn: remove this option", field="--out")
     if kind == "effect":
         _effect(name)
         return
@@ -80,16 +80,16 @@ def show(
         with atomic_path(path) as temporary:
             temporary.write_bytes(picture(figure, path.suffix))
     for key, value in facts.items():
-        typer.echo(f"{key:28} {_shown(value)}")
+        typer.echo(f"{key:28} {_formatted(value)}")
     typer.echo(f"drawn in {path}")
 
 
-def _shown(value: Any) -> str:
-    """A fact as people read it: numbers to six digits, lists and tables without brackets."""
+def _formatted(value: Any) -> str:
+    """Format a value as text: numbers with six digits, lists and tables without brackets."""
     if isinstance(value, dict):
-        return ", ".join(f"{key} {_shown(entry)}" for key, entry in value.items())
+        return ", ".join(f"{key} {_formatted(entry)}" for key, entry in value.items())
     if isinstance(value, list | tuple):
-        return ", ".join(map(_shown, value))
+        return ", ".join(map(_formatted, value))
     return f"{value:.6g}" if isinstance(value, float) else str(value)
 
 
@@ -107,7 +107,7 @@ def _section(name: str, values: dict[str, Any], _case: str | None) -> tuple[Any,
 
 
 def _single(name: str, values: dict[str, Any], case: str | None) -> Study:
-    """The study to draw: a single drive, not a table of them."""
+    """The study to draw: a single drive, not a campaign."""
     from tyrefem.api import study
 
     chosen = study(name, values, case)

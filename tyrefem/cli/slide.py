@@ -19,7 +19,7 @@ group = typer.Typer(
     no_args_is_help=True,
     context_settings={"help_option_names": ["-h", "--help"]},
 )
-#: No pad, wheel or track has more, by unit: beyond, a rise is no number.
+#: Largest allowed value of each quantity, by unit: no pad, wheel or track has more.
 MOST = {"m/s": 400.0, "m": 1e5, "1": 100.0, "Pa": 1e10, "N": 1e9, "delta_degC": 1e4}
 #: Speeds of the printed table of the locked wheel, km/h.
 SPEEDS = (10, 20, 30, 40, 50, 60, 80, 100, 130)
@@ -38,15 +38,21 @@ def rise(
     length: Annotated[str, typer.Option(help="Pad length along the way, e.g. '225 mm'.")],
     friction: Annotated[str, typer.Option(help="Coefficient of friction, e.g. 0.5.")],
     pressure: Annotated[str | None, typer.Option(help="Contact pressure, e.g. '300 kPa'.")] = None,
-    load: Annotated[str | None, typer.Option(help="Load instead, e.g. '12.8 kgf'; needs --breadth.")] = None,
+    load: Annotated[
+        str | None, typer.Option(help="Load, instead of a pressure, e.g. '12.8 kgf'; needs --breadth.")
+    ] = None,
     breadth: Annotated[str | None, typer.Option(help="Pad breadth across the way, e.g. '153 mm'.")] = None,
-    behind: Annotated[str | None, typer.Option(help="Distance behind the pad to look at, e.g. '15 mm'.")] = None,
-    slid: Annotated[str | None, typer.Option(help="Whole way slid, for the slider's share, e.g. '1 m'.")] = None,
+    behind: Annotated[
+        str | None, typer.Option(help="Distance behind the pad where the rise is computed, e.g. '15 mm'.")
+    ] = None,
+    slid: Annotated[
+        str | None, typer.Option(help="Sliding distance, for the slider's share of the heat, e.g. '1 m'.")
+    ] = None,
     slider: Annotated[str, typer.Option(help="Solid that slides.", autocompletion=complete_solids)] = "rubber",
     track: Annotated[str, typer.Option(help="Solid below.", autocompletion=complete_solids)] = "teak",
     as_json: JsonOption = False,
 ) -> None:
-    """Temperature rise of a track under a sliding pad (equations 1 to 5 and 9)."""
+    """Compute the temperature rise of a track under a sliding pad (equations 1 to 5 and 9)."""
     from tyrefem.boundaries import friction_names as sliding
     from tyrefem.boundaries.friction import not_negative, positive
 
@@ -72,7 +78,7 @@ def rise(
         rises["rise_behind_K"] = edge * sliding.fall_off(_read("--behind", behind, "m"), long)
     if slid is not None:
         rises["share_into_slider"] = sliding.share_into_slider(long, _read("--slid", slid, "m"), top, below)
-    _give(rises, as_json)
+    _print_values(rises, as_json)
 
 
 @group.command()
@@ -81,7 +87,7 @@ def tables(
     force: ForceOption = False,
     as_json: JsonOption = False,
 ) -> None:
-    """Roberts' tables 2 (rubber on wood) and 3 (rubber on ice), measured beside predicted."""
+    """Print Roberts' tables 2 (rubber on wood) and 3 (rubber on ice), measured beside predicted."""
     from tyrefem.boundaries import friction_names as sliding
     from tyrefem.reports.words import ice_lines, wood_lines
 
@@ -111,16 +117,16 @@ def tables(
 @group.command("locked-wheel")
 def locked_wheel(
     friction: Annotated[str | None, typer.Option(help="Coefficient of friction; default 0.8 (estimate).")] = None,
-    pressure: Annotated[str | None, typer.Option(help="On the rubber; default '300 kPa' (estimate).")] = None,
-    length: Annotated[str | None, typer.Option(help="Of the footprint; default '150 mm' (estimate).")] = None,
+    pressure: Annotated[str | None, typer.Option(help="Contact pressure; default '300 kPa' (estimate).")] = None,
+    length: Annotated[str | None, typer.Option(help="Footprint length; default '150 mm' (estimate).")] = None,
     decomposition: Annotated[
-        str | None, typer.Option(help="Rise at which rubber decomposes; default '330 K' (estimate).")
+        str | None, typer.Option(help="Temperature rise at which rubber decomposes; default '330 K' (estimate).")
     ] = None,
     out: Annotated[Path | None, typer.Option("--out", help="PNG, PDF or SVG to write.")] = None,
     force: ForceOption = False,
     as_json: JsonOption = False,
 ) -> None:
-    """Rise of a locked wheel's contact on asphalt and its friction, against speed (equations 12 and 13)."""
+    """Compute contact temperature rise and friction of a locked wheel on asphalt against speed (equations 12, 13)."""
     from tyrefem.boundaries.friction_names import LockedWheel
 
     given = {
@@ -189,24 +195,24 @@ def _solid(option: str, name: str) -> Any:
 
 
 def _contact_pressure(pressure: str | None, load: str | None, breadth: str | None, length: float) -> float:
-    """Pa, given as such or as a load on length and breadth."""
+    """The contact pressure, Pa, from --pressure, or from --load, length and breadth."""
     from tyrefem.boundaries.friction import not_negative, positive
 
     if (pressure is None) == (load is None):
-        raise InputError("give one of --pressure and --load")
+        raise InputError("give either --pressure or --load")
     if pressure is not None:
         value = _read("--pressure", pressure, "Pa")
         not_negative(**{"--pressure": value})
         return value
     if breadth is None:
-        raise InputError("--load needs --breadth to know the contact pressure")
+        raise InputError("--load needs --breadth: the contact pressure is the load per area")
     force, wide = _read("--load", str(load), "N"), _read("--breadth", breadth, "m")
     not_negative(**{"--load": force})
     positive(**{"--length": length, "--breadth": wide})
     return force / (length * wide)
 
 
-def _give(values: dict[str, Any], as_json: bool) -> None:
+def _print_values(values: dict[str, Any], as_json: bool) -> None:
     if as_json:
         print_json(values)
         return

@@ -1,4 +1,4 @@
-"""`tyrefem strain`: one study by every strain law, strain energy and temperatures side by side."""
+"""`tyrefem strain`: run a study with every strain law; compare strain energy and temperatures."""
 
 from __future__ import annotations
 
@@ -28,7 +28,7 @@ if TYPE_CHECKING:
 
 #: Files that the command writes.
 FILES = ("strain.json", "strain.csv", "strain.png")
-#: Kind of row -> heading and factor of the printed table.
+#: Kind of row -> heading and unit factor of the printed table.
 KINDS = {
     "deflection": ("", 1e3),
     "energy": ("strain energy, largest change, J", 1.0),
@@ -51,7 +51,7 @@ def strain(
     changes: SetOption = None,
     case: CaseOption = None,
 ) -> None:
-    """Run a study by every strain law: strain energy by region and temperatures side by side."""
+    """Run a study with every strain law; compare strain energy by region and temperatures."""
     from tyrefem.api import study as load_study
     from tyrefem.output import atomic_folder, write_json
     from tyrefem.simulation.law_comparison import NEEDS, compare_laws, compared_laws
@@ -75,7 +75,7 @@ def strain(
             comparison.table().to_csv(temporary / "strain.csv", index=False)
             (temporary / "strain.png").write_bytes(_picture(comparison))
     for refused, why in comparison.refused.items():
-        fail(f"warning: the strain law '{refused}' has no answer: {why}")
+        fail(f"warning: the strain law '{refused}' has no solution: {why}")
     if as_json:
         print_json(summary)
         return

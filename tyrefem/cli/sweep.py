@@ -1,4 +1,4 @@
-"""`tyrefem sweep`: many variants of a study, what they say, and one page of it."""
+"""`tyrefem sweep`: compute many variants of a study, and write tables, pictures and one page."""
 
 from __future__ import annotations
 
@@ -26,7 +26,7 @@ from tyrefem.output.folder import results_folder
 
 #: Groups of options in the help.
 VARIANTS, ANSWERS = "Variants", "Answers"
-#: Failures that are told one by one.
+#: Largest number of failures that are printed.
 FAILURES_SHOWN = 10
 
 
@@ -47,7 +47,7 @@ def sweep(
         typer.Option(
             "--vary",
             metavar="KEY=VALUES",
-            help="FROM:TO or FROM:TO:LEVELS, a list A,B, or factors x0.8:x1.2. Repeatable.",
+            help="FROM:TO, FROM:TO:LEVELS, a list A,B, or factors x0.8:x1.2. Repeatable.",
             rich_help_panel=VARIANTS,
         ),
     ] = None,
@@ -55,7 +55,7 @@ def sweep(
         float | None,
         typer.Option(
             metavar="K",
-            help="Vary every uncertain number too, within K standard deviations.",
+            help="Also vary every uncertain number, within K standard deviations.",
             rich_help_panel=VARIANTS,
         ),
     ] = None,
@@ -64,7 +64,7 @@ def sweep(
         typer.Option(help="grid (default), latin-hypercube, sobol, saltelli or list.", rich_help_panel=VARIANTS),
     ] = None,
     count: Annotated[
-        int | None, typer.Option(min=1, help="How many variants; not of a grid or list.", rich_help_panel=VARIANTS)
+        int | None, typer.Option(min=1, help="Number of variants; not for a grid or list.", rich_help_panel=VARIANTS)
     ] = None,
     seed: Annotated[
         int | None, typer.Option(min=0, help="Seed of the sample; default 1.", rich_help_panel=VARIANTS)
@@ -79,20 +79,24 @@ def sweep(
         ),
     ] = None,
     time_to: Annotated[
-        str | None, typer.Option(help="Temperature whose first reaching is an answer.", rich_help_panel=VARIANTS)
+        str | None,
+        typer.Option(help="Temperature; the time when it is first reached is an answer.", rich_help_panel=VARIANTS),
     ] = None,
     answer: Annotated[
         list[str] | None,
         typer.Option(
             "--answer",
-            help="Answer that is drawn and judged; default: temperature, rolling resistance.",
+            help="Answer to draw and evaluate; default: temperature, rolling resistance.",
             rich_help_panel=ANSWERS,
         ),
     ] = None,
     pareto: Annotated[
         list[str] | None,
         typer.Option(
-            "--pareto", metavar="ANSWER=min|max", help="Aim of the front. Repeatable.", rich_help_panel=ANSWERS
+            "--pareto",
+            metavar="ANSWER=min|max",
+            help="Objective of the Pareto front. Repeatable.",
+            rich_help_panel=ANSWERS,
         ),
     ] = None,
     indices: Annotated[
@@ -102,64 +106,70 @@ def sweep(
         ),
     ] = None,
     tornado: Annotated[
-        bool, typer.Option("--tornado", help="Which tolerance matters.", rich_help_panel=ANSWERS)
+        bool, typer.Option("--tornado", help="Effect of each tolerance on the answers.", rich_help_panel=ANSWERS)
     ] = False,
     tolerance_of: Annotated[
         list[str] | None,
         typer.Option(
             "--tolerance-of",
             metavar="KEY=5%",
-            help="Of the tornado; default: what cards state. Repeatable.",
+            help="Tolerance of the tornado; default: those of the cards. Repeatable.",
             rich_help_panel=ANSWERS,
         ),
     ] = None,
     minimise: Annotated[
-        str | None, typer.Option(metavar="ANSWER", help="Search the smallest, within limits.", rich_help_panel=ANSWERS)
+        str | None,
+        typer.Option(metavar="ANSWER", help="Minimise this answer within the limits.", rich_help_panel=ANSWERS),
     ] = None,
     maximise: Annotated[
-        str | None, typer.Option(metavar="ANSWER", help="Search the largest, within limits.", rich_help_panel=ANSWERS)
+        str | None,
+        typer.Option(metavar="ANSWER", help="Maximise this answer within the limits.", rich_help_panel=ANSWERS),
     ] = None,
     runs: Annotated[
-        int | None, typer.Option(min=20, help="Variants that the search may try; default 400.", rich_help_panel=ANSWERS)
+        int | None,
+        typer.Option(min=20, help="Largest number of variants of the search; default 400.", rich_help_panel=ANSWERS),
     ] = None,
     envelope: Annotated[
         str | None,
         typer.Option(
             metavar="ANSWER<VALUE",
-            help="Largest speed that keeps this, over load and pressure.",
+            help="Largest speed within this limit, over load and pressure.",
             rich_help_panel=ANSWERS,
         ),
     ] = None,
     loads: Annotated[
-        str | None, typer.Option(help="Of the envelope: '1000 lbf,2000 lbf'.", rich_help_panel=ANSWERS)
+        str | None, typer.Option(help="Loads of the envelope: '1000 lbf,2000 lbf'.", rich_help_panel=ANSWERS)
     ] = None,
     pressures: Annotated[
-        str | None, typer.Option(help="Of the envelope: '70 psi,83 psi'.", rich_help_panel=ANSWERS)
+        str | None, typer.Option(help="Pressures of the envelope: '70 psi,83 psi'.", rich_help_panel=ANSWERS)
     ] = None,
     speeds: Annotated[
-        str | None, typer.Option(metavar="FROM:TO", help="Of the envelope: '1 m/s:60 m/s'.", rich_help_panel=ANSWERS)
+        str | None,
+        typer.Option(metavar="FROM:TO", help="Speeds of the envelope: '1 m/s:60 m/s'.", rich_help_panel=ANSWERS),
     ] = None,
     changes: SetOption = None,
     case: CaseOption = None,
     out: Annotated[Path | None, typer.Option("--out", help="Folder; default: results/STUDY-sweep.")] = None,
     reduced: Annotated[str, typer.Option(help="Use a certified reduced model: auto, never, always.")] = "auto",
-    tolerance: Annotated[str, typer.Option(help="Error that its certificate allows.")] = "0.01 K",
+    tolerance: Annotated[str, typer.Option(help="Largest error that the certificate allows.")] = "0.01 K",
     workers: Annotated[int | None, typer.Option(min=1, help="Processes; default: one per core.")] = None,
     scheduler: Annotated[
-        str | None, typer.Option(metavar="tcp://HOST:PORT", help="A Dask cluster's scheduler.")
+        str | None, typer.Option(metavar="tcp://HOST:PORT", help="Scheduler of a Dask cluster.")
     ] = None,
-    restart: Annotated[bool, typer.Option("--restart", help="Forget finished variants in the folder.")] = False,
+    restart: Annotated[
+        bool, typer.Option("--restart", help="Compute the finished variants of the folder again.")
+    ] = False,
     pictures: Annotated[bool, typer.Option(help="Draw the pictures and the page.")] = True,
     force: ForceOption = False,
     quiet: QuietOption = False,
     as_json: JsonOption = False,
 ) -> None:
-    """Answer many variants of a study: tables (CSV, Parquet), pictures and one page.
+    """Compute many variants of a study; write tables (CSV, Parquet), pictures and one page.
 
     Response curves and maps, Pareto front, Sobol indices, tornado, optimum, safe envelope. Finished variants are kept:
-    the same command goes on where an interrupted or killed one was.
+    the same command continues an interrupted one.
     """
-    from tyrefem.cli.sweep_flags import answered, questions, questions_of_flags
+    from tyrefem.cli.sweep_flags import computed_design, questions, questions_of_flags
     from tyrefem.quantity import parse
     from tyrefem.reports.sweep_files import FILES, KEPT, save
     from tyrefem.variants.execution import Execution
@@ -180,9 +190,9 @@ def sweep(
         results_folder(out or Path("results") / f"{name}-sweep", "sweep", FILES, force=force, keeps=KEPT) as folder,
         stages(quiet=quiet or as_json) as tick,
     ):
-        design = answered(wanted, how.given({"folder": folder, "progress": tick}), scheduler, workers)
+        design = computed_design(wanted, how.given({"folder": folder, "progress": tick}), scheduler, workers)
         tick("drawing", 0, 1)
-        with keeping(f"finished variants are in {folder}, the same command goes on"):
+        with keeping(f"finished variants are in {folder}; the same command resumes from there"):
             summary = save(design, folder, pictures=pictures)
     if as_json:
         print_file(folder / "summary.json")
@@ -194,7 +204,7 @@ def sweep(
         fail(f"variant {variant}: {reason}")
     if len(design.failed) > FAILURES_SHOWN:
         fail(f"... and {len(design.failed) - FAILURES_SHOWN} more; all are in {folder / 'sweep.csv'}")
-    kept = f"what is finished is in {folder}, the same command goes on"
+    kept = f"finished variants are in {folder}; the same command resumes from there"
     if design.interrupted == "interrupted":
         raise Interrupted(kept)
     if design.interrupted:

@@ -1,9 +1,4 @@
-"""The flags of `tyrefem sweep` as the keys of a sweep file.
-
-What `tyrefem sweep` is asked: the questions of a sweep file, or of a study and flags.
-
-Where the variants of `tyrefem sweep` run: this process, several, or a cluster, ended when the sweep is.
-"""
+"""The flags of `tyrefem sweep` as keys of a sweep file, and the processes or cluster that compute its variants."""
 
 from __future__ import annotations
 
@@ -45,9 +40,9 @@ def questions_of_flags(
     pressures: str | None = None,
     speeds: str | None = None,
 ) -> dict[str, Any]:
-    """What the flags say, as a sweep file would; nothing for what they do not say."""
+    """Convert flags to the keys of a sweep file; flags that are not given are left out."""
     if indices is not None and (sample is not None or count is not None):
-        raise InputError("has a sample of its own: leave --sample and --count out", field="--indices")
+        raise InputError("uses Saltelli's sample: remove --sample and --count", field="--indices")
     if cases is not None and sample is None:
         sample = "list"
     tolerances = _once([_tolerance(text) for text in tolerance_of or []], "--tolerance-of")
@@ -57,7 +52,7 @@ def questions_of_flags(
         "sample": "saltelli" if indices is not None else sample,
         "count": count if indices is None else indices,
         "seed": seed,
-        # What is typed is relative to here, what a file says to the file.
+        # A path of a flag is relative to the working folder, a path in a file to that file.
         "cases": None if cases is None else str(Path(cases).absolute()),
         "limits": _limits(limit or []) or None,
         "time_to": time_to,
@@ -68,12 +63,12 @@ def questions_of_flags(
         "envelope": _envelope(envelope, loads, pressures, speeds),
     }
     if tolerance_of and not tornado:
-        raise InputError("goes with --tornado", field="--tolerance-of")
+        raise InputError("needs --tornado", field="--tolerance-of")
     return {key: value for key, value in given.items() if value is not None}
 
 
 def varied(text: str) -> tuple[str, dict[str, Any]]:
-    """One ``--vary``.
+    """Parse one ``--vary``: its key, and the entry of a sweep file.
 
     >>> varied("drive.speed=10 mph:40 mph:4")
     ('drive.speed', {'from': '10 mph', 'to': '40 mph', 'levels': 4})
@@ -97,12 +92,12 @@ def varied(text: str) -> tuple[str, dict[str, Any]]:
         try:
             return key, {"factor": [float(parts[0][1:]), float(parts[1][1:])], **levels}
         except ValueError:
-            raise InputError(f"'{values}' are not two factors, e.g. x0.8:x1.2", field="--vary") from None
+            raise InputError(f"'{values}' is not two factors, e.g. x0.8:x1.2", field="--vary") from None
     return key, {"from": _plain(parts[0]), "to": _plain(parts[1]), **levels}
 
 
 def _once(pairs: list[tuple[str, Any]], flag: str) -> dict[str, Any] | None:
-    """What a flag says of every name; None: nothing."""
+    """The values of a repeatable flag by name; None if it is not given."""
     by_key: dict[str, Any] = {}
     for key, value in pairs:
         if key in by_key:
@@ -168,7 +163,7 @@ def _tolerance(text: str) -> tuple[str, str]:
 def _optimise(minimise: str | None, maximise: str | None, runs: int | None, seed: int | None) -> dict[str, Any] | None:
     if minimise is None and maximise is None:
         if runs is not None:
-            raise InputError("goes with --minimise or --maximise", field="--runs")
+            raise InputError("needs --minimise or --maximise", field="--runs")
         return None
     given = {"minimise": minimise, "maximise": maximise, "runs": runs, "seed": seed}
     return {key: value for key, value in given.items() if value is not None}
@@ -179,7 +174,7 @@ def _envelope(text: str | None, loads: str | None, pressures: str | None, speeds
         given = {"--loads": loads, "--pressures": pressures, "--speeds": speeds}
         for flag, value in given.items():
             if value is not None:
-                raise InputError("goes with --envelope", field=flag)
+                raise InputError("needs --envelope", field=flag)
         return None
     answer, sign, bound = _bound(text, "--envelope")
     if sign != "<":
@@ -200,13 +195,13 @@ def _envelope(text: str | None, loads: str | None, pressures: str | None, speeds
 def questions(
     name: str, given: dict[str, Any], changes: dict[str, Any], case: str | None = None
 ) -> tuple[str, Questions]:
-    """The questions of a sweep file or a study by name or path, what flags say laid over, and a name for their folder.
+    """The questions of a sweep file or study, changed by the flags, and a name for the folder of results.
 
-    ``case``: of a campaign, the case to take.
+    ``case``: case of a campaign.
 
     Raises
     ------
-    InputError : nothing has that name; something asked makes no sense.
+    InputError : there is no study or sweep of that name, or a question is not allowed.
     """
     from tyrefem import library
     from tyrefem.api import study as load
@@ -228,11 +223,11 @@ def questions(
 
 
 class _InterruptedError(Exception):
-    """Processes that are at work are ended, not waited for."""
+    """Raised to end working processes without waiting for them."""
 
 
-def answered(wanted: Questions, how: Execution, address: str | None, workers: int | None) -> DesignData:
-    """The answers, by a Dask cluster at an address or by so many processes; None: one per core."""
+def computed_design(wanted: Questions, how: Execution, address: str | None, workers: int | None) -> DesignData:
+    """Compute the answers on a Dask cluster at ``address``, or in ``workers`` processes (None: one per core)."""
     try:
         with _scheduler(address, workers) as where:
             design = wanted.answered(how, scheduler=where)
@@ -245,7 +240,7 @@ def answered(wanted: Questions, how: Execution, address: str | None, workers: in
 
 @contextmanager
 def _scheduler(address: str | None, workers: int | None) -> Iterator[Scheduler]:
-    """Kept for all questions of the command."""
+    """Scheduler of all variants of the command, closed at the end."""
     from tyrefem.variants.dask_cluster import Dask
     from tyrefem.variants.schedulers import Here, Local
 

@@ -1,9 +1,9 @@
-"""The catalogue of physical effects that a model may lack. One class per effect, found by existing.
+"""The catalogue of physical effects that a model may lack, one class each, registered by their modules.
 
 An effect is an `Effect` subclass in a module of this package, or in a Python file of a folder that the user names in
 ``TYREFEM_EFFECTS``.
 
-Knows nothing of studies and runs but what `effects.tyre` says.
+This package knows studies and runs only by the protocols of `effects.tyre`.
 """
 
 from __future__ import annotations
@@ -31,19 +31,19 @@ __all__ = ["Effect", "EffectOf", "EffectState", "Parameter", "Prior", "catalogue
 
 @functools.cache
 def _modules(folders: str) -> frozenset[str]:
-    """Import every module that defines effects; their names."""
+    """Import every module that defines effects; return the modules' names."""
     modules = [f"{__name__}.{module.name}" for module in pkgutil.iter_modules(__path__)]
     for name in modules:
         importlib.import_module(name)
     for folder in filter(None, folders.split(os.pathsep)):
         if not Path(folder).is_dir():
-            raise InputError(f"TYREFEM_EFFECTS names '{folder}', which is no folder")
+            raise InputError(f"TYREFEM_EFFECTS names '{folder}', which is not a folder")
         modules += [_loaded(file) for file in sorted(Path(folder).resolve().glob("*.py"))]
     return frozenset(modules)
 
 
 def _loaded(file: Path) -> str:
-    """Execute a user's file as a module of its own; the module's name."""
+    """Execute a user's file as a separate module; return the module's name."""
     name = f"tyrefem_user_effects.{file}"
     spec = importlib.util.spec_from_file_location(name, file)
     assert spec is not None
@@ -64,7 +64,7 @@ def catalogue() -> dict[str, type[Effect]]:
 
     Raises
     ------
-    InputError : a user's file cannot be loaded, or takes a name that another effect has.
+    InputError : a user's file cannot be loaded, or has the name of another effect.
 
     >>> "hot-road" in catalogue()
     True
@@ -83,7 +83,7 @@ def _by_name(modules: frozenset[str], classes: tuple[type[Effect], ...]) -> dict
         if not cls.name or cls.__module__ not in modules:
             continue
         if getattr(sys.modules[cls.__module__], cls.__name__, None) is not cls:
-            continue  # left over from an earlier state of its file
+            continue  # from an earlier version of its file
         if cls.name in effects:
             both = " and ".join(sorted({cls.__module__, effects[cls.name].__module__}))
             raise InputError(f"two effects are named '{cls.name}': in {both}")

@@ -1,4 +1,4 @@
-"""The effects at work in a tyre, combined: (base + sum of addends) x product of factors."""
+"""Combination of the effects on a tyre: (base + sum of addends) x product of factors."""
 
 from __future__ import annotations
 
@@ -16,19 +16,19 @@ from tyrefem.effects.tyre import Tyre
 
 Array = NDArray[np.float64]
 Source = Callable[[Array, float, Array], Array]
-#: Ports that act on what surrounds the tyre.
+#: Ports that act on the tyre's surroundings.
 SURROUNDING = tuple(port.name for port in PORTS if port.changes == "surroundings")
 
 
 @dataclass(frozen=True, eq=False)
 class Acting:
-    """What a tyre's effects make of a quantity of the model."""
+    """Quantities of the model, changed by a tyre's effects."""
 
     tyre: Tyre
     effects: tuple[Effect, ...]
 
     def at(self, *ports: str) -> tuple[Effect, ...]:
-        """The effects that enter at one of these ports."""
+        """The effects that act at one of these ports."""
         if ports not in self._entering:
             entering = tuple(effect for effect in self.effects if any(effect.overrides(port) for port in ports))
             self._entering[ports] = entering
@@ -40,17 +40,17 @@ class Acting:
 
     @property
     def changes_films(self) -> bool:
-        """Does any effect touch a film?"""
+        """True if an effect changes a film."""
         return bool(self.at("film_factor", "film_addend", "film_resistance"))
 
     @functools.cached_property
     def with_states(self) -> tuple[Effect, ...]:
-        """The effects that keep states through a run."""
+        """The effects with states."""
         return tuple(effect for effect in self.effects if effect.states)
 
     @property
     def follows_drive(self) -> bool:
-        """Do films, sinks and the rim's power depend on time through the drive alone?"""
+        """True if films, sinks and the rim's power depend on time only through the drive."""
         return all(effect.of_drive for effect in self.at(*SURROUNDING))
 
     def film(self, film: str, t: float, base: float) -> float:
@@ -67,7 +67,7 @@ class Acting:
         return base + sum(effect.sink_addend(self.tyre, sink, t) for effect in self.at("sink_addend"))
 
     def source(self, zone: str, base: Source) -> Source:
-        """The heat source of a zone with every effect on it."""
+        """The heat source of a zone, with all effects."""
         addends, factors, tyre = self.at("heat_addend"), self.at("heat_factor"), self.tyre
         if not addends and not factors:
             return base
@@ -83,7 +83,7 @@ class Acting:
         return heat
 
     def conductivity(self, region: str, law: Any) -> Any:
-        """Conductivity of a region as `tyrefem.conduction.Material` takes it."""
+        """Conductivity of a region, as input of `tyrefem.conduction.Material`."""
         factors = self.at("conductivity_factor")
         if not factors:
             return law
@@ -103,7 +103,7 @@ class Acting:
         return k
 
     def capacity(self, region: str, law: Any) -> Any:
-        """Heat capacity of a region as `tyrefem.conduction.Material` takes it."""
+        """Heat capacity of a region, as input of `tyrefem.conduction.Material`."""
         factors = self.at("capacity_factor")
         if not factors:
             return law
@@ -123,11 +123,11 @@ class Acting:
         return base
 
     def rim_power(self, t: float) -> float:
-        """W that effects put into the whole wheel's lumped rim at a time."""
+        """Power of the effects into the whole wheel's lumped rim at a time, W."""
         return sum(effect.rim_power(self.tyre, t) for effect in self.at("rim_power"))
 
     def conditions(self, surface: str) -> list[tuple[str, Any]]:
-        """Fluxes and radiation that effects add to a boundary, each with a name for the heat budget."""
+        """Fluxes and radiation of effects on a boundary, each with a name for the heat budget."""
         conditions: list[tuple[str, Any]] = []
         for effect in self.effects:
             if surface not in effect.surfaces:

@@ -1,4 +1,4 @@
-"""What an effect is and does, in rows for people: the command line, the report and docs/effects.md use them."""
+"""Text and tables that describe an effect, for the command line, the report and docs/effects.md."""
 
 from __future__ import annotations
 
@@ -17,18 +17,18 @@ COLUMNS = ("parameter", "meaning", "not there at", "allowed", "prior sd")
 
 
 def by_family(effects: dict[str, type[Effect]]) -> dict[str, list[type[Effect]]]:
-    """Effects by family, families in their usual order."""
+    """Effects by family, with a fixed order of families."""
     families = {family: [effect for effect in effects.values() if effect.family == family] for family in FAMILIES}
     return {family: members for family, members in families.items() if members}
 
 
 def equation(effect: type[Effect]) -> str:
-    """What it changes, as the first line of the class says."""
+    """The effect's equation: the first line of the class's docstring."""
     return " ".join(inspect.cleandoc(effect.__doc__ or "").split())
 
 
 def ports(effect: type[Effect]) -> str:
-    """Where it enters, in words."""
+    """Text on the ports where the effect acts."""
     return ", ".join(port.words for port in PORTS if effect.overrides(port.name))
 
 
@@ -67,6 +67,6 @@ def example(effect: type[Effect]) -> str:
 
 
 def _first_example(field: FieldInfo) -> str:
-    """What the effect gives as an example of a choice; else the first that is allowed, or dots."""
+    """Example of a choice from its field; else the first allowed value, or dots."""
     allowed = get_args(field.annotation) if get_origin(field.annotation) is Literal else ()
     return str(next(iter([*(field.examples or ()), *allowed, "..."])))

@@ -1,4 +1,4 @@
-"""A physical effect that a model may lack: its parameters, and the port of the model where it enters."""
+"""A physical effect that a model may lack: its parameters, and the ports where it acts on the model."""
 
 from __future__ import annotations
 
@@ -27,27 +27,27 @@ if TYPE_CHECKING:
 Array = NDArray[np.float64]
 Factor = float | Array
 
-#: Films that an effect may change: H_c of the contact, the outside air, the same on the tread alone, gas, rim.
+#: Films that an effect may change: H_c of the contact, outside air, outside air at the tread only, gas, rim.
 FILMS = ("road", "outside_air", "tread_air", "contained_air", "rim")
 #: Temperatures that an effect may shift.
 SINKS = ("road", "outside_air", "rim")
-#: Surfaces that a flux may enter through.
+#: Surfaces for a flux.
 SURFACES = ("road", "outside_air", "contained_air", "rim")
 
 
 @dataclass(frozen=True)
 class Prior:
-    """Annotation of an effect's parameter: its unit, and what is known of it before any data. SI.
+    """Annotation of an effect's parameter: its unit and prior. SI.
 
     ``Annotated[float, Prior("W/m**2", "...", scale=500.0, low=0.0, high=1400.0)]`` accepts ``"0.5 kW/m**2"``.
 
     Parameters
     ----------
-    unit, meaning : unit in a study file; one line.
-    scale : standard deviation of the prior about ``null``, the value at which the effect is not there.
-    low, high : bounds; physics forbids what lies beyond (the sign, for most).
-    start : where a fit begins, for a parameter that only shapes the effect (``amplitude`` False).
-    written : unit in which people write it, where that is not ``unit``: ``deg`` for ``rad``.
+    unit, meaning : unit in a study file; meaning in one line.
+    scale : standard deviation of the prior about ``null``, the value at which the effect is absent.
+    low, high : physical bounds (for most parameters, on the sign).
+    start : start value of a fit, for a shape parameter (``amplitude`` False).
+    written : unit of a study file, if it is not ``unit``: ``deg`` for ``rad``.
 
     >>> Prior("m", "along the meridian", 4e-3, -0.02, 0.02, written="mm").text(0.0025)
     '2.5 mm'
@@ -64,25 +64,25 @@ class Prior:
     written: str | None = None
 
     def text(self, value: float, digits: int = 4) -> str:
-        """A value (SI) as it is written in a study file."""
+        """A value (SI) as text of a study file."""
         unit = self.written or self.unit
         number = value if unit == self.unit else convert(value, self.unit, unit)
         return f"{number:.{digits}g}{'' if unit == '1' else f' {unit}'}"
 
     @property
     def origin(self) -> float:
-        """Where a fit measures the parameter from: the null of an amplitude, the start of a shape."""
+        """Origin of the parameter in a fit: the null of an amplitude, the start of a shape."""
         return self.null if self.amplitude or self.start is None else self.start
 
     def __get_pydantic_core_schema__(self, source: Any, handler: GetCoreSchemaHandler) -> CoreSchema:
-        # "40 delta_degC/hour" must not fail at a bound of 40/3600 for its last digits.
+        # Rounding must not refuse "40 delta_degC/hour" at a bound of 40/3600.
         low, high = self.low - 1e-9 * abs(self.low), self.high + 1e-9 * abs(self.high)
         return core_schema.no_info_plain_validator_function(Unit(self.unit, ge=low, le=high))
 
 
 @dataclass(frozen=True)
 class Parameter:
-    """A parameter of an effect by name."""
+    """A parameter of an effect: name and prior."""
 
     name: str
     prior: Prior
@@ -92,39 +92,39 @@ class Effect(Card):
     """Base of all effects; a subclass in a module of this package, or of a folder the user names, registers itself.
 
     A subclass sets ``name``, ``sentence``, ``source``, its parameters as fields annotated with a `Prior`, and
-    overrides the port (method) where it enters. Every port is given the tyre in its surroundings (speed, load
-    cases, section). Effects combine as (base + sum of addends) x product of factors, so their order does not matter;
-    one whose amplitudes are all null is left out, and the run is then the same to the bit.
+    overrides the ports (methods) where it acts. Ports receive the tyre in its surroundings (speed, load cases,
+    section). Effects combine as (base + sum of addends) x product of factors, so their order has no influence. An
+    effect with all amplitudes at null is left out; the run is then the same to the last bit.
     """
 
     @classmethod
     def __pydantic_init_subclass__(cls, **options: Any) -> None:
-        """Refuse a class that lacks what an effect must say of itself."""
+        """Refuse a class that lacks a required attribute of an effect."""
         if cls.name:
             complaint = _complaint(cls)
             if complaint:
                 raise InputError(f"effect '{cls.name}': {complaint}")
 
     kind: ClassVar[str] = "effect"
-    #: Name in study files; one sentence for people; where the effect is described; heat, conduction, boundary...
+    #: Name in study files; one sentence; reference; family: heat, conduction, boundary...
     name: ClassVar[str] = ""
     sentence: ClassVar[str] = ""
     source: ClassVar[str] = ""
     family: ClassVar[str] = ""
-    #: What shows it, for its picture and its tests.
+    #: Study and sensors that show the effect, for its picture and its tests.
     signature: ClassVar[Signature] = Signature()
-    #: Does it leave the tyre rolling freely and straight, unworn? Else a report says that this stands beside the model.
+    #: True if the tyre still rolls freely and straight, without wear; else a report states the effect as an addition.
     free_rolling: ClassVar[bool] = True
-    #: A correction of a base number: fitted along in a diagnosis, never named as missing.
+    #: True for a correction of a base number: a diagnosis fits it, but never names it as missing.
     calibration: ClassVar[bool] = False
-    #: What it does to films, sinks and the rim depends on time through the drive alone: constant where the drive is.
+    #: True if its action on films, sinks and rim depends on time only through the drive.
     of_drive: ClassVar[bool] = False
-    #: States that the effect keeps through a run, by name; its ports read them by ``tyre.state(self, name, t)``.
+    #: States of the effect during a run, by name; its ports read them by ``tyre.state(self, name, t)``.
     states: ClassVar[Mapping[str, EffectState]] = {}
     #: Boundaries that the ports `flux` and `radiation` may use.
     surfaces: ClassVar[tuple[str, ...]] = SURFACES
 
-    #: Where the values come from, and their standard deviations: said by who wrote the study, used by nobody.
+    #: Origin of the values, and their standard deviations, stated by the study; no computation uses them.
     provenance: Text | None = Field(default=None, alias="from")
     sd: dict[str, Any] = Field(default_factory=dict)
 
@@ -146,12 +146,12 @@ class Effect(Card):
 
     @property
     def choice(self) -> dict[str, str]:
-        """What tells this variant from others of the same effect: the sensor's name, say."""
+        """The choices of this variant of the effect, such as the sensor's name."""
         return {}
 
     @property
     def is_null(self) -> bool:
-        """Are all amplitudes at the value where the effect is not there?"""
+        """True if all amplitudes are at null, where the effect is absent."""
         amplitudes = [parameter for parameter in self.parameters() if parameter.prior.amplitude]
         return bool(amplitudes) and all(
             getattr(self, parameter.name) == parameter.prior.null for parameter in amplitudes
@@ -159,31 +159,31 @@ class Effect(Card):
 
     @classmethod
     def overrides(cls, port: str) -> bool:
-        """Does the effect enter at this port?"""
+        """True if the effect acts at this port."""
         return getattr(cls, port) is not getattr(Effect, port)
 
     @classmethod
     def ports(cls) -> tuple[str, ...]:
-        """The ports where the effect enters."""
+        """The ports where the effect acts."""
         return tuple(port.name for port in PORTS if cls.overrides(port.name))
 
     @classmethod
     def only_measures(cls) -> bool:
-        """Does it change what is measured, and nothing of the tyre?"""
+        """True if the effect changes only measurements, and not the tyre."""
         return all(port.changes == "measurement" for port in PORTS if cls.overrides(port.name))
 
     @classmethod
     def refusal(cls, study: StudyOfTyre) -> str | None:
-        """Why the effect has no meaning in a study; None where it has."""
+        """Reason why the effect is not possible in a study; None if it is possible."""
         return None
 
     def problem(self, study: StudyOfTyre) -> str | None:
-        """What is wrong with this effect in a study: no meaning there, or a choice (a sensor) that it does not have."""
+        """Error of this effect in a study (not possible there, or unknown choice such as a sensor), or None."""
         return self.refusal(study)
 
     @classmethod
     def variants(cls, study: StudyOfTyre) -> tuple[Mapping[str, str], ...]:
-        """The choices (a sensor's name, say) to try in a study, one mapping each."""
+        """The variants of the effect in a study: one mapping of choices, such as the sensor's name, each."""
         return ({},)
 
     # -- states ------------------------------------------------------------------------------------------------------
@@ -195,8 +195,8 @@ class Effect(Card):
     def state_rates(self, tyre: Tyre, t: float, state: Values, temperatures: TemperaturesOfTyre) -> Values:
         """State -> d(state)/dt, per second, shaped as the state, at time t (s).
 
-        The states are unknowns of the same equations as the temperatures: one error-controlled step of third order
-        takes both, so that the rate may be any smooth function of ``state`` and ``temperatures``.
+        States and temperatures are unknowns of the same error-controlled time step of third order, so the rate may be
+        any smooth function of ``state`` and ``temperatures``.
         """
         return dict.fromkeys(self.states, 0.0)
 
@@ -231,27 +231,27 @@ class Effect(Card):
 
     @port("addend to films", changes="surroundings")
     def film_addend(self, tyre: Tyre, film: str, t: float) -> float:
-        """W/m2/K added to one of `FILMS` at time t (s)."""
+        """Addend to one of `FILMS` at time t (s), W/m2/K."""
         return 0.0
 
     @port("resistance in series with a film", changes="surroundings")
     def film_resistance(self, tyre: Tyre, film: str, t: float) -> float:
-        """m2 K/W in series with one of `FILMS` at time t (s): 1/h -> 1/h + R."""
+        """Resistance in series with one of `FILMS` at time t (s), m2 K/W: 1/h -> 1/h + R."""
         return 0.0
 
     @port("shift of a surrounding temperature", changes="surroundings")
     def sink_addend(self, tyre: Tyre, sink: str, t: float) -> float:
-        """K added to the temperature of one of `SINKS` at time t (s)."""
+        """Shift of the temperature of one of `SINKS` at time t (s), K."""
         return 0.0
 
     @port("flux through a surface")
     def flux(self, tyre: Tyre, surface: str, x: Array, t: float) -> Factor:
-        """W/m2 into the tyre through one of `SURFACES` at points x (2, n) and time t (s)."""
+        """Heat flux into the tyre through one of `SURFACES` at points x (2, n) and time t (s), W/m2."""
         return 0.0
 
     @port("radiation of a surface")
     def radiation(self, tyre: Tyre, surface: str) -> Radiation | None:
-        """Radiation of one of `SURFACES`; None for none."""
+        """Radiation of one of `SURFACES`; None: no radiation."""
         return None
 
     @port("factor on the contained air's heat capacity")
@@ -261,39 +261,39 @@ class Effect(Card):
 
     @port("power into a lumped rim", changes="surroundings")
     def rim_power(self, tyre: Tyre, t: float) -> float:
-        """W put into the whole wheel's lumped rim at time t (s)."""
+        """Power into the whole wheel's lumped rim at time t (s), W."""
         return 0.0
 
     # -- ports: section and measurement ------------------------------------------------------------------------------
 
     @port("the section")
     def worn(self, section: Section) -> Section:
-        """The section as it is in truth."""
+        """The real section, such as the worn section."""
         return section
 
     @port("place of a sensor", changes="measurement")
     def displacement(self, sensor: str) -> tuple[float, float]:
-        """How far a sensor sits from its stated place: along the meridian and in depth, m."""
+        """Displacement of a sensor from its stated place: along the meridian and in depth, m."""
         return 0.0, 0.0
 
     @port("lag of a sensor", changes="measurement")
     def lag_addend(self, sensor: str) -> float:
-        """s added to a sensor's lag."""
+        """Addend to a sensor's lag, s."""
         return 0.0
 
     @port("offset of a sensor", changes="measurement")
     def offset(self, sensor: str) -> float:
-        """K that a sensor shows too much."""
+        """Offset of a sensor's readings, K."""
         return 0.0
 
     @port("the logger's clock", changes="measurement")
     def clock(self) -> float:
-        """s by which the logger's clock is late: what it calls t was measured at t + clock."""
+        """Delay of the logger's clock, s: readings of logged time t were measured at t + clock."""
         return 0.0
 
     @port("the logger's channels", changes="measurement")
     def channel(self, sensor: str) -> str:
-        """The sensor whose temperature is recorded under a sensor's name."""
+        """The sensor whose temperature is recorded under the name of ``sensor``."""
         return sensor
 
 
@@ -304,7 +304,7 @@ FAMILIES = ("heat", "conduction", "boundary", "section", "asymmetry", "measureme
 
 
 def _complaint(cls: type[Effect]) -> str | None:
-    """What an effect's class forgot."""
+    """Error of an effect's class, or None."""
     for attribute in ("sentence", "source", "family"):
         if not getattr(cls, attribute):
             return f"needs '{attribute}'"

@@ -1,4 +1,4 @@
-"""A port: a place of the model where effects may enter. The method that is the port says of itself what it changes."""
+"""A port: a place of the model where effects may act, declared by a method of a class."""
 
 from __future__ import annotations
 
@@ -7,13 +7,13 @@ from dataclasses import dataclass
 from typing import Any, Literal, TypeVar
 
 Method = TypeVar("Method", bound=Callable[..., Any])
-#: What a port changes: the tyre itself, what surrounds it, or what is measured of it.
+#: Part of the model that a port changes: the tyre, its surroundings, or its measurement.
 Part = Literal["tyre", "surroundings", "measurement"]
 
 
 @dataclass(frozen=True)
 class Port:
-    """A port by the name of its method: what it is, in words, and which part of the model it changes."""
+    """A port: name of its method, description, and the part of the model that it changes."""
 
     name: str
     words: str
@@ -21,7 +21,7 @@ class Port:
 
 
 def port(words: str, changes: Part = "tyre") -> Callable[[Method], Method]:
-    """Declare a method of a class a port.
+    """Declare that a method of a class is a port.
 
     >>> class Model:
     ...     @port("lag of a sensor", changes="measurement")

@@ -1,4 +1,4 @@
-"""What shows an effect: the study in which it is tried and drawn, and what it does to the readings there."""
+"""The signature of an effect: a study that shows it, and the signs of its changes of readings."""
 
 from __future__ import annotations
 
@@ -6,9 +6,9 @@ from collections.abc import Mapping
 from dataclasses import dataclass, field
 from typing import Any
 
-#: The study that is changed.
+#: Base study of all signatures.
 STUDY = "example-validation"
-#: Thermocouples near the surface and in the bead, beside the study's own: signs may name them.
+#: Additional thermocouples near the surface and in the bead, which signs may name.
 SENSORS: Mapping[str, Any] = {
     "sensors.bead": {"s": "5.6 in", "depth": "0.3 in"},
     "sensors.surface": {"s": "0.30 in", "depth": "0.79 in"},
@@ -18,15 +18,15 @@ SENSORS: Mapping[str, Any] = {
 
 @dataclass(frozen=True)
 class Signature:
-    """What the study `STUDY` needs for an effect to show, and the sign of what the effect does.
+    """Changes of the study `STUDY` that show an effect, and the signs of its changes of readings.
 
-    An effect that says nothing is tried all the same: in the study as it is, its first variant, whatever its sign.
+    Default: the unchanged study, the effect's first variant, any sign.
 
     Parameters
     ----------
     changes : dotted name -> value. words : the changes, for a caption: "at 30 m/s".
-    choice : the variant that is tried; empty: the first.
-    signs : reading -> sign of its mean change with every amplitude one prior scale from null, as physics has it.
+    choice : variant of the effect; empty: the first.
+    signs : reading -> physical sign of its mean change when every amplitude is one prior scale from null.
     """
 
     changes: Mapping[str, Any] = field(default_factory=dict)

@@ -1,4 +1,4 @@
-"""States that an effect keeps through a run: the temperature of a brake disc, water on a tread, wear."""
+"""States of an effect during a run, such as the temperature of a brake disc, water on a tread, wear."""
 
 from __future__ import annotations
 
@@ -21,8 +21,8 @@ class EffectState:
 
     Parameters
     ----------
-    unit, meaning : unit of its value; one line.
-    scale : the change that matters as much as 1 K: errors in time are held below the study's tolerance times this.
+    unit, meaning : unit of the value; meaning in one line.
+    scale : change that counts as 1 K: time errors are below the study's tolerance (in K) times ``scale``.
 
     >>> EffectState("kg/m**2", "water on the tread", scale=1e-3).unit
     'kg/m**2'
@@ -34,16 +34,16 @@ class EffectState:
 
 
 class TemperaturesOfTyre(Protocol):
-    """Temperatures of the tyre at one time, degC: what a rate may depend on."""
+    """Temperatures of the tyre at a time, degC, as arguments of a rate."""
 
     def surface(self, boundary: str) -> float:
-        """Mean of ``road`` (the tread), ``outside_air``, ``contained_air`` or ``rim`` (the bead's seat)."""
+        """Mean temperature of ``road`` (the tread), ``outside_air``, ``contained_air`` or ``rim`` (the bead's seat)."""
 
     def region(self, name: str) -> float:
-        """Mean of a region of the section."""
+        """Mean temperature of a region of the section."""
 
     def at(self, points: Array) -> Array:
-        """At points (n_points, 2) in (r, z), m."""
+        """Temperatures at points (n_points, 2) in (r, z), m."""
 
     def reservoir(self, name: str) -> float:
-        """Of the lumped ``rim``, or of the ``contained-air`` where it has a heat capacity."""
+        """Temperature of the lumped ``rim``, or of the ``contained-air`` if it has a heat capacity."""

@@ -1,8 +1,7 @@
-"""What an effect may ask of the tyre that it acts on, and of the study that describes it. SI units, degC.
+"""Data of the tyre and of its study for effects, as protocols. SI units, degC.
 
-Effects know these protocols only, not the modules that simulate a tyre or read a study:
-`tyrefem.simulation.surroundings` and
-`tyrefem.inputs.study` satisfy them. Whoever writes an effect that needs more adds the member here, with its unit.
+Effects use only these protocols; `tyrefem.simulation.surroundings` and `tyrefem.inputs.study` satisfy them. If an
+effect needs more data, add the member here, with its unit.
 """
 
 from __future__ import annotations
@@ -29,7 +28,7 @@ class Tyre(Protocol):
 
     @property
     def study(self) -> StudyOfTyre:
-        """The study that describes it."""
+        """The study of the tyre."""
 
     @property
     def drive(self) -> DriveOfTyre:
@@ -37,7 +36,7 @@ class Tyre(Protocol):
 
     @property
     def schedule(self) -> LoadSchedule:
-        """Its load cases over time."""
+        """The load cases over time."""
 
     @property
     def rated_deflection(self) -> float:
@@ -48,22 +47,22 @@ class Tyre(Protocol):
         """Conductivity through the tread, W/m/K, and its volumetric heat capacity, J/m3/K, at 25 degC."""
 
     def motion(self, t: float) -> MotionOfTyre:
-        """How the wheel moves at time t (s)."""
+        """Motion of the wheel at time t (s)."""
 
     def speed(self, t: float) -> float:
         """Speed over the road at time t (s), m/s: short for ``motion(t).speed``."""
 
     def ambient(self, t: float) -> float:
-        """Ambient temperature at time t (s), degC, with the effects on it."""
+        """Ambient temperature at time t (s), degC, with effects."""
 
     def state(self, effect: object, name: str, t: float) -> float | Array:
         """A state of an effect at time t (s): ``tyre.state(self, "water", t)``."""
 
     def road_fraction(self, t: float) -> float:
-        """Part of the time that the section is on the road, 0 to 1, at time t (s)."""
+        """Fraction of time that the section is on the road, 0 to 1, at time t (s)."""
 
     def region(self, zone: str) -> str:
-        """The region of the section that a strain zone is part of."""
+        """The section's region of a strain zone."""
 
     def places(self, x: Array) -> tuple[Array, Array]:
         """|s| along the meridian from the crown and depth from the inner surface of points x (2, n), m."""
@@ -104,7 +103,7 @@ class LoadSchedule(Protocol):
 
 
 class LoadOnTyre(Protocol):
-    """One load case."""
+    """A load case."""
 
     @property
     def load(self) -> float:
@@ -120,7 +119,7 @@ class LoadOnTyre(Protocol):
 
 
 class DriveOfTyre(Protocol):
-    """The drive as the study says it."""
+    """The study's drive."""
 
     @property
     def initial(self) -> float:
@@ -128,10 +127,10 @@ class DriveOfTyre(Protocol):
 
     @property
     def phases(self) -> Sequence[PhaseOfDrive]:
-        """Its phases in their order."""
+        """The phases in order."""
 
     def locate(self, time: float) -> tuple[int, float]:
-        """Number of the phase at a time (s), and the fraction of it that has passed, 0 to 1."""
+        """Number of the phase at a time (s), and the elapsed fraction of it, 0 to 1."""
 
 
 class PhaseOfDrive(Protocol):
@@ -139,11 +138,11 @@ class PhaseOfDrive(Protocol):
 
     @property
     def load(self) -> object | None:
-        """None where the drive gives the deflection, and the load follows."""
+        """None if the drive gives the deflection instead of the load."""
 
     @property
     def pressure(self) -> PressureOfPhase:
-        """Its gauge pressure."""
+        """Gauge pressure of the phase."""
 
 
 class PressureOfPhase(Protocol):
@@ -151,11 +150,11 @@ class PressureOfPhase(Protocol):
 
     @property
     def start(self) -> float:
-        """At the beginning of the phase, Pa."""
+        """Pressure at the start of the phase, Pa."""
 
 
 class StudyOfTyre(Protocol):
-    """A study: what says whether an effect has a meaning in it."""
+    """Data of a study, to check whether an effect is possible in it."""
 
     @property
     def card(self) -> CardOfStudy:
@@ -163,7 +162,7 @@ class StudyOfTyre(Protocol):
 
     @property
     def section(self) -> Section:
-        """The section, worn as the effects say."""
+        """The section, worn by the study's effects."""
 
     @property
     def sensors(self) -> Mapping[str, object]:
@@ -191,7 +190,7 @@ class CardOfStudy(Protocol):
 
     @property
     def effects(self) -> Sequence[object]:
-        """All entries of ``[[effects]]``, those at null too."""
+        """All entries of ``[[effects]]``, including those at null."""
 
 
 class MeshOfStudy(Protocol):
@@ -203,7 +202,7 @@ class MeshOfStudy(Protocol):
 
     @property
     def file(self) -> str | None:
-        """The user's own mesh; None where the section is meshed."""
+        """The user's mesh; None if the section is meshed."""
 
 
 class MechanicsOfStudy(Protocol):
@@ -215,7 +214,7 @@ class MechanicsOfStudy(Protocol):
 
     @property
     def feedback(self) -> FeedbackOfStudy | None:
-        """What temperatures act back on; None for nothing."""
+        """Settings of the feedback of temperature; None: no feedback."""
 
 
 class LoadLaw(Protocol):
@@ -223,7 +222,7 @@ class LoadLaw(Protocol):
 
     @property
     def law(self) -> str:
-        """Its name in study files."""
+        """Name in study files."""
 
     def deflection(self, load: float, pressure: float, tyre: Rating) -> float:
         """Deflection, m, at a load (N) and gauge pressure (Pa)."""
@@ -234,7 +233,7 @@ class FeedbackOfStudy(Protocol):
 
     @property
     def pressure(self) -> bool:
-        """Does the gauge pressure follow the contained air's temperature?"""
+        """True if the gauge pressure follows the contained air's temperature."""
 
 
 class BoundariesOfStudy(Protocol):

@@ -1,4 +1,4 @@
-"""The heating test of the laser rig (Allouis et al. 2016) as data: card, patch of tread, readings, fit, selection.
+"""The heating test of the laser rig (Allouis et al. 2016): card, heated patch, readings, fit, model selection.
 
-Knows nothing of tyres, drives and studies, and nothing of `tyrefem.rig`, where people find it.
+This package does not import tyres, drives or studies. Its public interface is `tyrefem.rig`.
 """

@@ -1,9 +1,4 @@
-"""The rig's description: layers with first guesses, laser, phases, surroundings, sensors, runs.
-
-The times at which a test is computed, and the way from there to the times of a table.
-
-Find and read a rig card: a path, a folder, or the name of a shipped one.
-"""
+"""The rig card: layers with priors, laser, phases, surroundings, sensors, runs; and the computed times of a test."""
 
 from __future__ import annotations
 
@@ -28,9 +23,9 @@ Relative = Annotated[float, Unit("1", ge=0, lt=1)]
 
 
 class Guess(Card):
-    """A first guess with the relative standard deviation that it deserves, constant or linear in temperature.
+    """Prior value of a property with its relative standard deviation, constant or linear in temperature.
 
-    ``slope`` is per kelvin, about the card's reference temperature. What the sources say goes into ``source``.
+    ``slope``: per kelvin, about the card's reference temperature. ``source``: reference of the value.
     """
 
     UNIT: ClassVar[str] = "1"
@@ -51,7 +46,7 @@ class Guess(Card):
         return data
 
     def warnings(self) -> tuple[InputWarning, ...]:
-        """An unlikely guess."""
+        """A warning of an unusual value."""
         return super().warnings() + tuple(filter(None, [self.LIKELY.warning(self.value, "value")]))
 
 
@@ -70,16 +65,16 @@ class SpecificHeatGuess(Guess):
 
 
 class KnownDensity(Card):
-    """kg/m3, weighed: a heating test sees only density times specific heat."""
+    """Density from weighing, kg/m3: a heating test measures only density times specific heat."""
 
     value: Annotated[float, Unit("kg/m**3", gt=0), DENSITY]
     source: Text
 
 
 class RigLayerCard(Card):
-    """One layer: ``thickness`` with the standard deviation of its measurement, and what it is made of.
+    """A layer: ``thickness`` with the standard deviation of its measurement, and properties.
 
-    ``reference_temperature``: at which its properties are given, best where the layer is during the tests.
+    ``reference_temperature``: temperature of its properties, preferably that of the layer during the tests.
     """
 
     name: Text
@@ -92,10 +87,10 @@ class RigLayerCard(Card):
 
 
 class Laser(Card):
-    """The beam: ``spot_diameter`` of the even disc, or of a Gaussian beam where the intensity is 1/e2 of the middle's.
+    """The beam: ``spot_diameter`` of a uniform disc, or of a Gaussian beam at 1/e2 of its peak intensity.
 
-    ``absorptance``: share of the beam's power that becomes heat. ``placing_sd``: of either coordinate of the spot's
-    centre against the point at which the sensors are aimed.
+    ``absorptance``: absorbed share of the beam's power. ``placing_sd``: standard deviation of each coordinate of the
+    spot's centre relative to the sensors' aiming point.
     """
 
     spot_diameter: Annotated[float, Unit("m", gt=0)]
@@ -107,7 +102,7 @@ class Laser(Card):
 
 
 class PatchCard(Card):
-    """The piece that is computed, and the crown's radii of curvature (none: flat)."""
+    """The computed patch, and the crown's radii of curvature (none: flat)."""
 
     radius: PositiveLength
     circumferential_radius: PositiveLength | None = None
@@ -133,8 +128,8 @@ class HeatingPhases(Card):
 
 
 class SurroundingsCard(Card):
-    """Air and walls. The films of both faces are those of a vertical plate of the ``characteristic_length`` times a
-    factor of 1 with the relative standard deviation ``convection_sd``; the paper leaves ``radiation`` out."""
+    """Air and walls. Both faces have the film of a vertical plate of the ``characteristic_length``, times a factor of 1
+    with the relative standard deviation ``convection_sd``. The paper leaves out ``radiation``."""
 
     ambient: Temperature
     characteristic_length: PositiveLength
@@ -147,8 +142,8 @@ class SurroundingsCard(Card):
 class SensorCard(Card):
     """``camera``: the mean over a disc of the outer or inner ``face``; ``thermocouple``: a point at a ``depth``.
 
-    ``aside``: distance along the face from the rig's mark. ``noise``: of one reading; ``offset_sd``: of a constant
-    error; ``depth_sd`` and ``lag`` (first order, with ``lag_sd`` relative) belong to thermocouples.
+    ``aside``: distance along the face from the rig's mark. Standard deviations: ``noise`` of a reading, ``offset_sd``
+    of a constant error. Only thermocouples have ``depth_sd`` and ``lag`` (first order, with relative ``lag_sd``).
     """
 
     instrument: Literal["camera", "thermocouple"]
@@ -168,23 +163,23 @@ class SensorCard(Card):
             if self.face is None:
                 raise InputError("a camera needs 'face', outer or inner", field="face")
             if self.depth is not None or self.depth_sd:
-                raise InputError("a camera sees a face and has no depth", field="depth")
+                raise InputError("a camera measures a face and has no depth", field="depth")
         elif self.depth is None:
             raise InputError("a thermocouple needs 'depth' below the outer face", field="depth")
         elif self.face is not None:
-            raise InputError("a thermocouple lies inside and has no face", field="face")
+            raise InputError("a thermocouple is inside and has no face", field="face")
         return self
 
 
 class RunCard(Card):
-    """One test: the laser's power, and its own ambient temperature where it differs."""
+    """A test: the laser's power, and the ambient temperature if it differs."""
 
     power: Annotated[float, Unit("W", gt=0)]
     ambient: Temperature | None = None
 
 
 class RigCard(Card):
-    """A rig.toml, checked for what cannot be built."""
+    """A rig.toml; refuses impossible rigs."""
 
     kind: ClassVar[str] = "rig"
     title: Text
@@ -197,12 +192,12 @@ class RigCard(Card):
     sensors: Annotated[dict[str, SensorCard], Field(min_length=1)]
     runs: Annotated[dict[str, RunCard], Field(min_length=1)]
     slope_sd: Annotated[float, Unit("1/delta_degC", gt=0, le=0.02)] = 2e-3
-    #: Floor of the model's own error, relative to the rise: mesh, round shells for a doubly curved crown.
+    #: Smallest model error, relative to the rise: mesh, spherical shells for a doubly curved crown.
     model_error: Annotated[float, Unit("1", ge=0, lt=0.1)] = 1e-3
 
     @property
     def thickness(self) -> float:
-        """Of all layers, m."""
+        """Thickness of all layers, m."""
         return sum(layer.thickness for layer in self.layers)
 
     @model_validator(mode="after")
@@ -230,13 +225,15 @@ class RigCard(Card):
             raise InputError(words, field="laser.spot_diameter")
         curvature = self.patch.curvature
         if curvature * max(self.thickness, radius / 1.5) >= 1:
-            words = f"a patch of {1e3 * radius:g} mm and {1e3 * self.thickness:g} mm thick cannot be bent so sharply"
+            words = (
+                f"a patch of {1e3 * radius:g} mm and {1e3 * self.thickness:g} mm thickness cannot have this curvature"
+            )
             raise InputError(words, field="patch.circumferential_radius")
 
     def _sensor(self, name: str, sensor: SensorCard) -> None:
         field = f"sensors.{name}"
         if name.lower() in ("time", "run", "t") or not name.strip():
-            raise InputError(f"'{name}' is a name that tables already use", field="sensors")
+            raise InputError(f"'{name}' is a reserved name of the tables", field="sensors")
         if sensor.depth is not None and sensor.depth >= self.thickness:
             words = f"{1e3 * sensor.depth:g} mm is outside the tyre, which is {1e3 * self.thickness:g} mm thick"
             raise InputError(words, field=f"{field}.depth")
@@ -249,12 +246,12 @@ class RigCard(Card):
 Array = NDArray[Any]
 
 
-#: First scale of time after the laser is switched, s, and steps in all of a phase's logarithmic time.
+#: Time scale after a switch of the laser, s, and number of steps of a phase in logarithmic time.
 SCALE, STEP = 0.5, 0.16
 
 
 def since_switch(duration: float) -> Array:
-    """Times from 0 to `duration`, close together after the switch: even steps in ln(1 + t/0.5 s).
+    """Times from 0 to `duration`, dense after the switch: equal steps in ln(1 + t/0.5 s).
 
     >>> since_switch(1050.0).size
     49
@@ -265,11 +262,11 @@ def since_switch(duration: float) -> Array:
 
 @dataclass(frozen=True)
 class Clock:
-    """Computed times of one test up to `end`; index 0 is the moment the laser is switched on.
+    """Computed times of a test up to `end`; index 0 is the time at which the laser is switched on.
 
     Attributes
     ----------
-    heating, cooling : times since the switch, s; cooling is empty where the test ends before.
+    heating, cooling : times since the switch, s; cooling is empty if the test ends before.
     """
 
     phases: HeatingPhases
@@ -277,23 +274,23 @@ class Clock:
 
     @cached_property
     def heating(self) -> Array:
-        """s since the laser was switched on."""
+        """Times since the laser was switched on, s."""
         return since_switch(min(self.phases.heating, max(self.end - self.phases.idle, 1.0)))
 
     @cached_property
     def cooling(self) -> Array:
-        """s since the laser was switched off, without 0."""
+        """Times since the laser was switched off, s, without 0."""
         left = self.end - self.phases.idle - self.phases.heating
         return since_switch(left)[1:] if left > 0 else np.zeros(0)
 
     @cached_property
     def times(self) -> Array:
-        """All computed times, s of the test."""
+        """All computed times of the test, s."""
         on = self.phases.idle + self.heating
         return np.concatenate([on, self.phases.idle + self.phases.heating + self.cooling])
 
     def matrix(self, times: ArrayLike) -> Array:
-        """Matrix (times, computed times): cubic splines in the logarithmic time of each phase; start before it."""
+        """Interpolation matrix (times, computed times): cubic splines in logarithmic time; start before heating."""
         from scipy.interpolate import CubicSpline
 
         t = np.asarray(times, dtype=float) - self.phases.idle
@@ -313,7 +310,7 @@ class Clock:
         return matrix
 
     def lagged(self, values: Array, lag: float) -> Array:
-        """First-order lag, exact for readings that are straight between computed times; (n_times, ...)."""
+        """Readings with first-order lag (n_times, ...), exact for values linear between computed times."""
         if lag <= 0:
             return values
         out = np.array(values, dtype=float)
@@ -325,7 +322,7 @@ class Clock:
 
 
 def find(name: str | Path) -> Path:
-    """The file of a rig: a path, a folder with a ``rig.toml``, or the name of a shipped one.
+    """The file of a rig, by path, by folder with a ``rig.toml``, or by name of a shipped rig.
 
     >>> find("trtlab").name
     'rig.toml'
@@ -344,9 +341,9 @@ def find(name: str | Path) -> Path:
 
 
 def load(name: str | Path) -> tuple[RigCard, Path]:
-    """A rig card and its file.
+    """Load a rig card; return the card and its file.
 
-    Raises InputError with file and field for anything that is not a possible rig.
+    Raises InputError with file and field if the rig is not possible.
 
     >>> card, file = load("trtlab")
     >>> [layer.name for layer in card.layers]
@@ -357,14 +354,14 @@ def load(name: str | Path) -> tuple[RigCard, Path]:
 
 
 def beside(card: RigCard, file: Path) -> list[Path]:
-    """Where the runs' tables lie if none are named: beside the card; they need not be there."""
+    """Default files of the runs' tables, beside the card; they need not exist."""
     return [file.parent / f"{run}.csv" for run in card.runs]
 
 
 def tables(card: RigCard, file: Path, given: Iterable[str | Path] = ()) -> list[Path]:
-    """Files of measured tables: as given (here, else beside the card); without any, each run's ``RUN.csv`` there.
+    """Files of measured tables: ``given`` (in the working folder, else beside the card); default: every ``RUN.csv``.
 
-    Raises InputError where nothing is given and a run's table does not lie beside the card.
+    Raises InputError if none is given and a run has no table beside the card.
 
     >>> card, file = load("trtlab")
     >>> [table.name for table in tables(card, file)]
@@ -377,7 +374,7 @@ def tables(card: RigCard, file: Path, given: Iterable[str | Path] = ()) -> list[
     files = beside(card, file)
     missing = [table.name for table in files if not table.is_file()]
     if len(missing) == len(files):
-        raise InputError(f"no table is given and none of {', '.join(missing)} lies beside the card", file=file)
+        raise InputError(f"no table is given and none of {', '.join(missing)} is beside the card", file=file)
     if missing:
         there = " ".join(table.name for table in files if table.is_file())
         words = f"the card has runs without a table beside it: {', '.join(missing)}; to do without them, name {there}"

@@ -1,4 +1,4 @@
-"""The most probable numbers of the rig: Gauss-Newton with Levenberg's damping, priors included."""
+"""The most probable parameters of the rig: Gauss-Newton with Levenberg's damping and priors."""
 
 from __future__ import annotations
 
@@ -16,10 +16,10 @@ from tyrefem.heating_test.readings import HeatingTest
 from tyrefem.heating_test.twin import Twin
 
 Array = NDArray[Any]
-#: A step shorter than this share of the posterior's standard deviations ends the fit; one far longer, a rough one.
+#: Step length that ends the fit, and one that ends a rough fit, in posterior standard deviations.
 _CLOSE, _ROUGHLY = 0.1, 2.0
 _MOST, _MOST_ROUGHLY = 25, 8
-#: No coordinate moves further than this in one step: the problem is only locally linear.
+#: Largest step of a coordinate, because the problem is only locally linear.
 _LONGEST = 1.5
 
 
@@ -29,10 +29,10 @@ class RigFit(Brief):
 
     Attributes
     ----------
-    parameters, x : what was free and its coordinates (priors are N(0, 1)).
+    parameters, x : free parameters and their coordinates (priors are N(0, 1)).
     covariance : of x, Laplace: (1 + J^T C^-1 J)^-1.
-    noise : with the estimated model error.
-    blocks : readings, computed readings and slopes at x.
+    noise : noise with the estimated model error.
+    blocks : readings, computed readings and sensitivities at x.
     evidence : ln p(readings), Laplace.
     solutions : number of tests computed.
     """
@@ -47,12 +47,12 @@ class RigFit(Brief):
 
     @property
     def values(self) -> dict[str, float]:
-        """Every number of the rig."""
+        """Name -> value of every parameter of the rig."""
         return self.parameters.values(self.x)
 
 
 class Fitter:
-    """Fits one rig to its tests; counts the solutions."""
+    """Fits a rig's parameters to its tests; counts the solutions."""
 
     def __init__(self, twin: Twin, tests: Sequence[HeatingTest], progress: Callable[[], None] | None = None) -> None:
         self.twin, self.tests, self.progress = twin, tuple(tests), progress or (lambda: None)
@@ -63,13 +63,13 @@ class Fitter:
         values, out = parameters.values(x), []
         for test in self.tests:
             fields = self.twin.fields(values, test.run, test.clock)
-            out.append((fields, self.twin.seen(values, test.clock, fields)))
+            out.append((fields, self.twin.readings_of_fields(values, test.clock, fields)))
             self.solutions += 1
             self.progress()
         return out
 
     def blocks(self, parameters: Parameters, x: Array, predicted: list[tuple[Array, Array]]) -> tuple[Block, ...]:
-        """Residuals and slopes of every series."""
+        """Residuals and sensitivities of every series."""
         blocks = []
         for test, (fields, seen) in zip(self.tests, predicted, strict=True):
             slopes = self.twin.slopes(parameters, x, test.run, test.clock, fields, seen)
@@ -92,9 +92,9 @@ class Fitter:
         return total
 
     def fit(self, parameters: Parameters, x: Array, noise: Noise, floor: float, *, rough: bool = False) -> RigFit:
-        """Fit from coordinates x; the model error is estimated twice, once the fit has nearly settled.
+        """Fit from coordinates x; when the fit has nearly converged, the model error is estimated twice.
 
-        A rough fit ends early: near enough to see which properties are missing.
+        A rough fit ends early, close enough to find missing slopes of properties.
         """
         predicted = self.predict(parameters, x)
         damping, rounds = 0.1 if rough else 0.0, 0
@@ -123,7 +123,7 @@ class Fitter:
         noise: Noise,
         damping: float,
     ) -> tuple[Array, list[tuple[Array, Array]], float]:
-        """One step that lowers the cost; the damping with which the next one should begin."""
+        """Make a step that lowers the cost; return also the damping for the next step."""
         factors = [noise.factor(block.series, block.rise) for block in blocks]
         before = self._cost(predicted, x, factors)
         for _ in range(6):
@@ -137,13 +137,13 @@ class Fitter:
 
 
 def _length(eq: Normal, x: Array) -> float:
-    """Length of the Gauss-Newton step in units of the posterior: what moves less than its uncertainty is done."""
+    """Length of the Gauss-Newton step in posterior standard deviations."""
     g = eq.right - x
     return float(np.sqrt(np.maximum(g @ np.linalg.solve(np.eye(x.size) + eq.matrix, g), 0.0)))
 
 
 def _bounded(H: Array, g: Array) -> Array:
-    """The step H^-1 g whose coordinates stay within bounds: what would go further is held there, the rest solved."""
+    """The step H^-1 g with bounded coordinates: coordinates at a bound are fixed, and the rest is solved again."""
     step, held = np.zeros(g.size), np.zeros(g.size, dtype=bool)
     for _ in range(g.size):
         free = ~held

@@ -1,4 +1,4 @@
-"""The patch's mesh: quadrilaterals in (distance along the face, depth), bent to spherical shells."""
+"""The mesh of the patch: quadrilaterals in (distance along the face, depth), mapped to spherical shells."""
 
 from __future__ import annotations
 
@@ -19,20 +19,20 @@ Array = NDArray[Any]
 
 @dataclass(frozen=True)
 class Fineness:
-    """Elements under the spot, from its edge to the patch's edge, and per layer; `first` is the share of the spot's
-    radius (along) or of the layer (depth) that the element at the edge, at the outer face takes."""
+    """Number of elements under the spot, outside it, and per layer; `first`: size of the element at the spot's edge, as
+    a share of the spot's radius, and at the outer face, as a share of the layer."""
 
     spot: int = 4
     beyond: int = 9
     layer: int = 4
 
 
-#: Its error is below the cameras' noise: 0.15 K of 120 K where it is largest.
+#: Its largest error, 0.15 K of 120 K, is below the cameras' noise.
 USUAL = Fineness()
 
 
 def graded(length: float, count: int, first: float) -> Array:
-    """Nodes from 0 to `length` whose first interval is `first`, each a constant factor wider than the one before.
+    """Nodes from 0 to `length` with the first interval `first` and a constant ratio of neighbouring intervals.
 
     >>> graded(7.0, 3, 1.0).round(3).tolist()
     [0.0, 1.0, 3.0, 7.0]
@@ -74,7 +74,7 @@ class PatchGrid:
     ) -> PatchGrid:
         """Mesh layers of given thicknesses (outer first), m."""
         edge = float(np.arcsin(curvature * spot_radius) / curvature) if curvature else spot_radius
-        # Fine towards the spot's edge, where the flux jumps, from both sides.
+        # Fine on both sides of the spot's edge, where the flux has a step.
         inside = edge - graded(edge, fineness.spot, 0.5 * edge / fineness.spot)[::-1]
         outside = edge + graded(radius - edge, fineness.beyond, 0.6 * edge / fineness.spot)[1:]
         along = np.concatenate([inside, outside])
@@ -107,16 +107,16 @@ class PatchGrid:
 
     @cached_property
     def _number(self) -> Array:
-        """Unknown at (line along, line in depth), both with the lines halfway between."""
+        """Index of the unknown at (line along, line in depth), including midlines."""
         straight = skfem.MeshQuad.init_tensor(self.along, self.depths)
         places = skfem.Basis(straight, skfem.ElementQuad2(), intorder=1).doflocs
         order = np.lexsort((places[1], places[0].round(12)))
         return order.reshape(2 * self.along.size - 1, 2 * self.depths.size - 1)
 
     def at(self, along: ArrayLike, depth: ArrayLike) -> csr_matrix:
-        """Matrix (points, unknowns) that takes nodal temperatures to points given by distance along and depth, m.
+        """Interpolation matrix (points, unknowns) for points given by distance along and depth, m.
 
-        Points beyond the patch are taken at its border.
+        Points outside the patch get the value at its border.
         """
         s, d = np.broadcast_arrays(np.asarray(along, float), np.asarray(depth, float))
         (i, a), (j, b) = _quadratic(self.along, s.ravel()), _quadratic(self.depths, d.ravel())
@@ -135,7 +135,7 @@ def bend(along: Array, depth: Array, curvature: float) -> tuple[Array, Array]:
 
 
 def _quadratic(lines: Array, x: Array) -> tuple[Array, Array]:
-    """Numbers (n, 3) of the three nodal lines about each point and their Lagrange weights."""
+    """Indices (n, 3) of the three nodal lines about each point, and their Lagrange weights."""
     x = np.clip(x, lines[0], lines[-1])
     e = np.clip(np.searchsorted(lines, x, side="right") - 1, 0, lines.size - 2)
     u = (x - lines[e]) / (lines[e + 1] - lines[e])

@@ -1,4 +1,4 @@
-"""From measured tables to conductivity and specific heat of every layer, with what is known and what is not."""
+"""Identification of every layer's conductivity and specific heat from measured tables."""
 
 from __future__ import annotations
 
@@ -31,12 +31,12 @@ Array = NDArray[Any]
 
 @dataclass(frozen=True, eq=False)
 class IdentificationData(Brief):
-    """What a rig's tables say about its layers.
+    """Properties of a rig's layers, identified from its tables.
 
     Attributes
     ----------
-    card, file : the rig. tests : what was read.
-    fit : the most probable numbers. selection : which properties are linear in temperature.
+    card, file : the rig. tests : the measured tests.
+    fit : the most probable parameters. selection : properties that are linear in temperature.
     estimates : one per free parameter, properties first, with 95 % intervals.
     correlation : (n, n) of the estimates' coordinates, in their order.
     """
@@ -72,7 +72,7 @@ class IdentificationData(Brief):
 
     @cached_property
     def table(self) -> pd.DataFrame:
-        """One row per parameter: value, 95 % interval, relative sd, prior, how much the readings narrowed it."""
+        """One row per parameter: value, 95 % interval, relative sd, prior, and posterior sd over prior sd."""
         import pandas as pd
 
         return pd.DataFrame([estimate.to_dict() for estimate in self.estimates])
@@ -88,25 +88,25 @@ def identify(
     fineness: Fineness | None = None,
     progress: Callable[[], None] | None = None,
 ) -> IdentificationData:
-    """Find conductivity and specific heat of every layer of a rig from its measured tables.
+    """Identify conductivity and specific heat of every layer of a rig from measured tables.
 
-    Minimises |C^(-1/2) (measured - computed)|^2 + |x|^2 over the coordinates x of all uncertain numbers, C the noise
-    and model error of `tyrefem.heating_test.noise`, priors N(0, 1) in x; several tests are fitted together. Intervals
-    are Laplace's, averaged over which properties are linear in temperature.
+    Minimises |C^(-1/2) (measured - computed)|^2 + |x|^2 over the coordinates x of all uncertain numbers; C is the
+    covariance of noise and model error (`tyrefem.heating_test.noise`), the priors of x are N(0, 1). Several tests are
+    fitted together. Intervals are Laplace's, averaged over the models with constant and linear properties.
 
     Parameters
     ----------
-    rig : name, path or card. tables : CSV files whose runs are named like the card's; none: those beside the card.
+    rig : name, path or card. tables : CSV files whose runs have the card's names; default: those beside the card.
     tests : tests already read, instead of tables.
     without : sensors that the tables need not have.
-    linear : whether properties may be linear in temperature where the evidence asks for it.
-    fineness : of the mesh. progress : called after every computed test.
+    linear : allow properties that are linear in temperature, if the evidence supports them.
+    fineness : fineness of the mesh. progress : called after every computed test.
 
-    Raises InputError for a card or table that cannot be used.
+    Raises InputError if the card or a table cannot be used.
     """
     card, file = (rig, None) if isinstance(rig, RigCard) else load(rig)
     heating_tests = tuple(tests) or read(card, tables if file is None else beside(card, file, tables), without)
-    # The matrices are too small to share: on a busy machine waiting threads cost many times the work.
+    # The matrices are too small for threads: on a busy machine, waiting for threads takes longer than the work.
     with threadpool_limits(1, user_api="blas"):
         sensors = tuple(series.sensor for series in heating_tests[0].series)
         fitter = Fitter(Twin(card, sensors, fineness or USUAL), heating_tests, progress)
@@ -114,7 +114,7 @@ def identify(
 
 
 def _identified(card: RigCard, file: Path | None, fitter: Fitter, linear: bool) -> IdentificationData:
-    """A rough fit shows which properties need a slope; then fits and weighings in turn, until the choice stands."""
+    """Make a rough fit to find properties with a slope; then alternate fit and selection until both agree."""
     sensors = fitter.twin.sensors
     every = parameters_of(card, sensors)
     slopes = {parameter.name for parameter in every.free if parameter.group == SLOPE}
@@ -144,7 +144,7 @@ def _identified(card: RigCard, file: Path | None, fitter: Fitter, linear: bool) 
 
 
 def _weighed(fitter: Fitter, every: Parameters, x: Array, fit: RigFit, floor: float) -> tuple[Noise, Selection]:
-    """The noise with every slope free, and the combinations weighed with it."""
+    """The noise with every slope free, and the selection of slopes with it."""
     predicted = fitter.predict(every, x)
     blocks = fitter.blocks(every, x, predicted)
     noise = estimated(blocks, x, fit.noise, floor)
@@ -160,10 +160,10 @@ def _result(
     every: Parameters,
     keep: Array,
 ) -> IdentificationData:
-    """Intervals about the fit: the combinations' spread about their mean, plus what the fit is away from it."""
+    """The result, with intervals from the spread of the combinations and the fit's distance from their mean."""
     away = selection.mean[keep] - fit.x
     mixed = selection.covariance[np.ix_(keep, keep)] + np.outer(away, away)
-    # The averaged spread may only widen an interval, never narrow the fitted model's own.
+    # The averaged spread may widen the fitted model's intervals, but not narrow them.
     widen = np.sqrt(np.maximum(np.diag(mixed) / np.diag(fit.covariance), 1.0))
     covariance = fit.covariance * np.outer(widen, widen)
     groups = (PROPERTY, SLOPE, RIG)

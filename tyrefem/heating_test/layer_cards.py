@@ -22,7 +22,7 @@ _MOST = 0.99
 def bases(card: RigCard, given: Sequence[str]) -> dict[str, str]:
     """Layer -> base card, from ``LAYER=CARD`` or one ``CARD`` for every layer.
 
-    Raises InputError for a layer that the rig does not have, or an unknown card.
+    Raises InputError if the rig does not have the layer, or a card is unknown.
     """
     names = [layer.name for layer in card.layers]
     chosen: dict[str, str] = {}
@@ -39,12 +39,12 @@ def bases(card: RigCard, given: Sequence[str]) -> dict[str, str]:
 
 
 def layer_card(identification: IdentificationData, layer: str, base: str) -> dict[str, Any]:
-    """The data of one layer's card: what the rig knows laid over a base card, which gives the rest.
+    """Data of a layer's card: identified properties, with the rest from a base card.
 
-    The rig cannot know the loss tangent, the stiffness or the cords: they stay the base card's, with its sources.
-    A linear property becomes a table between the ambient and the highest temperature that a sensor saw.
+    The rig cannot measure loss tangent, stiffness and cords: these are from the base card, with its sources. A linear
+    property becomes a table between ambient and the highest temperature of a reading.
 
-    Raises InputError for an unknown base card.
+    Raises InputError if the base card is unknown.
     """
     data, _, name = library.load("material", base)
     rig_layer = next(candidate for candidate in identification.card.layers if candidate.name == layer)
@@ -54,7 +54,7 @@ def layer_card(identification: IdentificationData, layer: str, base: str) -> dic
         "title": f"{layer}, identified with the laser rig",
         "notes": (
             f"Conductivity and specific heat: laser rig, at {rig_layer.reference_temperature:g} degC where constant. "
-            f"The rig cannot know loss tangent, stiffness and cords: they are those of the card '{name}'. "
+            f"The rig cannot measure loss tangent, stiffness and cords: these are from the card '{name}'. "
             + " ".join(words for words in sentences(identification) if layer in words)
         ).strip(),
         "conductivity": _property(identification, layer, "conductivity", "W/m/K", source),
@@ -73,7 +73,7 @@ def _property(identification: IdentificationData, layer: str, key: str, unit: st
     sd = min(estimate.relative_sd or 0.0, _MOST)
     words = f"{source}; 95 % interval {estimate.low:.4g} to {estimate.high:.4g} {unit}"
     if estimate.verdict != "determined":
-        words += f"; {estimate.verdict} by the readings: mostly the first guess ({_guess(identification, layer, key)})"
+        words += f"; {estimate.verdict} by the readings: mostly the prior value ({_guess(identification, layer, key)})"
     entry: dict[str, Any] = {"source": words, "relative_sd": f"{100 * sd:.2g} %"}
     rig_layer = next(estimate for estimate in identification.card.layers if estimate.name == layer)
     slope = identification.fit.values[f"{layer}.{key}_slope"]
@@ -94,5 +94,5 @@ def _guess(identification: IdentificationData, layer: str, key: str) -> str:
 
 
 def layer_cards(identification: IdentificationData, chosen: Mapping[str, str]) -> dict[str, dict[str, Any]]:
-    """Layer -> card data for every layer that has a base."""
+    """Layer -> card data, for every layer with a base card."""
     return {layer: layer_card(identification, layer, base) for layer, base in chosen.items()}

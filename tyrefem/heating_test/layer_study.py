@@ -1,4 +1,4 @@
-"""How many layers does the model need? One set of readings, fitted with one layer, two, three ..."""
+"""Layer study: one set of readings, fitted with one layer, two, three ..."""
 
 from __future__ import annotations
 
@@ -20,15 +20,15 @@ if TYPE_CHECKING:
     import pandas as pd
 
 Array = NDArray[Any]
-#: So long after a switch of the laser the test counts as transient, s.
+#: Duration of the transient after a switch of the laser, s.
 TRANSIENT = 300.0
 
 
 def merged(card: RigCard, count: int) -> RigCard:
-    """The card with neighbouring layers made one until `count` are left; the thinnest pair goes first.
+    """Merge neighbouring layers of a card until `count` are left, the thinnest pair first.
 
-    Thicknesses add up; the guess of the conductivity is that of layers in series, density and specific heat keep
-    mass and heat capacity. Raises InputError for a count that the card does not have.
+    Thicknesses are added; the prior conductivity is of layers in series; density and specific heat preserve mass and
+    heat capacity. Raises InputError if the card has fewer layers.
 
     >>> from tyrefem.heating_test.card import load
     >>> layer = merged(load("trtlab")[0], 1).layers[0]
@@ -36,7 +36,7 @@ def merged(card: RigCard, count: int) -> RigCard:
     ('tread+carcass', 0.015, 0.271)
     """
     if not 1 <= count <= len(card.layers):
-        raise InputError(f"the card has {len(card.layers)} layers; {count} cannot be made of them", field="layers")
+        raise InputError(f"the card has {len(card.layers)} layers; {count} is not possible", field="layers")
     layers = list(card.layers)
     while len(layers) > count:
         pairs = [a.thickness + b.thickness for a, b in pairwise(layers)]
@@ -71,16 +71,16 @@ class LayerStudy:
 
     Attributes
     ----------
-    counts : layers of each fit. fits : what came out.
+    counts : number of layers of each fit. fits : results of the fits.
     """
 
     counts: tuple[int, ...]
     fits: tuple[IdentificationData, ...]
 
     def table(self) -> pd.DataFrame:
-        """One row per fit: misfit without noise (K) soon after a switch of the laser and later; rms; evidence.
+        """One row per fit: misfit without noise, K, in transients after a switch of the laser and later; rms; evidence.
 
-        The misfit is the root of the mean product of neighbouring residuals, in which independent noise cancels.
+        The misfit is the root of the mean product of neighbouring residuals, where independent noise cancels.
         """
         import pandas as pd
 
@@ -104,7 +104,7 @@ class LayerStudy:
 
 
 def _misfits(fit: IdentificationData) -> tuple[float, float]:
-    """Root of the mean product of neighbouring residuals of all sensors: soon after a switch, and the rest, K."""
+    """Root of the mean product of neighbouring residuals of all sensors: in transients, and in the rest, K."""
     phases = fit.card.phases
     switches = (phases.idle, phases.idle + phases.heating)
     early, late = [], []
@@ -141,6 +141,6 @@ def fits(
     counts: Sequence[int],
     fineness: Fineness | None = None,
 ) -> Iterator[tuple[int, IdentificationData]]:
-    """The same one by one: number of layers, and its fit as soon as it is finished."""
+    """Yield the number of layers and its fit, as soon as each fit is finished."""
     for count in counts:
         yield count, identify(merged(card, count), tests=tests, linear=False, fineness=fineness)

@@ -1,8 +1,7 @@
-"""How far readings may be from the computed ones: noise of the instrument, and the model's own error.
+"""Covariance of the residuals: noise of the instrument, and model error.
 
-The model's error is taken as a random process proportional to the rise, eps g(t) z(t), with z an Ornstein-Uhlenbeck
-process of correlation time tau: neighbouring readings then tell the same thing and do not narrow the intervals as
-independent ones would.
+The model error is a random process proportional to the rise, eps g(t) z(t), with z an Ornstein-Uhlenbeck process of
+correlation time tau: neighbouring readings are correlated, and narrow the intervals less than independent ones.
 """
 
 from __future__ import annotations
@@ -19,16 +18,16 @@ from tyrefem.brief import Brief
 from tyrefem.heating_test.readings import SensorReadings
 
 Array = NDArray[Any]
-#: Correlation times that the fit may choose, s.
+#: Allowed correlation times, s.
 SHORTEST, LONGEST = 5.0, 1000.0
-#: Largest relative model error that is looked for.
+#: Largest relative model error of the estimate.
 LARGEST = 0.1
 _GROUPS = 110
 
 
 @dataclass(frozen=True)
 class Noise:
-    """Standard deviations by sensor: of one reading (K), of the model relative to the rise; tau in s."""
+    """Standard deviations by sensor: of a reading, K, and of the model error relative to the rise; tau in s."""
 
     reading: Mapping[str, float]
     model: Mapping[str, float]
@@ -45,7 +44,7 @@ class Noise:
 
 @dataclass(frozen=True, eq=False)
 class Block(Brief):
-    """One series with its computed readings, its residual (measured - computed), slopes (n, parameters), rise (n,)."""
+    """A series with computed readings, residual (measured - computed), sensitivities (n, parameters) and rise (n,)."""
 
     series: SensorReadings
     computed: Array
@@ -70,7 +69,7 @@ class Normal:
 
 
 def normal(blocks: Sequence[Block], noise: Noise) -> Normal:
-    """Whiten and sum up."""
+    """Normal equations of all blocks, whitened."""
     n = blocks[0].slopes.shape[1]
     matrix, right, square, log_det, count = np.zeros((n, n)), np.zeros(n), 0.0, 0.0, 0
     for block in blocks:
@@ -90,7 +89,7 @@ def log_evidence(eq: Normal, x: Array, kept: Array | None = None) -> float:
     """ln p(readings) of the problem linearised at x, parameters not `kept` held at 0; priors are N(0, 1).
 
     With the residual r0 = r + J x at the centre of the prior: -1/2 [n ln 2 pi + ln det C + r0^T r0 + ln det(1 + J^T J)
-    - b^T (1 + J^T J)^-1 b], b = J^T r0. What is not kept must be held at 0 in x too, or is moved there to first order.
+    - b^T (1 + J^T J)^-1 b], b = J^T r0. Other parameters must be 0 in x, or are set to 0 in the linear problem.
     """
     right = eq.right + eq.matrix @ x
     square = eq.square + 2 * float(x @ eq.right) + float(x @ eq.matrix @ x)
@@ -104,7 +103,7 @@ def log_evidence(eq: Normal, x: Array, kept: Array | None = None) -> float:
 
 
 def _thinned(block: Block) -> Block:
-    """Neighbours averaged to a hundred groups or so: the model's error varies slowly, and covariances cost n^3."""
+    """Average neighbours to about a hundred groups: the model error varies slowly, and a covariance costs n^3."""
     whole = block.series
     size = int(np.ceil(whole.times.size / _GROUPS))
     if size == 1:
@@ -122,9 +121,9 @@ def _thinned(block: Block) -> Block:
 
 
 def estimated(blocks: Sequence[Block], x: Array, noise: Noise, floor: float) -> Noise:
-    """The model error and correlation time that make the readings most probable, the parameters integrated out.
+    """Model error and correlation time of greatest evidence, with the parameters integrated out.
 
-    Found by Nelder-Mead in logarithms between the floor and 10 %, and between 5 s and 1000 s.
+    By Nelder-Mead in logarithms, between the floor and 10 %, and between 5 s and 1000 s.
     """
     from scipy.optimize import minimize
 
@@ -138,7 +137,7 @@ def estimated(blocks: Sequence[Block], x: Array, noise: Noise, floor: float) -> 
         return replace(noise, model=dict(zip(sensors, map(float, errors), strict=True)), tau=tau)
 
     def cost(p: Array) -> float:
-        # A weak pull to the floor and to 200 s decides where the readings do not.
+        # A weak prior towards the floor and 200 s, for readings that do not determine them.
         pull = 0.05 * float(np.sum(np.maximum(p[:-1] - low, 0.0))) + 0.05 * float(p[-1] - np.log(200.0)) ** 2
         outside = np.concatenate([np.maximum(low - p[:-1], 0), np.maximum(p[:-1] - high, 0)])
         return pull + 10 * float(outside @ outside) - log_evidence(normal(thin, of(p)), x)

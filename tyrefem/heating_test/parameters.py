@@ -1,4 +1,4 @@
-"""What a fit may change: every parameter with its prior, in coordinates in which the prior is a unit normal."""
+"""The parameters of a fit with their priors, in coordinates in which the prior is N(0, 1)."""
 
 from __future__ import annotations
 
@@ -14,13 +14,13 @@ from tyrefem.heating_test.card import RigCard
 
 Array = NDArray[Any]
 
-#: Groups: what is wanted, and what is only uncertain.
+#: Groups: properties to identify, and other uncertain numbers.
 PROPERTY, SLOPE, RIG = "property", "slope", "rig"
 
 
 @dataclass(frozen=True)
 class RigParameter:
-    """One number with its prior.
+    """A number with its prior.
 
     ``log``: ln p ~ N(ln centre, spread); ``linear``: p ~ N(centre, spread); ``rayleigh``: distance of a point whose two
     coordinates are N(0, spread); ``folded``: |N(0, spread)|. `value` maps the coordinate x ~ N(0, 1) to p.
@@ -38,7 +38,7 @@ class RigParameter:
     group: str
 
     def value(self, x: float) -> float:
-        """The number at a coordinate."""
+        """The value at a coordinate."""
         if self.law == "log":
             return self.centre * math.exp(self.spread * x)
         if self.law == "linear":
@@ -51,7 +51,7 @@ class RigParameter:
         return self.spread * float(-ndtri(above / 2.0))
 
     def coordinate(self, value: float) -> float:
-        """The coordinate of a number; for ``log`` and ``linear``."""
+        """The coordinate of a value; for ``log`` and ``linear``."""
         if self.law == "log":
             return math.log(value / self.centre) / self.spread
         return (value - self.centre) / self.spread
@@ -67,7 +67,7 @@ class RigParameter:
 
 @dataclass(frozen=True)
 class Parameters:
-    """The free parameters in order, and the value of what is not free."""
+    """The free parameters in order, and the values of the fixed ones."""
 
     free: tuple[RigParameter, ...]
     held: Mapping[str, float]
@@ -77,24 +77,24 @@ class Parameters:
 
     @property
     def names(self) -> tuple[str, ...]:
-        """Of the free ones, in order."""
+        """Names of the free parameters, in order."""
         return tuple(parameter.name for parameter in self.free)
 
     def values(self, x: Sequence[float] | Array) -> dict[str, float]:
-        """Every number of the rig at coordinates x."""
+        """Name -> value of every parameter of the rig at coordinates x."""
         return {
             **self.held,
             **{parameter.name: parameter.value(float(v)) for parameter, v in zip(self.free, x, strict=True)},
         }
 
     def without(self, names: Sequence[str] | set[str]) -> Parameters:
-        """The same, with some parameters held at their centre."""
+        """A copy with some parameters fixed at their centre."""
         gone = {parameter.name: parameter.centre for parameter in self.free if parameter.name in names}
         return replace(self, free=tuple(o for o in self.free if o.name not in gone), held={**self.held, **gone})
 
 
 def parameters_of(card: RigCard, sensors: Sequence[str]) -> Parameters:
-    """Every parameter of a rig, for the sensors that are read; those without an uncertainty are held.
+    """The parameters of a rig with the given sensors; parameters without uncertainty are fixed.
 
     >>> from tyrefem.heating_test.card import load
     >>> parameters = parameters_of(load("trtlab")[0], ["outer", "inner", "interface"])
@@ -122,7 +122,7 @@ def parameters_of(card: RigCard, sensors: Sequence[str]) -> Parameters:
     for layer in card.layers:
         listed.append(RigParameter(f"{layer.name}.thickness", "m", "linear", layer.thickness, layer.thickness_sd, RIG))
     seen = {name: card.sensors[name] for name in sensors}
-    # One coordinate is enough where every sensor is aimed at the mark: only the distance matters.
+    # One coordinate is enough if every sensor is aimed at the mark: only the distance has an effect.
     aside = any(parameter.aside > 0 for parameter in seen.values())
     listed.append(RigParameter("spot_along", "m", "linear", 0.0, laser.placing_sd if aside else 0.0, RIG))
     listed.append(RigParameter("spot_across", "m", "folded" if aside else "rayleigh", 0.0, laser.placing_sd, RIG))
@@ -141,7 +141,7 @@ def _log(name: str, unit: str, centre: float, relative_sd: float, group: str) ->
 
 
 def at(x: Array, place: int, step: float) -> Array:
-    """Coordinates with one moved."""
+    """Coordinates with a step in one of them."""
     moved = np.array(x, dtype=float)
     moved[place] += step
     return moved

@@ -1,4 +1,4 @@
-"""The heated patch: layers round the beam, axisymmetric, solved with `tyrefem.conduction`.
+"""The heated patch: axisymmetric layers around the beam, solved with `tyrefem.conduction`.
 
 Natural convection on a vertical face in air (Allouis et al. 2016, equations 6-9; Churchill & Chu 1975).
 """
@@ -57,8 +57,8 @@ def nusselt(rayleigh: ArrayLike, prandtl: ArrayLike) -> Array:
 def natural_film(surface: ArrayLike, ambient: float, length: float) -> Array:
     """Film coefficient of natural convection, W/m2/K, (8): h = Nu k_air/delta, Ra = g beta |Ts - Ta| delta^3 Pr/nu^2.
 
-    Air is taken at the mean of both temperatures, beta = 1/T there. The paper prints nu^3 in the Grashof number (6);
-    nu^2 makes it a number.
+    Properties of air are at the mean of both temperatures, with beta = 1/T. The paper prints nu^3 in the Grashof
+    number (6); only nu^2 makes it dimensionless.
 
     Parameters
     ----------
@@ -71,7 +71,7 @@ def natural_film(surface: ArrayLike, ambient: float, length: float) -> Array:
     """
     if not length > 0:
         raise InputError(f"must be more than 0 m, not {length!r}", field="length")
-    # A rejected trial step may stray: air's laws are asked only where they mean something.
+    # A rejected trial step may be far outside: the laws of air are evaluated only in their range.
     Ts = np.clip(np.asarray(surface, dtype=float), -150.0, 1500.0)
     film = (Ts + ambient) / 2.0
     k, nu, Pr = air(film)
@@ -81,9 +81,9 @@ def natural_film(surface: ArrayLike, ambient: float, length: float) -> Array:
 
 @dataclass(frozen=True)
 class Property:
-    """A property that is constant or linear in temperature: value (1 + slope (T - reference)).
+    """A property, constant or linear in temperature: value (1 + slope (T - reference)).
 
-    The factor is held between 0.2 and 5, so that a trial of the fit stays possible.
+    The factor is limited to 0.2 to 5, so that every trial of the fit has a solution.
 
     >>> float(Property(0.3, slope=1e-3, reference=60.0)(160.0))
     0.33
@@ -97,13 +97,13 @@ class Property:
         return self.value * np.clip(1.0 + self.slope * (np.asarray(temperature) - self.reference), 0.2, 5.0)
 
     def law(self, factor: float = 1.0) -> Any:
-        """What the conduction solver takes: a number, or a function of temperature; times a factor."""
+        """The property times a factor, for the conduction solver: a number, or a function of temperature."""
         return self.value * factor if self.slope == 0.0 else lambda T: factor * self(T)
 
 
 @dataclass(frozen=True)
 class PatchLayer:
-    """One layer: thickness m, density kg/m3, conductivity W/m/K, specific heat J/kg/K."""
+    """A layer: thickness, m, density, kg/m3, conductivity, W/m/K, specific heat, J/kg/K."""
 
     name: str
     thickness: float
@@ -112,29 +112,29 @@ class PatchLayer:
     specific_heat: Property
 
     def material(self) -> Material:
-        """The layer for the conduction solver."""
+        """The layer as material of the conduction solver."""
         return Material(self.conductivity.law(), self.specific_heat.law(self.density))
 
 
 @dataclass(frozen=True)
 class Patch:
-    """A round piece of the tyre about the beam.
+    """A round patch of the tyre about the beam.
 
     rho c dT/dt = div(k grad T); on either face k dT/dn = film_scale h_nat(T) (Ta - T) + eps sigma (Ta^4 - T^4),
-    on the spot plus the absorbed power; no heat through the rim. The layers are bent to spherical shells of the
-    crown's mean curvature, which is right to first order in thickness times curvature.
+    on the spot plus the absorbed power; no heat flows through the rim. The layers are spherical shells of the crown's
+    mean curvature, which is correct to first order in thickness times curvature.
 
     Parameters
     ----------
-    layers : from the outer face (that the laser hits) to the inner one.
-    radius : of the patch along the outer face, m.
+    layers : layers from the outer face, which the laser heats, to the inner face.
+    radius : radius of the patch along the outer face, m.
     curvature : mean curvature of the outer face, 1/m; 0 is flat, positive has its centre inside the tyre.
-    spot_radius : m; profile ``uniform``: the disc's radius, ``gaussian``: where the intensity is 1/e2.
-    absorbed : power taken up, W; a collimated beam, so its intensity on the face follows the cosine.
-    ambient : of air and surroundings, degC.
+    spot_radius : m; profile ``uniform``: radius of the disc; ``gaussian``: radius of 1/e2 of the peak intensity.
+    absorbed : absorbed power, W; the beam is collimated, so its intensity on the face follows the cosine.
+    ambient : temperature of air and surroundings, degC.
     length : characteristic length of natural convection, m.
     outer_film, inner_film : factors on the film of natural convection.
-    emissivity : of both faces; 0 leaves radiation out.
+    emissivity : emissivity of both faces; 0: no radiation.
     """
 
     layers: tuple[PatchLayer, ...]
@@ -150,7 +150,7 @@ class Patch:
     emissivity: float = 0.95
 
     def grid(self, fineness: Fineness | None = None) -> PatchGrid:
-        """The mesh; patches of one shape share it."""
+        """The mesh; patches of equal shape share it."""
         shape = tuple((layer.name, layer.thickness) for layer in self.layers)
         return _grid(shape, self.radius, self.curvature, self.spot_radius, fineness or USUAL)
 
@@ -169,7 +169,7 @@ class Patch:
         return Conduction(grid.mesh, regions, boundaries, element="P2")
 
     def beam(self, grid: PatchGrid) -> tuple[str, Array]:
-        """The boundary that the laser hits and the absorbed flux at its quadrature points, W/m2; exact in sum."""
+        """The heated boundary, and the absorbed flux at its quadrature points, W/m2, whose integral is exact."""
         where = "spot" if self.profile == "uniform" else "outer"
         surface = grid.operators.surface(where)
         r = surface.x[0]
@@ -179,7 +179,7 @@ class Patch:
         return where, shape * (self.absorbed / float(surface.weight @ shape))
 
     def heated(self, grid: PatchGrid, times: Array, tolerance: float) -> History:
-        """Temperatures from the moment the laser is switched on; times[0] = 0."""
+        """Temperatures after the laser is switched on; times[0] = 0."""
         return self.conduction(grid, lit=True).transient(times, self.ambient, tolerance)
 
     def cooled(self, grid: PatchGrid, times: Array, start: Array, tolerance: float) -> History:

@@ -1,7 +1,4 @@
-"""A rig's measured tables, matched with its tests and thinned to what a fit needs.
-
-What cameras and thermocouples see of the patch.
-"""
+"""A rig's measured tables, matched with its tests and averaged for a fit; and the rig's measurement operators."""
 
 from __future__ import annotations
 
@@ -23,17 +20,17 @@ from tyrefem.measured import MeasuredRun, read_table
 Array = NDArray[Any]
 
 
-#: More readings than this of one sensor in one test are averaged in groups of neighbours.
+#: Largest number of readings of a sensor in a test; more are averaged in groups of neighbours.
 MOST = 400
 
 
-#: A logger may run a little longer than the phases say, s.
+#: Time that a logger may run longer than the card's phases, s.
 _SLACK = 5.0
 
 
 @dataclass(frozen=True, eq=False)
 class SensorReadings(Brief):
-    """One sensor in one test: mean readings of groups, how many each holds, and the way from computed times to them.
+    """A sensor in a test: mean readings of groups, their sizes, and the interpolation from computed times.
 
     Attributes
     ----------
@@ -51,7 +48,7 @@ class SensorReadings(Brief):
 
 @dataclass(frozen=True, eq=False)
 class HeatingTest(Brief):
-    """One test: its card, its clock, its series by sensor."""
+    """A test: card, clock, and series by sensor."""
 
     name: str
     run: RunCard
@@ -61,14 +58,14 @@ class HeatingTest(Brief):
 
 
 def read(card: RigCard, tables: Iterable[str | Path], without: Sequence[str] = ()) -> tuple[HeatingTest, ...]:
-    """The tests of tables whose runs are named like those of the card (by ``run`` column, else by file name).
+    """Read tables as tests; their runs (``run`` column, else file name) must have names of the card's runs.
 
     Parameters
     ----------
     without : sensors of the card that the tables need not have.
 
     Raises InputError naming file, run and column: an unknown or repeated run, a missing sensor column, a table that
-    ends before the laser is on or goes on after the card's phases.
+    ends before the laser is on or ends after the card's phases.
     """
     for name in without:
         if name not in card.sensors:
@@ -91,7 +88,7 @@ def read(card: RigCard, tables: Iterable[str | Path], without: Sequence[str] = (
 
 
 def matched(card: RigCard, run: MeasuredRun, wanted: Sequence[str], without: Iterable[str] = ()) -> HeatingTest:
-    """One measured run as a test of the card."""
+    """Match a measured run with a test of the card."""
     missing = [name for name in wanted if name not in run.sensors]
     unknown = [name for name in run.sensors if name not in wanted and name not in without]
     if len(missing) == 1:
@@ -113,7 +110,7 @@ def matched(card: RigCard, run: MeasuredRun, wanted: Sequence[str], without: Ite
     if run.times[0] < -_SLACK:
         raise InputError(f"run '{run.name}' begins at {run.times[0]:g} s; time 0 is the start of idling", file=run.file)
     if run.times[-1] > end + _SLACK:
-        words = f"run '{run.name}' goes on until {run.times[-1]:g} s, but the card's phases end at {end:g} s"
+        words = f"run '{run.name}' lasts until {run.times[-1]:g} s, but the card's phases end at {end:g} s"
         raise InputError(words, file=run.file)
     if np.sum(run.times > idle) < 5:
         words = f"run '{run.name}' has fewer than 5 readings after {idle:g} s, when the laser is switched on"
@@ -130,7 +127,7 @@ def matched(card: RigCard, run: MeasuredRun, wanted: Sequence[str], without: Ite
 
 
 def _series(test: str, sensor: str, times: Array, values: Array, clock: Clock, card: RigCard) -> SensorReadings:
-    """Groups of neighbours that do not reach over a switch of the laser."""
+    """Average groups of neighbours, none of which crosses a switch of the laser."""
     group = int(np.ceil(times.size / MOST))
     phases = card.phases
     phase = np.searchsorted([phases.idle, phases.idle + phases.heating], times, side="right")
@@ -166,9 +163,9 @@ def _disc(radius: float) -> tuple[Array, Array]:
 
 
 def view(name: str, sensor: SensorCard, grid: PatchGrid, values: Mapping[str, float]) -> csr_matrix:
-    """Row (1, unknowns) that takes nodal temperatures to what a sensor sees, before lag and offset.
+    """Measurement operator (1, unknowns) of a sensor for nodal temperatures, without lag and offset.
 
-    The spot's centre lies (spot_along, spot_across) from the mark, the sensor (aside, 0).
+    The spot's centre is at (spot_along, spot_across) from the mark, the sensor at (aside, 0).
     """
     x, y = sensor.aside - values["spot_along"], values["spot_across"]
     if sensor.instrument == "thermocouple":

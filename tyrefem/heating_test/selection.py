@@ -1,7 +1,4 @@
-"""Constant or linear in temperature: which slopes the readings ask for, by evidence.
-
-One identified number with its interval, and how much of it the readings know.
-"""
+"""Selection of properties that are linear in temperature, by evidence; and identified parameters with intervals."""
 
 from __future__ import annotations
 
@@ -20,24 +17,24 @@ from tyrefem.heating_test.parameters import SLOPE, Parameters, RigParameter
 Array = NDArray[Any]
 
 
-#: A simpler model is kept unless the evidence for the better one is e times larger.
+#: Gain of ln evidence that justifies a more complex model.
 MARGIN = 1.0
 
 
-#: Up to so many slopes every combination is weighed; beyond it, at most two at a time.
+#: Largest number of slopes with all combinations; with more slopes, at most two are combined.
 _ALL = 8
 
 
 @dataclass(frozen=True, eq=False)
 class Selection(Brief):
-    """Every combination of linear properties, weighed.
+    """Evidence of every combination of linear properties.
 
     Attributes
     ----------
-    chosen : slopes that are fitted; the others are held at the card's guess (usually 0).
-    log_evidence : combination -> ln evidence relative to that with no slope.
-    probability : slope -> probability that it belongs into the model, all combinations being as likely beforehand.
-    mean, covariance : of all coordinates, averaged over the combinations by their probability (about `mean`).
+    chosen : slopes that are fitted; the others have the card's value (usually 0).
+    log_evidence : combination -> ln evidence relative to no slope.
+    probability : slope -> probability of a non-zero slope, with equal prior probabilities of all combinations.
+    mean, covariance : mean and covariance of all coordinates, over the combinations weighted by probability.
     """
 
     chosen: tuple[str, ...]
@@ -58,9 +55,9 @@ def combinations(slopes: Sequence[str]) -> list[tuple[str, ...]]:
 
 
 def select(parameters: Parameters, eq: Normal, x: Array) -> Selection:
-    """Weigh every combination with the problem linearised at x, where `parameters` has every slope free.
+    """Compute the evidence of every combination, linearised at x, where `parameters` has every slope free.
 
-    The Laplace evidence integrates each slope over its prior, so a slope that explains nothing costs its Occam factor.
+    The Laplace evidence integrates each slope over its prior, so an unnecessary slope reduces the evidence.
     """
     slopes = [parameter.name for parameter in parameters.free if parameter.group == SLOPE]
     place = {name: i for i, name in enumerate(parameters.names)}
@@ -90,22 +87,22 @@ def select(parameters: Parameters, eq: Normal, x: Array) -> Selection:
     return Selection(sets[simplest], relative, probable, centre, np.asarray(spread))
 
 
-#: Half width of a 95 % interval in standard deviations: Student's t with 8 degrees of freedom, as the card's standard
-#: deviations are estimates that may be a quarter off (GUM, JCGM 100:2008, G.4.2: nu = 1/2 0.25^-2).
+#: Half width of a 95 % interval in standard deviations: Student's t with 8 degrees of freedom, because the card's
+#: standard deviations are estimates with a relative error of 25 % (GUM, JCGM 100:2008, G.4.2: nu = 1/2 0.25^-2).
 COVERAGE = 2.306
 
 
-#: A property is not determined where readings leave more than this share of the prior's standard deviation ...
+#: A property is not determined if the posterior sd is more than this share of the prior sd,
 PRIOR_SHARE = 0.5
 
 
-#: ... and only poorly where its relative standard deviation is larger than this.
+#: and poorly determined if its relative standard deviation is larger than this.
 POOR = 0.10
 
 
 @dataclass(frozen=True)
 class ParameterEstimate:
-    """A parameter's most probable value, its 95 % interval, and the share of the prior's sd that is left.
+    """A parameter's most probable value, 95 % interval, and ratio of posterior sd and prior sd.
 
     ``relative_sd`` is None for numbers that may be 0.
     """
@@ -132,11 +129,11 @@ class ParameterEstimate:
         return "determined"
 
     def holds(self, value: float) -> bool:
-        """Is a number inside the 95 % interval?"""
+        """True if a number is in the 95 % interval."""
         return self.low <= value <= self.high
 
     def to_dict(self) -> dict[str, Any]:
-        """For tables and JSON."""
+        """Data for tables and JSON."""
         return {
             "name": self.name,
             "unit": self.unit,
@@ -154,7 +151,7 @@ class ParameterEstimate:
 
 
 def estimate_of(parameter: RigParameter, x: float, sd: float) -> ParameterEstimate:
-    """The estimate of a coordinate and its standard deviation.
+    """The estimate from a coordinate and its standard deviation.
 
     >>> k = RigParameter("tread.conductivity", "W/m/K", "log", 0.25, 0.47, "property")
     >>> estimate = estimate_of(k, 0.1, 0.05)

@@ -1,11 +1,11 @@
-"""Slopes of a test's temperature field by its parameters: one linear problem, all parameters at once.
+"""Sensitivities of a test's temperature field to its parameters: one linear problem for all parameters.
 
 With enthalpy h(u; p), heat flow f(u; p) and laser load F(p) of the nodes, d/dt h + f = F gives for s = du/dp
 
     d/dt (C s + h_p) + A s + f_p = F_p,   C = dh/du,  A = df/du,
 
-integrated by the trapezoidal rule over the computed times. Their steps grow by a constant factor from the switch, so
-every mode is resolved until it has died away and the rule does not ring.
+integrated by the trapezoidal rule over the computed times. Their steps grow by a constant factor after the switch, so
+every mode is resolved until it has decayed, and the rule does not oscillate.
 """
 
 from __future__ import annotations
@@ -26,11 +26,11 @@ SIGMA, ABSOLUTE = 5.67e-8, 273.15
 
 
 class Sensitivity:
-    """Slopes of one patch on its grid.
+    """Sensitivities of a patch on its grid.
 
     Parameters
     ----------
-    names : of the parameters to differentiate by: ``LAYER.conductivity``, ``LAYER.specific_heat``, ``absorptance``,
+    names : parameters of the derivatives: ``LAYER.conductivity``, ``LAYER.specific_heat``, ``absorptance``,
         ``outer_film``, ``inner_film`` (p d/dp), ``LAYER.conductivity_slope``, ``LAYER.specific_heat_slope``,
         ``emissivity`` (d/dp).
     """
@@ -47,7 +47,7 @@ class Sensitivity:
         self.load[spot.dofs] = spot.trace_t @ (spot.weight * flux)
 
     def run(self, times: Array, fields: Array, start: Array | None, *, lit: bool) -> Array:
-        """Slopes (n_times, unknowns, parameters) along a history; `start` (unknowns, parameters) at times[0]."""
+        """Sensitivities (n_times, unknowns, parameters) of a history; `start` (unknowns, parameters) at times[0]."""
         s = np.zeros((self.ops.size, len(self.names))) if start is None else start
         out = [s]
         matrices, (h0, f0) = self._matrices(fields[0]), self._parts(fields[0], lit=lit)
@@ -106,7 +106,7 @@ class Sensitivity:
         return C, S, skew
 
     def _parts(self, u: Array, *, lit: bool) -> tuple[Array, Array]:
-        """Slopes of enthalpy and of flow minus load, (unknowns, parameters)."""
+        """Derivatives of enthalpy and of flow minus load, (unknowns, parameters)."""
         h, f = np.zeros((2, self.ops.size, len(self.names)))
         for column, name in enumerate(self.names):
             owner, _, key = name.rpartition(".")

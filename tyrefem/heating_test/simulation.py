@@ -1,4 +1,4 @@
-"""The rig simulated: what every sensor would read in the card's tests."""
+"""Simulation of the rig: readings of every sensor in the card's tests."""
 
 from __future__ import annotations
 
@@ -21,7 +21,7 @@ from tyrefem.heating_test.verdict import HOT
 from tyrefem.measured import MeasuredRun
 
 Array = NDArray[Any]
-#: More readings than this per sensor are no table for a person or a fit.
+#: Largest number of readings per sensor.
 _MOST = 200_000
 
 
@@ -31,8 +31,8 @@ class Simulation:
 
     Attributes
     ----------
-    card, file : the rig. values : the numbers it was simulated with. runs : readings by run.
-    twin, fields : the computed rig and nodal temperatures (computed times, unknowns) by run; clock : their times.
+    card, file : the rig. values : parameters of the simulation. runs : readings by run.
+    twin, fields : the forward model, and nodal temperatures (computed times, unknowns) by run. clock : their times.
     """
 
     card: RigCard
@@ -45,7 +45,7 @@ class Simulation:
 
     @property
     def words(self) -> tuple[str, ...]:
-        """What a reader should know: temperatures that rubber does not bear, heat at the patch's rim."""
+        """Warnings of temperatures that change rubber, and of heat at the patch's rim."""
         out = []
         grid = self.twin.grid(self.values)
         on = self.clock.heating.size - 1
@@ -68,15 +68,15 @@ def simulate(
     fineness: Fineness | None = None,
     progress: Callable[[], None] | None = None,
 ) -> Simulation:
-    """Readings of every run of a rig's card.
+    """Simulate the readings of every run of a rig's card.
 
     Parameters
     ----------
-    rig : name, path or card. every : s between readings.
-    seed : of the instruments' noise; None leaves it out.
-    values : numbers to change, by parameter name, e.g. ``{"tread.conductivity": 0.3, "outer.offset": 0.1}``.
+    rig : name, path or card. every : time between readings, s.
+    seed : seed of the instruments' noise; None: no noise.
+    values : parameters to change, by name, e.g. ``{"tread.conductivity": 0.3, "outer.offset": 0.1}``.
 
-    Raises InputError for an impossible rig or an unknown number.
+    Raises InputError if the rig is impossible or a parameter is unknown.
 
     >>> done = simulate("trtlab", every=60.0, fineness=Fineness(2, 5, 2))
     >>> readings = done.runs["high"].temperatures
@@ -92,7 +92,7 @@ def simulate(
     sensors = tuple(card.sensors)
     parameters = parameters_of(card, sensors)
     known = parameters.values(np.zeros(len(parameters)))
-    # The spot is where it should be, unless asked otherwise: the middle of its prior lies beside the mark.
+    # The spot is at the mark by default; the centre of its prior is beside the mark.
     known["spot_across"] = 0.0
     for name in values or {}:
         if name not in known:
@@ -110,7 +110,7 @@ def simulate(
     for name, run in card.runs.items():
         with threadpool_limits(1, user_api="blas"):
             kept[name] = twin.fields(numbers, run, clock)
-        readings = matrix @ twin.seen(numbers, clock, kept[name])
+        readings = matrix @ twin.readings_of_fields(numbers, clock, kept[name])
         if seed is not None:
             readings = readings + noise * rng.normal(size=readings.shape)
         comment = f"SIMULATED with tyrefem rig simulate: {card.title}, run {name}, {run.power:g} W"

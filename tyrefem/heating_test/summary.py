@@ -1,4 +1,4 @@
-"""An identification as plain data."""
+"""Plain data of an identification."""
 
 from __future__ import annotations
 
@@ -16,7 +16,7 @@ if TYPE_CHECKING:
 
 
 def summary(identification: IdentificationData) -> dict[str, Any]:
-    """What ``rig.json`` holds: estimates, correlation, verdict, selection, noise, misfit."""
+    """Contents of ``rig.json``: estimates, correlation, verdict, selection, noise, misfit."""
     names = [item.name for item in identification.estimates]
     return {
         "rig": identification.card.title,

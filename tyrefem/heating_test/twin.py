@@ -1,4 +1,4 @@
-"""The computed rig: what every sensor reads in every test for given numbers, and the slopes of that."""
+"""The forward model of the rig: readings of every sensor for given parameters, and their sensitivities."""
 
 from __future__ import annotations
 
@@ -17,21 +17,21 @@ from tyrefem.heating_test.readings import view
 from tyrefem.heating_test.sensitivity import Sensitivity
 
 Array = NDArray[Any]
-#: Error in time that a solve aims at, K: with the tests' computed times it stays far below the cameras' noise.
+#: Allowed time-integration error, K: far below the cameras' noise.
 TOLERANCE = 0.1
-#: Parameters that only a sensor knows of need no new solution.
+#: Parameters of sensors only, which need no new solution.
 _VIEWS = ("spot_along", "spot_across", "depth", "lag", "offset")
 
 
 @dataclass(frozen=True, eq=False)
 class Twin:
-    """The rig of a card, in numbers.
+    """Forward model of a card's rig.
 
     Parameters
     ----------
     card : the rig.
-    sensors : those that are read, in order.
-    fineness : of the mesh.
+    sensors : the sensors of the readings, in order.
+    fineness : fineness of the mesh.
     """
 
     card: RigCard
@@ -39,7 +39,7 @@ class Twin:
     fineness: Fineness = USUAL
 
     def patch(self, values: Mapping[str, float], run: RunCard) -> Patch:
-        """The heated patch of one test."""
+        """The heated patch of a test."""
         card = self.card
         layers = tuple(
             PatchLayer(
@@ -70,11 +70,11 @@ class Twin:
         )
 
     def grid(self, values: Mapping[str, float]) -> PatchGrid:
-        """The mesh of the layers' thicknesses, kept for the latest few."""
+        """The mesh for the layers' thicknesses; the latest meshes are cached."""
         return self.patch(values, next(iter(self.card.runs.values()))).grid(self.fineness)
 
     def fields(self, values: Mapping[str, float], run: RunCard, clock: Clock) -> Array:
-        """Nodal temperatures (computed times, unknowns)."""
+        """Nodal temperatures of a test (computed times, unknowns), degC."""
         patch, grid = self.patch(values, run), self.grid(values)
         hot = patch.heated(grid, clock.heating, TOLERANCE).values
         if not clock.cooling.size:
@@ -82,8 +82,8 @@ class Twin:
         off = np.concatenate([[0.0], clock.cooling])
         return np.concatenate([hot, patch.cooled(grid, off, hot[-1], TOLERANCE).values[1:]])
 
-    def seen(self, values: Mapping[str, float], clock: Clock, fields: Array) -> Array:
-        """Readings without noise, (computed times, sensors)."""
+    def readings_of_fields(self, values: Mapping[str, float], clock: Clock, fields: Array) -> Array:
+        """Readings of nodal temperatures without noise, (computed times, sensors), degC."""
         grid, columns = self.grid(values), []
         for name in self.sensors:
             row = view(name, self.card.sensors[name], grid, values)
@@ -92,11 +92,11 @@ class Twin:
         return np.stack(columns, axis=1)
 
     def readings(self, values: Mapping[str, float], run: RunCard, clock: Clock) -> Array:
-        """Readings of one test, (computed times, sensors), degC."""
-        return self.seen(values, clock, self.fields(values, run, clock))
+        """Readings of a test, (computed times, sensors), degC."""
+        return self.readings_of_fields(values, clock, self.fields(values, run, clock))
 
     def slopes(self, parameters: Parameters, x: Array, run: RunCard, clock: Clock, fields: Array, base: Array) -> Array:
-        """d readings / d coordinates, (computed times, sensors, parameters), about the fields at x."""
+        """d readings / d coordinates, (computed times, sensors, parameters), for the fields at x."""
         values = parameters.values(x)
         out = np.zeros((*base.shape, len(parameters)))
         solved = [
@@ -118,7 +118,7 @@ class Twin:
             moved = parameters.values(at(x, i, step))
             back = parameters.values(at(x, i, -step))
             if _only_seen(parameter):
-                up, down = self.seen(moved, clock, fields), self.seen(back, clock, fields)
+                up, down = self.readings_of_fields(moved, clock, fields), self.readings_of_fields(back, clock, fields)
             else:
                 up, down = self.readings(moved, run, clock), self.readings(back, run, clock)
             out[:, :, i] = (up - down) / (2 * step)

@@ -1,4 +1,4 @@
-"""What the readings could and could not determine, in words."""
+"""Sentences on the parameters that the readings determine, and on those that they do not."""
 
 from __future__ import annotations
 
@@ -13,16 +13,16 @@ from tyrefem.heating_test.selection import POOR, ParameterEstimate
 if TYPE_CHECKING:
     from tyrefem.heating_test.identification import IdentificationData
 
-#: Correlations beyond this bind two properties together.
+#: Correlation above which two properties are reported as dependent.
 BOUND = 0.95
-#: A model error (relative to the rise) beyond this is worth a warning, and a temperature at which rubber changes, degC.
+#: Model error, relative to the rise, with a warning; temperature at which rubber changes, degC.
 ASTRAY, HOT = 0.01, 200.0
 
 
-def spoken(name: str) -> str:
+def name_in_words(name: str) -> str:
     """A parameter's name in words.
 
-    >>> spoken("tread.specific_heat_slope"), spoken("outer_film")
+    >>> name_in_words("tread.specific_heat_slope"), name_in_words("outer_film")
     ('specific heat slope of tread', 'outer film')
     """
     owner, _, key = name.rpartition(".")
@@ -30,38 +30,39 @@ def spoken(name: str) -> str:
 
 
 def shown(estimate: ParameterEstimate, digits: int = 3) -> str:
-    """Value and interval, e.g. ``0.282 (0.272 to 0.293) W/m/K``."""
+    """Text of value and interval, e.g. ``0.282 (0.272 to 0.293) W/m/K``."""
     unit = "" if estimate.unit == "1" else f" {estimate.unit}"
     return f"{estimate.value:.{digits}g} ({estimate.low:.{digits}g} to {estimate.high:.{digits}g}){unit}"
 
 
 def sentences(identification: IdentificationData) -> tuple[str, ...]:
-    """The verdict, most important first; empty of complaints where everything is determined."""
+    """Sentences of the verdict, most important first."""
     unknown = [estimate for estimate in identification.properties if estimate.verdict == "not determined"]
     poor = [estimate for estimate in identification.properties if estimate.verdict == "poor"]
     out = [
-        f"NOT DETERMINED: {spoken(estimate.name)}. {estimate.share_left:.0%} of the first guess's uncertainty is left; "
-        f"the value {shown(estimate)} is mostly that guess."
+        f"NOT DETERMINED: {name_in_words(estimate.name)}. {estimate.share_left:.0%} of the prior uncertainty remains; "
+        f"the value {shown(estimate)} is mostly the prior value."
         for estimate in unknown
     ]
     out += [
-        f"POORLY DETERMINED: {spoken(estimate.name)}, {shown(estimate)}: relative standard deviation above {POOR:.0%}."
+        f"POORLY DETERMINED: {name_in_words(estimate.name)}, {shown(estimate)}: "
+        f"relative standard deviation above {POOR:.0%}."
         for estimate in poor
     ]
     if unknown or poor:
         out += _reasons(identification)
     else:
-        out.append("All conductivities and specific heats are determined by the readings.")
+        out.append("The readings determine all conductivities and specific heats.")
     out += _bound(identification)
     left = [
-        spoken(estimate.name)
+        name_in_words(estimate.name)
         for estimate in identification.estimates
         if estimate.group == RIG and estimate.share_left > 0.7
     ]
     if left:
         out.append(
-            f"Taken from the card, as the readings say little about them: {', '.join(left)}. "
-            "Their uncertainty is inside the intervals."
+            f"Taken from the card, because the readings hardly change them: {', '.join(left)}. "
+            "The intervals include their uncertainty."
         )
     out += _linear(identification)
     out += _misfit(identification)
@@ -69,12 +70,12 @@ def sentences(identification: IdentificationData) -> tuple[str, ...]:
 
 
 def _reasons(identification: IdentificationData) -> Iterator[str]:
-    """Why something is not determined, as far as the test itself tells."""
+    """Reasons in the test why a property is not determined."""
     sensors = {series.sensor for test in identification.tests for series in test.series}
     faces = {identification.card.sensors[name].face for name in sensors}
     for face in ("inner", "outer"):
         if face not in faces:
-            yield f"There is no view of the {face} face."
+            yield f"No sensor measures the {face} face."
     phases = identification.card.phases
     heated = max(min(test.clock.end - phases.idle, phases.heating) for test in identification.tests)
     crossing = 0.0
@@ -83,11 +84,11 @@ def _reasons(identification: IdentificationData) -> Iterator[str]:
         crossing += layer.thickness / np.sqrt(k / (layer.density.value * c))
     if heated < crossing**2:
         yield (
-            f"The test is short: {heated:.0f} s of heating were read, while heat takes about {crossing**2:.0f} s "
-            "(thickness squared over diffusivity) to come through the layers."
+            f"The test is short: the readings have {heated:.0f} s of heating, but heat needs about {crossing**2:.0f} s "
+            "(thickness squared over diffusivity) to pass through the layers."
         )
     if all(test.clock.end <= phases.idle + phases.heating for test in identification.tests) and phases.cooling > 0:
-        yield "The cooling phase was not read."
+        yield "The readings do not include the cooling phase."
 
 
 def _bound(identification: IdentificationData) -> Iterator[str]:
@@ -96,35 +97,35 @@ def _bound(identification: IdentificationData) -> Iterator[str]:
         for b in properties:
             r = identification.correlation[a, b]
             if a < b and abs(r) > BOUND:
-                pair = f"{spoken(identification.estimates[a].name)} and {spoken(identification.estimates[b].name)}"
+                pair = " and ".join(name_in_words(identification.estimates[i].name) for i in (a, b))
                 known = "ratio" if r > 0 else "product"
-                yield f"{pair} are known better together (correlation {r:+.2f}): their {known} is the firmer."
+                yield f"{pair} are correlated ({r:+.2f}): their {known} is determined better than each of them."
 
 
 def _linear(identification: IdentificationData) -> Iterator[str]:
     chosen = identification.selection.chosen
     for estimate in identification.estimates:
         if estimate.group == SLOPE:
-            key = spoken(estimate.name).replace(" slope", "")
+            key = name_in_words(estimate.name).replace(" slope", "")
             p = identification.selection.probability.get(estimate.name, 1.0)
             yield (
                 f"Linear in temperature: {key} changes by {100 * estimate.value:+.3f} %/K "
                 f"({100 * estimate.low:+.3f} to {100 * estimate.high:+.3f}; probability {p:.2f})."
             )
     if not chosen and identification.selection.probability:
-        yield "No property needs to be linear in temperature: constants have the better evidence."
+        yield "No property needs to be linear in temperature: constant properties have the greater evidence."
     for name, p in identification.selection.probability.items():
         if name not in chosen and p > 0.25:
-            key = spoken(name).replace(" slope", "")
-            yield f"Undecided: {key} may be linear in temperature (probability {p:.2f}); the intervals allow for it."
+            key = name_in_words(name).replace(" slope", "")
+            yield f"Undecided: {key} may be linear in temperature (probability {p:.2f}); the intervals include this."
 
 
 def _misfit(identification: IdentificationData) -> Iterator[str]:
     for name, error in identification.fit.noise.model.items():
         if error > ASTRAY:
             yield (
-                f"The model misses about {error:.1%} of the rise at '{name}', slowly varying: something it lacks "
-                "or a wrong number in the card. The intervals are widened for it."
+                f"The model deviates by about {error:.1%} of the rise at '{name}', varying slowly: an effect is "
+                "missing or a number of the card is wrong. The intervals are wider because of it."
             )
     for block in identification.fit.blocks:
         series = block.series
@@ -134,4 +135,4 @@ def _misfit(identification: IdentificationData) -> Iterator[str]:
             yield f"Run '{series.test}', sensor '{series.sensor}': residuals are {ratio:.1f} times the stated noise."
     hottest = max(float(block.computed.max()) for block in identification.fit.blocks)
     if hottest > HOT:
-        yield f"A sensor reads {hottest:.0f} degC: rubber changes at such temperatures, and the properties with it."
+        yield f"A sensor reads {hottest:.0f} degC: rubber and its properties change at such temperatures."

@@ -1,4 +1,4 @@
-"""What a person gives: the study as data, its drive, its cases, and changes by dotted names.
+"""A user's input: the study as data, its drive, its cases, and changes by dotted names.
 
-Knows nothing of runs, results and reports.
+This package does not import runs, results or reports.
 """

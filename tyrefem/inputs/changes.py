@@ -11,13 +11,13 @@ from tyrefem.errors import InputError, nearest
 from tyrefem.inputs.drive_table import EXCLUSIVE_KEYS
 from tyrefem.quantity import written
 
-#: Tables whose text value is a reference to a card: changing something below it lays the change over the card.
+#: Tables whose text value names a card: a change of a value below it overrides the card's value.
 _REFERENCES = {"section": "section", "materials.*": "material"}
 _AMOUNT = re.compile(r"^\s*([-+]?(?:\d+\.?\d*|\.\d+)(?:[eE][-+]?\d+)?)(.*)$", re.DOTALL)
 
 
 def changed(data: Mapping[str, Any], key: str, value: Any) -> dict[str, Any]:
-    """Plain data with the value at a dotted name replaced (the original is left alone).
+    """Copy plain data with the value at a dotted name replaced.
 
     >>> changed({"section": "nasa"}, "section.crown_radius", "3 in")
     {'section': {'base': 'nasa', 'parameters': {'crown_radius': '3 in'}}}
@@ -26,7 +26,7 @@ def changed(data: Mapping[str, Any], key: str, value: Any) -> dict[str, Any]:
 
 
 def all_changed(data: Mapping[str, Any], changes: Mapping[str, Any]) -> dict[str, Any]:
-    """Plain data with the values at dotted names replaced, one after the other; other tables are shared, not copied.
+    """Copy plain data with the values at dotted names replaced, in order; unchanged tables are shared.
 
     >>> all_changed({"mesh": {}}, {"mesh.size": "3 mm", "mesh.element": "P1"})
     {'mesh': {'size': '3 mm', 'element': 'P1'}}
@@ -66,7 +66,7 @@ def _parts(data: Mapping[str, Any], key: str) -> list[str]:
 
 
 def _section_parts(name: str) -> list[str]:
-    """``section.crown_radius`` means the section's parameter of that name, ``section.cord_angle`` its rating."""
+    """Parts of a section's dotted name: ``section.crown_radius`` is a parameter, ``section.cord_angle`` a rating."""
     from tyrefem.geometry.card import RatingCard, SectionCard
 
     if name in SectionCard.model_fields:
@@ -107,14 +107,14 @@ def _refuse_overridden(data: Mapping[str, Any], parts: list[str]) -> None:
     if isinstance(phases, list) and phases and all(isinstance(p, Mapping) and same & set(p) for p in phases):
         names = [str(p.get("name", number)) for number, p in enumerate(phases)]
         raise InputError(
-            f"every phase sets its own '{' or '.join(sorted(same))}': name the phase, "
+            f"every phase sets '{' or '.join(sorted(same))}': name the phase, "
             f"e.g. drive.phases.{names[0]}.{parts[1]} (phases: {', '.join(names)})",
             field=".".join(parts),
         )
 
 
 def _drop_exclusive(parts: list[str], place: dict[str, Any]) -> None:
-    """Load and deflection say the same thing: setting one drops the other; so do a sensor's two ways of placing."""
+    """Remove the alternative of a changed value: load or deflection, or a sensor's other kind of place."""
     exclusive_keys = EXCLUSIVE_KEYS if parts[0] == "drive" else {}
     if parts[0] == "sensors":
         exclusive_keys = {"at": ["s", "depth"], "s": ["at"], "depth": ["at"]}
@@ -141,9 +141,9 @@ def value_at(data: Mapping[str, Any], key: str, near: Any = None) -> Any:
 
 
 def scaled(value: Any, factor: float, significant: int | None = None) -> Any:
-    """A quantity as written, its number times a factor; rounded to so many significant digits, if asked.
+    """Multiply the number of a written quantity by a factor, optionally rounded to ``significant`` digits.
 
-    Of a table's rows the first column stays: temperatures, frequencies, places.
+    The first column of a table's rows is not changed: temperatures, frequencies, places.
 
     >>> scaled("20 mph", 1.5), scaled("20 mph", 1.23456, significant=3), scaled(0.1, 1.23456, significant=3)
     ('30 mph', '24.7 mph', 0.123)

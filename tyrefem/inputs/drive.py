@@ -51,7 +51,7 @@ FASTEST = 400.0
 
 
 class Phase(Card):
-    """A stretch of the drive. Keys left out come from the study's ``[drive]`` table."""
+    """A part of the drive. The study's ``[drive]`` table gives missing keys."""
 
     name: Text = "rolling"
     duration: Annotated[float, Unit("s", gt=0, le=1e7)]
@@ -63,11 +63,11 @@ class Phase(Card):
     road_temperature: Annotated[Ramp, RampOf(Unit("degC", le=2000))] | None = None
     rim_temperature: Annotated[Ramp, RampOf(Unit("degC", le=2000))] | None = None
     drum_diameter: Annotated[float, Unit("m", gt=0)] = math.inf
-    #: Braking positive, 1 a locked wheel; driving down to -1, where the wheel turns twice as fast as it rolls.
+    #: Positive under braking, 1 for a locked wheel; negative under driving, to -1 at twice the free rolling speed.
     slip_ratio: Annotated[Ramp, RampOf(Unit("1", ge=-1, le=1))] | None = None
-    #: The same as a speed: forward speed less the tread's.
+    #: Slip as a speed: forward speed minus the tread's speed.
     slip_speed: Annotated[Ramp, RampOf(Unit("m/s", ge=-FASTEST, le=FASTEST))] | None = None
-    #: Yaw of the wheel against its way; either sign.
+    #: Angle between the wheel's plane and its motion, of either sign.
     slip_angle: Annotated[Ramp, RampOf(Unit("rad"))] | None = None
 
     @model_validator(mode="after")
@@ -83,27 +83,27 @@ class Phase(Card):
 
     @property
     def slides(self) -> bool:
-        """Does the tread slide on the road?"""
+        """True if the tread slides on the road."""
         return slides(self)
 
     @property
     def stands(self) -> bool:
-        """Does the vehicle stand all the time?"""
+        """True if the vehicle stands during the whole phase."""
         return self.speed.start == self.speed.end == 0
 
     @property
     def stops(self) -> bool:
-        """Does the vehicle stand at the end?"""
+        """True if the vehicle stands at the end."""
         return self.speed.end <= 0
 
     @property
     def steady_motion(self) -> bool:
-        """Is the motion the same all the time, and without slip?"""
+        """True if the motion is constant and without slip."""
         return self.speed.constant and not self.slides
 
     @property
     def changes_load(self) -> bool:
-        """Does the strain cycle change during the phase?"""
+        """True if the strain cycle changes during the phase."""
         ramps = [self.load, self.deflection, self.pressure]
         return any(ramp is not None and not ramp.constant for ramp in ramps)
 
@@ -113,7 +113,7 @@ class Drive(DriveTable):
 
     kind: ClassVar[str] = "drive"
     phase_card: ClassVar[type[Card]] = Phase
-    # Before `initial`, which may be taken from an ambient temperature: what is wrong there is said of the phase.
+    # Before `initial`, whose default is an ambient temperature: an error there must name the phase.
     phases: tuple[Phase, ...]
     initial: Temperature
 
@@ -145,14 +145,14 @@ class Drive(DriveTable):
         return max(max(phase.speed.start, phase.speed.end) for phase in self.phases)
 
     def locate(self, time: float) -> tuple[int, float]:
-        """Number of the phase at a time, and the fraction of it that has passed."""
+        """Number of the phase at a time, and the elapsed fraction of it."""
         starts = self.starts
         number = max(bisect_right(starts, time) - 1, 0)
         fraction = (time - starts[number]) / self.phases[number].duration
         return number, min(max(fraction, 0.0), 1.0)
 
     def value(self, quantity: str, time: float) -> float | None:
-        """A phase's quantity (``speed``, ``ambient``...) at a time, SI; None where the drive does not say."""
+        """A phase's quantity (``speed``, ``ambient``...) at a time, SI; None if the drive does not give it."""
         number, fraction = self.locate(time)
         ramp = getattr(self.phases[number], quantity)
         return None if ramp is None else ramp.at(fraction)
@@ -162,7 +162,7 @@ class Drive(DriveTable):
         return tuple(is_locked(phase) for phase in self.phases)
 
     def locked_since(self, time: float) -> float | None:
-        """When the wheel locked that is locked at a time, s; None for one that turns or stands with the vehicle."""
+        """Time at which a locked wheel locked, s; None if the wheel turns at ``time``, or stands with the vehicle."""
         number, _ = self.locate(time)
         if not self._locked[number]:
             return None
@@ -171,7 +171,7 @@ class Drive(DriveTable):
         return self.starts[number]
 
 
-#: Largest slip angle: beyond it a wheel skids sideways rather than rolls (a judgement).
+#: Largest slip angle, above which a wheel skids sideways instead of rolling (a judgement).
 STEEPEST = math.radians(45.0)
 
 
@@ -180,15 +180,15 @@ LOOKS = tuple(i / 50 for i in range(51))
 
 
 def slides(phase: Phase) -> bool:
-    """Does the phase have any slip?"""
+    """True if the phase has slip."""
     ramps = (phase.slip_ratio, phase.slip_speed, phase.slip_angle)
     return any(ramp is not None and (ramp.start != 0 or ramp.end != 0) for ramp in ramps)
 
 
 def is_locked(phase: Phase) -> bool:
-    """Does the wheel stand still in its axle all the time while the vehicle moves?
+    """True if the wheel does not turn during the whole phase while the vehicle moves.
 
-    A phase that only ends locked, by a ramp, still turns.
+    A ramp that ends at a locked wheel does not count.
     """
     if not slides(phase) or phase.stands:
         return False
@@ -196,7 +196,7 @@ def is_locked(phase: Phase) -> bool:
 
 
 def check_slip(phase: Phase) -> None:
-    """Refuse slip that cannot be; InputError names the key."""
+    """Refuse impossible slip; the InputError names the key."""
     if phase.slip_ratio is not None and phase.slip_speed is not None:
         raise InputError("give 'slip_ratio' or 'slip_speed', not both", field="slip_speed")
     if phase.slip_angle is not None:
@@ -208,11 +208,11 @@ def check_slip(phase: Phase) -> None:
     if phase.stands:
         keys = ("slip_ratio", "slip_speed", "slip_angle")
         key = next(key for key in keys if (ramp := getattr(phase, key)) is not None and (ramp.start or ramp.end))
-        raise InputError("needs a speed, and the wheel stands still: leave it out or make it 0 here", field=key)
+        raise InputError("needs a speed, but the vehicle stands: remove it or make it 0 in this phase", field=key)
     for motion in (motion_in(phase, fraction) for fraction in LOOKS if phase.slip_speed is not None):
         if abs(motion.slip_speed) > motion.forward_speed * (1 + 1e-9):
             raise InputError(
                 f"{motion.slip_speed:.4g} m/s is more than the wheel's forward speed, {motion.forward_speed:.4g} m/s, "
-                "with which it would be locked",
+                "which is the slip speed of a locked wheel",
                 field="slip_speed",
             )

@@ -1,4 +1,4 @@
-"""The ``[drive]`` table as it is written: what its phases take over from it, and where an error in a phase stands."""
+"""The ``[drive]`` table as written: the defaults of its phases, and the place of an error."""
 
 from __future__ import annotations
 
@@ -10,7 +10,7 @@ from pydantic import model_validator
 from tyrefem.cards import Card
 from tyrefem.errors import InputError, nearest
 
-#: Keys that say the same thing: a phase's own takes the place of the drive's other.
+#: Alternative keys: a phase's key replaces the alternative of the drive.
 EXCLUSIVE_KEYS = {
     "load": ["deflection"],
     "deflection": ["load"],
@@ -20,7 +20,7 @@ EXCLUSIVE_KEYS = {
 
 
 class DriveTable(Card):
-    """A table with a list of ``phases``, cards of the kind ``phase_card``: what no phase says comes from the table."""
+    """A table with a list of ``phases``, cards of type ``phase_card``, whose missing keys the table gives."""
 
     phase_card: ClassVar[type[Card]]
 
@@ -55,7 +55,7 @@ def _start_of(value: Any) -> Any:
 
 
 def as_written(drive: Mapping[str, Any], field: str) -> str:
-    """The field of a study file that a phase's field comes from: ``[drive]`` itself gives what no phase says.
+    """The field of a study file that gives a phase's field: of ``[drive]`` if the phase does not set it.
 
     >>> as_written({"ambient": "25 lbf"}, "drive.phases.0.ambient")
     'drive.ambient'

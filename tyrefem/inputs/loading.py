@@ -1,11 +1,6 @@
-"""Load and pressure to deflection, footprint and the fraction of a revolution on the road.
+"""Load case of a tyre: deflection from load and pressure, footprint length, fraction of a revolution on the road.
 
-Length of the footprint from the deflection: one class per law of ``[mechanics] footprint``.
-
-The footprint: its length by law, and its mechanics by Fourier harmonics about the inflated tyre.
-
-`length` holds the laws of a study's ``[mechanics] footprint``. The mechanics are imported from their own modules, as
-they load scikit-fem: `harmonics`, `contact`, `cycle`, `loss`.
+Laws of ``[mechanics] footprint`` and ``[mechanics] load_law``, a class each.
 """
 
 from __future__ import annotations
@@ -21,10 +16,10 @@ from tyrefem.quantity import Unit
 
 
 class TrR64Footprint(Card):
-    """NASA TR R-64: 1.7 d sqrt(D/d - (D/d)^2), quoted from memory of the report."""
+    """NASA TR R-64: 1.7 d sqrt(D/d - (D/d)^2), quoted from memory."""
 
     law: Literal["tr-r-64"] = "tr-r-64"
-    #: Whether a drum shortens what the law gives.
+    #: True if a drum shortens the law's length.
     shorter_on_drum: ClassVar[bool] = True
 
     def on_flat_road(self, deflection: float, outer_radius: float) -> float:
@@ -35,7 +30,7 @@ class TrR64Footprint(Card):
 
 
 class HedekelFootprint(Card):
-    """The chord c 2 sqrt(D (2 r_0 - D)) (Cattani et al. 2023, eq 13); ``correction`` c is a measured factor."""
+    """Chord c 2 sqrt(D (2 r_0 - D)) (Cattani et al. 2023, eq 13); ``correction`` c is a measured factor."""
 
     law: Literal["hedekel"]
     correction: Annotated[float, Unit("1", gt=0, le=2)] = 1.0
@@ -47,7 +42,7 @@ class HedekelFootprint(Card):
 
 
 class GivenFootprint(Card):
-    """A measured length, at every load and on any drum; none where the tyre does not touch the road."""
+    """A measured length, at every load and on any drum; zero if the tyre does not touch the road."""
 
     law: Literal["given"]
     length: Annotated[float, Unit("m", gt=0, le=4)]
@@ -67,7 +62,7 @@ TYPE_VII = 0.02
 
 
 class TrR64(Card):
-    """Load-deflection of NASA TR R-64 (Smiley & Horne 1958), quoted from memory of the report.
+    """Load-deflection law of NASA TR R-64 (Smiley & Horne 1958), quoted from memory.
 
     F / ((p + 0.08 p_rated) w sqrt(w d)) = 0.96 u + 0.216 u^2 / C_z    for u = D/w <= 10 C_z / 3,
                                          = 2.4 (u - C_z)               beyond.
@@ -112,7 +107,7 @@ class VerticalStiffness(Card):
 
 
 class RatedTyre(Protocol):
-    """What a load-deflection law needs of the tyre: nominal width and diameter (m), rated pressure (Pa)."""
+    """Data of the tyre for a load-deflection law: nominal width and diameter, m, rated pressure, Pa."""
 
     @property
     def width(self) -> float:
@@ -129,7 +124,7 @@ class RatedTyre(Protocol):
 
 @dataclass(frozen=True)
 class PressedContact:
-    """What a strain law that presses the tyre on its road knows of the contact: lengths in m, area in m2."""
+    """Contact of a tyre that a strain law presses on the road: lengths in m, area in m2."""
 
     length: float
     area: float
@@ -138,14 +133,14 @@ class PressedContact:
 
 @dataclass(frozen=True)
 class LoadCase:
-    """One load on the tyre: everything the strain cycle depends on. SI units.
+    """One load on the tyre: all inputs of the strain cycle, in SI units.
 
     Parameters
     ----------
     drum_diameter : ``inf`` on a flat road.
-    by_deflection : the drive gives the deflection, and the load follows; else the other way round.
-    contact : of a strain law that presses the tyre itself; load and deflection are its own then. None: those and the
-        contact are by the study's laws.
+    by_deflection : the drive gives the deflection, which determines the load; else the drive gives the load.
+    contact : contact from a strain law that presses the tyre, with its load and deflection. None: the study's laws
+        give load, deflection and contact.
     """
 
     load: float
@@ -159,18 +154,17 @@ class LoadCase:
 
     @property
     def rolling_radius(self) -> float:
-        """r_r = r_0 - D/3 (Clark & Dodge 1980, eq 26), or the contact's own."""
+        """Rolling radius of the contact, or r_r = r_0 - D/3 (Clark & Dodge 1980, eq 26), m."""
         return self.outer_radius - self.deflection / 3 if self.contact is None else self.contact.rolling_radius
 
     @property
     def footprint_area(self) -> float | None:
-        """Area of rubber in contact, m2; None where no contact was solved."""
+        """Area of rubber in contact, m2; None if no contact was solved."""
         return None if self.contact is None else self.contact.area
 
     @property
     def footprint_length(self) -> float:
-        """The contact's own length, m; or the footprint law's, shortened by sqrt(1/(1 + d/d_drum)) on a drum unless it
-        was measured.
+        """Length of the contact, or of the footprint law times sqrt(1/(1 + d/d_drum)) on a drum unless measured, m.
 
         The drum's factor is the Hertz contact of two cylinders at equal deflection: an estimate.
         """
@@ -187,7 +181,7 @@ class LoadCase:
         return self.footprint_length / (2 * math.pi * self.rolling_radius)
 
     def contact_time(self, speed: float) -> float:
-        """Seconds that a tread point stays on the road at a speed in m/s."""
+        """Time of a tread point on the road, s, at a speed, m/s."""
         return self.footprint_length / speed if speed > 0 else math.inf
 
 
@@ -202,13 +196,13 @@ def load_case(
     drum_diameter: float = math.inf,
     footprint: FootprintLaw = TR_R_64,
 ) -> LoadCase:
-    """A load case from a load or from a deflection, the other found by the law.
+    """Make a load case from a load or a deflection; the law gives the other.
 
-    Without a law the other is 0: a strain law that presses the tyre itself will find it.
+    Without a law the other is 0, and a strain law that presses the tyre computes it.
 
     Raises
     ------
-    InputError : the deflection exceeds half the outer radius, which no tyre survives.
+    InputError : the deflection exceeds half the outer radius.
     """
     by_deflection = deflection is not None
     if deflection is None:

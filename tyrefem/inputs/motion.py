@@ -1,6 +1,6 @@
-"""How a wheel moves over the road: the one place where speed, slip and revolutions come from.
+"""Motion of a wheel over the road: speed, slip and revolutions.
 
-Films, friction, heat sources, effects and reports take the numbers of a `Motion`; none works out a speed by itself.
+Films, friction, heat sources, effects and reports take their speeds from a `Motion`.
 """
 
 from __future__ import annotations
@@ -13,7 +13,7 @@ from typing import Any, Protocol
 from tyrefem.brief import Brief
 from tyrefem.quantity import Ramp
 
-#: A wheel that turns slower than this share of its free speed is locked: what rounding leaves.
+#: Share of its free speed below which a wheel counts as locked: the size of rounding errors.
 ROUNDING = 1e-12
 
 
@@ -23,8 +23,7 @@ class Motion:
 
     ``speed`` v is that of the wheel's centre over the road, ``slip_angle`` a the angle between it and the wheel's
     plane. ``slip_speed`` is v cos(a) - w r: positive under braking, v cos(a) for a locked wheel, negative under
-    driving. ``rolling_radius`` r: NaN where nobody has asked how the tyre is loaded; revolutions per second are NaN
-    then, too.
+    driving. ``rolling_radius`` r: NaN if the load case is not known; then revolutions per second are NaN, too.
 
     >>> turn = Motion(speed=10.0, slip_speed=1.0, slip_angle=math.radians(4.0), rolling_radius=0.28)
     >>> round(turn.rolling_speed, 3), round(turn.sliding_speed, 3), round(turn.revolutions_per_second, 3)
@@ -38,7 +37,7 @@ class Motion:
 
     @property
     def forward_speed(self) -> float:
-        """Speed along the wheel's plane, v cos(a), m/s: the road's through the footprint."""
+        """Speed along the wheel's plane, v cos(a), m/s: speed of the road through the footprint."""
         return self.speed * math.cos(self.slip_angle)
 
     @property
@@ -55,7 +54,7 @@ class Motion:
     def slip_ratio(self) -> float:
         """Slip speed over the forward speed: 1 locked, 0 at standstill.
 
-        It is the longitudinal slip of ISO 8855 with the other sign: there braking is negative.
+        It is the longitudinal slip of ISO 8855 with the opposite sign: there, braking is negative.
         """
         return self.slip_speed / self.forward_speed if self.forward_speed > 0 else 0.0
 
@@ -66,12 +65,12 @@ class Motion:
 
     @property
     def turns(self) -> bool:
-        """Does the wheel turn, by more than rounding leaves of a locked one?"""
+        """True if the wheel turns, except for rounding."""
         return self.rolling_speed > ROUNDING * self.speed
 
 
 class MovingPhase(Protocol):
-    """What a phase of a drive says about the wheel's motion."""
+    """Data of a phase on the wheel's motion."""
 
     @property
     def speed(self) -> Ramp:
@@ -79,26 +78,26 @@ class MovingPhase(Protocol):
 
     @property
     def slip_speed(self) -> Ramp | None:
-        """Forward speed less the tread's, m/s."""
+        """Forward speed minus the tread's speed, m/s."""
 
     @property
     def slip_ratio(self) -> Ramp | None:
-        """The same over the forward speed."""
+        """Slip speed over forward speed."""
 
     @property
     def slip_angle(self) -> Ramp | None:
-        """Angle between the wheel's way and its plane, rad."""
+        """Angle between the wheel's motion and its plane, rad."""
 
 
 class Phases(Protocol):
-    """A drive: its phases, and which of them a time is in."""
+    """A drive: its phases, and the phase at a time."""
 
     @property
     def phases(self) -> Sequence[MovingPhase]:
-        """In their order."""
+        """The phases in order."""
 
     def locate(self, time: float) -> tuple[int, float]:
-        """Number of the phase at a time (s), and the fraction of it that has passed."""
+        """Number of the phase at a time, s, and the elapsed fraction of it."""
 
 
 def motion_in(phase: MovingPhase, fraction: float, rolling_radius: float = math.nan) -> Motion:
@@ -121,7 +120,7 @@ def motion_at(drive: Phases, time: float, rolling_radius: float = math.nan) -> M
 class WheelMotion(Brief):
     """The motion of a loaded wheel as a function of time (s): ``motion(t).revolutions_per_second``.
 
-    ``rolling_radius``: of the load case at a time, m.
+    ``rolling_radius``: radius of the load case at a time, m.
     """
 
     drive: Phases

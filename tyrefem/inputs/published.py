@@ -1,4 +1,4 @@
-"""Published ranges that a study's results are told beside: they take no part in any computation."""
+"""Published ranges for comparison with a study's results; no computation uses them."""
 
 from __future__ import annotations
 
@@ -17,7 +17,7 @@ if TYPE_CHECKING:
 
 
 class _Range(Card):
-    """``between``: least and greatest; ``source``: who says so."""
+    """``between``: least and greatest value; ``source``: reference."""
 
     between: tuple[float, float]
     source: Text
@@ -56,8 +56,8 @@ class RatioRange(_Range):
 class Published(Card):
     """The table ``[published]`` of a study, all of it optional.
 
-    ``vertical_stiffness`` is load over deflection at the drive's first load; length and width are the
-    footprint's outline, the area is what touches, less the grooves that the section draws.
+    ``vertical_stiffness`` is load over deflection at the drive's first load. Length and width are of the footprint's
+    outline; the area is without the section's grooves.
     """
 
     vertical_stiffness: StiffnessRange | None = None
@@ -67,7 +67,7 @@ class Published(Card):
     rolling_resistance_coefficient: RatioRange | None = None
 
 
-#: Unit in SI, unit in which a person reads it, digits.
+#: SI unit, displayed unit, digits.
 SHOWN = {
     "vertical_stiffness": ("N/m", "N/mm", ".0f"),
     "footprint_length": ("m", "mm", ".0f"),
@@ -89,12 +89,12 @@ class PublishedComparison:
 
     @property
     def inside(self) -> bool:
-        """Whether the result lies in the range."""
+        """True if the result is in the range."""
         return self.low <= self.value <= self.high
 
     @property
     def words(self) -> str:
-        """For a person.
+        """One line of text.
 
         >>> print(PublishedComparison("vertical_stiffness", 226e3, 180e3, 220e3, "a book").words)
         vertical stiffness 226, published 180 to 220 N/mm: outside (a book)
@@ -105,7 +105,7 @@ class PublishedComparison:
 
     @property
     def cells(self) -> list[str]:
-        """A row of a table: quantity, result with its unit, published range, verdict, source.
+        """Row of a table: quantity, result with its unit, published range, verdict, source.
 
         >>> PublishedComparison("footprint_length", 0.13, 0.12, 0.15, "a book").cells
         ['footprint length', '130 mm', '120 to 150', 'inside', 'a book']
@@ -124,7 +124,7 @@ class PublishedComparison:
 
 
 def compared(published: Published, values: Mapping[str, float]) -> tuple[PublishedComparison, ...]:
-    """Results beside the ranges that are published for them; others are left out.
+    """Compare results with the published ranges; results without a range are left out.
 
     Parameters
     ----------

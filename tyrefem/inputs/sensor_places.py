@@ -1,4 +1,4 @@
-"""Where the thermocouples of a study are built in."""
+"""Places of a study's thermocouples."""
 
 from __future__ import annotations
 
@@ -16,11 +16,11 @@ if TYPE_CHECKING:
 def sensor_places(
     sensors: Mapping[str, Sensor], section: Section, file: Path | None
 ) -> Mapping[str, tuple[float, float]]:
-    """(r, z) of every sensor as it was built in, m.
+    """Stated (r, z) of every sensor, m.
 
     Raises
     ------
-    InputError : a sensor outside the rubber.
+    InputError : a sensor is outside the rubber.
     """
     places = {}
     for name, sensor in sensors.items():

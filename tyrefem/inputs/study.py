@@ -1,4 +1,4 @@
-"""A study: one immutable description of a tyre and its drive, and what can be asked of it."""
+"""A study: immutable description of a tyre and its drive, with methods to load, change and save it."""
 
 from __future__ import annotations
 
@@ -26,16 +26,16 @@ class StudyData(StudyContents):
 
     Parameters
     ----------
-    name : what the study is called.
+    name : name of the study.
     data : the file as written (units in the text).
-    file : where it was read; None: nowhere.
-    folder : where relative references (cards, tables) start from.
-    like : another study of the same cards; what it is built of serves where the two do not differ.
-    built : what this study is built of, if that is known and checked.
+    file : file of the study; None: the study was not read from a file.
+    folder : folder of relative references (cards, tables).
+    like : another study of the same cards, whose parts are reused where the two do not differ.
+    built : parts of this study, if they are already read and checked.
 
     Raises
     ------
-    InputError : something wrong in the study or in a card it names: file, field, what is allowed.
+    InputError : the study or a card that it names has an error: file, field, what is allowed.
 
     >>> faster = study("nasa-22x5.5-8pr").replace({"drive.speed": "25 mph"})
     >>> faster.data["drive"]["speed"]
@@ -44,19 +44,19 @@ class StudyData(StudyContents):
 
     @classmethod
     def load(cls, name: str | Path, changes: Mapping[str, Any] | None = None, case: str | None = None) -> Self:
-        """The study of a name or path, with values changed by dotted names.
+        """Load a study by name or path; ``changes`` gives new values by dotted name.
 
-        ``case``: of a campaign, only this case; ``changes`` are then laid over the case's own values.
+        ``case``: case of a campaign; ``changes`` then change the case's values.
 
         Raises
         ------
-        InputError : no such study, or something wrong in it or in a card it names: file, field, what is allowed.
+        InputError : the study does not exist, or it or a card that it names has an error: file, field, what is allowed.
         """
         path = library.find("study", str(name))
         folder = path.parent.resolve()
         stem = folder.name if path.name == "study.toml" else path.stem
         changes = dict(changes or {})
-        # Another table of cases comes before the case that is taken of it.
+        # A changed table of cases is set before its case is selected.
         first = changes if case is None else {key: changes.pop(key) for key in list(changes) if key == "cases"}
         loaded = cls(stem, all_changed(read_toml(path), first), path, folder)
         return loaded if case is None else loaded.case(case).replace(changes)
@@ -66,27 +66,27 @@ class StudyData(StudyContents):
     def replace(self, changes: Mapping[str, Any], like: StudyData | None = None) -> Self:
         """A new study with values changed by dotted names; units as text, as in a file.
 
-        What another study, ``like`` (this one, if not given), has built is taken over where the two do not differ.
+        Parts of ``like`` (default: this study) are reused where the two do not differ.
 
         Raises
         ------
-        InputError : unknown name (says the nearest), or a value that is not allowed.
+        InputError : a name is unknown (names the nearest), or a value is not allowed.
         """
         data = all_changed(self.data, changes)
         return type(self)(self.name, data, self.file, self.folder, self if like is None else like)
 
     def warmed(self, temperatures: Mapping[str, float]) -> Self:
-        """This study with the moduli that its cards have at the mean temperatures of the regions, degC.
+        """This study with the moduli of its cards at given mean temperatures of the regions, degC.
 
-        Everything else is shared. It is for finding strain cycles, not for writing or changing.
+        All else is shared. Use it to compute strain cycles, not to write or change a study.
         """
         built = self.parts.warmed(temperatures)
         return type(self)(self.name, self.data, self.file, self.folder, built=built)
 
     def scaled(self, key: str, factor: float) -> Self:
-        """A new study with the number at a dotted name times a factor, in every region that takes it from that card.
+        """A new study with the number at a dotted name times a factor, in every region with that card.
 
-        An uncertain number that stands at several names (c10 and c01 of one compound) is moved as one.
+        An uncertain number with several names (c10 and c01 of one compound) is multiplied at all of them.
 
         >>> radial = study("passenger-205-55r16").scaled("materials.body-ply.conductivity.value", 2.0)
         >>> radial.materials["turn-up"].conductivity.value == radial.materials["body-ply"].conductivity.value
@@ -99,16 +99,16 @@ class StudyData(StudyContents):
         return self.replace({f"drive.{key}": value for key, value in changes.items()})
 
     def save(self, path: str | Path) -> Path:
-        """Write the study as a TOML file that runs as it is.
+        """Write the study as a TOML file that can be run.
 
-        Files that the study names relative to its own folder are named by their whole path, if it is another folder.
+        Relative paths of files become absolute if the new file is in another folder.
         """
         return write_study(self.data, self.folder, Path(path))
 
     # -- work --------------------------------------------------------------------------------------------------------
 
     def mesh(self) -> TyreMesh:
-        """The section's mesh, as the study's ``[mesh]`` table asks."""
+        """Mesh of the section, by the study's ``[mesh]`` table."""
         from tyrefem.geometry import meshing
 
         choice = self.card.mesh
@@ -124,16 +124,16 @@ class StudyData(StudyContents):
 
     @property
     def cases_file(self) -> Path | None:
-        """The table of cases, its path made whole; None: the study is no campaign."""
+        """Absolute path of the table of cases; None if the study is no campaign."""
         return None if self.card.cases is None else (self.folder or Path()) / self.card.cases
 
     @property
     def cases(self) -> tuple[Case, ...]:
-        """The rows of its table of cases.
+        """The rows of the study's table of cases.
 
         Raises
         ------
-        InputError : it has no table, or the table is wrong.
+        InputError : the study has no table of cases, or the table has an error.
         """
         if self.cases_file is None:
             raise InputError("the study has no 'cases' table", field="cases", file=self.file)
@@ -141,15 +141,15 @@ class StudyData(StudyContents):
 
     @property
     def case_names(self) -> tuple[str, ...]:
-        """Names of its cases, in the table's order; none without a table."""
+        """Names of the cases, in the table's order; empty without a table."""
         return tuple(case.name for case in self.cases) if self.is_campaign else ()
 
     def case(self, name: str) -> Self:
-        """One case of the study's table by its name, a study of its own.
+        """The study of a case, by the case's name.
 
         Raises
         ------
-        InputError : the study has no table of cases, or none of that name (says the nearest); the case is wrong.
+        InputError : there is no table of cases, no case of that name (names the nearest), or the case has an error.
 
         >>> study("nasa-campaign").case("8pr-3270lbf-83psi-20mph").data["drive"]["load"]
         '3270 lbf'
@@ -160,7 +160,7 @@ class StudyData(StudyContents):
         return self.case_study(by_name[name])
 
     def case_study(self, case: Case) -> Self:
-        """The study of one row of its table; what is wrong with it is said with its line there."""
+        """The study of a row of the table of cases; an error names the row's line."""
         try:
             changed = self.replace(case.changes)
             data = {key: value for key, value in changed.data.items() if key != "cases"}
@@ -173,5 +173,5 @@ class StudyData(StudyContents):
 
 
 def study(name: str | Path, changes: Mapping[str, Any] | None = None, case: str | None = None) -> StudyData:
-    """The study of a name or path, with values changed by dotted names: `Study.load`."""
+    """Load a study by name or path, see `StudyData.load`."""
     return StudyData.load(name, changes, case)

@@ -1,4 +1,4 @@
-"""The study file: what `tyrefem.study` validates. Every key can be changed by its dotted name."""
+"""The study file, as `tyrefem.study` validates it. Every key can be changed by its dotted name."""
 
 from __future__ import annotations
 
@@ -29,7 +29,7 @@ Rows = tuple[tuple[float, float], ...]
 
 
 def _rows(value: Any) -> Rows:
-    """``"12 kJ/m**3"``, or rows ``[["0 mm", "12 kJ/m**3"], ...]`` along the meridian, s rising."""
+    """Parse ``"12 kJ/m**3"``, or rows ``[["0 mm", "12 kJ/m**3"], ...]`` along the meridian with increasing s."""
     if not isinstance(value, list | tuple):
         return ((0.0, Unit("J/m**3", ge=0)(value)),)
     if not value or not all(isinstance(row, list | tuple) and len(row) == 2 for row in value):
@@ -43,8 +43,8 @@ def _rows(value: Any) -> Rows:
 class GivenEnergy(Card):
     """Strain energy per cycle U, J/m3, of every region at one load and pressure.
 
-    ``regions``: a number, or rows of distance from the crown and energy, linear between them and constant beyond.
-    ``temperature``: at which the energies hold, degC; where it is given they follow the modulus (with
+    ``regions``: a number, or rows of distance from the crown and energy, linear between them and constant outside.
+    ``temperature``: temperature of the energies, degC; if given, they follow the modulus (with
     ``mechanics.feedback``).
     """
 
@@ -65,7 +65,7 @@ class GivenEnergy(Card):
                 raise InputError(f"no strain energy for region '{region}' (it may be '0 J/m**3')", field="regions")
 
     def without_effect(self, section: Section) -> tuple[InputWarning, ...]:
-        """Rows that lie so far outside of their region that no point of it is told by them."""
+        """Warnings of rows so far outside their region that they have no effect."""
         warnings = []
         for region, rows in self.regions.items():
             pieces = [piece for piece in section.pieces if piece.region == region]
@@ -84,10 +84,10 @@ class GivenEnergy(Card):
 class MeshChoice(Card):
     """How the section is meshed.
 
-    ``through`` is the least number of elements through every layer: 1 will do for the thin plies of a radial.
-    ``cell`` is quadrilaterals for the mapped mesher and triangles for gmsh where not given. ``file`` takes a user's
-    own mesh with named groups in place of a mesher: ``names`` maps the file's names to the section's, ``axes`` says
-    which coordinates are (r, z), ``unit`` their unit.
+    ``through``: least number of elements through every layer; 1 is enough for the thin plies of a radial. ``cell``:
+    by default quadrilaterals for the mapped mesher, triangles for gmsh. ``file``: a user's mesh with named groups,
+    instead of a mesher. ``names`` maps the file's names to the section's, ``axes`` names its coordinates (r, z), and
+    ``unit`` is their unit.
     """
 
     mesher: Literal["mapped", "gmsh"] = "mapped"
@@ -103,12 +103,12 @@ class MeshChoice(Card):
 
 
 class Feedback(Card):
-    """How temperatures act back on the strain cycle: `tyrefem.simulation.feedback`.
+    """Feedback of temperature on the strain cycle: `tyrefem.simulation.feedback`.
 
-    ``pressure``: the gauge pressure follows the contained air's temperature, so that the deflection at given load
-    falls as it warms. ``modulus``: moduli follow the ``softening`` of the cards at each region's mean temperature.
-    ``knots``: strain cycles over every phase of constant load. ``tolerance``: temperatures of the strain cycles and
-    of the run they give differ by less; ``iterations``: runs at most.
+    ``pressure``: the gauge pressure follows the contained air's temperature, so warming reduces the deflection at
+    given load. ``modulus``: moduli follow the ``softening`` of the cards at each region's mean temperature.
+    ``knots``: number of strain cycles in every phase of constant load. ``tolerance``: largest difference between the
+    temperatures of strain cycles and run. ``iterations``: largest number of runs.
     """
 
     pressure: bool = True
@@ -119,15 +119,15 @@ class Feedback(Card):
 
 
 class Mechanics(Card):
-    """How the strain cycle is found.
+    """Settings of the strain cycle.
 
     ``loss_convention``: ``nasa``, W = pi U tan d (eq 25, where U stands for E' e0^2), or ``sinusoid``,
-    W = 2 pi U tan d with U = E' e0^2 / 2. ``poisson_term`` is c_a = 1 - nu_pt nu_tp (eq 7a), 0.75 an estimate.
+    W = 2 pi U tan d with U = E' e0^2 / 2. ``poisson_term`` is c_a = 1 - nu_pt nu_tp (eq 7a); 0.75 is an estimate.
     ``strain``: ``arcs``, the NASA report's bias tyre; ``barrel``, its deformation by finite elements; ``fem``, the
     footprint by finite elements; or ``given``, the energies of the table ``energy`` (which only this law reads).
-    ``motion``: of ``fem``, the footprint linear about the inflated tyre, or in ``large`` motion (`footprint.balance`).
-    ``revolution``: of ``fem``, all harmonics each at its own frequency, or one cycle as in the report. ``feedback``:
-    temperatures act back on the strain cycle; without this table they do not.
+    ``motion``: for ``fem``, footprint linear about the inflated tyre, or in ``large`` motion (`footprint.balance`).
+    ``revolution``: for ``fem``, all harmonics with their frequencies, or one cycle as in the report. ``feedback``:
+    feedback of temperature on the strain cycle; none without this table.
     """
 
     strain: Text = "arcs"
@@ -149,7 +149,7 @@ class Mechanics(Card):
 
 
 class Boundaries(Card):
-    """Where the heat goes, and what sliding adds in phases with slip: one law per side."""
+    """Boundary laws, one per side, and the law of sliding heat in phases with slip."""
 
     road: Annotated[RoadLaw, LawOf("road", "constant")] = Field(default_factory=lambda: LawOf("road", "constant")({}))
     outside_air: Annotated[OutsideAirLaw, LawOf("outside_air", "nasa")] = Field(
@@ -167,9 +167,8 @@ class Boundaries(Card):
 class Sensor(Card):
     """A thermocouple: ``s`` along the meridian from the crown and ``depth`` from the inner surface, or ``at = [r, z]``.
 
-    ``lag`` is its first-order time constant, ``noise`` the standard deviation of a reading, ``accuracy`` that of its
-    calibration, ``position_sd`` that of its place, ``lag_sd`` that of its lag (defaults: estimates for a hand-drilled
-    thermocouple).
+    ``lag``: first-order time constant. Standard deviations: ``noise`` of a reading, ``accuracy`` of the calibration,
+    ``position_sd`` of the place, ``lag_sd`` of the lag (defaults: estimates for a hand-drilled thermocouple).
     """
 
     s: Annotated[float, Unit("m")] | None = None
@@ -190,26 +189,25 @@ class Sensor(Card):
 
 
 class Output(Card):
-    """What is kept: readings ``every`` so often, and ``fields`` full temperature fields spread over the drive."""
+    """Output: interval ``every`` of readings, and number ``fields`` of temperature fields over the drive."""
 
     every: Annotated[float, Unit("s", gt=0)] = 5.0
     fields: Annotated[int, Field(ge=2, le=10_000)] = 13
 
 
 class Numerics(Card):
-    """``tolerance``: time-integration error aimed at; ``mesh_sd``: standard deviation left by the mesh (estimate)."""
+    """``tolerance``: allowed time-integration error; ``mesh_sd``: standard deviation by the mesh (estimate)."""
 
     tolerance: Annotated[float, Unit("delta_degC", gt=0, le=10)] = 0.01
     mesh_sd: Annotated[float, Unit("delta_degC", ge=0)] = 0.05
 
 
 class DiagnosisChoice(Card):
-    """What the diagnosis assumes; every default is an estimate.
+    """Assumptions of the diagnosis; every default is an estimate.
 
-    ``film_sd``: relative standard deviation of the film coefficients. ``discrepancy``: standard deviation of what the
-    model misses even when it is right (mesh, time steps, the shape of the strain energy), K, correlated over
-    ``correlation_time``. ``effects_expected``: prior probability that anything is missing. ``exclude``: effects known
-    not to be there.
+    ``film_sd``: relative standard deviation of film coefficients. ``discrepancy``: standard deviation of the error of
+    a correct model (mesh, time steps, distribution of strain energy), K, correlated over ``correlation_time``.
+    ``effects_expected``: prior probability that an effect is missing. ``exclude``: effects known to be absent.
     """
 
     film_sd: Annotated[float, Unit("1", gt=0, lt=1)] = 0.2
@@ -220,9 +218,9 @@ class DiagnosisChoice(Card):
 
 
 class MeasuredEntry(Card):
-    """A measured table: the file, which run of it, the drive of that run, and whether it is held out of any fit.
+    """A measured table: file, run of the file, drive of that run, and whether the run is held out of all fits.
 
-    ``rename``: column -> sensor, for columns that the study calls otherwise. ``ignore``: columns to leave out.
+    ``rename``: column -> sensor, for columns of another name. ``ignore``: columns to leave out.
     """
 
     table: Text
@@ -236,10 +234,10 @@ class MeasuredEntry(Card):
 
 
 class StudyCard(Card):
-    """A study.toml, its references to other cards not yet followed.
+    """A study.toml, before its references to other cards are read.
 
-    ``made_for``: the section that load law, footprint, given energies and published ranges are of; with another one
-    the study warns.
+    ``made_for``: section of the load law, footprint, given energies and published ranges; the study warns with another
+    section.
     """
 
     kind: ClassVar[str] = "study"
@@ -263,7 +261,7 @@ class StudyCard(Card):
 
     @property
     def of_one_tyre(self) -> tuple[str, ...]:
-        """Dotted names of what is one tyre's and no other's: measured or estimated, it does not follow the section."""
+        """Dotted names of data that hold for one tyre only: measured or estimated, independent of the section."""
         mechanics = self.mechanics
         names = {
             "mechanics.load_law": isinstance(mechanics.load_law, VerticalStiffness),
@@ -282,7 +280,7 @@ class StudyCard(Card):
 
     @model_validator(mode="after")
     def _resolved(self) -> StudyCard:
-        """No more readings than a table may have; no tolerance below the rounding of the drive's temperatures."""
+        """Refuse too many readings, and a tolerance below the rounding of the drive's temperatures."""
         check_readings(self.drive.end, self.output.every, "output.every")
         given = [self.drive.initial, *(end for p in self.drive.phases for end in (p.ambient.start, p.ambient.end))]
         least = smallest_tolerance(max(map(abs, given)))
@@ -291,6 +289,6 @@ class StudyCard(Card):
             tolerances["mechanics.feedback.tolerance"] = self.mechanics.feedback.tolerance
         for field, tolerance in tolerances.items():
             if tolerance < least:
-                message = f"{tolerance:g} K is lost in the rounding of temperatures: must be at least {least:.0e} K"
+                message = f"{tolerance:g} K is below the rounding of temperatures: must be at least {least:.0e} K"
                 raise InputError(message, field=field)
         return self

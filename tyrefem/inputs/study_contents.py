@@ -1,4 +1,4 @@
-"""What a study says: its data, and everything that is read from them."""
+"""Contents of a study: its data, and the parts that are read from them."""
 
 from __future__ import annotations
 
@@ -25,20 +25,20 @@ if TYPE_CHECKING:
 
 @dataclass(frozen=True, eq=False)
 class StudyContents(Brief):
-    """A study as it can be read: `tyrefem.inputs.study.StudyData` adds how it is loaded, changed and saved.
+    """A study's contents; `tyrefem.inputs.study.StudyData` adds methods to load, change and save it.
 
     Parameters
     ----------
-    name : what the study is called.
+    name : name of the study.
     data : the file as written (units in the text).
-    file : where it was read; None: nowhere.
-    folder : where relative references (cards, tables) start from.
-    like : another study of the same cards; what it is built of serves where the two do not differ.
-    built : what this study is built of, if that is known and checked.
+    file : file of the study; None: the study was not read from a file.
+    folder : folder of relative references (cards, tables).
+    like : another study of the same cards, whose parts are reused where the two do not differ.
+    built : parts of this study, if they are already read and checked.
 
     Raises
     ------
-    InputError : something wrong in the study or in a card it names: file, field, what is allowed.
+    InputError : the study or a card that it names has an error: file, field, what is allowed.
     """
 
     name: str
@@ -56,7 +56,7 @@ class StudyContents(Brief):
             check_effects(self)
 
     def __reduce__(self) -> tuple[Any, ...]:
-        """What it is built of travels too: the cards may have changed where it is opened again."""
+        """Pickle the parts too, because the cards may differ where the study is unpickled."""
         return type(self), (self.name, self.data, self.file, self.folder, None, self.parts)
 
     def _facts(self) -> Mapping[str, Any]:
@@ -78,14 +78,14 @@ class StudyContents(Brief):
 
     @property
     def is_campaign(self) -> bool:
-        """Does it name a table of cases?"""
+        """True if the study names a table of cases."""
         return self.card.cases is not None
 
     def as_written(self, error: InputError) -> InputError:
-        """The error in the file's own words: what a phase takes over from ``[drive]`` is wrong there."""
+        """The error with the field as written: a value that a phase has from ``[drive]`` is named there."""
         return error_as_written(error, self.data)
 
-    # -- what it is made of ------------------------------------------------------------------------------------------
+    # -- parts ------------------------------------------------------------------------------------------------------
 
     @property
     def card(self) -> StudyCard:
@@ -94,7 +94,7 @@ class StudyContents(Brief):
 
     @property
     def section(self) -> Section:
-        """The tyre's section, half or full as the mesh table says, worn as the study's effects say."""
+        """The tyre's section, half or full by the mesh table, worn by the study's effects."""
         return self.parts.section
 
     @property
@@ -104,7 +104,7 @@ class StudyContents(Brief):
 
     @functools.cached_property
     def effects(self) -> tuple[Effect, ...]:
-        """The study's effects that are not null."""
+        """The study's effects of non-zero amplitude."""
         return tuple(effect for effect in self.card.effects if not effect.is_null)
 
     @property
@@ -114,31 +114,31 @@ class StudyContents(Brief):
 
     @property
     def material_data(self) -> Mapping[str, tuple[Mapping[str, Any], Path]]:
-        """Region -> its material card as written, changes laid over it, and the card's file."""
+        """Region -> its material card as written, with the study's changes, and the card's file."""
         return self.parts.materials.written
 
     @property
     def temperatures(self) -> Mapping[str, float] | None:
-        """Mean temperature of each region that the moduli are at, degC; None: as the cards give them."""
+        """Mean temperature of each region for its moduli, degC; None: moduli as in the cards."""
         return self.parts.temperatures
 
     @property
     def stated_places(self) -> Mapping[str, tuple[float, float]]:
-        """(r, z) of every sensor as it was built in, m."""
+        """Stated (r, z) of every sensor, m."""
         return self.parts.sensor_places
 
     def section_place(self, sensor: Sensor) -> tuple[float, float]:
-        """(r, z) of a sensor as it was built in, m; refuses one outside the rubber."""
+        """Stated (r, z) of a sensor, m; refuses a place outside the rubber."""
         return sensor_place(sensor, self.new_section)
 
     @functools.cached_property
     def warnings(self) -> tuple[InputWarning, ...]:
-        """What can be run but is perhaps not meant, in the study, its section and its material cards."""
+        """Warnings of unusual input in the study, its section and its material cards."""
         return study_warnings(self.card, self.new_section, self.materials, self.file)
 
     @property
     def title(self) -> str:
-        """One line for people."""
+        """One line of text."""
         return self.card.title
 
     @property
@@ -148,32 +148,32 @@ class StudyContents(Brief):
 
     @property
     def measured(self) -> tuple[MeasuredEntry, ...]:
-        """The study's measured tables, their paths made whole."""
+        """The study's measured tables, with absolute paths."""
         folder = self.folder or Path()
         entries = self.card.measured
         return tuple(entry.model_copy(update={"table": folder / entry.table}) for entry in entries)
 
     @property
     def tolerance(self) -> float:
-        """Time-integration error aimed at, K."""
+        """Allowed time-integration error, K."""
         return self.card.numerics.tolerance
 
     @property
     def numerical_sd(self) -> float:
-        """Standard deviation of a reading left by the mesh, K."""
+        """Standard deviation of a reading by the mesh, K."""
         return self.card.numerics.mesh_sd
 
     @functools.cached_property
     def uncertain_numbers(self) -> tuple[UncertainNumber, ...]:
-        """Every number with a standard deviation, from the cards and the study, also those that cannot matter.
+        """Every number with a standard deviation in the cards and the study, including those without influence.
 
         Raises
         ------
-        InputError : a name in ``[uncertainty]`` that the study has not.
+        InputError : the study has no number of a name in ``[uncertainty]``.
         """
         return uncertain_numbers(self)
 
     @functools.cached_property
     def uncertainty(self) -> dict[str, float]:
-        """Dotted name of an uncertain number that can matter -> relative standard deviation."""
+        """Dotted name of an uncertain number with influence -> relative standard deviation."""
         return {number.key: number.sd for number in self.uncertain_numbers if not number.idle}

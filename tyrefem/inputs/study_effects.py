@@ -1,4 +1,4 @@
-"""Do the effects of a study have a meaning in it?"""
+"""Check of a study's effects."""
 
 from __future__ import annotations
 
@@ -15,7 +15,7 @@ if TYPE_CHECKING:
 
 
 class CheckedStudy(StudyOfTyre, Protocol):
-    """A study as effects see it, with the file that an error names."""
+    """Data of a study for its effects, with the file for error messages."""
 
     @property
     def card(self) -> StudyCard:
@@ -23,11 +23,11 @@ class CheckedStudy(StudyOfTyre, Protocol):
 
     @property
     def file(self) -> Path | None:
-        """Where it was read."""
+        """The study's file."""
 
 
 def check_effects(study: CheckedStudy) -> None:
-    """Refuse an effect that the study cannot have, and names that are no effects.
+    """Refuse an effect that is not possible in the study, and unknown names of effects.
 
     Raises
     ------
@@ -37,7 +37,7 @@ def check_effects(study: CheckedStudy) -> None:
     for number, effect in enumerate(effects):
         problem = effect.problem(study)
         if problem is None and any(_same(effect, other) for other in effects[:number]):
-            problem = "is given twice; give it once"
+            problem = "is given twice"
         if problem is not None:
             raise InputError(problem, field=f"effects.{effect.name}", file=study.file)
     excluded = study.card.diagnosis.exclude

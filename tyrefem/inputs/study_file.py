@@ -1,4 +1,4 @@
-"""A study as a file that runs as it is."""
+"""Writing a study as a file that can be run."""
 
 from __future__ import annotations
 
@@ -12,9 +12,9 @@ from tyrefem.quantity import written
 
 
 def write_study(data: Mapping[str, Any], folder: Path | None, path: Path) -> Path:
-    """Write a study's data as TOML; returns the path.
+    """Write a study's data as TOML; return the path.
 
-    Files that the data name relative to ``folder`` are named by their whole path, if the path is in another folder.
+    Paths relative to ``folder`` become absolute if ``path`` is in another folder.
     """
     import tomli_w
 

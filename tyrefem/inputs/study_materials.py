@@ -1,4 +1,4 @@
-"""The material cards of a study, region by region."""
+"""The material cards of a study, by region."""
 
 from __future__ import annotations
 
@@ -19,9 +19,9 @@ if TYPE_CHECKING:
 
 @dataclass(frozen=True, eq=False)
 class StudyMaterials(Brief):
-    """Region -> material card; and region -> the card as written, changes laid over it, with the card's file.
+    """Region -> material card; and region -> the card as written, with the study's changes, and its file.
 
-    ``references`` is the study's table ``[materials]``, ``folder`` where its references start from.
+    ``references``: the study's table ``[materials]``; ``folder``: folder of its relative references.
     """
 
     references: Mapping[str, Any]
@@ -38,11 +38,11 @@ class StudyMaterials(Brief):
         file: Path | None,
         like: StudyMaterials | None,
     ) -> StudyMaterials:
-        """The cards of all regions of a section. Those of ``like``, of the same section, serve where nothing changed.
+        """Read the cards of all regions of a section. Unchanged cards of ``like``, of the same section, are reused.
 
         Raises
         ------
-        InputError : a region without a card, a card without a region, a card that is wrong or cannot lie there.
+        InputError : a region has no card, a card has no region, or a card has an error or does not fit its region.
         """
         regions = section.regions
         for region in references:
@@ -65,7 +65,7 @@ class StudyMaterials(Brief):
         return cls(references, folder, cards, written)
 
     def warmed(self, temperatures: Mapping[str, float]) -> StudyMaterials:
-        """The cards with the moduli that they have at the mean temperatures of the regions, degC."""
+        """The cards with their moduli at given mean temperatures of the regions, degC."""
         cards = {region: card.warmed(temperatures[region]) for region, card in self.cards.items()}
         return StudyMaterials(self.references, self.folder, cards, self.written)
 
@@ -73,7 +73,7 @@ class StudyMaterials(Brief):
 def _card(
     region: str, reference: object, folder: Path | None, like: StudyMaterials | None
 ) -> tuple[MaterialCard, tuple[dict[str, Any], Path]]:
-    """A card, and the data and file that it was made of; tables that ``like`` has read are not read again."""
+    """A card, with its data and file; tables that ``like`` has read are not read again."""
     if like is not None and region in like.cards and like.folder == folder:
         before, path = like.written[region]
         data = library.over("material", reference, like.references[region], before)

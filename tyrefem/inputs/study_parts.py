@@ -1,4 +1,4 @@
-"""What a study is built of: its validated card, its section, its material cards, the places of its sensors."""
+"""The parts of a study: validated card, section, material cards, places of the sensors."""
 
 from __future__ import annotations
 
@@ -18,16 +18,16 @@ from tyrefem.inputs.study_materials import StudyMaterials
 if TYPE_CHECKING:
     from tyrefem.geometry import Section
 
-#: Worn sections, by new section and wear. Studies that share a new section share the worn one.
+#: Worn sections, by new section and wear; studies with the same new section share the worn section.
 _WORN: Cache[Section] = Cache(size=32)
 
 
 @dataclass(frozen=True, eq=False)
 class StudyParts(Brief):
-    """A study's data with file and folder, and what was read from them.
+    """A study's data with file and folder, and the parts read from them.
 
-    ``new_section`` is the section before wear, ``section`` the section as the study's effects wear it. ``temperatures``
-    are the mean temperatures of the regions that the moduli are at, degC; None: as the cards give them.
+    ``new_section``: section before wear; ``section``: section worn by the study's effects. ``temperatures``: mean
+    temperatures of the regions for their moduli, degC; None: moduli as in the cards.
     """
 
     data: Mapping[str, Any]
@@ -44,18 +44,18 @@ class StudyParts(Brief):
     def read(
         cls, data: Mapping[str, Any], file: Path | None, folder: Path | None, like: StudyParts | None = None
     ) -> StudyParts:
-        """Read all parts. Parts of ``like``, which has the same cards, serve where the two studies do not differ.
+        """Read all parts. Parts of ``like``, with the same cards, are reused where the two studies do not differ.
 
         Raises
         ------
-        InputError : something wrong in the study or in a card it names: file, field, what is allowed.
+        InputError : the study or a card that it names has an error: file, field, what is allowed.
         """
         try:
             card = StudyCard.check(data, file) if like is None else like.card.checked(like.data, data, file)
         except InputError as error:
             raise error_as_written(error, data) from None
         if like is not None and data["section"] != like.data["section"]:
-            # Another section: cords may not fit in it, sensors may be outside it.
+            # In another section, cords may not fit and sensors may be outside.
             like = None
         if like is not None and card.mesh.section == like.card.mesh.section:
             new_section = like.new_section
@@ -73,11 +73,11 @@ class StudyParts(Brief):
         return cls(data, file, folder, card, new_section, section, materials, places)
 
     def warmed(self, temperatures: Mapping[str, float]) -> StudyParts:
-        """The same parts with the moduli that the cards have at the mean temperatures of the regions, degC."""
+        """The same parts with moduli at given mean temperatures of the regions, degC."""
         return replace(self, materials=self.materials.warmed(temperatures), temperatures=dict(temperatures))
 
     def __reduce__(self) -> tuple[Any, ...]:
-        """The card is validated again where it is opened: a user's effect is in no importable module."""
+        """Pickle the data, not the card, because a user's effect is in no importable module."""
         sections = (self.new_section, self.section)
         read = (self.materials, self.sensor_places, self.temperatures)
         return _opened, (self.data, self.file, self.folder, *sections, *read)
@@ -88,7 +88,7 @@ def _opened(data: Mapping[str, Any], file: Path | None, folder: Path | None, *re
 
 
 def error_as_written(error: InputError, data: Mapping[str, Any]) -> InputError:
-    """The error in the file's own words: what a phase takes over from ``[drive]`` is wrong there."""
+    """The error with the field as written: a value that a phase has from ``[drive]`` is named there."""
     drive = data.get("drive")
     if not isinstance(drive, Mapping) or not (error.field or "").startswith("drive.phases."):
         return error
@@ -106,7 +106,7 @@ def _section(reference: object, card: StudyCard, folder: Path | None, file: Path
 
 
 def _worn(section: Section, card: StudyCard) -> Section:
-    """The section as the study's effects wear it."""
+    """The section, worn by the study's effects."""
     wear = [effect for effect in card.effects if not effect.is_null and effect.overrides("worn")]
     if not wear:
         return section

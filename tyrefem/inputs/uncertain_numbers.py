@@ -1,4 +1,4 @@
-"""The uncertain numbers of a study: those its cards state a standard deviation for, and those it states itself."""
+"""The uncertain numbers of a study: numbers with a standard deviation in its cards or in the study."""
 
 from __future__ import annotations
 
@@ -16,23 +16,23 @@ if TYPE_CHECKING:
     from tyrefem.inputs.study_card import StudyCard
     from tyrefem.materials.card import MaterialCard
 
-#: Names that a sentence lists before it counts.
+#: Number of names that a sentence lists; further names are counted.
 NAMED = 3
 
 
 @dataclass(frozen=True)
 class UncertainNumber:
-    """One number with a relative standard deviation: one random variable, wherever it is used.
+    """A number with a relative standard deviation: a single random variable for all its uses.
 
-    A number of a card is one in all regions that take it from that card.
+    A number of a card is the same variable in all regions with that card.
 
     Parameters
     ----------
-    key : its name, the first of ``keys``. keys : all dotted names that hold it: one factor moves them together.
-    written : what stands there, as the study or its cards write it.
+    key : name of the number, the first of ``keys``. keys : all its dotted names, which one factor multiplies.
+    written : values as written in the study or its cards.
     sd : relative standard deviation.
-    card : name of the card that it is on; empty: the study's own. regions : that take it from there.
-    idle : why it cannot change a run of this study; empty: it can.
+    card : name of its card; empty: the study. regions : regions with that card.
+    idle : reason why it has no influence on a run of this study; empty: it has influence.
     """
 
     key: str
@@ -44,7 +44,7 @@ class UncertainNumber:
     idle: str = ""
 
     def changes(self, factor: float, significant: int | None = None) -> dict[str, Any]:
-        """Dotted name -> value times a factor, as a study writes it: for `Study.replace`.
+        """Dotted name -> written value times a factor, for `Study.replace`.
 
         >>> UncertainNumber("drive.load", ("drive.load",), ("2 kN",), 0.05).changes(1.5)
         {'drive.load': '3 kN'}
@@ -53,12 +53,12 @@ class UncertainNumber:
 
     @property
     def tables(self) -> tuple[str, ...]:
-        """Dotted names of the tables that hold it."""
+        """Dotted names of the tables with the number."""
         return tuple(dict.fromkeys(key.rpartition(".")[0] for key in self.keys)) or (self.key,)
 
     @property
     def label(self) -> str:
-        """Its name, and the other regions of its card.
+        """Name of the number, and the other regions of its card.
 
         >>> cord = "cords.modulus"
         >>> UncertainNumber(f"materials.ply.{cord}", (), (), 0.1, "nylon", ("ply", "turn-up")).label
@@ -68,7 +68,7 @@ class UncertainNumber:
 
 
 class StudyOfCards(Protocol):
-    """What is asked of a study: its numbers as written, and its cards with the data and file of each region."""
+    """Data of a study for its uncertain numbers: numbers as written, and cards with data and file of each region."""
 
     @property
     def card(self) -> StudyCard: ...
@@ -87,13 +87,13 @@ class StudyOfCards(Protocol):
 
 
 def uncertain_numbers(study: StudyOfCards) -> tuple[UncertainNumber, ...]:
-    """All of them, also those that cannot matter, which say why.
+    """All uncertain numbers; those without influence state the reason.
 
-    In the order of the regions; what only a strain law reads comes after the rest, then the study's own table.
+    Order: by region; then the numbers that only a strain law reads; then the study's table.
 
     Raises
     ------
-    InputError : a name in ``[uncertainty]`` that the study has not, or one number there under two names.
+    InputError : the study has no number of a name in ``[uncertainty]``, or a number has two names there.
     """
     numbers = sorted(_of_cards(study), key=lambda number: _table(number.key) in STIFFNESS)
     places = {key: place for place, number in enumerate(numbers) for key in number.keys}
@@ -110,7 +110,9 @@ def uncertain_numbers(study: StudyOfCards) -> tuple[UncertainNumber, ...]:
             numbers.append(number)
             places |= dict.fromkeys(number.keys, place)
         elif place in stated and numbers[place].sd != sd:
-            message = f"is one number with '{stated[place]}', as both regions take it from '{number.card}': state one"
+            message = (
+                f"is the same number as '{stated[place]}': both regions use the card '{number.card}'; state only one"
+            )
             raise InputError(message, field=f"uncertainty.{key}", file=study.file)
         else:
             numbers[place] = replace(numbers[place], sd=sd)
@@ -119,11 +121,11 @@ def uncertain_numbers(study: StudyOfCards) -> tuple[UncertainNumber, ...]:
 
 
 def uncertain_number(study: StudyOfCards, key: str, sd: float = 0.0) -> UncertainNumber:
-    """The number at a dotted name, with a relative standard deviation given here.
+    """The number at a dotted name, with the relative standard deviation ``sd``.
 
     Raises
     ------
-    InputError : nothing of that name is set; says the nearest.
+    InputError : there is no number of that name; names the nearest.
     """
     together = next((number for number in study.uncertain_numbers if key in number.keys), None)
     if together is None:
@@ -134,7 +136,7 @@ def uncertain_number(study: StudyOfCards, key: str, sd: float = 0.0) -> Uncertai
 
 
 def _named(study: StudyOfCards, key: str, sd: float) -> UncertainNumber:
-    """The number at a dotted name, with the other regions that take it from the same card."""
+    """The number at a dotted name, with the other regions of the same card."""
     value = value_at(study.data, key, study.folder)
     parts = key.split(".")
     if parts[0] != "materials" or len(parts) < 4:
@@ -154,7 +156,7 @@ def _named(study: StudyOfCards, key: str, sd: float) -> UncertainNumber:
 
 
 def written_at(study: StudyOfCards, key: str) -> Any:
-    """What stands at a dotted name of a study or its cards."""
+    """The value as written at a dotted name of a study or its cards."""
     parts = key.split(".")
     if parts[0] == "materials" and len(parts) > 2 and parts[1] in study.material_data:
         return _at(study.material_data[parts[1]][0], ".".join(parts[2:]))
@@ -162,16 +164,16 @@ def written_at(study: StudyOfCards, key: str) -> Any:
 
 
 def left_out(numbers: Iterable[UncertainNumber]) -> list[str]:
-    """A sentence for every reason why numbers cannot matter in their study.
+    """A sentence for every reason why numbers have no influence in their study.
 
-    >>> left_out([UncertainNumber("materials.tread.shear_modulus.value", (), (), 0.2, idle="nobody reads them")])
-    ['left out, as nobody reads them: materials.tread.shear_modulus.value']
+    >>> left_out([UncertainNumber("materials.tread.shear_modulus.value", (), (), 0.2, idle="no strain law reads them")])
+    ['left out, because no strain law reads them: materials.tread.shear_modulus.value']
     """
     reasons: dict[str, list[str]] = {}
     for number in numbers:
         if number.idle:
             reasons.setdefault(number.idle, []).append(number.label)
-    return [f"left out, as {reason}: {_listed(names)}" for reason, names in reasons.items()]
+    return [f"left out, because {reason}: {_listed(names)}" for reason, names in reasons.items()]
 
 
 def _listed(names: list[str]) -> str:
@@ -180,7 +182,7 @@ def _listed(names: list[str]) -> str:
 
 
 def _of_cards(study: StudyOfCards) -> list[UncertainNumber]:
-    """Those of the material cards, a card's number in several regions once."""
+    """Uncertain numbers of the material cards; a card's number in several regions is listed once."""
     together: dict[tuple[Any, ...], list[str]] = {}
     written: dict[tuple[Any, ...], tuple[Any, ...]] = {}
     for region, card in study.materials.items():
@@ -201,13 +203,13 @@ def _of_cards(study: StudyOfCards) -> list[UncertainNumber]:
 def _number(study: StudyOfCards, key: tuple[Any, ...], regions: list[str], values: tuple[Any, ...]) -> UncertainNumber:
     path, where, fields, _, sd = key
     keys = tuple(f"materials.{region}.{field}" for region in regions for field in fields)
-    idle = _idle(study, regions, where) if fields else "they have no one number that a factor could move"
+    idle = _idle(study, regions, where) if fields else "they have no single number that a factor could change"
     first = keys[0] if keys else f"materials.{regions[0]}.{where}"
     return UncertainNumber(first, keys, values * len(regions), sd, Path(path).stem, tuple(regions), idle)
 
 
 def stated_deviations(card: Card, where: str = "") -> Iterator[tuple[str, Any]]:
-    """Every table of a card that states a standard deviation, with its dotted name."""
+    """Every table of a card with a standard deviation, and its dotted name."""
     for name in type(card).model_fields:
         value = getattr(card, name)
         if isinstance(value, Card):
@@ -218,14 +220,14 @@ def stated_deviations(card: Card, where: str = "") -> Iterator[tuple[str, Any]]:
 
 
 def _idle(study: StudyOfCards, regions: list[str], within: str) -> str:
-    """Why a number of a card cannot change a run; empty: it can."""
+    """Reason why a number of a card has no influence on a run; empty: it has influence."""
     mechanics, table = study.card.mechanics, within.split(".")[0]
     law, feedback = mechanics.strain, mechanics.feedback
     if table == "expansion":
-        return "a run takes no thermal expansion"
+        return "a run does not use thermal expansion"
     softens = "softening" in within.split(".")
     if softens and (feedback is None or not feedback.modulus):
-        return "only mechanics.feedback follows the softening"
+        return "only mechanics.feedback uses the softening"
     if softens and law == "given":
         energy = mechanics.energy
         return "" if energy is not None and energy.temperature is not None else "mechanics.energy has no temperature"
@@ -242,7 +244,7 @@ def _table(key: str) -> str:
 
 
 def _at(data: Mapping[str, Any], path: str) -> Any:
-    """The value at a dotted name of a card's plain data; None: there is none."""
+    """The value at a dotted name of a card's plain data; None if there is none."""
     place: Any = data
     for part in path.split("."):
         place = place.get(part) if isinstance(place, Mapping) else None

@@ -1,4 +1,4 @@
-"""The warnings of a study: its own, its section's, its material cards', and what belongs to another tyre."""
+"""The warnings of a study, its section and its material cards, and of data for another tyre."""
 
 from __future__ import annotations
 
@@ -14,7 +14,7 @@ from tyrefem.materials.card import MaterialCard
 def study_warnings(
     card: StudyCard, section: Section, materials: Mapping[str, MaterialCard], file: Path | None
 ) -> tuple[InputWarning, ...]:
-    """What can be run but is perhaps not meant, each with the study's file and the dotted name of the field.
+    """Warnings of unusual input, each with the study's file and the dotted name of the field.
 
     >>> from tyrefem.inputs.study import study
     >>> light = study("nasa-22x5.5-8pr", {"materials.tread.density.value": "1.18 kg/m**3"})
@@ -45,7 +45,7 @@ def _of_another_tyre(card: StudyCard, section: Section) -> Iterator[InputWarning
     names = card.of_one_tyre
     if card.made_for is not None and names and section.name != card.made_for:
         yield InputWarning(
-            f"{', '.join(names)}: these are of section '{card.made_for}', but the section is '{section.name}'; "
-            "give those of this tyre or remove them, then change made_for",
+            f"{', '.join(names)}: these are for section '{card.made_for}', but the section is '{section.name}'; "
+            "replace or remove them, then change made_for",
             field="made_for",
         )

@@ -1,4 +1,4 @@
-"""What people read: pages, pictures, tables and VTK files of every result.
+"""Pages, pictures, tables and VTK files of every result.
 
-The only room beside the command line that writes such files.
+Only this package and the command line write such files.
 """

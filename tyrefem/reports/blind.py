@@ -1,4 +1,4 @@
-"""A blind benchmark as JSON and in one picture: rates with intervals, stated and true probabilities, every effect."""
+"""Files of a blind test: JSON, and one picture of rates with intervals, reliability and every effect."""
 
 from __future__ import annotations
 
@@ -23,7 +23,7 @@ FILES = ("blind.json", "blind.png")
 
 
 def save(rates: Blind, folder: Path) -> None:
-    """Write ``blind.json`` and ``blind.png``, each complete or not there.
+    """Write ``blind.json`` and ``blind.png``, each completely or not at all.
 
     Raises
     ------
@@ -37,7 +37,7 @@ def save(rates: Blind, folder: Path) -> None:
 
 
 def picture(blind: Blind) -> Figure:
-    """Three parts: rates; reliability; cases by effect. Intervals of 95 % (Wilson)."""
+    """Draw rates, reliability and cases by effect, with 95 % intervals (Wilson)."""
     rates = [(name, rate) for name, rate in blind.rates.items() if rate.of]
     effects = blind.by_effect
     left = LINE * max(len(rates), 8)
@@ -78,7 +78,7 @@ def _reliability(axes: Any, blind: Blind) -> None:
     axes.set_xlim(0.4, 1.02)
     axes.set_ylim(0.0, 1.05)
     axes.set_xlabel("probability stated by 'identified' [-]", fontsize=FONT)
-    axes.set_ylabel("share that was right [-]", fontsize=FONT)
+    axes.set_ylabel("observed frequency [-]", fontsize=FONT)
     axes.legend(fontsize=FONT - 1, frameon=False, loc="lower left")
     tidy(axes)
 
@@ -95,7 +95,7 @@ def _effects(axes: Any, effects: Any) -> None:
     )
     axes.set_yticks(places, [plain(row["effect"]) for row in effects], fontsize=FONT - 1)
     axes.set_ylim(-0.6, len(effects) - 0.4)
-    axes.set_xlabel("cases with one effect", fontsize=FONT)
+    axes.set_xlabel("number of cases with one hidden effect [-]", fontsize=FONT)
     axes.xaxis.get_major_locator().set_params(integer=True)
     axes.legend(fontsize=FONT - 1, frameon=False, loc="lower right", bbox_to_anchor=(1.0, 1.0), ncols=3)
     axes.set_xlim(0, max(row["cases"] for row in effects) * 1.02)

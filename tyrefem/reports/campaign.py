@@ -1,4 +1,4 @@
-"""A campaign in a folder: a table and a folder per case as they finish; and one page, with two pictures, of all."""
+"""Files of a campaign: a table and a folder per case, written as cases finish, and one page with two pictures."""
 
 from __future__ import annotations
 
@@ -20,7 +20,7 @@ if TYPE_CHECKING:
     from matplotlib.figure import Figure
 
 
-#: With more cases than this their names are left out of the pictures: they would be too small to read.
+#: Largest number of cases whose names are drawn: more names would be too small to read.
 MOST_NAMES = 60
 
 
@@ -40,11 +40,11 @@ def run_campaign(
 ) -> pd.DataFrame:
     """Run a campaign into a folder: a folder per case, ``campaign.csv`` and ``summary.json``.
 
-    The table is written anew after every case, so that an interrupted campaign leaves what it finished.
-    ``each`` may write more of a case (pictures, VTK) into its folder.
+    The table is written again after every case, so that an interrupted campaign keeps its finished cases.
+    ``each`` may write more files of a case (pictures, VTK) into its folder.
     """
     rows: list[dict[str, Any]] = []
-    # From the start on: an older campaign's table in this folder must not pass for this one's.
+    # Written at the start: an older campaign's table in this folder must not be taken for this one's.
     table = _write_table(campaign, rows, folder)
     for case, outcome in campaign.runs(progress):
         try:
@@ -54,7 +54,7 @@ def run_campaign(
                 if each is not None:
                     each(outcome, folder / "cases" / case.name)
         finally:
-            # A case whose pictures were interrupted is finished all the same.
+            # A case is finished even if its pictures were interrupted.
             with interruption_delayed():
                 rows.append(row(case, outcome))
                 table = _write_table(campaign, rows, folder)
@@ -89,9 +89,9 @@ def _summary(campaign: CampaignData, table: pd.DataFrame, complete: bool) -> dic
 
 
 def write_campaign_report(campaign: CampaignData, table: pd.DataFrame, path: str | Path) -> Path:
-    """Write one self-contained page: all cases in a table, two pictures, failed cases with their reasons.
+    """Write one self-contained page: a table of all cases, two pictures, failed cases with their reasons.
 
-    ``table`` is what `run_campaign` returns.
+    ``table`` is the return value of `run_campaign`.
 
     Raises
     ------
@@ -120,7 +120,7 @@ def write_campaign_report(campaign: CampaignData, table: pd.DataFrame, path: str
 
 
 def finished(table: pd.DataFrame) -> pd.DataFrame:
-    """The cases that have a result, by tyre, pressure and load."""
+    """The cases with a result, sorted by tyre, pressure and load."""
     done = table[table["failure"] == ""]
     return done.sort_values(["section", "pressure_Pa", "load_N"], kind="stable") if len(done) else done
 
@@ -158,9 +158,9 @@ _AXES = {
 
 
 def bars(done: pd.DataFrame, column: str) -> Figure:
-    """One dot per case on its own line, coloured by tyre, in groups of one inflation pressure.
+    """Draw one dot per case on a separate line, coloured by tyre, grouped by inflation pressure.
 
-    The lines reach from side to side: the axis does not begin at 0, and a bar's length would tell a wrong ratio.
+    Dots, not bars: the axis does not begin at 0, so the lengths of bars would show a wrong ratio.
     """
     name, label, form = _AXES[column]
     named = len(done) <= MOST_NAMES
@@ -203,5 +203,5 @@ def bars(done: pd.DataFrame, column: str) -> Figure:
     axes.legend(
         loc="lower right", bbox_to_anchor=(1.0, 1.0), ncols=4, frameon=False, fontsize=FONT - 0.5, borderaxespad=0.1
     )
-    title(drawn, f"{name.capitalize()} by case", "in the order of tyre, inflation pressure and load")
+    title(drawn, f"{name.capitalize()} by case", "sorted by tyre, inflation pressure and load")
     return drawn

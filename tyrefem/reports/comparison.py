@@ -1,7 +1,4 @@
-"""Pictures of a comparison: histories as small multiples, and a map of the deviations.
-
-A comparison in a folder: tables, pictures, and one self-contained HTML page, summary first.
-"""
+"""Files of a comparison: tables, pictures of histories and deviations, and one self-contained HTML page."""
 
 from __future__ import annotations
 
@@ -30,11 +27,11 @@ if TYPE_CHECKING:
 COMPUTED, MEASURED, BEYOND = "#1f5a96", "#d1600a", "#a4161a"
 
 
-#: More points than this per panel are thinned out in the picture (never in the tables).
+#: Largest number of points drawn per panel (the tables hold all).
 MOST_POINTS = 400
 
 
-#: More columns than this are not legible on a page.
+#: Largest number of columns that are legible on a page.
 MOST_COLUMNS = 15
 
 
@@ -58,7 +55,7 @@ def histories(comparison: ComparisonData, run: str) -> Figure:
     sensors = list(residuals["sensor"].unique())
     columns = min(3, len(sensors))
     rows = math.ceil(len(sensors) / columns)
-    # Margins in inches by hand: a layout engine would take longer than all the drawing.
+    # Margins in inches are computed here: a layout engine takes longer than the drawing.
     width, height = max(3.6 * columns, 5.0) + 0.6, 2.5 * rows + 1.2
     edges = {"left": 0.65 / width, "right": 1 - 0.1 / width, "bottom": 0.8 / height, "top": 1 - 0.65 / height}
     figure = Figure(figsize=(width, height))
@@ -89,7 +86,7 @@ def histories(comparison: ComparisonData, run: str) -> Figure:
 
 
 def _phases(residuals: pd.DataFrame, divisor: float) -> list[Phase]:
-    """Where the readings of a run's phases begin and end."""
+    """Start and end of the readings of every phase of a run."""
     spans = residuals.groupby("phase", sort=False)["time_s"].agg(["min", "max"]) / divisor
     starts = spans["min"].sort_values()
     ends = [*starts.iloc[1:], float(spans["max"].max())]
@@ -121,9 +118,9 @@ def _history(
 
 
 def deviations(comparison: ComparisonData) -> Figure:
-    """A map: sensors down, runs and their phases across; colour and upper number the mean, lower the rms.
+    """Draw a map with sensors as rows, runs and phases as columns; colour and upper number: mean, lower number: rms.
 
-    Phases are left out where a run has but one, or where they would make the map wider than a page.
+    Phases are left out if every run has only one, or if they would make the map wider than a page.
     """
     from matplotlib.figure import Figure
 
@@ -136,7 +133,7 @@ def deviations(comparison: ComparisonData) -> Figure:
     width, height = 0.85 * len(columns) + 3.0, 0.42 * len(sensors) + 2.0
     figure = Figure(figsize=(max(width, 7.0), height), layout="constrained")
     axes = figure.subplots()
-    # Noise alone shall not look like a fire: full colour is at least k u_val.
+    # Noise alone must not get strong colours: full colour is at least k u_val.
     largest = max(float(table["bias_K"].abs().max()), comparison.k * float(table["u_val_K"].max()), 1.0)
     for cell in table.to_dict(orient="records"):
         i, j = sensors.index(cell["sensor"]), columns.index((cell["run"], cell["phase"]))
@@ -176,7 +173,7 @@ def _rows(comparison: ComparisonData, run: str, sensor: str, phase: str) -> pd.D
 
 
 def _plain(text: object) -> str:
-    """Text as it stands: a dollar sign would start a formula."""
+    """Escape dollar signs, which would start a formula."""
     return str(text).replace("$", r"\$")
 
 
@@ -194,10 +191,10 @@ FILES = ("comparison.csv", "residuals.csv", "comparison.json", "comparison.html"
 
 
 def save(comparison: ComparisonData, folder: str | Path) -> Path:
-    """Write tables, pictures and a self-contained page into a folder; returns the page.
+    """Write tables, pictures and a self-contained page into a folder; return the page's path.
 
     ``comparison.csv``, ``residuals.csv``, ``comparison.json``, ``histories-<run>.png``, ``deviations.png``,
-    ``comparison.html``. Each file is complete or not there.
+    ``comparison.html``. Each file is written completely or not at all.
 
     Raises
     ------
@@ -217,7 +214,7 @@ def save(comparison: ComparisonData, folder: str | Path) -> Path:
 
 
 def page(comparison: ComparisonData, images: Mapping[str, bytes]) -> str:
-    """The page's HTML; ``images`` maps file name -> PNG, as `tyrefem.reports.comparison.pictures` returns."""
+    """The page's HTML; ``images``: file name -> PNG, from `tyrefem.reports.comparison.pictures`."""
     from jinja2 import Environment, FileSystemLoader, StrictUndefined
 
     environment = Environment(

@@ -1,4 +1,4 @@
-"""A diagnosis in a folder: record, amended study, tables, pictures, and one self-contained page, verdict first."""
+"""Files of a diagnosis: record, amended study, tables, pictures, and one self-contained page, verdict first."""
 
 from __future__ import annotations
 
@@ -29,21 +29,21 @@ if TYPE_CHECKING:
 PAGE = "diagnosis.html"
 _FILES = ("verdict.json", AMENDED, "difference.txt", "where.csv", "histories.csv", PAGE, "rms.png", "residual-map*.png",
           "probabilities.png", "histories-*.png", "missing-heat*.png")  # fmt: skip
-#: Looks at the same data at most.
+#: Largest number of looks at the same data.
 MOST_LOOKS = 9
 #: Files that `save` may write.
 FILES = tuple(f"{words.AGAIN}/" * look + name for look in range(MOST_LOOKS) for name in _FILES)
-#: Rows that are shown before the rest is folded away.
+#: Number of rows shown; the rest can be unfolded.
 SHOWN = 12
-#: Gain, ln of odds, that is worth a row.
+#: Smallest gain that gets a row, ln of odds.
 TELLS = 0.1
 
 
 def save(d: DiagnosisData, folder: str | Path) -> Path:
-    """Write everything into a folder, each file complete or not there; returns the page.
+    """Write all files of a diagnosis into a folder, each completely or not at all; return the page's path.
 
     ``verdict.json``, ``amended.toml``, ``difference.txt``, ``where.csv``, ``histories.csv``, the pictures, and
-    ``diagnosis.html``. A further look at the data has a folder ``again``, unless it left no gap.
+    ``diagnosis.html``. A further look at the data has a folder ``again``, unless there is no gap left.
 
     Raises
     ------
@@ -66,7 +66,7 @@ def save(d: DiagnosisData, folder: str | Path) -> Path:
 
 
 def page(d: DiagnosisData, images: Mapping[str, bytes], *, version: str) -> str:
-    """The page's HTML; ``images`` maps file name -> PNG, as `tyrefem.reports.diagnosis_figures.pictures` returns."""
+    """The page's HTML; ``images``: file name -> PNG, from `tyrefem.reports.diagnosis_figures.pictures`."""
     from jinja2 import Environment, PackageLoader, StrictUndefined
 
     environment = Environment(
@@ -99,19 +99,19 @@ def page(d: DiagnosisData, images: Mapping[str, bytes], *, version: str) -> str:
 
 
 def _numbers(d: DiagnosisData) -> list[dict[str, str]]:
-    """Root mean squares before and after, fitted and held out."""
+    """Root mean square deviations of fitted and held-out runs, original and amended."""
     numbers = []
     for held_out, name in ((False, "fitted runs"), (True, "held-out runs")):
         before, after = (d.rms(after=after, held_out=held_out) for after in (False, True))
         if math.isfinite(before):
             value = f"{before:.2f} → {after:.2f} K"
             numbers.append({"label": f"rms on {name}", "value": value, "note": "original → amended"})
-    note = "what no model can go below"
+    note = "smallest rms that a model can reach"
     return [*numbers, {"label": "noise of the readings", "value": f"{d.noise:.2f} K", "note": note}]
 
 
 def _named(d: DiagnosisData) -> list[dict[str, Any]]:
-    """The effects that the amended study has beyond the original, as a person reads them."""
+    """Text on the effects that the amended study adds to the original."""
     if d.verdict not in (IDENTIFIED, CONFOUNDED, UNEXPLAINED):
         return []
     return [
@@ -151,7 +151,7 @@ def _set(row: Mapping[str, Any]) -> dict[str, Any]:
 
 
 def _fitness(row: Mapping[str, Any]) -> dict[str, str]:
-    """How well a set does, or nothing where the full model was not fitted."""
+    """Misfits of a set, empty if the full model was not fitted."""
     shown = {"at_bound": "at a bound" if row.get("at_bound") else ""}
     for keys, form in ((("rms_K", "held_out_rms_K"), ".2f"), (("p_value", "held_out_p"), ".2g")):
         for key in keys:
@@ -183,10 +183,10 @@ def _correction(d: DiagnosisData, change: Change) -> dict[str, str]:
         }
     if unknown.effect == "film-scale":
         film = dict(unknown.choice)["film"].replace("_", " ")
-        # The parameter is ln of a factor: a person reads the factor.
+        # The parameter is ln of a factor; the page shows the factor.
         return {
             "what": f"film coefficient, {film}",
-            "original": "as its law says",
+            "original": "from its law",
             "amended": f"times {math.exp(change.x):.3g}",
             "change": f"{100 * (math.exp(change.x) - 1):+z.1f} ± {100 * change.sd:.1f} %",
             "prior": f"± {100 * unknown.sd:.0f} %",
@@ -205,7 +205,7 @@ def _prior(unknown: Unknown) -> str:
 
 
 def _offers(d: DiagnosisData, kind: str, what: str, at: str) -> list[dict[str, Any]]:
-    """Sensors or drives that would tell something, with what they change."""
+    """Sensors or drives that would change the probabilities, with their gain."""
     offers = []
     for offer in d.next_experiment.get(kind, ()):
         changes = ", ".join(f"{key} = {value}" for key, value in offer.get("changes", {}).items())
@@ -215,29 +215,29 @@ def _offers(d: DiagnosisData, kind: str, what: str, at: str) -> list[dict[str, A
 
 
 def _linear(d: DiagnosisData) -> list[str]:
-    """What the fits take for the strain cycles of finite elements."""
+    """Assumption of the fits on strain cycles by finite elements."""
     if not strain_law(d.original).by_elements:
         return []
     count = len(NearbyCycles(d.original).numbers)
     return [
-        f"In the fits, strain cycles by finite elements are linear in {count} numbers: one solution for each at every "
-        "load. The study itself, before and after, is solved in full."
+        f"In the fits, strain cycles by finite elements are linear in {count} numbers, with one solution for each at "
+        "every load. Original and amended study are solved without this approximation."
     ]
 
 
 def _assumed(d: DiagnosisData) -> list[str]:
     choice = d.original.card.diagnosis
     return [
-        f"Probability beforehand that anything is missing: {percent(choice.effects_expected)}, shared by "
+        f"Prior probability that an effect is missing: {percent(choice.effects_expected)}, shared by "
         f"{len({candidate.name for candidate in d.candidates})} effects ({len(d.candidates)} with their variants) "
         "and their sets.",
-        f"Film coefficients are known to {100 * choice.film_sd:.0f} %; base numbers as the cards and the study's "
-        "[uncertainty] table state; each sensor's place, lag and offset as its entry states.",
+        f"Relative standard deviation of film coefficients: {100 * choice.film_sd:.0f} %. That of base numbers is in "
+        "the cards and the study's [uncertainty] table; that of a sensor's place, lag and offset is in its entry.",
         *(f"Base numbers {line}." for line in left_out(d.original.uncertain_numbers)),
         *_linear(d),
-        f"Even a right model misses by {choice.discrepancy:g} K, correlated over {choice.correlation_time:g} s; the "
-        "noise of readings is independent.",
+        f"A correct model deviates by {choice.discrepancy:g} K (standard deviation), correlated over "
+        f"{choice.correlation_time:g} s. The noise of readings is independent.",
         *([f"Excluded by the study: {', '.join(choice.exclude)}."] if choice.exclude else []),
-        "About every fit the model is taken as linear within its uncertainty (Laplace); parameters have Gaussian "
-        "priors cut at the bounds that physics sets.",
+        "The model is linear within the uncertainty of every fit (Laplace approximation). Parameters have Gaussian "
+        "priors, truncated at physical bounds.",
     ]

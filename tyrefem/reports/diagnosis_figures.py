@@ -37,12 +37,12 @@ if TYPE_CHECKING:
     from tyrefem.diagnose.diagnosis import DiagnosisData
 
 BEFORE, AFTER = PALETTE[1], PALETTE[0]
-#: Tint of what no fit has seen.
+#: Background of held-out runs.
 HELD_OUT = "#f6f3e4"
 
 
 def pictures(d: DiagnosisData) -> dict[str, bytes]:
-    """File name -> PNG: ``rms``, ``residual-map``, ``probabilities``, ``missing-heat`` where unexplained, histories."""
+    """File name -> PNG: ``rms``, ``residual-map``, ``probabilities``, ``missing-heat`` if unexplained, histories."""
     drawn = {"rms.png": rms_figure(d), **residual_figures(d), "probabilities.png": probabilities_figure(d)}
     if d.verdict == UNEXPLAINED:
         drawn |= missing_figures(d)
@@ -59,7 +59,7 @@ def pictures(d: DiagnosisData) -> dict[str, bytes]:
 
 
 def rms_figure(d: DiagnosisData) -> Figure:
-    """One panel per run: a pair of bars for every sensor, original and amended; held-out runs on a tinted ground."""
+    """Draw a panel per run: two bars for every sensor, original and amended; held-out runs have a tinted background."""
     table = rms_table(d)
     runs = list(table["run"].unique())
     sensors = list(dict.fromkeys(table["sensor"]))
@@ -90,7 +90,7 @@ def _rms_panel(axes: Axes, part: pd.DataFrame, sensors: list[str], largest: floa
         y = sensors.index(row["sensor"])
         for shift, key, color in ((-0.19, "before_K", BEFORE), (0.19, "after_K", AFTER)):
             axes.barh(y + shift, row[key], height=0.36, color=color)
-            # A number must not stand on the tick of the noise.
+            # A number must not cover the tick of the noise.
             near = abs(row[key] - row["noise_K"]) < 0.06 * largest
             end = max(row[key], row["noise_K"]) if near else row[key]
             axes.text(end + 0.012 * largest, y + shift, f"{row[key]:.1f}", fontsize=FONT - 2, va="center", color=INK)
@@ -134,7 +134,7 @@ def _dashes(color: str) -> Any:
 
 
 def histories_figure(d: DiagnosisData, number: int) -> Figure:
-    """One run, a panel per sensor: measured readings with both curves, and below what each of them leaves."""
+    """Draw one run, a panel per sensor: measured readings and both curves, with the deviations of both below."""
     trial = d.gap.trials[number]
     columns = min(3, len(trial.sensors))
     rows = math.ceil(len(trial.sensors) / columns)
@@ -164,7 +164,7 @@ def histories_figure(d: DiagnosisData, number: int) -> Figure:
             lower.tick_params(labelleft=False)
         if place + columns >= len(trial.sensors):
             lower.set_xlabel(f"time [{unit}]", fontsize=FONT)
-    held = "held out: no fit has seen it" if trial.hold_out else "fitted"
+    held = "held out: used in no fit" if trial.hold_out else "fitted"
     title(drawn, f"{trial.name} ({held})", "")
     _legend(drawn, [("original", BEFORE), ("amended", AFTER)], "noise ± 1 sd of a block", measured=True)
     return drawn
@@ -176,7 +176,7 @@ def _last(trial: Trial) -> float:
 
 
 def _phases(d: DiagnosisData, number: int, divisor: float) -> list[Phase]:
-    """The phases of a run's drive, as far as there are readings."""
+    """The phases of a run's drive, up to the last reading."""
     drive, last = d.gap.driven(number).card.drive, _last(d.gap.trials[number])
     return [
         (phase.name, start / divisor, min(start + phase.duration, last) / divisor)
@@ -186,7 +186,7 @@ def _phases(d: DiagnosisData, number: int, divisor: float) -> list[Phase]:
 
 
 def _spans(d: DiagnosisData, number: int, trial: Trial) -> tuple[tuple[float, float], tuple[float, float]]:
-    """Limits of temperatures and of deviations that all sensors of a run share."""
+    """Common axis limits of temperature and deviation for all sensors of a run."""
     values = np.concatenate([trial.measured, d.before[number], d.after[number]])
     left = np.concatenate([trial.measured - d.before[number], trial.measured - d.after[number], [0.5, -0.5]])
     return tuple(  # type: ignore[return-value]
@@ -219,7 +219,7 @@ def _history(d: DiagnosisData, number: int, series: MeasuredSensor, upper: Axes,
 
 
 def probabilities_figure(d: DiagnosisData, most: int = 8) -> Figure:
-    """How probable each effect is to be part of the truth, and each set of effects to be the truth."""
+    """Draw the probability that each effect is present, and the probability of each set of effects."""
     members = {member.key for member in d.best.members}
     effects = [(_key(row), row["probability"]) for row in candidate_rows(d)[:most]]
     sets = [(" + ".join(row["effects"]) or "no effect", row["probability"]) for row in set_rows(d, most)]
@@ -229,8 +229,8 @@ def probabilities_figure(d: DiagnosisData, most: int = 8) -> Figure:
     lower = add_axes(drawn, 3.6, 0.5, 4.4, heights[1])
     upper = add_axes(drawn, 3.6, 0.5 + heights[1] + 0.62, 4.4, heights[0])
     for axes, rows, what in (
-        (upper, effects, "effect: probability that it is part of the truth"),
-        (lower, sets, "set of effects: probability that it is the truth"),
+        (upper, effects, "effect: probability that it is present"),
+        (lower, sets, "set of effects: probability that exactly these are present"),
     ):
         for y, (name, probability) in enumerate(rows):
             chosen = name in members or name == best or set(name.split(" + ")) == members
@@ -243,7 +243,7 @@ def probabilities_figure(d: DiagnosisData, most: int = 8) -> Figure:
         axes.grid(axis="y", visible=False)
         axes.set_title(what, fontsize=FONT, loc="left", pad=4)
     lower.set_xlabel("probability", fontsize=FONT)
-    title(drawn, "What explains the data", "")
+    title(drawn, "Probabilities of effects and of sets", "")
     return drawn
 
 

@@ -1,4 +1,4 @@
-"""What a diagnosis shows on the section: deviations at the sensors, and heat of unknown origin."""
+"""Pictures of a diagnosis on the section: deviations at the sensors, and heat of unknown origin."""
 
 from __future__ import annotations
 
@@ -35,13 +35,13 @@ if TYPE_CHECKING:
 
 Array = NDArray[np.float64]
 DIVERGING = "RdBu_r"
-#: Share of the tyre's width that is between the two states of a sensor at the crown at least: they do not overlap.
+#: Smallest distance of the two states of a sensor at the crown, as a share of the tyre's width.
 APART = 0.032
 
 
 def residual_figures(d: DiagnosisData) -> dict[str, Figure]:
-    """Mean deviation at every sensor on the section: original left and amended right, or one picture each for a full
-    section.
+    """Draw the mean deviation at every sensor: original left and amended right on a half section; on a full section,
+    one picture each.
     """
     table = rms_table(d)
     places = {name: d.original.section_place(card) for name, card in d.original.sensors.items()}
@@ -66,14 +66,14 @@ def residual_figures(d: DiagnosisData) -> dict[str, Figure]:
 def _residuals(
     section: Section, places: dict[str, tuple[float, float]], means: dict[str, dict[str, float]], largest: float
 ) -> Figure:
-    """Sensors coloured by their mean deviation; two states on the two sides of a half section."""
+    """Draw sensors coloured by their mean deviation; two states on the two sides of a half section."""
     left: list[tuple[Label, float]] = []
     right: list[tuple[Label, float]] = []
     for number, values in enumerate(means.values()):
         for name, value in values.items():
             x, y = (float(place) for place in millimetres(places[name]))
             if len(means) == 2:
-                # A state has its own side; at the crown both would have one place.
+                # Each state has one side; at the crown both states would be at the same place.
                 x = (-1.0 if number == 0 else 1.0) * max(abs(x), APART / 2 * section.overall_width * 1e3)
                 side = right if number else left
             else:
@@ -96,13 +96,13 @@ def _residuals(
         for name, sign in zip(names, (-1.0, 1.0), strict=True):
             drawn.axes.text(sign * drawn.width / 4, drawn.low - 0.2 * drawn.scale, name, fontsize=FONT + 1,
                             fontweight="bold", ha="center", va="center", color=INK)  # fmt: skip
-    second = "mean over all runs and readings; red: the tyre is hotter than the model says"
+    second = "mean over all runs and readings; red: the tyre is hotter than the model"
     title(drawn.figure, f"Deviation on the section: {' and '.join(names)} study", second)
     return drawn.figure
 
 
 def _ground(drawn: Canvas) -> None:
-    """The section in one pale colour, with its outlines."""
+    """Draw the section in one pale colour, with its outlines."""
     section = drawn.section
     for region in section.regions:
         for polygon in section.outline(region, 1e-3):
@@ -118,12 +118,12 @@ def _ground(drawn: Canvas) -> None:
 
 
 def missing_figures(d: DiagnosisData) -> dict[str, Figure]:
-    """Where the missing heat is: on the section, and by station with its uncertainty, run by run."""
+    """Pictures of the missing heat: on the section, and by station and run with its uncertainty."""
     return {"missing-heat.png": _missing_map(d), "missing-heat-stations.png": _missing_stations(d)}
 
 
 def _missing_map(d: DiagnosisData) -> Figure:
-    """Left: heat inside, W/m3, through the thickness. Right: flux through the outer surface, W/m2, as a band on it."""
+    """Draw heat inside, W/m3, over the thickness (left), and flux into the outer surface, W/m2, as a band (right)."""
     missing, section = d.missing, d.original.section
     drawn = canvas(section, bars=2)
     _ground(drawn)
@@ -154,26 +154,26 @@ def _missing_map(d: DiagnosisData) -> Figure:
 
 
 def _smooth(stations: Array, values: Array, s: Array) -> Array:
-    """The sum of the patches along the meridian, each a bell of 0.6 of the spacing (see the effects)."""
+    """The sum of the patches along the meridian, each a bell of width 0.6 times the spacing (see the effects)."""
     width = 0.6 * float(stations[1] - stations[0])
     return np.asarray(np.exp(-(((s[:, None] - stations) / width) ** 2) / 2) @ values)
 
 
 def _scaled(values: Array, unit: str) -> tuple[Array, str]:
-    """Values in the unit with the prefix that suits the largest, and that unit."""
+    """Convert values to the unit whose prefix fits the largest; return them and the unit."""
     divisor, shown = si(float(np.abs(values).max()), unit)
     return values / divisor, shown
 
 
 def _outwards(x: Array, y: Array, distance: float) -> tuple[Array, Array]:
-    """A curve moved to its outer side (away from the tyre's air space), mm."""
+    """A curve shifted outwards, away from the tyre's air space, mm."""
     dx, dy = np.gradient(x), np.gradient(y)
     length = np.hypot(dx, dy)
     return x - dy / length * distance, y + dx / length * distance
 
 
 def _missing_stations(d: DiagnosisData) -> Figure:
-    """Two panels over the meridian: heat and flux of every fitted run with their standard deviations."""
+    """Draw heat and flux of every fitted run with their standard deviations, over the meridian."""
     missing, section = d.missing, d.original.section
     drawn = figure(9.4, TITLE + 5.2)
     panels = [add_axes(drawn, 0.85, bottom, 8.3, 2.0) for bottom in (2.95, 0.5)]
@@ -209,7 +209,7 @@ def _missing_stations(d: DiagnosisData) -> Figure:
 
 
 def _zones(axes: Axes, section: Section) -> None:
-    """Shade the sidewall and the bead, and say so."""
+    """Shade the sidewall and the bead, with a label."""
     shoulder, end = section.line.shoulder_s * 1e3, section.line.length * 1e3
     for number, (name, start, stop) in enumerate((("crown", 0.0, shoulder), ("sidewall and bead", shoulder, end))):
         axes.axvspan(start, stop, color=FILLS[number], alpha=0.28, lw=0, zorder=0)

@@ -1,7 +1,4 @@
-"""What went into a run: materials with their sources, boundary laws, mechanics, assumptions, the study file.
-
-What the model leaves out or takes on trust, as far as it concerns a study.
-"""
+"""Inputs of a run in its report: materials with sources, boundary laws, mechanics, study file, assumptions."""
 
 from __future__ import annotations
 
@@ -26,7 +23,7 @@ if TYPE_CHECKING:
 
 
 def material_rows(study: StudyData) -> tuple[list[dict[str, Any]], list[str]]:
-    """One row per number: region, card, property, value, uncertainty, source, estimate or not; and the estimates."""
+    """One row per number: region, card, property, value, uncertainty, source, whether estimated; and the estimates."""
     rows, estimates = [], []
     idle = {table for number in study.uncertain_numbers if number.idle for table in number.tables}
     names = {id(entry): where for card in study.materials.values() for where, entry in stated_deviations(card)}
@@ -38,7 +35,7 @@ def material_rows(study: StudyData) -> tuple[list[dict[str, Any]], list[str]]:
             heads = ["", ""] if row else [region, card.title]
             sd = "–" if entry.relative_sd is None else f"± {100 * entry.relative_sd:.0f} %"
             if f"materials.{region}.{names.get(id(entry), '')}" in idle:
-                sd += ", cannot matter here"
+                sd += ", not used here"
             rows.append({"cells": [*heads, label, value, sd, entry.source], "estimate": guess, "first": not row})
     return rows, estimates
 
@@ -107,7 +104,7 @@ def _cords(cords: Cords) -> str:
 
 
 def _law(law: Any, unit: str) -> str:
-    """A number, or the ends of a table in temperature."""
+    """A number, or the first and last value of a table over temperature."""
     if not callable(law):
         return f"{number(law)} {unit}"
     temperatures = getattr(law, "temperatures", None)
@@ -119,7 +116,7 @@ def _law(law: Any, unit: str) -> str:
 
 
 def boundary_rows(study: StudyData) -> list[list[str]]:
-    """Side, law, what it says, and its numbers in SI."""
+    """One row per side: side, law, its description, and its numbers in SI."""
     laws = study.card.boundaries
     rows = []
     rubs = any(phase.slides for phase in study.card.drive.phases)
@@ -131,7 +128,7 @@ def boundary_rows(study: StudyData) -> list[list[str]]:
 
 
 def mechanics_rows(study: StudyData) -> list[list[str]]:
-    """Name and value of every choice about strain and load."""
+    """Name and value of every setting of strain and load."""
     mechanics = study.card.mechanics
     law, energy = mechanics.load_law, mechanics.energy if mechanics.strain == "given" else None
     rows = [
@@ -159,10 +156,10 @@ def mechanics_rows(study: StudyData) -> list[list[str]]:
 
 
 def _load(study: StudyData) -> list[str]:
-    """What a strain law that presses the tyre itself makes of the study's laws of load and footprint."""
-    words = "by finite elements, footprint and rolling radius too; the study's load law and footprint law are not read"
+    """Row on load and deflection for a strain law that computes them by pressing the tyre."""
+    words = "by finite elements, with footprint and rolling radius; the study's load law and footprint law are not used"
     if any(effect.name in ("pressure-rise", "pressure-loss") for effect in study.effects):
-        words += ", but for how much effects on the pressure change the deflection"
+        words += ", except for the change of deflection by effects on the pressure"
     return ["load and deflection", words]
 
 
@@ -175,7 +172,7 @@ def _feedback(mechanics: Mechanics) -> list[list[str]]:
 
 
 def effect_rows(study: StudyData) -> list[list[str]]:
-    """Name, sentence, values with their standard deviations, and where they come from, of every effect at work."""
+    """One row per active effect: name, sentence, values with standard deviations, and their source."""
     rows = []
     for effect in study.effects:
         values = [f"{name} {text}" for name, text in effect.choice.items()]
@@ -189,7 +186,7 @@ def effect_rows(study: StudyData) -> list[list[str]]:
 
 
 def _numbers(card: Card) -> list[str]:
-    """Every field with its unit; those the study leaves at their defaults say so."""
+    """Every field with its unit; default values are marked."""
     numbers = []
     for name, info in type(card).model_fields.items():
         value = getattr(card, name)
@@ -206,7 +203,7 @@ def _numbers(card: Card) -> list[str]:
 
 
 def _unit(parts: list[Any]) -> str:
-    """The unit in a field's annotation, however deep; empty where there is none."""
+    """The unit in a field's annotation, also a nested one; empty if there is none."""
     for part in parts:
         if isinstance(part, Unit):
             return "" if part.unit == "1" else part.unit.replace("delta_degC", "K").replace("degC", "°C")
@@ -217,7 +214,7 @@ def _unit(parts: list[Any]) -> str:
 
 
 def section_sources(study: StudyData) -> list[list[str]]:
-    """Table of the section's card -> the source it names."""
+    """Tables of the section's card and their sources."""
     from tyrefem import library
 
     data, _, _ = library.load("section", study.data["section"], study.folder)
@@ -238,28 +235,28 @@ def _sources(data: Any, where: str) -> Iterator[tuple[str, str]]:
 
 
 def study_text(study: StudyData) -> tuple[str, bool]:
-    """The study's file, and whether it is the file as written; if values were changed, the study as it was run."""
+    """The study's file and True; if values were changed, the study as it was run and False."""
     if study.file is not None and study.file.is_file():
         text = study.file.read_text(encoding="utf-8-sig")
         try:
             if tomllib.loads(text) == dict(study.data):
                 return text, True
         except tomllib.TOMLDecodeError:
-            pass  # edited since the run: show what was run
+            pass  # edited since the run: show the study that was run
     import tomli_w
 
     return tomli_w.dumps(dict(study.data)), False
 
 
 ALWAYS = {
-    "Axisymmetric deformation": "A material point passes once per revolution from the inflated section to the section "
-    "under the footprint's centre, as if the whole tyre were pressed in a barrel; what happens at the footprint's "
-    "edges and along the circumference is not resolved.",
-    "Films averaged over the revolution": "The tread sees road and air for their shares of a revolution; flash "
-    "temperatures during contact, and any change around the circumference, are averaged out. At standstill the road "
-    "takes no heat.",
-    "Contained air of one temperature": "The strain cycle uses the drive's pressure; the pressure that rises with the "
-    "air's temperature is reported but does not change the deflection.",
+    "Axisymmetric deformation": "Once per revolution, a material point moves from the inflated section to the section "
+    "under the footprint's centre, as if the tyre were a barrel, compressed evenly all round. The footprint's edges "
+    "and changes along the circumference are not resolved.",
+    "Films averaged over the revolution": "The tread exchanges heat with road and air for their shares of a "
+    "revolution. Flash temperatures during contact and changes around the circumference are averaged out. At "
+    "standstill, no heat flows into the road.",
+    "Contained air of one temperature": "The strain cycle uses the drive's pressure. The pressure rise with the air's "
+    "temperature is reported, but it does not change the deflection.",
 }
 
 
@@ -267,23 +264,23 @@ FREE = {
     "Free, straight rolling": "No slip, steering, camber, braking or wear: no heat from sliding in the footprint.",
 }
 SLIDING = {
-    "Friction even over the footprint": "All of the footprint slides at one speed under one pressure. Its heat divides "
-    "between tread and road as they conduct; wear, water, tread gaps, camber and the strain of braking and cornering "
+    "Uniform friction in the footprint": "The whole footprint slides at one speed under one pressure. The effusivities "
+    "of tread and road divide its heat. Wear, water, tread gaps, camber and the strain of braking and cornering "
     "are left out.",
 }
 GIVEN = (
-    "The study gives every region's strain energy, in proportion to the deflection squared: temperatures and rolling "
-    "resistance are as good as these numbers."
+    "The study gives every region's strain energy, proportional to the deflection squared. Temperatures and rolling "
+    "resistance are as accurate as these numbers."
 )
 LOCKED = {
-    "A locked wheel's section stands for its patch": "The section modelled is the one on the road, and conduction "
-    "along the circumference is neglected: afterwards the tyre is as hot all round as at that patch, and the heat "
-    "budget counts a ring of such sections.",
+    "The section of a locked wheel is the one on the road": "Conduction along the circumference is neglected. After "
+    "the skid, the model's whole circumference is as hot as the section on the road, and the heat budget counts a "
+    "ring of such sections.",
 }
 
 
 def assumptions(study: StudyData, estimates: list[str]) -> list[tuple[str, str]]:
-    """(what, why it matters); ``estimates`` are the material entries that are marked as estimates."""
+    """Pairs of assumption and consequence; ``estimates``: material entries that are marked as estimates."""
     mechanics = study.card.mechanics
     drive = study.card.drive
     slip = SLIDING if any(phase.slides for phase in drive.phases) else FREE
@@ -297,7 +294,7 @@ def assumptions(study: StudyData, estimates: list[str]) -> list[tuple[str, str]]
     if mechanics.feedback is not None:
         always[-1] = ("Feedback of temperature on the strain cycle", _feedback_assumptions(mechanics.feedback))
     if slip is FREE and not all(effect.free_rolling for effect in study.effects):
-        slip = {name: f"{text} What the study's effects add stands beside this." for name, text in FREE.items()}
+        slip = {name: f"{text} The study's effects are added to this." for name, text in FREE.items()}
     stated = [always[0], *slip.items(), *locked.items(), *always[1:]]
     over_frequency = [region for region, card in study.materials.items() if card.loss_tangent.frequency is not None]
     laws = "depends on temperature, not on frequency"
@@ -315,26 +312,28 @@ def assumptions(study: StudyData, estimates: list[str]) -> list[tuple[str, str]]
         added = "; ".join(
             dict.fromkeys(f"{added_effect.name}: {added_effect.sentence.rstrip('.')}" for added_effect in study.effects)
         )
-        stated.append(("Effects beside the base model", f"{added}. Each says in the study where its values come from."))
+        stated.append(("Effects beside the base model", f"{added}. The study states the source of their values."))
     presses = strain_law(study).presses
     if mechanics.load_law.law == "tr-r-64" and not presses:
-        memory = "The load-deflection formula is quoted from memory of NASA TR R-64; a measured stiffness is better."
+        memory = "The load-deflection formula of NASA TR R-64 is quoted from memory; a measured stiffness is better."
         stated.append(("Load and deflection from memory", memory))
     if mechanics.footprint.law == "tr-r-64" and not presses:
-        stated.append(("Footprint from memory", "The footprint's length is that of NASA TR R-64, quoted from memory."))
+        stated.append(
+            ("Footprint from memory", "The formula of the footprint's length, of NASA TR R-64, is quoted from memory.")
+        )
     if estimates:
         stated.append(("Estimated material numbers", f"Marked in the table of materials: {'; '.join(estimates)}."))
     measured = (
-        "This study names measured tables; the comparison with them is a report of its own."
+        "This study names measured tables; 'tyrefem compare' writes the comparison with them."
         if study.measured
-        else "No measured temperatures belong to this study."
+        else "The study names no measured temperatures."
     )
     if strain_law(study).by_elements:
         return [*stated, ("Validation", f"The strain cycle by finite elements is verified, not validated. {measured}")]
     if given is not None:
-        return [*stated, ("Validation", f"The strain energy is given, so nothing of it is validated. {measured}")]
+        return [*stated, ("Validation", f"The strain energy is an input, and is not validated. {measured}")]
     scan = (
-        "The model follows Clark & Dodge (1980), whose measured temperature curves are illegible in the scan, so it "
+        "The model follows Clark & Dodge (1980). Their measured temperature curves are illegible in the scan, so it "
         f"has not been validated against them. {measured}"
     )
     return [*stated, ("Validation", scan)]
@@ -343,7 +342,7 @@ def assumptions(study: StudyData, estimates: list[str]) -> list[tuple[str, str]]
 def _feedback_assumptions(choice: Feedback) -> str:
     acting = [text for on, text in ((choice.pressure, "its pressure"), (choice.modulus, "every modulus")) if on]
     return (
-        "The contained air has one temperature and a constant volume. What follows the temperature: "
-        f"{' and '.join(acting) or 'nothing'}. A modulus is taken at its region's mean temperature, where the card "
-        "gives a softening."
+        "The contained air has one temperature and a constant volume. The temperature acts on: "
+        f"{' and '.join(acting) or 'nothing'}. A modulus follows its region's mean temperature if the card gives a "
+        "softening."
     )

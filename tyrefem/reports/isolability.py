@@ -1,4 +1,4 @@
-"""The picture of an isolability: who is told from whom."""
+"""Picture of an isolability: how well each effect is distinguished from every candidate."""
 
 from __future__ import annotations
 
@@ -10,7 +10,7 @@ from tyrefem.diagnose.isolability import MARGIN, Isolability
 
 
 def picture(isolability: Isolability) -> bytes:
-    """PNG: nats by which each effect at its usual strength is ahead of each rival; variants of a swap are left out."""
+    """PNG: lead, nats, of each effect at its usual strength over each candidate; variants of a swap are left out."""
     from matplotlib.backends.backend_agg import FigureCanvasAgg
     from matplotlib.colors import BoundaryNorm
     from matplotlib.figure import Figure
@@ -27,10 +27,11 @@ def picture(isolability: Isolability) -> bytes:
     image = axes.imshow(values, cmap="RdYlBu", norm=BoundaryNorm(levels, 256))
     axes.set_xticks(range(len(names)), names, rotation=90, fontsize=6)
     axes.set_yticks(range(len(names)), names, fontsize=6)
-    axes.set_xlabel("rival, fitted to it", fontsize=8)
+    axes.set_xlabel("fitted candidate", fontsize=8)
     axes.set_ylabel("hidden effect, at its usual strength", fontsize=8)
     axes.set_title(
-        f"{isolability.study}: lead of the truth over a rival (above {MARGIN:g} nats: told apart)", fontsize=9
+        f"{isolability.study}: lead of the hidden effect over a candidate (above {MARGIN:g} nats: distinguished)",
+        fontsize=9,
     )
     bar = figure.colorbar(image, ax=axes, shrink=0.7, ticks=levels[:-1])
     bar.set_label("lead, nats", fontsize=8)

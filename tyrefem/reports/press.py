@@ -1,7 +1,4 @@
-"""The whole pressed tyre as one VTK file: the section turned about the axis, every ring of nodes in its place.
-
-The files of `tyrefem press`: numbers, tables, pictures and the whole tyre for ParaView.
-"""
+"""Files of `tyrefem press`: numbers, tables, pictures, and the whole pressed tyre as a VTK file for ParaView."""
 
 from __future__ import annotations
 
@@ -33,11 +30,11 @@ Array = NDArray[Any]
 FINE, COARSE = np.radians(1.0), np.radians(6.0)
 
 
-#: Beyond this number of points each nine-node element becomes one hexahedron per step of the angle, not four.
+#: Above this number of points, each nine-node element becomes one hexahedron per angular step instead of four.
 MOST_POINTS = 450_000
 
 
-#: Angles whose strains are computed at a time.
+#: Number of angles whose strains are computed together.
 AT_ONCE = 24
 
 
@@ -61,12 +58,12 @@ def wheel_angles(near: float) -> Array:
 class RevolvedTyre:
     """Points, cells and fields of the whole deformed tyre; a half section gives both halves.
 
-    x is axial, y up from the wheel's centre, z backwards; the road is below. Hexahedra, turned so that their volumes
-    are positive where nothing is folded over.
+    x is axial, y up from the wheel's centre, z backwards; the road is below. The hexahedra's node order gives positive
+    volumes, unless an element is folded.
 
     Parameters
     ----------
-    pressed : the tyre. most_points : number beyond which elements are not cut in four.
+    pressed : the tyre. most_points : number of points above which elements are not cut in four.
     """
 
     pressed: Pressed
@@ -80,7 +77,7 @@ class RevolvedTyre:
 
     @cached_property
     def _section(self) -> tuple[Array, Array, Array, Array, Array]:
-        """Nodes (m,), side (m,) 1 or -1, cells (k, 4) in counts of these, their element (k,) and side (k,)."""
+        """Nodes (m,), their side (m,) 1 or -1, cells (k, 4) as indices of these, their element (k,) and side (k,)."""
         pressed = self.pressed
         rings, half = pressed.tyre.body.rings, pressed.pressing.tread.half
         nodes = rings.element_nodes
@@ -119,7 +116,7 @@ class RevolvedTyre:
 
     @cached_property
     def cells(self) -> Array:
-        """(n, 8) hexahedra: the section's cells between an angle and the next."""
+        """(n, 8) hexahedra between neighbouring angles."""
         nodes, _, quads, *_ = self._section
         size, count = len(nodes), len(self.angles)
         turned = quads[:, ::-1]
@@ -129,7 +126,7 @@ class RevolvedTyre:
 
     @cached_property
     def contact_pressure(self) -> Array:
-        """(n_points,) Pa; zero away from the tread."""
+        """(n_points,) contact pressure, Pa; zero outside the tread."""
         nodes, *_ = self._section
         footprint = self.pressed.footprint
         known, tread = footprint.grid.angles, footprint.grid.tread.nodes
@@ -141,8 +138,8 @@ class RevolvedTyre:
 
     @cached_property
     def strain_energy(self) -> Array:
-        """(n_cells,) e : C' : e / 2 of the strain beyond inflation in the middle of each step, J/m3; mean over the
-        element. C' is the stiffness of what loses energy: the rubber, and cords by the share that they lose."""
+        """(n_cells,) e : C' : e / 2, J/m3, of the strain beyond inflation in the middle of each step, mean over the
+        element. C' is the stiffness that loses energy: of the rubber, and of cords times their lossy share."""
         cycle = self.pressed.cycle
         weights = cycle.elements.weights / cycle.elements.weights.sum(axis=1, keepdims=True)
         storage = np.moveaxis(self.pressed.pressing.state.storage, (0, 1), (-2, -1))
@@ -156,7 +153,7 @@ class RevolvedTyre:
 
     @cached_property
     def loss(self) -> Array | None:
-        """(n_cells,) energy lost per revolution, J/m3; None: the wheel stands."""
+        """(n_cells,) energy lost per revolution, J/m3; None if the wheel does not roll."""
         loss = self.pressed.loss
         if loss is None:
             return None
@@ -165,13 +162,13 @@ class RevolvedTyre:
         return self._of_cells(np.broadcast_to(mean, (len(self.angles), len(mean))))
 
     def _of_cells(self, values: Array) -> Array:
-        """(angles, elements) as one value per cell."""
+        """Values (angles, elements) as one value per cell."""
         *_, parent, _ = self._section
         return np.asarray(values[:, parent]).ravel()
 
     @cached_property
     def regions(self) -> tuple[Array, dict[str, int]]:
-        """(n_cells,) numbers from 1 on, and what they stand for, by ``region_id_<name>``."""
+        """(n_cells,) region numbers from 1, and the number of each ``region_id_<name>``."""
         body = self.pressed.tyre.body
         numbers, names = np.zeros(body.mesh.t.shape[1], dtype=np.int32), {}
         for number, region in enumerate(self.pressed.study.section.regions, start=1):
@@ -180,7 +177,7 @@ class RevolvedTyre:
         return self._of_cells(np.broadcast_to(numbers, (len(self.angles), len(numbers)))), names
 
     def write(self, path: Path) -> Path:
-        """Write a compressed .vtu in single precision, whole or not at all.
+        """Write a compressed .vtu in single precision, completely or not at all.
 
         Point data ``displacement_m`` (from the tyre without pressure and load) and ``contact_pressure_Pa``; cell data
         ``region``, ``strain_energy_J_m3`` and ``loss_J_m3`` (per revolution); field data ``region_id_<name>``.
@@ -231,14 +228,14 @@ def write_files(
     vtk: bool = True,
 ) -> None:
     """``press.json``, ``load-deflection.csv``, ``strain-cycle.csv``, ``cord-tension.csv``, ``harmonics.csv``; pictures
-    of the same, of the section and of the contact pressure; ``tyre.vtu``.
+    of these, of the section and of the contact pressure; ``tyre.vtu``.
 
-    The tables are written before anything is drawn. Without cords there is no ``cord-tension``, and of a wheel that
-    stands no ``harmonics``.
+    The tables are written before the pictures. Without cords there is no ``cord-tension``; without rolling there is
+    no ``harmonics``.
 
     Parameters
     ----------
-    pressed : the tyre. folder : where to. places : of the strain cycle. curve : `Pressed.curve`.
+    pressed : the tyre. folder : folder of the files. places : places of the strain cycle. curve : `Pressed.curve`.
     """
     from tyrefem.mechanics.footprint.cord_cycle import cord_cycles
 
@@ -247,7 +244,7 @@ def write_files(
         write_json(pressed.summary(), place / "press.json")
         for name, rows in _tables(pressed, places, curve, cords).items():
             (place / f"{name}.csv").write_text(_csv(rows), encoding="utf-8")
-    with keeping(f"the tables are in {folder}, the pictures are not"), atomic_folder(folder) as place:
+    with keeping(f"{folder} has the tables, but not the pictures"), atomic_folder(folder) as place:
         if pictures:
             for name, picture in _pictures(pressed, places, curve, cords).items():
                 (place / f"{name}.png").write_bytes(picture)

@@ -1,4 +1,4 @@
-"""Places of a pressed tyre whose strain cycle is wanted: given, the worst of a region, or the usual suspects."""
+"""Places of a pressed tyre whose strain cycle is written: given ones, or those of greatest loss."""
 
 from __future__ import annotations
 
@@ -21,7 +21,7 @@ Array = NDArray[np.float64]
 
 @dataclass(frozen=True)
 class CyclePlace:
-    """A Gauss point: what it was asked for as, its region, element and point, and (r, z) before inflation, m."""
+    """A Gauss point: name, region, element and point numbers, and (r, z) before inflation, m."""
 
     name: str
     region: str
@@ -31,11 +31,11 @@ class CyclePlace:
 
 
 def read_place(section: Section, text: str) -> str | tuple[float, float]:
-    """A region's name, or (r, z) in m, from ``"sidewall"`` or ``"287 mm, 80 mm"``.
+    """Parse a place: a region's name such as ``"sidewall"``, or (r, z) in m from ``"287 mm, 80 mm"``.
 
     Raises
     ------
-    InputError : neither a region of the section nor a place in it.
+    InputError : the text is neither a region of the section nor a place in it.
 
     >>> from tyrefem.geometry import load
     >>> read_place(load("nasa-22x5.5-8pr"), "275 mm, 2 cm")
@@ -64,15 +64,15 @@ def read_place(section: Section, text: str) -> str | tuple[float, float]:
 
 
 def cycle_places(pressed: Pressed, wanted: Iterable[str] = ()) -> tuple[CyclePlace, ...]:
-    """The places asked for, or the outermost edge of a belt (where there is one) and the place of greatest loss.
+    """The wanted places; by default the outermost edge of the belt, if there is one, and the place of greatest loss.
 
     Parameters
     ----------
-    pressed : the tyre. wanted : each as in `read_place`, before inflation; of a region, its place of greatest loss.
+    pressed : the tyre. wanted : places as in `read_place`, before inflation; a region means its place of greatest loss.
 
     Raises
     ------
-    InputError : not a place of the section, nor a region.
+    InputError : an entry is neither a place in the section nor a region.
     """
     return tuple(_wanted(pressed, text) for text in wanted) or _usual(pressed)
 
@@ -98,7 +98,7 @@ def _place(pressed: Pressed, name: str, element: int, point: int) -> CyclePlace:
 
 
 def _worst(pressed: Pressed, name: str, region: str | None = None) -> CyclePlace:
-    """Where a revolution loses most per volume; where the wheel stands, where the strain varies most."""
+    """The place of greatest loss per volume; without rolling, the place of greatest strain change."""
     if pressed.loss is not None:
         density = np.array(pressed.loss.density)
     else:

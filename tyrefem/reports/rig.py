@@ -1,7 +1,4 @@
-"""What a rig's simulation, identification or layer study leaves in a folder: tables first, pictures after them.
-
-An identification as one self-contained HTML page.
-"""
+"""Files of a rig's simulation, identification (with one HTML page) and layer study: tables, then pictures."""
 
 from __future__ import annotations
 
@@ -15,7 +12,7 @@ from typing import TYPE_CHECKING, Any
 from tyrefem.heating_test.layer_cards import bases, layer_cards
 from tyrefem.heating_test.selection import COVERAGE
 from tyrefem.heating_test.summary import diffusivities, ranked, summary
-from tyrefem.heating_test.verdict import sentences, spoken
+from tyrefem.heating_test.verdict import name_in_words, sentences
 from tyrefem.interruption import keeping
 from tyrefem.output import atomic_folder, jsonable, versions
 from tyrefem.reports.figures.style import png
@@ -41,11 +38,13 @@ def page(identification: IdentificationData, pictures: Mapping[str, bytes], card
         sentences=sentences(identification),
         coverage=COVERAGE,
         references=references(identification.card),
-        spoken=spoken,
+        name_in_words=name_in_words,
         pictures={name: base64.b64encode(png).decode("ascii") for name, png in pictures.items()},
         cards=cards,
         diffusivities=diffusivities(identification),
-        ranked=[(", ".join(map(spoken, key)) or "all constant", value) for key, value in ranked(identification, 6)],
+        ranked=[
+            (", ".join(map(name_in_words, key)) or "all constant", value) for key, value in ranked(identification, 6)
+        ],
         complaint=any(estimate.verdict != "determined" for estimate in identification.properties),
     )
 
@@ -60,9 +59,9 @@ LAYER_FILES = ("layers.csv", "layers.png")
 
 
 def save(identification: IdentificationData, folder: str | Path, base: str | Sequence[str] | None = None) -> Path:
-    """Write an identification: ``report.html``, ``rig.json``, ``summary.json``, CSV tables, PNGs, material cards.
+    """Write the files of an identification: ``report.html``, ``rig.json``, ``summary.json``, CSV, PNG, material cards.
 
-    ``base``: the card, or ``LAYER=CARD`` entries, that give what the rig cannot know; without it no card is written.
+    ``base``: card, or ``LAYER=CARD`` entries, with data that the rig cannot measure; without it no card is written.
     """
     import tomli_w
 
@@ -90,7 +89,7 @@ def save(identification: IdentificationData, folder: str | Path, base: str | Seq
             (place / "materials").mkdir()
         for layer, card in cards.items():
             (place / "materials" / f"{layer}.toml").write_text(tomli_w.dumps(card), encoding="utf-8")
-    with keeping(f"the tables and cards are in {folder}, the page is not"), atomic_folder(folder) as place:
+    with keeping(f"{folder} has the tables and cards, but not the page"), atomic_folder(folder) as place:
         drawn = pictures(identification)
         for name, content in drawn.items():
             (place / name).write_bytes(content)
@@ -152,7 +151,7 @@ def write_simulation(done: Simulation, folder: Path) -> Path:
         for name, run in done.runs.items():
             run.write(place / f"{name}.csv")
         put_json(place / "summary.json", record)
-    with keeping(f"the tables are in {folder}, the pictures are not"), atomic_folder(folder) as place:
+    with keeping(f"{folder} has the tables, but not the pictures"), atomic_folder(folder) as place:
         patch = heated_patch(done.twin.grid(done.values), done.fields[strongest][on], borders, words)
         (place / "readings.png").write_bytes(png(histories(done.card.phases, runs, sensors, powers)))
         (place / "patch.png").write_bytes(png(patch))
@@ -160,20 +159,20 @@ def write_simulation(done: Simulation, folder: Path) -> Path:
 
 
 def _at_switch(done: Simulation, name: str) -> list[float]:
-    seen = done.twin.seen(done.values, done.clock, done.fields[name])
+    seen = done.twin.readings_of_fields(done.values, done.clock, done.fields[name])
     return [float(value) for value in seen[done.clock.heating.size - 1]]
 
 
 def save_layers(done: LayerStudy, folder: Path) -> Path:
     """Write ``layers.csv``, ``layers.png`` and ``summary.json``."""
     save_layer_table(done, folder)
-    with keeping(f"the table is in {folder}, its picture is not"), atomic_folder(folder) as place:
+    with keeping(f"{folder} has the table, but not its picture"), atomic_folder(folder) as place:
         (place / "layers.png").write_bytes(png(layers_figure(done)))
     return folder
 
 
 def save_layer_table(done: LayerStudy, folder: Path, *, complete: bool = True) -> Path:
-    """Write ``layers.csv`` and ``summary.json``, which says whether all fits are in it."""
+    """Write ``layers.csv`` and ``summary.json``; ``complete``: the table has all fits."""
     table = done.table()
     with atomic_folder(folder) as place:
         table.to_csv(place / "layers.csv", index=False)
@@ -183,5 +182,5 @@ def save_layer_table(done: LayerStudy, folder: Path, *, complete: bool = True) -
 
 
 def put_json(path: Path, data: dict[str, Any]) -> None:
-    """Write JSON; the folder it goes to is moved into place as a whole."""
+    """Write JSON into a temporary folder, which is later moved as a whole."""
     path.write_text(json.dumps(jsonable(data), indent=1) + "\n", encoding="utf-8")

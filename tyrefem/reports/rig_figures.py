@@ -1,7 +1,4 @@
-"""Pictures of the rig: readings and residuals, intervals, correlations, the heated patch.
-
-The layer study drawn: rms over the number of layers, and residuals after the laser is switched.
-"""
+"""Pictures of the rig: readings and residuals, intervals, correlations, the heated patch, the layer study."""
 
 from __future__ import annotations
 
@@ -13,7 +10,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from tyrefem.heating_test.selection import COVERAGE
-from tyrefem.heating_test.verdict import spoken
+from tyrefem.heating_test.verdict import name_in_words
 from tyrefem.reports.figures.phases import draw_phases, make_room
 from tyrefem.reports.figures.style import (
     FONT,
@@ -56,14 +53,14 @@ def pictures(identification: IdentificationData) -> dict[str, bytes]:
 
 
 def bands(phases: HeatingPhases) -> list[tuple[str, float, float]]:
-    """The phases in minutes, for shading."""
+    """The phases, min, for shading."""
     ends = np.cumsum([0.0, phases.idle, phases.heating, phases.cooling]) / 60
     named = zip(("idle", "heating", "cooling"), ends, ends[1:], strict=False)
     return [(name, float(a), float(b)) for name, a, b in named if b > a]
 
 
 def residuals(identification: IdentificationData, run: str) -> Figure:
-    """Readings and the computed line of every sensor in one test, and what is left between them."""
+    """Draw readings, computed line and residuals of every sensor in one test."""
     blocks = [block for block in identification.fit.blocks if block.series.test == run]
     columns = len(blocks)
     width = 3.3 * columns + 0.3
@@ -72,7 +69,7 @@ def residuals(identification: IdentificationData, run: str) -> Figure:
     title(
         drawn,
         f"Run {run}: {power:g} W",
-        "points: measured; line: computed; below: measured - computed, grey: 95 % expected",
+        "points: measured; line: computed; below: measured - computed; grey: expected 95 % band",
     )
     for number, block in enumerate(blocks):
         left = 0.6 + 3.3 * number
@@ -107,15 +104,15 @@ def _histories(identification: IdentificationData, block: Block, high: Axes, low
 
 
 def references(card: RigCard) -> str:
-    """The layers' reference temperatures."""
+    """Text on the layers' reference temperatures."""
     return "at " + ", ".join(f"{layer.reference_temperature:g} °C ({layer.name})" for layer in card.layers)
 
 
 def intervals(identification: IdentificationData) -> Figure:
-    """Every property: first guess and identified value with their 95 % intervals, relative to the identified value."""
+    """Draw prior and identified value of every property with 95 % intervals, relative to the identified value."""
     shown = identification.properties
     drawn = figure(8.2, 0.42 * len(shown) + 0.95 + TITLE)
-    title(drawn, "Identified properties", f"{references(identification.card)}; 95 % intervals; grey: first guess")
+    title(drawn, "Identified properties", f"{references(identification.card)}; 95 % intervals; grey: prior")
     axes = add_axes(drawn, 2.3, 0.55, 3.4, 0.42 * len(shown) + 0.3)
     for row, estimate in enumerate(shown):
         spread = np.log1p(estimate.prior_sd / estimate.prior_value) * COVERAGE
@@ -136,7 +133,7 @@ def intervals(identification: IdentificationData) -> Figure:
             f"{estimate.value:.4g} {estimate.unit} ± {COVERAGE * (estimate.relative_sd or 0):.1%}\n{estimate.verdict}",
             fontsize=FONT - 0.5, color=color, va="center", transform=axes.get_yaxis_transform(),
         )  # fmt: skip
-    axes.set_yticks(range(len(shown)), [plain(spoken(estimate.name)) for estimate in shown])
+    axes.set_yticks(range(len(shown)), [plain(name_in_words(estimate.name)) for estimate in shown])
     axes.set_ylim(len(shown) - 0.4, -0.6)
     axes.set_xscale("log")
     ticks = [0.25, 0.5, 0.7, 1.0, 1.4, 2.0, 4.0]
@@ -151,14 +148,14 @@ def intervals(identification: IdentificationData) -> Figure:
 
 
 def correlation(identification: IdentificationData) -> Figure:
-    """Correlation of every pair of free parameters; strong ones with their number."""
+    """Draw the correlation of every pair of free parameters; strong ones with their number."""
     n = len(identification.estimates)
     size = 0.36 * n
     drawn = figure(size + 3.6, size + 2.6)
-    title(drawn, "Correlation of what is uncertain", "after the readings; properties first")
+    title(drawn, "Correlation of the parameters", "posterior; properties first")
     axes = add_axes(drawn, 2.4, 1.75, size, size)
     image = axes.imshow(identification.correlation, cmap="RdBu_r", vmin=-1, vmax=1)
-    names = [plain(spoken(estimate.name)) for estimate in identification.estimates]
+    names = [plain(name_in_words(estimate.name)) for estimate in identification.estimates]
     axes.set_xticks(range(n), names, rotation=60, ha="right", rotation_mode="anchor", fontsize=FONT - 1)
     axes.set_yticks(range(n), names, fontsize=FONT - 1)
     for i in range(n):
@@ -181,7 +178,7 @@ def correlation(identification: IdentificationData) -> Figure:
 
 
 def _correlated(r: float) -> str:
-    """A correlation without its 0; 1 only where it is.
+    """Format a correlation without its leading 0; as 1 only if it is 1.
 
     >>> _correlated(0.97), _correlated(-0.42), _correlated(0.9996)
     ('.97', '-.4', '.9996')
@@ -196,7 +193,7 @@ def _correlated(r: float) -> str:
 def histories(
     phases: HeatingPhases, runs: Mapping[str, tuple[Array, Array]], sensors: Sequence[str], powers: Mapping[str, float]
 ) -> Figure:
-    """Simulated readings of every run, one panel per sensor; runs: name -> (times, (times, sensors))."""
+    """Draw simulated readings of every run, one panel per sensor; runs: name -> (times, (times, sensors))."""
     drawn = figure(3.4 * len(sensors) + 0.3, 3.3 + TITLE)
     title(drawn, "Simulated test", "; ".join(f"{name} {powers[name]:g} W" for name in runs))
     for number, sensor in enumerate(sensors):
@@ -216,7 +213,7 @@ def histories(
 
 
 def heated_patch(grid: PatchGrid, temperatures: Array, borders: Sequence[float], words: str) -> Figure:
-    """Temperature in a cut through the beam's axis; the laser comes from above."""
+    """Draw the temperature in a cut through the beam's axis; the laser is above."""
     reach = float(grid.along[-1])
     s = np.concatenate([[0.0], np.linspace(0.0, 1.0, 160)[1:] ** 1.3 * reach])
     d = np.linspace(0.0, float(grid.depths[-1]), 70)
@@ -243,14 +240,14 @@ def heated_patch(grid: PatchGrid, temperatures: Array, borders: Sequence[float],
 
 
 def layers_figure(done: LayerStudy) -> Figure:
-    """Left: rms residual, transient and steady, over the layers of the model; right: residuals of the strongest run."""
+    """Draw the rms residual, transient and steady, over the number of layers, and residuals of the strongest run."""
     table = done.table()
     sensors = list(dict.fromkeys(block.series.sensor for block in done.fits[0].fit.blocks))
     drawn = figure(4.2 + 3.1 * len(sensors), 3.3 + TITLE)
     title(
         drawn,
-        "Layers of the model",
-        "left: misfit, noise taken out; right: measured - computed of the strongest run, mean of 7",
+        "Number of layers of the model",
+        "left: misfit without noise; right: measured - computed of the run of highest power, mean of 7 readings",
     )
     axes = add_axes(drawn, 0.65, 0.5, 3.0, 2.6)
     for key, words, color in (

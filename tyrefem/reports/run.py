@@ -1,9 +1,4 @@
-"""What a report says: the numbers that decide first, then the tables.
-
-Sliding in a report: the headline and one row per phase with slip.
-
-The report of a run: one HTML file with everything in it, pictures included; no script, no links.
-"""
+"""The report of a run: one HTML file with main results, tables and pictures, without scripts or links."""
 
 from __future__ import annotations
 
@@ -36,7 +31,7 @@ if TYPE_CHECKING:
 
 
 def sliding_card(result: ResultData) -> list[dict[str, str]]:
-    """The hottest contact; nothing for a run without slip."""
+    """Card on the hottest contact; empty for a run without slip."""
     if result.sliding is None:
         return []
     phase = result.sliding.hottest
@@ -52,7 +47,7 @@ def sliding_card(result: ResultData) -> list[dict[str, str]]:
 
 
 def sliding_rows(result: ResultData) -> list[list[str]]:
-    """One row per phase with slip, as the template's heads say."""
+    """One row per phase with slip, in the columns of the template."""
     if result.sliding is None:
         return []
     phases = result.sliding.phases
@@ -73,7 +68,7 @@ Rows = list[list[str]]
 
 
 def content(result: ResultData) -> dict[str, Any]:
-    """Everything the template needs, as text."""
+    """All values of the template, as text."""
     study = result.study
     materials, estimates = material_rows(study)
     text, as_written = study_text(study)
@@ -111,7 +106,7 @@ def _interrupted(result: ResultData) -> str:
 
 
 def headline(result: ResultData) -> list[dict[str, str]]:
-    """The numbers that decide: label, value and what belongs to it."""
+    """Main results: label, value and note."""
     values = summary(result)
     hot, resistance, air = values["hottest"], values["rolling_resistance"], values["contained_air"]
     budget = result.heat_budget
@@ -145,7 +140,7 @@ def headline(result: ResultData) -> list[dict[str, str]]:
         {
             "label": "Heat generated",
             "value": f"{number(budget.total('generated') / 1e3)} kJ",
-            "note": f"{_rubbed(result)}stored {number(budget.total('stored') / 1e3)} kJ, "
+            "note": f"{_sliding_note(result)}stored {number(budget.total('stored') / 1e3)} kJ, "
             f"lost {number(budget.total('lost') / 1e3)} kJ; "
             f"{'' if budget.empty else 'the budget '}{budget.closing.replace('-', '−')}",
         }
@@ -158,7 +153,7 @@ def headline(result: ResultData) -> list[dict[str, str]]:
             {
                 "label": "Deflection",
                 "value": f"{loaded.deflection * 1e3:.1f} mm",
-                "note": f"{_warming(result)}footprint {loaded.footprint_length * 1e3:.0f} mm, {_area(loaded)}"
+                "note": f"{_feedback_note(result)}footprint {loaded.footprint_length * 1e3:.0f} mm, {_area(loaded)}"
                 f"{100 * loaded.road_fraction:.1f} % of a "
                 f"revolution on the road{several}",
             }
@@ -170,17 +165,17 @@ def _area(phase: PhaseState) -> str:
     return "" if phase.footprint_area is None else f"{phase.footprint_area * 1e4:.0f} cm² in contact, "
 
 
-def _warming(result: ResultData) -> str:
-    """What the feedback of temperature did to the deflection; nothing where there is none."""
+def _feedback_note(result: ResultData) -> str:
+    """Text on the feedback of temperature; empty without feedback."""
     return "" if result.feedback is None else f"{result.feedback.words}; "
 
 
-def _rubbed(result: ResultData) -> str:
-    return "" if result.sliding is None else f"sliding {number(result.heat_budget.total('sliding') / 1e3)} kJ more; "
+def _sliding_note(result: ResultData) -> str:
+    return "" if result.sliding is None else f"sliding {number(result.heat_budget.total('sliding') / 1e3)} kJ; "
 
 
 def _at_end_of(result: ResultData) -> str:
-    """Which phase the rolling resistance belongs to, where there are several."""
+    """Time and phase of the rolling resistance, if there are several phases."""
     i = result.rolling_reading
     if i is None or len(result.phases) < 2:
         return ""
@@ -272,7 +267,7 @@ def _budget(result: ResultData) -> list[dict[str, Any]]:
             rows.append({"total": False, "cells": cells})
         if entries and kind != "lumped":
             cells = [
-                f"{kind} in all",
+                f"{kind} in total",
                 number(budget.total(kind) / 1e3),
                 number(budget.power(kind)[-1]),
                 share(budget.total(kind)),
@@ -289,7 +284,7 @@ def _numerics(result: ResultData) -> Rows:
          f"{result.tyre.problem.operators.size} unknowns, {'half' if mesh['half'] else 'full'} section"],
         ["mesh quality", f"scaled Jacobian at least {mesh['scaled_jacobian']:.2f}, edge ratio at most "
          f"{mesh['edge_ratio']:.1f}"],
-        ["time integration", f"adaptive steps, error aimed at {study.tolerance:g} K; {steps.accepted} steps accepted, "
+        ["time integration", f"adaptive steps, tolerance {study.tolerance:g} K; {steps.accepted} steps accepted, "
          f"{steps.rejected} rejected, {steps.factorisations} factorisations"],
         ["mesh error", f"{study.numerical_sd:g} K (standard deviation assumed by the study)"],
         ["wall time", f"{result.wall_time:.2f} s"],
@@ -300,28 +295,27 @@ def _numerics(result: ResultData) -> Rows:
     return [*rows, ["symmetry", "half section; heat, powers and forces are those of the whole tyre"]]
 
 
-#: Picture -> what it shows.
+#: Picture -> caption.
 CAPTIONS = {
     "temperature.png": "Temperature on the section at the end of the run, with the thermocouples' readings.",
-    "temperature-hottest.png": "The same at the moment when the tyre was hottest.",
-    "histories.png": "Readings over time.",
-    "sliding.png": "The contact in every phase with slip; the exit edge is the hottest a tread point gets.",
-    "heat-budget.png": "Left: the heat that was generated (rising) equals what was stored and lost (falling). "
-    "Right: the powers over time.",
-    "heat-source.png": "Strain energy per revolution, and the heat it becomes, by zone, at the end of the last "
-    "phase that rolls under load.",
-    "strain-cycle.png": "The section before and under the largest load, and the strain cycle along the meridian.",
-    "mesh.png": "The mesh, as modelled.",
-    "3d": "Surface temperature, a quarter of the tyre cut away.",
+    "temperature-hottest.png": "Temperature on the section at the time of the highest temperature.",
+    "histories.png": "Readings of the thermocouples and temperature of the contained air over time.",
+    "sliding.png": "Contact temperatures in every phase with slip. The exit edge is the hottest place of a contact.",
+    "heat-budget.png": "Left: generated heat (rising) equals stored and lost heat (falling). Right: powers over time.",
+    "heat-source.png": "Strain energy per revolution and heat source, by zone, at the end of the last phase that "
+    "rolls under load.",
+    "strain-cycle.png": "The section without load and under the largest load, and the strain cycle along the meridian.",
+    "mesh.png": "The modelled mesh.",
+    "3d": "Temperature of the tyre, a quarter cut away.",
 }
 
 
 def write_report(result: ResultData, path: Path, *, three_d: bool = False) -> Path:
-    """Write the report; the pictures already drawn for this result are used again.
+    """Write the report; pictures already drawn for this result are reused.
 
     Parameters
     ----------
-    three_d : also a 3D picture, where the machine can render one.
+    three_d : add a 3D picture, if the machine can render it.
 
     Raises
     ------

@@ -1,4 +1,4 @@
-"""`summary.json` and the tables of a run: everything needed to read it, check it and run it again."""
+"""`summary.json` and the tables of a run, from which it can be checked and repeated."""
 
 from __future__ import annotations
 
@@ -15,8 +15,8 @@ if TYPE_CHECKING:
 
 
 def of_run(result: ResultData) -> tuple[PublishedComparison, ...]:
-    """A run beside its study's published ranges: rolling resistance at its end, and what its strain cycle knows of
-    the footprint under the last load of the first phase that carries one (``mechanics.strain = "fem"``)."""
+    """Compare a run with its study's published ranges: rolling resistance at the end, and with finite elements
+    (``mechanics.strain = "fem"``) the footprint under the last load of the first loaded phase."""
     from tyrefem.mechanics.finite_elements import FiniteElements
 
     values = {"rolling_resistance_coefficient": result.rolling_resistance.coefficient}
@@ -32,7 +32,7 @@ TABLES = ("readings.csv", "extremes.csv", "heat_budget.csv", "heat_power.csv", "
 
 
 def summary(result: ResultData) -> dict[str, Any]:
-    """The run in numbers. SI units and degC, as the keys say."""
+    """Numbers of the run; each key names its unit: SI or degC."""
     study, history = result.study, result.history
     readings, peak = result.readings, result.extremes.iloc[0]
     resistance = result.rolling_resistance
@@ -83,7 +83,7 @@ def summary(result: ResultData) -> dict[str, Any]:
 
 
 def _states(result: ResultData) -> dict[str, Any]:
-    """States that effects kept; of one with a value per place the mean at the end."""
+    """States of effects at the end; the mean of a state with a value per place."""
     return {
         name: {
             "unit": state.unit,
@@ -119,7 +119,7 @@ def write_tables(result: ResultData, folder: Path) -> Path:
     folder.mkdir(parents=True, exist_ok=True)
     readings = result.readings.rename(columns=lambda name: "time [s]" if name == "time_s" else f"{name} [degC]")
     readings["contained-air pressure [kPa]"] = result.gas_pressure / 1e3
-    # Six digits do for a temperature, not for the time of a long drive: no two rows may have the same.
+    # Six digits are enough for a temperature, not for a time: no two rows may have the same time.
     readings["time [s]"] = [f"{time:.12g}" for time in readings["time [s]"]]
     tables = {
         "readings.csv": readings,

@@ -1,6 +1,6 @@
-"""A design study as one self-contained HTML page: the answers in words first, then each with its picture and table.
+"""A sweep as one self-contained HTML page: answers in words, then pictures and tables.
 
-What an earlier question left in a sweep's folder: files of ours go, a user's own and finished variants stay.
+Files that an earlier sweep wrote into the folder are removed; a user's files and finished variants stay.
 """
 
 from __future__ import annotations
@@ -29,11 +29,11 @@ if TYPE_CHECKING:
     from tyrefem.sweep.design import DesignData
     from tyrefem.sweep.part import DesignPart
 
-#: File of the page.
+#: File name of the page.
 PAGE = "sweep.html"
 
 
-#: Rows of the page's tables; all are in the files.
+#: Largest number of rows of the page's tables; the files have all.
 ROWS, ROWS_OF_VARIANTS = 60, 500
 
 
@@ -45,7 +45,7 @@ COLUMNS = (
 
 
 def write_page(design: DesignData, summary: Mapping[str, Any], folder: Path) -> list[str]:
-    """Write ``sweep.html``, and the pictures as PNG files in ``pictures``; names of these files."""
+    """Write ``sweep.html``, and the pictures as PNG files in ``pictures``; return the names of these files."""
     from jinja2 import Environment, PackageLoader, StrictUndefined
 
     environment = Environment(
@@ -80,7 +80,7 @@ def _part(part: DesignPart, folder: Path) -> dict[str, Any]:
         with atomic_path(folder / file) as temporary:
             temporary.write_bytes(content)
         drawn.append({"file": file, "caption": caption, "data": base64.b64encode(content).decode("ascii")})
-    # The variants have a table of their own at the end.
+    # The variants have a separate table at the end.
     table = None if part.name in ("sweep", "optimum", "pareto") else _cells(part.table)
     return {"name": part.name, "heading": part.heading, "words": part.words, "pictures": drawn, "table": table}
 
@@ -92,7 +92,7 @@ def _cells(table: pd.DataFrame) -> dict[str, Any]:
 
 
 def cell(value: Any, digits: int = 5) -> str:
-    """A table's cell: numbers short, nothing for NaN."""
+    """Text of a table's cell: short numbers, empty for NaN."""
     if isinstance(value, bool):
         return "yes" if value else "no"
     if isinstance(value, int | float):
@@ -128,7 +128,7 @@ def _variants(design: DesignData, swept: Sweep) -> dict[str, Any]:
 
 
 def _numbers(design: DesignData) -> list[dict[str, str]]:
-    """The few numbers to see first."""
+    """Main results: label, value and note."""
     cards: list[dict[str, str]] = []
     if design.optimum is not None and design.optimum.best is not None:
         answer = design.optimum.answer
@@ -160,7 +160,7 @@ def _numbers(design: DesignData) -> list[dict[str, str]]:
             {
                 "label": "safe load × speed",
                 "value": f"{row['tkph']:.0f} t km/h",
-                "note": f"at {row['pressure']}, every load tried",
+                "note": f"at {row['pressure']}, over all loads of the sweep",
             }
             for row in rated
         ]
@@ -168,42 +168,43 @@ def _numbers(design: DesignData) -> list[dict[str, str]]:
 
 
 def _assumed(design: DesignData) -> list[str]:
-    """What every reader has to know."""
+    """Sentences on the assumptions of the sweep."""
     sentences = [
-        "Every variant is the whole study with some values changed: what its cards and laws assume holds here too.",
+        "Every variant is the study with some values changed: the assumptions of its cards and laws hold here too.",
         f"Time integration to {design.study.tolerance:g} K; mesh of {design.study.card.mesh.size * 1e3:g} mm.",
     ]
     if design.indices is not None:
-        sentences.append("Sobol indices: numbers uniform in their ranges and independent of each other.")
+        sentences.append("Sobol indices: every number is uniform in its range and independent of the others.")
     if design.tornado is not None:
         sentences.append(
-            "Tornado: one standard deviation each unless given; together: independent, the answer linear in them."
+            "Tornado: each number changes by one standard deviation unless given. Together: numbers are independent "
+            "and the answer is linear in them."
         )
     if design.envelope is not None:
         sentences.append(
-            "Envelope: the answer must rise with speed. Load times speed in t km/h is what earth-mover tyres are"
-            " rated by, here of this model, ambient temperature and length of drive: no maker's rating."
+            "Envelope: the answer must rise with speed. Earth-mover tyres are rated by load times speed in t km/h. "
+            "Here it holds for this model, ambient temperature and duration: it is no maker's rating."
         )
     if design.optimum is not None and not design.optimum.exhaustive:
-        sentences.append("Optimum: a search with a seed, no proof that there is none better.")
+        sentences.append("Optimum: a random search with a seed; a better variant may exist.")
     return sentences
 
 
-#: `summary.json` lists the other files under this name; nothing that is not like one of ours is ever removed.
+#: Key of `summary.json` that lists the other files; files of other names are never removed.
 FILES = "files"
 LIKE_OURS = re.compile(r"(pictures/)?[^/\\]+\.(csv|parquet|png|html)")
 
 
-#: What is the folder's, or words, and no result.
+#: Keys that are not results.
 NOT_RESULTS = (*BOOKKEEPING, "words")
 
 
-#: What makes a question another one.
+#: Keys that identify a question.
 QUESTION = ("study", "asked", "input", "versions")
 
 
 def earlier(folder: Path) -> dict[str, Any]:
-    """The summary that a folder has; empty: none, or not of a sweep."""
+    """The summary in a folder; empty if there is none, or if it is not of a sweep."""
     try:
         data = json.loads((folder / "summary.json").read_text(encoding="utf-8"))
     except (OSError, ValueError):
@@ -212,10 +213,10 @@ def earlier(folder: Path) -> dict[str, Any]:
 
 
 def clear(folder: Path, before: Mapping[str, Any], summary: Mapping[str, Any], written: Sequence[str]) -> list[str]:
-    """Remove what ``before`` lists and is neither written again nor still true; the names of ours that are there.
+    """Remove files that ``before`` lists and that are out of date; return the names of the sweep's files that stay.
 
-    Of the same question everything stays while it is not finished, and page and pictures where they are not drawn
-    again and nothing has changed.
+    For the same question, all files stay until it is finished. Page and pictures stay if they are not drawn again
+    and no result has changed.
     """
     listed = [name for name in before.get(FILES, []) if isinstance(name, str) and LIKE_OURS.fullmatch(name)]
     left = [name for name in listed if name not in written and (folder / name).is_file()]
@@ -228,7 +229,7 @@ def clear(folder: Path, before: Mapping[str, Any], summary: Mapping[str, Any], w
     ]
     for name in left:
         if name not in kept:
-            # A file that may not be removed, or a folder that is not empty, stays.
+            # A file that cannot be removed, or a folder that is not empty, stays.
             with suppress(OSError):
                 (folder / name).unlink()
                 if "/" in name:
@@ -237,7 +238,7 @@ def clear(folder: Path, before: Mapping[str, Any], summary: Mapping[str, Any], w
 
 
 def _results(summary: Mapping[str, Any]) -> dict[str, Any]:
-    """A summary without what differs each time that the same is written."""
+    """A summary without the entries that differ each time, such as run times."""
     results = {key: value for key, value in summary.items() if key not in NOT_RESULTS}
     sample = {key: value for key, value in results.pop("sample", {}).items() if key not in ("seconds", "taken_up")}
     return results | {"sample": sample}

@@ -1,4 +1,4 @@
-"""Pictures of what is made of variants: tornado, Sobol indices, optimum, envelope."""
+"""Pictures of a sweep's answers: tornado, Sobol indices, optimum, envelope."""
 
 from __future__ import annotations
 
@@ -20,9 +20,9 @@ if TYPE_CHECKING:
     import pandas as pd
     from matplotlib.figure import Figure
 
-#: Bars of one picture.
+#: Largest number of bars of one picture.
 MOST = 15
-#: Inches per bar, and at least for the names before them; width of their letters.
+#: Height per bar, least width of the names, and mean width of a letter, inches.
 BAR, NAMES, LETTER = 0.27, 3.5, 0.0083 * (FONT - 1)
 
 
@@ -30,7 +30,7 @@ BAR, NAMES, LETTER = 0.27, 3.5, 0.0083 * (FONT - 1)
 def _tornado(answer: Tornado) -> Iterator[tuple[str, str, Figure]]:
     """A picture per answer."""
     for name in answer.answers:
-        caption = f"{name_of(name)}: every number alone, less and more by its tolerance"
+        caption = f"{name_of(name)} when one number at a time is lower or higher by its tolerance"
         yield f"tornado-{name}", caption, tornado(answer, name)
 
 
@@ -38,12 +38,16 @@ def _tornado(answer: Tornado) -> Iterator[tuple[str, str, Figure]]:
 def _indices(answer: Indices) -> Iterator[tuple[str, str, Figure]]:
     """A picture per answer."""
     for name, table in answer.tables.items():
-        yield f"indices-{name}", f"{name_of(name)}: shares of its variance, with 95 % intervals", indices(table, name)
+        yield (
+            f"indices-{name}",
+            f"{name_of(name)}: share of each number in its variance, with 95 % intervals",
+            indices(table, name),
+        )
 
 
 @figures.register(Optimum)
 def _optimum(answer: Optimum) -> Iterator[tuple[str, str, Figure]]:
-    """The search, and where it looked."""
+    """A picture of the search."""
     if answer.answer in answer.table:
         caption = f"{name_of(answer.answer)} of every evaluated variant, and the best so far"
         yield "optimum", caption, search(answer)
@@ -51,15 +55,19 @@ def _optimum(answer: Optimum) -> Iterator[tuple[str, str, Figure]]:
 
 @figures.register(Envelope)
 def _envelope(answer: Envelope) -> Iterator[tuple[str, str, Figure]]:
-    """Speed over load, a curve per pressure."""
+    """A picture of speed over load, with a curve per pressure."""
     if answer.table["speed_m_s"].notna().any():
-        yield "envelope", "Below each curve the tyre keeps the limit; grey: equal load times speed", envelope(answer)
+        yield (
+            "envelope",
+            "Below each curve, the tyre is within the limit; grey: equal load times speed",
+            envelope(answer),
+        )
 
 
 def tornado(tornado_data: Tornado, answer: str) -> Figure:
-    """Bars of how far each number alone moves an answer."""
+    """Draw the change of an answer by each number alone, as bars."""
     rows = tornado_data.of(answer).dropna(subset=["range"])
-    # What hardly moves it would only push the others together.
+    # Numbers of little influence would leave less room for the others.
     table = rows[rows["range"] > 0.01 * rows["range"].max()].head(MOST).iloc[::-1]
     high = BAR * max(len(table), 2) + 0.1
     numbers = [f"{plain(row['number'])}  ±{100 * row['tolerance']:.3g} %" for row in table.to_dict("records")]
@@ -67,27 +75,27 @@ def tornado(tornado_data: Tornado, answer: str) -> Figure:
     drawn = figure(room + 4.2, 1.0 + high + TITLE)
     axes = add_axes(drawn, room, 0.95, 4.0, high)
     places = np.arange(len(table))
-    axes.barh(places, table["less"], height=0.62, color=PALETTE[0], label="less of it")
-    axes.barh(places, table["more"], height=0.62, color=PALETTE[1], label="more of it")
+    axes.barh(places, table["less"], height=0.62, color=PALETTE[0], label="number lower")
+    axes.barh(places, table["more"], height=0.62, color=PALETTE[1], label="number higher")
     axes.axvline(0, color="black", lw=0.8)
     axes.set_yticks(places, numbers, fontsize=FONT - 1)
     axes.locator_params(axis="x", nbins=6)
     axes.set_xlabel(f"change of the {name_of(answer)} [{difference_unit(answer) or '-'}]", fontsize=FONT)
     axes.legend(fontsize=FONT - 1, frameon=False, loc="upper center", bbox_to_anchor=(0.5, -0.45 / high), ncols=2)
     tidy(axes)
-    more = f"; the widest {len(table)} of {len(rows)}" if len(rows) > len(table) else ""
-    nominal = f"{name_of(answer)} {shown(answer, float(table['nominal'].iloc[0]))} as it is" if len(table) else ""
-    title(drawn, "Which tolerance matters", f"{nominal}; each number alone{more}")
+    more = f"; the {len(table)} widest of {len(rows)}" if len(rows) > len(table) else ""
+    nominal = f"{name_of(answer)} {shown(answer, float(table['nominal'].iloc[0]))} for the study" if len(table) else ""
+    title(drawn, "Influence of each tolerance", f"{nominal}; one number at a time{more}")
     return drawn
 
 
 def _room(names: list[str]) -> float:
-    """Inches that the longest name takes: none is cut."""
+    """Width of the longest name, inches."""
     return max(NAMES, 0.3 + LETTER * max(map(len, names), default=0))
 
 
 def indices(table: pd.DataFrame, answer: str) -> Figure:
-    """First-order and total indices of every number with their intervals."""
+    """Draw first-order and total indices of every number with their intervals."""
     rows = table.head(MOST).iloc[::-1]
     high = 1.5 * BAR * max(len(rows), 2) + 0.1
     numbers = [plain(name) for name in rows["number"]]
@@ -97,7 +105,7 @@ def indices(table: pd.DataFrame, answer: str) -> Figure:
     places = np.arange(len(rows))
     for up, share, colour, words in (
         (0.2, "first", PALETTE[0], "alone"),
-        (-0.2, "total", PALETTE[1], "with all others"),
+        (-0.2, "total", PALETTE[1], "with interactions"),
     ):
         axes.barh(
             places + up, rows[share], height=0.36, color=colour, label=words, xerr=rows[f"{share}_95"],
@@ -109,29 +117,29 @@ def indices(table: pd.DataFrame, answer: str) -> Figure:
     axes.set_xlabel("share of the variance", fontsize=FONT)
     axes.legend(fontsize=FONT - 1, frameon=False, loc="upper center", bbox_to_anchor=(0.5, -0.45 / high), ncols=2)
     tidy(axes)
-    title(drawn, f"What decides the {name_of(answer)}", "Sobol indices; bars: 95 % intervals of the estimate")
+    title(drawn, f"Influence on the {name_of(answer)}", "Sobol indices; bars: 95 % intervals of the estimate")
     return drawn
 
 
 def search(optimum: Optimum) -> Figure:
-    """The answer of every evaluated variant in its order, and the best so far."""
+    """Draw the answer of every evaluated variant in order, and the best so far."""
     table = optimum.table[optimum.table["failure"] == ""]
     drawn = figure(7.2, 4.0 + TITLE)
     axes = add_axes(drawn, 1.0, 0.62, 5.9, 3.1)
     order = table.index.to_numpy() + 1
     fine = table["feasible"].to_numpy(dtype=bool)
-    axes.plot(order[~fine], table[optimum.answer][~fine], "x", ms=3.5, color="#b0b0b0", label="breaks a limit")
-    axes.plot(order[fine], table[optimum.answer][fine], "o", ms=3, color=PALETTE[0], label="keeps the limits")
+    axes.plot(order[~fine], table[optimum.answer][~fine], "x", ms=3.5, color="#b0b0b0", label="outside a limit")
+    axes.plot(order[fine], table[optimum.answer][fine], "o", ms=3, color=PALETTE[0], label="within the limits")
     axes.step(order, table["best_so_far"], where="post", color=PALETTE[1], lw=1.5, label="best so far")
     if isinstance(optimum.nominal, Answered):
         nominal = float(optimum.nominal.answers[optimum.answer])
-        axes.axhline(nominal, color=QUIET, lw=0.9, ls="--", label="the study as it is")
+        axes.axhline(nominal, color=QUIET, lw=0.9, ls="--", label="the study")
     axes.set_xlabel("variants evaluated", fontsize=FONT)
     axes.set_ylabel(label(optimum.answer), fontsize=FONT)
     axes.legend(fontsize=FONT - 1, frameon=True, framealpha=0.9)
     tidy(axes)
     best = (
-        "no variant keeps the limits"
+        "no variant is within the limits"
         if optimum.best is None
         else f"best: {shown(optimum.answer, optimum.full[optimum.answer])}"
     )
@@ -141,7 +149,7 @@ def search(optimum: Optimum) -> Figure:
 
 
 def envelope(result: Envelope) -> Figure:
-    """The largest speed over load, a curve per pressure; grey curves of equal load x speed."""
+    """Draw the largest speed over load, a curve per pressure, and grey curves of equal load x speed."""
     table = result.table
     drawn = figure(7.4, 4.4 + TITLE)
     axes = add_axes(drawn, 0.9, 0.62, 5.5, 3.5)
@@ -179,15 +187,15 @@ def envelope(result: Envelope) -> Figure:
     axes.legend(fontsize=FONT - 1, frameon=True, framealpha=0.9, title="cold pressure", title_fontsize=FONT - 1)
     tidy(axes)
     limit = shown(result.card.answer, result.card.below)
-    open_ended = "; triangle: not reached at the fastest" if not table["at_limit"].all() else ""
+    open_ended = "; triangle: limit not reached at the highest speed" if not table["at_limit"].all() else ""
     title(
         drawn,
-        f"Where the {name_of(result.card.answer)} stays below {limit}",
+        f"Largest speed with {name_of(result.card.answer)} below {limit}",
         f"{result.study.name}, {result.study.card.drive.end:g} s{open_ended}",
     )
     return drawn
 
 
 def _round(values: np.ndarray) -> list[float]:
-    """Two significant digits, each once."""
+    """The positive values with two significant digits, sorted, without duplicates."""
     return sorted({float(f"{value:.2g}") for value in values if value > 0})

@@ -1,4 +1,4 @@
-"""Pictures of a sweep's variants: response curves, maps, the Pareto front; and which answer has which pictures."""
+"""Pictures of a sweep's variants: response curves, maps, Pareto front; and the list of pictures of each answer."""
 
 from __future__ import annotations
 
@@ -34,9 +34,9 @@ if TYPE_CHECKING:
     from tyrefem.sweep.sweep import Sweep
 
 BROKEN = "#D55E00"
-#: Lines of one picture; more are drawn as points with their mean.
+#: Largest number of lines of one picture; more are drawn as points with their mean.
 MOST_LINES = 8
-#: Maps and curves of an answer, at most.
+#: Largest numbers of maps and of curves of an answer.
 MOST_MAPS, MOST_CURVES = 3, 4
 
 
@@ -44,7 +44,7 @@ MOST_MAPS, MOST_CURVES = 3, 4
 def figures(answer: object) -> Iterator[tuple[str, str, Figure]]:
     """Pictures of an answer: file name without ending, caption, picture.
 
-    A new kind of answer registers its function here, beside the code that draws it, or says ``drawn = False``.
+    A new kind of answer registers its function here, or has ``drawn = False``.
 
     Raises
     ------
@@ -57,7 +57,7 @@ def figures(answer: object) -> Iterator[tuple[str, str, Figure]]:
 
 @figures.register(Responses)
 def _responses(answer: Responses) -> Iterator[tuple[str, str, Figure]]:
-    """Maps over the two or three numbers that move the answer most, and curves over every number."""
+    """Maps over the two or three numbers of most influence, and curves over every number."""
     swept = answer.swept
     if len(finished(swept)) < 2:
         return
@@ -77,11 +77,11 @@ def _responses(answer: Responses) -> Iterator[tuple[str, str, Figure]]:
 
 @figures.register(ParetoFront)
 def _pareto(answer: ParetoFront) -> Iterator[tuple[str, str, Figure]]:
-    """The front in every pair of aims."""
+    """The front in every pair of objectives."""
     aims = [name for name in answer.chosen if name in answer.swept.table]
     for y, x in itertools.combinations(aims, 2):
         if len(answer.table):
-            caption = f"{name_of(y)} against {name_of(x)}; the front is of all aims together"
+            caption = f"{name_of(y)} against {name_of(x)}; the front considers all objectives"
             yield f"pareto-{y}-{x}", caption, pareto(answer.swept, answer.table, x, y)
 
 
@@ -90,20 +90,20 @@ def _file(*parts: str) -> str:
 
 
 def label(answer: str) -> str:
-    """An axis for an answer."""
+    """Axis label of an answer."""
     unit = unit_of(answer)
     return f"{name_of(answer)} [{unit}]" if unit else name_of(answer)
 
 
 def axis(heading: str) -> str:
-    """An axis for a varied number: its unit as people write it."""
+    """Axis label of a varied number, with its unit."""
     return plain(
         heading.replace("[x]", "[×]").replace("[degC]", "[°C]").replace("[deg]", "[°]").replace("delta_degC", "K")
     )
 
 
 def curves(sweep: Sweep, x: str, answer: str) -> Figure:
-    """An answer over one number: a line per combination of the others where they are few, else points and means."""
+    """Draw an answer over one number: a line per combination of the others if these are few, else points and means."""
     table = finished(sweep)
     others = [
         varied.heading for varied in sweep.plan.varied if varied.heading != x and table[varied.heading].nunique() > 1
@@ -117,7 +117,7 @@ def curves(sweep: Sweep, x: str, answer: str) -> Figure:
         for number, (values, group) in enumerate(groups):
             ordered = group.sort_values(x)
             words = ", ".join(map(_value, values))
-            # There is nothing between two cards: a line would say so.
+            # No line between cards: there are no values between two cards.
             style = line_style(number) | ({} if table[x].dtype.kind in "if" else {"ls": "none"})
             axes.plot(ordered[x], ordered[answer], marker="o", ms=3.5, label=plain(words) or None, **style)
         if others:
@@ -136,7 +136,7 @@ def curves(sweep: Sweep, x: str, answer: str) -> Figure:
 
 
 def _points(axes: Any, table: pd.DataFrame, x: str, answer: str) -> None:
-    """Every variant, and the mean at each value (in ten classes where there are many)."""
+    """Draw every variant, and the mean at each value (in ten classes if there are many values)."""
     axes.plot(table[x], table[answer], "o", ms=3, alpha=0.45, mew=0, color=PALETTE[0], label="variants")
     numbers = table[x]
     if numbers.dtype.kind in "if" and numbers.nunique() > 12:
@@ -152,7 +152,7 @@ def _points(axes: Any, table: pd.DataFrame, x: str, answer: str) -> None:
 
 
 def response_map(sweep: Sweep, x: str, y: str, answer: str) -> Figure:
-    """An answer over two numbers, mean over the others: contours of a grid, coloured points of any other sample."""
+    """Draw an answer over two numbers, mean over the others: contours for a grid, else coloured points."""
     table = finished(sweep)
     drawn = figure(6.9, 4.6 + TITLE)
     axes = add_axes(drawn, 0.95, 0.62, 4.5, 3.8)
@@ -169,7 +169,7 @@ def response_map(sweep: Sweep, x: str, y: str, answer: str) -> Figure:
         shown = axes.scatter(table[x], table[y], c=table[answer], s=16, cmap=colours)
         outside = table[~table["feasible"]]
         if sweep.plan.limits and len(outside):
-            axes.plot(outside[x], outside[y], "x", ms=4, color=QUIET, label="breaks a limit")
+            axes.plot(outside[x], outside[y], "x", ms=4, color=QUIET, label="outside a limit")
             axes.legend(fontsize=FONT - 1, frameon=True, loc="lower left", bbox_to_anchor=(0.0, 1.0))
     colorbar = drawn.colorbar(shown, cax=bar)
     colorbar.set_label(label(answer), fontsize=FONT)
@@ -190,7 +190,7 @@ def response_map(sweep: Sweep, x: str, y: str, answer: str) -> Figure:
 
 
 def _boundary(axes: Any, sweep: Sweep, grid: pd.DataFrame, answer: str) -> None:
-    """Where the answer meets its limit."""
+    """Draw the line where the answer equals its limit."""
     limit = sweep.plan.limits.get(answer)
     for value in () if limit is None else (limit.below, limit.above):
         if value is not None and grid.to_numpy().min() < value < grid.to_numpy().max():
@@ -201,7 +201,7 @@ def _boundary(axes: Any, sweep: Sweep, grid: pd.DataFrame, answer: str) -> None:
 
 
 def pareto(sweep: Sweep, best: pd.DataFrame, x: str, y: str) -> Figure:
-    """All variants in two answers, those on the front filled."""
+    """Draw all variants in two answers; filled markers are on the front."""
     table = finished(sweep)
     drawn = figure(6.9, 4.4 + TITLE)
     axes = add_axes(drawn, 1.0, 0.62, 5.5, 3.5)
@@ -209,8 +209,8 @@ def pareto(sweep: Sweep, best: pd.DataFrame, x: str, y: str) -> Figure:
     rest = table[~table["feasible"]]
     axes.plot(feasible[x], feasible[y], "o", ms=3.5, mfc="none", mec=QUIET, label="variants")
     if len(rest):
-        axes.plot(rest[x], rest[y], "x", ms=3.5, color="#b0b0b0", label="break a limit")
-    # A time that was never reached has no place.
+        axes.plot(rest[x], rest[y], "x", ms=3.5, color="#b0b0b0", label="outside a limit")
+    # A temperature that was never reached has no time.
     ordered = best.dropna(subset=[x, y]).sort_values(x)
     axes.plot(ordered[x], ordered[y], "o", ms=5.5, color=PALETTE[1], label="Pareto front")
     if len(ordered) <= 12:
@@ -227,13 +227,13 @@ def pareto(sweep: Sweep, best: pd.DataFrame, x: str, y: str) -> Figure:
     title(
         drawn,
         f"{name_of(y).capitalize()} against {name_of(x)}",
-        f"{len(best)} of {len(feasible)} variants are beaten by none",
+        f"{len(best)} of {len(feasible)} variants are on the Pareto front",
     )
     return drawn
 
 
 def _limits(axes: Any, sweep: Sweep, answer: str) -> None:
-    """Lines; a limit that is far from all variants would press them together, and is only named at that end."""
+    """Draw limits as lines; a limit far from all variants is only written at that end of the axis."""
     limit = sweep.plan.limits.get(answer)
     low, high = axes.dataLim.intervaly
     words: dict[str, Any] = {"fontsize": FONT - 1.5, "color": BROKEN}

@@ -1,4 +1,4 @@
-"""A design study's folder: every table as CSV and Parquet, pictures, summary, page."""
+"""Files of a sweep: every table as CSV and Parquet, pictures, summary, page."""
 
 from __future__ import annotations
 
@@ -19,7 +19,7 @@ if TYPE_CHECKING:
     from tyrefem.sweep.design import DesignData
 
 PAGE = "sweep.html"
-#: Answers that have tables, and the files that `save` may write.
+#: Answers with tables, and the files that `save` may write.
 PARTS = ("sweep", "pareto", "indices", "optimum", *sweep_questions())
 PICTURES = ("map-*.png", "curves-*.png", "bars-*.png", "pareto*.png", "indices-*.png", "optimum.png",
             *(f"{key}*.png" for key in sweep_questions()))  # fmt: skip
@@ -29,15 +29,15 @@ FILES = (
     PAGE,
     *(f"pictures/{name}" for name in PICTURES),
 )
-#: Files of finished variants.
+#: Files that keep finished variants.
 KEPT = (VARIANTS, *(f"{name}/{VARIANTS}" for name in PARTS))
 
 
 def save(design: DesignData, folder: Path, *, pictures: bool = True) -> dict[str, Any]:
-    """Write ``NAME.csv`` and ``.parquet`` of every part, ``summary.json`` and the page; returns the summary.
+    """Write ``NAME.csv`` and ``.parquet`` of every part, ``summary.json`` and the page; return the summary.
 
-    ``errors.csv`` is there where a reduced model answered: the largest error of every answer in fresh full runs.
-    What was written here before for another question is removed, by the list in its summary.
+    With a reduced model, also ``errors.csv``: the largest error of every answer in fresh full runs.
+    Files of an earlier question are removed; its summary lists them.
     """
     before, written = earlier(folder), []
     for part in design.parts:
@@ -53,7 +53,7 @@ def save(design: DesignData, folder: Path, *, pictures: bool = True) -> dict[str
 
 
 def write_table(table: pd.DataFrame, folder: Path, name: str) -> list[str]:
-    """A table as CSV and as Parquet; names of the files."""
+    """Write a table as CSV and as Parquet; return the names of the files."""
     with atomic_path(folder / f"{name}.csv") as temporary:
         table.to_csv(temporary, index=False, float_format="%.9g")
     with atomic_path(folder / f"{name}.parquet") as temporary:
@@ -62,7 +62,7 @@ def write_table(table: pd.DataFrame, folder: Path, name: str) -> list[str]:
 
 
 def write_errors(sweep: Sweep, folder: Path) -> list[str]:
-    """What the reduced model's answers may be wrong by, as found on fresh full runs; name of the file."""
+    """Write the largest errors of the reduced model's answers in fresh full runs; return the name of the file."""
     import pandas as pd
 
     assert sweep.certificate is not None
@@ -73,14 +73,14 @@ def write_errors(sweep: Sweep, folder: Path) -> list[str]:
 
 
 def summarised(design: DesignData) -> dict[str, Any]:
-    """What `summary.json` holds: how the variants were chosen and answered, every answer, versions, words."""
+    """Contents of `summary.json`: sample, computation of the variants, every answer, versions, sentences."""
     study, card = design.study, design.card
     return {
         "study": study.name,
         "title": card.title or study.title,
         "complete": not design.interrupted and (design.swept is None or design.swept.complete),
         "asked": card.model_dump(exclude_none=True, by_alias=True),
-        **({} if design.swept is None else {"sample": of_sample(design.swept)}),
+        **({} if design.swept is None else {"sample": sample_summary(design.swept)}),
         **{part.name: part.to_dict() for part in design.parts},
         "failures": design.failed,
         "tolerance_K": study.tolerance,
@@ -88,12 +88,12 @@ def summarised(design: DesignData) -> dict[str, Any]:
         "versions": versions() | {"SALib": importlib.metadata.version("SALib")},
         "random_seed": card.seed,
         "input": dict(study.data),
-        "words": spoken(design),
+        "words": text_lines(design),
     }
 
 
-def of_sample(sweep: Sweep) -> dict[str, Any]:
-    """The variants of the sample and who answered them."""
+def sample_summary(sweep: Sweep) -> dict[str, Any]:
+    """Numbers of variants of the sample, and the models that computed them."""
     certificate = sweep.certificate
     return {
         **sweep.plan.sampling,
@@ -119,11 +119,11 @@ def of_sample(sweep: Sweep) -> dict[str, Any]:
     }
 
 
-def spoken(design: DesignData) -> list[str]:
-    """A few lines for people: title, how the variants were answered, every answer under its heading."""
+def text_lines(design: DesignData) -> list[str]:
+    """Lines of text: title, computation of the variants, every answer under its heading."""
     lines = [design.card.title or design.study.title]
     if design.swept is not None:
-        lines.append(f"  {how_answered(design.swept)}")
+        lines.append(f"  {computation_sentence(design.swept)}")
     for part in design.parts:
         if part.words:
             lines.append(f"{part.heading}:")
@@ -131,11 +131,11 @@ def spoken(design: DesignData) -> list[str]:
     return lines
 
 
-def how_answered(sweep: Sweep) -> str:
-    """How many variants, in which time, by what."""
+def computation_sentence(sweep: Sweep) -> str:
+    """Sentence on the number of variants, their computing time and their model."""
     certificate = sweep.certificate
     words = f"{len(sweep.outcomes)} of {len(sweep.plan.variants)} variants in {sweep.seconds:.1f} s"
-    words += f", {sweep.resumed} of them taken up" if sweep.resumed else ""
+    words += f", {sweep.resumed} of them reused" if sweep.resumed else ""
     if certificate is not None:
         words += (
             f"; {sweep.reduced} by a reduced model from {certificate.trained_on - certificate.amended} runs"

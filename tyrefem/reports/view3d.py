@@ -1,4 +1,4 @@
-"""A 3D picture of a VTK file by pyvista, drawn in a child process: on a machine without graphics it may crash."""
+"""A 3D picture of a VTK file by pyvista, drawn in a child process, which may crash on a machine without graphics."""
 
 from __future__ import annotations
 
@@ -10,7 +10,7 @@ from typing import Any
 
 from tyrefem.output import atomic_path
 
-#: Seconds that drawing may take, software rendering included.
+#: Largest drawing time, with software rendering, s.
 PATIENCE = 120.0
 _LOG = logging.getLogger(__name__)
 
@@ -18,7 +18,7 @@ _LOG = logging.getLogger(__name__)
 def screenshot(source: str | Path, png: str | Path, *, timeout: float = PATIENCE) -> Path | None:
     """Draw the temperature of a .pvd (its last time) or .vtu file, or a pressed tyre's contact, into a PNG.
 
-    Returns None, with one line in the log, where the machine cannot render; never raises for that.
+    Returns None and logs one line if the machine cannot render; this raises no error.
     """
     source, png = Path(source), Path(png)
     with atomic_path(png.with_suffix(".tmp.png")) as temporary:
@@ -72,7 +72,7 @@ def _add_temperature(plotter: Any, grid: Any, bar: dict[str, Any]) -> None:
 
     flat = grid.bounds[5] - grid.bounds[4] < 1e-9
     if not flat:
-        # A quarter cut away shows the inside; a half tyre gets its mirror image.
+        # A quarter is cut away to show the inside; a half tyre gets its mirror image.
         centres = grid.cell_centers().points
         grid = grid.extract_cells(~((centres[:, 1] > 0) & (centres[:, 2] > 0)))
         if grid.bounds[0] > -1e-6:
@@ -87,7 +87,7 @@ def _add_temperature(plotter: Any, grid: Any, bar: dict[str, Any]) -> None:
 
 
 def _add_pressed(plotter: Any, grid: Any, bar: dict[str, Any]) -> None:
-    """The tyre from below and aside, grey where nothing touches, so that the flat is seen."""
+    """Show the tyre from below and from one side, grey outside the contact, so that the footprint is visible."""
     import numpy as np
 
     surface = grid.extract_surface(algorithm="dataset_surface")

@@ -1,4 +1,4 @@
-"""VTK files of a run for ParaView: one .vtu per saved time and a .pvd that gives their times.
+"""VTK files of a run for ParaView: one .vtu per saved time, and a .pvd that lists their times.
 
 The section lies in the plane of the screen: x = z (axial), y = r (up), so the wheel's axis is the x axis; metres.
 P2 elements become quadratic cells; the ring is cut into linear cells on all their nodes, in single precision.
@@ -22,7 +22,7 @@ if TYPE_CHECKING:
 
 Array = NDArray[Any]
 
-#: Unknowns of an element -> (VTK cell, order of its nodes turned round: r up and z right mirrors the plane).
+#: Unknowns of an element -> (VTK cell, reversed order of its nodes, because r up and z right mirrors the plane).
 _CELLS: dict[int, tuple[str, tuple[int, ...]]] = {
     3: ("triangle", (0, 2, 1)),
     4: ("quad", (0, 3, 2, 1)),
@@ -33,7 +33,7 @@ SEGMENTS = 72
 
 
 def write_series(result: ResultData, folder: Path, *, revolved: bool = False, segments: int = SEGMENTS) -> Path:
-    """Write ``<name>.pvd`` and ``<name>_0000.vtu`` ...; the .pvd's path is returned.
+    """Write ``<name>.pvd`` and ``<name>_0000.vtu`` ...; return the path of the .pvd.
 
     Point data ``temperature_degC``; cell data ``region`` and ``zone`` (numbers, named by the field data
     ``region_id_<name>`` and ``zone_id_<name>`` and in the .pvd), ``heat_source_W_m3`` and ``strain_energy_J_m3``
@@ -56,7 +56,7 @@ def write_series(result: ResultData, folder: Path, *, revolved: bool = False, se
 
 
 def file_name(study: str) -> str:
-    """The stem of a study's VTK files: its name, without what a file's name may not hold."""
+    """The stem of a study's VTK files: its name, without characters that a file name may not have."""
     return re.sub(r"[^\w.-]+", "-", study).strip("-.") or "tyre"
 
 
@@ -67,7 +67,7 @@ def file_names(study: str) -> list[str]:
 
 
 def saved_times(result: ResultData) -> list[int]:
-    """Numbers of the reading times whose fields are written; of an interrupted run also the last one reached."""
+    """Indices of the reading times whose fields are written; for an interrupted run, also the last time reached."""
     times = result.times
     near = [int(np.argmin(np.abs(times - t))) for t in result.field_times if t <= times[-1] + 1e-6]
     if result.history.interrupted:
@@ -76,7 +76,7 @@ def saved_times(result: ResultData) -> list[int]:
 
 
 class _Plane:
-    """The section itself."""
+    """The section in its plane."""
 
     def __init__(self, result: ResultData) -> None:
         operators = result.tyre.problem.operators
@@ -94,7 +94,7 @@ class _Plane:
 
 
 class _Ring:
-    """The section turned about the wheel's axis, from the screen's plane towards the viewer."""
+    """The section revolved about the wheel's axis, from the screen's plane towards the viewer."""
 
     def __init__(self, result: ResultData, segments: int) -> None:
         from tyrefem.reports.figures.cells import linear_cells
@@ -107,7 +107,7 @@ class _Ring:
         axial = np.broadcast_to(z, (segments, size))
         points = np.stack([axial, r * np.cos(angle), r * np.sin(angle)], axis=-1).reshape(-1, 3)
         self.points = points.astype(np.float32)
-        # Seen along the turn a hexahedron's first face looks inwards, a wedge's outwards.
+        # In the direction of rotation, a hexahedron's first face points inwards, a wedge's outwards.
         turned = cells[::-1].T if len(cells) == 4 else cells.T
         here = turned[None] + size * np.arange(segments)[:, None, None]
         there = turned[None] + size * (np.arange(1, segments + 1) % segments)[:, None, None]
@@ -198,7 +198,7 @@ def _cell_means(result: ResultData, i: int) -> tuple[Array, Array]:
 
 
 def add_fields(path: Path, fields: Mapping[str, float]) -> None:
-    """Put field data (which meshio does not write) into a .vtu file."""
+    """Add field data, which meshio does not write, to a .vtu file."""
     rows = []
     for name, value in fields.items():
         kind = "Int32" if isinstance(value, int) else "Float64"

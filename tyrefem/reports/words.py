@@ -1,7 +1,4 @@
-"""Numbers and places in the words of a report.
-
-Sliding as lines of text: Roberts' tables, measured beside predicted, and the phases of a run.
-"""
+"""Text of numbers, times and places in a report, and lines of text on sliding."""
 
 from __future__ import annotations
 
@@ -16,7 +13,7 @@ if TYPE_CHECKING:
 
 
 def number(value: float, significant: int = 4) -> str:
-    """A number for people: so many significant digits, no exponent between 1e-4 and 1e6.
+    """Format a number with ``significant`` digits, without an exponent between 1e-4 and 1e6.
 
     >>> number(539335.4), number(0.00698786), number(-0.0), number(2.5e8), number(1786)
     ('539 335', '0.006988', '0', '2.5e8', '1786')
@@ -37,7 +34,7 @@ def number(value: float, significant: int = 4) -> str:
 
 
 def seconds(value: float) -> str:
-    """A time in s, and in minutes or hours where that reads better.
+    """Format a time in s, and long times also in minutes or hours.
 
     >>> seconds(600.0), seconds(45.0), seconds(7200.0)
     ('600 s (10 min)', '45 s', '7200 s (2 h)')
@@ -49,7 +46,7 @@ def seconds(value: float) -> str:
 
 
 def phase_lines(outcome: SlidingOutcome) -> Iterator[str]:
-    """One line per phase with slip of a run: mean tread and exit edge, friction and where it was limited."""
+    """One line per phase with slip: temperatures of mean tread and exit edge, friction and its limit."""
     for phase in outcome.phases:
         limited = f", limited to {phase.friction_lowest:.2f} by decomposition" if phase.capped else ""
         locked = ", locked" if phase.locked else ""
@@ -61,7 +58,7 @@ def phase_lines(outcome: SlidingOutcome) -> Iterator[str]:
 
 
 def wood_lines(rows: tuple[WoodRow, ...]) -> Iterator[str]:
-    """Table 2: deviation of equations 3 and 4 from the observed rise, and whether the printed prediction follows.
+    """Lines of table 2: deviation of equations 3 and 4 from the observed rise; check of the printed prediction.
 
     >>> from tyrefem.boundaries.friction_names import wood_rows
     >>> sum("does NOT follow" in line for line in wood_lines(wood_rows()))
@@ -79,7 +76,7 @@ def wood_lines(rows: tuple[WoodRow, ...]) -> Iterator[str]:
 
 
 def ice_lines(rows: tuple[IceRow, ...]) -> Iterator[str]:
-    """Table 3: equation 4 at one distance for all rows, and equation 12 at the pressure that the first row needs.
+    """Lines of table 3: equation 4 with one distance for all rows; equation 12 with the first row's pressure.
 
     >>> from tyrefem.boundaries.friction_names import ice_rows
     >>> print(next(ice_lines(ice_rows())))

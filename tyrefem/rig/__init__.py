@@ -1,6 +1,6 @@
 """The laser rig (Allouis et al. 2016): simulate a heating test, find conductivity and specific heat of every layer.
 
-What people work with; the work is done in `tyrefem.heating_test`.
+The public interface; the computations are in `tyrefem.heating_test`.
 """
 
 from __future__ import annotations
@@ -30,7 +30,7 @@ __all__ = [
 
 
 def __getattr__(name: str) -> Any:
-    """An identification has verbs; their modules are loaded when somebody identifies."""
+    """Import the identification and its methods on first use."""
     if name not in ("Identification", "identify"):
         raise AttributeError(f"module 'tyrefem.rig' has no attribute '{name}'")
     from tyrefem import api

@@ -1,4 +1,4 @@
-"""The rolling tyre: one drive in, one result out.
+"""Simulation of a rolling tyre over one drive.
 
-Knows nothing of measurements, sweeps and reports.
+This package does not import measurements, sweeps or reports.
 """

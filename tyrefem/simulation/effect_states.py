@@ -1,4 +1,4 @@
-"""The states that a tyre's effects keep through a run: their places in one vector, and their values now."""
+"""States of a tyre's effects during a run: their places in one vector, and their present values."""
 
 from __future__ import annotations
 
@@ -28,7 +28,7 @@ class StateHistory:
 
 @dataclass(frozen=True)
 class _Place:
-    """Where a state of an effect stands in the vector."""
+    """Place of an effect's state in the vector."""
 
     effect: Effect
     name: str
@@ -48,11 +48,11 @@ def _key(effect: Effect) -> Key:
 class EffectStates:
     """States of effects as one vector (k,).
 
-    During a run it shows the states at the time that is computed, after it those of the history.
+    During a run, `value` gives the states at the computed time; after the run, those of the history.
 
     Raises
     ------
-    InputError : an effect's initial states are not those that it declares, or are not finite.
+    InputError : an effect's initial states are not finite, or differ from its declared states.
     """
 
     def __init__(self, tyre: Tyre, effects: Sequence[Effect]) -> None:
@@ -89,15 +89,15 @@ class EffectStates:
         return rates
 
     def show(self, z: Array) -> None:
-        """From now on these are the states."""
+        """Set the present states."""
         self._now = z
 
     def record(self, times: Array, values: Array) -> None:
-        """The run is over: from now on states are those of its history, values (n_times, k)."""
+        """Set the history of the finished run, values (n_times, k)."""
         self._now, self._history = None, (times, values)
 
     def value(self, effect: Effect, name: str, t: float) -> Value:
-        """A state at a time: of the step that is computed, else of the history; before a run, the initial one."""
+        """A state at a time: of the computed step, or of the history after a run; before a run, the initial state."""
         place = next(
             (
                 candidate
@@ -131,7 +131,7 @@ class EffectStates:
 
 
 def _checked(effect: Effect, given: Mapping[str, Value], method: str) -> dict[str, Array]:
-    """What an effect's method returned, by state; arrays () or (n,)."""
+    """Check the return value of an effect's method: state -> array () or (n,)."""
     field = f"effects.{effect.name}.{method}"
     if not isinstance(given, Mapping) or set(given) != set(effect.states):
         names = ", ".join(effect.states)

@@ -1,4 +1,4 @@
-"""What running a study will take: memory and time, before its mesh, its mechanics or its readings are made."""
+"""Estimate of memory and time of a run, before mesh, mechanics or readings are computed."""
 
 from __future__ import annotations
 
@@ -19,27 +19,27 @@ if TYPE_CHECKING:
     from tyrefem.inputs.study import StudyData
     from tyrefem.inputs.study_card import MeshChoice
 
-#: Runs that a feedback usually takes (2 to 7 in docs/evidence/two-way.md).
+#: Typical number of runs of a feedback (2 to 7 in docs/evidence/two-way.md).
 USUAL_RUNS = 5
-#: Readings that a phase with slip has beside those asked for, at most.
+#: Largest number of additional readings in a phase with slip.
 SLIP_READINGS = 24
 
 
 @dataclass(frozen=True, eq=False)
 class RunEstimate:
-    """Of one run of a study; ``mesh``: in place of the study's own choice."""
+    """Estimate of one run of a study; ``mesh`` replaces the study's mesh settings."""
 
     study: StudyData
     mesh: MeshChoice
 
     @classmethod
     def of(cls, study: StudyData) -> RunEstimate:
-        """Of a study as it is."""
+        """Estimate of an unchanged study."""
         return cls(study, study.card.mesh)
 
     @functools.cached_property
     def unknowns(self) -> float:
-        """Of the heat conduction; 0 where the mesh is a file's, which nobody knows before it is read."""
+        """Number of unknowns of the heat conduction; 0 for a mesh file, whose size is unknown before it is read."""
         choice = self.mesh
         if choice.file is not None:
             return 0.0
@@ -48,14 +48,14 @@ class RunEstimate:
 
     @property
     def readings(self) -> float:
-        """Times at which temperatures are kept."""
+        """Number of times at which temperatures are kept."""
         drive, output = self.study.card.drive, self.study.card.output
         slides = sum(phase.slides for phase in drive.phases)
         return drive.end / output.every + len(drive.phases) + SLIP_READINGS * slides + output.fields
 
     @functools.cached_property
     def mechanics(self) -> Estimate:
-        """Of the strain cycles."""
+        """Estimate of the strain cycles."""
         card = self.study.card
         if not strain_law(self.study).by_elements or self.mesh.file is not None:
             return Estimate()
@@ -80,7 +80,7 @@ class RunEstimate:
 
     @property
     def transient_run(self) -> Estimate:
-        """Of the temperatures, in one run."""
+        """Estimate of the temperatures in one run."""
         card = self.study.card
         return estimate.transient_run(
             self.unknowns, self.readings, len(card.drive.phases), card.numerics.tolerance, card.output.fields
@@ -88,16 +88,16 @@ class RunEstimate:
 
     @property
     def total(self) -> Estimate:
-        """Of all."""
+        """Estimate of the whole study."""
         transient_run = self.transient_run
         return self.mechanics + Estimate(transient_run.memory, transient_run.time * self._runs)
 
     def check(self, workers: int = 1) -> None:
-        """Refuse a study of which so many runs side by side do not fit in the free memory.
+        """Refuse a study if ``workers`` simultaneous runs do not fit in the free memory.
 
         Raises
         ------
-        InputError : names the mesh's or the output's number that is to blame, and what would fit.
+        InputError : names the number of the mesh or output that needs the memory, and a value that would fit.
         """
         needed = self.total.memory
         if needed < estimate.SMALL:
@@ -114,7 +114,7 @@ class RunEstimate:
             raise error.within(field=field, file=self.study.file) from None
 
     def announce(self) -> None:
-        """Refuse what does not fit, as `check`; warn of a long run."""
+        """Refuse a run that does not fit (see `check`); warn of a long run."""
         self.check()
         card = self.study.card
         many = estimate.steps(len(card.drive.phases), card.numerics.tolerance)
@@ -124,7 +124,7 @@ class RunEstimate:
         estimate.warn_if_long(self.total.time, f"a run of {self.study.name} ({', '.join(parts)})")
 
     def _output(self, free: float) -> tuple[str, str, str]:
-        """Field, what it makes, what would fit: too many readings."""
+        """Too many readings: the field, their number, and a value that would fit."""
         output, end = self.study.card.output, self.study.card.drive.end
         left = free - (self.total.memory - estimate.history(self.unknowns, self.readings))
         room = left / estimate.history(self.unknowns, 1)
@@ -138,7 +138,7 @@ class RunEstimate:
         return "output.every", f"{output.every:g} s makes {self.readings:,.0f} readings", fits
 
     def _meshed(self, free: float) -> tuple[str, str, str]:
-        """Field, what it makes, what would fit: too fine a mesh."""
+        """Too fine a mesh: the field, the number of unknowns, and a value that would fit."""
         mesh = self.mesh
 
         def needed(**changes: float) -> float:

@@ -1,4 +1,4 @@
-"""Two ways: temperatures change pressure and moduli, these the strain cycles and so the heat, until both agree."""
+"""Fixed-point iteration of temperatures and strain cycles, through pressure and moduli."""
 
 from __future__ import annotations
 
@@ -17,7 +17,7 @@ if TYPE_CHECKING:
     from tyrefem.simulation.result import ResultData
     from tyrefem.simulation.rolling_tyre import RollingTyre
 
-#: A run that leaves more than this share of the last one's disagreement makes the next one go half as far.
+#: If a run reduces the difference to no less than this share of the last, the next step is halved.
 SLOW, LEAST = 0.7, 1 / 16
 
 
@@ -29,16 +29,16 @@ def run(
     *,
     partial: bool = False,
 ) -> ResultData:
-    """Simulate a study's drive again and again until its temperatures are those of its strain cycles.
+    """Simulate a study's drive repeatedly, until its temperatures are those of its strain cycles.
 
-    Every run takes its strain cycles at the temperatures of the one before (the first: ``start``, by default the
-    drive's initial ones): T_(k+1) = run(cycles(T_k)). Where that converges slowly or not, steps are halved. What has
-    not converged after the iterations allowed is returned all the same, and warns. ``partial``: as of
-    `tyrefem.simulation.run.run`; the part is one of the latest run.
+    T_(k+1) = run(cycles(T_k)): every run uses strain cycles at the temperatures of the run before. The first uses
+    ``start``, by default the drive's initial temperatures. Slow convergence or divergence halves the steps. A result
+    that has not converged after the allowed iterations is returned with a warning. ``partial``: see
+    `tyrefem.simulation.run.run`; the finished part is of the latest run.
 
     Raises
     ------
-    InputError : a pressure or modulus at which the section cannot take its load; names the phase.
+    InputError : the section cannot carry its load at a pressure or modulus; names the phase.
     """
     from tyrefem.simulation.rolling_tyre import RollingTyre
     from tyrefem.simulation.simulate import simulate

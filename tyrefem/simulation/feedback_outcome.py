@@ -1,4 +1,4 @@
-"""What the feedback of temperature on the strain cycle came to."""
+"""Result of the feedback of temperature on the strain cycle."""
 
 from __future__ import annotations
 
@@ -21,14 +21,14 @@ class InflationState:
 
 @dataclass(frozen=True)
 class FeedbackOutcome:
-    """Whether strain cycles and temperatures agree, and what the feedback did.
+    """Convergence of strain cycles and temperatures, and the changes by the feedback.
 
     Attributes
     ----------
-    changes : K, of every run: largest difference between the temperatures that it found and those of its strain
-        cycles, over contained air and mean of every region that softens, at every knot; infinite of a run that was
-        interrupted, for which nobody knows.
-    start, end : pressure and deflection there. softened : region -> modulus of its compound at the end over the card's.
+    changes : K, of every run: largest difference between its temperatures and those of its strain cycles, over all
+        knots, contained air and means of the regions that soften; infinite for an interrupted run.
+    start, end : pressure and deflection at start and end.
+    softened : region -> modulus of its compound at the end over the card's.
     """
 
     tolerance: float
@@ -39,28 +39,28 @@ class FeedbackOutcome:
 
     @property
     def iterations(self) -> int:
-        """Runs of the whole drive."""
+        """Number of runs of the whole drive."""
         return len(self.changes)
 
     @property
     def converged(self) -> bool:
-        """Do they agree within the tolerance?"""
+        """True if temperatures and strain cycles agree within the tolerance."""
         return self.changes[-1] <= self.tolerance
 
     @property
     def warnings(self) -> tuple[str, ...]:
-        """One line, if they do not agree."""
+        """One line if the feedback has not converged."""
         if self.converged or math.isinf(self.changes[-1]):
             return ()
         return (
             f"the feedback of temperature on the strain cycle has not converged: after {self.iterations} runs "
             f"temperatures still differ by {self.changes[-1]:.2g} K from those of the strain cycles (tolerance "
-            f"{self.tolerance:g} K); raise mechanics.feedback.iterations",
+            f"{self.tolerance:g} K); increase mechanics.feedback.iterations",
         )
 
     @property
     def words(self) -> str:
-        """One line for people."""
+        """One line of text."""
         change = f"{self.changes[-1]:.2g} K"
         state = f"converged to {change}" if self.converged else f"NOT converged: {change}"
         runs = f"{self.iterations} run{'' if self.iterations == 1 else 's'}"

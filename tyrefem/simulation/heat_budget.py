@@ -23,8 +23,7 @@ Array = NDArray[np.float64]
 class HeatBudget(Brief):
     """Heat of the whole tyre (a half section's is doubled).
 
-    Body: sum generated + sum sliding = sum stored + sum lost. Lumped bodies: received from the tyre = stored + passed
-    on.
+    Body: sum generated + sum sliding = sum stored + sum lost. Lumped bodies: heat from the tyre = stored + passed on.
 
     Attributes
     ----------
@@ -58,21 +57,21 @@ class HeatBudget(Brief):
 
     @property
     def empty(self) -> bool:
-        """Was no heat generated, stored or lost, but for rounding?"""
+        """True if no heat was generated, stored or lost, except for rounding."""
         return max((float(np.abs(series).max()) for series in self.energies.values()), default=0.0) <= self.floor
 
     @property
     def closing(self) -> str:
-        """How well it closes, in words.
+        """Text on the imbalance of the budget.
 
         >>> HeatBudget(np.zeros(1), {("lost", "rim"): np.array([1e-8])}, {}, np.array([1e-8]), 1.0, floor=1e-3).closing
-        'no heat is turned over'
+        'no heat is exchanged'
         """
-        return "no heat is turned over" if self.empty else f"closes to {self.imbalance:.0e}"
+        return "no heat is exchanged" if self.empty else f"closes to {self.imbalance:.0e}"
 
     @property
     def made(self) -> float:
-        """All heat that came into the rubber at the end, generated and sliding, J."""
+        """Heat into the rubber until the end, generated and sliding, J."""
         return self.total("generated") + self.total("sliding")
 
     def power(self, kind: str) -> Array:
@@ -111,7 +110,7 @@ class HeatBudget(Brief):
         return pd.DataFrame(columns)
 
     def to_dict(self) -> dict[str, Any]:
-        """JSON-ready: energies and final powers by kind and name, and how well the budget closes."""
+        """Data for JSON: energies and final powers by kind and name, and the imbalance."""
         shares: dict[str, Any] = {"imbalance": self.imbalance, "residual_J": float(self.residual[-1])}
         for row in self.table.to_dict("records"):
             entry = {"energy_J": row["energy_J"]}
@@ -121,16 +120,16 @@ class HeatBudget(Brief):
         return shares
 
 
-#: What the conditions on a boundary are called in the budget, by (boundary, number of the condition).
+#: (boundary, number of the condition) -> name in the budget.
 NAMES = {("road", 0): "road contact", ("road", 1): "air at the tread", ("outside_air", 0): "outside air"}
-#: Friction heat, and what a locked wheel gives to the passing road: together what sliding brings into the tread.
+#: Friction heat, and heat from a locked wheel to the passing road: their sum is the sliding heat of the tread.
 FRICTION = "friction on the road"
 
 
 def whole_tyre(
     budget: Budget, zone_titles: Mapping[str, str], half: bool, added: Mapping[tuple[str, int], str] | None = None
 ) -> HeatBudget:
-    """The budget of a section as that of the whole tyre; ``added`` names the conditions of effects."""
+    """Convert the budget of a section to that of the whole tyre; ``added`` names the conditions of effects."""
     names = NAMES | dict(added or {})
     factor = 2.0 if half else 1.0
     energies: dict[tuple[str, str], Array] = {}

@@ -1,4 +1,4 @@
-"""Strain energy x tan delta x revolutions -> heat source in W/m3."""
+"""Heat source from strain energy x tan delta x revolutions per second, W/m3."""
 
 from __future__ import annotations
 
@@ -22,11 +22,11 @@ class HeatSource:
     """q = W f, W/m3, of one zone: W = pi U tan(delta)(T) lost per revolution (Clark & Dodge 1980, eq 25), f = v / (2 pi
     r_r) revolutions per second, so q = U tan(delta)(T) v / (2 r_r) (eq 26); twice that for ``sinusoid``.
 
-    Where tan delta depends on frequency (``over_frequency``), q = pi f sum_n U_n tan(delta)(n f, T), U_n the share of
-    the cycle that runs n times per revolution; one for all where the strain law knows one cycle only.
+    Where tan delta depends on frequency (``over_frequency``), q = pi f sum_n U_n tan(delta)(n f, T), U_n the part of
+    the cycle with n periods per revolution; a strain law with one cycle has only n = 1.
 
-    Called by the conduction solver with nodes x (2, n), time t (s) and temperatures T (n,), degC. The strain energy at
-    the nodes is evaluated once per load case, as the solver passes the same x at every call.
+    The conduction solver calls it with nodes x (2, n), time t, s, and temperatures T (n,), degC. The strain energy at
+    the nodes is evaluated once per load case, because the solver passes the same x in every call.
     """
 
     zone: str
@@ -46,7 +46,7 @@ class HeatSource:
         return math.pi * self.loss_factor
 
     def energy_density(self, x: Array, t: float) -> Array:
-        """U, J/m3, at nodes and time."""
+        """U, J/m3, at nodes and a time."""
         self._meet(x)
         total: Array = np.zeros(x.shape[1])
         for phase, knot, weight in self.schedule.weights(t):
@@ -57,7 +57,7 @@ class HeatSource:
         return total
 
     def spectrum(self, x: Array, t: float) -> Array:
-        """(orders, n) U, J/m3, at nodes and time, by how often per revolution it runs: the first of `strain.ORDERS`."""
+        """(orders, n) U, J/m3, at nodes and a time, by periods per revolution: the first of `strain.ORDERS`."""
         self._meet(x)
         parts = []
         for phase, knot, weight in self.schedule.weights(t):

@@ -1,4 +1,4 @@
-"""One study by every strain law: strain energy by region and the temperatures that it makes."""
+"""Comparison of strain laws in one study: strain energy by region, and temperatures."""
 
 from __future__ import annotations
 
@@ -26,17 +26,17 @@ if TYPE_CHECKING:
 
 Array = NDArray[np.float64]
 TOTAL = "whole tyre"
-#: What a comparison of strain laws needs of a study.
+#: Requirements of a comparison of strain laws on a study.
 NEEDS = Requirements("a comparison of strain laws")
 
 
 @dataclass(frozen=True, eq=False)
 class LawOutcome:
-    """What one strain law says of a study.
+    """Results of a study with one strain law.
 
     Parameters
     ----------
-    law : its name. result : the study run with it. phase, knot : the load case with the largest deflection.
+    law : name of the law. result : the study's run with the law. phase, knot : load case of the largest deflection.
     """
 
     law: str
@@ -51,11 +51,11 @@ class LawOutcome:
 
     @property
     def deflection(self) -> float:
-        """Of the tyre in the load case, m: the load law's, or the footprint's own."""
+        """Deflection in the load case, m: from the load law, or from the pressed footprint."""
         return self.result.tyre.schedule.cases[self.phase][self.knot].deflection
 
     def heating_density(self, part: Zone, points: Array) -> Array:
-        """U that makes the heat, J/m3, at points (2, n) of a part: for ``fem`` that of all harmonics together."""
+        """U that heats, J/m3, at points (2, n) of a part; for ``fem``, the sum of all harmonics."""
         zones = {zone.name for zone in self.cycle.zones}
         return np.asarray(self.cycle.energy_density(part.name if part.name in zones else part.region, points))
 
@@ -75,7 +75,7 @@ class LawOutcome:
 
     @property
     def temperatures(self) -> dict[str, float]:
-        """Hottest point ever, sensors and contained air at the end of the run, degC."""
+        """Highest temperature of the run; sensors and contained air at its end, degC."""
         last = self.result.readings.iloc[-1].drop("time_s")
         hottest = float(self.result.extremes.iloc[0]["temperature_degC"])
         return {"hottest": hottest, **{str(name): float(value) for name, value in last.items()}}
@@ -83,7 +83,7 @@ class LawOutcome:
 
 @dataclass(frozen=True, eq=False)
 class LawComparison:
-    """A study by several strain laws. Made by `compare_laws`; ``refused``: law -> why it has no answer."""
+    """A study with several strain laws, made by `compare_laws`; ``refused``: law -> reason why it has no solution."""
 
     study: StudyData
     outcomes: tuple[LawOutcome, ...]
@@ -91,7 +91,7 @@ class LawComparison:
 
     @property
     def parts(self) -> tuple[Zone, ...]:
-        """What energies are given for: the report's regions I to V where the section has arcs, else the regions."""
+        """Parts with energies: the NASA report's regions I to V if the section has arcs, else its regions."""
         section = self.study.section
         if _has_arcs(self.study):
             from tyrefem.mechanics.arcs import report_zones
@@ -107,7 +107,7 @@ class LawComparison:
 
     @property
     def load_law_deflection(self) -> float:
-        """What the study's load law makes of the load case, m: finite elements find their own."""
+        """Deflection by the study's load law, m; finite elements compute another."""
         case, rating = self.case, self.study.section.rating
         if case.contact is None or rating is None:
             return case.deflection
@@ -130,7 +130,7 @@ class LawComparison:
 
     @functools.cached_property
     def heating(self) -> dict[str, dict[str, float]]:
-        """As `energies`, of the U that makes the heat: U tan d is lost once per revolution (times pi)."""
+        """As `energies`, for the U that heats: pi U tan d is lost per revolution."""
         return self._integrals("heating_density")
 
     def _integrals(self, density: str) -> dict[str, dict[str, float]]:
@@ -155,7 +155,7 @@ class LawComparison:
         return points, np.asarray(basis.dx).ravel() * points[0] * 2 * np.pi * sides
 
     def table(self) -> pd.DataFrame:
-        """``kind``, ``name``, ``unit`` and a column per law: deflection, energies, coefficients, temperatures."""
+        """``kind``, ``name``, ``unit`` and a column per law, of deflection, energies, coefficients, temperatures."""
         import pandas as pd
 
         rows: list[dict[str, Any]] = []
@@ -186,7 +186,7 @@ class LawComparison:
         return pd.DataFrame(rows)
 
     def summary(self) -> dict[str, Any]:
-        """Everything in SI, temperatures in degC."""
+        """All results in SI, temperatures in degC."""
         from tyrefem.output import versions
 
         first, case, laws = self.outcomes[0], self.case, {}
@@ -221,19 +221,19 @@ class LawComparison:
 
 
 def compared_laws() -> tuple[str, ...]:
-    """The laws that find a tyre's strain cycle without further inputs, in the order of the columns."""
+    """The laws that compute a strain cycle without further inputs, in the order of the columns."""
     return tuple(name for name, law in strain_laws().items() if law.compared)
 
 
 def compare_laws(study: StudyData | str, laws: tuple[str, ...] | None = None) -> LawComparison:
-    """Run a study by several strain laws, everything else alike, tan delta included.
+    """Run a study with several strain laws; all other inputs, including tan delta, are the same.
 
-    The arcs are left out beside others where the section has none. A law that has no answer is kept in ``refused``
-    with the reason.
+    By default, ``arcs`` is left out if the section has no arcs. A law without a solution is kept in ``refused`` with
+    the reason.
 
     Raises
     ------
-    InputError : a campaign; a study that never rolls under load; no law has an answer.
+    InputError : the study is a campaign, it never rolls under load, or no law has a solution.
 
     >>> brief = {"drive.duration": "60 s", "mesh.size": "12 mm", "numerics.tolerance": "0.5 delta_degC"}
     >>> from tyrefem import study

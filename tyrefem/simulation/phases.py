@@ -1,7 +1,4 @@
-"""The phases of a drive as they were simulated.
-
-Where a run left the range of its own assumptions.
-"""
+"""The simulated phases of a drive, and warnings of phases outside the range of the assumptions."""
 
 from __future__ import annotations
 
@@ -17,7 +14,7 @@ if TYPE_CHECKING:
 
 @dataclass(frozen=True)
 class PhaseState:
-    """A phase of the drive as it was simulated; mechanical quantities at its end. SI units, degC."""
+    """A simulated phase of the drive; mechanical quantities are at its end. SI units, degC."""
 
     name: str
     start: float
@@ -28,16 +25,16 @@ class PhaseState:
     deflection: float
     rolling_radius: float
     footprint_length: float
-    #: Area of rubber in contact, m2; None where the strain law does not press the tyre on its road.
+    #: Area of rubber in contact, m2; None if the strain law does not press the tyre on the road.
     footprint_area: float | None
     road_fraction: float
     road_film: float
     air_film: float
-    #: Depth to which one contact cools the tread (Cattani et al. 2023, eq 8).
+    #: Penetration depth of one contact in the tread, m (Cattani et al. 2023, eq 8).
     propagation_depth: float
     #: Speed of the tread over the road; 0 without slip.
     sliding_speed: float
-    #: Whether the wheel is locked all the time.
+    #: True if the wheel is locked during the whole phase.
     locked: bool
 
 
@@ -71,17 +68,17 @@ def phase_states(tyre: RollingTyre) -> tuple[PhaseState, ...]:
     return tuple(states)
 
 
-#: Largest part of the tread at the crown that one contact may reach before the result warns (a judgement).
+#: Largest penetration depth without a warning, as a share of the tread's thickness at the crown (a judgement).
 SHALLOW = 0.2
 
 
 def deep_contacts(section: Section, phases: Iterable[PhaseState]) -> tuple[str, ...]:
-    """One line for every phase in which one contact cools more of the tread than an averaged film stands for."""
+    """A warning for every phase in which the penetration depth is too large for an averaged film."""
     tread = float(section.thickness("tread", 0.0))
     return tuple(
         f"phase '{state.name}': one contact cools the tread {state.propagation_depth * 1e3:.2g} mm deep, "
         f"{100 * state.propagation_depth / tread:.0f} % of its thickness at the crown; a film averaged over "
-        f"the revolution holds below {100 * SHALLOW:.0f} %"
+        f"the revolution is valid below {100 * SHALLOW:.0f} %"
         for state in phases
         if state.propagation_depth > SHALLOW * tread
     )

@@ -1,4 +1,4 @@
-"""What a run found: readings, extremes, heat budget, rolling resistance; and how to write and show it."""
+"""The result of a run: readings, extremes, heat budget, rolling resistance."""
 
 from __future__ import annotations
 
@@ -35,11 +35,13 @@ if TYPE_CHECKING:
 Array = NDArray[np.float64]
 
 
-#: Warning of a run that is asked of a campaign as a whole.
-CASES_LEFT_OUT = "the study is a campaign: this is its own drive; study.campaign() and 'tyrefem run' take its cases"
+#: Warning of a run of a whole campaign.
+CASES_LEFT_OUT = (
+    "the study is a campaign: this run is of its base drive; study.campaign() and 'tyrefem run' run its cases"
+)
 
 
-#: Of a history, what is stored; operators and materials are the problem's.
+#: Fields of a history that are stored; operators and materials belong to the problem.
 KEPT = (
     "times", "values", "reservoirs", "budget", "maximum", "region_maximum", "steps", "interrupted", "states",
 )  # fmt: skip
@@ -49,7 +51,7 @@ KEPT = (
 class ResultData(Brief):
     """A finished (or interrupted) run of a study.
 
-    It can be pickled: study, mesh, strain cycles and temperatures are kept, everything else is worked out again.
+    It can be pickled with study, mesh, strain cycles and temperatures; all else is computed again.
     """
 
     study: StudyData
@@ -59,11 +61,11 @@ class ResultData(Brief):
     field_times: Array
     #: Wall time of the run, s.
     wall_time: float
-    #: How the feedback of temperature on the strain cycle went; None for a study without it.
+    #: Result of the feedback of temperature on the strain cycle; None for a study without feedback.
     feedback: FeedbackOutcome | None = None
 
     def __reduce__(self) -> tuple[Any, ...]:
-        """Functions of time and temperature do not travel: they are made again from the study."""
+        """Pickle without functions of time and temperature, which are made again from the study."""
         history = {name: getattr(self.history, name) for name in KEPT}
         return _again, (type(self), self.study, self.tyre, history, self.field_times, self.wall_time, self.feedback)
 
@@ -87,7 +89,7 @@ class ResultData(Brief):
             **{name: f"{np.mean(state.values[-1]):.4g} {state.unit} at the end" for name, state in self.states.items()},
             "rolling resistance": f"{resistance.force:.1f} N, coefficient {resistance.coefficient:.5f}"
             if resistance.phase
-            else "it never rolls",
+            else "none: the tyre never rolls",
             "heat generated": f"{self.generated(-1)[0] / 1e3:.4g} kJ",
             "mesh": f"{self.tyre.mesh.n_nodes} nodes, {self.study.card.mesh.element}",
             "warnings": f"{len(self.warnings)}",
@@ -103,12 +105,12 @@ class ResultData(Brief):
     def at(self, points: ArrayLike) -> Array:
         """Temperatures at points (n_points, 2) in (r, z), m: (n_times, n_points), degC.
 
-        Points between the section's curved outline and the mesh's straight edges are read at the nearest point of the
-        mesh (`tyrefem.geometry.meshing.sagitta`).
+        A point between the section's curved outline and the mesh's straight edges gets the temperature of the nearest
+        point of the mesh (`tyrefem.geometry.meshing.sagitta`).
 
         Raises
         ------
-        InputError : a point is further outside; names it and its distance.
+        InputError : a point is farther outside; names the point and its distance.
         """
         try:
             return np.asarray(self.history.at(points))
@@ -118,9 +120,7 @@ class ResultData(Brief):
             return np.asarray(self.history.at(places))
 
     def temperature_field(self, i: int = -1) -> Callable[[Array], Array]:
-        """T(x), degC, at ``times[i]`` of places (2, n) in (r, z), m: what `tyrefem.mechanics.solid.inflation.inflate`
-        takes.
-        """
+        """T(x), degC, at ``times[i]``, for places (2, n) in (r, z), m; see `tyrefem.mechanics.solid.inflation`."""
         return lambda x: self.history.field(i).at(self._inside(np.asarray(x).T))
 
     @functools.cached_property
@@ -129,7 +129,7 @@ class ResultData(Brief):
         return true_places(self.study)
 
     def _inside(self, points: ArrayLike) -> Array:
-        """Points moved by the sag of straight-sided elements at most, so that a surface point is in the mesh."""
+        """Move surface points into the mesh, at most by the sagitta of straight-sided elements."""
         section = self.study.section
         return inside_mesh(
             section, self.tyre.mesh.size, *section.locate(np.asarray(points, dtype=float).reshape(-1, 2))
@@ -137,7 +137,7 @@ class ResultData(Brief):
 
     @property
     def sensor_points(self) -> Array:
-        """(n_sensors, 2) in (r, z), m: where in the mesh the sensors are read."""
+        """(n_sensors, 2) places of the sensors in the mesh, (r, z), m."""
         return self._inside(list(self.sensor_places.values()))
 
     @functools.cached_property
@@ -152,19 +152,19 @@ class ResultData(Brief):
 
     @functools.cached_property
     def recorded(self) -> dict[str, Array]:
-        """Sensor -> what the logger recorded, (n_times,) degC."""
+        """Sensor -> recorded readings, (n_times,) degC."""
         if not self.sensor_places:
             return {}
         return recorded(self.study, self.times, self.at(self.sensor_points))
 
     @property
     def rim_temperature(self) -> Array | None:
-        """A lumped rim, (n_times,) degC; None where the rim's temperature is given."""
+        """Temperature of a lumped rim, (n_times,) degC; None if the rim's temperature is given."""
         return np.asarray(self.history.reservoirs[RIM]) if RIM in self.history.reservoirs else None
 
     @functools.cached_property
     def states(self) -> dict[str, StateHistory]:
-        """States that effects kept: "effect state" -> unit, meaning and values (n_times,) or (n_times, n)."""
+        """States of effects: "effect state" -> unit, meaning and values (n_times,) or (n_times, n)."""
         return {} if self.tyre.states is None else self.tyre.states.named(np.asarray(self.history.states))
 
     @functools.cached_property
@@ -176,14 +176,14 @@ class ResultData(Brief):
 
     @functools.cached_property
     def gas_pressure(self) -> Array:
-        """Contained-air gauge pressure following its temperature at constant volume, (n_times,) Pa.
+        """Gauge pressure of the contained air at its temperature and constant volume, (n_times,) Pa.
 
         p + p_atm = (p_phase + p_atm) T / T_start, p_phase being the drive's (cold) pressure.
         """
         return np.array([self.pressure_at(i) for i in range(len(self.times))])
 
     def pressure_at(self, i: int) -> float:
-        """The same at ``times[i]``, Pa."""
+        """Gauge pressure of the contained air at ``times[i]``, Pa."""
         cold = self.study.card.drive.value("pressure", float(self.times[i])) or 0.0
         start, now = self.gas_temperature[0] + KELVIN, self.gas_temperature[i] + KELVIN
         return float((cold + ATMOSPHERE) * now / start - ATMOSPHERE)
@@ -214,7 +214,7 @@ class ResultData(Brief):
         for ds, dd in ((step, 0.0), (0.0, step)):
             ends = [self._inside(section.place(s + sign * ds, depth + sign * dd)) for sign in (1, -1)]
             apart = np.linalg.norm(ends[0] - ends[1], axis=1)
-            # At the crown of a half section both ends are the same point: the slope along it is zero there.
+            # At the crown of a half section, both ends are the same point, where the slope along the meridian is zero.
             squares += ((self.at(ends[0]) - self.at(ends[1])) / np.where(apart > 0, apart, np.inf)) ** 2
         gradients = pd.DataFrame(np.sqrt(squares), columns=list(self.sensor_places))
         table[list(self.sensor_places)] = gradients
@@ -266,7 +266,7 @@ class ResultData(Brief):
 
     @property
     def end_budget(self) -> HeatBudget:
-        """The heat budget; what is asked of it is its end."""
+        """The heat budget, for its values at the end."""
         return self.heat_budget
 
     @functools.cached_property
@@ -277,12 +277,12 @@ class ResultData(Brief):
         return energy, power
 
     def generated(self, i: int) -> tuple[float, float]:
-        """Heat of hysteresis in the whole tyre until ``times[i]``, J, and then, W."""
+        """Heat of hysteresis in the whole tyre: energy until ``times[i]``, J, and power at that time, W."""
         energy, power = self._generated
         return float(energy[i]), float(power[i])
 
     def cold_power(self, t: float) -> float:
-        """Power of hysteresis in the whole tyre with every point at the drive's initial temperature, W."""
+        """Power of hysteresis in the whole tyre at the drive's initial temperature, W."""
         problem, initial = self.tyre.problem, self.study.card.drive.initial
         total = 0.0
         for zone, source in self.tyre.sources.items():
@@ -292,7 +292,7 @@ class ResultData(Brief):
         return total * (2.0 if self.study.section.half else 1.0)
 
     def heat_source(self, i: int) -> dict[str, tuple[Array, Array]]:
-        """Zone -> (nodes (2, n), q (n,) W/m3) at ``times[i]``, from the zone's side of its borders."""
+        """Zone -> (nodes (2, n), q (n,) W/m3) at ``times[i]``; q at a border is the zone's value."""
         field = self.history.field(i)
         return {
             zone: (
@@ -303,7 +303,7 @@ class ResultData(Brief):
         }
 
     def just_before(self, i: int) -> float:
-        """The time ``times[i]``, seen from before: at the end of a phase, that phase still counts."""
+        """A time just before ``times[i]``, which at the end of a phase is still in that phase."""
         return just_before(self.times, i)
 
     def _nodal(self, field: Any, zone: str) -> Array:
@@ -311,12 +311,12 @@ class ResultData(Brief):
 
     @functools.cached_property
     def rolling_reading(self) -> int | None:
-        """Number of the last reading of the rolling phase that made the most heat; None for a tyre that never rolls."""
+        """Index of the last reading of the rolling phase with most heat; None if the tyre never rolls."""
         return rolling_reading(self)
 
     @functools.cached_property
     def rolling_resistance(self) -> RollingResistance:
-        """Force, N, and coefficient; of hysteresis only."""
+        """Force, N, and coefficient from hysteresis alone."""
         return rolling_resistance(self)
 
     @functools.cached_property
@@ -326,12 +326,12 @@ class ResultData(Brief):
 
     @functools.cached_property
     def sliding(self) -> SlidingOutcome | None:
-        """Friction heat, mean tread and exit-edge temperatures of the phases with slip; None where none was reached."""
+        """Friction heat, mean tread and exit-edge temperatures of phases with slip; None if none was reached."""
         return sliding_outcome(self)
 
     @functools.cached_property
     def warnings(self) -> tuple[str, ...]:
-        """What of the input is perhaps not meant, and where the run left its own assumptions; one line each."""
+        """Warnings of unusual input, and of phases outside the range of the assumptions; one line each."""
         return (
             *map(str, self.study.warnings),
             *((CASES_LEFT_OUT,) if self.study.is_campaign else ()),
@@ -350,6 +350,6 @@ def _again(
     wall_time: float,
     feedback: Any,
 ) -> ResultData:
-    """A result out of what is stored of it."""
+    """Make a result from its pickled data."""
     problem = tyre.problem
     return kind(study, tyre, History(problem.operators, problem.regions, **history), times, wall_time, feedback)

@@ -1,4 +1,4 @@
-"""Drag from hysteresis; friction of sliding is not in it."""
+"""Rolling resistance from hysteresis, without the friction of sliding."""
 
 from __future__ import annotations
 
@@ -13,17 +13,17 @@ if TYPE_CHECKING:
 
 Array = NDArray[np.float64]
 
-#: A wheel that turns slower than this share of its free speed hardly rolls (a judgement).
+#: Smallest share of its free speed at which a wheel counts as rolling (a judgement).
 TURNS = 0.01
 
 
 @dataclass(frozen=True)
 class RollingResistance:
-    """Drag from hysteresis, F = (total heat) / v, N, and coefficient F / F_z.
+    """Rolling resistance from hysteresis, F = (total heat) / v, N, and coefficient F / F_z.
 
-    ``force`` and ``coefficient`` are at the end of ``phase``, the rolling phase that made the most heat; ``cold_*``
-    then, but with every point at the drive's initial temperature. All zero for a tyre that never rolls. With slip it
-    is still the hysteresis per metre of the road, without the friction.
+    ``force`` and ``coefficient`` are at the end of ``phase``, the rolling phase with most heat; ``cold_*`` at the same
+    time with every point at the drive's initial temperature. All are zero if the tyre never rolls. With slip they are
+    the hysteresis per metre of the road, without the friction.
     """
 
     phase: str
@@ -34,11 +34,11 @@ class RollingResistance:
 
 
 class Rolled(Protocol):
-    """What rolling resistance needs of a run."""
+    """Data of a run for its rolling resistance."""
 
     @property
     def tyre(self) -> RollingTyre:
-        """Its drive and load cases."""
+        """The tyre with its drive and load cases."""
         ...
 
     @property
@@ -47,16 +47,16 @@ class Rolled(Protocol):
         ...
 
     def generated(self, i: int) -> tuple[float, float]:
-        """Heat of hysteresis in the whole tyre until ``times[i]``, J, and then, W."""
+        """Heat of hysteresis in the whole tyre: energy until ``times[i]``, J, and power at that time, W."""
         ...
 
     def cold_power(self, t: float) -> float:
-        """The same at the drive's initial temperature, W."""
+        """Power of hysteresis at the drive's initial temperature, W."""
         ...
 
 
 def rolling_reading(result: Rolled) -> int | None:
-    """Number of the last reading of the rolling phase that made the most heat; None for a tyre that never rolls."""
+    """Index of the last reading of the rolling phase with most heat; None if the tyre never rolls."""
     tyre = result.tyre
     drive = tyre.drive
     best: tuple[float, int] | None = None
@@ -88,6 +88,6 @@ def rolling_resistance(result: Rolled) -> RollingResistance:
 
 
 def just_before(times: Array, i: int) -> float:
-    """The time ``times[i]``, seen from before: at the end of a phase, that phase still counts."""
+    """A time just before ``times[i]``, which at the end of a phase is still in that phase."""
     t = float(times[i])
     return t - 1e-9 * max(t, 1.0) if i else t

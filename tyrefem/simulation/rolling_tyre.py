@@ -41,7 +41,7 @@ class RollingTyre(Surroundings):
     near: NearbyCycles | None = None
 
     def __getstate__(self) -> dict[str, Any]:
-        """What cannot be found again in no time: the mesh and the strain cycles. The rest is made again on demand."""
+        """Pickle only the mesh and the strain cycles, which take time; the rest is made again on demand."""
         known: dict[str, Any] = {
             name: self.__dict__[name] for name in ("mesh", "schedule", "states") if name in self.__dict__
         }
@@ -51,8 +51,8 @@ class RollingTyre(Surroundings):
         return f"RollingTyre {self.study.name}"
 
     def _as_in_like(self, tables: tuple[str, ...], ports: tuple[str, ...]) -> bool:
-        """Are these tables of the study, the section, and the effects at these ports those of ``like``?"""
-        # What a state changes is this tyre's alone: functions of another one read the other's states.
+        """True if these tables of the study, the section, and the effects at these ports equal those of ``like``."""
+        # Laws that depend on a state cannot be shared: functions of another tyre read that tyre's states.
         if self.like is None or self.states is not None or self.like.states is not None:
             return False
         study, other = self.study, self.like.study
@@ -78,7 +78,7 @@ class RollingTyre(Surroundings):
 
     @property
     def _nearby(self) -> NearbyCycles | None:
-        """Its own, or that of the tyres it is like."""
+        """Strain cycles at nearby loads, shared with ``like``."""
         return self.near if self.near is not None or self.like is None else self.like._nearby
 
     @functools.cached_property
@@ -97,7 +97,7 @@ class RollingTyre(Surroundings):
 
     @functools.cached_property
     def bodies(self) -> dict[str, Material]:
-        """Region -> what conducts and stores heat there, effects included."""
+        """Region -> its material, with effects."""
         like, bodies = self.like, {}
         same = like is not None and self._as_in_like((), ("conductivity_factor", "capacity_factor"))
         for region, card in self.study.materials.items():
@@ -114,7 +114,7 @@ class RollingTyre(Surroundings):
 
     @functools.cached_property
     def boundaries(self) -> dict[str, list[Any]]:
-        """Side -> its films, then the fluxes and radiation that effects add."""
+        """Side -> its films, then the fluxes and radiation of effects."""
         ports = ("film_factor", "film_addend", "film_resistance", "sink_addend", "flux", "radiation")
         if self._as_in_like(("boundaries", "drive", "mechanics"), ports):
             assert self.like is not None
@@ -125,7 +125,7 @@ class RollingTyre(Surroundings):
 
     @property
     def condition_names(self) -> dict[tuple[str, int], str]:
-        """(boundary, number of the condition) -> name in the heat budget, of those that slip and effects add."""
+        """(boundary, number of the condition) -> name in the heat budget, for conditions of slip and effects."""
         plain = len(self._films["road"]) - len(self.sliding.conditions)
         rubbing = {("road", number): FRICTION for number in range(plain, len(self._films["road"]))}
         return rubbing | {
@@ -136,7 +136,7 @@ class RollingTyre(Surroundings):
 
     @functools.cached_property
     def _films(self) -> dict[str, list[Any]]:
-        """Side -> its films, and what slip adds."""
+        """Side -> its films, and the conditions of slip."""
         laws = self.study.card.boundaries
         gas = GAS if self._gas_capacity is not None else laws.contained_air.fixed_temperature
 
@@ -189,16 +189,16 @@ class RollingTyre(Surroundings):
         return AddedStates(states.initial, states.scale, rate, states.show)
 
     def _of_time(self, law: Callable[[float], float]) -> Callable[[Any, float], float]:
-        """A datum f(x, t) that does not vary in space.
+        """A function f(x, t) that is constant in space.
 
-        Solvers ask for the same times again, on fixed steps for all: it is remembered, unless a state may change it.
+        Solvers use the same times repeatedly, so values are cached, unless they may depend on a state.
         """
         remembered = law if self.states is not None else functools.lru_cache(maxsize=REMEMBERED)(law)
         return lambda _x, t: remembered(t)
 
     @functools.cached_property
     def hysteresis(self) -> dict[str, HeatSource]:
-        """Zone -> heat of its strain cycle."""
+        """Zone -> heat source of its strain cycle."""
         factor, sources = LOSS_FACTOR[self.study.card.mechanics.loss_convention], {}
         for zone in self.schedule.zones:
             law = self.study.materials[zone.region].loss_tangent
@@ -208,7 +208,7 @@ class RollingTyre(Surroundings):
 
     @functools.cached_property
     def sources(self) -> dict[str, Source]:
-        """Zone -> heat source: the strain cycle's, and what the study's effects make of it."""
+        """Zone -> heat source of the strain cycle, changed by the study's effects."""
         like, sources = self.like, {}
         same = like is not None and self._as_in_like(("drive",), ("heat_factor", "heat_addend"))
         for zone in self.schedule.zones:
@@ -231,12 +231,12 @@ class RollingTyre(Surroundings):
 
         Raises
         ------
-        InputError : the study has feedback, and strain cycles that follow its temperatures are not given.
+        InputError : the study has feedback, but no strain cycles at its temperatures are given.
         """
         if self.cycles is None and self.study.card.mechanics.feedback is not None:
             raise InputError(
-                "only a run finds strain cycles that follow the temperature; a diagnosis takes them as they are at the "
-                "drive's pressure: leave the table away and let the effect 'pressure-rise' stand for the warm air",
+                "only a run computes strain cycles that follow the temperature; a diagnosis uses those at the drive's "
+                "pressure: remove this table, and use the effect 'pressure-rise' for the warm air",
                 field="mechanics.feedback",
                 file=self.study.file,
             )

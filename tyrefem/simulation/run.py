@@ -21,9 +21,9 @@ def run(
     Parameters
     ----------
     progress : called with the time (s) after every step. like : see `RollingTyre`.
-    partial : Ctrl-C gives back what is finished, see `tyrefem.conduction.Conduction.transient`; else it is raised.
+    partial : return the finished part after Ctrl-C (`tyrefem.conduction.Conduction.transient`); else raise it.
 
-    A campaign's own drive is simulated, which `Result.warnings` says; its cases are run by `Campaign.runs`.
+    For a campaign, the base drive is simulated, with a warning; `Campaign.runs` runs its cases.
 
     Raises
     ------

@@ -1,4 +1,4 @@
-"""The measurement operator: where a thermocouple sits, how it lags, and what the logger makes of it."""
+"""The measurement operator: place and lag of thermocouples, and errors of the logger."""
 
 from __future__ import annotations
 
@@ -17,7 +17,7 @@ Array = NDArray[np.float64]
 def lagged(times: Array, temperatures: Array, lag: float) -> Array:
     """Reading of a first-order sensor, lag dy/dt + y = T, that starts in equilibrium.
 
-    Exact for a temperature linear between the times.
+    Exact if the temperature is linear between the times.
 
     Parameters
     ----------
@@ -40,7 +40,7 @@ def lagged(times: Array, temperatures: Array, lag: float) -> Array:
 
 
 def true_places(study: StudyData) -> dict[str, tuple[float, float]]:
-    """(r, z) of every sensor, m: as stated, moved by the study's effects, but never out of the rubber."""
+    """(r, z) of every sensor, m: the stated places, displaced by the study's effects, kept in the rubber."""
     stated = study.stated_places
     section, true = study.section, dict(stated)
     worn_away = () if section.as_built is None else [name for name in stated if not section.contains([stated[name]])[0]]
@@ -60,9 +60,9 @@ def true_places(study: StudyData) -> dict[str, tuple[float, float]]:
 
 
 def recorded(study: StudyData, times: Array, temperatures: ArrayLike) -> dict[str, Array]:
-    """What the logger records for temperatures (n_times, n_sensors) in degC at the sensors, in the study's order.
+    """Recorded readings for temperatures (n_times, n_sensors) at the sensors, degC, in the study's order.
 
-    Lag first, then the effects of measurement: a further lag, swapped channels, offset, a logger's clock that is off.
+    Lag first, then the effects of measurement: a further lag, swapped channels, offset, offset of the logger's clock.
     """
     values = np.asarray(temperatures, dtype=float)
     effects = study.effects
@@ -82,9 +82,9 @@ def recorded(study: StudyData, times: Array, temperatures: ArrayLike) -> dict[st
 
 
 def recorded_change(study: StudyData, times: Array, temperatures: ArrayLike) -> dict[str, Array]:
-    """How the record changes, K, when the temperatures at the sensors change by (n_times, n_sensors) K.
+    """Change of the recorded readings, K, for a change of the sensors' temperatures (n_times, n_sensors), K.
 
-    `recorded` is linear but for the offsets of channels, which no temperature changes.
+    `recorded` is linear, except for the constant offsets of channels.
     """
     readings = recorded(study, times, temperatures)
     return {name: column - sum(effect.offset(name) for effect in study.effects) for name, column in readings.items()}

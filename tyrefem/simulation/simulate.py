@@ -12,7 +12,7 @@ from tyrefem.simulation.rolling_tyre import Array, RollingTyre
 def simulate(
     tyre: RollingTyre, progress: Callable[[float], None] | None = None, *, partial: bool = False
 ) -> ResultData:
-    """Simulate a tyre's drive with the strain cycles that it has; parameters as of `run`."""
+    """Simulate a tyre's drive with its present strain cycles; parameters as in `run`."""
     began = clock.perf_counter()
     study = tyre.study
     times, fields = output_times(tyre)

@@ -1,4 +1,4 @@
-"""What sliding did in a run: friction, heat into the tread, mean tread and exit-edge temperatures."""
+"""Sliding in a run: friction, heat into the tread, mean tread and exit-edge temperatures."""
 
 from __future__ import annotations
 
@@ -25,7 +25,7 @@ if TYPE_CHECKING:
 
 Array = NDArray[np.float64]
 Numbers = NDArray[np.intp]
-#: Part of a skid's rise by which the section's surface may differ from a half-space's before the result warns.
+#: Largest difference of the surfaces of section and half-space without a warning, as a share of a skid's rise.
 UNRESOLVED = 0.05
 #: Part of a skid after which that is asked: no mesh resolves its first instant.
 SETTLED = 0.2
@@ -52,10 +52,10 @@ class SlidingRun(Protocol):
 class SlidingPhase:
     """A phase with slip. SI, degC; ``highest`` values are over the phase's readings.
 
-    ``sliding_speed`` is the highest, with the ``friction`` of that moment; ``pressure`` that of the contact at the end.
-    ``tread_start``, ``tread_highest`` are means over the tread's surface by finite elements; ``half_space_highest``
-    is the same of a half-space, for a locked wheel. ``exit_edge_highest`` is the hottest that a point of the contact
-    gets. ``friction_work`` is mu F_z v_s in time; ``tread_heat`` the tread's part of it, both of one footprint.
+    ``sliding_speed`` is the highest, with the ``friction`` at that time; ``pressure`` is of the contact at the end.
+    ``tread_start``, ``tread_highest``: means over the tread's surface by finite elements; ``half_space_highest``: mean
+    surface temperature of a half-space, for a locked wheel. ``exit_edge_highest``: highest temperature of a contact.
+    ``friction_work``: time integral of mu F_z v_s; ``tread_heat``: the tread's part of it, both of one footprint.
     """
 
     name: str
@@ -78,7 +78,7 @@ class SlidingPhase:
 
     @property
     def mean_highest(self) -> float:
-        """Highest mean temperature of the sliding surface: that of the half-space under a locked wheel."""
+        """Highest mean temperature of the sliding surface; under a locked wheel, of the half-space."""
         return self.tread_highest if self.half_space_highest is None else self.half_space_highest
 
 
@@ -88,9 +88,9 @@ class SlidingOutcome(Brief):
 
     Parameters
     ----------
-    title : of the study. decomposition_temperature : of the tread's rubber, degC.
-    phases : one entry per phase with slip that was reached. series : the contact over time, one row per reading.
-    warnings : for people, one line each.
+    title : the study's title. decomposition_temperature : of the tread's rubber, degC.
+    phases : one entry per simulated phase with slip. series : the contact over time, one row per reading.
+    warnings : one line of text each.
     """
 
     title: str
@@ -119,12 +119,12 @@ class SlidingOutcome(Brief):
         return max(self.phases, key=lambda phase: phase.exit_edge_highest)
 
     def to_dict(self) -> dict[str, Any]:
-        """JSON-ready: one entry per phase."""
+        """Data for JSON, one entry per phase."""
         return {"phases": [asdict(phase) for phase in self.phases]}
 
 
 def _warnings(run: SlidingRun, phase: SlidingPhase, series: pd.DataFrame) -> Iterator[str]:
-    """Friction that was limited, what a locked wheel stands for, skids that the mesh does not resolve."""
+    """Warnings of limited friction, of locked wheels, and of skids that the mesh does not resolve."""
     limit = run.tyre.sliding.law.decomposition_temperature
     if phase.capped:
         yield (
@@ -133,7 +133,7 @@ def _warnings(run: SlidingRun, phase: SlidingPhase, series: pd.DataFrame) -> Ite
         )
     tyre = run.tyre
     share = tyre.sliding.footprint_share((phase.start + phase.end) / 2)
-    # A wheel off the road slides on nothing.
+    # A wheel off the road does not slide.
     if not phase.locked or share == 0:
         return
     yield (
@@ -146,14 +146,14 @@ def _warnings(run: SlidingRun, phase: SlidingPhase, series: pd.DataFrame) -> Ite
     rise = late.half_space_degC.max() - phase.tread_start
     if apart > UNRESOLVED * abs(rise):
         yield (
-            f"phase '{phase.name}': heat goes {phase.heated_depth * 1e3:.2g} mm deep, elements are "
+            f"phase '{phase.name}': heat penetrates {phase.heated_depth * 1e3:.2g} mm, elements are "
             f"{tyre.mesh.size * 1e3:.2g} mm: the section's surface is up to {apart:.2g} K off the half-space "
-            "value, which is given beside it; a smaller mesh.size helps"
+            "value, which is reported beside it; use a smaller mesh.size"
         )
 
 
 def sliding_outcome(run: SlidingRun) -> SlidingOutcome | None:
-    """The sliding of a run; None where no phase with slip was reached."""
+    """The sliding of a run; None if no phase with slip was reached."""
     import pandas as pd
 
     phases, rows = [], []
@@ -174,7 +174,7 @@ def sliding_outcome(run: SlidingRun) -> SlidingOutcome | None:
 
 
 def _within(run: SlidingRun, number: int, i: int) -> float:
-    """The time of a reading, seen from inside a phase."""
+    """The time of a reading, moved inside the phase at its ends."""
     drive = run.study.card.drive
     start, duration = drive.starts[number], drive.phases[number].duration
     return float(np.clip(run.times[i], start + 1e-9 * duration, start + duration * (1 - 1e-9)))
@@ -212,7 +212,7 @@ def _series(run: SlidingRun, number: int, numbers: Numbers) -> Iterator[dict[str
 
 
 def _half_space(run: SlidingRun, number: int, numbers: Numbers) -> Array:
-    """Surface of a locked wheel's half-space at readings, from the section's mean when it locked; NaN for another."""
+    """Surface temperature of a locked wheel's half-space at readings, starting at the section's mean; else NaN."""
     tyre, drive = run.tyre, run.study.card.drive
     inside = [_within(run, number, int(i)) for i in numbers]
     since = drive.locked_since(inside[0])
@@ -263,7 +263,7 @@ def _phase(run: SlidingRun, number: int, numbers: Numbers, series: pd.DataFrame)
         friction_lowest=float(series.friction.min()),
         capped=bool(series.capped.any()),
         friction_work=float(np.trapezoid(series.friction_power_W, seconds)),
-        # A ring of sections slides under a locked wheel in the budget: the footprint's part of it.
+        # Under a locked wheel, the budget counts a sliding ring of sections: take the footprint's share.
         tread_heat=heat * (sliding.footprint_share(middle) if state.locked else 1.0),
         tread_start=float(series.tread_mean_degC.iloc[0]),
         tread_highest=float(series.tread_mean_degC.max()),

@@ -1,4 +1,4 @@
-"""The tread of a rolling or skidding tyre that slides on the road: friction heat, its share, the contact's heat."""
+"""Heat of a tread that slides on the road: friction heat and its division between tread and road."""
 
 from __future__ import annotations
 
@@ -20,20 +20,20 @@ if TYPE_CHECKING:
     from tyrefem.simulation.surroundings import Surroundings
 
 Array = NDArray[np.float64]
-#: Readings that a phase with slip gets beside those of ``output.every``; closer at its start, where a skid warms fast.
+#: Additional readings of a phase with slip; closer at its start, where a skid warms fast.
 READINGS = 24
 
 
 class SlidingTread:
     """The sliding contact of a study's tyre as functions of time (s). SI units, temperatures in degC.
 
-    A rolling tread point takes its share of mu p v_s once per revolution; the mean over the revolution goes into the
-    section. A locked wheel does not turn: the section modelled is the one on the road, takes mu p v all the time and
-    gives to the road that passes under it through `Passage.skid_film`.
+    A rolling tread point receives its share of mu p v_s once per revolution; the section receives the mean over the
+    revolution. A locked wheel does not turn: the modelled section is on the road, receives mu p v all the time and
+    loses heat to the passing road through `Passage.skid_film`.
 
     Parameters
     ----------
-    surroundings : the drive, the boundary laws and the load cases. mesh : has the tread's surface, ``road``.
+    surroundings : the drive, the boundary laws and the load cases. mesh : mesh with the tread's surface, ``road``.
     """
 
     def __init__(self, surroundings: Surroundings, mesh: TyreMesh) -> None:
@@ -51,7 +51,7 @@ class SlidingTread:
 
     @property
     def conditions(self) -> list[Flux | Film]:
-        """What acts on the road boundary: nothing without slip, else the heat, and a locked wheel's road."""
+        """Conditions of slip on the boundary ``road``: friction heat, and the film of a locked wheel; else none."""
         phases = self.drive.phases
         if not any(phase.slides for phase in phases):
             return []
@@ -62,7 +62,7 @@ class SlidingTread:
 
     @property
     def readings(self) -> list[float]:
-        """Times at which phases with slip are looked at, s."""
+        """Times of the readings in phases with slip, s."""
         share = np.linspace(0.0, 1.0, READINGS + 1)[1:-1] ** 2
         parts = zip(self.drive.starts, self.drive.phases, strict=True)
         return [start + phase.duration * x for start, phase in parts if phase.slides for x in share.tolist()]
@@ -80,15 +80,18 @@ class SlidingTread:
         )
 
     def footprint_share(self, t: float) -> float:
-        """Part of the tread's surface in contact while the wheel turns: the area of a strain law that presses the tyre
-        on its road; else, and where the road's law gives the fraction, the fraction of a revolution on the road."""
+        """Share of the tread's surface in contact while the wheel turns.
+
+        From the footprint area if the strain law presses the tyre on the road; else, or if the road's law gives it,
+        the fraction of a revolution on the road.
+        """
         area = self.surroundings.footprint_area(t)
         if area is None or self.surroundings.study.card.boundaries.road.fraction is not None:
             return self.surroundings.rolling_fraction(t)
         return area / (self.surface.area * self._sides)
 
     def contact_area(self, t: float) -> float:
-        """Footprint, m2: the tread's surface times `footprint_share`."""
+        """Footprint area, m2: the tread's surface times `footprint_share`."""
         return self.footprint_share(t) * self.surface.area * self._sides
 
     @property
@@ -96,7 +99,7 @@ class SlidingTread:
         return 2.0 if self.surroundings.study.section.half else 1.0
 
     def pressure(self, t: float) -> float:
-        """Contact pressure, Pa: the law's, else load over `contact_area`; none off the road."""
+        """Contact pressure, Pa: from the law, else load over `contact_area`; zero off the road."""
         area = self.contact_area(t)
         load = float(self.surroundings.schedule.mean(lambda case: case.load, t))
         if area <= 0 or load <= 0:
@@ -104,12 +107,12 @@ class SlidingTread:
         return load / area if self.law.pressure is None else self.law.pressure
 
     def friction(self, t: float) -> float:
-        """Coefficient of friction before decomposition limits it."""
+        """Coefficient of friction, not limited by decomposition."""
         motion = self.surroundings.motion(t)
         return self.law.friction(motion.sliding_speed, motion.rolling_speed)
 
     def passage(self, t: float) -> Passage | None:
-        """The passage through the footprint; None where tread and road do not touch or do not move."""
+        """The passage through the footprint; None if tread and road do not touch or do not move."""
         motion = self.surroundings.motion(t)
         length = self.surroundings.schedule.mean(lambda case: case.footprint_length, t)
         if not (motion.forward_speed > 0 and length > 0):
@@ -118,11 +121,11 @@ class SlidingTread:
         return Passage(*self.effusivities, length, rolling, motion.forward_speed)
 
     def uncapped_flux(self, t: float) -> float:
-        """F_0 = mu p v_s before decomposition limits it, W/m2 of contact."""
+        """F_0 = mu p v_s, not limited by decomposition, W/m2 of contact."""
         return self.friction(t) * self.pressure(t) * self.surroundings.motion(t).sliding_speed
 
     def friction_flux(self, t: float, T: Array) -> Array:
-        """F_0 at surface temperatures T (n,), W/m2: the exit edge stays below the decomposition temperature (13)."""
+        """F_0 at surface temperatures T (n,), W/m2, limited to keep the exit edge below decomposition (13)."""
         flux = np.full(np.shape(T), self.uncapped_flux(t))
         passage = self.passage(t)
         if passage is None or not flux.any():
@@ -131,7 +134,7 @@ class SlidingTread:
         return np.asarray(np.minimum(flux, np.maximum(most, 0.0)))
 
     def mean_heat(self, _x: Any, t: float, T: Array) -> Array:
-        """Heat into the section, W/m2: the tread's share over the revolution; all of F_0 for a locked wheel."""
+        """Heat flux into the section, W/m2: mean of the tread's share over the revolution; F_0 for a locked wheel."""
         flux, passage = self.friction_flux(t, T), self.passage(t)
         if passage is None:
             return flux
@@ -140,7 +143,7 @@ class SlidingTread:
         return self.footprint_share(t) * passage.tread_share * flux
 
     def skid_film(self, t: float) -> float:
-        """Film between a locked wheel and the passing road, W/m2/K; 0 for one that turns or stands."""
+        """Film between a locked wheel and the passing road, W/m2/K; 0 if the wheel turns or the vehicle stands."""
         since, passage = self.drive.locked_since(t), self.passage(t)
         if since is None or passage is None or self.pressure(t) == 0:
             return 0.0
@@ -150,7 +153,7 @@ class SlidingTread:
         """Temperature at the exit edge of the contact, degC, from the surface's T (n,).
 
         Rolling: `Passage.frictionless_temperature` plus the rise of the passage (1, 3, 5). Locked: the rise of the
-        surface over the road, which is the mean over the contact, times exit over mean.
+        surface over the road, which is the mean over the contact, times the ratio of exit and mean.
         """
         passage, road = self.passage(t), self.surroundings.road_temperature(t)
         if passage is None:

@@ -1,4 +1,4 @@
-"""What surrounds the tyre during its drive: temperatures, speed, films, time on the road."""
+"""Surroundings of the tyre during its drive: temperatures, speed, films, time on the road."""
 
 from __future__ import annotations
 
@@ -45,12 +45,12 @@ class Surroundings:
 
     @functools.cached_property
     def acting(self) -> Acting:
-        """The study's effects, at work on this tyre."""
+        """The study's effects, acting on this tyre."""
         return Acting(self, self.study.effects)
 
     @functools.cached_property
     def states(self) -> EffectStates | None:
-        """The states of its effects; None where no effect keeps any."""
+        """The states of the effects; None if no effect has states."""
         effects = self.acting.with_states
         return EffectStates(self, effects) if effects else None
 
@@ -62,11 +62,11 @@ class Surroundings:
 
     @functools.cached_property
     def rated_deflection(self) -> float:
-        """Deflection at the rated load and pressure, m, as the strain law has it: finite elements find their own."""
+        """Deflection at rated load and pressure, m, from the load law or from the strain law by finite elements."""
         return rated_case(self.study).deflection
 
     def region(self, zone: str) -> str:
-        """The region that a strain zone is part of."""
+        """The region of a strain zone."""
         return self._regions[zone]
 
     @functools.cached_property
@@ -74,7 +74,7 @@ class Surroundings:
         return {zone.name: str(zone.region) for zone in self.schedule.zones}
 
     def places(self, x: Array) -> tuple[Array, Array]:
-        """|s| along the meridian and depth of points x (2, n), m; remembered for the 32 latest sets of points."""
+        """|s| along the meridian and depth of points x (2, n), m; cached for the 32 latest sets of points."""
 
         def compute() -> tuple[Array, Array]:
             s, depth = self.study.section.locate(np.asarray(x).T)
@@ -91,12 +91,12 @@ class Surroundings:
         return self.acting.sink("outside_air", t, float(self.drive.value("ambient", t) or 0.0))
 
     def road_temperature(self, t: float) -> float:
-        """Road temperature, degC: the drive's, else the law's, else the ambient."""
+        """Road temperature, degC: of the drive, else of the law, else ambient."""
         driven, law = self.drive.value("road_temperature", t), self.study.card.boundaries.road.temperature
         return self.acting.sink("road", t, self._first(driven, law, t))
 
     def rim_temperature(self, t: float) -> float:
-        """Temperature of a fixed rim, degC: the drive's, else the law's, else the drive's initial one."""
+        """Temperature of a fixed rim, degC: of the drive, else of the law, else the drive's initial temperature."""
         driven = self.drive.value("rim_temperature", t)
         law = self.study.card.boundaries.rim.temperature
         base = driven if driven is not None else self.drive.initial if law is None else law
@@ -107,15 +107,15 @@ class Surroundings:
 
     @property
     def motion(self) -> WheelMotion:
-        """How the wheel moves at a time: ``motion(t).rolling_speed``."""
+        """The wheel's motion as a function of time: ``motion(t).rolling_speed``."""
         return self.schedule.motion
 
     def speed(self, t: float) -> float:
-        """Speed over the road, m/s: that of `motion`, for effects."""
+        """Speed over the road, m/s, from `motion`; for effects."""
         return self.motion(t).speed
 
     def road_fraction(self, t: float) -> float:
-        """Part of the time that the section is on the road: none at standstill, all of it under a locked wheel."""
+        """Fraction of time that the section is on the road: 0 at standstill, 1 under a locked wheel."""
         if self.motion(t).speed == 0:
             return 0.0
         fraction = self.rolling_fraction(t)
@@ -129,21 +129,21 @@ class Surroundings:
         return self.schedule.mean(lambda case: case.road_fraction, t)
 
     def footprint_area(self, t: float) -> float | None:
-        """Area of rubber in contact, m2; None where the strain law does not press the tyre on its road."""
+        """Area of rubber in contact, m2; None if the strain law does not press the tyre on the road."""
         if any(case.contact is None for cases in self.schedule.cases for case in cases):
             return None
         return self.schedule.mean(lambda case: case.footprint_area or 0.0, t)
 
     @functools.cached_property
     def tread(self) -> tuple[float, float]:
-        """Conductivity (through the thickness) and heat capacity of the tread at 25 degC: what meets the road."""
+        """Conductivity through the thickness and heat capacity of the tread at 25 degC, for contact with the road."""
         card = self.study.materials["tread"]
         conductivity, capacity = card.conductivity.law(), card.heat_capacity()
         k = conductivity(25.0) if callable(conductivity) else conductivity
         return float(np.ravel(k)[-1]), float(capacity(25.0) if callable(capacity) else capacity)
 
     def road_film(self, t: float) -> float:
-        """H_c during contact, W/m2/K; none under a locked wheel, whose road has a film of its own."""
+        """H_c during contact, W/m2/K; 0 under a locked wheel, which has a separate film."""
         if self.drive.locked_since(t) is not None:
             return 0.0
         length = self.schedule.mean(lambda case: case.footprint_length, t)
@@ -151,13 +151,13 @@ class Surroundings:
         return self.acting.film("road", t, base)
 
     def propagation_depth(self, t: float) -> float:
-        """Depth to which one contact cools the tread, m (Cattani et al. 2023, eq 8); 0 for a wheel that stands."""
+        """Penetration depth of a contact in the tread, m (Cattani et al. 2023, eq 8); 0 if the wheel does not turn."""
         speed = self.motion(t).rolling_speed
         if speed <= 0 or self.drive.locked_since(t) is not None:
             return 0.0
         contact = self.schedule.mean(lambda case: case.footprint_length, t) / speed
         phase = self.drive.phases[self.drive.locate(t)[0]]
-        # A wheel that slows to a lock has no last contact of its own: none is longer than the phase.
+        # Before a wheel locks, the contact time grows without limit: it is limited to the phase's duration.
         return propagation_depth(min(contact, phase.duration) if phase.slides else contact, *self.tread)
 
     def air_film(self, t: float) -> float:
@@ -173,5 +173,5 @@ class Surroundings:
         return self.acting.film("contained_air", t, self.study.card.boundaries.contained_air.film)
 
     def rim_film(self, t: float) -> float:
-        """Film between bead and rim with every resistance in series, W/m2/K."""
+        """Film between bead and rim, with all resistances in series, W/m2/K."""
         return self.acting.film("rim", t, self.study.card.boundaries.rim.total_film)

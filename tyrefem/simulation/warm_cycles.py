@@ -1,7 +1,4 @@
-"""The strain cycles of a drive at temperatures that a run has found.
-
-What the mechanics feels of the temperatures: the contained air's, and every region's mean.
-"""
+"""The strain cycles of a drive at the temperatures of a run: contained air, and mean of every region."""
 
 from __future__ import annotations
 
@@ -28,7 +25,7 @@ Array = NDArray[np.float64]
 
 @dataclass(frozen=True)
 class TyreTemperatures:
-    """Temperatures of a moment, degC: of the contained air, and the mean of every region."""
+    """Temperatures at a time, degC: of the contained air, and mean of every region."""
 
     gas: float
     regions: Mapping[str, float]
@@ -40,7 +37,7 @@ class TyreTemperatures:
         return max(distances, default=0.0)
 
     def towards(self, other: TyreTemperatures, share: float) -> TyreTemperatures:
-        """A share of the way to another moment."""
+        """Interpolate linearly towards other temperatures by a share."""
         if share == 1:
             return other
         regions = {name: T + share * (other.regions[name] - T) for name, T in self.regions.items()}
@@ -63,13 +60,13 @@ class Warmth:
     regions: Mapping[str, Array]
 
     def at(self, time: float) -> TyreTemperatures:
-        """The moment of a time, s."""
+        """The temperatures at a time, s."""
         regions = {name: float(np.interp(time, self.times, T)) for name, T in self.regions.items()}
         return TyreTemperatures(float(np.interp(time, self.times, self.gas)), regions)
 
     @classmethod
     def even(cls, study: StudyData, warmer_by: float = 0.0) -> Warmth:
-        """Every region at the drive's initial temperature and the air at its own, or all so much warmer, K."""
+        """Initial temperatures of regions and contained air, constant in time; or all warmer by ``warmer_by``, K."""
         initial = study.card.drive.initial
         gas = study.card.boundaries.contained_air.start(initial)
         regions = {region: np.array([initial + warmer_by]) for region in study.materials}
@@ -77,7 +74,7 @@ class Warmth:
 
     @classmethod
     def of(cls, result: ResultData) -> Warmth:
-        """That of a finished run: means by volume."""
+        """Temperatures of a finished run: means by volume."""
         operators, values, regions = result.tyre.problem.operators, result.history.values, {}
         for region in result.study.materials:
             weights = np.asarray(operators.source(region).sum(axis=0)).ravel()
@@ -85,7 +82,7 @@ class Warmth:
         return cls(result.times, result.gas_temperature, regions)
 
 
-#: A strain cycle stays where its temperatures have moved by less than this share of the tolerance.
+#: A strain cycle is kept if its temperatures changed by less than this share of the tolerance.
 STILL = 0.25
 
 
@@ -95,7 +92,7 @@ Softened = tuple[float, ...]
 
 @dataclass(frozen=True, eq=False)
 class _Knot:
-    """A strain cycle, its load case as driven, and the temperatures that it belongs to."""
+    """A strain cycle, its load case in the drive, and its temperatures."""
 
     moment: TyreTemperatures
     case: LoadCase
@@ -108,11 +105,11 @@ class WarmCycles:
 
     Parameters
     ----------
-    study, choice : the study, and its ``[mechanics.feedback]``. warmth : the temperatures to begin with.
+    study, choice : the study, and its ``[mechanics.feedback]``. warmth : the first temperatures.
 
     Raises
     ------
-    InputError : a load, deflection or pressure that the section cannot take; names the phase.
+    InputError : the section cannot carry a load, deflection or pressure; names the phase.
     """
 
     def __init__(self, study: StudyData, choice: Feedback, warmth: Warmth) -> None:
@@ -130,11 +127,11 @@ class WarmCycles:
         self._solvers.clear()
 
     def change(self, warmth: Warmth) -> float:
-        """Largest difference, K, between the temperatures of the strain cycles and these, over all knots."""
+        """Largest difference, K, between these temperatures and those of the strain cycles, over all knots."""
         return max(self._distance(place, warmth) for place in self._places())
 
     def update(self, warmth: Warmth, share: float = 1.0) -> None:
-        """Go a share of the way to other temperatures, wherever these differ noticeably."""
+        """Move the strain cycles a share of the way to other temperatures, where these differ noticeably."""
         for place in self._places():
             if self._distance(place, warmth) > STILL * self.choice.tolerance:
                 moment = self._kept[place].moment.towards(self._moment(place, warmth), share)
@@ -142,7 +139,7 @@ class WarmCycles:
         self._solvers.clear()
 
     def schedule(self) -> CycleSchedule:
-        """What a run takes. A phase in which nothing changes has one strain cycle, as without feedback."""
+        """Load cases and strain cycles for a run; a constant phase has one strain cycle, as without feedback."""
         fractions, cases, cycles = [], [], []
         for number, (phase, knots) in enumerate(zip(self.study.card.drive.phases, self.knots, strict=True)):
             kept = [self._kept[number, place] for place in range(len(knots))]
@@ -186,7 +183,7 @@ class WarmCycles:
         return tuple(shares)
 
     def _solver(self, softened: Softened, moment: TyreTemperatures) -> KnotSolver:
-        """One for all knots of equal moduli; forgotten after every update, as the next one has other moduli."""
+        """Solver for all knots of equal moduli; cleared after every update, which changes the moduli."""
         if not self.softening:
             return self._cold
         if softened not in self._solvers:

@@ -1,4 +1,4 @@
-"""Pictures of a run, of a section, of a mesh and of a strain cycle. matplotlib is imported when one is drawn."""
+"""Pictures of a run, a section, a mesh and a strain cycle. matplotlib is imported when a picture is drawn."""
 
 from __future__ import annotations
 
@@ -14,17 +14,17 @@ from tyrefem.output import atomic_path
 if TYPE_CHECKING:
     from tyrefem.simulation.result import ResultData
 
-#: Files of the standard pictures.
+#: File names of the standard pictures.
 PICTURES = (
     "temperature.png", "temperature-hottest.png", "histories.png", "sliding.png", "heat-budget.png", "heat-source.png",
     "strain-cycle.png", "mesh.png",
 )  # fmt: skip
-#: Pictures of the latest results, for the page and the files; about 1 MB each.
+#: Number of results whose pictures are kept, for the page and the files; about 1 MB each.
 _DRAWN: Cache[dict[str, bytes]] = Cache(size=4)
 
 
 def _figures(result: ResultData) -> dict[str, Callable[[], Any]]:
-    """File name -> what draws it, in the order of a report."""
+    """File name -> function that draws it, in the order of a report."""
     from tyrefem.reports.figures.budget import budget_figure
     from tyrefem.reports.figures.heat_source import heat_source_figure
     from tyrefem.reports.figures.histories import histories_figure
@@ -49,9 +49,9 @@ def _figures(result: ResultData) -> dict[str, Callable[[], Any]]:
 
 
 def pictures(result: ResultData) -> dict[str, bytes]:
-    """File name -> PNG of the standard pictures of a run; those of the 4 latest results are remembered.
+    """File name -> PNG of the standard pictures of a run; those of the 4 latest results are cached.
 
-    ``temperature`` at the end, and at the hottest moment where that is earlier; ``histories``; ``heat-budget``;
+    ``temperature`` at the end, and at the time of its maximum if that is earlier; ``histories``; ``heat-budget``;
     ``heat-source``; ``strain-cycle``; ``mesh``; with slip ``sliding``.
     """
     from tyrefem.reports.figures.style import png
@@ -60,14 +60,14 @@ def pictures(result: ResultData) -> dict[str, bytes]:
 
 
 def _content(result: ResultData) -> tuple[Any, ...]:
-    """All that the pictures show: the study with its cards, the mesh, the temperatures."""
+    """All data of the pictures: the study with its cards, the mesh, the temperatures."""
     study, mesh = result.study, result.tyre.mesh.mesh
     arrays = (mesh.p, mesh.t, result.times, result.field_times, np.asarray(result.history.values))
     return study.name, study.section, repr(study.data), repr(study.material_data), fingerprint(*arrays)
 
 
 def write_pictures(result: ResultData, folder: Path) -> list[Path]:
-    """Write the standard pictures as PNG files; each is complete or not there.
+    """Write the standard pictures as PNG files, each completely or not at all.
 
     Raises
     ------

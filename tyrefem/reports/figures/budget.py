@@ -1,4 +1,4 @@
-"""The heat budget: what was generated, where it stayed and where it went, in J; and the powers over time."""
+"""Picture of the heat budget: heat generated, stored and lost, J, and powers over time, W."""
 
 from __future__ import annotations
 
@@ -41,9 +41,9 @@ LETTER = 0.074
 WIDE = 3.0
 KINDS = {"generated": GENERATED, "sliding": SLIDING, "stored": STORED, "lost": LOST}
 WORDS = {"generated": "generated in", "sliding": "from", "stored": "stored in", "lost": "lost to"}
-#: Kinds that bring heat in.
+#: Kinds that add heat.
 MADE = ("generated", "sliding")
-#: A power this many times the generated is cut off, so that the others can be read.
+#: Powers above this multiple of the generated power are cut off, so that the others can be read.
 TALLEST = 10.0
 
 
@@ -58,12 +58,12 @@ class Bar:
 
     @property
     def energy(self) -> float:
-        """J, as it counts in its kind."""
+        """Energy of the bar, J, with the sign of its kind."""
         return self.end - self.start if self.kind in MADE else self.start - self.end
 
 
 def waterfall(budget: HeatBudget) -> list[Bar]:
-    """Bars that rise with heat generated or from sliding and fall with heat stored and lost, down to the residual."""
+    """Bars that rise by generated and sliding heat, and fall by stored and lost heat to the residual."""
     bars, level = [], 0.0
     for kind in KINDS:
         sign = 1.0 if kind in MADE else -1.0
@@ -76,7 +76,7 @@ def waterfall(budget: HeatBudget) -> list[Bar]:
 
 
 def budget_figure(result: ResultData) -> Figure:
-    """Left the waterfall of energies of the whole tyre, right the powers over time."""
+    """Draw the waterfall of energies of the whole tyre (left) and the powers over time (right)."""
     budget = result.heat_budget
     bars = waterfall(budget)
     high = max(3.4, 0.24 * len(bars))
@@ -102,7 +102,7 @@ def budget_figure(result: ResultData) -> Figure:
 
 
 def _kinds(budget: HeatBudget) -> list[str]:
-    """The kinds that this budget has."""
+    """The kinds of heat in this budget."""
     return [kind for kind in KINDS if any(k == kind for k, _ in budget.energies)]
 
 
@@ -130,13 +130,13 @@ def _energies(axes: Axes, bars: list[Bar], budget: HeatBudget) -> None:
     low, high = min(0.0, *ends) / factor, max(0.0, *ends) / factor
     span = max(high - low, budget.floor / factor) or 1.0
     left = low - 0.02 * span
-    # Every number has its room to the right of its bar.
+    # Space for a number to the right of each bar.
     shares = [(len(text) * LETTER + 0.1) / WIDE for text in texts]
     tops = [max(bar.start, bar.end) / factor for bar in bars]
     right = max((end - share * left) / (1 - share) for end, share in zip(tops, shares, strict=True)) if bars else high
     axes.set_xlim(left, max(right, high + 0.05 * span))
     axes.axvline(0.0, color=INK, lw=0.8)
-    what = "generated" if "sliding" not in _kinds(budget) else "generated and from sliding"
+    what = "generated" if "sliding" not in _kinds(budget) else "generated and sliding heat"
     axes.set_xlabel(f"heat [{unit}]" + (f", share of the {what}" if made > 0 else ""), fontsize=FONT)
     tidy(axes)
     axes.grid(visible=False, axis="y")
@@ -145,7 +145,7 @@ def _energies(axes: Axes, bars: list[Bar], budget: HeatBudget) -> None:
 
 
 def _cut_off(axes: Axes) -> None:
-    """End all lines at the present limits: what is higher must not run over the names of the phases."""
+    """Clip all lines at the present limits, so that none crosses the names of the phases."""
     from matplotlib.patches import Rectangle
 
     (left, right), (low, high) = axes.get_xlim(), axes.get_ylim()
@@ -157,7 +157,7 @@ def _powers(axes: Axes, budget: HeatBudget, phases: list[Phase]) -> None:
     divisor, unit_t = time_unit(float(budget.times[-1]))
     t = budget.times / divisor
     curves = {kind: budget.power(kind) for kind in _kinds(budget)}
-    # Powers of rounding shall not look like any.
+    # Rounding errors of powers are not drawn.
     least = budget.floor / max(float(budget.times[-1]), 1e-9)
     top = highest = max(least, *(float(abs(curve).max()) for curve in curves.values()))
     usual = TALLEST * float(budget.power("generated").max(initial=0.0))

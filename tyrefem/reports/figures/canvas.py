@@ -1,4 +1,4 @@
-"""The whole section, crown up, with room for labels: what every picture on the section starts from."""
+"""The whole section, crown up, with space for labels: the base of every picture on the section."""
 
 from __future__ import annotations
 
@@ -37,12 +37,12 @@ DRAWN, BAR = 5.2, 0.85
 
 @dataclass(frozen=True, eq=False)
 class Canvas:
-    """A figure with one picture of the section; a half section is shown with its mirror image. Data units mm."""
+    """A figure of one section, in mm; a half section is shown with its mirror image."""
 
     figure: Figure
     axes: Axes
     section: Section
-    #: mm of the tyre per inch of paper.
+    #: Scale: mm of the tyre per inch of the figure.
     scale: float
     width: float
     low: float
@@ -54,27 +54,27 @@ class Canvas:
         return LINE * self.scale
 
     def beside(self, labels: Sequence[Label], side: float) -> None:
-        """Labels in a column right (side = 1) or left (-1) of the section, from crown to bead."""
+        """Write labels in a column right (side = 1) or left (-1) of the section, from crown to bead."""
         x = side * (self.width / 2 + 0.3 * self.scale)
         align = "left" if side > 0 else "right"
         column(self.axes, labels, x, self.low, self.high, gap=self.gap, align=align)
 
     def inside(self, labels: Sequence[Label]) -> None:
-        """Labels in the air space; leaders do not cross, as seen from the labels the points go clockwise."""
+        """Write labels in the air space, in an order in which their leaders do not cross."""
         if not labels:
             return
         half = max(len(label.text) for label in labels) * LETTER * self.scale / 2
         top = float(self.section.place(0.0, 0.0)[0]) * 1e3 - 0.6 * self.scale
         right = [label for label in labels if label.x >= 0]
         left = [label for label in labels if label.x < 0]
-        # The column stands under its innermost point: leaders then rise beside the texts above, not across them.
+        # The column is below its innermost point: leaders then rise beside the texts above, not across them.
         x = self._under(right, half)
         self._fan(right, x, top, 1.0)
         # The left column's leaders start left of the right column's texts.
         self._fan(left, x - 2 * half if right else -self._under(left, half), top - self.gap * len(right), -1.0)
 
     def _under(self, labels: Sequence[Label], half: float) -> float:
-        """Where a column's leaders start, mm right of the mid plane for labels on that side."""
+        """Start of a column's leaders, mm right of the mid plane for labels on that side."""
         innermost = min((abs(label.x) for label in labels), default=0.0)
         return min(half, max(innermost - 0.12 * self.scale, -half / 4))
 
@@ -89,7 +89,7 @@ class Canvas:
     def color_bar(
         self, image: Any, label: str, *, side: float = 1.0, ticks: Any = None, extend: str | None = None
     ) -> Any:
-        """A colour bar right (1) or left (-1) of everything; ``extend``: "max" for values beyond its end."""
+        """Draw a colour bar right (1) or left (-1) of all labels; ``extend``: "max" for values beyond its end."""
         width, height = (float(v) for v in self.figure.get_size_inches())
         box = self.axes.get_position()
         left = width - BAR + 0.05 if side > 0 else 0.62
@@ -106,9 +106,9 @@ class Canvas:
 def canvas(
     section: Section, left: Iterable[str] = (), right: Iterable[str] = (), *, bars: int = 1, below: float = 0.0
 ) -> Canvas:
-    """An empty canvas with room for the longest of the texts on either side, and for colour bars (the second left).
+    """An empty canvas with space for the longest text on either side, and for colour bars (the second is left).
 
-    ``below``: inches kept free under the section.
+    ``below``: empty space under the section, inches.
     """
     lines = [line for name in section.boundaries for line in section.boundary_line(name)]
     r = np.concatenate([line[:, 0] for line in lines]) * 1e3
@@ -131,12 +131,12 @@ def canvas(
 
 
 def sides(section: Section) -> tuple[float, ...]:
-    """Factors on z that make the whole tyre of what the section holds."""
+    """Factors on z that give both sides of the tyre: 1 for a full section, 1 and -1 for a half."""
     return (1.0, -1.0) if section.half else (1.0,)
 
 
 def draw_outlines(axes: Axes, section: Section, *, color: str = INK, width: float = 0.8) -> None:
-    """Borders of all regions, both sides."""
+    """Draw the borders of all regions on both sides."""
     for region in section.regions:
         for polygon in section.outline(region, 1e-3):
             x, y = millimetres(polygon)
@@ -147,11 +147,11 @@ def draw_outlines(axes: Axes, section: Section, *, color: str = INK, width: floa
 
 
 def region_labels(section: Section) -> list[Label]:
-    """Names of the regions at the middle of their longest piece on the left side, from crown to bead."""
+    """Names of the regions, at the middle of their longest piece on the left side, from crown to bead."""
     labels = []
     for region in section.regions:
         piece = max((p for p in section.pieces if p.region == region), key=lambda p: p.end - p.start)
-        # Away from the piece's middle where a neighbour in another layer has its own.
+        # Not at the piece's middle if a neighbour in another layer has its label there.
         s = piece.start + (0.62 if piece.layer else 0.5) * (piece.end - piece.start)
         faces = section.interfaces(s)
         depth = float((faces[piece.layer] + faces[piece.layer + 1]) / 2 - faces[0])
@@ -163,7 +163,7 @@ def region_labels(section: Section) -> list[Label]:
 def sensor_labels(
     section: Section, places: dict[str, tuple[float, float]], texts: dict[str, str]
 ) -> tuple[list[Label], list[Label], list[Label]]:
-    """Labels (inside, left, right) of named points (r, z): those nearer the inner surface go into the air space."""
+    """Labels (inside, left, right) of named points (r, z); labels of points nearer the inner surface are inside."""
     inside: list[tuple[float, Label]] = []
     left: list[tuple[float, Label]] = []
     right: list[tuple[float, Label]] = []
@@ -178,14 +178,14 @@ def sensor_labels(
 
 
 def halo(width: float = 2.0) -> list[Any]:
-    """White edge that keeps a text readable on a dark map."""
+    """White edge that keeps text readable on a dark map."""
     from matplotlib.patheffects import withStroke
 
     return [withStroke(linewidth=width, foreground="white")]
 
 
 def marks(axes: Axes, labels: Sequence[Label]) -> None:
-    """Circles at the labels' points."""
+    """Draw circles at the labels' points."""
     if labels:
         axes.plot(
             [label.x for label in labels], [label.y for label in labels], "o", ms=FONT / 2, mfc="white", mec=INK,

@@ -1,4 +1,4 @@
-"""Elements cut into straight-sided linear cells on the unknowns' own points, for drawing and for writing."""
+"""Elements cut into straight-sided linear cells between the points of the unknowns, for pictures and files."""
 
 from __future__ import annotations
 
@@ -19,12 +19,12 @@ _PARTS: dict[int, tuple[tuple[int, ...], ...]] = {
 
 
 def parts_of(unknowns: int) -> tuple[tuple[int, ...], ...]:
-    """Local unknowns of the linear cells that an element of so many unknowns is cut into."""
+    """Local unknowns of the linear cells of an element with ``unknowns`` unknowns."""
     return _PARTS[unknowns]
 
 
 def linear_cells(operators: Any, elements: Array | None = None) -> tuple[Array, Array]:
-    """Cells (3 or 4, n), numbers of unknowns, and the element (n,) that each is part of.
+    """Cells (3 or 4, n) as indices of unknowns, and the element (n,) of each cell.
 
     Parameters
     ----------
@@ -38,7 +38,7 @@ def linear_cells(operators: Any, elements: Array | None = None) -> tuple[Array, 
 
 
 def triangles(operators: Any, elements: Array | None = None) -> tuple[Array, Array]:
-    """As `linear_cells`, quadrilaterals cut in two: (n, 3), and the element of each."""
+    """The cells of `linear_cells` as triangles (n, 3), quadrilaterals cut in two, and the element of each."""
     cells, parent = linear_cells(operators, elements)
     if len(cells) == 3:
         return cells.T, parent

@@ -1,9 +1,4 @@
-"""The footprint by harmonics: pressure map, deformed section, strain cycle of a point, energy and loss by harmonic.
-
-Tension of the cords of every layer round the wheel.
-
-The inflated section over the undeformed one, and the load over the deflection.
-"""
+"""Pictures of the pressed tyre: pressure, sections, strain cycles, harmonics, cord tension, load over deflection."""
 
 from __future__ import annotations
 
@@ -48,7 +43,7 @@ LABELS = {"rr": "e_rr", "zz": "e_zz", "tt": "e_θθ", "rz": "γ_rz", "rt": "γ_r
 
 
 def described(footprint: Footprint) -> str:
-    """Load, deflection, pressure, road and number of harmonics in a line."""
+    """Load, deflection, pressure, road and number of harmonics as one line."""
     road = footprint.pressing.road
     drum = "flat road" if math.isinf(road.drum_diameter) else f"drum Ø {road.drum_diameter:.3g} m"
     camber = f", camber {math.degrees(road.camber):.3g}°" if road.camber else ""
@@ -60,14 +55,14 @@ def described(footprint: Footprint) -> str:
 
 
 def pressure_map_figure(footprint: Footprint) -> Figure:
-    """Contact pressure over the footprint, both sides, and along its two middle lines."""
+    """Draw the contact pressure over the whole footprint and along its two middle lines."""
     from matplotlib.ticker import MaxNLocator
 
     drawn = figure(10.4, 4.4 + TITLE)
     x, z, pressure = pressure_map(footprint)
     scale, unit = si(float(np.median(pressure[pressure > 0])) if pressure.any() else 0.0, "Pa")
     axes = add_axes(drawn, 0.75, 0.55, 4.3, 3.7)
-    # Pressure peaks at the tread's edge: the colours serve what lies below the highest 3 % of the contact.
+    # Pressure peaks at the tread's edge: the colours span all but the highest 3 % of the contact.
     usual = float(np.quantile(pressure[pressure > 0], 0.97)) if pressure.any() else 1.0
     levels = np.linspace(0, usual / scale, 16)
     filled = axes.contourf(x * 1e3, z * 1e3, pressure / scale, levels=levels, cmap=ENERGY_MAP, extend="max")
@@ -78,7 +73,7 @@ def pressure_map_figure(footprint: Footprint) -> Figure:
     axes.set_xlabel("along the road x [mm]", fontsize=FONT)
     axes.set_ylabel("across z [mm]", fontsize=FONT)
     tidy(axes, grid=False)
-    # A tick beyond the highest level would be drawn on top of it.
+    # A tick above the highest level would be drawn at that level.
     ticks = [tick for tick in MaxNLocator(6).tick_values(0.0, levels[-1]) if tick <= levels[-1]]
     bar = drawn.colorbar(filled, cax=add_axes(drawn, 5.2, 0.75, 0.14, 3.3), ticks=ticks)
     bar.set_label(f"contact pressure [{unit}]", fontsize=FONT)
@@ -109,8 +104,8 @@ def pressure_map_figure(footprint: Footprint) -> Figure:
 
 
 def pressure_map(footprint: Footprint) -> tuple[Array, Array, Array]:
-    """x (a,), z (b,) in m and pressure (b, a) in Pa over the whole footprint, mirrored where only half was solved;
-    zero in the tread's grooves."""
+    """x (a,), z (b,) in m and pressure (b, a) in Pa over the whole footprint, mirrored if only half was solved; zero
+    in the tread's grooves."""
     angles, (r, z) = footprint.grid.angles, footprint.grid.tread.places
     x = np.concatenate([-angles[:0:-1], angles]) * float(r.mean())
     pressure = np.concatenate([footprint.pressure[:0:-1], footprint.pressure]).T
@@ -127,7 +122,7 @@ def pressure_map(footprint: Footprint) -> tuple[Array, Array, Array]:
 
 
 def strain_history_figure(cycle: StrainHarmonics, places: dict[str, tuple[float, float]], count: int = 361) -> Figure:
-    """The six strains round the wheel at named places (r, z), m."""
+    """Draw the six strains round the wheel at named places (r, z), m."""
     drawn = figure(10.4, 0.1 + 2.3 * len(places) + TITLE)
     angles = np.linspace(-np.pi, np.pi, count)
     height = float(drawn.get_size_inches()[1])
@@ -148,7 +143,7 @@ def strain_history_figure(cycle: StrainHarmonics, places: dict[str, tuple[float,
 
 
 def harmonics_figure(loss: RevolutionLoss) -> Figure:
-    """Elastic energy and loss per revolution by harmonic, and where the loss arises."""
+    """Draw elastic energy and loss per revolution by harmonic, and a map of the loss."""
     drawn = figure(10.4, 4.2 + TITLE)
     cycle = loss.cycle
     n = np.arange(1, cycle.footprint.harmonics + 1)
@@ -186,7 +181,7 @@ def harmonics_figure(loss: RevolutionLoss) -> Figure:
 
 
 def deformed_figure(footprint: Footprint, angles: tuple[float, ...] = (0.0, 0.2, math.pi)) -> Figure:
-    """The section at angles from the middle of the footprint (deformed, coloured outlines) over the inflated one."""
+    """Draw the section at angles from the middle of the footprint (coloured outlines) over the inflated one."""
     from matplotlib.collections import LineCollection
 
     elements = footprint.pressing.harmonics.elements
@@ -217,7 +212,7 @@ def deformed_figure(footprint: Footprint, angles: tuple[float, ...] = (0.0, 0.2,
 
 
 def _cells(axes: Axes, mesh: Any, values: Array) -> Any:
-    """Paint one value per element."""
+    """Colour the elements by one value each."""
     from matplotlib.collections import PolyCollection
 
     corners = mesh.p[:, mesh.t].transpose(2, 1, 0)[..., ::-1] * 1e3
@@ -233,7 +228,7 @@ PANEL = 1.95
 
 
 def cord_tension_figure(footprint: Footprint, cords: Sequence[CordCycle]) -> Figure:
-    """One panel for each layer of cords: both directions of the cords, and the tension of the inflated tyre."""
+    """Draw a panel for each layer of cords: tension in both cord directions, and in the inflated tyre."""
     rows = (len(cords) + 1) // 2
     drawn = figure(10.4, 0.35 + PANEL * rows + TITLE)
     height = float(drawn.get_size_inches()[1])
@@ -259,12 +254,12 @@ def cord_tension_figure(footprint: Footprint, cords: Sequence[CordCycle]) -> Fig
         axes.legend(fontsize=FONT - 1.5, frameon=False, loc="lower right", bbox_to_anchor=(1.0, 0.97), ncols=3)
         if number >= len(cords) - 2:
             axes.set_xlabel("angle from the middle of the footprint [°]", fontsize=FONT)
-    title(drawn, "Cord tension round the wheel, where it is greatest in each layer", described(footprint))
+    title(drawn, "Cord tension round the wheel, at its maximum in each layer", described(footprint))
     return drawn
 
 
 def inflation_figure(tyre: Inflation, name: str) -> Figure:
-    """The inflated section, its regions filled, over the outline of the undeformed one; as modelled, not mirrored."""
+    """Draw the inflated section, its regions filled, over the undeformed outline; a half section is not mirrored."""
     from matplotlib.collections import LineCollection, PolyCollection
 
     body = tyre.body
@@ -295,7 +290,7 @@ def inflation_figure(tyre: Inflation, name: str) -> Figure:
 
 
 def load_deflection_figure(pressed: Pressed, curve: Array) -> Figure:
-    """Load over deflection, (n, 2) in m and N, with the footprint's own point and its tangent."""
+    """Draw load over deflection, (n, 2) in m and N, with the footprint's point and its tangent."""
     drawn = figure(6.4, 3.9 + TITLE)
     axes = add_axes(drawn, 0.8, 0.6, 5.3, 3.2)
     footprint = pressed.footprint

@@ -1,4 +1,4 @@
-"""Pictures of sliding heat: the locked wheel against speed, and table 2 measured against predicted."""
+"""Pictures of sliding heat: a locked wheel over speed, and table 2 measured and predicted."""
 
 from __future__ import annotations
 
@@ -18,7 +18,7 @@ KMH = 3.6
 
 
 def locked_wheel_figure(car: LockedWheel) -> Figure:
-    """Rise of the contact and coefficient of friction of a locked wheel from 0 to 150 km/h.
+    """Draw temperature rise and coefficient of friction of a locked wheel from 0 to 150 km/h.
 
     >>> len(locked_wheel_figure(LockedWheel()).axes)
     2
@@ -66,7 +66,7 @@ def locked_wheel_figure(car: LockedWheel) -> Figure:
 
 
 def wood_figure(rows: tuple[WoodRow, ...]) -> Figure:
-    """Measured rise, the paper's prediction and equations 3 and 4, for every row of table 2."""
+    """Draw measured rise, the paper's prediction and equations 3 and 4 for every row of table 2."""
     drawn = figure(7.6, 3.9)
     title(drawn, "Rubber on wood, Roberts table 2", "rise 15 mm behind the pad; bars: observed uncertainty")
     axes = add_axes(drawn, 0.7, 0.75, 6.7, 2.4)

@@ -1,4 +1,4 @@
-"""Where the heat comes from: strain energy per cycle and heat source on the section, zone by zone."""
+"""Picture of strain energy per cycle and heat source on the section, by zone."""
 
 from __future__ import annotations
 
@@ -18,13 +18,13 @@ if TYPE_CHECKING:
     from tyrefem.simulation.result import ResultData
 
 Array = NDArray[np.float64]
-#: Share of the section's area that a colour scale spans; what is above has the last colour.
+#: Share of the section's area that a colour scale spans; higher values have the last colour.
 SPANNED = 0.99
 
 
 @dataclass(frozen=True)
 class ZoneHeat:
-    """A strain zone's triangles on its own nodes, and its values there: U in J/m3, q in W/m3; W of the whole tyre."""
+    """Triangles of a strain zone with separate nodes, nodal U, J/m3, and q, W/m3, and power of the whole tyre, W."""
 
     name: str
     title: str
@@ -36,7 +36,7 @@ class ZoneHeat:
 
 
 def zone_heat(result: ResultData, i: int) -> list[ZoneHeat]:
-    """Every zone with its own values, so that the steps between zones stay sharp."""
+    """Every zone with separate values, so that the steps between zones stay sharp."""
     operators = result.tyre.problem.operators
     t = float(result.times[i]) * (1 - 1e-12)
     sources = result.heat_source(i)
@@ -54,7 +54,7 @@ def zone_heat(result: ResultData, i: int) -> list[ZoneHeat]:
 
 
 def heat_source_figure(result: ResultData) -> Figure:
-    """Left half: strain energy per cycle, J/m3; right half: heat source, W/m3, in the phase with most heat."""
+    """Draw strain energy per cycle, J/m3 (left), and heat source, W/m3, of the phase with most heat (right)."""
     i = result.rolling_reading
     zones = zone_heat(result, len(result.times) - 1 if i is None else i)
     total = sum(zone.power for zone in zones)
@@ -82,7 +82,7 @@ def heat_source_figure(result: ResultData) -> Figure:
 
 
 def scale_top(zones: list[ZoneHeat], values: list[Array]) -> float:
-    """The value that 99 % of the section's area does not exceed: one peak must not darken the whole picture."""
+    """The value that 99 % of the section's area does not exceed, so that a peak does not darken the picture."""
     areas, means = [], []
     for zone, value in zip(zones, values, strict=True):
         r, z = zone.points[:, zone.corners.T]
@@ -92,12 +92,12 @@ def scale_top(zones: list[ZoneHeat], values: list[Array]) -> float:
     order = np.argsort(mean)
     below = np.cumsum(area[order])
     place = min(int(np.searchsorted(below, SPANNED * below[-1])), len(order) - 1)
-    # Heat in less than a hundredth of the area: its own peak is the scale.
+    # Heat in less than 1 % of the area: its peak is the scale.
     return float(mean[order[place]]) or max(float(value.max()) for value in values)
 
 
 def _bar(drawn: Canvas, image: Any, label: str, unit: str, peak: float, side: float) -> None:
-    """A colour bar; an arrow at its end, and the peak in its label, where values go beyond it."""
+    """Draw a colour bar; if values exceed it, with an arrow at its end and the peak in its label."""
     beyond = peak > 1.001 * image.norm.vmax
     text = f"{label} [{unit}]" + (f", peak {peak:{digits(peak)}}" if beyond else "")
     drawn.color_bar(image, text, side=side, extend="max" if beyond else "neither")
@@ -111,17 +111,17 @@ def _row(zone: ZoneHeat, total: float) -> str:
 
 def _subtitle(result: ResultData, i: int | None, total: float) -> str:
     if i is None:
-        return "the tyre never rolls under load and makes no heat; left: strain energy of a cycle, if it rolled"
+        return "no heat: the tyre never rolls under load; left: strain energy of a cycle, if it rolled"
     divisor, unit = time_unit(float(result.times[-1]))
     force = total / result.tyre.motion(float(result.times[i]) * (1 - 1e-12)).speed
     return (
         f"left: strain energy per cycle; right: heat source after {result.times[i] / divisor:.4g} {unit}; "
-        f"the whole tyre makes {total:.4g} W = {force:.3g} N of drag times its speed"
+        f"whole tyre {total:.4g} W = rolling resistance {force:.3g} N times speed"
     )
 
 
 def _half(drawn: Canvas, zone: ZoneHeat, values: Array, sign: float, colours: Any, top: float) -> Any:
-    """One half of the picture; of a full section only the elements on that side."""
+    """Draw one half of the picture; for a full section, only the elements on that side."""
     x, y = millimetres(zone.points.T)
     corners = zone.corners
     if drawn.section.half:
@@ -139,7 +139,7 @@ def _anchor(drawn: Canvas, zone: ZoneHeat) -> tuple[float, float]:
     here = np.flatnonzero(x >= 0)
     s, depth = drawn.section.locate(zone.points.T[here])
     off = np.abs(s - (s.min() + s.max()) / 2)
-    # On a coarse mesh no node may be near the middle.
+    # A coarse mesh may have no node near the middle.
     away = off + np.abs(depth - np.median(depth[off < max(3e-3, 1.01 * float(off.min()))]))
     node = here[int(np.argmin(away))]
     return float(x[node]), float(y[node])

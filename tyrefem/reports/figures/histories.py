@@ -1,4 +1,4 @@
-"""Temperatures over time: every thermocouple, the contained air, a lumped rim; and the speed where it varies."""
+"""Picture of temperatures over time: thermocouples, contained air, lumped rim; and of the speed if it varies."""
 
 from __future__ import annotations
 
@@ -30,12 +30,12 @@ if TYPE_CHECKING:
 
     from tyrefem.simulation.result import ResultData
 
-#: Inches left of, right of and below the axes; height of the temperatures and of the speed.
+#: Margins left of, right of and below the axes; heights of the temperature and speed axes, inches.
 LEFT, RIGHT, BELOW, HIGH, LOW = 0.75, 2.5, 0.55, 3.6, 0.9
 
 
 def histories_figure(result: ResultData) -> Figure:
-    """Readings, °C, over time with the phases of the drive; the speed, m/s, below where it varies."""
+    """Draw readings, °C, over time with the phases of the drive; below, the speed, m/s, if it varies."""
     times = result.times
     last = float(times[-1])
     divisor, unit = time_unit(last)
@@ -73,7 +73,7 @@ def histories_figure(result: ResultData) -> Figure:
 
 
 def _lines(axes: Axes, result: ResultData, divisor: float) -> list[Label]:
-    """Draw every column of the readings; the labels for their ends."""
+    """Draw every column of the readings; return the labels for their ends."""
     readings = result.readings
     t = readings["time_s"].to_numpy() / divisor
     sensors = list(result.sensor_places)

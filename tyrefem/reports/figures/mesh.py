@@ -1,7 +1,4 @@
-"""A section as drawn: regions, boundaries, reference line and the dimensions a person checks first.
-
-The mesh as the solver sees it: elements coloured by region, boundaries by name.
-"""
+"""Pictures of a section with regions, boundaries, reference line and main dimensions, and of a mesh."""
 
 from __future__ import annotations
 
@@ -42,12 +39,12 @@ if TYPE_CHECKING:
     from tyrefem.geometry import Section
     from tyrefem.geometry.meshing import TyreMesh
 
-#: Boundary -> colour; a boundary of another name takes the ink's.
+#: Boundary -> colour; boundaries of other names have the colour of the text.
 BOUNDARIES = {"road": "#D55E00", "outside_air": "#56B4E9", "rim": "#8C510A", "contained_air": "#009E73"}
 
 
 def section_figure(section: Section, sensors: Mapping[str, tuple[float, float]] | None = None) -> Figure:
-    """The whole tyre's section with its regions, boundaries and dimensions; ``sensors``: name -> (r, z), m."""
+    """Draw the whole section with regions, boundaries and dimensions; ``sensors``: name -> (r, z), m."""
     places = dict(sensors or {})
     inside, left, right = sensor_labels(section, places, {name: short(name) for name in places})
     names = region_labels(section)
@@ -105,7 +102,7 @@ def _line(axes: Axes, section: Section) -> None:
 
 
 def _thicknesses(section: Section) -> list[Label]:
-    """Whole thickness at the crown, the shoulder, mid sidewall and the bead, and the radius of the outer face."""
+    """Total thickness and outer radius at crown, shoulder, mid sidewall and bead."""
     line = section.line
     stations = {
         "crown": 0.0, "shoulder": line.shoulder_s, "mid sidewall": (line.shoulder_s + line.length) / 2,
@@ -142,7 +139,7 @@ def _widest(section: Section) -> float:
 
 
 def mesh_figure(tyre_mesh: TyreMesh) -> Figure:
-    """Every element of the mesh, as modelled (a half section is not mirrored)."""
+    """Draw every element of the mesh; a half section is not mirrored."""
     from matplotlib.collections import LineCollection, PolyCollection
 
     mesh = tyre_mesh.mesh
@@ -156,7 +153,7 @@ def mesh_figure(tyre_mesh: TyreMesh) -> Figure:
     axes = add_axes(drawn, 0.7, 0.5, wide + 0.2, tall + 0.3)
     axes.set_xlim(low[0] - 0.1 * scale, high[0] + 0.1 * scale)
     axes.set_ylim(low[1] - 0.15 * scale, high[1] + 0.15 * scale)
-    # Thin edges on fine meshes: black must not cover the regions' colours.
+    # Thin edges on fine meshes, so that they do not cover the regions' colours.
     edge = float(np.clip(0.6 * np.sqrt(2000 / max(tyre_mesh.n_elements, 1)), 0.08, 0.6))
     for number, region in enumerate(tyre_mesh.section.regions):
         elements = np.asarray(mesh.subdomains[region])

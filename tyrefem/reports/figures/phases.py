@@ -1,4 +1,4 @@
-"""The phases of a drive on a time axis: where each begins, and its name, however short it is."""
+"""The phases of a drive on a time axis: start and name of each phase."""
 
 from __future__ import annotations
 
@@ -17,9 +17,9 @@ if TYPE_CHECKING:
 #: Name, start and end of a phase, in the axis's unit.
 Phase = tuple[str, float, float]
 SIZE = FONT - 1.5
-#: Mean width of a letter, height of a line and room about a name, inches.
+#: Mean width of a letter, height of a line and space around a name, inches.
 LETTER, LINE, ROOM = 0.0079 * SIZE, 0.0175 * SIZE, 0.05
-#: Letters of a name that are shown.
+#: Largest number of letters of a name.
 LONGEST = 22
 
 
@@ -34,10 +34,10 @@ class Name:
 
 
 def named(phases: Sequence[Phase], width: float) -> list[Name]:
-    """Names beside each other on an axis of a width in inches: level where their phase is wide enough, else upright.
+    """Place names on an axis of ``width`` inches: horizontal if the phase is wide enough, else vertical.
 
-    An upright name stands beside its phase where several narrow ones are neighbours. More phases than names have room:
-    the longest are named.
+    A vertical name is beside its phase if several narrow phases are neighbours. If not all names fit, the longest
+    phases are named.
 
     >>> names = named([("roll", 0.0, 300.0), ("braking", 300.0, 303.0), ("skid", 303.0, 304.0)], 5.0)
     >>> [(name.text, name.upright) for name in names]
@@ -63,7 +63,7 @@ def named(phases: Sequence[Phase], width: float) -> list[Name]:
 
 
 def _beside(wanted: list[float], width: float) -> list[float]:
-    """Places of upright names, a line apart and within the axis."""
+    """Places of vertical names, at least a line apart and within the axis."""
     if not wanted:
         return []
     places = spread(wanted, LINE)
@@ -73,7 +73,7 @@ def _beside(wanted: list[float], width: float) -> list[float]:
 
 
 def _level(span: tuple[str, float, float], taken: Sequence[float]) -> float | None:
-    """The middle of the widest room that upright names leave of a phase; None: its name does not fit."""
+    """The middle of the widest space between vertical names in a phase; None if its name does not fit."""
     text, start, end = span
     edges = sorted([start, *(place for place in taken if start - LINE / 2 < place < end + LINE / 2), end])
     rooms = [
@@ -91,7 +91,7 @@ def size_of(axes: Axes) -> tuple[float, float]:
 
 
 def make_room(axes: Axes, phases: Sequence[Phase]) -> None:
-    """Raise the upper limit so that the names stand above what is drawn."""
+    """Raise the upper axis limit, so that the names are above the lines."""
     if len(phases) < 2:
         return
     width, height = size_of(axes)
@@ -101,8 +101,8 @@ def make_room(axes: Axes, phases: Sequence[Phase]) -> None:
 
 
 def draw_phases(axes: Axes, phases: Sequence[Phase], *, names: bool = True, shaded: bool = True) -> None:
-    """Every other phase shaded, or a dotted line where each begins; names at the top, with a line to a phase that is
-    too short for its own."""
+    """Shade every second phase, or draw a dotted line at the start of each; write names at the top, with a line to
+    phases that are too short for them."""
     if len(phases) < 2:
         return
     for number, (_, start, end) in enumerate(phases):

@@ -1,7 +1,4 @@
-"""Pictures of the road film: against speed as Cattani et al. drew it, and what averaging it costs.
-
-Contact temperatures over time, one panel per phase with slip.
-"""
+"""Pictures of the road film over speed, of the error of averaging it, and of contact temperatures with slip."""
 
 from __future__ import annotations
 
@@ -36,7 +33,7 @@ if TYPE_CHECKING:
 PAPER = (0.25, 2e6)
 
 
-#: Averaged against resolved: what is still called small, K (a judgement; thermocouples read to about that).
+#: Small difference of averaged and resolved temperature, K (a judgement: the accuracy of thermocouples).
 SMALL = 1.0
 
 
@@ -49,9 +46,9 @@ def _axes(first: str, second: str) -> tuple[Figure, Axes]:
 
 
 def film_figure(lengths: Sequence[float], points: Sequence[tuple[float, float]] = ()) -> Figure:
-    """H_c against speed for footprint lengths (m), Cattani et al. 2023, figures 4 and 5.
+    """Draw H_c over speed for footprint lengths, m: Cattani et al. 2023, figures 4 and 5.
 
-    ``points`` are values of the literature, (m/s, W/m2/K).
+    ``points``: values of the literature, (m/s, W/m2/K).
     """
     drawn, axes = _axes(
         "Road film coefficient during contact",
@@ -73,7 +70,7 @@ def film_figure(lengths: Sequence[float], points: Sequence[tuple[float, float]] 
 
 
 def holds_above(errors: Sequence[AveragingError], small: float = SMALL) -> float | None:
-    """Lowest speed of a sweep, m/s, from which averaging differs by less than ``small`` K up to its highest speed."""
+    """Lowest speed of a sweep, m/s, above which averaging always differs by less than ``small`` K."""
     above: float | None = None
     for error in sorted(errors, key=lambda error: -error.point.speed):
         if abs(error.surface_difference) >= small:
@@ -83,11 +80,11 @@ def holds_above(errors: Sequence[AveragingError], small: float = SMALL) -> float
 
 
 def averaging_figure(errors: Sequence[AveragingError]) -> Figure:
-    """Averaged minus resolved mean surface temperature against speed, a line per footprint length."""
+    """Draw averaged minus resolved mean surface temperature over speed, with a line per footprint length."""
     point = errors[0].point
     inside = "insulated" if point.inner_temperature is None else f"{point.inner_temperature:g} °C"
     drawn, axes = _axes(
-        "Tread surface too warm by averaging the road film",
+        "Error of the tread surface temperature by averaging the road film",
         f"tread {point.thickness * 1e3:g} mm, inside {inside}, road {point.road_temperature:g} °C, "
         f"{point.circumference:g} m around",
     )
@@ -103,7 +100,7 @@ def averaging_figure(errors: Sequence[AveragingError]) -> Figure:
     axes.set_ylim(bottom=0)
     low = axes.get_xlim()[0]
     axes.axhline(SMALL, color=QUIET, lw=0.8, ls="--")
-    words = f" above {SMALL:g} K averaging does not hold:\n low speed, long footprint"
+    words = f" above {SMALL:g} K averaging is not valid:\n low speed, long footprint"
     axes.text(low, SMALL, words, fontsize=FONT - 1, color=QUIET, va="top")
     axes.set_xlabel("speed, km/h", fontsize=FONT, color=INK)
     axes.set_ylabel("averaged − resolved, mean surface temperature, K", fontsize=FONT, color=INK)
@@ -111,7 +108,7 @@ def averaging_figure(errors: Sequence[AveragingError]) -> Figure:
     return drawn
 
 
-#: Panels in a row, and their size with what is around them, inches.
+#: Panels in a row, and size of a panel with its margins, inches.
 ACROSS, WIDE, HIGH, LEFT, BELOW = 3, 2.5, 2.1, 0.7, 0.5
 
 
@@ -125,7 +122,7 @@ CURVES = (
 
 
 def sliding_figure(outcome: SlidingOutcome) -> Figure:
-    """Exit edge, mean tread surface and (locked) half-space, °C, in every phase; friction in the panels' titles."""
+    """Draw exit edge, mean tread surface and (locked) half-space, °C, of every phase; titles give the friction."""
     count = len(outcome.phases)
     across, down = min(count, ACROSS), -(-count // ACROSS)
     wide = max(WIDE, (NARROWEST - 0.3) / across - LEFT)

@@ -1,4 +1,4 @@
-"""The strain cycle of a load: the section before and under the load, and strains and energy along the meridian."""
+"""Picture of a strain cycle: the section without and under the load, and strains and energy along the meridian."""
 
 from __future__ import annotations
 
@@ -36,10 +36,10 @@ SURFACES = {"inner surface": (PALETTE[0], "-"), "carcass midline": (PALETTE[1], 
 
 
 def strain_figure(study: StudyData) -> Figure:
-    """Arcs before and under load, and hoop strain, meridional strain and U along the meridian.
+    """Draw arcs without and under load, and hoop strain, meridional strain and U along the meridian.
 
-    The load case is the drive's with the largest deflection; below the deflection that flattens the whole crown the
-    arcs shown are those at that deflection, from which strains are scaled down.
+    The load case is that of the drive's largest deflection. If it does not flatten the whole crown, the arcs are drawn
+    at the deflection that does, and the strains are scaled down.
     """
     from tyrefem.simulation.rolling_tyre import RollingTyre
 
@@ -47,7 +47,7 @@ def strain_figure(study: StudyData) -> Figure:
 
 
 def cycle_figure(study: StudyData, schedule: Any) -> Figure:
-    """As `strain_figure`, from load cases already solved."""
+    """Draw the picture of `strain_figure` from load cases already solved."""
     number, cycle = max(
         ((n, cycle) for n, cycles in enumerate(schedule.cycles) for cycle in cycles),
         key=lambda pair: float(pair[1].case.deflection),
@@ -103,7 +103,7 @@ def _arcs(axes: Axes, cycle: Arcs) -> None:
 
 
 def _zone_marks(axes: Axes, cycle: Arcs) -> None:
-    """Short strokes across the reference line where zones end."""
+    """Draw short strokes across the reference line at the ends of zones."""
     line = cycle.section.line
     for s in (line.shoulder_s,):
         for sign in (1.0, -1.0):
@@ -115,7 +115,7 @@ def _zone_marks(axes: Axes, cycle: Arcs) -> None:
 
 
 def zone_at(section: Section, zones: Any, s: Array, depth: Array) -> list[str | None]:
-    """The zone at each (s, depth), or None where no zone makes heat."""
+    """The zone at each (s, depth); None outside all zones."""
     regions = section.region_at(s, depth)
     return [
         next((zone.name for zone in zones if zone.region == region and zone.start <= abs(at) < zone.end), None)
@@ -124,7 +124,7 @@ def zone_at(section: Section, zones: Any, s: Array, depth: Array) -> list[str | 
 
 
 def along(cycle: Arcs, surface: str, count: int = 240) -> tuple[Array, Array, Array, Array]:
-    """(s, hoop strain, meridional strain, U in J/m3) along the meridian at a named surface; NaN: no strain law."""
+    """(s, hoop strain, meridional strain, U, J/m3) along the meridian at a named surface; NaN without a strain law."""
     section = cycle.section
     s = np.linspace(0.0, section.line.length, count)
     total = section.total_thickness(s)
@@ -161,7 +161,7 @@ def _along(drawn: Figure, cycle: Arcs) -> None:
         for surface, (color, dashes) in SURFACES.items():
             s = curves[surface][0] * 1e3
             values = np.array(curves[surface][which] * scale)
-            # A step at the shoulder is a step of the strain law, not a steep line.
+            # The strain law has a step at the shoulder: no line is drawn across it.
             jump = np.searchsorted(s, shoulder)
             axes.plot(
                 np.insert(s, jump, shoulder),

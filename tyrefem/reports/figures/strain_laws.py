@@ -1,4 +1,4 @@
-"""Strain laws side by side: strain energy on the section for each, and by part of the tyre."""
+"""Picture of several strain laws: strain energy on the section, and by part of the tyre."""
 
 from __future__ import annotations
 
@@ -32,12 +32,12 @@ if TYPE_CHECKING:
     from tyrefem.simulation.law_comparison import LawComparison, LawOutcome
 
 Array = NDArray[np.float64]
-#: Share of the section's area that the colour scale spans; what is above has the last colour.
+#: Share of the section's area that the colour scale spans; higher values have the last colour.
 SPANNED = 0.96
 
 
 def strain_laws_figure(comparison: LawComparison) -> Figure:
-    """Above: strain energy density of each law, one colour scale; below: energy by part, what heats dotted."""
+    """Draw strain energy density of each law (above), and energy by part (below; dotted: energy that heats)."""
     maps = [_map(comparison, outcome) for outcome in comparison.outcomes]
     spread = np.concatenate([_by_area(law_map) for law_map in maps])
     top = float(np.quantile(spread, SPANNED))
@@ -79,7 +79,7 @@ def strain_laws_figure(comparison: LawComparison) -> Figure:
 
 
 def _map(comparison: LawComparison, outcome: LawOutcome) -> list[tuple[Array, Any, Array]]:
-    """Points (2, n), triangles and U of every part, from the part's side of its borders, on z >= 0."""
+    """Points (2, n), triangles and U of every part for z >= 0; U at a border is the part's value."""
     mesh, pieces = comparison.mesh.mesh, []
     for part in comparison.parts:
         cells = mesh.t[:, mesh.subdomains[part.name]]
@@ -93,7 +93,7 @@ def _map(comparison: LawComparison, outcome: LawOutcome) -> list[tuple[Array, An
 
 
 def _by_area(pieces: list[tuple[Array, Any, Array]]) -> Array:
-    """Mean U of the triangles, each as often as it has tenths of a mm2."""
+    """Mean U of the triangles, each repeated once per 0.1 mm2 of its area."""
     repeated = []
     for points, corners, values in pieces:
         r, z = points[:, corners.T]

@@ -1,7 +1,4 @@
-"""One look for every picture: colours that survive colour blindness and grey print, sizes, units, saving.
-
-Labels beside a picture: spread so that none overlaps another, each with a line to its point.
-"""
+"""Common style of the pictures: colours for colour blindness and grey print, sizes, units, labels, saving."""
 
 from __future__ import annotations
 
@@ -20,7 +17,7 @@ if TYPE_CHECKING:
 Array = NDArray[np.float64]
 
 
-#: Okabe & Ito (2008), distinguishable with every common colour blindness; the yellow is left out: too pale on white.
+#: Okabe & Ito (2008), distinguishable with common colour blindness; without yellow, which is too pale on white.
 PALETTE = ("#0072B2", "#D55E00", "#009E73", "#CC79A7", "#56B4E9", "#E69F00", "#000000", "#8C510A")
 DASHES: tuple[Any, ...] = ("-", (0, (5, 1.5)), (0, (1.2, 1.2)), (0, (6, 1.5, 1.2, 1.5)))
 
@@ -42,7 +39,7 @@ FONT = 9.0
 
 
 def figure(width: float, height: float) -> Figure:
-    """An empty figure of a size in inches. Parts are placed with `add_axes`: automatic layout costs half the time."""
+    """An empty figure, size in inches. `add_axes` places its parts, because automatic layout doubles the time."""
     from matplotlib.backends.backend_agg import FigureCanvasAgg
     from matplotlib.figure import Figure
 
@@ -52,7 +49,7 @@ def figure(width: float, height: float) -> Figure:
 
 
 def add_axes(drawn: Figure, left: float, bottom: float, width: float, height: float) -> Axes:
-    """Axes at a place given in inches."""
+    """Add axes at a place, inches."""
     w, h = drawn.get_size_inches()
     return drawn.add_axes((left / w, bottom / h, width / w, height / h))
 
@@ -63,7 +60,7 @@ def png(drawn: Figure) -> bytes:
 
 
 def picture(drawn: Figure, suffix: str) -> bytes:
-    """The figure as the bytes of a file with an ending of `tyrefem.output.file.PICTURES`; the same at every time."""
+    """The figure as bytes of a file type of `tyrefem.output.file.PICTURES`; equal figures give equal bytes."""
     from matplotlib import rc_context
 
     stream, form = io.BytesIO(), suffix.lower().lstrip(".")
@@ -78,7 +75,7 @@ def picture(drawn: Figure, suffix: str) -> bytes:
 
 
 def plain(text: object) -> str:
-    """Text as it stands: a dollar sign would start a formula.
+    """Escape dollar signs in a text, which would start a formula.
 
     >>> print(plain("cost $3"))
     cost \\$3
@@ -95,7 +92,7 @@ def temperature_map() -> Any:
 
 
 def short(text: object, length: int = 28) -> str:
-    """Text for a label, cut to a length that fits.
+    """Cut a text to ``length`` characters.
 
     >>> short("a thermocouple with a very long name", 12)
     'a thermocou…'
@@ -105,12 +102,12 @@ def short(text: object, length: int = 28) -> str:
 
 
 def line_style(number: int) -> dict[str, Any]:
-    """Colour and dashes of the n-th line: the dashes change when the colours come round again."""
+    """Colour and dashes of the n-th line; the dashes change when the colours repeat."""
     return {"color": PALETTE[number % len(PALETTE)], "ls": DASHES[number // len(PALETTE) % len(DASHES)]}
 
 
 def time_unit(last: float) -> tuple[float, str]:
-    """Divisor and unit in which times up to ``last`` seconds read well.
+    """Divisor and unit for times up to ``last`` seconds.
 
     >>> time_unit(600.0), time_unit(3600.0), time_unit(1e5)
     ((1.0, 's'), (60.0, 'min'), (3600.0, 'h'))
@@ -119,7 +116,7 @@ def time_unit(last: float) -> tuple[float, str]:
 
 
 def si(largest: float, unit: str) -> tuple[float, str]:
-    """Divisor and unit with the prefix that brings ``largest`` between 1 and 1000.
+    """Divisor, and unit with the prefix that gives ``largest`` a value between 1 and 1000.
 
     >>> si(539335.0, "J"), si(0.0, "W")
     ((1000.0, 'kJ'), (1.0, 'W'))
@@ -132,7 +129,7 @@ def si(largest: float, unit: str) -> tuple[float, str]:
 
 
 def digits(largest: float, significant: int = 3) -> str:
-    """Format of fixed decimals that gives ``largest`` so many significant digits, and never "-0.0".
+    """Format with fixed decimals that gives ``largest`` ``significant`` digits, and never "-0.0".
 
     >>> format(312.05, digits(312.05)), format(-0.001, digits(45.5)), format(0.836, digits(1.01))
     ('312', '0.0', '0.84')
@@ -142,7 +139,7 @@ def digits(largest: float, significant: int = 3) -> str:
 
 
 def tidy(axes: Axes, *, grid: bool = True) -> None:
-    """Readable ticks, no box where no data are."""
+    """Set readable ticks, and remove the upper and right borders."""
     axes.tick_params(labelsize=FONT, colors=INK)
     for side in ("top", "right"):
         axes.spines[side].set_visible(False)
@@ -156,7 +153,7 @@ TITLE = 0.62
 
 
 def title(drawn: Figure, first: str, second: str = "") -> None:
-    """Bold first line, and a second line for the numbers; each smaller, and at last cut, where the figure is narrow."""
+    """Write a bold first line and a second line; in a narrow figure, the font is reduced and the text is cut."""
     width, height = (float(size) for size in drawn.get_size_inches())
     for text, drop, size, weight in ((first, 0.12, FONT + 1.5, "bold"), (second, 0.36, FONT + 0.5, "normal")):
         letter = 0.0086 * (1.06 if weight == "bold" else 0.98)
@@ -168,13 +165,13 @@ def title(drawn: Figure, first: str, second: str = "") -> None:
 
 
 def millimetres(points: ArrayLike) -> tuple[Array, Array]:
-    """(r, z) in m, shape (..., 2), as (horizontal, vertical) = (z, r) in mm."""
+    """Convert (r, z) in m, shape (..., 2), to (horizontal, vertical) = (z, r) in mm."""
     array = np.asarray(points, dtype=float)
     return array[..., 1] * 1e3, array[..., 0] * 1e3
 
 
 def section_axes(axes: Axes) -> None:
-    """Equal scales, crown up, in mm."""
+    """Set equal scales and labels in mm, crown up."""
     axes.set_aspect("equal")
     axes.set_xlabel("axial position z [mm]", fontsize=FONT)
     axes.set_ylabel("radius r [mm]", fontsize=FONT)
@@ -193,14 +190,14 @@ class Label:
 
 
 def spread(wanted: ArrayLike, gap: float) -> Array:
-    """Places nearest to the wanted ones (least squares), in their order of size and at least ``gap`` apart.
+    """Places nearest to the wanted ones (least squares), in the same order and at least ``gap`` apart.
 
     >>> spread([0.0, 0.0, 10.0], 2.0).tolist()
     [-1.0, 1.0, 10.0]
     """
     wanted = np.asarray(wanted, dtype=float)
     order = np.argsort(wanted, kind="stable")
-    # Minus the gaps the places must not fall: pool neighbours that would (isotonic regression).
+    # Without the gaps, the places must not decrease: pool neighbours that would (isotonic regression).
     blocks: list[list[float]] = []
     for rank, place in enumerate(wanted[order]):
         blocks.append([place - rank * gap, 1.0])
@@ -219,7 +216,7 @@ def spread(wanted: ArrayLike, gap: float) -> Array:
 def column(
     axes: Axes, labels: Sequence[Label], x: float, low: float, high: float, *, gap: float, align: str = "left"
 ) -> None:
-    """Write labels at a column ``x``, in the order given from top to bottom, with leaders to their points.
+    """Write labels in a column at ``x``, from top to bottom, with leaders to their points.
 
     Parameters
     ----------
@@ -231,10 +228,10 @@ def column(
         return
     gap_now = min(gap, (high - low) / max(len(labels) - 1, 1))
     size = max(FONT * min(1.0, gap_now / gap), 4.0)
-    # Their order is given, so each wants to be no higher than the one before.
+    # The order is given, so the wanted place of each label is not above that of the label before.
     wanted = np.minimum.accumulate([min(max(label.y, low), high) for label in labels])
     places = -spread(-wanted, gap_now)
-    # Up from the lower end, then down from the upper: together they fit.
+    # Shift labels up from the lower end, then down from the upper end.
     rising = gap_now * np.arange(len(places))
     places = np.maximum.accumulate((np.maximum(places, low) - rising[::-1])[::-1])[::-1] + rising[::-1]
     places = np.minimum.accumulate(np.minimum(places, high) + rising) - rising
@@ -253,7 +250,7 @@ def _write(axes: Axes, label: Label, x: float, y: float, size: float, align: str
 
 
 def _leaders(axes: Axes, lines: list[Any], colors: Sequence[str] = (INK,)) -> None:
-    """Thin lines with a pale edge, to be seen on every colour."""
+    """Draw thin lines with a pale edge, visible on every colour."""
     from matplotlib.collections import LineCollection
 
     axes.add_collection(LineCollection(lines, colors="white", lw=2.0, alpha=0.55, zorder=5), autolim=False)
@@ -261,9 +258,9 @@ def _leaders(axes: Axes, lines: list[Any], colors: Sequence[str] = (INK,)) -> No
 
 
 def line_ends(axes: Axes, labels: Sequence[Label], *, room: float, size: float = FONT) -> None:
-    """Names of lines to the right of their ends, in the lines' colours, apart where lines end together.
+    """Write names of lines to the right of their ends, in the lines' colours, without overlap.
 
-    ``room``: inches of paper right of the axes that the names may take.
+    ``room``: space for the names right of the axes, inches.
     """
     if not labels:
         return

@@ -1,4 +1,4 @@
-"""The temperature of the section at one time, with the thermocouples and the hottest point."""
+"""Picture of the section's temperature at one time, with thermocouples and the hottest point."""
 
 from __future__ import annotations
 
@@ -26,15 +26,15 @@ if TYPE_CHECKING:
     from tyrefem.simulation.result import ResultData
 
 Array = NDArray[np.float64]
-#: K. A field that differs by less is the same everywhere, and has no hottest point.
+#: Smallest range of a field with a hottest point, K.
 EVEN = 0.01
 
 
 def temperature_figure(result: ResultData, time: float | None = None) -> Figure:
-    """Map of the temperature, °C, at the reading time nearest to ``time`` (s); by default the last one.
+    """Draw the temperature, °C, at the reading time nearest to ``time``, s; default: the last.
 
-    Left of the mid plane isotherms and regions, right of it the thermocouples' readings. Raises nothing for studies
-    without sensors; a half section is shown with its mirror image.
+    Left of the mid plane: isotherms and regions; right: the thermocouples' readings, if there are any. A half section
+    is shown with its mirror image.
     """
     times = result.times
     i = len(times) - 1 if time is None else int(np.argmin(np.abs(times - time)))
