@@ -62,9 +62,9 @@ def test_every_room_says_what_it_is_for() -> None:
     for room in ROOMS:
         file = ROOT / "tyrefem" / room / "__init__.py"
         if file.is_file():
-            said = re.search(r'^"""(.*?)"""', file.read_text(encoding="utf-8"), re.S)
-            assert said is not None, room
-            assert len(said[1].strip().splitlines()) >= 2, f"{room} does not say what it may not know"
+            docstring = re.search(r'^"""(.*?)"""', file.read_text(encoding="utf-8"), re.S)
+            assert docstring is not None, room
+            assert len(docstring[1].strip().splitlines()) >= 2, f"{room} does not say what it may not know"
 
 
 def test_the_page_draws_the_floors_as_they_are() -> None:

@@ -98,5 +98,5 @@ def test_outside_failures_may_be_simulated(line: str) -> None:
 def test_no_test_sets_a_constant_of_the_package() -> None:
     files = sorted(TESTS.rglob("*.py"))
     assert len(files) > 100
-    found = {str(file.relative_to(TESTS)): patched(file.read_text(encoding="utf-8")) for file in files}
-    assert {name: places for name, places in found.items() if places} == {}
+    patches = {str(file.relative_to(TESTS)): patched(file.read_text(encoding="utf-8")) for file in files}
+    assert {name: places for name, places in patches.items() if places} == {}

@@ -69,7 +69,7 @@ def test_missing_file_empty_folder_and_a_link_to_nowhere(here: Path, refused: Ca
 
 
 @pytest.mark.parametrize(
-    ("name", "said"),
+    ("name", "words"),
     [
         ("nasa-22x5.5-8pr", "a study of 1 phase(s), 600 s"),
         ("crown-angle", "a sweep: 100 variants"),
@@ -77,8 +77,8 @@ def test_missing_file_empty_folder_and_a_link_to_nowhere(here: Path, refused: Ca
     ],
 )
 def test_what_the_library_knows_is_checked_by_name(
-    here: Path, refused: Callable[..., str], capfd: pytest.CaptureFixture[str], name: str, said: str
+    here: Path, refused: Callable[..., str], capfd: pytest.CaptureFixture[str], name: str, words: str
 ) -> None:
     assert main(["check", name]) == 0
-    assert said in capfd.readouterr().out
+    assert words in capfd.readouterr().out
     assert "did you mean" in refused("check", name[:-1])

@@ -59,12 +59,12 @@ def test_completion_script(shell: str) -> None:
     ],
 )
 def test_completion_offers_names(typed: str, offered: set[str]) -> None:
-    asked = {
+    completion = {
         "_TYREFEM_COMPLETE": "complete_bash",
         "COMP_WORDS": typed,
         "COMP_CWORD": str(len(typed.split()) - 1),
     }
-    done = process(env=os.environ | asked)
+    done = process(env=os.environ | completion)
     assert set(done.stdout.split()) == offered
 
 

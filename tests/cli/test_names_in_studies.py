@@ -60,7 +60,7 @@ WRONG = [
 ]
 
 
-@pytest.mark.parametrize(("old", "new", "words"), WRONG, ids=[one[1][:24] for one in WRONG])
+@pytest.mark.parametrize(("old", "new", "words"), WRONG, ids=[row[1][:24] for row in WRONG])
 def test_names_that_lead_nowhere(
     written: Callable[..., str], refused: Callable[..., str], old: str, new: str, words: str
 ) -> None:
@@ -91,7 +91,7 @@ DRIVES = [
 ]
 
 
-@pytest.mark.parametrize(("old", "new", "words"), DRIVES, ids=[one[1][:30] for one in DRIVES])
+@pytest.mark.parametrize(("old", "new", "words"), DRIVES, ids=[row[1][:30] for row in DRIVES])
 def test_what_is_wrong_in_the_drive_is_said_of_where_it_stands(
     written: Callable[..., str], refused: Callable[..., str], old: str, new: str, words: str
 ) -> None:

@@ -18,7 +18,7 @@ pytestmark = pytest.mark.fast
 
 
 @pytest.fixture
-def own(here: Path) -> Path:
+def user_library(here: Path) -> Path:
     """A study of the user's own beside a tread compound of the user's own, of twice the conductivity."""
     shutil.copytree(library.shipped() / "studies" / NASA, here / "mystudy")
     text = (here / "mystudy/study.toml").read_text(encoding="utf-8")
@@ -30,24 +30,24 @@ def own(here: Path) -> Path:
 
 
 @pytest.mark.parametrize("written", ["./mystudy", "mystudy/study.toml", "mystudy", "./mystudy/study.toml"])
-def test_paths_of_a_study(own: Path, written: str) -> None:
+def test_paths_of_a_study(user_library: Path, written: str) -> None:
     assert main(["run", written, *SHORT, *BARE, "--out", "out"]) == 0
-    summary = json.loads((own / "out/summary.json").read_text(encoding="utf-8"))
+    summary = json.loads((user_library / "out/summary.json").read_text(encoding="utf-8"))
     assert summary["study"] == "mystudy"
     assert tf.study(written).materials["tread"].conductivity.value == pytest.approx(2 * 0.20934, rel=1e-3)
 
 
-def test_absolute_path_from_elsewhere(own: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+def test_absolute_path_from_elsewhere(user_library: Path, monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.chdir("/")
-    assert main(["check", str(own / "mystudy")]) == 0
+    assert main(["check", str(user_library / "mystudy")]) == 0
 
 
 def test_folder_named_by_the_environment(
-    own: Path, tmp_path_factory: pytest.TempPathFactory, monkeypatch: pytest.MonkeyPatch,
+    user_library: Path, tmp_path_factory: pytest.TempPathFactory, monkeypatch: pytest.MonkeyPatch,
     capfd: pytest.CaptureFixture[str], refused: Callable[..., str],
 ) -> None:  # fmt: skip
     elsewhere = tmp_path_factory.mktemp("elsewhere")
-    shutil.move(own / "materials", elsewhere / "materials")
+    shutil.move(user_library / "materials", elsewhere / "materials")
     assert "materials.tread: no material named 'my-tread'" in refused("run", "./mystudy")
     monkeypatch.setenv("TYREFEM_PATH", f"{tmp_path_factory.mktemp('empty')}:{elsewhere}")
     assert main(["check", "mystudy"]) == 0
@@ -55,11 +55,11 @@ def test_folder_named_by_the_environment(
     assert "my-tread" in capfd.readouterr().out
 
 
-def test_new_cards_are_found_by_name(own: Path, capfd: pytest.CaptureFixture[str]) -> None:
+def test_new_cards_are_found_by_name(user_library: Path, capfd: pytest.CaptureFixture[str]) -> None:
     assert main(["new", "section", "mine"]) == 0
     assert main(["new", "study", "wet-road", "--from", "example-validation"]) == 0
     # A study brings the tables that it names.
-    assert {file.name for file in (own / "studies/wet-road").iterdir()} == {
+    assert {file.name for file in (user_library / "studies/wet-road").iterdir()} == {
         "study.toml", "run-1.csv", "run-2.csv", "run-3.csv",
     }  # fmt: skip
     capfd.readouterr()
@@ -71,17 +71,19 @@ def test_new_cards_are_found_by_name(own: Path, capfd: pytest.CaptureFixture[str
     assert main(["run", NASA, *SHORT, *BARE, "--set", "section=mine"]) == 0
 
 
-def test_new_never_overwrites(own: Path, refused: Callable[..., str], capfd: pytest.CaptureFixture[str]) -> None:
+def test_new_never_overwrites(
+    user_library: Path, refused: Callable[..., str], capfd: pytest.CaptureFixture[str]
+) -> None:
     for kind, file in (
         ("study", "studies/a/study.toml"),
         ("section", "geometry/a.toml"),
         ("material", "materials/a.toml"),
     ):
         assert main(["new", kind, "a"]) == 0
-        (own / file).write_text("mine", encoding="utf-8")
+        (user_library / file).write_text("mine", encoding="utf-8")
         capfd.readouterr()
         assert "exists already; nothing was written" in refused("new", kind, "a")
-        assert (own / file).read_text(encoding="utf-8") == "mine"
+        assert (user_library / file).read_text(encoding="utf-8") == "mine"
 
 
 @pytest.mark.parametrize("name", ["../a", "a/b", "", ".hidden", "-x", "a b", "a.toml", "a\n"])

@@ -30,10 +30,10 @@ def test_the_ending_decides(command: list[str], here: Path) -> None:
 
 @pytest.mark.parametrize("command", COMMANDS, ids=" ".join)
 def test_another_ending_is_one_error_that_names_these(command: list[str], refused: Callable[..., str]) -> None:
-    told = refused(*command, "--out", "picture.jpg")
-    assert ".png" in told
-    assert ".pdf" in told
-    assert ".svg" in told
+    error = refused(*command, "--out", "picture.jpg")
+    assert ".png" in error
+    assert ".pdf" in error
+    assert ".svg" in error
 
 
 def test_what_is_printed_takes_no_file(refused: Callable[..., str]) -> None:

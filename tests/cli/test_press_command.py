@@ -18,28 +18,28 @@ COARSE = ["--set", "mesh.size=8 mm"]
 def test_numbers_and_files(here: Path, capfd: pytest.CaptureFixture[str]) -> None:
     """Load balances pressure; the curve has the footprint's point, its slope the tangent; JSON and file agree."""
     assert main(["press", STUDY, "--deflection", "15 mm", "--out", "out", "--json", *COARSE]) == 0
-    found = json.loads(capfd.readouterr().out)
+    numbers = json.loads(capfd.readouterr().out)
     folder = here / "out"
-    assert found == json.loads((folder / "press.json").read_text(encoding="utf-8"))
-    assert found["deflection_m"] == pytest.approx(0.015, rel=1e-12)
-    assert found["secant_stiffness_N_m"] * 0.015 == pytest.approx(found["load_N"], rel=1e-12)
-    mean = found["mean_contact_pressure_Pa"]
-    assert mean * found["footprint_area_m2"] == pytest.approx(found["load_N"], rel=1e-12)
-    assert mean < found["peak_contact_pressure_Pa"]
+    assert numbers == json.loads((folder / "press.json").read_text(encoding="utf-8"))
+    assert numbers["deflection_m"] == pytest.approx(0.015, rel=1e-12)
+    assert numbers["secant_stiffness_N_m"] * 0.015 == pytest.approx(numbers["load_N"], rel=1e-12)
+    mean = numbers["mean_contact_pressure_Pa"]
+    assert mean * numbers["footprint_area_m2"] == pytest.approx(numbers["load_N"], rel=1e-12)
+    assert mean < numbers["peak_contact_pressure_Pa"]
     # A tyre rolls further than its loaded radius says, and not so far as when free.
-    assert found["loaded_radius_m"] < found["rolling_radius_m"] < found["loaded_radius_m"] + 0.015
-    assert found["rolling_resistance_N"] == pytest.approx(
-        found["loss_per_revolution_J"] / (2 * np.pi * found["rolling_radius_m"]), rel=1e-12
+    assert numbers["loaded_radius_m"] < numbers["rolling_radius_m"] < numbers["loaded_radius_m"] + 0.015
+    assert numbers["rolling_resistance_N"] == pytest.approx(
+        numbers["loss_per_revolution_J"] / (2 * np.pi * numbers["rolling_radius_m"]), rel=1e-12
     )
-    assert found["error"] <= found["tolerance"]
-    assert {"tyrefem", "numpy", "scikit-fem"} <= set(found["versions"])
+    assert numbers["error"] <= numbers["tolerance"]
+    assert {"tyrefem", "numpy", "scikit-fem"} <= set(numbers["versions"])
     curve = np.loadtxt(folder / "load-deflection.csv", delimiter=",", skiprows=1)
     assert (np.diff(curve, axis=0) > 0).all()
     # The tread touches more as it goes down: the curve stiffens and holds the footprint's own point.
     assert (np.diff(curve[:, 1], 2) > 0).all()
-    assert np.interp(0.015, *curve.T) == pytest.approx(found["load_N"], rel=0.01)
+    assert np.interp(0.015, *curve.T) == pytest.approx(numbers["load_N"], rel=0.01)
     slope = np.gradient(curve[:, 1], curve[:, 0])
-    assert np.interp(0.015, curve[:, 0], slope) == pytest.approx(found["tangent_stiffness_N_m"], rel=0.1)
+    assert np.interp(0.015, curve[:, 0], slope) == pytest.approx(numbers["tangent_stiffness_N_m"], rel=0.1)
     for name in ("section.png", "pressure.png", "load-deflection.png"):
         assert (folder / name).read_bytes().startswith(b"\x89PNG")
 
@@ -60,9 +60,9 @@ def test_bad_input_is_one_line(refused: Callable[..., str], arguments: list[str]
 
 
 def test_a_deflection_beyond_the_rim_names_the_option(refused: Callable[..., str]) -> None:
-    said = refused("press", STUDY, "--deflection", "200 mm", *COARSE)
-    assert "--deflection: a deflection of 200 mm is impossible" in said
-    assert "where the crown meets the rim" in said
+    error = refused("press", STUDY, "--deflection", "200 mm", *COARSE)
+    assert "--deflection: a deflection of 200 mm is impossible" in error
+    assert "where the crown meets the rim" in error
 
 
 def test_in_large_motion_the_tyre_is_softer_and_the_curve_is_its_way(

@@ -39,14 +39,14 @@ def test_a_bad_construction(refused: Callable[..., str], study: str, change: str
 
 
 def test_more_than_the_tyre_can_carry(refused: Callable[..., str]) -> None:
-    said = refused("press", BIAS, "--load", "500 kN", *COARSE)
-    assert "--load: the tyre cannot carry 5e+05 N: the crown meets the rim at" in said
+    error = refused("press", BIAS, "--load", "500 kN", *COARSE)
+    assert "--load: the tyre cannot carry 5e+05 N: the crown meets the rim at" in error
 
 
 def test_a_run_says_so_too(refused: Callable[..., str]) -> None:
     """The load law still gives a deflection here; the finite elements do not."""
-    said = refused("run", RADIAL, *FEM, "--set", "mesh.size=20 mm", "--set", "drive.load=31 kN")
-    assert "study.toml: drive.load: the tyre cannot carry 31000 N: the crown meets the rim" in said
+    error = refused("run", RADIAL, *FEM, "--set", "mesh.size=20 mm", "--set", "drive.load=31 kN")
+    assert "study.toml: drive.load: the tyre cannot carry 31000 N: the crown meets the rim" in error
 
 
 @pytest.mark.parametrize(

@@ -51,10 +51,10 @@ def test_json_is_all_there_is_on_stdout(here: Path) -> None:
     assert done.returncode == 0
     assert done.stderr == ""
     written = json.loads((here / "results" / NASA / "summary.json").read_text(encoding="utf-8"))
-    said = json.loads(done.stdout)
-    for clock in (written, said):
+    output = json.loads(done.stdout)
+    for clock in (written, output):
         clock.pop("wall_time_s")
-    assert said == written
+    assert output == written
 
 
 def test_pipe_is_quiet_and_terminal_shows_progress() -> None:
@@ -93,19 +93,19 @@ def test_interruption_leaves_what_is_finished(here: Path) -> None:
         preexec_fn=lambda: signal.signal(signal.SIGINT, signal.SIG_DFL),
     ) as running:  # fmt: skip
         os.close(theirs)
-        said = b""
-        while not re.search(rb"\b[1-9]\d?%", said):
-            said += os.read(ours, 4096)
+        output = b""
+        while not re.search(rb"\b[1-9]\d?%", output):
+            output += os.read(ours, 4096)
         running.send_signal(signal.SIGINT)
         try:
             while piece := os.read(ours, 4096):
-                said += piece
+                output += piece
         except OSError:
             pass
         assert running.wait(60) == 130
     os.close(ours)
-    assert b"tyrefem: interrupted at" in said
-    assert b"Traceback" not in said
+    assert b"tyrefem: interrupted at" in output
+    assert b"Traceback" not in output
     folder = here / "results" / NASA
     assert {file.name for file in folder.iterdir()} == TABLES
     summary = json.loads((folder / "summary.json").read_text(encoding="utf-8"))

@@ -53,14 +53,14 @@ def test_list_effects(capsys: pytest.CaptureFixture[str]) -> None:
 def test_show_effect_says_bounds_units_prior_and_source(capsys: pytest.CaptureFixture[str]) -> None:
     assert main(["show", "effect", "ambient-drift"]) == 0
     out = capsys.readouterr().out
-    for said in (
+    for words in (
         "boundary",
         "source: estimate",
         "-40 delta_degC/hour to 40 delta_degC/hour",
         "prior sd",
         "[[effects]]",
     ):
-        assert said in out
+        assert words in out
 
 
 def test_show_of_an_unknown_effect(refused: Callable[..., str]) -> None:
@@ -110,10 +110,10 @@ def test_compare_says_json_and_nothing_else(here: Path, capfd: pytest.CaptureFix
     assert main(["compare", "example-validation", "--no-inputs", "--json", "--set", "mesh.size=8 mm"]) == 0
     out, err = capfd.readouterr()
     assert err == ""
-    said = json.loads(out)
+    record = json.loads(out)
     table = here / "results/example-validation-compare"
     assert (table / "comparison.html").is_file()
-    assert said["summary"]
+    assert record["summary"]
 
 
 def test_compare_refuses_a_table_of_other_sensors(here: Path, refused: Callable[..., str]) -> None:

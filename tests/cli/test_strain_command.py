@@ -18,17 +18,17 @@ BRIEF = ("--set", "mesh.size=10 mm", "--set", "drive.duration=120 s", "--set", "
 
 def test_numbers_files_and_picture(here: Path, capfd: pytest.CaptureFixture[str]) -> None:
     assert main(["strain", STUDY, "--out", "out", "--json", *BRIEF]) == 0
-    found = json.loads(capfd.readouterr().out)
+    numbers = json.loads(capfd.readouterr().out)
     folder = here / "out"
-    assert found == json.loads((folder / "strain.json").read_text(encoding="utf-8"))
-    assert list(found["laws"]) == list(compared_laws())
-    laws, parts = found["laws"], found["parts"]
+    assert numbers == json.loads((folder / "strain.json").read_text(encoding="utf-8"))
+    assert list(numbers["laws"]) == list(compared_laws())
+    laws, parts = numbers["laws"], numbers["parts"]
     assert list(parts) == ["I", "II", "III", "IV", "V"]
     for law in laws.values():
         for energy in ("energy_J", "heating_energy_J"):
             assert law[energy][TOTAL] == pytest.approx(sum(law[energy][part] for part in parts), rel=1e-12)
         for part in parts:
-            mean = law["energy_J"][part] / found["volume_m3"][part]
+            mean = law["energy_J"][part] / numbers["volume_m3"][part]
             assert law["mean_energy_J_m3"][part] == pytest.approx(mean, rel=1e-12)
         assert law["temperatures_degC"]["hottest"] >= max(
             value for name, value in law["temperatures_degC"].items() if name != "contained-air"
@@ -36,7 +36,7 @@ def test_numbers_files_and_picture(here: Path, capfd: pytest.CaptureFixture[str]
     # One state of strain is its own largest change; harmonics lose more than one cycle of the same height.
     for law in ("arcs", "barrel"):
         assert laws[law]["heating_energy_J"] == laws[law]["energy_J"]
-        assert laws[law]["deflection_m"] == found["load_law_deflection_m"]
+        assert laws[law]["deflection_m"] == numbers["load_law_deflection_m"]
     assert laws["fem"]["heating_energy_J"][TOTAL] > laws["fem"]["energy_J"][TOTAL]
     # Same tan delta and rolling radius: the drag is in proportion to U tan delta, tread and carcass most.
     for law in laws.values():
@@ -44,7 +44,7 @@ def test_numbers_files_and_picture(here: Path, capfd: pytest.CaptureFixture[str]
             tangent * law["heating_energy_J"][part]
             for part, tangent in {"I": 0.10, "II": 0.20, "III": 0.10, "IV": 0.15, "V": 0.03}.items()
         )
-        assert share * found["load_N"] * 2 * (0.2803398 - found["load_law_deflection_m"] / 3) == pytest.approx(
+        assert share * numbers["load_N"] * 2 * (0.2803398 - numbers["load_law_deflection_m"] / 3) == pytest.approx(
             1, rel=0.03
         )
     with (folder / "strain.csv").open(encoding="utf-8") as lines:
@@ -85,5 +85,5 @@ def test_bad_input_is_one_line(refused: Callable[..., str], arguments: list[str]
 
 def test_a_section_without_arcs_is_compared_by_its_own_regions(refused: Callable[..., str]) -> None:
     """No arcs to compare, and the only law asked for is theirs."""
-    said = refused("strain", "passenger-205-55r16", "--law", "arcs")
-    assert "the strain law 'arcs' needs" in said
+    error = refused("strain", "passenger-205-55r16", "--law", "arcs")
+    assert "the strain law 'arcs' needs" in error

@@ -23,5 +23,5 @@ def test_solution_leaves_no_residual(size: int, width: int) -> None:
         part = np.diag(band[distance, : size - distance], -distance)
         A += part + part.T
     right = rng.standard_normal((size, 7))
-    found = BlockFactor(np.asfortranarray(cholesky_banded(band, lower=True))).solve(right)
-    assert np.abs(A @ found - right).max() < 1e-12 * np.abs(A).sum(axis=1).max()
+    solution = BlockFactor(np.asfortranarray(cholesky_banded(band, lower=True))).solve(right)
+    assert np.abs(A @ solution - right).max() < 1e-12 * np.abs(A).sum(axis=1).max()

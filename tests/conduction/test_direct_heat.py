@@ -65,23 +65,23 @@ def test_direct_heat_is_the_difference_of_two_balances() -> None:
     others = [problem(mesh, **{name: VALUES[name] + step})._balance() for name, step in steps.items()]
     points = base.operators.points
     start, y = (State(a + 400.0 * (points[0] - 0.5), np.array([b])) for a, b in ((25.0, 24.0), (60.0, 50.0)))
-    found = DirectHeat(base._balance(), others, list(steps.values()), 0.0, start)(200.0, y)
+    heat = DirectHeat(base._balance(), others, list(steps.values()), 0.0, start)(200.0, y)
     # Frozen elsewhere and evaluated load by load: the same heat, put together in another way.
     frozen = base._balance()
     frozen.freeze(200.0, y)
-    own = heat_of(frozen, 200.0, y)
-    rate = np.linalg.solve(frozen.M.toarray(), own[:-1])
+    base_heat = heat_of(frozen, 200.0, y)
+    rate = np.linalg.solve(frozen.M.toarray(), base_heat[:-1])
     rounding = 1e-12 * np.max(abs(frozen.S) @ np.abs(y.u))
     for number, (name, step) in enumerate(steps.items()):
         other = others[number]
         other.freeze(200.0, y)
-        wanted = (heat_of(other, 200.0, y) - own) / step
+        wanted = (heat_of(other, 200.0, y) - base_heat) / step
         wanted[:-1] -= (other.M - frozen.M) @ rate / step
-        wanted[-1] -= (other.reservoir_capacity(y.g) - VALUES["gas"])[0] / step * own[-1] / VALUES["gas"]
+        wanted[-1] -= (other.reservoir_capacity(y.g) - VALUES["gas"])[0] / step * base_heat[-1] / VALUES["gas"]
         assert np.abs(wanted).max() > 0, name
         close = rounding / step
         assert close < 1e-3 * np.abs(wanted).max(), name
-        np.testing.assert_allclose(found[:, number], wanted, rtol=1e-9, atol=close, err_msg=name)
+        np.testing.assert_allclose(heat[:, number], wanted, rtol=1e-9, atol=close, err_msg=name)
 
 
 def test_one_law_for_two_zones_changed_in_one() -> None:
@@ -93,9 +93,9 @@ def test_one_law_for_two_zones_changed_in_one() -> None:
 
     base, other = heated(law), heated(lambda x, t, T: 1.1 * law(x, t, T))
     y = State(np.full(base.operators.size, 40.0), np.zeros(0))
-    found = DirectHeat(base._balance(), [other._balance()], [0.1], 0.0, y)(0.0, y)
+    heat = DirectHeat(base._balance(), [other._balance()], [0.1], 0.0, y)(0.0, y)
     nodes = base.points("outside")
-    assert found.sum() == pytest.approx(
+    assert heat.sum() == pytest.approx(
         (base.operators.source("outside") @ law(nodes, 0.0, np.full(nodes.shape[1], 40.0))).sum()
     )
 
@@ -108,8 +108,8 @@ def test_tangents_where_the_heat_capacity_varies() -> None:
     gas, names = history.reservoirs["gas"][:, None], ("c_rise", "heat", "film")
     steps = {name: 1e-4 * VALUES[name] for name in names}
     others = [Perturbed(problem(mesh, **even, **{name: VALUES[name] + step}), step) for name, step in steps.items()]
-    found = tangents(base, times, history.values, gas, others).values
-    for name, tangent in zip(names, found, strict=True):
+    sensitivities = tangents(base, times, history.values, gas, others).values
+    for name, tangent in zip(names, sensitivities, strict=True):
         h = 0.02 * VALUES[name]
         runs = [problem(mesh, **even, **{name: VALUES[name] + x}).transient(times[::2], 25.0, 1e-4) for x in (h, -h)]
         wanted = (runs[0].values - runs[1].values) / (2 * h)
@@ -122,6 +122,6 @@ def test_many_tangents_at_once_are_those_of_one() -> None:
     history = base.transient(times, 25.0)
     gas = history.reservoirs["gas"][:, None]
     other = Perturbed(problem(mesh, heat=1.01 * VALUES["heat"]), 0.01 * VALUES["heat"])
-    one, many = (tangents(base, times, history.values, gas, [other] * count).values for count in (1, 20))
-    assert np.abs(one).max() > 0
-    np.testing.assert_allclose(many, np.broadcast_to(one, many.shape), rtol=0, atol=1e-12 * np.abs(one).max())
+    single, many = (tangents(base, times, history.values, gas, [other] * count).values for count in (1, 20))
+    assert np.abs(single).max() > 0
+    np.testing.assert_allclose(many, np.broadcast_to(single, many.shape), rtol=0, atol=1e-12 * np.abs(single).max())

@@ -33,7 +33,7 @@ def test_a_cord_can_be_followed_from_the_body_ply_round_the_bead_into_the_turn_u
         direction = direction if direction @ before > 0 else -direction
         assert direction @ before > np.cos(np.radians(15.0))
         before, place = direction, place + 1e-4 * direction
-        s, depth = (float(one) for one in section.locate(place))
+        s, depth = (float(coordinate) for coordinate in section.locate(place))
         region = str(section.region_at(s, depth))
         if not seen or seen[-1] != region:
             seen.append(region)
@@ -74,8 +74,8 @@ def test_the_other_half_of_a_full_section_is_the_mirror_image():
     rng = np.random.default_rng(3)
     start = half.wrapping._stretch[0]
     places = half.place(rng.uniform(start - 4e-3, start + 4e-3, 60), rng.uniform(1e-3, 25e-3, 60))
-    one, other = full.ply_direction(places), full.ply_direction(places * [1.0, -1.0])
-    assert np.abs((one * other * [1.0, -1.0]).sum(axis=1)) == pytest.approx(1.0, abs=1e-6)
+    first, other = full.ply_direction(places), full.ply_direction(places * [1.0, -1.0])
+    assert np.abs((first * other * [1.0, -1.0]).sum(axis=1)) == pytest.approx(1.0, abs=1e-6)
 
 
 def test_a_wrap_in_pieces_is_refused():

@@ -39,7 +39,7 @@ def test_a_belt_ends_on_a_line_of_the_mesh(name):
     """Elements on either side of the belt's end, none across it; the layer goes on as another region."""
     section = RADIALS[name].section
     mesh = build(section, size=RADIALS[name].size, through=1)
-    layer = next(one for one in section.layers if RADIALS[name].outermost_belt in one.regions.names)
+    layer = next(candidate for candidate in section.layers if RADIALS[name].outermost_belt in candidate.regions.names)
     end = layer.regions.ends[0]
     belt = mesh.elements_between(0.0, end, RADIALS[name].outermost_belt)
     assert np.array_equal(belt, mesh.mesh.subdomains[RADIALS[name].outermost_belt])

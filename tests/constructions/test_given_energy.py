@@ -17,12 +17,12 @@ PASSENGER = "passenger-205-55r16"
 def cold_power(study):
     """Heat of every region of the half section at the initial temperature, W."""
     tyre = RollingTyre(study)
-    found = {}
+    powers = {}
     for zone, source in tyre.hysteresis.items():
         nodes = tyre.problem.points(zone)
         q = source(nodes, 1.0, np.full(nodes.shape[1], 25.0))
-        found[zone] = float((tyre.problem.operators.source(zone) @ q).sum())
-    return found
+        powers[zone] = float((tyre.problem.operators.source(zone) @ q).sum())
+    return powers
 
 
 @pytest.fixture(scope="module")
@@ -68,7 +68,7 @@ def test_the_budget_closes_and_the_belt_edge_is_hottest(name):
     low, high = radial.resistance
     assert low < result.rolling_resistance.coefficient < high
     hottest = result.extremes.iloc[0]
-    edge = next(one.end for one in result.study.section.pieces if one.region == radial.outermost_belt)
+    edge = next(piece.end for piece in result.study.section.pieces if piece.region == radial.outermost_belt)
     assert abs(hottest["s_m"] - edge) < 0.12 * edge
     assert 45.0 < hottest["temperature_degC"] < 125.0
     assert (

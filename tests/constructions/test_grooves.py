@@ -36,7 +36,7 @@ def test_the_walls_of_grooves_belong_to_the_air(name, mesher):
     """What the road loses the air gains: bottoms at the depth of the tread, and two walls of every groove."""
     size = RADIALS[name].size
     grooved, whole = RADIALS[name].section, smooth(name)
-    meshes = [build(one, size=size, mesher=mesher, through=1) for one in (grooved, whole)]
+    meshes = [build(shape, size=size, mesher=mesher, through=1) for shape in (grooved, whole)]
     tops = bottoms = walls = 0.0
     for start, end in grooved.grooves:
         s = np.linspace(start, end, 40)
@@ -48,14 +48,14 @@ def test_the_walls_of_grooves_belong_to_the_air(name, mesher):
     assert length(meshes[1], "road") - length(meshes[0], "road") == pytest.approx(tops, rel=0.01)
     gained = length(meshes[0], "outside_air") - length(meshes[1], "outside_air")
     assert gained == pytest.approx(bottoms + walls, rel=0.01)
-    assert {len(set(one.mesh.boundaries)) for one in meshes} == {5}
+    assert {len(set(shape.mesh.boundaries)) for shape in meshes} == {5}
     assert len(meshes[0].mesh.boundary_facets()) == sum(map(len, meshes[0].mesh.boundaries.values()))
 
 
 @pytest.mark.parametrize("name", ROAD_TYRES)
 def test_a_fifth_of_the_tread_is_groove(name):
     cards = tf.study(RADIALS[name].study).materials
-    grooved, whole = (masses(one, cards) for one in (RADIALS[name].section, smooth(name)))
+    grooved, whole = (masses(shape, cards) for shape in (RADIALS[name].section, smooth(name)))
     assert 0.15 < 1 - grooved["tread"] / whole["tread"] < 0.3
     assert {region: grooved[region] for region in grooved if region != "tread"} == pytest.approx(
         {region: whole[region] for region in whole if region != "tread"}
@@ -105,15 +105,15 @@ def pressed(width: str) -> Pressed:
 
 
 def test_the_footprint_is_as_wide_as_its_outline_and_empty_in_the_grooves():
-    found = pressed("9 mm").footprint
+    footprint = pressed("9 mm").footprint
     # Shoulder ribs touch: the whole tread's width, grooves included.
-    assert found.width == pytest.approx(pressed("0 mm").footprint.width, rel=0.02)
-    _, z, pressure = pressure_map(found)
-    for low, high in found.grid.tread.grooves:
+    assert footprint.width == pytest.approx(pressed("0 mm").footprint.width, rel=0.02)
+    _, z, pressure = pressure_map(footprint)
+    for low, high in footprint.grid.tread.grooves:
         within = (np.abs(z) > low + 1e-7) & (np.abs(z) < high - 1e-7)
         assert within.sum() == 4
         assert (pressure[within] == 0).all()
-    assert found.area < found.length * (found.width - 4 * 8.9e-3)
+    assert footprint.area < footprint.length * (footprint.width - 4 * 8.9e-3)
 
 
 def test_ribs_that_bulge_into_grooves_lose_more_than_a_slick():

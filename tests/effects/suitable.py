@@ -44,17 +44,18 @@ def suitable(name: str) -> tf.Study:
 
 def entry(name: str, multiple: float) -> dict[str, Any]:
     """The effect's table in a study, its amplitudes at null plus a multiple of their scales."""
-    amplitudes = [one for one in catalogue()[name].parameters() if one.prior.amplitude]
-    values = {
-        one.name: f"{one.prior.null + multiple * one.prior.scale!r} {'' if one.prior.unit == '1' else one.prior.unit}"
-        for one in amplitudes
-    }
+    amplitudes = [parameter for parameter in catalogue()[name].parameters() if parameter.prior.amplitude]
+    values = {}
+    for parameter in amplitudes:
+        prior = parameter.prior
+        unit = "" if prior.unit == "1" else prior.unit
+        values[parameter.name] = f"{prior.null + multiple * prior.scale!r} {unit}"
     return {"name": name, **choice(name), **values}
 
 
 def has_amplitude(effect: type[Effect]) -> bool:
     """Is there a number that says how strong the effect is?"""
-    return any(one.prior.amplitude for one in effect.parameters())
+    return any(parameter.prior.amplitude for parameter in effect.parameters())
 
 
 @functools.cache

@@ -74,7 +74,7 @@ def study() -> tf.Study:
 
 
 @pytest.fixture
-def own(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> Path:
+def folder(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> Path:
     """The user's folder of effects."""
     monkeypatch.setenv("TYREFEM_EFFECTS", str(tmp_path))
     return tmp_path
@@ -145,15 +145,15 @@ def test_twice_the_same_is_refused(study: tf.Study, entries: list[dict[str, str]
 
 def test_two_sensors_may_lag(study: tf.Study) -> None:
     lags = [{"name": "sensor-lag", "sensor": name, "slower_by": "3 s"} for name in ("bead", "surface")]
-    assert [one.choice for one in study.replace({"effects": lags}).effects] == [
+    assert [lag.choice for lag in study.replace({"effects": lags}).effects] == [
         {"sensor": "bead"},
         {"sensor": "surface"},
     ]
 
 
 def test_provenance_and_sd_are_kept(study: tf.Study) -> None:
-    said = {"name": "hot-road", "warmer_by": "10 delta_degC", "from": "diagnosis of run-1.csv"}
-    (effect,) = study.replace({"effects": [said | {"sd": {"warmer_by": "2 delta_degC"}}]}).effects
+    entry = {"name": "hot-road", "warmer_by": "10 delta_degC", "from": "diagnosis of run-1.csv"}
+    (effect,) = study.replace({"effects": [entry | {"sd": {"warmer_by": "2 delta_degC"}}]}).effects
     assert effect.provenance == "diagnosis of run-1.csv"
     assert effect.sd == {"warmer_by": "2 delta_degC"}
 
@@ -169,8 +169,8 @@ def test_the_report_names_the_effects_at_work(study: tf.Study) -> None:
     assert lag[2:] == ["sensor bead; slower by 8 s", "the study"]
 
 
-def test_an_effect_of_the_user_s_folder_acts(own: Path, study: tf.Study) -> None:
-    (own / "lamp.py").write_text(OWN.format(name="lamp", scale="50.0", default="0.0"), encoding="utf-8")
+def test_an_effect_of_the_user_s_folder_acts(folder: Path, study: tf.Study) -> None:
+    (folder / "lamp.py").write_text(OWN.format(name="lamp", scale="50.0", default="0.0"), encoding="utf-8")
     assert "lamp" in catalogue()
     dark, lit = (
         study.replace({"effects": [{"name": "lamp", "shine": f"{shine} W/m**2"}]}).run().readings
@@ -197,18 +197,18 @@ def test_without_the_folder_it_is_gone(study: tf.Study) -> None:
         (OWN.format(name="lamp", scale="1.0", default="0.0").replace('"estimate', '"" #'), "needs 'source'"),
     ],
 )
-def test_a_bad_file_is_one_clear_error(own: Path, text: str, words: str) -> None:
-    (own / "lamp.py").write_text(text, encoding="utf-8")
+def test_a_bad_file_is_one_clear_error(folder: Path, text: str, words: str) -> None:
+    (folder / "lamp.py").write_text(text, encoding="utf-8")
     for _ in range(2):  # and the same one when asked again
         with pytest.raises(tf.InputError) as caught:
             catalogue()
-        assert str(caught.value).startswith(str(own / "lamp.py"))
+        assert str(caught.value).startswith(str(folder / "lamp.py"))
         assert words in str(caught.value)
         assert "\n" not in str(caught.value)
 
 
-def test_a_name_that_is_taken_is_refused(own: Path) -> None:
-    (own / "lamp.py").write_text(OWN.format(name="hot-road", scale="1.0", default="0.0"), encoding="utf-8")
+def test_a_name_that_is_taken_is_refused(folder: Path) -> None:
+    (folder / "lamp.py").write_text(OWN.format(name="hot-road", scale="1.0", default="0.0"), encoding="utf-8")
     with pytest.raises(tf.InputError, match="two effects are named 'hot-road'"):
         catalogue()
 
@@ -219,9 +219,9 @@ def test_a_folder_that_is_none(monkeypatch: pytest.MonkeyPatch) -> None:
         catalogue()
 
 
-def test_an_effect_says_of_itself_what_it_is(own: Path) -> None:
+def test_an_effect_says_of_itself_what_it_is(folder: Path) -> None:
     """Port, meaning and example of a choice stand in the effect's own file; a choice without example has one too."""
-    (own / "draught.py").write_text(CHOOSING, encoding="utf-8")
+    (folder / "draught.py").write_text(CHOOSING, encoding="utf-8")
     effect = catalogue()["draught"]
     assert ports(effect) == "factor on films"
     assert {row[0]: row[1] for row in parameter_rows(effect)} == {

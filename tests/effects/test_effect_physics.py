@@ -26,8 +26,8 @@ def tyre(effects: list[dict] | None = None, name: str = "example-validation", **
 
 def only(rolling: RollingTyre) -> Effect:
     """The study's one effect."""
-    (one,) = rolling.study.effects
-    return one
+    (effect,) = rolling.study.effects
+    return effect
 
 
 def heat(rolling: RollingTyre, t: float = 10.0) -> dict[str, np.ndarray]:
@@ -55,7 +55,7 @@ def test_contact_resistance_is_in_series() -> None:
 def test_the_whole_gas_mass_is_the_law_gas() -> None:
     amended = tyre([{"name": "gas-mass", "fraction": 1.0}], boundaries__contained_air={"law": "report"})
     real = tyre(boundaries__contained_air={"law": "gas"})
-    capacity = [one.problem.reservoirs[GAS].heat_capacity for one in (amended, real)]
+    capacity = [rolling_tyre.problem.reservoirs[GAS].heat_capacity for rolling_tyre in (amended, real)]
     assert capacity[0] == pytest.approx(capacity[1], rel=1e-12)
 
 
@@ -305,7 +305,7 @@ def test_a_constant_conductivity_stays_constant() -> None:
 
 # -- time --------------------------------------------------------------------------------------------------------------
 
-OF_DRIVE = sorted(name for name, one in catalogue().items() if one.of_drive)
+OF_DRIVE = sorted(name for name, effect in catalogue().items() if effect.of_drive)
 
 
 def surroundings(rolling: RollingTyre, t: float) -> list[float]:

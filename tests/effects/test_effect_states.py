@@ -81,7 +81,7 @@ def result() -> tf.Result:
 
 
 @pytest.fixture
-def own(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> Path:
+def folder(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> Path:
     """A user's folder with the effect above."""
     (tmp_path / "soot.py").write_text(OWN)
     monkeypatch.setenv("TYREFEM_EFFECTS", str(tmp_path))
@@ -147,7 +147,7 @@ def test_a_run_without_states_has_none(result) -> None:
     assert "states" not in result.__class__._facts(plain)
 
 
-def test_two_effects_of_a_user_and_of_the_package_keep_their_states_at_once(own: Path, result) -> None:
+def test_two_effects_of_a_user_and_of_the_package_keep_their_states_at_once(folder: Path, result) -> None:
     soot = {"name": "soot", "shine": "500 W/m**2"}
     both, alone = braked(DISC, soot).run(), braked(soot).run()
     assert set(both.states) == {"brake-disc disc", "soot soot", "soot clock"}
@@ -203,8 +203,8 @@ def test_a_diagnosis_names_an_effect_with_a_state(tmp_path: Path) -> None:
         ("scale=0.1", "scale=0.0", "state 'soot' needs a positive scale"),
     ],
 )
-def test_a_class_that_forgot_something_is_refused(own: Path, old: str, new: str, words: str) -> None:
-    (own / "soot.py").write_text(OWN.replace(old, new))
+def test_a_class_that_forgot_something_is_refused(folder: Path, old: str, new: str, words: str) -> None:
+    (folder / "soot.py").write_text(OWN.replace(old, new))
     with pytest.raises(InputError, match=words):
         braked({"name": "soot", "shine": "500 W/m**2"})
 
@@ -218,7 +218,7 @@ def test_a_class_that_forgot_something_is_refused(own: Path, old: str, new: str,
         ('"soot", t)', '"snow", t)', "has no state 'snow'"),
     ],
 )
-def test_a_wrong_rate_or_name_is_one_clear_error(own: Path, old: str, new: str, words: str) -> None:
-    (own / "soot.py").write_text(OWN.replace(old, new))
+def test_a_wrong_rate_or_name_is_one_clear_error(folder: Path, old: str, new: str, words: str) -> None:
+    (folder / "soot.py").write_text(OWN.replace(old, new))
     with pytest.raises(InputError, match=words):
         braked({"name": "soot", "shine": "500 W/m**2"}).run()

@@ -39,7 +39,7 @@ def test_the_page_is_up_to_date(tool: ModuleType) -> None:
 
 def test_every_effect_has_a_picture_and_every_picture_an_effect(tool: ModuleType) -> None:
     named = set(re.findall(r"\((pictures/effect-[a-z-]+\.png)\)", tool.page()))
-    assert len(named) == len([one for one in catalogue().values() if not one.calibration])
+    assert len(named) == len([effect for effect in catalogue().values() if not effect.calibration])
     assert {ROOT / "docs" / name for name in named} == set((ROOT / "docs/pictures").glob("effect-*.png"))
     assert all((ROOT / "docs" / name).read_bytes().startswith(b"\x89PNG") for name in named)
 
@@ -53,7 +53,7 @@ def test_the_example_of_the_page_can_be_put_into_a_study(name: str) -> None:
 
 
 @pytest.fixture
-def own(tmp_path: Path, tool: ModuleType, monkeypatch: pytest.MonkeyPatch) -> None:
+def effects_of_the_page(tmp_path: Path, tool: ModuleType, monkeypatch: pytest.MonkeyPatch) -> None:
     """The page's own effect, and the one with a state that it names, in a user's folder."""
     (named,) = re.findall(r"`(tests/effects/\w+\.py)`", tool.page())
     codes = re.findall(r"```python\n(.*?)```", tool.page(), re.DOTALL)
@@ -63,12 +63,12 @@ def own(tmp_path: Path, tool: ModuleType, monkeypatch: pytest.MonkeyPatch) -> No
     monkeypatch.setenv("TYREFEM_EFFECTS", str(tmp_path))
 
 
-def test_the_page_s_own_effects_load(own: None) -> None:
+def test_the_page_s_own_effects_load(effects_of_the_page: None) -> None:
     assert catalogue()["lamp"].ports() == ("flux",)
     assert catalogue()["drying-tread"].ports() == ("film_factor",)
 
 
-def test_the_drying_tread_that_the_page_names_dries_and_cools(own: None) -> None:
+def test_the_drying_tread_that_the_page_names_dries_and_cools(effects_of_the_page: None) -> None:
     """Heat that evaporates the water is what the tread loses more than without the wet film."""
     coarse = {"mesh.size": "8 mm", "mesh.element": "P1", "drive.initial": "80 degC", "drive.ambient": "20 degC"}
     study = tf.study("example-validation").replace(coarse)

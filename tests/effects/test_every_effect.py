@@ -23,11 +23,11 @@ def test_it_says_what_it_is(name: str) -> None:
     assert effect.family in FAMILIES
     assert "estimate" in effect.source or re.search(r"\b(19|20)\d\d\b|Roberts", effect.source)
     # Several amplitudes are the components of one quantity, as of a displacement.
-    assert len({one.prior.unit for one in effect.parameters() if one.prior.amplitude}) <= 1
-    for one in effect.parameters():
-        assert one.prior.meaning
-        assert one.prior.low <= one.prior.null <= one.prior.high
-        assert one.prior.low < one.prior.null + one.prior.scale < one.prior.high
+    assert len({parameter.prior.unit for parameter in effect.parameters() if parameter.prior.amplitude}) <= 1
+    for parameter in effect.parameters():
+        assert parameter.prior.meaning
+        assert parameter.prior.low <= parameter.prior.null <= parameter.prior.high
+        assert parameter.prior.low < parameter.prior.null + parameter.prior.scale < parameter.prior.high
 
 
 @pytest.mark.parametrize("name", AMPLITUDES)
@@ -90,20 +90,25 @@ def test_order_in_the_file_does_not_matter() -> None:
 @pytest.mark.parametrize("name", NAMES)
 def test_a_number_beyond_its_bounds_is_refused(name: str) -> None:
     table = {key: value for key, value in entry(name, 1.0).items() if key != "name"}
-    for one in catalogue()[name].parameters():
-        for beyond in (one.prior.low - one.prior.scale, one.prior.high + one.prior.scale):
-            written = one.prior.text(beyond)
-            with pytest.raises(tf.InputError, match=rf"{one.name}.*is out of range: must be at (least|most)"):
-                catalogue()[name].check(table | {one.name: written})
+    for parameter in catalogue()[name].parameters():
+        for beyond in (parameter.prior.low - parameter.prior.scale, parameter.prior.high + parameter.prior.scale):
+            written = parameter.prior.text(beyond)
+            with pytest.raises(tf.InputError, match=rf"{parameter.name}.*is out of range: must be at (least|most)"):
+                catalogue()[name].check(table | {parameter.name: written})
 
 
 @pytest.mark.parametrize("name", NAMES)
 def test_what_is_written_is_read(name: str) -> None:
     effect = catalogue()[name]
-    for one in effect.parameters():
-        for value in (one.prior.low, one.prior.null, one.prior.high, one.prior.null + one.prior.scale):
-            read = effect.check({**choice(name), one.name: one.prior.text(value, 12)})
-            assert read.values[one.name] == pytest.approx(value, rel=1e-11, abs=1e-15)
+    for parameter in effect.parameters():
+        for value in (
+            parameter.prior.low,
+            parameter.prior.null,
+            parameter.prior.high,
+            parameter.prior.null + parameter.prior.scale,
+        ):
+            read = effect.check({**choice(name), parameter.name: parameter.prior.text(value, 12)})
+            assert read.values[parameter.name] == pytest.approx(value, rel=1e-11, abs=1e-15)
 
 
 @pytest.mark.parametrize("name", NAMES)
@@ -113,7 +118,7 @@ def test_every_variant_fits_its_study(name: str) -> None:
     variants = effect.variants(study)
     assert variants
     for variant in variants:
-        one = effect.check(dict(variant))
-        assert one.choice == dict(variant)
-        assert one.problem(study) is None
+        checked = effect.check(dict(variant))
+        assert checked.choice == dict(variant)
+        assert checked.problem(study) is None
     assert len({tuple(variant.items()) for variant in variants}) == len(variants)

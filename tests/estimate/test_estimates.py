@@ -79,9 +79,9 @@ def test_history_is_counted_with_its_copies() -> None:
 
 @given(st.floats(1e-3, 1.0), st.floats(1e-3, 1.0))
 def test_what_would_fit_fits_and_little_less_does_not(low: float, least: float) -> None:
-    found = estimate.smallest(lambda one: one >= least, low * least, 2.0)
-    assert found is not None
-    assert least <= found <= 1.15 * max(least, low * least)
+    size = estimate.smallest(lambda number: number >= least, low * least, 2.0)
+    assert size is not None
+    assert least <= size <= 1.15 * max(least, low * least)
 
 
 def test_nothing_fits() -> None:

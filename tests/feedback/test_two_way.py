@@ -72,11 +72,11 @@ def test_warm_air_lifts_the_tyre_as_an_ordinary_differential_equation_says() -> 
     alone = 25 + rate * result.times
     assert alone[-1] - exact[-1] > 3
     assert np.abs(result.gas_temperature - exact).max() < 0.02
-    found = result.feedback
-    assert found is not None
-    assert found.start.deflection == pytest.approx(cold, rel=1e-12)
-    assert found.end.deflection == pytest.approx(deflection(exact[-1]), rel=1e-4)
-    assert found.end.pressure == pytest.approx(result.gas_pressure[-1], rel=1e-4)
+    feedback = result.feedback
+    assert feedback is not None
+    assert feedback.start.deflection == pytest.approx(cold, rel=1e-12)
+    assert feedback.end.deflection == pytest.approx(deflection(exact[-1]), rel=1e-4)
+    assert feedback.end.pressure == pytest.approx(result.gas_pressure[-1], rel=1e-4)
 
 
 @functools.cache
@@ -91,23 +91,23 @@ def coupled() -> tf.Result:
 
 def test_warm_air_cools_a_bias_tyre() -> None:
     """8PR, 2700 lbf, 83 psi, 20 mph: p_abs rises with T_abs, the deflection falls, so does the heat."""
-    one, two = plain(), coupled()
-    found = two.feedback
-    assert found is not None
-    assert found.converged
+    uncoupled, two = plain(), coupled()
+    feedback = two.feedback
+    assert feedback is not None
+    assert feedback.converged
     warmed = (two.gas_temperature[-1] + 273.15) / 298.15
     pressure = (572.26e3 + 101325) * warmed - 101325
-    assert found.end.pressure == pytest.approx(pressure, rel=1e-3)
-    assert 0.9 < found.end.deflection / found.start.deflection < 0.97
+    assert feedback.end.pressure == pytest.approx(pressure, rel=1e-3)
+    assert 0.9 < feedback.end.deflection / feedback.start.deflection < 0.97
     law, rating = two.study.card.mechanics.load_law, two.study.section.rating
     assert rating is not None
-    assert law.load(found.end.deflection, found.end.pressure, rating) == pytest.approx(2700 * 4.44822, rel=1e-3)
-    cooler = one.extremes["temperature_degC"] - two.extremes["temperature_degC"]
+    assert law.load(feedback.end.deflection, feedback.end.pressure, rating) == pytest.approx(2700 * 4.44822, rel=1e-3)
+    cooler = uncoupled.extremes["temperature_degC"] - two.extremes["temperature_degC"]
     assert cooler[0] > 1.0
     assert (cooler > -0.02).all()
     # Every run disagrees less: the heat that a kelvin takes away is far less than a kelvin's.
-    assert len(found.changes) > 1
-    assert all(after < 0.3 * before for before, after in zip(found.changes, found.changes[1:], strict=False))
+    assert len(feedback.changes) > 1
+    assert all(after < 0.3 * before for before, after in zip(feedback.changes, feedback.changes[1:], strict=False))
     assert two.heat_budget.imbalance < 1e-6
 
 
@@ -124,11 +124,11 @@ def test_the_fixed_point_does_not_depend_on_the_start() -> None:
 def test_what_nothing_changes_is_the_same_to_the_bit() -> None:
     """No card softens, the air is held: one run, and every number as without feedback."""
     held = {**BIAS, "boundaries.contained_air": {"law": "held", "temperature": "40 degC"}}
-    one = tf.study("nasa-22x5.5-8pr", held).run()
+    uncoupled = tf.study("nasa-22x5.5-8pr", held).run()
     two = tf.study("nasa-22x5.5-8pr", {**held, "mechanics.feedback.modulus": True}).run()
     assert two.feedback is not None
     assert two.feedback.changes == (0.0,)
-    assert np.array_equal(one.history.values, two.history.values)
+    assert np.array_equal(uncoupled.history.values, two.history.values)
 
 
 def test_what_does_not_converge_says_so() -> None:
@@ -185,8 +185,8 @@ def test_a_diagnosis_of_a_study_with_feedback_is_refused() -> None:
 
 
 def test_the_outcome_is_in_the_summary() -> None:
-    found = coupled().summary()["feedback"]
+    feedback = coupled().summary()["feedback"]
     assert coupled().feedback is not None
-    assert found["change_K"] == list(dataclasses.asdict(coupled().feedback)["changes"])  # type: ignore[arg-type]
-    assert found["start"]["gauge_pressure_Pa"] < found["end"]["gauge_pressure_Pa"]
+    assert feedback["change_K"] == list(dataclasses.asdict(coupled().feedback)["changes"])  # type: ignore[arg-type]
+    assert feedback["start"]["gauge_pressure_Pa"] < feedback["end"]["gauge_pressure_Pa"]
     assert "feedback" not in plain().summary()

@@ -28,8 +28,8 @@ def write(folder: Path, *names: str, complete: bool = True) -> None:
 
 
 def summary(folder: Path) -> dict[str, object]:
-    found: dict[str, object] = json.loads((folder / "summary.json").read_text(encoding="utf-8"))
-    return found
+    record: dict[str, object] = json.loads((folder / "summary.json").read_text(encoding="utf-8"))
+    return record
 
 
 def files(folder: Path) -> set[str]:
@@ -50,9 +50,9 @@ def marked_and_failing(folder: Path, *names: str) -> None:
 
 def test_the_summary_lists_the_files_of_the_run(tmp_path: Path) -> None:
     run(tmp_path / "out", "readings.csv", "pictures/a.png")
-    found = summary(tmp_path / "out")
-    assert (found["command"], found["complete"], found["answer"]) == ("run", True, 1.0)
-    assert found["files"] == ["pictures/a.png", "readings.csv"]
+    record = summary(tmp_path / "out")
+    assert (record["command"], record["complete"], record["answer"]) == ("run", True, 1.0)
+    assert record["files"] == ["pictures/a.png", "readings.csv"]
     assert files(tmp_path / "out") == {"summary.json", "pictures/a.png", "readings.csv"}
 
 

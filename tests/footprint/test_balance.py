@@ -67,30 +67,30 @@ def test_balance_is_the_linear_footprint_at_small_deflection_and_softer_at_large
     balance = Balance(tyre, 16)
     ratios = {}
     for deflection in (0.0025, 0.008):
-        found = balance.at_deflection(deflection)
-        ratios[deflection] = found.load / tyre.at_deflection(deflection, 16).load
-        assert found.pressure_integral == pytest.approx(found.load, rel=1e-12)
-        assert found.gaps.min() > -1e-12
+        footprint = balance.at_deflection(deflection)
+        ratios[deflection] = footprint.load / tyre.at_deflection(deflection, 16).load
+        assert footprint.pressure_integral == pytest.approx(footprint.load, rel=1e-12)
+        assert footprint.gaps.min() > -1e-12
     assert ratios[0.0025] == pytest.approx(1.0, abs=0.05)
     assert 0.8 < ratios[0.008] < 0.98
 
 
 def test_balanced_forces_leave_no_residual(tyre: Pressing) -> None:
     balance = Balance(tyre, 16, tolerance=1e-6)
-    found = balance.at_deflection(0.006)
-    u = found.amplitudes
+    footprint = balance.at_deflection(0.006)
+    u = footprint.amplitudes
     inner = np.stack([tyre.harmonics.stiffness(n) @ part for n, part in enumerate(u)]) + balance.motion.nonlinear(16)(u)
     outer = np.zeros_like(inner)
-    outer[:, tyre.tread.dofs.ravel()] = found.load_harmonics.reshape(17, -1)
+    outer[:, tyre.tread.dofs.ravel()] = footprint.load_harmonics.reshape(17, -1)
     free = tyre.harmonics.free
     assert np.abs((inner - outer)[:, free]).max() < 1e-3 * np.abs(outer).max()
 
 
 def test_balance_under_a_load(tyre: Pressing) -> None:
-    found = Balance(tyre, 12).at_load(600.0)
-    assert found.load == pytest.approx(600.0, rel=1e-3)
-    assert found.deflection > tyre.at_load(600.0, 12).deflection
-    assert np.isfinite(StrainHarmonics(found).amplitudes).all()
+    footprint = Balance(tyre, 12).at_load(600.0)
+    assert footprint.load == pytest.approx(600.0, rel=1e-3)
+    assert footprint.deflection > tyre.at_load(600.0, 12).deflection
+    assert np.isfinite(StrainHarmonics(footprint).amplitudes).all()
 
 
 def test_out_of_reach_says_how_far_it_got(tyre: Pressing) -> None:

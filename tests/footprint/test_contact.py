@@ -43,33 +43,34 @@ def test_forces_never_pull_and_nothing_penetrates(seed: int, size: int) -> None:
 
 @pytest.mark.parametrize("harmonics", [24, 54])
 def test_footprint_is_complementary_and_carries_its_load(tyre: Pressing, harmonics: int) -> None:
-    found = tyre.at_deflection(0.02, harmonics)
-    assert found.pressure.min() >= 0
-    assert found.gaps.min() > -1e-12
-    assert np.abs(found.forces * found.gaps).max() < 1e-9 * found.forces.max() * 0.02
-    assert found.pressure_integral == pytest.approx(found.load, rel=1e-12)
+    footprint = tyre.at_deflection(0.02, harmonics)
+    assert footprint.pressure.min() >= 0
+    assert footprint.gaps.min() > -1e-12
+    assert np.abs(footprint.forces * footprint.gaps).max() < 1e-9 * footprint.forces.max() * 0.02
+    assert footprint.pressure_integral == pytest.approx(footprint.load, rel=1e-12)
     # The whole contact lies within the angles that were allowed to touch.
-    assert not found.pressure[-1].any()
+    assert not footprint.pressure[-1].any()
 
 
 def test_work_of_the_forces_is_the_elastic_energy_of_all_harmonics(tyre: Pressing) -> None:
     """1/2 sum of forces times displacements = sum of pi/2 u_n K_n u_n (pi for n = 0), both halves."""
-    found = tyre.at_deflection(0.015, 24)  # every harmonic is solved, none interpolated
+    footprint = tyre.at_deflection(0.015, 24)  # every harmonic is solved, none interpolated
     energy = sum(
-        (np.pi if n == 0 else np.pi / 2) * u @ (tyre.harmonics.stiffness(n) @ u) for n, u in enumerate(found.amplitudes)
+        (np.pi if n == 0 else np.pi / 2) * u @ (tyre.harmonics.stiffness(n) @ u)
+        for n, u in enumerate(footprint.amplitudes)
     )
-    assert 2 * energy == pytest.approx(found.work, rel=1e-9)
+    assert 2 * energy == pytest.approx(footprint.work, rel=1e-9)
 
 
 def test_the_displacement_field_meets_the_road(tyre: Pressing) -> None:
     """Summed from the amplitudes, the tread in contact lies at the loaded radius, within a harmonic's resolution."""
-    found = tyre.at_deflection(0.02, 80)
+    footprint = tyre.at_deflection(0.02, 80)
     nodes, n = tyre.tread.nodes, np.arange(81)[:, None]
-    t = found.grid.angles[1]
-    u = found.amplitudes.reshape(81, -1, 3)[:, nodes]
+    t = footprint.grid.angles[1]
+    u = footprint.amplitudes.reshape(81, -1, 3)[:, nodes]
     u_r, u_t = (np.cos(n * t) * u[:, :, 0]).sum(axis=0), (np.sin(n * t) * u[:, :, 2]).sum(axis=0)
     down = (tyre.tread.places[0] + u_r) * math.cos(t) - u_t * math.sin(t)
-    assert down == pytest.approx(np.full_like(down, found.loaded_radius), abs=2.5e-4)
+    assert down == pytest.approx(np.full_like(down, footprint.loaded_radius), abs=2.5e-4)
 
 
 def test_stiffness_is_the_slope_of_the_load(tyre: Pressing) -> None:
@@ -85,12 +86,12 @@ def test_deflection_of_a_load_and_load_of_a_deflection_agree(tyre: Pressing) -> 
 
 
 def test_load_grows_faster_than_the_deflection_and_the_footprint_with_it(tyre: Pressing) -> None:
-    found = [tyre.at_deflection(d, 54) for d in (0.004, 0.01, 0.02, 0.03)]
-    loads, areas = [f.load for f in found], [f.area for f in found]
+    footprints = [tyre.at_deflection(d, 54) for d in (0.004, 0.01, 0.02, 0.03)]
+    loads, areas = [f.load for f in footprints], [f.area for f in footprints]
     assert all(b > a for a, b in itertools.pairwise(areas))
     assert loads[1] / 0.01 > loads[0] / 0.004
-    assert found[2].rolling_radius > found[2].loaded_radius
-    assert found[2].rolling_radius < tyre.reach
+    assert footprints[2].rolling_radius > footprints[2].loaded_radius
+    assert footprints[2].rolling_radius < tyre.reach
 
 
 def test_hertz_line_contact_of_a_solid_roller() -> None:
@@ -105,13 +106,13 @@ def test_hertz_line_contact_of_a_solid_roller() -> None:
         symmetry=lambda r, z: np.isin(z, (0, width)),
     )
     roller = Pressing(stress_free(mesh, shear, 1e4 * shear))
-    found = roller.at_deflection(0.008, 400)
-    per_width = found.load / (2 * width)
+    footprint = roller.at_deflection(0.008, 400)
+    per_width = footprint.load / (2 * width)
     half = math.sqrt(4 * per_width / (math.pi * 4 * shear))
-    middle = found.pressure[:, 1]
-    assert found.length / 2 == pytest.approx(half, rel=0.03)
+    middle = footprint.pressure[:, 1]
+    assert footprint.length / 2 == pytest.approx(half, rel=0.03)
     assert middle[0] == pytest.approx(2 * per_width / (math.pi * half), rel=0.015)
-    x = found.grid.angles
+    x = footprint.grid.angles
     inside = x < 0.8 * half
     ellipse = middle[0] * np.sqrt(1 - (x[inside] / half) ** 2)
     assert middle[inside] == pytest.approx(ellipse, rel=0.02)
@@ -131,11 +132,11 @@ def test_finer_meshes_converge() -> None:
 
 
 def test_error_measure_is_met_and_reported(tyre: Pressing) -> None:
-    found = tyre.solve(load=3000.0, tolerance=0.01)
-    assert found.error <= 0.01
-    finest = tyre.at_load(3000.0, 120, found)
-    assert found.deflection == pytest.approx(finest.deflection, rel=0.01)
-    assert found.work == pytest.approx(finest.work, rel=0.01)
+    footprint = tyre.solve(load=3000.0, tolerance=0.01)
+    assert footprint.error <= 0.01
+    finest = tyre.at_load(3000.0, 120, footprint)
+    assert footprint.deflection == pytest.approx(finest.deflection, rel=0.01)
+    assert footprint.work == pytest.approx(finest.work, rel=0.01)
 
 
 def test_interpolated_harmonics_are_nearly_the_solved_ones(tyre: Pressing) -> None:

@@ -57,12 +57,12 @@ def test_cords_across_the_hoop_feel_the_hoop_strain(cycle: StrainHarmonics) -> N
 
 def test_loss_is_the_area_of_the_hysteresis_loop(cycle: StrainHarmonics) -> None:
     """int stress d(strain) over the revolution, with each harmonic's stress leading its strain by delta."""
-    found = RevolutionLoss(cycle, {name: PowerLaw(0.1, 0.3) for name in REGIONS}, 20.0)
+    revolution_loss = RevolutionLoss(cycle, {name: PowerLaw(0.1, 0.3) for name in REGIONS}, 20.0)
     storage = cycle.footprint.pressing.state.storage
     angles = np.arange(512) * 2 * np.pi / 512
     e, p = cycle.nearest(0.315, 0.03)
     n = np.arange(cycle.footprint.harmonics + 1)
-    tan = np.array([0.0] + [float(found.tangent(k * found.frequency)[e, p]) for k in n[1:]])
+    tan = np.array([0.0] + [float(revolution_loss.tangent(k * revolution_loss.frequency)[e, p]) for k in n[1:]])
     a = cycle.amplitudes[:, :, e, p]
     phase = np.multiply.outer(angles, n)
     even, odd = [0, 1, 2, 3], [4, 5]
@@ -71,7 +71,7 @@ def test_loss_is_the_area_of_the_hysteresis_loop(cycle: StrainHarmonics) -> None
         rate[:, parts] = (slope(phase) * n) @ a[:, parts]
         stress[:, parts] = wave(phase) @ a[:, parts] + (slope(phase) * tan) @ a[:, parts]
     loop = np.einsum("ti,ij,tj->", stress, storage[:, :, e, p], rate) * 2 * np.pi / 512
-    assert found.density[e, p] == pytest.approx(loop, rel=1e-10)
+    assert revolution_loss.density[e, p] == pytest.approx(loop, rel=1e-10)
 
 
 def test_prony_loss_is_that_of_a_maxwell_element_in_time() -> None:
@@ -99,37 +99,37 @@ def test_prony_loss_is_that_of_a_maxwell_element_in_time() -> None:
 
 def test_heat_is_rolling_resistance_times_speed(cycle: StrainHarmonics) -> None:
     card = material("nasa-tread").loss_tangent
-    found = RevolutionLoss(cycle, {name: OfTemperature(card) for name in REGIONS}, 15.0, 60.0)
+    revolution_loss = RevolutionLoss(cycle, {name: OfTemperature(card) for name in REGIONS}, 15.0, 60.0)
     volume = (cycle.elements.weights.sum(axis=1) * 2 * np.pi * 2).astype(float)
-    power = float((found.heat_source * volume).sum())
-    assert power == pytest.approx(found.rolling_resistance * 15.0, rel=1e-12)
-    assert sum(found.by_region.values()) == pytest.approx(found.energy, rel=1e-12)
-    assert found.by_harmonic.sum() == pytest.approx(found.total(found.density), rel=1e-12)
-    assert 1e-4 < found.coefficient < 0.1
+    power = float((revolution_loss.heat_source * volume).sum())
+    assert power == pytest.approx(revolution_loss.rolling_resistance * 15.0, rel=1e-12)
+    assert sum(revolution_loss.by_region.values()) == pytest.approx(revolution_loss.energy, rel=1e-12)
+    assert revolution_loss.by_harmonic.sum() == pytest.approx(revolution_loss.total(revolution_loss.density), rel=1e-12)
+    assert 1e-4 < revolution_loss.coefficient < 0.1
 
 
 def test_loss_follows_its_tangent(cycle: StrainHarmonics) -> None:
     def lost(law: object, temperature: float = 25.0) -> RevolutionLoss:
         return RevolutionLoss(cycle, dict.fromkeys(REGIONS, law), 20.0, temperature)  # type: ignore[arg-type]
 
-    one, two = lost(OfTemperature(0.1)), lost(OfTemperature(0.2))
-    assert two.energy == pytest.approx(2 * one.energy)
-    power = lost(PowerLaw(0.1, 0.5, reference=one.frequency))
+    single, two = lost(OfTemperature(0.1)), lost(OfTemperature(0.2))
+    assert two.energy == pytest.approx(2 * single.energy)
+    power = lost(PowerLaw(0.1, 0.5, reference=single.frequency))
     n = np.arange(1, 55)
-    assert power.by_harmonic[1:] == pytest.approx(one.by_harmonic[1:] * np.sqrt(n))
+    assert power.by_harmonic[1:] == pytest.approx(single.by_harmonic[1:] * np.sqrt(n))
     card = material("nasa-tread").loss_tangent
     ratio = lost(OfTemperature(card), 75.0).energy / lost(OfTemperature(card), 25.0).energy
     assert ratio == pytest.approx(np.exp(-0.0148 * 50))
-    assert RevolutionLoss(cycle, {"tread": OfTemperature(0.1)}, 20.0).energy < one.energy
+    assert RevolutionLoss(cycle, {"tread": OfTemperature(0.1)}, 20.0).energy < single.energy
 
 
 def test_one_cycle_convention_is_half_of_the_sinusoid(cycle: StrainHarmonics) -> None:
-    found = RevolutionLoss(cycle, dict.fromkeys(REGIONS, OfTemperature(0.1)), 20.0)
-    nasa, sinusoid = (found.total(found.one_cycle_density(name)) for name in ("nasa", "sinusoid"))
+    revolution_loss = RevolutionLoss(cycle, dict.fromkeys(REGIONS, OfTemperature(0.1)), 20.0)
+    nasa, sinusoid = (revolution_loss.total(revolution_loss.one_cycle_density(name)) for name in ("nasa", "sinusoid"))
     assert sinusoid == pytest.approx(2 * nasa)
-    assert 0.2 < nasa / found.energy < 5
+    assert 0.2 < nasa / revolution_loss.energy < 5
     with pytest.raises(InputError, match="did you mean 'nasa'"):
-        found.one_cycle_density("nsa")
+        revolution_loss.one_cycle_density("nsa")
 
 
 def test_time_temperature_shift_moves_the_peak_of_tan_delta() -> None:

@@ -21,25 +21,25 @@ from tyrefem.reports.figures.footprint import (
 
 
 @pytest.fixture(scope="module")
-def found() -> Footprint:
+def footprint() -> Footprint:
     return Pressing(PlainTyre().state(along=8)).at_deflection(0.02, 36)
 
 
-def test_pressure_map_is_the_whole_footprint(found: Footprint) -> None:
+def test_pressure_map_is_the_whole_footprint(footprint: Footprint) -> None:
     """Symmetric both ways; its integral by trapezoids is the load, less the edges of a coarse mesh."""
-    x, z, pressure = pressure_map(found)
+    x, z, pressure = pressure_map(footprint)
     assert pressure == pytest.approx(pressure[::-1, ::-1])
     integral = np.trapezoid(np.trapezoid(pressure, x, axis=1), z)
-    assert integral == pytest.approx(found.load, rel=0.2)
+    assert integral == pytest.approx(footprint.load, rel=0.2)
 
 
-def test_pictures_carry_the_numbers(found: Footprint) -> None:
-    cycle = StrainHarmonics(found)
+def test_pictures_carry_the_numbers(footprint: Footprint) -> None:
+    cycle = StrainHarmonics(footprint)
     loss = RevolutionLoss(cycle, {"tread": OfTemperature(0.1)}, 20.0)
     history = strain_history_figure(cycle, {"crown": (0.31, 0.0), "sidewall": (0.28, 0.1)}, count=37)
-    drawn = [pressure_map_figure(found), history, harmonics_figure(loss), deformed_figure(found)]
+    drawn = [pressure_map_figure(footprint), history, harmonics_figure(loss), deformed_figure(footprint)]
     for picture in drawn:
-        assert f"{found.load / 1e3:.3f} kN" in " ".join(text.get_text() for text in picture.texts)
+        assert f"{footprint.load / 1e3:.3f} kN" in " ".join(text.get_text() for text in picture.texts)
     assert f"coefficient {loss.coefficient:.4f}" in " ".join(text.get_text() for text in drawn[2].texts)
     shown = history.axes[0].lines[2].get_ydata()
     assert shown == pytest.approx(100 * cycle.at(0.31, 0.0, np.linspace(-np.pi, np.pi, 37))[2])

@@ -17,10 +17,10 @@ from tyrefem.mechanics.footprint.harmonics import Harmonics, follower_stiffness,
 
 def rigid_motions(elements: SectionElements) -> dict[str, tuple[int, np.ndarray]]:
     r, z = elements.nodes
-    zero, one = np.zeros_like(r), np.ones_like(r)
+    zero, ones = np.zeros_like(r), np.ones_like(r)
     return {
-        "axial translation": (0, np.stack([zero, one, zero], axis=1).ravel()),
-        "translation across": (1, np.stack([one, zero, -one], axis=1).ravel()),
+        "axial translation": (0, np.stack([zero, ones, zero], axis=1).ravel()),
+        "translation across": (1, np.stack([ones, zero, -ones], axis=1).ravel()),
         "rotation about a diameter": (1, np.stack([-z, r, z], axis=1).ravel()),
     }
 
@@ -130,7 +130,7 @@ def test_follower_stiffness_is_the_change_of_the_load() -> None:
 
 def test_incompressible_rubber_does_not_lock() -> None:
     """Bending of a ring hardly changes when the bulk modulus grows from 10^2 to 10^6 times G."""
-    found = []
+    compliances = []
     for bulk in (1e8, 1e12):
         mesh = block(np.linspace(0.95, 1.05, 2), np.linspace(-0.05, 0.05, 2))
         body = Harmonics(stress_free(mesh, 1e6, bulk, fixed=()))
@@ -138,8 +138,8 @@ def test_incompressible_rubber_does_not_lock() -> None:
         load[3 * int(np.argmin(abs(body.elements.nodes[0] - 1) + abs(body.elements.nodes[1])))] = 1.0
         K = body.stiffness(3).tolil()
         K[1, 1] += 1.0
-        found.append(load @ spsolve(K.tocsc(), load))
-    assert found[1] == pytest.approx(found[0], rel=0.02)
+        compliances.append(load @ spsolve(K.tocsc(), load))
+    assert compliances[1] == pytest.approx(compliances[0], rel=0.02)
 
 
 def test_three_assemblies_serve_any_harmonic(torus: Harmonics) -> None:
@@ -151,15 +151,15 @@ def test_three_assemblies_serve_any_harmonic(torus: Harmonics) -> None:
 
 def test_full_section_and_half_give_the_same_harmonics() -> None:
     """A symmetric radial load on the crown: the same compliance, halved."""
-    found = []
+    displacements = []
     for half in (True, False):
         body = Harmonics(PlainTyre(half=half).state(along=12))
         r, z = body.elements.nodes
         load = np.zeros(body.elements.n_dofs)
         crown = 3 * int(np.argmin(abs(z) - 1e-3 * r))
         load[crown] = 1.0
-        found.append(body.solve(3, load[:, None])[crown, 0])
-    assert found[0] == pytest.approx(2 * found[1], rel=1e-8)
+        displacements.append(body.solve(3, load[:, None])[crown, 0])
+    assert displacements[0] == pytest.approx(2 * displacements[1], rel=1e-8)
 
 
 def test_a_body_that_nothing_holds_is_refused() -> None:

@@ -22,7 +22,7 @@ def test_harmonic_zero_is_the_slope_of_the_inflation(name: str, size: float, pre
     low, middle, high = (inflate(tyre, p, mesh) for p in (pressure - step, pressure, pressure + step))
     # The bead lies on the rim's flange, so that the flange's stiffness takes part.
     assert all(flange.pressure(middle.places).max() > 1e5 for flange in middle.body.flanges)
-    places = [SectionElements(found.state.mesh).nodes for found in (low, high)]
+    places = [SectionElements(inflated.state.mesh).nodes for inflated in (low, high)]
     slope = (places[1] - places[0]) / (2 * step)
     u = Harmonics(middle.state).inflated_by(1.0).reshape(-1, 3)
     np.testing.assert_allclose(u[:, :2].T, slope, atol=0.02 * np.abs(slope).max())

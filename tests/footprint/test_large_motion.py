@@ -47,10 +47,10 @@ def motion(pressing: Pressing, harmonics: int, size: float, seed: int) -> np.nda
     return u
 
 
-@pytest.mark.parametrize("own", [True, False])
-def test_the_product_is_the_derivative_of_the_forces(pressing: Pressing, own: bool) -> None:
+@pytest.mark.parametrize("with_law", [True, False])
+def test_the_product_is_the_derivative_of_the_forces(pressing: Pressing, with_law: bool) -> None:
     """Own compounds and cords, or Green's strain; with the following pressure and the rim's flange."""
-    chosen = pressing if own else Pressing(replace(pressing.state, law=None))
+    chosen = pressing if with_law else Pressing(replace(pressing.state, law=None))
     outside = NonlinearForces(chosen.harmonics, 5)
     u = 1.5 * chosen.at_deflection(0.02, 5).amplitudes
     v = motion(chosen, 5, 1e-6, 1)
@@ -81,14 +81,14 @@ def test_a_motion_alike_all_round_has_the_forces_of_the_inflated_body(bias: Infl
     state = replace(bias.state, support=None)
     u = motion(Pressing(state), 2, 2e-4, 4)
     u[1:] = 0.0
-    found = NonlinearForces(Pressing(state).harmonics, 2).forces(u).reshape(3, -1, 3)
+    forces = NonlinearForces(Pressing(state).harmonics, 2).forces(u).reshape(3, -1, 3)
     more = u[0].reshape(-1, 3)[:, :2].T
     exact = body.residual(bias.displacement + more, bias.pressure) - body.residual(bias.displacement, bias.pressure)
     free = np.zeros(2 * body.rings.n_nodes, dtype=bool)
     free[body.free] = True
-    difference = (found[0, :, :2].ravel() - exact)[free]
+    difference = (forces[0, :, :2].ravel() - exact)[free]
     assert np.abs(difference).max() < 1e-8 * np.abs(exact[free]).max()
-    assert np.abs(found[1:]).max() < 1e-9 * np.abs(found[0]).max()
+    assert np.abs(forces[1:]).max() < 1e-9 * np.abs(forces[0]).max()
 
 
 def test_the_8pr_deflects_under_its_rated_load_as_tr_r_64_says(pressing: Pressing, pressed: Footprint) -> None:

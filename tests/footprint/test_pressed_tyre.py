@@ -67,10 +67,10 @@ def test_the_flat_is_flat_and_carries_the_load(pressed: Pressed, grid: pyvista.U
 def test_displacements_lead_back_to_the_tyre_as_built(pressed: Pressed, grid: pyvista.UnstructuredGrid) -> None:
     """Points less displacements are rings of the undeformed mesh; energy lost in the cells is that of a revolution."""
     x, y, z = (grid.points - grid["displacement_m"]).T
-    r, found = np.hypot(y, z), pressed.tyre.body.rings.nodes
-    assert r.max() == pytest.approx(found[0].max(), rel=1e-6)
-    assert r.min() == pytest.approx(found[0].min(), rel=1e-6)
-    assert np.abs(x).max() == pytest.approx(found[1].max(), rel=1e-6)
+    r, nodes = np.hypot(y, z), pressed.tyre.body.rings.nodes
+    assert r.max() == pytest.approx(nodes[0].max(), rel=1e-6)
+    assert r.min() == pytest.approx(nodes[0].min(), rel=1e-6)
+    assert np.abs(x).max() == pytest.approx(nodes[1].max(), rel=1e-6)
     volumes = grid.compute_cell_sizes()["Volume"]
     assert pressed.loss is not None
     assert (grid["loss_J_m3"] * volumes).sum() == pytest.approx(pressed.loss.energy, rel=0.02)
@@ -90,12 +90,14 @@ def test_cord_tension_is_the_derivative_of_the_cords_law(pressed: Pressed) -> No
     tyre, part = pressed.tyre, 1e-5
     cycles = cord_cycles(tyre, pressed.cycle, count=73)
     assert len(cycles) > 0
-    for one in cycles:
-        assert one.plus == pytest.approx(one.minus[::-1], rel=1e-9)
-        layer = tyre.body.parts[one.region].cords[0]
-        members = np.asarray(tyre.body.mesh.subdomains[one.region])
+    for cycle in cycles:
+        assert cycle.plus == pytest.approx(cycle.minus[::-1], rel=1e-9)
+        layer = tyre.body.parts[cycle.region].cords[0]
+        members = np.asarray(tyre.body.mesh.subdomains[cycle.region])
         points = tyre.body.rings.points[:, members]
-        place = np.unravel_index(int(np.hypot(*(points - np.reshape(one.place, (2, 1, 1)))).argmin()), points.shape[1:])
+        place = np.unravel_index(
+            int(np.hypot(*(points - np.reshape(cycle.place, (2, 1, 1)))).argmin()), points.shape[1:]
+        )
         e = pressed.cycle.strain(np.zeros(1), members)[..., 0]
         # In the middle of the footprint both shears with theta are zero: cords at + and - angle stretch alike.
         small = np.zeros((3, 3, *e.shape[1:]))
@@ -103,9 +105,9 @@ def test_cord_tension_is_the_derivative_of_the_cords_law(pressed: Pressed) -> No
         small[0, 1] = small[1, 0] = e[3] / 2
         here = tyre.deformation[:, :, members]
         later = here + part * np.einsum("ij...,jk...->ik...", small, here)
-        law = layer.stress_in_layer if one.unit == "Pa" else layer.tension
+        law = layer.stress_in_layer if cycle.unit == "Pa" else layer.tension
         change = (law(later) - law(here))[place] / part
-        assert one.plus[36] - one.inflated == pytest.approx(change, rel=1e-3, abs=1e-3 * abs(one.plus).max())
+        assert cycle.plus[36] - cycle.inflated == pytest.approx(change, rel=1e-3, abs=1e-3 * abs(cycle.plus).max())
 
 
 def test_places_of_the_strain_cycle(pressed: Pressed) -> None:
@@ -150,19 +152,19 @@ def test_tables_hold_what_the_pictures_show(pressed: Pressed, tmp_path: Path) ->
         assert {row["region"] for row in csv.DictReader(file)} == {"carcass", "bead"}
 
 
-def centre_of_pressure(found: Footprint) -> float:
+def centre_of_pressure(footprint: Footprint) -> float:
     """Axial place of the contact force, m."""
-    z = np.tile(found.grid.tread.places[1], found.grid.n_angles)
-    return float(np.average(z, weights=found.forces))
+    z = np.tile(footprint.grid.tread.places[1], footprint.grid.n_angles)
+    return float(np.average(z, weights=footprint.forces))
 
 
 def test_camber_makes_the_section_whole_and_loads_one_side() -> None:
-    found = press(study(STUDY, COARSE), deflection=0.015, camber=math.radians(3), tolerance=0.1)
-    assert not found.study.section.half
+    press_result = press(study(STUDY, COARSE), deflection=0.015, camber=math.radians(3), tolerance=0.1)
+    assert not press_result.study.section.half
     # A round crown rolls over to the side that comes down, by at most its radius (here 88 mm) times the angle.
-    assert 1e-3 < centre_of_pressure(found.footprint) < 88e-3 * math.sin(math.radians(3))
-    assert found.footprint.pressure_integral == pytest.approx(found.footprint.load, rel=1e-9)
-    assert found.summary()["camber_rad"] == pytest.approx(math.radians(3))
+    assert 1e-3 < centre_of_pressure(press_result.footprint) < 88e-3 * math.sin(math.radians(3))
+    assert press_result.footprint.pressure_integral == pytest.approx(press_result.footprint.load, rel=1e-9)
+    assert press_result.summary()["camber_rad"] == pytest.approx(math.radians(3))
 
 
 def test_unequal_sides_come_as_a_mesh_of_the_whole_section(tmp_path: Path) -> None:
@@ -171,7 +173,7 @@ def test_unequal_sides_come_as_a_mesh_of_the_whole_section(tmp_path: Path) -> No
     mesh = build(section, size=24e-3, through=1).mesh
     mesh.doflocs[1] = np.where(mesh.p[1] > 0, 1.04 * mesh.p[1], mesh.p[1])
     file = write(mesh, tmp_path / "unequal.msh")
-    own = {"mesh.file": str(file), "mesh.section": "full"}
-    found = press(study(STUDY, own), deflection=0.015, tolerance=0.1).footprint
-    assert abs(centre_of_pressure(found)) > 2e-4
-    assert found.pressure_integral == pytest.approx(found.load, rel=1e-9)
+    changes = {"mesh.file": str(file), "mesh.section": "full"}
+    footprint = press(study(STUDY, changes), deflection=0.015, tolerance=0.1).footprint
+    assert abs(centre_of_pressure(footprint)) > 2e-4
+    assert footprint.pressure_integral == pytest.approx(footprint.load, rel=1e-9)

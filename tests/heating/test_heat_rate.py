@@ -127,10 +127,10 @@ def test_knots():
 def test_a_source_does_not_depend_on_what_it_was_asked_before():
     speeds = {"drive.speed": {"from": "5 mph", "to": "25 mph"}}
     study = tf.study("nasa-22x5.5-8pr").replace({**COARSE, **speeds})
-    asked = RollingTyre(study)
-    x = asked.study.section.place(np.array([0.01, 0.03]), np.array([0.01, 0.012])).T
+    used_tyre = RollingTyre(study)
+    x = used_tyre.study.section.place(np.array([0.01, 0.03]), np.array([0.01, 0.012])).T
     other, T = x[:, ::-1].copy(), np.full(2, 25.0)
     for nodes, t in [(x, 0.0), (x, 60.0), (other, 60.0), (x, 0.0), (x, 60.0)]:
         fresh = RollingTyre(study).sources["II"](nodes, t, T)
-        assert np.array_equal(asked.sources["II"](nodes, t, T), fresh)
-    assert asked.sources["II"](x, 60.0, T)[0] > 1.01 * asked.sources["II"](x, 0.0, T)[0]
+        assert np.array_equal(used_tyre.sources["II"](nodes, t, T), fresh)
+    assert used_tyre.sources["II"](x, 60.0, T)[0] > 1.01 * used_tyre.sources["II"](x, 0.0, T)[0]

@@ -23,15 +23,15 @@ def unchanged(before: dict[str, bytes], folder: Path) -> None:
 
 def half_written(folder: Path) -> list[str]:
     """Temporary files, and files that their own format cannot read."""
-    found = [str(path) for path in folder.rglob("*") if path.name.startswith(".tyrefem-")]
+    leftovers = [str(path) for path in folder.rglob("*") if path.name.startswith(".tyrefem-")]
     for path in folder.rglob("*"):
         if path.suffix == ".json":
             json.loads(path.read_text(encoding="utf-8"))
         if path.suffix == ".png" and not path.read_bytes().endswith(b"IEND\xaeB`\x82"):
-            found.append(str(path))
+            leftovers.append(str(path))
         if path.suffix == ".html" and "</html>" not in path.read_text(encoding="utf-8"):
-            found.append(str(path))
-    return found
+            leftovers.append(str(path))
+    return leftovers
 
 
 def one_line(err: str) -> None:

@@ -83,7 +83,7 @@ def test_beside_a_law_of_temperature_a_series_gives_the_ratio_only() -> None:
 
 
 @pytest.mark.parametrize(
-    ("frequency", "loss", "said"),
+    ("frequency", "loss", "message"),
     [
         ({"law": "power", "exponent": 0.1}, {}, r"frequency.power.source: missing"),
         ({"law": "power", "exponent": 3.0, "source": "t"}, {}, "exponent"),
@@ -94,8 +94,8 @@ def test_beside_a_law_of_temperature_a_series_gives_the_ratio_only() -> None:
         ({"law": "pronny", "source": "t"}, {}, "did you mean 'prony'"),
     ],
 )
-def test_bad_laws_are_one_error(frequency: dict[str, Any], loss: dict[str, Any], said: str) -> None:
-    with pytest.raises(InputError, match=said):
+def test_bad_laws_are_one_error(frequency: dict[str, Any], loss: dict[str, Any], message: str) -> None:
+    with pytest.raises(InputError, match=message):
         over(frequency, **loss)
 
 
@@ -141,13 +141,13 @@ def test_cords_have_a_softening_of_their_own() -> None:
 
 
 @pytest.mark.parametrize(
-    ("soft", "said"),
+    ("soft", "message"),
     [
         ({"law": "exponential"}, "needs 'rate'"),
         ({"law": "table"}, "needs 'table'"),
         ({"law": "table", "table": [["25 degC", 1.0]]}, "at least two rows"),
     ],
 )
-def test_a_softening_without_numbers_is_refused(soft: dict[str, Any], said: str) -> None:
-    with pytest.raises(InputError, match=said):
+def test_a_softening_without_numbers_is_refused(soft: dict[str, Any], message: str) -> None:
+    with pytest.raises(InputError, match=message):
         card(softening=soft)

@@ -49,7 +49,7 @@ def test_boundaries_lie_where_the_section_says(section: Section, mesher: str, ce
     s, depth = section.locate(tyre.mesh.p.T)
     # Quadrilaterals from gmsh have nodes in the middle of straight edges, a chord's height off the surface.
     slack = 1e-9 if (mesher, cell) != ("gmsh", "quad") else 5e-5
-    nodes = {name: tyre.mesh.facets[:, found].ravel() for name, found in tyre.mesh.boundaries.items()}
+    nodes = {name: tyre.mesh.facets[:, members].ravel() for name, members in tyre.mesh.boundaries.items()}
     assert np.abs(depth[nodes["contained_air"]]).max() < slack
     for name in ("road", "outside_air"):
         assert np.abs(depth - section.total_thickness(s))[nodes[name]].max() < slack
@@ -75,8 +75,8 @@ def test_regions_lie_where_the_section_says(section: Section, mesher: str, cell:
     mesh = build(section, mesher=mesher, cell=cell).mesh
     centres = mesh.p[:, mesh.t].mean(axis=1).T
     assert set(mesh.subdomains) == set(section.regions)
-    for region, found in mesh.subdomains.items():
-        assert (section.region_at(*section.locate(centres[found])) == region).all()
+    for region, members in mesh.subdomains.items():
+        assert (section.region_at(*section.locate(centres[members])) == region).all()
 
 
 @both
@@ -102,9 +102,9 @@ def test_full_mesh_is_the_half_and_its_mirror_image(section: Section, mesher: st
 
 @both
 def test_same_input_gives_the_same_mesh(section: Section, mesher: str, cell: str) -> None:
-    one, two = (build(section, mesher=mesher, cell=cell, size=4e-3).mesh for _ in range(2))
-    assert np.array_equal(one.p, two.p)
-    assert np.array_equal(one.t, two.t)
+    first, two = (build(section, mesher=mesher, cell=cell, size=4e-3).mesh for _ in range(2))
+    assert np.array_equal(first.p, two.p)
+    assert np.array_equal(first.t, two.t)
 
 
 @both
@@ -143,8 +143,8 @@ def test_layers_have_as_many_elements_through_them_as_asked(section: Section, me
             # The outline of the mesh is a chord's height, some 0.04 mm, off the section's.
             depths = np.linspace(low + 1e-4, high - 1e-4, 400)
             points = section.place(np.full(400, s), depths)
-            found = element_at(*points.T)
-            assert len(np.unique(found)) >= 6, (layer, s)
+            elements = element_at(*points.T)
+            assert len(np.unique(elements)) >= 6, (layer, s)
 
 
 def _tops(section: Section, s: float) -> list[float]:

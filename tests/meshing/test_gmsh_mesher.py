@@ -45,8 +45,8 @@ def test_quiet_and_without_traces(capfd: pytest.CaptureFixture[str]) -> None:
     build(load("nasa-22x5.5-8pr"), mesher="gmsh", size=6e-3)
     assert signal.getsignal(signal.SIGINT) is before
     assert not gmsh.isInitialized()
-    said = capfd.readouterr()
-    assert (said.out, said.err) == ("", "")
+    output = capfd.readouterr()
+    assert (output.out, output.err) == ("", "")
 
 
 @pytest.mark.usefixtures("needs_gmsh")
@@ -59,8 +59,8 @@ def test_a_broken_pipe_is_still_an_error_and_not_the_end() -> None:
         "try: os.write(here, b'x')\n"
         "except BrokenPipeError: print('an error')"
     )
-    found = subprocess.run([sys.executable, "-c", code], capture_output=True, text=True, check=False)
-    assert (found.returncode, found.stdout) == (0, "an error\n"), found.stderr
+    completed = subprocess.run([sys.executable, "-c", code], capture_output=True, text=True, check=False)
+    assert (completed.returncode, completed.stdout) == (0, "an error\n"), completed.stderr
 
 
 @pytest.mark.usefixtures("needs_gmsh")
@@ -82,18 +82,18 @@ def test_a_running_gmsh_keeps_its_model_and_options() -> None:
 
 @pytest.mark.usefixtures("needs_gmsh")
 def test_works_beside_the_main_thread() -> None:
-    found: list[int] = []
+    counts: list[int] = []
     section = load("nasa-22x5.5-8pr")
     threads = [
-        threading.Thread(target=lambda: found.append(build(section, mesher="gmsh", size=6e-3).n_nodes))
+        threading.Thread(target=lambda: counts.append(build(section, mesher="gmsh", size=6e-3).n_nodes))
         for _ in range(2)
     ]
     for thread in threads:
         thread.start()
     for thread in threads:
         thread.join()
-    assert len(found) == 2
-    assert found[0] == found[1]
+    assert len(counts) == 2
+    assert counts[0] == counts[1]
 
 
 @pytest.mark.usefixtures("needs_gmsh")

@@ -54,17 +54,17 @@ def test_round_trip(section: Section, tmp_path: Path, suffix: str, cell: str, ha
     assert (back.mesher, back.cell, back.section) == ("file", cell, section)
     assert np.allclose(back.mesh.p, tyre.mesh.p, atol=1e-15)
     assert np.array_equal(back.mesh.t, tyre.mesh.t)
-    for name, found in tyre.mesh.subdomains.items():
-        assert np.array_equal(back.mesh.subdomains[name], found)
-    for name, found in tyre.mesh.boundaries.items():
-        assert np.array_equal(np.sort(back.mesh.boundaries[name]), np.sort(found))
+    for name, members in tyre.mesh.subdomains.items():
+        assert np.array_equal(back.mesh.subdomains[name], members)
+    for name, members in tyre.mesh.boundaries.items():
+        assert np.array_equal(np.sort(back.mesh.boundaries[name]), np.sort(members))
 
 
 def test_units_and_axes(section: Section, tyre: TyreMesh, tmp_path: Path) -> None:
     path = write(tyre, tmp_path / "tyre.msh")
-    found = meshio.read(path)
-    found.points = found.points[:, [1, 0, 2]] * 1e3
-    meshio.write(path, found, file_format="gmsh22")
+    mesh_data = meshio.read(path)
+    mesh_data.points = mesh_data.points[:, [1, 0, 2]] * 1e3
+    meshio.write(path, mesh_data, file_format="gmsh22")
     back = read_for(section, path, axes="zr", unit="mm")
     assert np.allclose(back.mesh.p, tyre.mesh.p, atol=1e-12)
     assert back.element_areas.min() > 0
@@ -105,9 +105,9 @@ def test_abaqus_element_sets(tmp_path: Path) -> None:
 
 
 def test_med_families(monkeypatch: pytest.MonkeyPatch, tmp_path: Path) -> None:
-    found = square(cell_sets=False, cell_data={"cell_tags": [np.array([-1, -2]), np.full(6, -3)]})
-    found.cell_tags = {-1: ["left"], -2: ["right"], -3: ["skin"]}
-    mesh = read(given(monkeypatch, tmp_path, found), regions=["left", "right"], boundaries=["skin"])
+    mesh_data = square(cell_sets=False, cell_data={"cell_tags": [np.array([-1, -2]), np.full(6, -3)]})
+    mesh_data.cell_tags = {-1: ["left"], -2: ["right"], -3: ["skin"]}
+    mesh = read(given(monkeypatch, tmp_path, mesh_data), regions=["left", "right"], boundaries=["skin"])
     assert mesh.subdomains["left"].tolist() == [0]
 
 
@@ -121,12 +121,12 @@ def test_quadratic_cells_are_read_by_their_corners(monkeypatch: pytest.MonkeyPat
 
 
 def test_lines_inside_the_body_are_no_boundary(monkeypatch: pytest.MonkeyPatch, tmp_path: Path) -> None:
-    found = square()
-    found.cells.append(meshio.CellBlock("line", np.array([[1, 4]])))
-    for parts in found.cell_sets.values():
+    mesh_data = square()
+    mesh_data.cells.append(meshio.CellBlock("line", np.array([[1, 4]])))
+    for parts in mesh_data.cell_sets.values():
         parts.append(np.array([], dtype=int))
-    found.cell_sets["interface"] = [np.array([], int), np.array([], int), np.array([0])]
-    mesh = read(given(monkeypatch, tmp_path, found))
+    mesh_data.cell_sets["interface"] = [np.array([], int), np.array([], int), np.array([0])]
+    mesh = read(given(monkeypatch, tmp_path, mesh_data))
     assert set(mesh.boundaries) == {"skin"}
 
 
@@ -155,9 +155,9 @@ def test_missing_names_say_what_was_found(monkeypatch: pytest.MonkeyPatch, tmp_p
 
 
 def test_mixed_cells_are_refused(monkeypatch: pytest.MonkeyPatch, tmp_path: Path) -> None:
-    found = meshio.Mesh(np.eye(4, 3), [("quad", np.array([[0, 1, 2, 3]])), ("triangle", np.array([[0, 1, 2]]))])
+    mesh_data = meshio.Mesh(np.eye(4, 3), [("quad", np.array([[0, 1, 2, 3]])), ("triangle", np.array([[0, 1, 2]]))])
     with pytest.raises(InputError, match="all triangles or all quadrilaterals; found: quad, triangle"):
-        read(given(monkeypatch, tmp_path, found))
+        read(given(monkeypatch, tmp_path, mesh_data))
 
 
 @pytest.mark.parametrize(

@@ -71,29 +71,29 @@ def test_the_pictures_are_those_of_the_folder(result, written):
 
 
 def test_the_numbers_of_the_summary_come_first(result, written):
-    text, found = Page(written).text, result.summary()
+    text, summary = Page(written).text, result.summary()
     top = text[: text.index("Pictures")]
-    assert f"{found['hottest']['temperature_degC']:.1f} °C" in top
-    assert found["hottest"]["region"] in top
-    assert f"{number(found['rolling_resistance']['force_N'], 3)} N" in top
-    assert f"coefficient {number(found['rolling_resistance']['coefficient'], 3)}" in top
-    assert f"{found['contained_air']['temperature_degC']:.1f} °C" in top
-    assert f"{number(found['contained_air']['gauge_pressure_Pa'] / 1e3)} kPa gauge" in top
-    assert f"{found['phases'][0]['deflection'] * 1e3:.1f} mm" in top
+    assert f"{summary['hottest']['temperature_degC']:.1f} °C" in top
+    assert summary["hottest"]["region"] in top
+    assert f"{number(summary['rolling_resistance']['force_N'], 3)} N" in top
+    assert f"coefficient {number(summary['rolling_resistance']['coefficient'], 3)}" in top
+    assert f"{summary['contained_air']['temperature_degC']:.1f} °C" in top
+    assert f"{number(summary['contained_air']['gauge_pressure_Pa'] / 1e3)} kPa gauge" in top
+    assert f"{summary['phases'][0]['deflection'] * 1e3:.1f} mm" in top
     assert f"{number(result.heat_budget.total('generated') / 1e3)} kJ" in top
 
 
 def test_tables_hold_the_summary(result, written):
-    text, found = Page(written).text, result.summary()
-    for name, reading in found["sensors"].items():
+    text, summary = Page(written).text, result.summary()
+    for name, reading in summary["sensors"].items():
         assert re.search(rf"{re.escape(name)} .*? {reading['end_degC']:.1f} {reading['max_degC']:.1f} ", text)
     for kind in ("generated", "stored", "lost"):
-        for name, entry in found["heat_budget"][kind].items():
+        for name, entry in summary["heat_budget"][kind].items():
             assert f"{name} {number(entry['energy_J'] / 1e3)} {number(entry['power_W'])}" in text
-    for row in found["extremes"]:
+    for row in summary["extremes"]:
         assert f"{row['temperature_degC']:.1f} {number(row['time_s'])} {row['r_m'] * 1e3:.1f}" in text
-    assert f"{found['mesh']['nodes']} nodes, {found['mesh']['elements']} quads" in text
-    assert f"scikit-fem {found['versions']['scikit-fem']}" in text
+    assert f"{summary['mesh']['nodes']} nodes, {summary['mesh']['elements']} quads" in text
+    assert f"scikit-fem {summary['versions']['scikit-fem']}" in text
 
 
 def test_materials_name_their_sources_and_mark_estimates(result, written):

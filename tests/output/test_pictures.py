@@ -45,14 +45,14 @@ def boxes(figure, axes):
 
 
 def overlaps(figure, axes):
-    found = boxes(figure, axes)
-    return [(a, b) for i, a in enumerate(found) for b in found[:i] if a.padded(-1.0).overlaps(b.padded(-1.0))]
+    areas = boxes(figure, axes)
+    return [(a, b) for i, a in enumerate(areas) for b in areas[:i] if a.padded(-1.0).overlaps(b.padded(-1.0))]
 
 
 @pytest.mark.parametrize("run", ["result", "quadratic", "standing", "stopped", "phased"])
 def test_every_picture_is_written_and_not_blank(run, request, tmp_path):
-    found = request.getfixturevalue(run)
-    paths = write_pictures(found, tmp_path)
+    result = request.getfixturevalue(run)
+    paths = write_pictures(result, tmp_path)
     assert {path.name for path in paths} >= STANDARD
     assert sorted(tmp_path.iterdir()) == sorted(paths)
     for path in paths:
@@ -115,8 +115,8 @@ def test_forty_thermocouples_do_not_overlap(study):
     for figure in (temperature_figure(crowded), histories_figure(crowded)):
         axes = figure.axes[0]
         # At this density only the columns' line pitch is left: no two labels of a column closer than their text.
-        found = sorted(boxes(figure, axes), key=lambda box: box.y0)
-        pairs = [(a, b) for i, a in enumerate(found) for b in found[:i] if a.padded(-1.5).overlaps(b.padded(-1.5))]
+        areas = sorted(boxes(figure, axes), key=lambda box: box.y0)
+        pairs = [(a, b) for i, a in enumerate(areas) for b in areas[:i] if a.padded(-1.5).overlaps(b.padded(-1.5))]
         assert not pairs
 
 
@@ -272,8 +272,8 @@ def test_cells_fill_the_mesh_without_gaps(study, cell, element):
 
 def test_spread_keeps_order_and_gap():
     wanted = np.array([5.0, 1.0, 1.1, 1.2, 9.0])
-    found = spread(wanted, 2.0)
-    assert np.diff(np.sort(found)).min() >= 2.0 - 1e-12
-    assert (np.argsort(found) == np.argsort(wanted)).all()
+    placed = spread(wanted, 2.0)
+    assert np.diff(np.sort(placed)).min() >= 2.0 - 1e-12
+    assert (np.argsort(placed) == np.argsort(wanted)).all()
     # Least squares: the crowded block of four stays centred on where it wanted to be.
-    assert found[:4].mean() == pytest.approx(wanted[:4].mean())
+    assert placed[:4].mean() == pytest.approx(wanted[:4].mean())

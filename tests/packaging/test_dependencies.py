@@ -24,23 +24,23 @@ def named(requirements: list[str]) -> set[str]:
 
 def with_all_below(names: set[str]) -> set[str]:
     """The packages and everything they require here."""
-    found, waiting = set(), set(names)
+    closure, waiting = set(), set(names)
     while waiting:
         name = waiting.pop()
-        found.add(name)
+        closure.add(name)
         for text in metadata.requires(name) or []:
             needed = Requirement(text)
             if needed.marker is None or needed.marker.evaluate({"extra": ""}):
-                waiting |= {needed.name.lower().replace("_", "-")} - found
-    return found
+                waiting |= {needed.name.lower().replace("_", "-")} - closure
+    return closure
 
 
 def licence(name: str) -> str:
     """All that a package says of its licence, without the licence's own text."""
-    told = metadata.metadata(name)
-    classifiers = [line for line in told.get_all("Classifier") or [] if line.startswith("License")]
-    lines = (told.get("License") or "").strip().splitlines()
-    return " ".join([told.get("License-Expression") or "", *lines[:1], *classifiers])
+    meta = metadata.metadata(name)
+    classifiers = [line for line in meta.get_all("Classifier") or [] if line.startswith("License")]
+    lines = (meta.get("License") or "").strip().splitlines()
+    return " ".join([meta.get("License-Expression") or "", *lines[:1], *classifiers])
 
 
 def test_default_installation_is_free_of_the_gpl() -> None:

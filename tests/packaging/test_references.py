@@ -28,10 +28,10 @@ def test_every_page_that_is_named_is_there() -> None:
 
 REFERENCE = re.compile(r"#\s*(\w+)\b.*\bsee (?:the README of ([\w.-]*\w)|(docs/[\w/-]+\.md|README\.md))")
 REFERENCES = [
-    (study, *found.groups())
+    (study, *match.groups())
     for study in sorted(ROOT.glob("studies/*/study.toml"))
-    for found in map(REFERENCE.search, study.read_text(encoding="utf-8").splitlines())
-    if found is not None
+    for match in map(REFERENCE.search, study.read_text(encoding="utf-8").splitlines())
+    if match is not None
 ]
 
 

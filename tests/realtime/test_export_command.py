@@ -23,7 +23,7 @@ STUDY = "nasa-22x5.5-8pr"
 
 
 @pytest.mark.parametrize(
-    ("arguments", "said"),
+    ("arguments", "message"),
     [
         (["--out", "tyre.txt"], "must end with .npz"),
         (["--speed", "1:2:3"], "is not FROM:TO"),
@@ -36,12 +36,12 @@ STUDY = "nasa-22x5.5-8pr"
         (["--set", "drive.slip_ratio=0.1"], "slip"),
     ],
 )
-def test_bad_input_ends_with_2_and_one_line(arguments, said, tmp_path, monkeypatch, capsys):
+def test_bad_input_ends_with_2_and_one_line(arguments, message, tmp_path, monkeypatch, capsys):
     monkeypatch.chdir(tmp_path)
     assert main(["export", STUDY, *arguments]) == 2
     errors = capsys.readouterr().err
     assert errors.count("\n") == 1
-    assert said in errors
+    assert message in errors
     assert list(tmp_path.iterdir()) == []
 
 
@@ -72,8 +72,8 @@ def test_a_box_without_width_no_sensors_held_air_and_a_tolerance_that_cannot_be_
     with pytest.raises(InputError, match="the error in the validation runs is"):
         export(study, tmp_path / "no.npz", ranges=ranges, duration=40.0, tolerance=0.01, settings=settings)
     assert not (tmp_path / "no.npz").exists()
-    found = export(study, tmp_path / "tyre.npz", ranges=ranges, duration=40.0, tolerance=1.0, settings=settings)
-    assert found.worst < 1.0
+    certificate = export(study, tmp_path / "tyre.npz", ranges=ranges, duration=40.0, tolerance=1.0, settings=settings)
+    assert certificate.worst < 1.0
     tyre = RealTimeTyre(tmp_path / "tyre.npz")
     assert tyre.names == ["contained-air", "hottest", "gas_pressure", "rolling_resistance"]
     inputs = Inputs(8.0, 12e3, 560e3, 20.0, 30.0)

@@ -32,22 +32,27 @@ def unit(needs_compiler, exported, tmp_path_factory):
 def slave(unit, tmp_path):
     description = fmpy.read_model_description(str(unit))
     folder = fmpy.extract(str(unit), str(tmp_path))
-    found = FMU2Slave(
+    instance = FMU2Slave(
         guid=description.guid, unzipDirectory=folder, modelIdentifier="tyre", instanceName="one", fmiCallLogger=None
     )
-    found.instantiate()
-    found.setupExperiment(startTime=0.0)
-    found.enterInitializationMode()
-    found.exitInitializationMode()
-    yield found
-    found.freeInstance()
+    instance.instantiate()
+    instance.setupExperiment(startTime=0.0)
+    instance.enterInitializationMode()
+    instance.exitInitializationMode()
+    yield instance
+    instance.freeInstance()
 
 
 def test_a_public_checker_finds_nothing(unit):
     assert validate_fmu(str(unit)) == []
     description = fmpy.read_model_description(str(unit))
-    assert [one.name for one in description.modelVariables if one.causality == "input"] == list(INPUTS)
-    assert {one.unit for one in description.modelVariables if one.causality == "input"} == {"m/s", "N", "Pa", "degC"}
+    assert [variable.name for variable in description.modelVariables if variable.causality == "input"] == list(INPUTS)
+    assert {variable.unit for variable in description.modelVariables if variable.causality == "input"} == {
+        "m/s",
+        "N",
+        "Pa",
+        "degC",
+    }
     assert description.coSimulation.canGetAndSetFMUstate
 
 
@@ -64,7 +69,7 @@ def test_it_gives_the_numbers_of_the_python_model(unit, exported):
         for row, time in ((2 * k, k), (2 * k + 1, k + 1)):
             signal[row] = (time, *astuple(inputs))
     names = variable_names(tyre)
-    found = fmpy.simulate_fmu(
+    outputs = fmpy.simulate_fmu(
         str(unit),
         stop_time=float(count),
         output_interval=1.0,
@@ -74,7 +79,7 @@ def test_it_gives_the_numbers_of_the_python_model(unit, exported):
     )
     # fmpy's result at a jump of the input may be of either side: pressure and drag are of the last step's inputs.
     for name, column in zip(names, np.array(expected).T, strict=True):
-        np.testing.assert_allclose(found[name][1:], column, rtol=1e-9, atol=1e-9)
+        np.testing.assert_allclose(outputs[name][1:], column, rtol=1e-9, atol=1e-9)
 
 
 def test_states_come_back(slave):

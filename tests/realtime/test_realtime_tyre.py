@@ -22,18 +22,18 @@ WARM = Inputs(10.0, 12e3, 560e3, 20.0, 30.0)
 
 
 def test_the_certificate_is_of_fresh_steady_and_changing_runs(exported):
-    found = exported.certificate
-    assert found.worst <= 0.3
-    assert found.cases == (2, 2)
+    certificate = exported.certificate
+    assert certificate.worst <= 0.3
+    assert certificate.cases == (2, 2)
     assert (
-        set(found.steady)
-        == set(found.driven)
+        set(certificate.steady)
+        == set(certificate.driven)
         == {"skin", "slow", "rim", "contained-air", "hottest", "rolling_resistance"}
     )
     # Interpolated films and heat are much better known than temperatures.
-    assert found.tables["films"] < 1e-4
-    assert found.tables["heat"] < 5e-3
-    assert RealTimeTyre(exported.file).about["certificate"]["worst"] == pytest.approx(found.worst)
+    assert certificate.tables["films"] < 1e-4
+    assert certificate.tables["heat"] < 5e-3
+    assert RealTimeTyre(exported.file).about["certificate"]["worst"] == pytest.approx(certificate.worst)
 
 
 def test_a_course_of_its_own_agrees_with_a_full_run(exported):
@@ -66,8 +66,8 @@ def test_no_heat_and_no_difference_leave_the_tyre_as_it_is(exported):
     tyre = RealTimeTyre(exported.file)
     tyre.reset(20.0)
     for _ in range(30):
-        found = tyre.step(10.0, Inputs(0.0, 10e3, 560e3, 20.0))
-    names = dict(zip(tyre.names, found, strict=True))
+        outputs = tyre.step(10.0, Inputs(0.0, 10e3, 560e3, 20.0))
+    names = dict(zip(tyre.names, outputs, strict=True))
     for name in ("skin", "slow", "rim", "contained-air", "hottest"):
         assert names[name] == pytest.approx(20.0, abs=1e-9)
     assert names["gas_pressure"] == pytest.approx(560e3)
@@ -79,8 +79,8 @@ def test_halving_the_step_changes_little(exported):
     for step in (2.0, 1.0, 0.25):
         tyre.reset(15.0)
         for _ in range(round(60 / step)):
-            found = tyre.step(step, WARM)
-        ends.append(found[:5])
+            outputs = tyre.step(step, WARM)
+        ends.append(outputs[:5])
     assert np.abs(ends[0] - ends[2]).max() < 5e-3
     assert np.abs(ends[1] - ends[2]).max() < 2e-3
 
@@ -93,10 +93,10 @@ def test_inputs_that_change_during_a_step_are_followed(exported):
         tyre = RealTimeTyre(exported.file)
         tyre.reset(20.0)
         for k in range(round(10 / step)):
-            now, later = (Inputs(*(first + (last - first) * one * step / 10).tolist()) for one in (k, k + 1))
+            now, later = (Inputs(*(first + (last - first) * number * step / 10).tolist()) for number in (k, k + 1))
             middle = Inputs(*(first + (last - first) * (k + 0.5) * step / 10).tolist())
-            found = tyre.step(step, now, later) if linear else tyre.step(step, middle)
-        ends.append(found[: tyre.names.index("gas_pressure")])
+            outputs = tyre.step(step, now, later) if linear else tyre.step(step, middle)
+        ends.append(outputs[: tyre.names.index("gas_pressure")])
     assert np.abs(ends[0] - ends[1]).max() < 0.05
     # Held at their mean they leave the skin half a step behind.
     assert np.abs(ends[2] - ends[1]).max() > 3 * np.abs(ends[0] - ends[1]).max()
@@ -185,7 +185,7 @@ def test_a_copy_of_one_module_needs_numpy_only(exported, tmp_path):
     tyre = RealTimeTyre(exported.file)
     for _ in range(10):
         tyre.step(1.0, WARM)
-    np.testing.assert_allclose([float(one) for one in done.stdout.split()], tyre.outputs, rtol=1e-12)
+    np.testing.assert_allclose([float(number) for number in done.stdout.split()], tyre.outputs, rtol=1e-12)
 
 
 def test_the_rational_functions_are_what_the_module_says():
@@ -232,7 +232,7 @@ def test_rolling_to_rest_has_no_drag_of_rounding(exported):
     low = [0.1 + 0.2, 1.0e4, 5.5e5, 20.0, 20.0]
     # Three steps of a tenth: the ramp ends at some 1e-17 m/s and not at rest.
     course = BoxDrive(np.array([0.0, 30.0]), np.array([low]), np.array([[0.1 + 0.2 - 0.3, *low[1:]]]), 20.0)
-    found = perform_drive(DriveTask(bundle(exported.study), course, 1.0, 4)).answers["rolling_resistance"]
+    resistance = perform_drive(DriveTask(bundle(exported.study), course, 1.0, 4)).answers["rolling_resistance"]
     assert course.last[0, 0] > 0
-    assert found[-1] == 0.0
-    assert 5.0 < found[1:-1].max() < 1000.0
+    assert resistance[-1] == 0.0
+    assert 5.0 < resistance[1:-1].max() < 1000.0

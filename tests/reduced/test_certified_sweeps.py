@@ -46,20 +46,20 @@ def plan(tyre: Study) -> Plan:
 
 
 @pytest.fixture(scope="module")
-def found(plan: Plan) -> Surrogate:
+def trained(plan: Plan) -> Surrogate:
     return surrogate(plan, tolerance=0.01)
 
 
 @pytest.fixture(scope="module")
-def variants(found: Surrogate, plan: Plan) -> list[Variant]:
+def variants(trained: Surrogate, plan: Plan) -> list[Variant]:
     studies = [plan.study.replace(plan.variants[number]) for number in (5, 17, 30)]
-    outcomes = [one for _, one in reduced_outcomes(found.model, studies)]
+    outcomes = [reduced for _, reduced in reduced_outcomes(trained.model, studies)]
     assert [type(outcome) for outcome in outcomes] == [Variant] * 3
     return outcomes  # type: ignore[return-value]
 
 
-def test_a_batch_that_is_answered_is_forgotten(found: Surrogate, plan: Plan) -> None:
-    packed, task = pack(found.model, plan.packed), ReducedTask(plan.variants[:3], plan.time_to)
+def test_a_batch_that_is_answered_is_forgotten(trained: Surrogate, plan: Plan) -> None:
+    packed, task = pack(trained.model, plan.packed), ReducedTask(plan.variants[:3], plan.time_to)
 
     def readouts() -> int:
         assert all(isinstance(outcome, Answered) for outcome in perform_reduced(task, packed))
@@ -69,9 +69,9 @@ def test_a_batch_that_is_answered_is_forgotten(found: Surrogate, plan: Plan) -> 
     assert readouts() == readouts() == readouts()
 
 
-def test_fresh_full_runs_are_met_within_the_tolerance(found: Surrogate, plan: Plan) -> None:
-    assert found.certificate.good
-    packed = pack(found.model, plan.packed)
+def test_fresh_full_runs_are_met_within_the_tolerance(trained: Surrogate, plan: Plan) -> None:
+    assert trained.certificate.good
+    packed = pack(trained.model, plan.packed)
     for number in (3, 29):
         reduced = perform_reduced(ReducedTask([plan.variants[number]], plan.time_to), packed)[0].answers
         full = perform(plan.task(number)).answers
@@ -84,8 +84,8 @@ def test_fresh_full_runs_are_met_within_the_tolerance(found: Surrogate, plan: Pl
 
 
 def test_answers_are_those_of_the_whole_result(variants: list[Variant]) -> None:
-    for one in variants:
-        light, whole = answers(one, 40.0), answers(one.result, 40.0)
+    for variant in variants:
+        light, whole = answers(variant, 40.0), answers(variant.result, 40.0)
         assert list(light) == list(whole)
         for name, value in light.items():
             # What the tyre loses when cold is summed over sample nodes in place of all.
@@ -94,18 +94,18 @@ def test_answers_are_those_of_the_whole_result(variants: list[Variant]) -> None:
 
 
 def test_a_reduced_budget_closes(variants: list[Variant]) -> None:
-    for one in variants:
-        budget = one.result.heat_budget
+    for variant in variants:
+        budget = variant.result.heat_budget
         assert budget.imbalance < 1e-10
         # Energy is the integral of power: by Simpson, but for the first readings, where powers change fast.
         power = budget.power("generated")[5:]
         energy = sum(series for (kind, _), series in budget.energies.items() if kind == "generated")
-        assert energy[-1] - energy[5] == pytest.approx(float(simpson(power, x=one.times[5:])), rel=1e-5)
+        assert energy[-1] - energy[5] == pytest.approx(float(simpson(power, x=variant.times[5:])), rel=1e-5)
 
 
-def test_variants_do_not_depend_on_their_company(found: Surrogate, plan: Plan) -> None:
+def test_variants_do_not_depend_on_their_company(trained: Surrogate, plan: Plan) -> None:
     studies = [plan.study.replace(plan.variants[number]) for number in (0, 9, 11)]
-    together, alone = found.answers(studies)[1].answers, found.answers(studies[1:2])[0].answers
+    together, alone = trained.answers(studies)[1].answers, trained.answers(studies[1:2])[0].answers
     assert temperature_error(together, alone) < 1e-3
 
 
@@ -118,22 +118,22 @@ def test_a_sweep_says_how_large_the_error_may_be(plan: Plan) -> None:
     assert swept.certificate.errors["hottest_degC"] <= swept.certificate.worst
 
 
-def test_outside_its_box_it_is_not_asked(found: Surrogate, tyre: Study) -> None:
+def test_outside_its_box_it_is_not_asked(trained: Surrogate, tyre: Study) -> None:
     inside = tyre.replace({"drive.speed": "20 mph", "drive.load": "2500 lbf"})
-    assert isinstance(found.answers([inside])[0], Answered)
+    assert isinstance(trained.answers([inside])[0], Answered)
     for key, value in (("drive.speed", "40 mph"), ("drive.load", "1000 lbf")):
-        refused = found.answers([inside.replace({key: value})])[0].reason
+        refused = trained.answers([inside.replace({key: value})])[0].reason
         assert key in refused
         assert "box" in refused
     # What the box does not vary at all is as the study has it.
-    other = found.answers([inside.replace({"drive.ambient": "5 degC"})])[0].reason
+    other = trained.answers([inside.replace({"drive.ambient": "5 degC"})])[0].reason
     assert "drive.ambient" in other
 
 
-def test_another_mesh_is_refused(found: Surrogate, tyre: Study) -> None:
+def test_another_mesh_is_refused(trained: Surrogate, tyre: Study) -> None:
     finer = tyre.replace({"mesh.size": "11 mm"})
     with pytest.raises(NotReducibleError, match="mesh"):
-        reduced_balance(found.model, RollingTyre(finer, found.model.base))
+        reduced_balance(trained.model, RollingTyre(finer, trained.model.base))
 
 
 def test_above_its_tolerance_it_falls_back_to_full_runs(tyre: Study) -> None:
@@ -192,38 +192,38 @@ def _named(key: str) -> object:
 
 def test_phases_ramps_and_a_lumped_rim() -> None:
     taxi = study("nasa-taxi-takeoff", {"mesh.size": "25 mm", "output.every": "30 s"})
-    phases = [dict(one) for one in taxi.data["drive"]["phases"]]
-    for one, seconds in zip(phases, (60, 10, 20, 40), strict=True):
-        one["duration"] = f"{seconds} s"
+    phases = [dict(variant) for variant in taxi.data["drive"]["phases"]]
+    for variant, seconds in zip(phases, (60, 10, 20, 40), strict=True):
+        variant["duration"] = f"{seconds} s"
     short = taxi.replace({"drive.phases": phases})
     plan = plan_of(short, {"materials.tread.loss_tangent.value": {"factor": [0.8, 1.2]}}, sample="sobol", count=12)
-    found = surrogate(plan, tolerance=0.05)
-    full = run(plan.study.replace(plan.variants[7]), like=found.model.base)
-    ((_, one),) = reduced_outcomes(found.model, [plan.study.replace(plan.variants[7])])
-    assert isinstance(one, Variant)
-    assert temperature_error(answers(one), answers(full)) < 0.05
-    assert np.abs(one.result.history.values - full.history.values).max() < 0.1
-    assert one.result.heat_budget.imbalance < 1e-10
-    assert one.rolling_resistance.phase == full.rolling_resistance.phase
+    trained = surrogate(plan, tolerance=0.05)
+    full = run(plan.study.replace(plan.variants[7]), like=trained.model.base)
+    ((_, variant),) = reduced_outcomes(trained.model, [plan.study.replace(plan.variants[7])])
+    assert isinstance(variant, Variant)
+    assert temperature_error(answers(variant), answers(full)) < 0.05
+    assert np.abs(variant.result.history.values - full.history.values).max() < 0.1
+    assert variant.result.heat_budget.imbalance < 1e-10
+    assert variant.rolling_resistance.phase == full.rolling_resistance.phase
 
 
 def test_a_full_section_is_its_half_twice(tyre: Study) -> None:
     whole = tyre.replace({"mesh.section": "full", "drive.duration": "60 s"})
     plan = plan_of(whole, {"drive.ambient": ("15 degC", "25 degC")}, sample="sobol", count=12)
-    found = surrogate(plan, tolerance=0.02)
+    trained = surrogate(plan, tolerance=0.02)
     both = whole.replace({"drive.ambient": "18 degC"})
-    reduced = found.answers([both])[0].answers
+    reduced = trained.answers([both])[0].answers
     half = answers(run(both.replace({"mesh.section": "half"})))
     assert reduced["hottest_degC"] == pytest.approx(half["hottest_degC"], abs=0.05)
     assert reduced["heat_J"] == pytest.approx(half["heat_J"], rel=2e-3)
 
 
-def test_the_hottest_place_is_found_where_training_never_saw_it(found: Surrogate, plan: Plan) -> None:
+def test_the_hottest_place_is_found_where_training_never_saw_it(trained: Surrogate, plan: Plan) -> None:
     from dataclasses import replace
 
     studies = [plan.study.replace(plan.variants[2])]
-    blind = replace(found.model, hot={region: dofs[:1] for region, dofs in found.model.regions.items()})
-    ((_, seen),) = reduced_outcomes(found.model, studies)
+    blind = replace(trained.model, hot={region: dofs[:1] for region, dofs in trained.model.regions.items()})
+    ((_, seen),) = reduced_outcomes(trained.model, studies)
     ((_, looked),) = reduced_outcomes(blind, studies)
     assert isinstance(seen, Variant)
     assert isinstance(looked, Variant)
@@ -233,11 +233,11 @@ def test_the_hottest_place_is_found_where_training_never_saw_it(found: Surrogate
     assert np.array_equal(looked.times, output_times(looked.tyre)[0])
 
 
-def test_a_model_travels_as_arrays(found: Surrogate, plan: Plan) -> None:
+def test_a_model_travels_as_arrays(trained: Surrogate, plan: Plan) -> None:
     import pickle
 
-    packed = pickle.loads(pickle.dumps(pack(found.model, plan.packed)))
+    packed = pickle.loads(pickle.dumps(pack(trained.model, plan.packed)))
     there = perform_reduced(ReducedTask([plan.variants[1]], None), packed)[0].answers
-    here = found.answers([plan.study.replace(plan.variants[1])])[0].answers
+    here = trained.answers([plan.study.replace(plan.variants[1])])[0].answers
     assert temperature_error(there, here) < 1e-9
     assert json.dumps(there)

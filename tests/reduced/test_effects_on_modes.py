@@ -36,9 +36,9 @@ SPEEDS = {"drive.speed": ("12 mph", "25 mph")}
 )
 def test_studies_with_effects_are_met(effects: list[dict[str, object]]) -> None:
     tyre = study("nasa-22x5.5-8pr", {**SHORT, "effects": effects})
-    found = surrogate(plan_of(tyre, SPEEDS, sample="sobol", count=12), tolerance=0.02)
+    trained = surrogate(plan_of(tyre, SPEEDS, sample="sobol", count=12), tolerance=0.02)
     fresh = tyre.replace({"drive.speed": "21.3 mph"})
-    reduced, full = found.answers([fresh])[0].answers, answers(run(fresh))
+    reduced, full = trained.answers([fresh])[0].answers, answers(run(fresh))
     plain = answers(run(fresh.replace({"effects": []})))
     assert temperature_error(plain, full) > 0.5
     assert temperature_error(reduced, full) < 0.02
@@ -51,32 +51,32 @@ def plain() -> Study:
 
 
 def test_an_effect_changes_nothing_for_those_beside_it(plain: Study) -> None:
-    found = surrogate(plan_of(plain, SPEEDS, sample="sobol", count=12), tolerance=0.02)
+    trained = surrogate(plan_of(plain, SPEEDS, sample="sobol", count=12), tolerance=0.02)
     acted = plain.replace({"effects": [{"name": "loss-speed-exponent", "exponent": 0.3}]})
     # Marched side by side, each has its own windows' sources: tables where the cycle alone heats, calls where not.
-    together = reduced_answers(found.model, [plain, acted, plain], None)
-    alone = [reduced_answers(found.model, [one], None)[0] for one in (plain, acted)]
-    first, second, third = (one.answers for one in together)
+    together = reduced_answers(trained.model, [plain, acted, plain], None)
+    alone = [reduced_answers(trained.model, [outcome], None)[0] for outcome in (plain, acted)]
+    first, second, third = (outcome.answers for outcome in together)
     assert temperature_error(first, third) < 1e-9
-    for one, other in ((first, alone[0].answers), (second, alone[1].answers)):
-        assert temperature_error(one, other) < 5e-3
+    for outcome, other in ((first, alone[0].answers), (second, alone[1].answers)):
+        assert temperature_error(outcome, other) < 5e-3
     assert temperature_error(first, second) > 0.5
 
 
 def test_films_that_follow_a_constant_drive_are_asked_for_once(plain: Study) -> None:
-    found = surrogate(plan_of(plain, SPEEDS, sample="sobol", count=12), tolerance=0.02)
-    base = found.model.base
+    trained = surrogate(plan_of(plain, SPEEDS, sample="sobol", count=12), tolerance=0.02)
+    base = trained.model.base
     for effect, constant in (
         ({"name": "gas-mixing", "gain": 2.0}, True),
         ({"name": "ambient-drift", "rate": "40 delta_degC/hour"}, False),
     ):
-        balance = reduced_balance(found.model, RollingTyre(plain.replace({"effects": [effect]}), base))
+        balance = reduced_balance(trained.model, RollingTyre(plain.replace({"effects": [effect]}), base))
         assert steady(balance, 0) is constant
-        solution = integrate(Batch(found.model, [balance]))
+        solution = integrate(Batch(trained.model, [balance]))
         assert solution.windows
         assert all(window.steady is constant for window in solution.windows)
-        moments = [Batch(found.model, [balance]).boundary_data(t) for t in (1.0, 77.0, 150.0)]
-        assert all(np.array_equal(one.sinks, moments[0].sinks) for one in moments) is constant
+        moments = [Batch(trained.model, [balance]).boundary_data(t) for t in (1.0, 77.0, 150.0)]
+        assert all(np.array_equal(outcome.sinks, moments[0].sinks) for outcome in moments) is constant
 
 
 def test_tan_delta_over_frequency_is_met() -> None:
@@ -87,9 +87,9 @@ def test_tan_delta_over_frequency_is_met() -> None:
             "mesh.size": "8 mm", "mesh.element": "P1", "drive.duration": "200 s", "output.every": "20 s",
         },
     )  # fmt: skip
-    found = surrogate(
+    trained = surrogate(
         plan_of(passenger, {"drive.speed": ("60 km/h", "110 km/h")}, sample="sobol", count=12), tolerance=0.02
     )
     fresh = passenger.replace({"drive.speed": "93 km/h"})
-    reduced, full = found.answers([fresh])[0].answers, answers(run(fresh))
+    reduced, full = trained.answers([fresh])[0].answers, answers(run(fresh))
     assert temperature_error(reduced, full) < 0.02

@@ -18,14 +18,14 @@ def truth(seed: int, card: RigCard, *, linear: bool) -> Truth:
     slopes = rng.normal(0.0, 1.5e-3, 4) * (rng.random(4) < 0.5) if linear else np.zeros(4)
     layers = tuple(
         TrueLayer(
-            one.thickness,
-            one.density.value,
-            one.conductivity.value * float(np.exp(rng.uniform(-0.35, 0.35))),
-            one.specific_heat.value * float(np.exp(rng.uniform(-0.25, 0.25))),
+            layer.thickness,
+            layer.density.value,
+            layer.conductivity.value * float(np.exp(rng.uniform(-0.35, 0.35))),
+            layer.specific_heat.value * float(np.exp(rng.uniform(-0.25, 0.25))),
             float(slopes[2 * i]),
             float(slopes[2 * i + 1]),
         )
-        for i, one in enumerate(card.layers)
+        for i, layer in enumerate(card.layers)
     )
     laser, around, couple = card.laser, card.surroundings, card.sensors["interface"]
     names = ("outer", "inner", "interface")
@@ -59,9 +59,9 @@ def measured(seed: int, card: RigCard, true: Truth) -> list[MeasuredRun]:
 
 def properties(card: RigCard, true: Truth) -> dict[str, float]:
     """True conductivity and specific heat by the name of their parameter, at the reference temperature."""
-    found = {}
-    for layer, own in zip(card.layers, true.layers, strict=True):
+    values = {}
+    for layer, true_layer in zip(card.layers, true.layers, strict=True):
         T = layer.reference_temperature
-        found[f"{layer.name}.conductivity"] = float(own.conductivity(T))
-        found[f"{layer.name}.specific_heat"] = float(own.capacity(T)) / own.density
-    return found
+        values[f"{layer.name}.conductivity"] = float(true_layer.conductivity(T))
+        values[f"{layer.name}.specific_heat"] = float(true_layer.capacity(T)) / true_layer.density
+    return values

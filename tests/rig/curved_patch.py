@@ -93,7 +93,7 @@ class CurvedPatch:
         self.places = skfem.Basis(straight, element, intorder=1).doflocs
         mesh = skfem.MeshHex(self.bent(straight.p), straight.t)
         middle = straight.p[2, straight.t].mean(axis=0)
-        borders = np.concatenate([[0.0], np.cumsum([one.thickness for one in t.layers])])
+        borders = np.concatenate([[0.0], np.cumsum([part.thickness for part in t.layers])])
         self.n = self.places.shape[1]
         self.volumes = []
         for layer, a, b in zip(t.layers, borders, borders[1:], strict=False):
@@ -112,7 +112,7 @@ class CurvedPatch:
         fine = [
             skfem.FacetBasis(mesh, element, facets=f, quadrature=(points, np.full(196, 1 / 196))) for f in (top, bottom)
         ]
-        self.beam, self.cameras = self._beam(fine[0]), [self._camera(one) for one in fine]
+        self.beam, self.cameras = self._beam(fine[0]), [self._camera(part) for part in fine]
         self.couple = self._thermocouple()
 
     def bent(self, p: np.ndarray) -> np.ndarray:
@@ -158,12 +158,12 @@ class CurvedPatch:
         return weights
 
     def _mass(self, T: np.ndarray) -> csr_matrix:
-        return sum(V.T @ (V.multiply((w * one.capacity(V @ T))[:, None])).tocsr() for one, V, _, w in self.volumes)
+        return sum(V.T @ (V.multiply((w * layer.capacity(V @ T))[:, None])).tocsr() for layer, V, _, w in self.volumes)
 
     def _stiffness(self, T: np.ndarray) -> csr_matrix:
         total = sum(
-            G.T @ (G.multiply((w * one.conductivity(V @ T))[:, None])).tocsr()
-            for one, V, slopes, w in self.volumes
+            G.T @ (G.multiply((w * layer.conductivity(V @ T))[:, None])).tocsr()
+            for layer, V, slopes, w in self.volumes
             for G in slopes
         )
         for V, w, factor in self.faces:
@@ -175,8 +175,8 @@ class CurvedPatch:
         """Heat that leaves every unknown, W: conduction, convection, radiation."""
         t = self.truth
         out = np.zeros(self.n)
-        for one, V, slopes, w in self.volumes:
-            k = w * one.conductivity(V @ T)
+        for layer, V, slopes, w in self.volumes:
+            k = w * layer.conductivity(V @ T)
             for G in slopes:
                 out += G.T @ (k * (G @ T))
         for V, w, factor in self.faces:
@@ -192,7 +192,7 @@ class CurvedPatch:
         times, states = [0.0], [T]
         S = self._stiffness(T)
         before, N_before, dt_before = T, S @ T - self._flow(T), 0.0
-        slow = any(one.c_slope for one, *_ in self.volumes)
+        slow = any(layer.c_slope for layer, *_ in self.volumes)
         M = self._mass(T)
         for dt, end in blocks:
             end = min(end, duration)

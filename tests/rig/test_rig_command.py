@@ -38,8 +38,8 @@ def test_from_simulation_to_a_card_that_runs(here: Path, capfd: pytest.CaptureFi
     assert {"readings.png", "patch.png", "summary.json", "low.csv"} == {file.name for file in Path("sim").iterdir()}
     assert main(["rig", "identify", "mine.toml", "sim/low.csv", "--base", "tread=nasa-tread", "--constant"]) == 0
     out = Path("results/rig-mine-identified")
-    told = json.loads((out / "rig.json").read_text(encoding="utf-8"))
-    tread = next(one for one in told["estimates"] if one["name"] == "tread.conductivity")
+    record = json.loads((out / "rig.json").read_text(encoding="utf-8"))
+    tread = next(estimate for estimate in record["estimates"] if estimate["name"] == "tread.conductivity")
     assert tread["low_95"] < 0.25 < tread["high_95"]
     page = (out / "report.html").read_text(encoding="utf-8")
     assert "http" not in page.replace("http-equiv", "")
@@ -52,8 +52,8 @@ def test_from_simulation_to_a_card_that_runs(here: Path, capfd: pytest.CaptureFi
     assert "laser rig" in card.conductivity.source
     assert card.loss_tangent(25.0) == pytest.approx(0.2)
     assert "nasa-tread" in card.notes
-    own = f"materials.tread={out}/materials/tread.toml"
-    assert main(["run", "nasa-22x5.5-8pr", *SHORT, "--no-pictures", "--no-vtk", "--set", own, "--out", "run"]) == 0
+    change = f"materials.tread={out}/materials/tread.toml"
+    assert main(["run", "nasa-22x5.5-8pr", *SHORT, "--no-pictures", "--no-vtk", "--set", change, "--out", "run"]) == 0
     assert Path("run/summary.json").is_file()
     capfd.readouterr()
 
@@ -64,10 +64,10 @@ def test_layers_merge_to_the_same_mass_heat_and_resistance() -> None:
         fewer = merged(card, count)
         assert len(fewer.layers) == count
         for sums in (
-            lambda one: one.thickness,
-            lambda one: one.thickness * one.density.value,
-            lambda one: one.thickness * one.density.value * one.specific_heat.value,
-            lambda one: one.thickness / one.conductivity.value,
+            lambda layer: layer.thickness,
+            lambda layer: layer.thickness * layer.density.value,
+            lambda layer: layer.thickness * layer.density.value * layer.specific_heat.value,
+            lambda layer: layer.thickness / layer.conductivity.value,
         ):
             assert sum(map(sums, fewer.layers)) == pytest.approx(sum(map(sums, card.layers)))
 
@@ -80,11 +80,11 @@ def test_layer_study_improves_with_the_true_layers(tmp_path: Path) -> None:
     coarse = Fineness(2, 5, 2)
     done = simulate(card, seed=1, values={"carcass.conductivity": 0.7}, fineness=coarse)
     tests = [matched(card, run, list(card.sensors)) for run in done.runs.values()]
-    found = study(card, tests, (1, 2), coarse)
-    one, two = found.table().to_dict("records")
-    assert two["transient_misfit_K"] < 0.5 * one["transient_misfit_K"]
-    assert two["log_evidence"] > one["log_evidence"] + 10
-    assert {file.name for file in save_layers(found, tmp_path / "out").iterdir()} == {
+    comparison = study(card, tests, (1, 2), coarse)
+    single, two = comparison.table().to_dict("records")
+    assert two["transient_misfit_K"] < 0.5 * single["transient_misfit_K"]
+    assert two["log_evidence"] > single["log_evidence"] + 10
+    assert {file.name for file in save_layers(comparison, tmp_path / "out").iterdir()} == {
         "layers.csv",
         "layers.png",
         "summary.json",

@@ -39,44 +39,44 @@ def test_curved_patch_in_3d_is_identified() -> None:
     card = rig(heating=500.0, cooling=150.0)
     real = replace(truth(0, card, linear=False), lines=(0.0, 2.5, 5.0, 8.0, 16.0))
     runs = measured(0, card, real)
-    found = identify(
+    identification = identify(
         card, tests=[matched(card, run, list(card.sensors)) for run in runs], linear=False, fineness=MIDDLE
     )
     for name, value in properties(card, real).items():
-        one = found.by_name[name]
-        assert one.verdict == "determined", name
-        assert one.holds(value), name
-        assert one.value == pytest.approx(value, rel=0.10), name
-    assert found.by_name["spot_across"].holds(real.spot_offset)
-    for block in found.fit.blocks:
+        estimate = identification.by_name[name]
+        assert estimate.verdict == "determined", name
+        assert estimate.holds(value), name
+        assert estimate.value == pytest.approx(value, rel=0.10), name
+    assert identification.by_name["spot_across"].holds(real.spot_offset)
+    for block in identification.fit.blocks:
         assert np.sqrt(np.mean(block.residual**2)) < 1.3 * card.sensors[block.series.sensor].noise
-    assert sum(block.series.counts.sum() for block in found.fit.blocks) == 3 * 143
+    assert sum(block.series.counts.sum() for block in identification.fit.blocks) == 3 * 143
 
 
 def test_evidence_finds_what_is_linear_and_leaves_the_rest() -> None:
     """The tread's conductivity falls by 0.2 % per kelvin: chosen, alone, with its value."""
     card = rig(heating=150.0, cooling=0.0)
-    found = of_itself(card, {"tread.conductivity_slope": -2e-3, "tread.conductivity": 0.28})
-    assert found.selection.chosen == ("tread.conductivity_slope",)
-    assert found.by_name["tread.conductivity_slope"].holds(-2e-3)
-    assert found.by_name["tread.conductivity"].holds(0.28)
-    assert found.selection.log_evidence[found.selection.chosen] > 3
-    assert any("Linear in temperature: conductivity of tread" in words for words in found.words)
+    identification = of_itself(card, {"tread.conductivity_slope": -2e-3, "tread.conductivity": 0.28})
+    assert identification.selection.chosen == ("tread.conductivity_slope",)
+    assert identification.by_name["tread.conductivity_slope"].holds(-2e-3)
+    assert identification.by_name["tread.conductivity"].holds(0.28)
+    assert identification.selection.log_evidence[identification.selection.chosen] > 3
+    assert any("Linear in temperature: conductivity of tread" in words for words in identification.words)
 
 
 def test_a_short_test_without_inner_view_says_what_it_cannot_determine() -> None:
     card = rig(heating=60.0, cooling=0.0)
-    found = of_itself(card, without=("inner", "interface"), linear=False)
-    unknown = {one.name for one in found.properties if one.verdict == "not determined"}
+    identification = of_itself(card, without=("inner", "interface"), linear=False)
+    unknown = {estimate.name for estimate in identification.properties if estimate.verdict == "not determined"}
     assert {"carcass.conductivity", "carcass.specific_heat"} <= unknown
-    assert sum(words.startswith("NOT DETERMINED") for words in found.words) == len(unknown)
-    said = " ".join(found.words)
-    assert "No sensor measures the inner face." in said
-    assert "The test is short: the readings have 60 s" in said
+    assert sum(words.startswith("NOT DETERMINED") for words in identification.words) == len(unknown)
+    report = " ".join(identification.words)
+    assert "No sensor measures the inner face." in report
+    assert "The test is short: the readings have 60 s" in report
     for name in unknown:
-        one = found.by_name[name]
-        assert one.holds(one.prior_value)
-        assert one.high / one.low > 1.5
+        estimate = identification.by_name[name]
+        assert estimate.holds(estimate.prior_value)
+        assert estimate.high / estimate.low > 1.5
 
 
 def test_unknown_absorbed_power_is_unknown_scale() -> None:
@@ -88,6 +88,6 @@ def test_unknown_absorbed_power_is_unknown_scale() -> None:
     doubtful = of_itself(card.model_copy(update={"laser": laser, "surroundings": around}), linear=False)
     for name in ("tread.conductivity", "tread.specific_heat"):
         assert doubtful.by_name[name].relative_sd > 1.5 * sure.by_name[name].relative_sd
-    names = [one.name for one in doubtful.estimates]
+    names = [estimate.name for estimate in doubtful.estimates]
     pair = names.index("tread.conductivity"), names.index("absorptance")
     assert doubtful.correlation[pair] > 0.9

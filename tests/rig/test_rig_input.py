@@ -47,7 +47,7 @@ IMPOSSIBLE = [
 ]
 
 
-@pytest.mark.parametrize(("old", "new", "words"), IMPOSSIBLE, ids=[one[2][:28] for one in IMPOSSIBLE])
+@pytest.mark.parametrize(("old", "new", "words"), IMPOSSIBLE, ids=[row[2][:28] for row in IMPOSSIBLE])
 @pytest.mark.parametrize("command", [["simulate"], ["identify"], ["layers"]], ids=lambda c: c[0])
 def test_impossible_rig(
     command: list[str], old: str, new: str, words: str, here: Path, capfd: pytest.CaptureFixture[str]
@@ -80,7 +80,7 @@ BAD = [
 ]
 
 
-@pytest.mark.parametrize(("table", "options", "words"), BAD, ids=[one[2][:28] for one in BAD])
+@pytest.mark.parametrize(("table", "options", "words"), BAD, ids=[row[2][:28] for row in BAD])
 def test_bad_table(table: str, options: list[str], words: str, here: Path, capfd: pytest.CaptureFixture[str]) -> None:
     (here / "low.csv").write_text(table, encoding="utf-8")
     assert main(["rig", "identify", "trtlab", "low.csv", *options, "--out", "out"]) == 2
@@ -125,10 +125,10 @@ def test_readings_of_a_fast_logger_are_averaged_but_not_over_a_switch(here: Path
     rows = [f"{a},{'' if g else b},30,30" for a, b, g in zip(t, outer, gap, strict=True)]
     (here / "low.csv").write_text("time [s],outer [degC],inner [degC],interface [degC]\n" + "\n".join(rows), "utf-8")
     (test,) = read(card, ["low.csv"])
-    one = next(series for series in test.series if series.sensor == "outer")
-    assert one.times.size <= 402
-    assert one.counts.sum() == (~gap).sum()
-    assert float(one.counts @ one.readings) == pytest.approx(float(outer[~gap].sum()))
-    before = one.times < 60.0
-    assert float(one.counts[before].sum()) == (~gap & (t < 60.0)).sum()
-    assert one.matrix.sum(axis=1) == pytest.approx(np.ones(one.times.size))
+    outer_series = next(series for series in test.series if series.sensor == "outer")
+    assert outer_series.times.size <= 402
+    assert outer_series.counts.sum() == (~gap).sum()
+    assert float(outer_series.counts @ outer_series.readings) == pytest.approx(float(outer[~gap].sum()))
+    before = outer_series.times < 60.0
+    assert float(outer_series.counts[before].sum()) == (~gap & (t < 60.0)).sum()
+    assert outer_series.matrix.sum(axis=1) == pytest.approx(np.ones(outer_series.times.size))

@@ -32,12 +32,12 @@ def test_centre_of_a_disc_on_a_half_space() -> None:
     heated = patch(0.05, 0.08, outer_film=0.0, inner_film=0.0, emissivity=0.0)
     grid = heated.grid(Fineness(5, 10, 30))
     times = np.array([0.0, 3.0, 10.0, 30.0, 100.0, 300.0])
-    found = heated.heated(grid, times, 0.01).values @ grid.at(0.0, 0.0).toarray()[0] - 20.0
+    rise = heated.heated(grid, times, 0.01).values @ grid.at(0.0, 0.0).toarray()[0] - 20.0
     diffusivity, q = 0.25 / (1150 * 1700), 0.5 / (np.pi * 5e-3**2)
     x = 5e-3 / (2 * np.sqrt(diffusivity * times[1:]))
     ierfc = np.exp(-(x**2)) / np.sqrt(np.pi) - x * erfc(x)
     exact = 2 * q * np.sqrt(diffusivity * times[1:]) / 0.25 * (1 / np.sqrt(np.pi) - ierfc)
-    assert found[1:] == pytest.approx(exact, rel=4e-3)
+    assert rise[1:] == pytest.approx(exact, rel=4e-3)
 
 
 @pytest.mark.parametrize("profile", ["uniform", "gaussian"])
@@ -147,8 +147,8 @@ def test_round_shells_stand_for_a_doubly_curved_crown() -> None:
     times = TIMES[TIMES <= 1110.0]
     real = truth.clean(0.5, times)
     misses = []
-    for own in (radii, (None, None)):
-        crown = card.patch.model_copy(update={"circumferential_radius": own[0], "lateral_radius": own[1]})
+    for curvature in (radii, (None, None)):
+        crown = card.patch.model_copy(update={"circumferential_radius": curvature[0], "lateral_radius": curvature[1]})
         twin = Twin(card.model_copy(update={"patch": crown}), tuple(card.sensors))
         clock = Clock(card.phases, 1110.0)
         parameters = parameters_of(card, tuple(card.sensors))

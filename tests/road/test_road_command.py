@@ -68,14 +68,14 @@ def test_run_warns_where_a_contact_is_deep(capfd, here):
     """At 5 mm/s a contact lasts over half a minute and reaches millimetres; at the study's 20 mph a tenth of one."""
     bare = ["--no-vtk", "--no-pictures", "--out", "out", "--set", "drive.duration=10 s"]
     bare += ["--set", "mesh.size=4 mm", "--set", "mesh.element=P1"]
-    found = {}
+    summaries = {}
     for speed in ("5 mm/s", "20 mph"):
         assert main(["run", "nasa-22x5.5-8pr", *bare, "--set", f"drive.speed={speed}"]) == 0
         err = capfd.readouterr().err
         summary = json.loads((here / "out" / "summary.json").read_text(encoding="utf-8"))
         assert err == "".join(f"tyrefem: warning: {warning}\n" for warning in summary["warnings"])
-        found[speed] = summary
-    assert len(found["5 mm/s"]["warnings"]) == 1
-    assert "of its thickness at the crown" in found["5 mm/s"]["warnings"][0]
-    assert found["20 mph"]["warnings"] == []
-    assert found["20 mph"]["phases"][0]["propagation_depth"] < 2e-4
+        summaries[speed] = summary
+    assert len(summaries["5 mm/s"]["warnings"]) == 1
+    assert "of its thickness at the crown" in summaries["5 mm/s"]["warnings"][0]
+    assert summaries["20 mph"]["warnings"] == []
+    assert summaries["20 mph"]["phases"][0]["propagation_depth"] < 2e-4

@@ -56,8 +56,8 @@ def test_outline_polygons_converge_to_the_integral_with_order_two(name: str) -> 
     section = load(name)
     errors = []
     for spacing in (2e-3, 1e-3, 5e-4):
-        found = {region: sum(map(_area, section.outline(region, spacing))) for region in section.regions}
-        errors.append(max(abs(found[region] - section.area(region)) for region in section.regions))
+        areas = {region: sum(map(_area, section.outline(region, spacing))) for region in section.regions}
+        errors.append(max(abs(areas[region] - section.area(region)) for region in section.regions))
     assert np.log2(errors[0] / errors[1]) > 1.8
     assert np.log2(errors[1] / errors[2]) > 1.8
 

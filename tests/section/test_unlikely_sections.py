@@ -28,13 +28,13 @@ def moved(*changes: tuple[int, int, float]) -> dict[str, Any]:
     return drawn(points)
 
 
-def said(reference: object) -> list[str]:
+def warnings_of(reference: object) -> list[str]:
     return [str(warning) for warning in load(reference).warnings]
 
 
 @pytest.mark.parametrize("name", library.names("section"))
 def test_no_shipped_section_is_unlikely(name: str) -> None:
-    assert said(name) == []
+    assert warnings_of(name) == []
     assert load(name).as_full().warnings == ()
 
 
@@ -49,7 +49,7 @@ class TestNominalWidth:
             tf.study(RADIAL, {"section.nominal_width": "255 mm"})
 
     def test_the_same_in_another_unit_changes_nothing(self) -> None:
-        assert said({"base": RADIAL, "parameters": {"nominal_width": "0.205 m"}}) == []
+        assert warnings_of({"base": RADIAL, "parameters": {"nominal_width": "0.205 m"}}) == []
 
     def test_with_points_of_its_own(self) -> None:
         wider = POINTS * [1.0, 255 / 205]
@@ -69,17 +69,19 @@ class TestNominalWidth:
         wider = drawn(POINTS * [1.0, 1.5])
         layers = {str(i): {"s": {"unit": "mm", "values": [0, 290]}, "thickness": {"unit": "mm", "values": [1.5, 1.5]}}
                   for i in range(7)}  # fmt: skip
-        (warning,) = [one for one in said({**wider, "layers": layers}) if "nominal" in one]
+        (warning,) = [text for text in warnings_of({**wider, "layers": layers}) if "nominal" in text]
         assert warning.startswith("parameters.nominal_width: the section is 3")
 
 
 def test_ratings_of_another_tyre() -> None:
     """What `new section --from` leaves behind: the load law would take width and diameter of the old tyre."""
-    assert said({"base": RADIAL, "parameters": {"outer_diameter": "760 mm"}}) == [
+    assert warnings_of({"base": RADIAL, "parameters": {"outer_diameter": "760 mm"}}) == [
         "rating.diameter: the rated diameter is 632 mm and the outer diameter 760 mm: "
         "check that the ratings are of this tyre"
     ]
-    assert said({"base": RADIAL, "rating": {"width": "255 mm"}})[0].startswith("rating.width: the rated width is 255")
+    assert warnings_of({"base": RADIAL, "rating": {"width": "255 mm"}})[0].startswith(
+        "rating.width: the rated width is 255"
+    )
 
 
 def liner(stations: list[float]) -> dict[str, Any]:
@@ -90,16 +92,16 @@ def liner(stations: list[float]) -> dict[str, Any]:
 def test_tables_beyond_the_meridian() -> None:
     end = load(RADIAL).line.length * 1e3
     assert 196 < end < 198
-    assert said(liner([0, 200])) == []
-    (rows,) = said(liner([0, 198, 210, 220]))
+    assert warnings_of(liner([0, 200])) == []
+    (rows,) = warnings_of(liner([0, 198, 210, 220]))
     assert rows.startswith("layers.0.s: the table of 'liner' goes on to 220 mm")
     assert rows.endswith("its last 2 rows have no effect")
-    (one,) = said(liner([0, 300]))
-    assert one.endswith("but the meridian ends at 196.9 mm: it is cut there")
+    (warning,) = warnings_of(liner([0, 300]))
+    assert warning.endswith("but the meridian ends at 196.9 mm: it is cut there")
 
 
 def test_a_table_that_is_stretched_ends_where_the_meridian_does() -> None:
-    assert said({"base": BIAS, "parameters": {"meridian_length": "5 in"}}) == []
+    assert warnings_of({"base": BIAS, "parameters": {"meridian_length": "5 in"}}) == []
 
 
 class TestMeridian:
@@ -110,19 +112,19 @@ class TestMeridian:
         for _ in range(5):
             noise = rng.uniform(-0.05, 0.05, POINTS.shape)
             noise[0, 1] = 0.0
-            assert said(drawn(POINTS + noise)) == []
+            assert warnings_of(drawn(POINTS + noise)) == []
 
     def test_a_hollow_in_the_sidewall(self) -> None:
-        (hollow, *_) = said(moved((9, 1, 94.2), (10, 1, 96.2), (11, 1, 98.6)))
+        (hollow, *_) = warnings_of(moved((9, 1, 94.2), (10, 1, 96.2), (11, 1, 98.6)))
         assert hollow.startswith("line.points: the meridian is hollow at s = 87 to 91 mm (3 deg), s = 102 to 111 mm")
         assert "inflated, the wall turns there" in hollow
 
     def test_a_hollow_crown(self) -> None:
-        (hollow,) = said(moved((1, 0, 304.0)))
+        (hollow,) = warnings_of(moved((1, 0, 304.0)))
         assert hollow.startswith("line.points: the meridian is hollow at s = 0 to 10 mm (8 deg)")
 
     def test_a_kink(self) -> None:
-        *_, kink = said(moved((10, 1, 98.5)))
+        *_, kink = warnings_of(moved((10, 1, 98.5)))
         assert kink.startswith("line.points: the meridian has a kink at s = 104 mm (27 deg, radius 5.")
 
     def test_the_wall_turns_where_it_is_hollow(self) -> None:

@@ -29,8 +29,8 @@ def test_small_slip_is_equation_5():
     assert passage().exit_rise(flux) == pytest.approx(sliding.shared_rise(flux, time, RUBBER, ASPHALT), rel=1e-12)
     assert passage().tread_share == pytest.approx(sliding.share_into(RUBBER, ASPHALT), rel=1e-12)
     # The tread's own share warms it as much as the whole heat warms the two.
-    own = sliding.surface_rise(passage().tread_share * flux, time, RUBBER)
-    assert own == pytest.approx(passage().exit_rise(flux), rel=1e-12)
+    rise = sliding.surface_rise(passage().tread_share * flux, time, RUBBER)
+    assert rise == pytest.approx(passage().exit_rise(flux), rel=1e-12)
 
 
 def test_any_slip_warms_both_surfaces_alike():

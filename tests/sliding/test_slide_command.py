@@ -20,26 +20,26 @@ def here(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> Path:
     return tmp_path
 
 
-def said(capfd: pytest.CaptureFixture[str], *arguments: str) -> Any:
+def printed(capfd: pytest.CaptureFixture[str], *arguments: str) -> Any:
     assert main(["slide", *arguments, "--json"]) == 0
     return json.loads(capfd.readouterr().out)
 
 
 def test_rise_by_load_is_that_by_pressure(capfd: pytest.CaptureFixture[str]) -> None:
-    by_load = said(
+    by_load = printed(
         capfd, "rise", *PAD, "--load", "12.8 kgf", "--breadth", "153 mm", "--behind", "15 mm", "--slid", "1 m"
     )
     assert by_load["rise_behind_K"] == pytest.approx(1.113, abs=1e-3)
     assert by_load["exit_rise_shared_K"] == pytest.approx(by_load["exit_rise_K"] * by_load["share_into_track_at_start"])
     pressure = f"{by_load['contact_pressure_Pa']} Pa"
-    assert said(capfd, "rise", *PAD, "--pressure", pressure)["exit_rise_K"] == pytest.approx(by_load["exit_rise_K"])
+    assert printed(capfd, "rise", *PAD, "--pressure", pressure)["exit_rise_K"] == pytest.approx(by_load["exit_rise_K"])
 
 
 def test_tables_as_text_and_json_name_what_does_not_follow(here: Path, capfd: pytest.CaptureFixture[str]) -> None:
     assert main(["slide", "tables", "--out", "wood.png"]) == 0
     assert (here / "wood.png").read_bytes().startswith(b"\x89PNG")
     text = capfd.readouterr().out
-    rows = said(capfd, "tables")["rubber_on_wood"]
+    rows = printed(capfd, "tables")["rubber_on_wood"]
     failed = [row["name"] for row in rows if not row["printed_follows"]]
     assert (
         [line.split()[0] for line in text.splitlines() if "does NOT follow" in line]
@@ -49,17 +49,17 @@ def test_tables_as_text_and_json_name_what_does_not_follow(here: Path, capfd: py
 
 
 def test_locked_wheel_is_printed_and_drawn(here: Path, capfd: pytest.CaptureFixture[str]) -> None:
-    told = said(capfd, "locked-wheel", "--out", "skid.png", "--friction", "0.9")
+    record = printed(capfd, "locked-wheel", "--out", "skid.png", "--friction", "0.9")
     assert (here / "skid.png").read_bytes().startswith(b"\x89PNG")
-    assert [row["mean_rise_K"] > 200 for row in told["rows"] if row["speed_km_h"] >= 50] == [True] * 5
-    rises = [row["uncapped_exit_rise_K"] for row in told["rows"]]
+    assert [row["mean_rise_K"] > 200 for row in record["rows"] if row["speed_km_h"] >= 50] == [True] * 5
+    rises = [row["uncapped_exit_rise_K"] for row in record["rows"]]
     assert rises == sorted(rises)
 
 
 @pytest.mark.parametrize(
     ("arguments", "words"),
     [
-        (["rise", *PAD], "--pressure and --load"),
+        (["rise", *PAD], "--pressure or --load"),
         (["rise", *PAD, "--load", "10 N"], "--breadth"),
         (["rise", *PAD, "--pressure", "1 m"], "--pressure"),
         (["rise", *PAD, "--pressure", "1 bar", "--track", "iec"], "did you mean 'ice'"),

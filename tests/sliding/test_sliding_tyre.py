@@ -191,8 +191,10 @@ def test_a_locked_wheel_makes_no_hysteresis_and_its_section_is_all_the_time_on_t
 
 
 def test_a_mesh_too_coarse_for_a_skid_is_said():
-    said = [line for line in skid("50 km/h", "0.05 s", "0.01 s", size="8 mm").warnings if "smaller mesh.size" in line]
-    assert len(said) == 1
+    warnings = [
+        line for line in skid("50 km/h", "0.05 s", "0.01 s", size="8 mm").warnings if "smaller mesh.size" in line
+    ]
+    assert len(warnings) == 1
     assert not [line for line in skid("50 km/h", "1 s", "0.2 s").warnings if "mesh.size" in line]
 
 
@@ -219,11 +221,11 @@ def test_summary_tables_and_terminal_name_the_contact(tmp_path, capsys, monkeypa
     options = ["--set", "mesh.size=8 mm", "--set", "drive.duration=5 s", "--set", "drive.slip_ratio=0.3"]
     assert main(["run", NAME, *options, "--no-pictures", "--no-vtk", "--out", "out"]) == 0
     out = capsys.readouterr().out
-    found = json.loads((tmp_path / "out/summary.json").read_text(encoding="utf-8"))
-    entry = found["sliding"]["phases"][0]
+    record = json.loads((tmp_path / "out/summary.json").read_text(encoding="utf-8"))
+    entry = record["sliding"]["phases"][0]
     assert f"{entry['exit_edge_highest']:.1f} degC at the exit edge" in out
     assert f"mean tread {entry['tread_highest']:.1f} degC" in out
-    assert found["heat_budget"]["sliding"]["friction on the road"]["energy_J"] > 0
+    assert record["heat_budget"]["sliding"]["friction on the road"]["energy_J"] > 0
     table = (tmp_path / "out/sliding.csv").read_text(encoding="utf-8")
     assert table.startswith("phase,time_s,sliding_speed_m_s,")
 

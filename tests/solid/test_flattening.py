@@ -42,34 +42,34 @@ def pressed(deflection: float) -> Flattened:
     return flatten(bias_tyre(), deflection)
 
 
-def potential(found: Flattened) -> float:
+def potential(flattened: Flattened) -> float:
     """Elastic energy less p V, J of the whole tyre; V per radian is int r^2 dz / 2 along the wall."""
-    body, wall = found.tyre.body, found.tyre.body.wall
-    (r, _, dz), _, _, weights = wall._along(found.places)
+    body, wall = flattened.tyre.body, flattened.tyre.body.wall
+    (r, _, dz), _, _, weights = wall._along(flattened.places)
     volume = float((wall.outwards[:, None] * weights * r * r / 2 * dz).sum())
-    sides = 2 if found.tyre.half else 1
+    sides = 2 if flattened.tyre.half else 1
     # The wall's outward normal points into the gas.
-    return 2 * np.pi * sides * (body.energy(found.displacement) + found.tyre.pressure * volume)
+    return 2 * np.pi * sides * (body.energy(flattened.displacement) + flattened.tyre.pressure * volume)
 
 
 def test_lame_ring_pressed_from_outside() -> None:
     """u = A r + B/r with u(b) = -D and no stress at r = a; pressure of the cylinder and strain energy likewise."""
     bulk, d = 1e8, 1e-6
-    found = flatten(ring(8, bulk), d)
+    flattened = flatten(ring(8, bulk), d)
     lame, a, b = bulk - 2 * SHEAR / 3, INNER, OUTER
     # 2 (lambda + G) A = 2 G B / a^2
     ratio = a**2 * (lame + SHEAR) / SHEAR
     A = -d / (b + ratio / b)
     B = A * ratio
-    r = found.tyre.body.rings.nodes[0]
-    np.testing.assert_allclose(found.displacement[0], A * r + B / r, atol=2e-5 * d)
+    r = flattened.tyre.body.rings.nodes[0]
+    np.testing.assert_allclose(flattened.displacement[0], A * r + B / r, atol=2e-5 * d)
     pressure = -(2 * (lame + SHEAR) * A - 2 * SHEAR * B / b**2)
-    assert found.force == pytest.approx(2 * np.pi * b * HEIGHT * pressure, rel=1e-4)
-    assert found.stiffness == pytest.approx(found.force / d, rel=1e-4)
-    points = found.tyre.body.rings.points[0]
+    assert flattened.force == pytest.approx(2 * np.pi * b * HEIGHT * pressure, rel=1e-4)
+    assert flattened.stiffness == pytest.approx(flattened.force / d, rel=1e-4)
+    points = flattened.tyre.body.rings.points[0]
     hoop, radial = A + B / points**2, A - B / points**2
-    np.testing.assert_allclose(found.strain[2], hoop, atol=1e-3 * np.abs(hoop).max())
-    np.testing.assert_allclose(found.strain[0], radial, atol=5e-3 * np.abs(radial).max())
+    np.testing.assert_allclose(flattened.strain[2], hoop, atol=1e-3 * np.abs(hoop).max())
+    np.testing.assert_allclose(flattened.strain[0], radial, atol=5e-3 * np.abs(radial).max())
 
 
 def test_large_flattening_of_an_incompressible_ring() -> None:
@@ -92,24 +92,24 @@ def test_a_pressed_ring_takes_its_pressure_through() -> None:
     pressure = 2e5
     blown = ring(6, 1e4 * SHEAR, pressure)
     growth = blown.places[0].max() - OUTER
-    found = flatten(blown, growth)
+    flattened = flatten(blown, growth)
     # Incompressible and back at its own radius: stress is -p everywhere, and so is the cylinder's pressure.
-    assert found.force / (2 * np.pi * OUTER * HEIGHT) == pytest.approx(pressure, rel=1e-3)
+    assert flattened.force / (2 * np.pi * OUTER * HEIGHT) == pytest.approx(pressure, rel=1e-3)
 
 
 @pytest.mark.parametrize("deflection", [2e-3, 12e-3])
 def test_complementarity(deflection: float) -> None:
     """No node beyond the cylinder, none pulled by it, and no force across a gap; the inside in balance."""
-    found = pressed(deflection)
-    assert found.gaps.min() > -1e-12
-    assert found.forces.min() >= 0
-    assert (found.forces * found.gaps).max() < 1e-12 * found.force * deflection
-    touched = found.forces > 0
+    flattened = pressed(deflection)
+    assert flattened.gaps.min() > -1e-12
+    assert flattened.forces.min() >= 0
+    assert (flattened.forces * flattened.gaps).max() < 1e-12 * flattened.force * deflection
+    touched = flattened.forces > 0
     assert 0 < touched.sum() < len(touched)
-    body = found.tyre.body
-    residual = body.residual(found.displacement, found.tyre.pressure)
-    residual[2 * found.nodes] += found.forces
-    assert np.abs(residual[body.free]).max() < 1e-8 * found.forces.sum()
+    body = flattened.tyre.body
+    residual = body.residual(flattened.displacement, flattened.tyre.pressure)
+    residual[2 * flattened.nodes] += flattened.forces
+    assert np.abs(residual[body.free]).max() < 1e-8 * flattened.forces.sum()
 
 
 def test_contact_spreads_with_the_deflection() -> None:
@@ -118,19 +118,19 @@ def test_contact_spreads_with_the_deflection() -> None:
 
 def test_force_is_the_derivative_of_the_potential() -> None:
     """d(elastic energy - p V)/dD = F, and dF/dD is the stiffness of the linearised contact."""
-    h, found = 2e-5, pressed(12e-3)
+    h, flattened = 2e-5, pressed(12e-3)
     less, more = (flatten(bias_tyre(), 12e-3 + x, pressed(2e-3)) for x in (-h, h))
     slope = (potential(more) - potential(less)) / (2 * h)
-    assert found.force == pytest.approx(slope, rel=1e-5)
+    assert flattened.force == pytest.approx(slope, rel=1e-5)
     # No node comes into contact between the two.
     assert ((less.forces > 0) == (more.forces > 0)).all()
-    assert found.stiffness == pytest.approx((more.force - less.force) / (2 * h), rel=1e-3)
-    assert found.stiffness > 0
+    assert flattened.stiffness == pytest.approx((more.force - less.force) / (2 * h), rel=1e-3)
+    assert flattened.stiffness > 0
 
 
 def test_newton_is_quadratic_once_the_contact_is_found() -> None:
-    found = flatten(ring(4), 0.05)
-    errors = [[e for e in history[1:] if 1e-8 < e < 0.3] for history in found.residuals]
+    flattened = flatten(ring(4), 0.05)
+    errors = [[e for e in history[1:] if 1e-8 < e < 0.3] for history in flattened.residuals]
     steps = [step for history in errors for step in pairwise(history)]
     assert len(steps) > 1
     for before, after in steps:
@@ -145,9 +145,9 @@ def test_the_way_there_does_not_matter() -> None:
 
 
 def test_no_deflection_is_the_inflated_tyre() -> None:
-    found = flatten(bias_tyre(), 0.0)
-    assert found.force == found.stiffness == found.width == 0
-    assert np.abs(found.strain).max() < 1e-12
+    flattened = flatten(bias_tyre(), 0.0)
+    assert flattened.force == flattened.stiffness == flattened.width == 0
+    assert np.abs(flattened.strain).max() < 1e-12
 
 
 def test_impossible_deflections() -> None:

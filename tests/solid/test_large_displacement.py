@@ -21,9 +21,9 @@ from tyrefem.mechanics.solid.parts import RegionMaterial
 
 def lame(body: Body, pressure: float, shear: float, bulk: float) -> tuple[np.ndarray, np.ndarray]:
     """Computed and exact u_r, plane strain: u = p/(2 G) (r (1 - 2 nu) + b^2/r) / (b^2 - 1), inner radius 1."""
-    found = equilibrium(body, pressure, NewtonChoice(first_step=1.0)).displacement[0]
+    displacement = equilibrium(body, pressure, NewtonChoice(first_step=1.0)).displacement[0]
     r, nu, b = body.rings.nodes[0], (3 * bulk - 2 * shear) / (6 * bulk + 2 * shear), 2.0
-    return found, pressure / (2 * shear) * (r * (1 - 2 * nu) + b**2 / r) / (b**2 - 1)
+    return displacement, pressure / (2 * shear) * (r * (1 - 2 * nu) + b**2 / r) / (b**2 - 1)
 
 
 def random_motion(body: Body, size: float) -> np.ndarray:
@@ -43,15 +43,15 @@ def test_patch(bulk: float) -> None:
 
 
 def test_lame_cylinder() -> None:
-    found, exact = lame(tube(8, neo_hookean(1e6, 1e8)), 1.0, 1e6, 1e8)
-    assert np.abs(found / exact - 1).max() < 2e-5
+    displacement, exact = lame(tube(8, neo_hookean(1e6, 1e8)), 1.0, 1e6, 1e8)
+    assert np.abs(displacement / exact - 1).max() < 2e-5
 
 
 def test_lame_converges_with_the_third_order() -> None:
     errors = []
     for n in (2, 4, 8):
-        found, exact = lame(tube(n, neo_hookean(1e6, 1e8)), 1.0, 1e6, 1e8)
-        errors.append(float(np.sqrt(np.mean((found - exact) ** 2))))
+        displacement, exact = lame(tube(n, neo_hookean(1e6, 1e8)), 1.0, 1e6, 1e8)
+        errors.append(float(np.sqrt(np.mean((displacement - exact) ** 2))))
     orders = np.log2(np.divide(errors[:-1], errors[1:]))
     assert (orders > 2.7).all()
 
@@ -60,8 +60,8 @@ def test_no_locking() -> None:
     """The error does not grow as nu goes from 0.4 to 0.49999."""
     errors = []
     for bulk in (4.67e6, 1e8, 1e9, 5e10):
-        found, exact = lame(tube(4, neo_hookean(1e6, bulk)), 100.0, 1e6, bulk)
-        errors.append(np.abs(found / exact - 1).max())
+        displacement, exact = lame(tube(4, neo_hookean(1e6, bulk)), 100.0, 1e6, bulk)
+        errors.append(np.abs(displacement / exact - 1).max())
     assert max(errors) < 1e-3
     assert errors[-1] < 3 * errors[0]
 
@@ -77,8 +77,8 @@ def test_neo_hookean_tube() -> None:
     errors = []
     for n in (3, 6):
         body = tube(n, neo_hookean(shear, 1e4 * shear))
-        found = equilibrium(body, pressure).displacement[0, body.rings.boundary_nodes("contained_air")]
-        errors.append(abs(found.mean() / exact - 1))
+        displacement = equilibrium(body, pressure).displacement[0, body.rings.boundary_nodes("contained_air")]
+        errors.append(abs(displacement.mean() / exact - 1))
     assert exact > 0.65
     assert errors[1] < 2e-4
     assert errors[1] < errors[0]
@@ -86,10 +86,10 @@ def test_neo_hookean_tube() -> None:
 
 def test_mooney_rivlin_tube_in_plane_strain_is_neo_hookean() -> None:
     """Where nothing moves along the axis I1 = I2: only c10 + c01 counts (incompressible)."""
-    one, other = (
+    first, other = (
         equilibrium(tube(4, law), 4e5).displacement for law in (neo_hookean(1e6, 1e9), mooney_rivlin(3e5, 2e5, 1e9))
     )
-    np.testing.assert_allclose(one, other, atol=2e-3 * np.abs(one).max())
+    np.testing.assert_allclose(first, other, atol=2e-3 * np.abs(first).max())
 
 
 def test_toroidal_membrane() -> None:
@@ -125,8 +125,8 @@ def test_tangent_against_differences(law: object) -> None:
 
 
 def test_newton_is_quadratic() -> None:
-    found = equilibrium(tube(4), 2e5, NewtonChoice(first_step=1.0, tolerance=1e-11))
-    errors = [e for e in found.residuals[-1] if 1e-9 < e < 0.5]
+    solution = equilibrium(tube(4), 2e5, NewtonChoice(first_step=1.0, tolerance=1e-11))
+    errors = [e for e in solution.residuals[-1] if 1e-9 < e < 0.5]
     assert len(errors) >= 2
     for before, after in pairwise(errors):
         assert after < 10 * before**1.8
@@ -171,9 +171,9 @@ def test_a_first_step_that_fails_is_halved_without_being_tried_twice(monkeypatch
         return inner(body, start, pressure, choice)
 
     monkeypatch.setattr(newton, "_newton", recorded)
-    found = equilibrium(tube(3, neo_hookean(1e6)), 4e5, NewtonChoice(first_step=1.0, iterations=3))
-    assert len(found.steps) > 1
-    assert found.steps[-1] == 1.0
+    solution = equilibrium(tube(3, neo_hookean(1e6)), 4e5, NewtonChoice(first_step=1.0, iterations=3))
+    assert len(solution.steps) > 1
+    assert solution.steps[-1] == 1.0
     # From rest there is one start only: the same failure again would cost twice.
     assert tried[:2] == [4e5, 2e5]
 

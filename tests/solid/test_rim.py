@@ -58,10 +58,10 @@ def test_flange_pushes_only_where_it_is_touched() -> None:
 
 def test_depth_falls_as_the_flange_stiffens() -> None:
     """The stiffer, the less deep, and the less change of the displacement."""
-    found = [pressed(stiffness) for stiffness in (1e9, 1e10, 1e11)]
-    depths = [-body.flanges[0].gap(body.rings.nodes + moved).min() for body, moved in found]
+    solutions = [pressed(stiffness) for stiffness in (1e9, 1e10, 1e11)]
+    depths = [-body.flanges[0].gap(body.rings.nodes + moved).min() for body, moved in solutions]
     assert depths[2] < depths[1] / 3 < depths[0] / 9
-    (_, soft), (_, middle), (_, hard) = found
+    (_, soft), (_, middle), (_, hard) = solutions
     assert np.abs(hard - middle).max() < np.abs(middle - soft).max() / 3
 
 

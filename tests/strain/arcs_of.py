@@ -29,7 +29,7 @@ def nodes(cycle):
     """Zone -> points (2, n) spread over the zone, and the area-weights r dA of a quadrature, (n,)."""
     import numpy as np
 
-    section, found = cycle.section, {}
+    section, places_of_zones = cycle.section, {}
     for zone in cycle.zones:
         places, weights = [], []
         for piece in section.pieces:
@@ -44,5 +44,5 @@ def nodes(cycle):
                 width = (faces[piece.layer + 1] - faces[piece.layer]) / 6 * (1 + section.line.curvature(s) * y)
                 places.append(points)
                 weights.append(points[:, 0] * width * (end - start) / 24)
-        found[zone.name] = np.concatenate(places).T, np.concatenate(weights)
-    return found
+        places_of_zones[zone.name] = np.concatenate(places).T, np.concatenate(weights)
+    return places_of_zones

@@ -59,7 +59,7 @@ def test_energy_of_a_ring_is_that_of_its_strains() -> None:
     """U = G e' : e' of Lame's strains A -+ B/r^2; for plane strain with u(2) = -D and nothing at r = 1."""
     d, shear, bulk = 1e-4, 1e6, 1e8
     tyre = ring()
-    found = Barrel(tyre, flatten(tyre, d), case(d))
+    barrel = Barrel(tyre, flatten(tyre, d), case(d))
     ratio = (bulk + shear / 3) / shear
     A = -d / (2 + ratio / 2)
     r = tyre.body.rings.points[0]
@@ -68,7 +68,7 @@ def test_energy_of_a_ring_is_that_of_its_strains() -> None:
     exact = shear * (deviator**2).sum(axis=0)
     weights = tyre.body.rings.weights
     # Element by element: at single Gauss points the radial strain is of second order only.
-    sums = [(one * weights).sum(axis=1) for one in (found.density, exact)]
+    sums = [(density * weights).sum(axis=1) for density in (barrel.density, exact)]
     np.testing.assert_allclose(sums[0], sums[1], rtol=2e-3)
 
 
@@ -76,7 +76,7 @@ def test_cords_that_lose_nothing_count_nothing() -> None:
     """The energy of a ring whose hoop cords are a hundred times stiffer is still that of the rubber's strain."""
     d = 1e-3
     plain, corded = ring(), ring(cords=True)
-    energies = [Barrel(one, flatten(one, d), case(d)).density for one in (plain, corded)]
+    energies = [Barrel(tyre, flatten(tyre, d), case(d)).density for tyre in (plain, corded)]
     flat = flatten(corded, d)
     assert flat.force > 10 * flatten(plain, d).force
     strain = flat.strain
@@ -118,9 +118,9 @@ def test_energy_falls_with_the_square_of_small_deflections_to_zero() -> None:
 
 
 def study_case() -> LoadCase:
-    found = cycle()
-    assert isinstance(found, Barrel)
-    return found.case
+    solved = cycle()
+    assert isinstance(solved, Barrel)
+    return solved.case
 
 
 def test_a_run_makes_the_heat_of_its_energy() -> None:
@@ -173,8 +173,8 @@ def test_a_full_section_is_pressed_as_its_half() -> None:
     """Both sides meshed: the same force of the whole tyre and, by symmetry, the same energy."""
     halves = []
     for section in ("half", "full"):
-        one = tf.study(NAME, COARSE | {"mesh.size": "12 mm", "mesh.section": section})
-        made = provider(one)(replace(study_case(), deflection=6e-3))
+        study = tf.study(NAME, COARSE | {"mesh.size": "12 mm", "mesh.section": section})
+        made = provider(study)(replace(study_case(), deflection=6e-3))
         assert isinstance(made, Barrel)
         assert made.flat is not None
         sides = 2 if section == "half" else 1

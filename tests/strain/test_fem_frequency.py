@@ -42,15 +42,15 @@ def pressed() -> FiniteElements:
 
 def test_orders_share_harmonics_and_keep_their_sum() -> None:
     harmonics = np.random.default_rng(1).random((55, 3))
-    found = by_order(harmonics)
-    assert found.sum(axis=0) == pytest.approx(harmonics[1:].sum(axis=0))
+    parts = by_order(harmonics)
+    assert parts.sum(axis=0) == pytest.approx(harmonics[1:].sum(axis=0))
     exponent, n = 0.3, np.arange(1, 55)[:, None]
     exact = (n**exponent * harmonics[1:]).sum(axis=0)
-    weights = np.array(ORDERS[: len(found)])[:, None] ** exponent
-    assert (weights * found).sum(axis=0) == pytest.approx(exact, rel=1e-3)
+    weights = np.array(ORDERS[: len(parts)])[:, None] ** exponent
+    assert (weights * parts).sum(axis=0) == pytest.approx(exact, rel=1e-3)
     omega = n / 7.0
-    maxwell, each = omega / (1 + omega**2), np.array(ORDERS[: len(found)])[:, None] / 7.0
-    lost = (each / (1 + each**2) * found).sum(axis=0)
+    maxwell, each = omega / (1 + omega**2), np.array(ORDERS[: len(parts)])[:, None] / 7.0
+    lost = (each / (1 + each**2) * parts).sum(axis=0)
     assert lost == pytest.approx((maxwell * harmonics[1:]).sum(axis=0), rel=4e-3)
     assert by_order(harmonics[:2]) == pytest.approx(harmonics[1:2])
 
@@ -66,32 +66,36 @@ def test_the_heat_is_that_of_every_harmonic_at_its_own_frequency(frequency: dict
     law = tyre.study.materials[region].loss_tangent
     temperature = np.full(cycle.tyre.body.rings.weights.shape, 25.0)
     temperature[members] = T.reshape(len(members), -1)
-    own = RevolutionLoss(StrainHarmonics(cycle.footprint), {region: law.over_frequency}, tyre.speed(0.0), temperature)
+    reference = RevolutionLoss(
+        StrainHarmonics(cycle.footprint), {region: law.over_frequency}, tyre.speed(0.0), temperature
+    )
     heat = tyre.hysteresis[region](x, 0.0, T)
-    assert heat == pytest.approx(own.frequency * own.density[members].ravel(), rel=4e-3)
+    assert heat == pytest.approx(reference.frequency * reference.density[members].ravel(), rel=4e-3)
     alike = RollingTyre(study(None), None, schedule()).hysteresis[region](x, 0.0, T)
     assert np.abs(heat / alike - 1).mean() > 0.05
 
 
 def test_one_cycle_loses_what_the_footprints_own_account_of_the_reports_convention_does() -> None:
     changes = {"mechanics.revolution": "one-cycle"}
-    found = pressed()
-    one = FiniteElements(found.tyre, found.footprint, found.case, found.factor, one_cycle=True)
+    pressed_cycle = pressed()
+    single = FiniteElements(
+        pressed_cycle.tyre, pressed_cycle.footprint, pressed_cycle.case, pressed_cycle.factor, one_cycle=True
+    )
     laws = {region: study(None).materials[region].loss_tangent.over_frequency for region in REGIONS}
-    tyre = RollingTyre(study(None, **changes), None, schedule(one))
-    own = RevolutionLoss(StrainHarmonics(found.footprint), laws, tyre.speed(0.0), 25.0)
-    density = own.frequency * own.one_cycle_density("nasa")
+    tyre = RollingTyre(study(None, **changes), None, schedule(single))
+    reference = RevolutionLoss(StrainHarmonics(pressed_cycle.footprint), laws, tyre.speed(0.0), 25.0)
+    density = reference.frequency * reference.one_cycle_density("nasa")
     for region in REGIONS:
-        members = found.tyre.body.mesh.subdomains[region]
-        x = found.tyre.body.rings.points[:, members].reshape(2, -1)
+        members = pressed_cycle.tyre.body.mesh.subdomains[region]
+        x = pressed_cycle.tyre.body.rings.points[:, members].reshape(2, -1)
         heat = tyre.hysteresis[region](x, 0.0, np.full(x.shape[1], 25.0))
         assert heat == pytest.approx(density[members].ravel(), rel=1e-4)
 
 
 def schedule(cycle: FiniteElements | None = None) -> CycleSchedule:
     """The drive with the strain cycle that was solved already."""
-    found = pressed() if cycle is None else cycle
-    return CycleSchedule(study(None).card.drive, ((0.0,),), ((found.solved_case,),), ((found,),))
+    strain_cycle = pressed() if cycle is None else cycle
+    return CycleSchedule(study(None).card.drive, ((0.0,),), ((strain_cycle.solved_case,),), ((strain_cycle,),))
 
 
 def test_a_report_style_law_of_one_cycle_takes_the_revolutions_frequency() -> None:

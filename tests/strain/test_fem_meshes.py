@@ -16,21 +16,21 @@ pytestmark = pytest.mark.usefixtures("needs_gmsh")
 
 
 def test_gmshs_quadrilaterals_inflate_as_the_mapped_mesh() -> None:
-    own = tf.study(STUDY, {"mesh.size": "20 mm", "mesh.mesher": "gmsh", "mesh.cell": "quad"})
+    gmsh = tf.study(STUDY, {"mesh.size": "20 mm", "mesh.mesher": "gmsh", "mesh.cell": "quad"})
     mapped = tf.study(STUDY, {"mesh.size": "6 mm"})
-    meshes = [mechanical_mesh(one) for one in (own, mapped)]
+    meshes = [mechanical_mesh(item) for item in (gmsh, mapped)]
     assert [mesh.mesher for mesh in meshes] == ["gmsh", "mapped"]
-    first, second = (inflate(one, 3e5, mesh) for one, mesh in zip((own, mapped), meshes, strict=True))
+    first, second = (inflate(item, 3e5, mesh) for item, mesh in zip((gmsh, mapped), meshes, strict=True))
     # Where the held seat ends moves with the elements.
     assert first.radius_growth == pytest.approx(second.radius_growth, rel=0.02)
-    stretched = [one.cord_tensions["carcass"].strain[1] for one in (first, second)]
+    stretched = [item.cord_tensions["carcass"].strain[1] for item in (first, second)]
     assert stretched[0] == pytest.approx(stretched[1], rel=0.02)
 
 
 def test_a_run_on_gmshs_triangles_takes_its_strain_from_the_mapped_mesh() -> None:
     """Only the places where energies are read differ."""
     changes = {"mechanics.strain": "fem", "mesh.size": "10 mm", "drive.duration": "60 s", "drive.load": "2000 lbf"}
-    studies = [tf.study(STUDY, {**changes, "mesh.mesher": one}) for one in ("gmsh", "mapped")]
+    studies = [tf.study(STUDY, {**changes, "mesh.mesher": item}) for item in ("gmsh", "mapped")]
     assert studies[0].mesh().cell == "tri"
     results = [study.run() for study in studies]
     cycle = results[0].tyre.schedule.cycles[0][0]

@@ -28,19 +28,21 @@ def test_the_heat_of_a_run_is_the_loss_of_all_harmonics() -> None:
 
     laws = {region: OfTemperature(study.materials[region].loss_tangent) for region in cycle.tyre.body.parts}
     initial, speed = study.card.drive.initial, study.card.drive.phases[0].speed.start
-    own = RevolutionLoss(StrainHarmonics(cycle.footprint), laws, speed, initial)
+    reference = RevolutionLoss(StrainHarmonics(cycle.footprint), laws, speed, initial)
     cold = study.run().rolling_resistance.cold_force
     # Other quadrature: nearest Gauss points at the nodes of the thermal mesh.
-    assert cold == pytest.approx(own.rolling_resistance, rel=0.05)
+    assert cold == pytest.approx(reference.rolling_resistance, rel=0.05)
 
 
 def test_the_loss_convention_does_not_change_what_harmonics_lose() -> None:
-    first, second = (bias(**{"mechanics.loss_convention": one}).run() for one in ("nasa", "sinusoid"))
+    first, second = (bias(**{"mechanics.loss_convention": value}).run() for value in ("nasa", "sinusoid"))
     assert first.rolling_resistance.cold_force == pytest.approx(second.rolling_resistance.cold_force, rel=1e-9)
 
 
 def test_rolling_resistance_rises_about_in_proportion_to_the_load() -> None:
-    light, heavy = (bias(**{"drive.load": one}).run().rolling_resistance.cold_force for one in ("2000 lbf", "2700 lbf"))
+    light, heavy = (
+        bias(**{"drive.load": value}).run().rolling_resistance.cold_force for value in ("2000 lbf", "2700 lbf")
+    )
     # That its coefficient hardly depends on the load is why it is stated as a coefficient.
     assert heavy / light == pytest.approx(2.7 / 2.0, rel=0.1)
 
@@ -96,14 +98,16 @@ def test_a_tyre_without_pressure_carries_nothing() -> None:
 
 def test_a_footprint_in_large_motion_deflects_more_and_loses_about_as_much() -> None:
     drive = {"mesh.size": "12 mm", "drive.load": "1000 lbf"}
-    cycles = [cycle_schedule(bias(**drive, **{"mechanics.motion": one})).cycles[0][0] for one in ("linear", "large")]
+    cycles = [
+        cycle_schedule(bias(**drive, **{"mechanics.motion": value})).cycles[0][0] for value in ("linear", "large")
+    ]
     linear, large = cycles
     assert isinstance(linear, FiniteElements)
     assert isinstance(large, FiniteElements)
-    small, great = (one.solved_case.deflection for one in (linear, large))
+    small, great = (value.solved_case.deflection for value in (linear, large))
     assert 1.05 * small < great < 1.4 * small
     weights = linear.tyre.body.rings.weights
-    before, after = ((one.density * weights).sum() for one in (linear, large))
+    before, after = ((value.density * weights).sum() for value in (linear, large))
     # Under a given load: larger motions of smaller strain.
     assert after != before
     assert after == pytest.approx(before, rel=0.2)

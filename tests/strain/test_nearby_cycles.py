@@ -61,22 +61,22 @@ def test_only_what_moves_the_strain_cycle_is_solved_for() -> None:
 @pytest.mark.parametrize("law", ["fem", "barrel"])
 def test_a_number_at_its_deviation_is_exact(law: str) -> None:
     other = moved(law, tread=1.2)
-    found, full = near(law).schedule_of(other), cycle_schedule(other)
-    assert found is not None
-    assert parts(found) == pytest.approx(parts(full), rel=1e-9)
-    one, exact = found.cases[0][0], full.cases[0][0]
-    assert (one.load, one.deflection) == pytest.approx((exact.load, exact.deflection), rel=1e-9)
-    assert one.rolling_radius == pytest.approx(exact.rolling_radius, rel=1e-9)
-    assert one.footprint_length == pytest.approx(exact.footprint_length, rel=1e-9)
+    nearby, full = near(law).schedule_of(other), cycle_schedule(other)
+    assert nearby is not None
+    assert parts(nearby) == pytest.approx(parts(full), rel=1e-9)
+    case, exact = nearby.cases[0][0], full.cases[0][0]
+    assert (case.load, case.deflection) == pytest.approx((exact.load, exact.deflection), rel=1e-9)
+    assert case.rolling_radius == pytest.approx(exact.rolling_radius, rel=1e-9)
+    assert case.footprint_length == pytest.approx(exact.footprint_length, rel=1e-9)
 
 
 def test_several_numbers_at_once_are_close() -> None:
     """All one standard deviation off, two of them down: what is left is of second order."""
     factors = {"tread": 1 / 1.2, "plies": 1.2, "load": 0.95}
-    found, full = (parts(one) for one in (near().schedule_of(moved(**factors)), cycle_schedule(moved(**factors))))
+    nearby, full = (parts(item) for item in (near().schedule_of(moved(**factors)), cycle_schedule(moved(**factors))))
     before = parts(near().schedule)
-    change = np.array([math.log(full[one] / before[one]) for one in before])
-    off = np.array([math.log(found[one] / full[one]) for one in before])
+    change = np.array([math.log(full[item] / before[item]) for item in before])
+    off = np.array([math.log(nearby[item] / full[item]) for item in before])
     assert np.abs(change).max() > 0.08
     assert np.abs(off).max() < 0.25 * np.abs(change).max()
     deflection = near().schedule_of(moved(**factors)).cases[0][0].deflection
@@ -84,8 +84,8 @@ def test_several_numbers_at_once_are_close() -> None:
 
 
 def test_the_load_is_the_drives_to_the_digit() -> None:
-    found = near().schedule_of(moved(load=0.97))
-    assert found.cases[0][0].load == cycle_schedule(moved("arcs", load=0.97)).cases[0][0].load
+    nearby = near().schedule_of(moved(load=0.97))
+    assert nearby.cases[0][0].load == cycle_schedule(moved("arcs", load=0.97)).cases[0][0].load
 
 
 def test_another_tyre_is_not_near() -> None:
@@ -112,7 +112,7 @@ def test_tyres_like_a_tyre_take_its_nearby_cycles(monkeypatch: pytest.MonkeyPatc
 
 def test_other_processes_read_what_was_solved(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
     first = NearbyCycles(study(), SolvedCycles(tmp_path))
-    told = first.schedule_of(moved(tread=1.1))
+    schedule = first.schedule_of(moved(tread=1.1))
     assert len(list(tmp_path.glob("*.npz"))) == 1
     second = NearbyCycles(study(), SolvedCycles(tmp_path))
     _ = second.schedule
@@ -120,5 +120,5 @@ def test_other_processes_read_what_was_solved(tmp_path: Path, monkeypatch: pytes
         "tyrefem.mechanics.footprint.contact.Pressing.solve", lambda *_, **__: pytest.fail("solved again")
     )
     again = second.schedule_of(moved(tread=1.1))
-    assert parts(again) == parts(told)
-    assert again.cases == told.cases
+    assert parts(again) == parts(schedule)
+    assert again.cases == schedule.cases

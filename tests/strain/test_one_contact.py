@@ -45,38 +45,38 @@ def pressed(name: str) -> Pressed:
 
 @pytest.mark.parametrize("name", TYRES)
 def test_run_summary_report_and_press_tell_one_contact(name: str) -> None:
-    own, told = pressed(name).footprint, run(name).summary()["phases"][0]
+    footprint, phase = pressed(name).footprint, run(name).summary()["phases"][0]
     # At the same load, pressure, road and mesh: nothing but rounding is between them.
     for key, value in {
-        "deflection": own.deflection,
-        "footprint_length": own.length,
-        "footprint_area": own.area,
-        "rolling_radius": own.rolling_radius,
-        "load": own.load,
-        "road_fraction": own.length / (2 * math.pi * own.rolling_radius),
+        "deflection": footprint.deflection,
+        "footprint_length": footprint.length,
+        "footprint_area": footprint.area,
+        "rolling_radius": footprint.rolling_radius,
+        "load": footprint.load,
+        "road_fraction": footprint.length / (2 * math.pi * footprint.rolling_radius),
     }.items():
-        assert told[key] == pytest.approx(value, rel=1e-8), key
-    (card,) = [one for one in headline(run(name)) if one["label"] == "Deflection"]
-    assert card["value"] == f"{own.deflection * 1e3:.1f} mm"
-    assert f"footprint {own.length * 1e3:.0f} mm, {own.area * 1e4:.0f} cm²" in card["note"]
-    assert answers(run(name))["deflection_m"] == pytest.approx(own.deflection, rel=1e-8)
+        assert phase[key] == pytest.approx(value, rel=1e-8), key
+    (card,) = [entry for entry in headline(run(name)) if entry["label"] == "Deflection"]
+    assert card["value"] == f"{footprint.deflection * 1e3:.1f} mm"
+    assert f"footprint {footprint.length * 1e3:.0f} mm, {footprint.area * 1e4:.0f} cm²" in card["note"]
+    assert answers(run(name))["deflection_m"] == pytest.approx(footprint.deflection, rel=1e-8)
 
 
 @pytest.mark.parametrize("name", TYRES)
 def test_the_road_film_is_that_of_the_footprint(name: str) -> None:
-    own, tyre = pressed(name).footprint, run(name).tyre
+    footprint, tyre = pressed(name).footprint, run(name).tyre
     speed, tread = tyre.speed(1.0), tyre.tread
-    assert tyre.road_film(1.0) == pytest.approx(triangular_film(speed, own.length, *tread), rel=1e-8)
-    assert tyre.propagation_depth(1.0) == pytest.approx(propagation_depth(own.length / speed, *tread), rel=1e-8)
+    assert tyre.road_film(1.0) == pytest.approx(triangular_film(speed, footprint.length, *tread), rel=1e-8)
+    assert tyre.propagation_depth(1.0) == pytest.approx(propagation_depth(footprint.length / speed, *tread), rel=1e-8)
     revolutions = tyre.schedule.revolutions_per_second(1.0)
-    assert revolutions == pytest.approx(speed / (2 * math.pi * own.rolling_radius), rel=1e-8)
+    assert revolutions == pytest.approx(speed / (2 * math.pi * footprint.rolling_radius), rel=1e-8)
 
 
 def test_a_drive_by_deflection_has_that_deflection_and_the_footprints_load() -> None:
     case = cycle_schedule(study(TYRES[1]).replace({"drive.deflection": "15 mm"})).cases[0][0]
-    own = press(study(TYRES[1]), deflection=0.015).footprint
+    footprint = press(study(TYRES[1]), deflection=0.015).footprint
     assert case.deflection == pytest.approx(0.015, rel=1e-12)
-    assert case.load == pytest.approx(own.load, rel=1e-8)
+    assert case.load == pytest.approx(footprint.load, rel=1e-8)
 
 
 def test_a_tyre_without_load_has_no_footprint_and_rolls_on_its_inflated_radius() -> None:
@@ -89,8 +89,8 @@ def test_a_tyre_without_load_has_no_footprint_and_rolls_on_its_inflated_radius()
 def test_laws_of_load_and_footprint_are_not_read() -> None:
     """Not even to refuse a load: of 2 kN/m the law would deflect the tyre by metres."""
     law = {"law": "vertical-stiffness", "stiffness": "2 kN/m", "source": "test"}
-    own = {"mechanics.load_law": law, "mechanics.footprint": {"law": "given", "length": "5 cm"}}
-    other, case = cycle_schedule(study(TYRES[1]).replace(own)).cases[0][0], run(TYRES[1]).tyre.schedule.cases[0][0]
+    laws = {"mechanics.load_law": law, "mechanics.footprint": {"law": "given", "length": "5 cm"}}
+    other, case = cycle_schedule(study(TYRES[1]).replace(laws)).cases[0][0], run(TYRES[1]).tyre.schedule.cases[0][0]
     assert other.contact == case.contact
     assert other.deflection == case.deflection
 
@@ -98,8 +98,8 @@ def test_laws_of_load_and_footprint_are_not_read() -> None:
 def test_the_rated_deflection_is_the_footprints_too() -> None:
     chosen = study(TYRES[1])
     rating = chosen.section.rating
-    own = press(chosen, load=rating.load, pressure=rating.pressure).footprint
-    assert rated_case(chosen).deflection == pytest.approx(own.deflection, rel=1e-8)
+    footprint = press(chosen, load=rating.load, pressure=rating.pressure).footprint
+    assert rated_case(chosen).deflection == pytest.approx(footprint.deflection, rel=1e-8)
     arcs = chosen.replace({"mechanics.strain": "arcs"})
     law = arcs.card.mechanics.load_law
     assert rated_case(arcs).deflection == law.deflection(rating.load, rating.pressure, rating)

@@ -115,8 +115,8 @@ def test_every_region_against_an_independent_calculation(zone, s, y, D, p):
     cycle = at(shipped("nasa-22x5.5-8pr"), D * INCH, pressure=p * PSI)
     depth = y + np.interp(s, S_TABLE, H1) / 2
     point = cycle.section.place([s * INCH], [depth * INCH]).T
-    found = float(cycle.energy_density(zone, point)[0])
-    assert found == pytest.approx(energy(zone, s, y, D, p) * PSI, rel=2e-3)
+    density = float(cycle.energy_density(zone, point)[0])
+    assert density == pytest.approx(energy(zone, s, y, D, p) * PSI, rel=2e-3)
 
 
 @pytest.mark.parametrize(("D", "p"), [(1.1, 83.0), (1.3, 156.0)])
@@ -189,9 +189,9 @@ def test_limits_of_the_poisson_term(cycle):
         plies = replace(cycle.stiffness.carcass, poisson_term=term)
         return at(cycle, stiffness=replace(cycle.stiffness, carcass=plies)).strains("III", nodes(cycle)["III"][0])
 
-    one, none = strains(1.0), strains(0.0)
+    full, none = strains(1.0), strains(0.0)
     plies = cycle.stiffness.carcass
-    assert one.meridional == pytest.approx(one.stress / plies.meridional(one.radius), rel=1e-12)
+    assert full.meridional == pytest.approx(full.stress / plies.meridional(full.radius), rel=1e-12)
     assert none.meridional == pytest.approx(-plies.cot2(none.radius) * none.hoop, rel=1e-9)
 
 

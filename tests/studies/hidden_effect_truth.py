@@ -29,8 +29,8 @@ def truth(study: tf.Study) -> BlindCase:
     """The hidden effect, with base numbers and sensors drawn from their priors."""
     rng = np.random.default_rng(SEED)
     unknowns = (*base_unknowns(study), *sensor_unknowns(study, set(study.sensors)))
-    values = {one: float(rng.normal(0.0, 0.7 * one.sd)) for one in unknowns}
-    hidden = next(one for one in catalogue_candidates(study) if one.name == HIDDEN)
+    values = {unknown: float(rng.normal(0.0, 0.7 * unknown.sd)) for unknown in unknowns}
+    hidden = next(unknown for unknown in catalogue_candidates(study) if unknown.name == HIDDEN)
     return BlindCase(0, SEED, "one", (hidden,), values | {hidden.amplitudes[0]: AMPLITUDE})
 
 

@@ -16,12 +16,12 @@ def result():
 
 
 def test_sliding_phases_and_only_they_make_friction_heat():
-    found, budget = result(), result().heat_budget
-    assert [phase.name for phase in found.sliding.phases] == ["yawed turn", "braking", "locked skid"]
+    skid, budget = result(), result().heat_budget
+    assert [phase.name for phase in skid.sliding.phases] == ["yawed turn", "braking", "locked skid"]
     heat = budget.energies["sliding", "friction on the road"]
-    slides = [phase.name for phase in found.sliding.phases]
-    for state in found.phases:
-        first, last = np.searchsorted(found.times, [state.start - 1e-6, state.end - 1e-6])
+    slides = [phase.name for phase in skid.sliding.phases]
+    for state in skid.phases:
+        first, last = np.searchsorted(skid.times, [state.start - 1e-6, state.end - 1e-6])
         assert (heat[last] > heat[first]) == (state.name in slides)
     assert budget.total("generated") + budget.total("sliding") == pytest.approx(
         budget.total("stored") + budget.total("lost"), rel=1e-9
@@ -48,14 +48,14 @@ def test_decomposition_limits_the_friction_of_the_skid_alone():
 
 
 def test_the_skid_is_resolved_and_its_heat_goes_in_after_it():
-    found = result()
-    series = found.sliding.series
+    skid = result()
+    series = skid.sliding.series
     late = series[(series.phase == "locked skid") & (series.time_s > 339.2)]
     rise = late.half_space_degC - 25.0
     assert (abs(late.tread_mean_degC - late.half_space_degC) < 0.02 * rise).all()
-    readings = found.readings
+    readings = skid.readings
     outer = readings["crown-outer"].to_numpy()
     # The thermocouple 4 mm below the surface warms only after the wheel stands.
     stop = np.searchsorted(readings["time_s"], 340.0)
     assert outer[stop:].max() - outer[stop] > 5
-    assert found.rolling_resistance.phase == "roll"
+    assert skid.rolling_resistance.phase == "roll"

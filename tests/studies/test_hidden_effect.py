@@ -14,16 +14,16 @@ def test_the_table_is_what_the_truth_says(request: pytest.FixtureRequest) -> Non
     runs = read_table(request.config.rootpath / TABLE)
     assert [run.name for run in runs] == ["A", "B", "C", "D"]
     case = truth(tf.study("hidden-effect"))
-    assert [one.name for one in case.hidden] == [HIDDEN]
+    assert [member.name for member in case.hidden] == [HIDDEN]
     assert all(np.isfinite(run.temperatures.to_numpy()).mean() > 0.85 for run in runs)
 
 
 def test_the_hidden_effect_is_found() -> None:
-    found = tf.study("hidden-effect").diagnose(largest=1, rerun=False, looks=1)
-    assert found.verdict == "identified"
-    assert [one.name for one in found.judgement.best.members] == [HIDDEN]
-    (amplitude,) = found.judgement.best.members[0].amplitudes
-    assert abs(found.best.values[amplitude] - AMPLITUDE) < 3 * found.best.sd[amplitude]
-    before, after = (found.rms(after=when, held_out=True) for when in (False, True))
+    diagnosis = tf.study("hidden-effect").diagnose(largest=1, rerun=False, looks=1)
+    assert diagnosis.verdict == "identified"
+    assert [member.name for member in diagnosis.judgement.best.members] == [HIDDEN]
+    (amplitude,) = diagnosis.judgement.best.members[0].amplitudes
+    assert abs(diagnosis.best.values[amplitude] - AMPLITUDE) < 3 * diagnosis.best.sd[amplitude]
+    before, after = (diagnosis.rms(after=when, held_out=True) for when in (False, True))
     assert before > 2.0
-    assert after < 1.2 * found.noise
+    assert after < 1.2 * diagnosis.noise

@@ -26,7 +26,7 @@ def test_the_radials_name_ranges_with_their_source(name: str) -> None:
             # A recollection or a guess is called one.
             assert any(word in known.source for word in ("Regulation", "from memory", "estimate"))
             middle = (low + high) / 2
-            verdicts = [compared(published, {quantity: one})[0].inside for one in (0.9 * low, middle, 1.1 * high)]
+            verdicts = [compared(published, {quantity: value})[0].inside for value in (0.9 * low, middle, 1.1 * high)]
             assert verdicts == [False, True, False]
 
 
@@ -50,10 +50,10 @@ def test_the_gross_area_of_the_truck_tyre_by_the_tire_and_rim_association() -> N
 
 
 def test_words_and_json() -> None:
-    found = PublishedComparison("footprint_length", 0.11, 0.12, 0.15, "a book")
-    assert found.words == "footprint length 110, published 120 to 150 mm: outside (a book)"
-    assert found.to_dict()["verdict"] == "outside"
-    assert found.to_dict()["unit"] == "m"
+    comparison = PublishedComparison("footprint_length", 0.11, 0.12, 0.15, "a book")
+    assert comparison.words == "footprint length 110, published 120 to 150 mm: outside (a book)"
+    assert comparison.to_dict()["verdict"] == "outside"
+    assert comparison.to_dict()["unit"] == "m"
 
 
 def test_a_run_tells_its_own_beside_them() -> None:

@@ -17,13 +17,13 @@ SHORT = {"drive.duration": "60 s", "mesh.size": "4 mm", "mesh.element": "P1"}
 def test_written_and_read_back(tmp_path: Path, suffix: str) -> None:
     study = tf.study("nasa-22x5.5-8pr").replace(SHORT)
     file = meshing.write(study.mesh(), tmp_path / f"mine.{suffix}")
-    own = study.replace({"mesh.file": str(file)})
-    assert own.run().readings.to_numpy() == pytest.approx(study.run().readings.to_numpy(), abs=1e-6)
-    assert own.run().summary()["mesh"]["mesher"] == "file"
+    from_file = study.replace({"mesh.file": str(file)})
+    assert from_file.run().readings.to_numpy() == pytest.approx(study.run().readings.to_numpy(), abs=1e-6)
+    assert from_file.run().summary()["mesh"]["mesher"] == "file"
 
 
 def test_mesh_of_another_tyre_is_refused(tmp_path: Path) -> None:
     file = meshing.write(tf.study("nasa-22x5.5-12pr").replace(SHORT).mesh(), tmp_path / "other.msh")
-    own = tf.study("nasa-22x5.5-8pr").replace({"mesh.file": str(file)})
+    from_file = tf.study("nasa-22x5.5-8pr").replace({"mesh.file": str(file)})
     with pytest.raises(InputError, match=r"other\.msh.*times the area"):
-        own.mesh()
+        from_file.mesh()

@@ -121,4 +121,4 @@ def test_a_sweep_takes_quantities(study):
     speeds = [10 * units.mph, 20 * units.mph]
     for vary in (speeds, (*speeds, 2)):
         plan = plan_of(study, {"drive.speed": vary})
-        assert [one["drive.speed"] for one in plan.variants] == ["10 mph", "20 mph"]
+        assert [variant["drive.speed"] for variant in plan.variants] == ["10 mph", "20 mph"]

@@ -52,7 +52,7 @@ def test_one_card_in_several_regions_is_one_number() -> None:
     assert not {"materials.turn-up.cords.modulus", "materials.bead-wrap.cords.modulus"} & set(study.uncertainty)
     stiffer = study.scaled("materials.turn-up.cords.modulus", 1.2)
     for region in number.regions:
-        before, after = (one.materials[region].cords for one in (study, stiffer))
+        before, after = (item.materials[region].cords for item in (study, stiffer))
         assert after.modulus == pytest.approx(1.2 * before.modulus)
         assert after.in_compression == pytest.approx(1.2 * before.in_compression)
     # Moved together it stays one number; a region with a value of its own is another.
@@ -119,16 +119,16 @@ def test_the_studys_own_table_speaks_of_the_same_numbers() -> None:
 def body_of(study: tf.Study) -> list[Any]:
     """All numbers of the body that finite elements take."""
     parts = tyre_body(study, mechanical_mesh(study)).parts
-    found: list[Any] = []
+    arrays: list[Any] = []
     for part in parts.values():
-        found += [part.compound.c10, part.compound.bulk_modulus, part.cord_loss]
+        arrays += [part.compound.c10, part.compound.bulk_modulus, part.cord_loss]
         for layer in part.cords:
-            found += [layer.stiffness.copy(), layer.limit, layer.compression]
-    return [np.asarray(one, dtype=float) for one in found]
+            arrays += [layer.stiffness.copy(), layer.limit, layer.compression]
+    return [np.asarray(item, dtype=float) for item in arrays]
 
 
-def same(one: list[Any], other: list[Any]) -> bool:
-    return all(np.array_equal(a, b) for a, b in zip(one, other, strict=True))
+def same(item: list[Any], other: list[Any]) -> bool:
+    return all(np.array_equal(a, b) for a, b in zip(item, other, strict=True))
 
 
 @pytest.mark.parametrize("name", [RADIAL, BIAS])
@@ -146,15 +146,15 @@ def test_finite_elements_read_what_they_say(name: str) -> None:
                 continue
             number = uncertain_number(study, f"materials.{region}.{table}.{field}")
             changed = body_of(study.replace(number.changes(1.1)))
-            assert same(changed, before) == (not any(table in reads[one] for one in number.regions)), number.label
+            assert same(changed, before) == (not any(table in reads[item] for item in number.regions)), number.label
             tried += 1
     assert tried > 8
 
 
 @pytest.mark.parametrize("law", ["arcs", "given"])
 def test_the_other_laws_read_what_they_say(law: str) -> None:
-    own = {"materials.tread.elasticity": {"law": "neo-hookean", "shear_modulus": "1 MPa", "source": "test"}}
-    study = tf.study(BIAS, {"mesh.size": "8 mm", **own})
+    elasticity = {"materials.tread.elasticity": {"law": "neo-hookean", "shear_modulus": "1 MPa", "source": "test"}}
+    study = tf.study(BIAS, {"mesh.size": "8 mm", **elasticity})
     if law == "given":
         energies = dict.fromkeys(study.materials, "10 kJ/m**3")
         table = {"load": "12 kN", "pressure": "500 kPa", "regions": energies, "source": "test"}

@@ -80,8 +80,8 @@ def test_a_time_that_is_never_reached_is_the_longest(swept: Sweep, tyre: Study) 
     # What stays below 35 degC never gets there.
     cool = Sweep(replace(swept.plan, limits={"hottest_degC": LimitCard(below=35.0)}), swept.outcomes)
     assert 0 < cool.table["feasible"].sum() < len(cool.table)
-    told = Responses(cool).words
-    assert "Time to the given temperature of those: never." in told
+    words = Responses(cool).words
+    assert "Time to the given temperature of those: never." in words
     latest = front(swept.table.assign(feasible=True), {TIME_TO: "max", "hottest_degC": "max"})
     assert latest[TIME_TO].isna().sum() == 1
     assert latest["hottest_degC"].max() == swept.table["hottest_degC"].max()
@@ -91,9 +91,9 @@ def test_a_time_that_is_never_reached_is_the_longest(swept: Sweep, tyre: Study) 
 
 def test_limits_that_nothing_keeps_are_said_to_be_so(swept: Sweep) -> None:
     none = Sweep(replace(swept.plan, limits={"hottest_degC": LimitCard(below=20.0)}), swept.outcomes)
-    told = Responses(none).words
-    assert told[0] == "None of 6 variants keeps the limits."
-    assert told[1].startswith("Highest temperature of all: from")
+    words = Responses(none).words
+    assert words[0] == "None of 6 variants keeps the limits."
+    assert words[1].startswith("Highest temperature of all: from")
     # The limit, 10 K below all of them, does not press the curves together.
     for _, _, picture in figures(Responses(none)):
         low, high = picture.axes[0].dataLim.intervaly
@@ -103,9 +103,9 @@ def test_limits_that_nothing_keeps_are_said_to_be_so(swept: Sweep) -> None:
 def test_one_failing_variant_is_recorded_and_the_sweep_goes_on(tyre: Study) -> None:
     # Each value alone is possible; together the load is more than the tyre carries at that pressure.
     plan = plan_of(tyre, {"drive.load": ["2000 lbf", "5000 lbf"], "drive.pressure": ["60 psi", "156 psi"]})
-    found = sweep(plan)
-    assert found.complete
-    assert len(found.failed) + int((found.table["failure"] == "").sum()) == 4
+    swept = sweep(plan)
+    assert swept.complete
+    assert len(swept.failed) + int((swept.table["failure"] == "").sum()) == 4
 
 
 def test_front_knows_what_is_better_and_refuses_unknown_answers(swept: Sweep) -> None:
@@ -129,12 +129,12 @@ class Formula:
             numbers = [float(str(value).split()[0]) for value in task.changes.values()]
             # The study as it is changes nothing.
             value = self.formula(numbers) if numbers else 99.0
-            found = {self.answer: value, "gas_pressure_Pa": numbers[0] if numbers else 0.0}
-            yield place, Answered(found) if math.isfinite(value) else Failed("burst")
+            answers = {self.answer: value, "gas_pressure_Pa": numbers[0] if numbers else 0.0}
+            yield place, Answered(answers) if math.isfinite(value) else Failed("burst")
 
 
 def ishigami(numbers: list[float]) -> float:
-    x, y, z = (float(one) for one in numbers)
+    x, y, z = (float(value) for value in numbers)
     return math.sin(x) + 7 * math.sin(y) ** 2 + 0.1 * z**4 * math.sin(x)
 
 
@@ -143,13 +143,13 @@ def test_indices_of_the_ishigami_function(tyre: Study) -> None:
     varied = tuple(Varied(key, "K", low=-math.pi, high=math.pi) for key in box)
     variants = drawn(varied, "saltelli", 512, 1)
     plan = Plan(tyre, varied, tuple(variants), tuple(map(str, range(len(variants)))), {}, None, SALTELLI)
-    found = indices(sweep(plan, scheduler=Formula(ishigami), reduced="never"), "hottest_degC").set_index("number")
+    answer = indices(sweep(plan, scheduler=Formula(ishigami), reduced="never"), "hottest_degC").set_index("number")
     # Ishigami & Homma (1990), a = 7, b = 0.1: variance 13.845, shares of the three alone and with all others.
     exact = {"first": [0.3139, 0.4424, 0.0], "total": [0.5576, 0.4424, 0.2437]}
     for column, values in exact.items():
         for key, value in zip(box, values, strict=True):
-            assert found.loc[key, column] == pytest.approx(value, abs=0.06)
-            assert abs(found.loc[key, column] - value) < 2 * found.loc[key, f"{column}_95"] + 0.01
+            assert answer.loc[key, column] == pytest.approx(value, abs=0.06)
+            assert abs(answer.loc[key, column] - value) < 2 * answer.loc[key, f"{column}_95"] + 0.01
 
 
 def test_indices_need_their_sample_and_every_variant(swept: Sweep, tyre: Study) -> None:
@@ -167,14 +167,14 @@ def test_indices_need_their_sample_and_every_variant(swept: Sweep, tyre: Study) 
 
 def test_tornado_moves_every_number_alone(tyre: Study) -> None:
     given = {"materials.tread.loss_tangent.value": 0.2, "materials.carcass.loss_tangent.value": 0.1}
-    found = Tornado(sweep(tornado_plan(tyre, given)), ("hottest_degC",))
-    table = found.of("hottest_degC")
+    answer = Tornado(sweep(tornado_plan(tyre, given)), ("hottest_degC",))
+    table = answer.of("hottest_degC")
     assert set(table["number"]) == set(given)
     assert (table["more"] > 0).all()
     assert (table["less"] < 0).all()
     assert table["range"].is_monotonic_decreasing
     assert table["nominal"].iloc[0] == pytest.approx(tyre.run().history.maximum.temperature, abs=1e-6)
-    assert "depends most on materials." in found.words[0]
+    assert "depends most on materials." in answer.words[0]
 
 
 def test_tornado_takes_the_tolerances_that_cards_state(tyre: Study) -> None:
@@ -187,11 +187,11 @@ def test_tornado_takes_the_tolerances_that_cards_state(tyre: Study) -> None:
 
 def test_a_sample_of_all_uncertain_numbers_moves_a_shared_card_as_one(tyre: Study) -> None:
     stiff = {"relative_sd": 0.2}
-    shared = {f"materials.{one}": {"base": "nasa-tread", "shear_modulus": stiff} for one in ("tread", "sidewall")}
+    shared = {f"materials.{value}": {"base": "nasa-tread", "shear_modulus": stiff} for value in ("tread", "sidewall")}
     study = tyre.replace(shared)
     plan = plan_of(study, {"drive.speed": ("10 mph", "30 mph")}, uncertain=1.5, sample="latin-hypercube", count=6)
-    assert {one.key for one in plan.varied} == {"drive.speed", *study.uncertainty}
-    key, other = (f"materials.{one}.shear_modulus.value" for one in ("tread", "sidewall"))
+    assert {value.key for value in plan.varied} == {"drive.speed", *study.uncertainty}
+    key, other = (f"materials.{value}.shear_modulus.value" for value in ("tread", "sidewall"))
     factors = [plan.row(n)[f"{key} [x]"] for n in range(6)]
     assert min(factors) > 0.7
     assert max(factors) < 1.3
@@ -210,7 +210,7 @@ def test_a_reduced_model_follows_uncertain_numbers(tyre: Study) -> None:
     """Moved in two regions at once, by full runs and by the model."""
     from tyrefem.reduced.surrogate import why_outside
 
-    shared = {f"materials.{one}": "nasa-tread" for one in ("tread", "sidewall")}
+    shared = {f"materials.{entry}": "nasa-tread" for entry in ("tread", "sidewall")}
     plan = plan_of(tyre.replace(shared), {}, uncertain=1, sample="sobol", count=2)
     for variant in plan.variants:
         assert why_outside(plan.study.replace(variant), plan.study, plan.varied) == ""
@@ -225,19 +225,19 @@ BOX = {"drive.speed": ("10 m/s", "20 m/s"), "drive.ambient": ("10 degC", "30 deg
 def test_optimum_of_a_bowl(tyre: Study) -> None:
     plan = plan_of(tyre, BOX, optimise={"minimise": "hottest_degC"})
     bowl = Formula(lambda x: (x[0] - 13) ** 2 + (x[1] - 22) ** 2 + 40)
-    found = optimum(plan, OptimiseCard(minimise="hottest_degC", runs=600), scheduler=bowl, reduced="never")
-    assert found.full["hottest_degC"] == pytest.approx(40.0, abs=0.05)
-    assert float(found.changes["drive.speed"].split()[0]) == pytest.approx(13.0, abs=0.3)
-    assert len(found.table) <= 600
-    assert found.table["best_so_far"].is_monotonic_decreasing
-    assert found.table["best_so_far"].iloc[-1] == found.full["hottest_degC"]
+    answer = optimum(plan, OptimiseCard(minimise="hottest_degC", runs=600), scheduler=bowl, reduced="never")
+    assert answer.full["hottest_degC"] == pytest.approx(40.0, abs=0.05)
+    assert float(answer.changes["drive.speed"].split()[0]) == pytest.approx(13.0, abs=0.3)
+    assert len(answer.table) <= 600
+    assert answer.table["best_so_far"].is_monotonic_decreasing
+    assert answer.table["best_so_far"].iloc[-1] == answer.full["hottest_degC"]
 
 
 def test_optimum_keeps_its_limits(tyre: Study) -> None:
     plan = plan_of(tyre, BOX, limits={"gas_pressure_Pa": {"above": 15.0}}, optimise={"minimise": "hottest_degC"})
-    found = optimum(plan, OptimiseCard(minimise="hottest_degC", runs=600), scheduler=Formula(sum), reduced="never")
-    assert found.full["hottest_degC"] == pytest.approx(25.0, abs=0.1)
-    assert found.full["gas_pressure_Pa"] > 15.0
+    answer = optimum(plan, OptimiseCard(minimise="hottest_degC", runs=600), scheduler=Formula(sum), reduced="never")
+    assert answer.full["hottest_degC"] == pytest.approx(25.0, abs=0.1)
+    assert answer.full["gas_pressure_Pa"] > 15.0
     beyond = plan_of(tyre, BOX, limits={"gas_pressure_Pa": {"above": 30.0}}, optimise={"minimise": "hottest_degC"})
     none = optimum(beyond, OptimiseCard(minimise="hottest_degC", runs=60), scheduler=Formula(sum), reduced="never")
     assert none.best is None
@@ -248,9 +248,9 @@ def test_optimum_of_listed_values_tries_every_combination_once(tyre: Study) -> N
     box = {"drive.speed": ["10 m/s", "11 m/s", "12 m/s"], "drive.ambient": ["10 degC", "20 degC"]}
     plan = plan_of(tyre, box, optimise={"maximise": "hottest_degC"})
     scheduler = Formula(lambda x: x[0] * x[1])
-    found = optimum(plan, OptimiseCard(maximise="hottest_degC"), scheduler=scheduler, reduced="never")
-    assert found.exhaustive
-    assert found.changes == {"drive.speed": "12 m/s", "drive.ambient": "20 degC"}
+    answer = optimum(plan, OptimiseCard(maximise="hottest_degC"), scheduler=scheduler, reduced="never")
+    assert answer.exhaustive
+    assert answer.changes == {"drive.speed": "12 m/s", "drive.ambient": "20 degC"}
     assert scheduler.asked == 6 + 1  # and the study as it is
 
 
@@ -259,10 +259,10 @@ def test_a_search_passes_over_failures_and_mixes_lists_with_ranges(tyre: Study) 
     plan = plan_of(tyre, box, optimise={"minimise": "hottest_degC"})
     # Ends of the list are dearer, and below 12 m/s there is no answer.
     broken = Formula(lambda x: math.inf if x[0] < 12 else 1000 + x[0] + 50 * (x[1] != 20))
-    found = optimum(plan, OptimiseCard(minimise="hottest_degC", runs=400), scheduler=broken, reduced="never")
-    assert found.full["hottest_degC"] == pytest.approx(1012.0, abs=0.2)
-    assert found.changes["drive.ambient"] == "20 degC"
-    assert (found.table["failure"] != "").any()
+    answer = optimum(plan, OptimiseCard(minimise="hottest_degC", runs=400), scheduler=broken, reduced="never")
+    assert answer.full["hottest_degC"] == pytest.approx(1012.0, abs=0.2)
+    assert answer.changes["drive.ambient"] == "20 degC"
+    assert (answer.table["failure"] != "").any()
 
 
 def test_an_interrupted_search_goes_on_without_running_anything_twice(tyre: Study, tmp_path: Path) -> None:
@@ -271,12 +271,12 @@ def test_an_interrupted_search_goes_on_without_running_anything_twice(tyre: Stud
         OptimiseCard(minimise="hottest_degC", runs=60),
     )
     first, again = Formula(sum), Formula(sum)
-    one = optimum(plan, card, scheduler=first, folder=tmp_path, reduced="never")
+    search = optimum(plan, card, scheduler=first, folder=tmp_path, reduced="never")
     other = optimum(plan, card, scheduler=again, folder=tmp_path, reduced="never")
     assert again.asked == 1  # the study as it is
-    assert first.asked == len(one.table) + 1
-    assert other.changes == one.changes
-    assert other.swept.resumed == len(one.table)
+    assert first.asked == len(search.table) + 1
+    assert other.changes == search.changes
+    assert other.swept.resumed == len(search.table)
 
 
 class Optimist:
@@ -307,15 +307,15 @@ def made(monkeypatch: pytest.MonkeyPatch) -> list[Optimist]:
 def test_what_a_reduced_model_finds_keeps_its_limits_in_a_full_run(tyre: Study, made: list[Optimist]) -> None:
     limits = {"hottest_degC": {"below": 40.0}}
     plan, scheduler = plan_of(tyre, BOX, limits=limits, optimise={"maximise": "hottest_degC"}), Formula(sum)
-    found = optimum(plan, OptimiseCard(maximise="hottest_degC", runs=400), scheduler=scheduler)
-    assert 39.7 < found.full["hottest_degC"] < 40.0
+    answer = optimum(plan, OptimiseCard(maximise="hottest_degC", runs=400), scheduler=scheduler)
+    assert 39.7 < answer.full["hottest_degC"] < 40.0
     assert scheduler.asked == 2  # the study as it is, and the best variant
-    assert "error of 0.5 K" in found.words[-1]
-    assert found.swept.certificate == Optimist.certificate
+    assert "error of 0.5 K" in answer.words[-1]
+    assert answer.swept.certificate == Optimist.certificate
     assert len(made) == 1
-    by = found.table["by"]
-    assert found.table["error_K"][by == "reduced"].eq(0.5).all()
-    assert found.table["error_K"][by == "full"].eq(0.0).all()
+    by = answer.table["by"]
+    assert answer.table["error_K"][by == "reduced"].eq(0.5).all()
+    assert answer.table["error_K"][by == "full"].eq(0.0).all()
 
 
 def test_a_search_that_is_finished_makes_no_model_again(tyre: Study, made: list[Optimist], tmp_path: Path) -> None:
@@ -335,16 +335,16 @@ def test_a_search_that_is_finished_makes_no_model_again(tyre: Study, made: list[
 def test_how_it_is_carried_out_is_said_by_name_or_in_one(tyre: Study, tmp_path: Path) -> None:
     plan, ticks = plan_of(tyre, {"drive.speed": ["10 m/s", "11 m/s"]}), []
     how = Execution(Formula(sum), tmp_path, progress=lambda *what: ticks.append(what))
-    one, other = sweep(plan, how), sweep(plan, scheduler=Formula(sum), reduced="never")
+    swept, other = sweep(plan, how), sweep(plan, scheduler=Formula(sum), reduced="never")
     assert ticks == [("variants", 0, 2), ("variants", 1, 2), ("variants", 2, 2)]
-    assert one.table["hottest_degC"].tolist() == other.table["hottest_degC"].tolist() == [10.0, 11.0]
+    assert swept.table["hottest_degC"].tolist() == other.table["hottest_degC"].tolist() == [10.0, 11.0]
     assert sweep(plan, how, progress=None).resumed == 2
     assert sweep(plan, how, progress=None, restart=True).resumed == 0
     assert len(ticks) == 3
     assert how.within("envelope").folder == tmp_path / "envelope"
     wrong = {"reduced": "never", "tolerance": "positive", "foldr": "did you mean 'folder'"}
-    for (name, told), value in zip(wrong.items(), ("perhaps", 0.0, tmp_path), strict=True):
-        with pytest.raises(InputError, match=told):
+    for (name, message), value in zip(wrong.items(), ("perhaps", 0.0, tmp_path), strict=True):
+        with pytest.raises(InputError, match=message):
             tyre.sweep({"drive.speed": ["10 m/s"]}, **{name: value})
 
 
@@ -356,38 +356,38 @@ def heated(numbers: list[float]) -> float:
 
 def test_the_envelope_ends_where_the_limit_is_reached(tyre: Study) -> None:
     card = EnvelopeCard(below=120.0, loads=("2 kN", "5 kN", "8 kN"), pressures=("500 kPa",))
-    found = envelope(tyre, card, scheduler=Formula(heated), reduced="never")
-    speeds = found.table["speed_m_s"].tolist()
+    answer = envelope(tyre, card, scheduler=Formula(heated), reduced="never")
+    speeds = answer.table["speed_m_s"].tolist()
     assert speeds == pytest.approx([50.0, 20.0, 12.5], rel=0.005)
-    assert found.table["at_limit"].all()
-    assert found.runs < 30
+    assert answer.table["at_limit"].all()
+    assert answer.runs < 30
     # Load x speed is the same everywhere: 100 kN m/s = 36.7 t km/h.
-    assert found.rating["tkph"].tolist() == pytest.approx([100 / 9.80665 * 3.6], rel=0.005)
+    assert answer.rating["tkph"].tolist() == pytest.approx([100 / 9.80665 * 3.6], rel=0.005)
 
 
 def test_the_envelope_says_where_no_speed_or_every_speed_is_safe(tyre: Study) -> None:
     card = EnvelopeCard(below=25.0, loads=("2 kN", "8 kN"), pressures=("500 kPa",), slowest="1 m/s", fastest="2 m/s")
-    found = envelope(tyre, card, scheduler=Formula(heated), reduced="never")
-    assert found.table["speed_m_s"].iloc[0] == pytest.approx(2.0)
-    assert np.isnan(found.table["speed_m_s"].iloc[1])
-    assert not found.table["at_limit"].any()
-    assert found.words[1] == "at 500 kPa: 7 km/h and more with 2 kN, no speed with 8 kN."
-    assert np.isnan(found.rating["tkph"].iloc[0])
+    answer = envelope(tyre, card, scheduler=Formula(heated), reduced="never")
+    assert answer.table["speed_m_s"].iloc[0] == pytest.approx(2.0)
+    assert np.isnan(answer.table["speed_m_s"].iloc[1])
+    assert not answer.table["at_limit"].any()
+    assert answer.words[1] == "at 500 kPa: 7 km/h and more with 2 kN, no speed with 8 kN."
+    assert np.isnan(answer.rating["tkph"].iloc[0])
 
 
 def test_a_heavier_tyre_must_go_slower_and_what_it_says_is_true(tyre: Study) -> None:
     card = EnvelopeCard(below=40.0, loads=("2000 lbf", "2700 lbf", "3400 lbf"))
-    found = envelope(tyre, card, reduced="never")
-    speeds = found.table["speed_m_s"]
+    answer = envelope(tyre, card, reduced="never")
+    speeds = answer.table["speed_m_s"]
     assert (np.diff(speeds) < 0).all()
-    row = found.table.iloc[1]
+    row = answer.table.iloc[1]
     at = {"drive.load": "2700 lbf", "drive.speed": f"{row['speed_m_s']} m/s"}
     assert tyre.replace(at).run().history.maximum.temperature == pytest.approx(row["hottest_degC"], abs=1e-3)
     assert 39.9 < row["hottest_degC"] < 40.0
 
 
 @pytest.mark.parametrize(
-    ("said", "told"),
+    ("fields", "message"),
     [
         ({"answer": "hotest_degC"}, "did you mean 'hottest_degC'"),
         ({"loads": ("2 kN", "2000 N")}, "given twice"),
@@ -395,16 +395,16 @@ def test_a_heavier_tyre_must_go_slower_and_what_it_says_is_true(tyre: Study) -> 
         ({"slowest": "9 m/s", "fastest": "3 m/s"}, "no range of speeds"),
     ],
 )
-def test_an_envelope_that_makes_no_sense_is_refused(tyre: Study, said: dict[str, Any], told: str) -> None:
-    with pytest.raises(InputError, match=told):
-        checked_pairs(tyre, EnvelopeCard(below=100.0, **said))
+def test_an_envelope_that_makes_no_sense_is_refused(tyre: Study, fields: dict[str, Any], message: str) -> None:
+    with pytest.raises(InputError, match=message):
+        checked_pairs(tyre, EnvelopeCard(below=100.0, **fields))
 
 
 def test_what_a_steeper_loss_tangent_does_is_in_the_words(swept: Sweep) -> None:
     effects = main_effects(swept, "hottest_degC").set_index("number")["effect"]
     assert (effects > 0).all()
-    told = " ".join(Responses(swept).words)
-    assert f"{int(swept.table['feasible'].sum())} of 6 variants keep the limits" in told
+    words = " ".join(Responses(swept).words)
+    assert f"{int(swept.table['feasible'].sum())} of 6 variants keep the limits" in words
 
 
 def test_names_of_answers_are_known_before_anything_runs(swept: Sweep, tyre: Study) -> None:
@@ -417,8 +417,8 @@ def test_names_of_answers_are_known_before_anything_runs(swept: Sweep, tyre: Stu
 def test_the_front_is_what_comparing_all_pairs_gives(rows: list[tuple[int, ...]]) -> None:
     values = np.array(rows, dtype=float)
     kept = undominated(values)
-    for one, mark in zip(values, kept, strict=True):
-        beaten = any((other <= one).all() and (other < one).any() for other in values)
+    for row, mark in zip(values, kept, strict=True):
+        beaten = any((other <= row).all() and (other < row).any() for other in values)
         assert mark == (not beaten)
 
 
@@ -430,8 +430,8 @@ def test_an_empty_sweep_has_an_empty_table(tyre: Study) -> None:
 
 def test_nothing_is_drawn_between_two_cards(tyre: Study) -> None:
     plan = plan_of(tyre, {"materials.tread": ["nasa-tread", "rubber-tread-aircraft"]})
-    found = Responses(Sweep(plan, {n: Answered({"hottest_degC": 50.0 + n}) for n in range(2)}))
-    ((name, _, picture),) = figures(found)
+    answer = Responses(Sweep(plan, {n: Answered({"hottest_degC": 50.0 + n}) for n in range(2)}))
+    ((name, _, picture),) = figures(answer)
     assert name.startswith("bars-")
     (line,) = picture.axes[0].get_lines()
     assert len(line.get_xdata()) == 2
@@ -441,17 +441,17 @@ def test_nothing_is_drawn_between_two_cards(tyre: Study) -> None:
 
 def test_tornado_moves_stiffness_too_and_a_shared_card_as_one(tyre: Study) -> None:
     stiff = {"relative_sd": 0.2}
-    shared = {f"materials.{one}": {"base": "nasa-tread", "shear_modulus": stiff} for one in ("tread", "sidewall")}
+    shared = {f"materials.{entry}": {"base": "nasa-tread", "shear_modulus": stiff} for entry in ("tread", "sidewall")}
     idle = {"materials.bead.shear_modulus": {"value": "1 MPa", "source": "test", **stiff}}
     study = tyre.replace({**shared, **idle})
-    key, other = (f"materials.{one}.shear_modulus.value" for one in ("tread", "sidewall"))
+    key, other = (f"materials.{entry}.shear_modulus.value" for entry in ("tread", "sidewall"))
     plan = tornado_plan(study)
     assert key in plan.sampling["tolerances"]
     assert other not in plan.sampling["tolerances"]
-    moved = [one for one in plan.variants if key in one]
-    assert [set(one) for one in moved] == [{key, other}, {key, other}]
-    found = Tornado(sweep(tornado_plan(study, {other: 0.2})), ("hottest_degC",))
-    (row,) = found.of("hottest_degC").to_dict("records")
+    moved = [entry for entry in plan.variants if key in entry]
+    assert [set(entry) for entry in moved] == [{key, other}, {key, other}]
+    answer = Tornado(sweep(tornado_plan(study, {other: 0.2})), ("hottest_degC",))
+    (row,) = answer.of("hottest_degC").to_dict("records")
     assert row["also"] == "tread"
     both = study.replace(dict(moved[1])).run().history.maximum.temperature
     assert row["nominal"] + row["more"] == pytest.approx(both, abs=1e-6)

@@ -29,6 +29,6 @@ def test_variants_of_a_grooved_tyre_have_answers() -> None:
         "mesh.size": "20 mm", "mesh.element": "P1", "mechanics.strain": "given", "numerics.tolerance": "1 K",
         "drive.duration": "20 s", "output.every": "10 s",
     }  # fmt: skip
-    found = sweep(plan_of(study("passenger-205-55r16", changes), {"drive.speed": ["60 km/h", "80 km/h"]}))
-    assert not found.failed
-    assert (found.table["gradient_K_m"] > 0).all()
+    swept = sweep(plan_of(study("passenger-205-55r16", changes), {"drive.speed": ["60 km/h", "80 km/h"]}))
+    assert not swept.failed
+    assert (swept.table["gradient_K_m"] > 0).all()

@@ -69,12 +69,12 @@ def finished(out: Path) -> int:
 
 def workers_of(group: int) -> list[int]:
     """Processes of a session that are alive."""
-    found = []
+    processes = []
     for process in psutil.process_iter():
         with contextlib.suppress(psutil.Error, ProcessLookupError):
             if os.getsid(process.pid) == group and process.status() != psutil.STATUS_ZOMBIE:
-                found.append(process.pid)
-    return found
+                processes.append(process.pid)
+    return processes
 
 
 def test_a_sweep_killed_with_9_resumes_and_its_workers_are_gone(tmp_path: Path, whole: Sweep) -> None:
@@ -103,10 +103,10 @@ def test_a_sweep_killed_with_9_resumes_and_its_workers_are_gone(tmp_path: Path, 
 def test_ctrl_c_keeps_what_is_done_and_says_so(tmp_path: Path) -> None:
     running = started(tmp_path)
     os.killpg(running.pid, signal.SIGINT)
-    _, said = running.communicate(timeout=60)
+    _, output = running.communicate(timeout=60)
     assert running.returncode == 130
-    assert "Traceback" not in said, said
-    assert "the same command resumes from there" in said
+    assert "Traceback" not in output, output
+    assert "the same command resumes from there" in output
     assert len((tmp_path / "sweep.csv").read_text().splitlines()) == finished(tmp_path) + 1
 
 
@@ -129,21 +129,21 @@ class Cluster:
             "PYTHONPATH": os.pathsep.join([str(Path(__file__).parent), *filter(None, sys.path)])
         }
         words = [sys.executable, "-m", f"distributed.cli.{program}", *arguments, "--no-dashboard"]
-        one = subprocess.Popen(words, cwd=self.folder, env=environment, stderr=subprocess.DEVNULL)
-        self.running.append(one)
-        return one
+        process = subprocess.Popen(words, cwd=self.folder, env=environment, stderr=subprocess.DEVNULL)
+        self.running.append(process)
+        return process
 
     def end(self) -> None:
-        for one in self.running:
-            one.kill()
-            one.wait()
+        for process in self.running:
+            process.kill()
+            process.wait()
 
 
 @pytest.fixture
 def cluster(tmp_path: Path) -> Iterator[Cluster]:
-    found = Cluster(tmp_path)
-    yield found
-    found.end()
+    cluster_of_test = Cluster(tmp_path)
+    yield cluster_of_test
+    cluster_of_test.end()
 
 
 class After:
@@ -153,8 +153,8 @@ class After:
         self.inner, self.count, self.deed = inner, count, deed
 
     def outcomes(self, work: Callable[[Any], Outcome], tasks: Sequence[Any]) -> Iterator[tuple[int, Outcome]]:
-        for number, one in enumerate(self.inner.outcomes(work, tasks), 1):
-            yield one
+        for number, outcome in enumerate(self.inner.outcomes(work, tasks), 1):
+            yield outcome
             if number == self.count:
                 self.deed()
 
@@ -164,27 +164,27 @@ def test_a_cluster_that_loses_a_worker_answers_every_variant_as_one_process_does
 ) -> None:
     inner = Dask(cluster.address, timeout=60)
     inner.client.wait_for_workers(2, timeout=60)
-    found = sweep(plan, scheduler=After(inner, 2, cluster.workers[0].kill), folder=tmp_path / "out", reduced="never")
+    swept = sweep(plan, scheduler=After(inner, 2, cluster.workers[0].kill), folder=tmp_path / "out", reduced="never")
     inner.close()
     assert cluster.workers[0].wait(10) == -signal.SIGKILL
-    assert found.complete
-    assert not found.failed
+    assert swept.complete
+    assert not swept.failed
     for number, outcome in whole.outcomes.items():
         for name, value in outcome.answers.items():
             same = pytest.approx(value, rel=1e-9, abs=1e-9, nan_ok=True) if isinstance(value, float) else value
-            assert found.outcomes[number].answers[name] == same
+            assert swept.outcomes[number].answers[name] == same
 
 
 def test_a_lost_scheduler_costs_only_what_was_running(
     cluster: Cluster, plan: Plan, whole: Sweep, tmp_path: Path
 ) -> None:
     inner = Dask(cluster.address, timeout=60)
-    found = sweep(plan, scheduler=After(inner, 3, cluster.scheduler.kill), folder=tmp_path / "out", reduced="never")
+    swept = sweep(plan, scheduler=After(inner, 3, cluster.scheduler.kill), folder=tmp_path / "out", reduced="never")
     inner.close()
-    assert "Dask scheduler" in found.interrupted
-    assert not found.failed
-    assert 3 <= len(found.outcomes) < 8
+    assert "Dask scheduler" in swept.interrupted
+    assert not swept.failed
+    assert 3 <= len(swept.outcomes) < 8
     rest = sweep(plan, folder=tmp_path / "out", reduced="never")
     assert rest.complete
-    assert rest.resumed == len(found.outcomes)
+    assert rest.resumed == len(swept.outcomes)
     assert rest.table["hottest_degC"].tolist() == pytest.approx(whole.table["hottest_degC"].tolist(), abs=1e-9)

@@ -33,10 +33,10 @@ def test_a_tornado_names_its_numbers_whole_and_on_the_paper() -> None:
 def test_what_a_curve_stands_for_has_its_unit() -> None:
     study = tf.study("nasa-22x5.5-8pr", {"mesh.size": "12 mm", "drive.duration": "20 s"})
     vary = {"drive.speed": ["10 mph", "20 mph"], "drive.load": ["2000 lbf", "2700 lbf"]}
-    found = sweep(plan_of(study, vary), reduced="never")
-    headings = found.plan.row(0)
+    swept = sweep(plan_of(study, vary), reduced="never")
+    headings = swept.plan.row(0)
     (speed,) = [name for name in headings if "speed" in name]
-    legend = curves(found, speed, "hottest_degC").axes[0].get_legend()
+    legend = curves(swept, speed, "hottest_degC").axes[0].get_legend()
     assert legend is not None
     assert legend.get_title().get_text() == "load [lbf]"
 

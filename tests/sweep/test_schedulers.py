@@ -24,39 +24,39 @@ def test_in_this_process() -> None:
 
 
 def test_local_processes_answer_everything() -> None:
-    found = dict(Local(2).outcomes(squared, list(range(12))))
-    assert {n: one["answers"]["x"] for n, one in found.items()} == {n: n**2 for n in range(12)}
+    outcomes = dict(Local(2).outcomes(squared, list(range(12))))
+    assert {n: outcome["answers"]["x"] for n, outcome in outcomes.items()} == {n: n**2 for n in range(12)}
 
 
 def test_what_is_common_to_all_tasks_reaches_every_worker() -> None:
-    found = dict(Local(2).outcomes(added, list(range(6)), [0.5]))
-    assert {n: one["answers"]["x"] for n, one in found.items()} == {n: n + 0.5 for n in range(6)}
+    outcomes = dict(Local(2).outcomes(added, list(range(6)), [0.5]))
+    assert {n: outcome["answers"]["x"] for n, outcome in outcomes.items()} == {n: n + 0.5 for n in range(6)}
     assert dict(Here().outcomes(added, [1], [0.5]))[0]["answers"]["x"] == 1.5
 
 
 def test_processes_are_kept_from_one_call_to_the_next_and_replaced_when_one_dies(tmp_path: Path) -> None:
     with Local(1) as scheduler:
         first, second = (dict(scheduler.outcomes(added, [1, 2], [0.0])) for _ in "ab")
-        assert {one["answers"]["process"] for one in (*first.values(), *second.values())} == {
+        assert {outcome["answers"]["process"] for outcome in (*first.values(), *second.values())} == {
             first[0]["answers"]["process"]
         }
-        found = list(scheduler.outcomes(dies_the_first_time, [(3, str(tmp_path))]))
-        assert found == [(0, {"answers": {"x": 3.0}})]
+        outcomes = list(scheduler.outcomes(dies_the_first_time, [(3, str(tmp_path))]))
+        assert outcomes == [(0, {"answers": {"x": 3.0}})]
         third = dict(scheduler.outcomes(added, [1], [0.0]))
         assert third[0]["answers"]["process"] != first[0]["answers"]["process"]
 
 
 def test_a_process_that_is_killed_costs_nothing(tmp_path: Path) -> None:
     tasks = [(n, str(tmp_path)) for n in range(10)]
-    found = list(Local(2).outcomes(dies_the_first_time, tasks))
-    assert sorted(n for n, _ in found) == list(range(10))
-    assert all(one["answers"]["x"] == n for n, one in found)
+    outcomes = list(Local(2).outcomes(dies_the_first_time, tasks))
+    assert sorted(n for n, _ in outcomes) == list(range(10))
+    assert all(outcome["answers"]["x"] == n for n, outcome in outcomes)
 
 
 def test_a_task_that_kills_its_process_is_named_and_the_others_go_on() -> None:
-    found = dict(Local(2).outcomes(always_dies, list(range(6))))
-    assert "died" in found[2].reason
-    assert {n for n, one in found.items() if not isinstance(one, Failed)} == {0, 1, 3, 4, 5}
+    outcomes = dict(Local(2).outcomes(always_dies, list(range(6))))
+    assert "died" in outcomes[2].reason
+    assert {n for n, outcome in outcomes.items() if not isinstance(outcome, Failed)} == {0, 1, 3, 4, 5}
 
 
 def test_no_scheduler_there_is_one_clear_error() -> None:
@@ -81,7 +81,7 @@ def test_variants_of_a_lost_piece_are_tried_one_by_one() -> None:
     tyre = study("nasa-22x5.5-8pr", {"mesh.size": "12 mm", "numerics.tolerance": "0.5 K", "drive.duration": "20 s"})
     scheduler = Tearing()
     plan = plan_of(tyre, {"drive.speed": ("10 mph", "20 mph", 4)})
-    found = sweep(plan, scheduler=scheduler, settings=SweepSettings(single=2))
+    outcomes = sweep(plan, scheduler=scheduler, settings=SweepSettings(single=2))
     assert scheduler.lost == 2
-    assert found.complete
-    assert not found.failed
+    assert outcomes.complete
+    assert not outcomes.failed

@@ -23,8 +23,8 @@ def test_a_grid_from_flags_to_tables_and_page(tmp_path: Path, capsys: pytest.Cap
     limits = ["--limit", "hottest_degC<40", "--time-to", "35 degC", "--answer", "crown-inner_degC"]
     command = ["sweep", TYRE, *flags, *limits, *QUICK, "--out", str(tmp_path)]
     assert main(command) == 0
-    said = capsys.readouterr().out
-    assert "keep the limits" in said
+    output = capsys.readouterr().out
+    assert "keep the limits" in output
     table = pd.read_csv(tmp_path / "sweep.csv")
     assert len(table) == 4
     assert set(table["materials.tread"]) == {"nasa-tread", "rubber-tread-aircraft"}
@@ -92,14 +92,14 @@ loads = ["2000 lbf", "2700 lbf"]
 
 def test_from_python(tmp_path: Path) -> None:
     coarse = study(TYRE, {"mesh.size": "12 mm", "numerics.tolerance": "0.5 K", "drive.duration": "60 s"})
-    found = coarse.sweep(
+    design = coarse.sweep(
         {"drive.speed": ("10 mph", "30 mph", 3)}, pareto={"hottest_degC": "min", "deflection_m": "min"}, reduced="never"
     )
-    assert found.table["hottest_degC"].is_monotonic_increasing
-    assert found.pareto["variant"].tolist() == ["1"]
-    assert found.tornado is None
-    assert found.optimum is None
-    found.save(tmp_path, pictures=False)
+    assert design.table["hottest_degC"].is_monotonic_increasing
+    assert design.pareto["variant"].tolist() == ["1"]
+    assert design.tornado is None
+    assert design.optimum is None
+    design.save(tmp_path, pictures=False)
     assert sorted(path.name for path in tmp_path.iterdir()) == [
         "pareto.csv", "pareto.parquet", "summary.json", "sweep.csv", "sweep.parquet"
     ]  # fmt: skip
@@ -117,7 +117,7 @@ SPEEDS = ["--vary", "drive.speed=10 mph:20 mph"]
 
 
 @pytest.mark.parametrize(
-    ("flags", "told"),
+    ("flags", "message"),
     [
         ([], "nothing varies"),
         (["--vary", "drive.sped=10 mph:20 mph"], "did you mean 'speed'"),
@@ -146,18 +146,18 @@ SPEEDS = ["--vary", "drive.speed=10 mph:20 mph"]
     ],
 )
 def test_bad_input_is_one_line_before_anything_runs(
-    flags: list[str], told: str, tmp_path: Path, capsys: pytest.CaptureFixture[str], monkeypatch: pytest.MonkeyPatch
+    flags: list[str], message: str, tmp_path: Path, capsys: pytest.CaptureFixture[str], monkeypatch: pytest.MonkeyPatch
 ) -> None:
     monkeypatch.chdir(tmp_path)
     assert main(["sweep", TYRE, *flags]) == 2
-    said = capsys.readouterr().err
-    assert told in said
-    assert len(said.splitlines()) == 1
+    output = capsys.readouterr().err
+    assert message in output
+    assert len(output.splitlines()) == 1
     assert not list(tmp_path.iterdir())
 
 
 @pytest.mark.parametrize(
-    ("rows", "flags", "told"),
+    ("rows", "flags", "message"),
     [
         (["slow,10,2000", "also,10.0,2000"], [], "variants 'slow' and 'also' are the same"),
         (["slow,10,2000", "fast,20"], [], "line 3 has 2 cells, the heading 3"),
@@ -166,17 +166,17 @@ def test_bad_input_is_one_line_before_anything_runs(
     ],
 )
 def test_a_list_that_makes_no_sense_is_refused(
-    rows: list[str], flags: list[str], told: str, tmp_path: Path, capsys: pytest.CaptureFixture[str]
+    rows: list[str], flags: list[str], message: str, tmp_path: Path, capsys: pytest.CaptureFixture[str]
 ) -> None:
     file = tmp_path / "list.csv"
     file.write_text("\n".join(["name,drive.speed [mph],drive.load [lbf]", *rows]))
     assert main(["sweep", TYRE, "--cases", str(file), *flags, "--out", str(tmp_path / "out")]) == 2
-    assert told in capsys.readouterr().err
+    assert message in capsys.readouterr().err
     assert not (tmp_path / "out").exists()
 
 
 @pytest.mark.parametrize(
-    ("text", "told"),
+    ("text", "message"),
     [
         ('sampel = "grid"', "did you mean 'sample'"),
         ("[vary]\n'drive.speed' = { form = '1 m/s', to = '2 m/s' }", "vary.drive.speed: unknown key 'form'"),
@@ -185,14 +185,14 @@ def test_a_list_that_makes_no_sense_is_refused(
         ("[optimise]\nminimise = 'mass_kg'", "nothing varies"),
     ],
 )
-def test_a_bad_file_is_named(text: str, told: str, tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
+def test_a_bad_file_is_named(text: str, message: str, tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
     file = tmp_path / "mine.toml"
     file.write_text(f'study = "{TYRE}"\n{text}\n')
     for command in ("sweep", "check"):
         assert main([command, str(file)]) == 2
-        said = capsys.readouterr().err
-        assert told in said
-        assert "mine.toml" in said
+        output = capsys.readouterr().err
+        assert message in output
+        assert "mine.toml" in output
 
 
 @pytest.mark.parametrize(("name", "count"), [("crown-angle", 100), ("belt-edge", 15)])

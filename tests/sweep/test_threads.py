@@ -42,10 +42,10 @@ def plan(load: str, angle: str) -> Plan:
     return plan_of(tyre, {"drive.speed": ("12 mph", "20 mph", 5), "drive.ambient": ["15 degC", "30 degC"]})
 
 
-def answers(found: Sweep) -> pd.DataFrame:
-    assert found.complete
-    assert not found.failed
-    return found.table
+def answers(swept: Sweep) -> pd.DataFrame:
+    assert swept.complete
+    assert not swept.failed
+    return swept.table
 
 
 @pytest.mark.parametrize("reduced", ["never", "always"])

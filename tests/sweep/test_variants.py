@@ -29,7 +29,7 @@ def tyre() -> Study:
 
 def test_grid_is_every_combination(tyre: Study) -> None:
     plan = plan_of(tyre, {"drive.speed": ("10 mph", "40 mph", 4), "drive.pressure": ["80 psi", "90 psi"]})
-    assert [dict(one) for one in plan.variants[:3]] == [
+    assert [dict(variant) for variant in plan.variants[:3]] == [
         {"drive.speed": "10 mph", "drive.pressure": "80 psi"},
         {"drive.speed": "10 mph", "drive.pressure": "90 psi"},
         {"drive.speed": "20 mph", "drive.pressure": "80 psi"},
@@ -47,7 +47,7 @@ def test_samples_fill_the_box_and_come_again_with_their_seed(tyre: Study, sample
     first, again, other = (plan_of(tyre, box, sample=sample, count=16, seed=seed).variants for seed in (3, 3, 4))
     assert first == again
     assert first != other
-    speeds = np.array([parse(one["drive.speed"], "m/s") for one in first])
+    speeds = np.array([parse(variant["drive.speed"], "m/s") for variant in first])
     # One in every sixteenth of the range: what both samples promise of each number alone.
     assert sorted(((speeds - 5) / 10 * 16).astype(int).tolist()) == list(range(16))
 
@@ -60,23 +60,23 @@ def test_sobol_sample_is_rounded_up_to_a_power_of_two(tyre: Study) -> None:
 def test_a_value_is_within_its_range_and_read_back_as_it_was_written(
     place: float, low: float, width: float, log: bool
 ) -> None:
-    one = Varied("drive.speed", "m/s", low=low, high=low + width, log=log)
-    value = parse(one.at(place), "m/s")
+    quantity = Varied("drive.speed", "m/s", low=low, high=low + width, log=log)
+    value = parse(quantity.at(place), "m/s")
     assert low * (1 - 1e-8) <= value <= (low + width) * (1 + 1e-8)
-    assert one.of(one.at(place)) == pytest.approx(value, rel=1e-12)
+    assert quantity.of(quantity.at(place)) == pytest.approx(value, rel=1e-12)
 
 
 def test_factor_is_on_what_the_card_says(tyre: Study) -> None:
     plan = plan_of(tyre, {"materials.tread.loss_tangent.value": {"factor": [0.5, 1.5], "levels": 2}})
     stated = tyre.materials["tread"].loss_tangent.value
-    values = [tyre.replace(one).materials["tread"].loss_tangent.value for one in plan.variants]
+    values = [tyre.replace(variant).materials["tread"].loss_tangent.value for variant in plan.variants]
     assert stated is not None
     assert values == pytest.approx([0.5 * stated, 1.5 * stated])
 
 
 def test_cards_are_swapped(tyre: Study) -> None:
     plan = plan_of(tyre, {"materials.tread": ["nasa-tread", "rubber-tread-passenger"]})
-    densities = [tyre.replace(one).materials["tread"].loss_tangent for one in plan.variants]
+    densities = [tyre.replace(variant).materials["tread"].loss_tangent for variant in plan.variants]
     assert densities[0] != densities[1]
     assert plan.row(1)["materials.tread"] == "rubber-tread-passenger"
 
@@ -85,14 +85,14 @@ def test_list_from_csv(tyre: Study, tmp_path: Path) -> None:
     (tmp_path / "list.csv").write_text("name,drive.speed [mph],drive.load [lbf]\nslow,10,2000\nfast,30,\n")
     plan = planned(tyre, SweepCard.check({"study": "x", "sample": "list", "cases": "list.csv"}), tmp_path)
     assert plan.names == ("slow", "fast")
-    assert [dict(one) for one in plan.variants] == [
+    assert [dict(variant) for variant in plan.variants] == [
         {"drive.speed": "10 mph", "drive.load": "2000 lbf"},
         {"drive.speed": "30 mph"},
     ]
 
 
 @pytest.mark.parametrize(
-    ("vary", "said"),
+    ("vary", "message"),
     [
         ({"drive.sped": ("10 mph", "20 mph")}, "sped"),
         ({"drive.speed": ("10 mph", "20 m/s")}, "same unit"),
@@ -106,8 +106,8 @@ def test_list_from_csv(tyre: Study, tmp_path: Path) -> None:
         ({"drive.speed": {"values": ["1 mph"], "from": "1 mph", "to": "2 mph"}}, "one of"),
     ],
 )
-def test_nonsense_is_refused_before_anything_runs(tyre: Study, vary: dict[str, object], said: str) -> None:
-    with pytest.raises(InputError, match=said):
+def test_nonsense_is_refused_before_anything_runs(tyre: Study, vary: dict[str, object], message: str) -> None:
+    with pytest.raises(InputError, match=message):
         plan_of(tyre, vary)
 
 
@@ -124,8 +124,8 @@ def test_variants_that_bend_alike_share_mesh_and_strain_cycle() -> None:
     alone = {n: coarse.replace(plan.variants[n]).run().history.maximum.temperature for n in (1, 5)}
     # Back and forth between the sections, as tasks of other processes in between leave them.
     order = (0, 3, 1, 4, 2, 5)
-    found = {n: perform(plan.task(n)).answers["hottest_degC"] for n in order}
-    assert {n: found[n] for n in alone} == pytest.approx(alone, abs=1e-9)
+    highest = {n: perform(plan.task(n)).answers["hottest_degC"] for n in order}
+    assert {n: highest[n] for n in alone} == pytest.approx(alone, abs=1e-9)
     tyres = task.recent_tyres.tyres
     assert len(tyres) == task.REMEMBERED
     assert len({id(tyre.schedule) for tyre in tyres}) == 2
@@ -135,7 +135,7 @@ def test_variants_that_bend_alike_share_mesh_and_strain_cycle() -> None:
 def test_a_swapped_card_does_not_wipe_out_what_varies_in_it(tyre: Study) -> None:
     box = {"materials.tread.loss_tangent.value": [0.1, 0.3], "materials.tread": ["nasa-tread", "rubber-tread-aircraft"]}
     plan = plan_of(tyre, box)
-    cards = [tyre.replace(one).materials["tread"] for one in plan.variants]
+    cards = [tyre.replace(variant).materials["tread"] for variant in plan.variants]
     assert [card.loss_tangent.value for card in cards] == [0.1, 0.3, 0.1, 0.3]
     assert len({card.title for card in cards}) == 2
     with pytest.raises(InputError, match=r"'materials\.tread' varies as a whole, so a factor"):
