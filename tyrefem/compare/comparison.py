@@ -184,17 +184,17 @@ def comparison_of(
         [
             pd.DataFrame(
                 {
-                    "run": one.run,
-                    "time_s": one.times,
-                    "sensor": one.sensor,
-                    "phase": one.phases,
-                    "measured_degC": one.measured,
-                    "computed_degC": one.computed,
-                    "error_K": one.error,
-                    "u_val_K": one.reading_uncertainty,
+                    "run": history.run,
+                    "time_s": history.times,
+                    "sensor": history.sensor,
+                    "phase": history.phases,
+                    "measured_degC": history.measured,
+                    "computed_degC": history.computed,
+                    "error_K": history.error,
+                    "u_val_K": history.reading_uncertainty,
                 }
             )
-            for one in histories
+            for history in histories
         ],
         ignore_index=True,
     )

@@ -173,11 +173,11 @@ def _matched(run: MeasuredRun, study: StudyLike) -> Experiment:
     return Experiment(run)
 
 
-def _without(one: Experiment, ignore: tuple[str, ...]) -> Experiment:
-    kept = [sensor for sensor in one.run.sensors if sensor not in ignore]
+def _without(experiment: Experiment, ignore: tuple[str, ...]) -> Experiment:
+    kept = [sensor for sensor in experiment.run.sensors if sensor not in ignore]
     if not kept:
-        raise InputError(f"run '{one.name}': every sensor is ignored", file=one.run.file)
-    return replace(one, run=replace(one.run, temperatures=one.run.temperatures[kept]))
+        raise InputError(f"run '{experiment.name}': every sensor is ignored", file=experiment.run.file)
+    return replace(experiment, run=replace(experiment.run, temperatures=experiment.run.temperatures[kept]))
 
 
 def _known_sensors(runs: Sequence[MeasuredRun], study: StudyLike) -> None:
@@ -208,12 +208,12 @@ def _known_sensors(runs: Sequence[MeasuredRun], study: StudyLike) -> None:
     )
 
 
-def _distinct(found: Sequence[Experiment]) -> tuple[Experiment, ...]:
+def _distinct(experiments: Sequence[Experiment]) -> tuple[Experiment, ...]:
     """The same experiments with no run name twice: two loggers on one run are two runs."""
     taken: dict[str, int] = {}
     result = []
-    for one in found:
-        taken[one.name] = taken.get(one.name, 0) + 1
-        name = one.name if taken[one.name] == 1 else f"{one.name} ({taken[one.name]})"
-        result.append(replace(one, run=replace(one.run, name=name)))
+    for experiment in experiments:
+        taken[experiment.name] = taken.get(experiment.name, 0) + 1
+        name = experiment.name if taken[experiment.name] == 1 else f"{experiment.name} ({taken[experiment.name]})"
+        result.append(replace(experiment, run=replace(experiment.run, name=name)))
     return tuple(result)

@@ -83,7 +83,7 @@ def histories(
     simulated = result.readings["time_s"].to_numpy(dtype=float)
     slack = 1e-9 * max(abs(simulated[-1]), 1.0)
     inside = (run.times >= simulated[0] - slack) & (run.times <= simulated[-1] + slack)
-    found = []
+    compared = []
     for sensor in run.sensors:
         if sensor not in result.readings:
             known = [str(name) for name in result.readings if name != "time_s"]
@@ -94,7 +94,7 @@ def histories(
         computed = at_times(result, sensor, times)
         card = study.sensors.get(sensor)
         noise = card.noise if experiment.noise is None and card is not None else experiment.noise
-        found.append(
+        compared.append(
             SensorHistory(
                 run=run.name,
                 sensor=sensor,
@@ -111,7 +111,7 @@ def histories(
                 numerical=float(np.hypot(study.tolerance, study.numerical_sd)),
             )
         )
-    return [history for history in found if len(history.times)], int((~inside).sum())
+    return [history for history in compared if len(history.times)], int((~inside).sum())
 
 
 def at_times(result: ResultLike, sensor: str, times: Array) -> Array:

@@ -149,9 +149,9 @@ class Neighbours:
         remember(self.packed, self.base)
 
     @property
-    def found(self) -> dict[Key, Computed]:
+    def computed(self) -> dict[Key, Computed]:
         """All runs made so far."""
-        return self.runs.found
+        return self.runs.computed
 
     def solve(self) -> ReducedInputCertificate:
         """Find every run.
@@ -164,7 +164,7 @@ class Neighbours:
         for drive in runs.drives:
             if runs.work((drive, None)).tyre.mesh is not self.base.mesh:
                 raise NotReducibleError(f"another mesh{f' at the drive {drive}' if drive else ''}")
-        if len({one.fields.shape[1] for one in runs.learnt} | {self.base.problem.operators.size}) > 1:
+        if len({training.fields.shape[1] for training in runs.learnt} | {self.base.problem.operators.size}) > 1:
             raise NotReducibleError("another mesh")
         model, worst = trained(self.base, runs.learnt, self._fineness), np.inf
         for trial in range(self.settings.trials):
@@ -175,7 +175,7 @@ class Neighbours:
             if not fresh:
                 break
             runs.teach(fresh)
-            errors = [_difference(reduced[key], self.found[key]) for key in fresh if key in reduced]
+            errors = [_difference(reduced[key], self.computed[key]) for key in fresh if key in reduced]
             worst = max(errors, default=np.inf)
             if worst <= self.settings.safety * self.tolerance:
                 return self._filled(reduced, worst, len(errors))
@@ -192,7 +192,7 @@ class Neighbours:
 
     def _filled(self, reduced: Mapping[Key, Computed], worst: float, cases: int) -> ReducedInputCertificate:
         """Take the reduced runs; what no reduced model can follow is run in full."""
-        taken = {key: reduced[key] for key in self.changed if key not in self.found and key in reduced}
+        taken = {key: reduced[key] for key in self.changed if key not in self.computed and key in reduced}
         self.runs.take(taken)
         self.runs.fill()
         in_full = len(self.runs.changed) - len(taken)
@@ -215,40 +215,40 @@ class Neighbours:
 
     def _fresh(self, reduced: Mapping[Key, Computed]) -> list[Key]:
         """Runs to certify with: at every drive that which changes most, of those not made yet; no input twice."""
-        left = [key for key in self.changed if key in reduced and key not in self.found]
+        left = [key for key in self.changed if key in reduced and key not in self.computed]
         left.sort(key=lambda key: -self._size(reduced, key))
         drives = self.runs.drives
         chosen: list[Key] = []
         for number in range(max(self.settings.fresh, len(drives))):
             here = [key for key in left if key not in chosen and key[0] == drives[number % len(drives)]]
-            new = [key for key in here if key[1] not in {one[1] for one in chosen}]
+            new = [key for key in here if key[1] not in {name for _, name in chosen}]
             chosen += (new or here)[:1]
         return chosen if len(chosen) >= self.settings.fresh else []
 
     def _size(self, reduced: Mapping[Key, Computed], key: Key) -> float:
-        return _difference(reduced[key], self.found[key[0], None])
+        return _difference(reduced[key], self.computed[key[0], None])
 
     def _reduced(self, model: ReducedModel) -> dict[Key, Computed]:
         """All runs that the model can follow, each its drive's full run and what the change does."""
         keys = list(self.studies)
         outcomes = outcomes_of(model, [self.runs.work(key).tyre for key in keys])
-        variants = {keys[number]: one for number, one in outcomes if isinstance(one, Variant)}
-        found = {}
-        for key, one in variants.items():
-            base, full = variants.get((key[0], None)), self.found[key[0], None]
+        variants = {keys[number]: variant for number, variant in outcomes if isinstance(variant, Variant)}
+        computed = {}
+        for key, variant in variants.items():
+            base, full = variants.get((key[0], None)), self.computed[key[0], None]
             # Where readings come at other times, or from other places, nothing can be told from the difference.
-            if key[1] is None or base is None or not np.array_equal(one.times, base.times):
+            if key[1] is None or base is None or not np.array_equal(variant.times, base.times):
                 continue
-            mine, theirs = one.readings, base.readings
+            mine, theirs = variant.readings, base.readings
             if len(full.readings) == len(mine) and list(full.readings) == list(mine) == list(theirs):
                 readings = full.readings + (mine - theirs)
                 readings["time_s"] = full.readings["time_s"]
-                found[key] = Computed(one.study, readings, full.gradient_at_sensors, full.phases)
-        return found
+                computed[key] = Computed(variant.study, readings, full.gradient_at_sensors, full.phases)
+        return computed
 
 
-def _difference(one: Computed, other: Computed) -> float:
+def _difference(computed: Computed, other: Computed) -> float:
     """Largest difference of any reading, K."""
-    if len(one.readings) != len(other.readings):
+    if len(computed.readings) != len(other.readings):
         raise NotReducibleError("runs with other times of their readings")
-    return float(np.abs((one.readings - other.readings).drop(columns="time_s").to_numpy()).max())
+    return float(np.abs((computed.readings - other.readings).drop(columns="time_s").to_numpy()).max())

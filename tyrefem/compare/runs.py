@@ -151,7 +151,7 @@ class Runs:
     store: AnswerStore | None = None
     done: Callable[[int], None] = lambda count: None
     #: (drive, input) -> its run, as far as made; what a reduced model learns of those made to learn from.
-    found: dict[Key, Computed] = field(default_factory=dict)
+    computed: dict[Key, Computed] = field(default_factory=dict)
     learnt: list[Snapshots] = field(default_factory=list)
 
     def __enter__(self) -> Runs:
@@ -184,7 +184,7 @@ class Runs:
         if self._by_elements:
             parts.append(f"strain cycles to be solved by finite elements: {drives + self._moved}")
         # The drives themselves are run again, for their meshes, unless nothing else is left to do.
-        kept = len(self.found) or sum(self._has(key) for key in changed)
+        kept = len(self.computed) or sum(self._has(key) for key in changed)
         if kept:
             parts.append(f"{kept} are taken up from an interrupted comparison")
         return f"{len(self.studies)} simulations: {'; '.join(parts)}"
@@ -231,7 +231,7 @@ class Runs:
         for drive, (computed, lesson, cycles[drive]) in zip(left, answers, strict=True):
             self._add((drive, None), computed, lesson)
             self._keep(FULL, (drive, None), arrays_of(computed))
-            self.done(len(self.found))
+            self.done(len(self.computed))
         first: PackedDrive | None = None
         for number, drive in enumerate(self.drives):
             path = Path(self._folder.name) / f"{number}.pickle"
@@ -253,35 +253,35 @@ class Runs:
         for key, (computed, lesson) in zip(left, answers, strict=True):
             self._add(key, computed, lesson)
             self._keep(TAUGHT, key, (*arrays_of(computed), lesson.fields, lesson.sources))
-            self.done(len(self.found))
+            self.done(len(self.computed))
 
     def fill(self) -> None:
         """Full runs of all that are not made yet."""
         self._take_up(self.changed, (FULL, TAUGHT))
         # The same change at one drive after the other: what takes long to find for a change, its drives may share.
         order = {name: number for number, name in enumerate(self.keys)}
-        left = sorted((key for key in self.changed if key not in self.found), key=lambda key: order[str(key[1])])
+        left = sorted((key for key in self.changed if key not in self.computed), key=lambda key: order[str(key[1])])
         answers = self._answers(full, [self.work(key) for key in left], left)
         for key, computed in zip(left, answers, strict=True):
-            self._found(key, computed)
+            self._record(key, computed)
             self._keep(FULL, key, arrays_of(computed))
-            self.done(len(self.found))
+            self.done(len(self.computed))
 
     def take(self, reduced: Mapping[Key, Computed]) -> None:
         """Runs of a reduced model that was found good."""
         for key, computed in reduced.items():
-            self._found(key, computed)
+            self._record(key, computed)
             self._keep(REDUCED, key, arrays_of(computed))
-        self.done(len(self.found))
+        self.done(len(self.computed))
 
     def take_up_all(self, *, reduced: bool) -> bool:
         """Take up everything; False, and nothing is taken: some of it is missing. ``reduced``: such runs too."""
         for drive, result in self.known.items():
-            self._found((drive, None), computed_of(result))
+            self._record((drive, None), computed_of(result))
         self._take_up(list(self.studies), (FULL, TAUGHT, REDUCED) if reduced else (FULL, TAUGHT))
-        if len(self.found) == len(self.studies):
+        if len(self.computed) == len(self.studies):
             return True
-        self.found.clear()
+        self.computed.clear()
         return False
 
     def note(self, verdict: Any) -> None:
@@ -296,10 +296,10 @@ class Runs:
     def _take_up(self, keys: Sequence[Key], names: Sequence[str]) -> None:
         for key in keys:
             for name in names:
-                arrays = None if key in self.found else self._kept(name, key)
+                arrays = None if key in self.computed else self._kept(name, key)
                 if arrays is not None:
-                    self._found(key, computed_from(arrays[:5], None))
-        self.done(len(self.found))
+                    self._record(key, computed_from(arrays[:5], None))
+        self.done(len(self.computed))
 
     def _answers(self, function: Callable[[Any], Any], work: Sequence[Any], keys: Sequence[Key]) -> Iterator[Any]:
         """Of work for these runs: errors name the study's file."""
@@ -310,11 +310,11 @@ class Runs:
             except InputError as error:
                 raise error if error.file else error.within(file=self.studies[key].file) from None
 
-    def _found(self, key: Key, computed: Computed) -> None:
-        self.found[key] = replace(computed, study=self.studies[key])
+    def _record(self, key: Key, computed: Computed) -> None:
+        self.computed[key] = replace(computed, study=self.studies[key])
 
     def _add(self, key: Key, computed: Computed, lesson: Snapshots) -> None:
-        self._found(key, computed)
+        self._record(key, computed)
         self.learnt.append(lesson)
 
     def _has(self, key: Key) -> bool:

@@ -94,20 +94,20 @@ def compare(
         _check_times(study, planned)
     keys = dict(study.uncertainty) if judged.inputs else {}
     solved, certificate, of_model = _solved(study, planned, result, keys, work)
-    found, curves, notes = [], {}, []
+    all_histories, curves, notes = [], {}, []
     for experiment in planned:
         computed, perturbed = solved[_drive(experiment)]
-        own, outside = histories(experiment, study, computed, perturbed)
-        found += own
+        of_experiment, outside = histories(experiment, study, computed, perturbed)
+        all_histories += of_experiment
         curves[experiment.name] = computed.readings
         first, last = computed.readings["time_s"].iloc[[0, -1]]
         notes += _outside(experiment, first, last, outside)
-    if not found:
+    if not all_histories:
         raise InputError("no measured time is within the simulated span: " + "; ".join(notes))
     notes += [*of_model, *_left_out(planned), *_unstated(study, planned, judged.inputs)]
     regions = {number.key: number.regions for number in getattr(study, "uncertain_numbers", ())}
     return comparison_of(
-        study.name, found, curves=curves, relative_sd=keys, regions=regions, notes=tuple(notes), k=judged.k,
+        study.name, all_histories, curves=curves, relative_sd=keys, regions=regions, notes=tuple(notes), k=judged.k,
         reduced=certificate,
     )  # fmt: skip
 
@@ -185,14 +185,16 @@ def _solved(
             driven = result.study
         studies[drive, None] = driven
         studies |= {(drive, key): driven.scaled(key, 1.0 + sd) for key, sd in keys.items()}
-    own = {key: one for key, one in studies.items() if isinstance(one, StudyData)}
-    at_hand = {drive: one for drive, one in known.items() if isinstance(one, ResultData)}
-    if len(own) == len(studies) and len(at_hand) == len(known):
-        found, certificate, notes = _by_runs(own, at_hand, keys, work)
+    as_data = {key: driven for key, driven in studies.items() if isinstance(driven, StudyData)}
+    at_hand = {drive: given for drive, given in known.items() if isinstance(given, ResultData)}
+    if len(as_data) == len(studies) and len(at_hand) == len(known):
+        solutions, certificate, notes = _by_runs(as_data, at_hand, keys, work)
     else:
-        found, certificate, notes = _one_by_one(studies, known, work)
+        solutions, certificate, notes = _one_by_one(studies, known, work)
     together = {
-        drive: (one, {key: found[drive, key] for key in keys}) for (drive, name), one in found.items() if not name
+        drive: (solution, {key: solutions[drive, key] for key in keys})
+        for (drive, name), solution in solutions.items()
+        if not name
     }
     return together, certificate, notes
 
@@ -230,7 +232,7 @@ def _by_runs(
         if complete:
             certificate = ReducedInputCertificate.of(verdict) if certified else None
             why = str(verdict) if refused else ""
-            return dict(runs.found), certificate, [*runs.cost, *_of_model(model, certificate, why)]
+            return dict(runs.computed), certificate, [*runs.cost, *_of_model(model, certificate, why)]
         runs.begin()
         certificate, why = None, str(verdict) if refused else ""
         if model and not why:
@@ -242,7 +244,7 @@ def _by_runs(
                 why = str(error)
                 runs.note(why)
         runs.fill()
-    return dict(runs.found), certificate, [*runs.cost, *_of_model(model, certificate, why)]
+    return dict(runs.computed), certificate, [*runs.cost, *_of_model(model, certificate, why)]
 
 
 def _of_model(model: bool, certificate: ReducedInputCertificate | None, why: str) -> list[str]:

@@ -63,9 +63,9 @@ def cases(study: StudyData, count: int, seed: int) -> list[BlindCase]:
     A study that may lack fewer than two physical effects has one where two are due.
     """
     candidates = catalogue_candidates(study)
-    names = sorted({one.name for one in candidates})
+    names = sorted({candidate.name for candidate in candidates})
     physical = [
-        name for name in names if next(one for one in candidates if one.name == name).effect.family != "measurement"
+        name for name in names if next(each for each in candidates if each.name == name).effect.family != "measurement"
     ]
     order = np.random.default_rng([seed, 0]).permutation(len(names))
     turn = itertools.cycle([names[i] for i in order])
@@ -76,7 +76,7 @@ def cases(study: StudyData, count: int, seed: int) -> list[BlindCase]:
         if kind == "two" and len(physical) < 2:
             kind = "one"
         base = (*base_unknowns(study), *sensor_unknowns(study, set(study.sensors)))
-        values = {one: _within(one, rng.normal(0.0, one.sd)) for one in base}
+        values = {unknown: _within(unknown, rng.normal(0.0, unknown.sd)) for unknown in base}
         hidden: list[Candidate] = []
         uncatalogued, station, loud = None, math.nan, ""
         if kind == "one":
@@ -88,8 +88,8 @@ def cases(study: StudyData, count: int, seed: int) -> list[BlindCase]:
             uncatalogued, station = _uncatalogued(study, rng)
         elif rng.random() < 0.5 and study.uncertainty:
             # Wrong numbers dressed up as physics: one base number at two and a half standard deviations.
-            one = base[int(rng.integers(len(study.uncertainty)))]
-            values[one] = 2.5 * one.sd * rng.choice([-1.0, 1.0])
+            wrong = base[int(rng.integers(len(study.uncertainty)))]
+            values[wrong] = 2.5 * wrong.sd * rng.choice([-1.0, 1.0])
         for member in hidden:
             values |= dict.fromkeys(member.presence, 1.0)
             for unknown in member.amplitudes:

@@ -90,19 +90,19 @@ class Blind:
     @cached_property
     def rates(self) -> dict[str, Rate]:
         """What was asked -> how often it held."""
-        one, two, none, outside = (self._of(kind) for kind in ("one", "two", "none", "outside"))
-        able = [row for row in one if row["identifiable"]]
+        single, two, none, outside = (self._of(kind) for kind in ("one", "two", "none", "outside"))
+        able = [row for row in single if row["identifiable"]]
         able_two = [row for row in two if row["identifiable"]]
         named = [row for row in self.rows if row["verdict"] == "identified"]
         strong = [row for row in able if min(map(abs, row["amplitude"].values()), default=1.0) >= STRONG]
         right = [row for row in able if _right(row)]
         return {
-            "one effect: identifiable": _rate(one, lambda row: row["identifiable"]),
+            "one effect: identifiable": _rate(single, lambda row: row["identifiable"]),
             "identifiable: named correctly": _rate(able, _right),
             "identifiable: true effect in the reported set": _rate(
                 able, lambda row: set(row["hidden"]) <= set(row["set"])
             ),
-            "one effect: wrong name": _rate(one, _wrong),
+            "one effect: wrong name": _rate(single, _wrong),
             "no effect: no gap": _rate(none, lambda row: row["verdict"] == "no gap"),
             "outside the catalogue: confident wrong name": _rate(outside, lambda row: row["verdict"] == "identified"),
             "outside the catalogue: unexplained": _rate(outside, lambda row: row["verdict"] == "unexplained"),
@@ -126,32 +126,32 @@ class Blind:
     @cached_property
     def reliability(self) -> list[Row]:
         """Stated probability against the share that was right, of the verdicts 'identified'."""
-        found = []
+        rates = []
         for low, high in pairwise(BINS):
-            own = [
+            identified = [
                 row
                 for row in self.rows
                 if row["verdict"] == "identified" and low < min(row["probability"], 1.0) <= high
             ]
-            if own:
-                mean = sum(row["probability"] for row in own) / len(own)
-                held = _rate(own, lambda row: bool(row["hidden"]) and set(row["named"]) <= set(row["hidden"]))
-                found.append({"stated": mean, **held.to_dict()})
-        return found
+            if identified:
+                mean = sum(row["probability"] for row in identified) / len(identified)
+                held = _rate(identified, lambda row: bool(row["hidden"]) and set(row["named"]) <= set(row["hidden"]))
+                rates.append({"stated": mean, **held.to_dict()})
+        return rates
 
     @cached_property
     def by_effect(self) -> list[Row]:
         """One row per effect (variants together): cases, identifiable, named, and what it was taken for."""
-        found: dict[str, Row] = {}
+        effects: dict[str, Row] = {}
         for row in self._of("one"):
             name = row["hidden"][0].split(" (")[0]
-            own = found.setdefault(name, {"effect": name, "cases": 0, "identifiable": 0, "named": 0, "else": []})
-            own["cases"] += 1
-            own["identifiable"] += bool(row["identifiable"])
-            own["named"] += _right(row)
+            counts = effects.setdefault(name, {"effect": name, "cases": 0, "identifiable": 0, "named": 0, "else": []})
+            counts["cases"] += 1
+            counts["identifiable"] += bool(row["identifiable"])
+            counts["named"] += _right(row)
             if row["identifiable"] and not _right(row):
-                own["else"].append(f"{row['verdict']}: {row['best']}")
-        return sorted(found.values(), key=lambda row: row["effect"])
+                counts["else"].append(f"{row['verdict']}: {row['best']}")
+        return sorted(effects.values(), key=lambda row: row["effect"])
 
     def to_dict(self) -> Row:
         """What ``blind.json`` holds."""
@@ -299,7 +299,7 @@ def run_blind(
                 if tick:
                     tick(len(rows))
         notes = layout_notes(study)
-        if not any(one.hold_out for one in drives):
+        if not any(drive.hold_out for drive in drives):
             notes += ("No run is held out, so nothing is said of runs that were not fitted.",)
     progress.clear()
     return Blind(study.name, seed, tuple(rows[number] for number in sorted(rows)), notes, mesh)

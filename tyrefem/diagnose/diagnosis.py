@@ -62,11 +62,11 @@ class DiagnosisData(Brief):
         return f"of {self.original.name}: {self.verdict}"
 
     def _facts(self) -> Mapping[str, Any]:
-        sets = [f"{one.key} ({percent(one.probability)})" for one in self.judgement.ranking[:3]]
+        sets = [f"{entry.key} ({percent(entry.probability)})" for entry in self.judgement.ranking[:3]]
         facts: dict[str, Any] = {
             "most probable": ", ".join(sets),
             "reasons": " ".join(self.judgement.reasons),
-            "changes": [one.unknown.key for one in self.changes],
+            "changes": [entry.unknown.key for entry in self.changes],
             "measured - computed": f"{self.rms(after=False, held_out=False):.2f} K rms before, "
             f"{self.rms(after=True, held_out=False):.2f} K after; noise {self.noise:.2f} K",
         }
@@ -75,7 +75,7 @@ class DiagnosisData(Brief):
             facts["held-out runs"] = f"{before:.2f} K rms before, {after:.2f} K after"
         return facts | {
             "candidates": f"{len(self.candidates)}",
-            "looks": [one.verdict for one in self.looks],
+            "looks": [entry.verdict for entry in self.looks],
             "wall time": f"{self.seconds:.0f} s",
         }
 

@@ -48,7 +48,9 @@ def key_of(model: ForwardModel) -> str:
     >>> key_of(ForwardModel(one, ())) == key_of(ForwardModel(faster, ()))
     False
     """
-    drives = [[each.name, each.drive, each.hold_out, [_times(one) for one in each.sensors]] for each in model.drives]
+    drives = [
+        [each.name, each.drive, each.hold_out, [_times(sensor) for sensor in each.sensors]] for each in model.drives
+    ]
     return digest(
         [versions(), effects_source(), plain(model.study), jsonable(drives), repr(model.settings.of_simulations)]
     )
@@ -87,7 +89,7 @@ class Evaluations(Brief):
 
     def of(self, name: str, questions: Sequence[tuple[Any, ...]], tick: Callable[[], None] | None = None) -> list[Any]:
         """The answers of a method of `ForwardModel` to several questions (arguments)."""
-        answers = [self.store.known(name, one) if self.store else None for one in questions]
+        answers = [self.store.known(name, arguments) if self.store else None for arguments in questions]
         left = [number for number, answer in enumerate(answers) if answer is None]
         for _ in range(len(answers) - len(left)):
             if tick:
@@ -103,10 +105,10 @@ class Evaluations(Brief):
     def _answers(self, name: str, questions: Mapping[int, tuple[Any, ...]]) -> Iterator[tuple[int, Any]]:
         """Answers as they are ready, with their questions' numbers."""
         if self.pool is None:
-            for number, one in questions.items():
-                yield number, getattr(self.model, name)(*one)
+            for number, arguments in questions.items():
+                yield number, getattr(self.model, name)(*arguments)
             return
-        futures = {self.pool.submit(_task, name, one): number for number, one in questions.items()}
+        futures = {self.pool.submit(_task, name, arguments): number for number, arguments in questions.items()}
         for future in as_completed(futures):
             yield futures[future], future.result()
 

@@ -123,14 +123,14 @@ def on_grid(times: Array, history: Array, starts: tuple[float, ...], grid: Array
     """A history at stage times (or at ends of steps only) on a grid: cubic splines within each phase."""
     if not ends_only:
         times, history = times[::2], history[::2]
-    found = np.empty((len(grid), *history.shape[1:]))
+    values = np.empty((len(grid), *history.shape[1:]))
     edges = [*starts, times[-1]]
     for start, end in pairwise(edges):
-        own = (times >= start - 1e-9) & (times <= end + 1e-9)
+        in_phase = (times >= start - 1e-9) & (times <= end + 1e-9)
         inside = (grid >= start - 1e-9) & (grid <= end + 1e-9)
         if inside.any():
-            found[inside] = CubicSpline(times[own], history[own], axis=0)(grid[inside])
-    return found
+            values[inside] = CubicSpline(times[in_phase], history[in_phase], axis=0)(grid[inside])
+    return values
 
 
 @dataclass(frozen=True, eq=False)
@@ -157,25 +157,27 @@ class ReadingSensitivities:
     def slopes(self, sensors: Sequence[str]) -> dict[str, Array]:
         """Sensor -> (n_grid, n_unknowns) d(reading)/dx."""
         base = self.base
-        found = {one: np.zeros((len(base.grid), len(self.unknowns))) for one in sensors}
+        slopes = {sensor: np.zeros((len(base.grid), len(self.unknowns))) for sensor in sensors}
         for column, other in self.again.items():
             for sensor in sensors:
                 change = other.readings[sensor] - base.readings[sensor]
-                found[sensor][:, column] = change / self.unknowns[column].step
+                slopes[sensor][:, column] = change / self.unknowns[column].step
         if self.tangents is not None:
-            for sensor, slopes in self._from_tangents(self.tangents, sensors).items():
-                found[sensor][:, self.columns] = slopes
-        return found
+            for sensor, of_tangents in self._from_tangents(self.tangents, sensors).items():
+                slopes[sensor][:, self.columns] = of_tangents
+        return slopes
 
-    def _from_tangents(self, found: Tangents, sensors: Sequence[str]) -> dict[str, Array]:
+    def _from_tangents(self, tangents: Tangents, sensors: Sequence[str]) -> dict[str, Array]:
         base, gas, slopes = self.base, list(self.base.tyre.problem.reservoirs), {}
         for sensor in sensors:
             if sensor in (GAS, RIM):
                 known = sensor in gas
-                column = found.reservoirs[:, :, gas.index(sensor)] if known else np.zeros(found.values.shape[:2])
+                column = tangents.reservoirs[:, :, gas.index(sensor)] if known else np.zeros(tangents.values.shape[:2])
                 slopes[sensor] = base.dense(column.T)
         if len(slopes) < len(sensors):
-            at_sensors = base.dense(np.moveaxis(found.at(base.sensor_points), 0, -1))
+            at_sensors = base.dense(np.moveaxis(tangents.at(base.sensor_points), 0, -1))
             each = [recorded_change(base.study, base.grid, at_sensors[:, :, k]) for k in range(len(self.columns))]
-            slopes |= {name: np.column_stack([one[name] for one in each]) for name in sensors if name not in slopes}
+            slopes |= {
+                name: np.column_stack([changes[name] for changes in each]) for name in sensors if name not in slopes
+            }
         return slopes

@@ -168,11 +168,11 @@ class ForwardModel(Brief):
         base = self.base(number)
         fine = run(self.driven(self.study, number)).readings
         times = fine["time_s"].to_numpy(dtype=float)
-        readings = np.array([base.readings[one] for one in self.sensors])
-        exact = np.array([np.interp(base.grid, times, fine[one].to_numpy(dtype=float)) for one in self.sensors])
+        readings = np.array([base.readings[sensor] for sensor in self.sensors])
+        exact = np.array([np.interp(base.grid, times, fine[sensor].to_numpy(dtype=float)) for sensor in self.sensors])
         varied = self._varied(base, base.study, unknowns, {})
         slopes = varied.slopes(self.sensors)
-        stacked = np.array([slopes[one] for one in self.sensors])
+        stacked = np.array([slopes[sensor] for sensor in self.sensors])
         return (
             base.grid,
             readings,
@@ -195,11 +195,11 @@ class ForwardModel(Brief):
         try:
             study = self.with_values(base.study, values)
             same = all(unknown.measures or x == 0.0 for unknown, x in values.items())
-            found = base.as_measured_by(study) if same else fixed_step_run(study, base.tyre, every=base.every)
+            simulated = base.as_measured_by(study) if same else fixed_step_run(study, base.tyre, every=base.every)
         except InputError:
             # A load that the tyre cannot carry, say: the fit has stepped too far and will try a shorter step.
             return np.full(self.drives[number].size, np.nan)
-        return self.blocks(number, found.grid, found.readings)
+        return self.blocks(number, simulated.grid, simulated.readings)
 
     def simulate(self, number: int, values: Values) -> FixedStepRun:
         """A drive with unknowns at ``values``, by the fixed-step simulation: temperatures at any place."""
@@ -210,7 +210,8 @@ class ForwardModel(Brief):
         """(n_blocks, n_unknowns): difference quotients by simulating again."""
         here = self.predict(number, at)
         columns = [
-            (self.predict(number, {**at, one: at.get(one, 0.0) + one.step}) - here) / one.step for one in unknowns
+            (self.predict(number, {**at, unknown: at.get(unknown, 0.0) + unknown.step}) - here) / unknown.step
+            for unknown in unknowns
         ]
         return np.column_stack(columns) if columns else np.zeros((len(here), 0))
 
@@ -221,22 +222,22 @@ class ForwardModel(Brief):
         """
         base, drive = self.base(number), self._reduced_drive(number, modes)
         status = np.full(len(points), UNSAID)
-        found = np.full((len(points), self.drives[number].size), np.nan)
+        means = np.full((len(points), self.drives[number].size), np.nan)
         studies: dict[int, StudyData] = {}
         for place, values in enumerate(points):
             with contextlib.suppress(InputError):
                 studies[place] = self.with_values(base.study, values, base.study)
         try:
-            own = self.blocks(number, base.grid, base.readings) - self.blocks(number, base.grid, drive.own)
+            correction = self.blocks(number, base.grid, base.readings) - self.blocks(number, base.grid, drive.unchanged)
         except NotReducibleError:
-            return np.full(len(points), NOT_FOLLOWED), found
+            return np.full(len(points), NOT_FOLLOWED), means
         readings, refused = drive.readings(list(studies.values()))
-        for order, (place, one) in enumerate(zip(studies, readings, strict=True)):
-            if one is not None:
-                status[place], found[place] = FOLLOWED, self.blocks(number, base.grid, one) + own
+        for order, (place, of_study) in enumerate(zip(studies, readings, strict=True)):
+            if of_study is not None:
+                status[place], means[place] = FOLLOWED, self.blocks(number, base.grid, of_study) + correction
             elif order in refused:
                 status[place] = NOT_FOLLOWED
-        return status, found
+        return status, means
 
     def reduced_jacobian(
         self, number: int, modes: Modes, unknowns: Sequence[Unknown], at: Values
@@ -245,13 +246,16 @@ class ForwardModel(Brief):
         base, drive = self.base(number), self._reduced_drive(number, modes)
         here = self.with_values(base.study, at, base.study)
         there = [
-            (self.with_values(base.study, {**at, one: at.get(one, 0.0) + one.step}, base.study), one.measures)
-            for one in unknowns
+            (
+                self.with_values(base.study, {**at, unknown: at.get(unknown, 0.0) + unknown.step}, base.study),
+                unknown.measures,
+            )
+            for unknown in unknowns
         ]
-        slopes = drive.slopes(here, there, [one.step for one in unknowns])
+        slopes = drive.slopes(here, there, [unknown.step for unknown in unknowns])
         if slopes is None:
             return np.array([NOT_FOLLOWED]), np.zeros((self.drives[number].size, len(unknowns)))
-        return np.array([FOLLOWED]), np.column_stack([self.blocks(number, base.grid, one) for one in slopes])
+        return np.array([FOLLOWED]), np.column_stack([self.blocks(number, base.grid, slope) for slope in slopes])
 
     @functools.cached_property
     def _reduced(self) -> Cache[ReducedDrive]:
@@ -268,18 +272,20 @@ class ForwardModel(Brief):
         again: dict[int, FixedStepRun] = {}
         columns: list[int] = []
         perturbed: list[Perturbed] = []
-        for column, one in enumerate(unknowns):
-            study = self.with_values(origin, {**at, one: at.get(one, 0.0) + one.step}, base.study)
-            if one.measures:
+        for column, unknown in enumerate(unknowns):
+            study = self.with_values(origin, {**at, unknown: at.get(unknown, 0.0) + unknown.step}, base.study)
+            if unknown.measures:
                 again[column] = base.as_measured_by(study)
                 continue
             tyre = RollingTyre(study, base.tyre)
             # States that an effect keeps are unknowns that the base solution does not have.
             if tyre.mesh is base.tyre.mesh and tyre.states is None and base.tyre.states is None:
                 columns.append(column)
-                perturbed.append(Perturbed(tyre.problem, one.step, tyre.drive.initial))
+                perturbed.append(Perturbed(tyre.problem, unknown.step, tyre.drive.initial))
             else:
                 like = base.tyre if tyre.mesh is base.tyre.mesh else None
                 again[column] = fixed_step_run(study, like, every=base.every)
-        found = tangents(base.tyre.problem, base.times, base.values, base.reservoirs, perturbed) if perturbed else None
-        return ReadingSensitivities(base, tuple(unknowns), again, columns, found)
+        derivatives = (
+            tangents(base.tyre.problem, base.times, base.values, base.reservoirs, perturbed) if perturbed else None
+        )
+        return ReadingSensitivities(base, tuple(unknowns), again, columns, derivatives)

@@ -46,7 +46,7 @@ def planned(study: StudyData, sensors: Sequence[str] = ()) -> tuple[DriveSamplin
     """
     entries = study.measured
     plans = [(entry.run or f"run {n + 1}", dict(entry.drive), entry.hold_out) for n, entry in enumerate(entries)]
-    found = []
+    samplings = []
     for name, drive, hold_out in plans or [("the study's own drive", {}, False)]:
         driven = study.with_drive(drive) if drive else study
         if driven.card.drive.end < EVERY:
@@ -57,16 +57,16 @@ def planned(study: StudyData, sensors: Sequence[str] = ()) -> tuple[DriveSamplin
         names = list(sensors) or [*study.sensors, OUTSIDE_THE_RUBBER[0]]
         sampled = tuple(
             SensorSampling(
-                one,
+                sensor,
                 times,
-                study.sensors[one].noise if one in study.sensors else 0.5,
+                study.sensors[sensor].noise if sensor in study.sensors else 0.5,
                 choice.discrepancy,
                 choice.correlation_time,
             )
-            for one in names
+            for sensor in names
         )
-        found.append(DriveSampling(name, drive, hold_out, sampled))
-    return tuple(found)
+        samplings.append(DriveSampling(name, drive, hold_out, sampled))
+    return tuple(samplings)
 
 
 def layout_notes(study: StudyData) -> tuple[str, ...]:

@@ -56,17 +56,17 @@ def next_experiment(
     sensors: dict[str, dict[str, Any]] = {}
     for number in range(len(model.drives)):
         pair = [model.simulate(number, values) for values in (first, second)]
-        for name, place, delta, spread, times in _places(model.study, pair):
+        for name, position, delta, spread, times in _places(model.study, pair):
             gain = _gain(times, delta, spread, model.study)
-            row = sensors.setdefault(name, {"place": name, **place, "gain": 0.0, "largest_K": 0.0, "run": ""})
+            row = sensors.setdefault(name, {"place": name, **position, "gain": 0.0, "largest_K": 0.0, "run": ""})
             row["gain"] += gain
             if np.abs(delta).max() > row["largest_K"]:
                 row["largest_K"], row["run"] = float(np.abs(delta).max()), model.drives[number].name
     drives = [drive_gain(model, name, factors, first, second) for name, factors in DRIVES.items()]
     return {
         "between": [sets[0].key, sets[1].key],
-        "sensors": sorted(sensors.values(), key=lambda one: -one["gain"])[:5],
-        "drives": sorted((one for one in drives if one), key=lambda one: -one["gain"]),
+        "sensors": sorted(sensors.values(), key=lambda place: -place["gain"])[:5],
+        "drives": sorted((drive for drive in drives if drive), key=lambda drive: -drive["gain"]),
     }
 
 
@@ -86,14 +86,14 @@ def _places(study: StudyData, pair: list[FixedStepRun]) -> list[tuple[str, dict[
     s = np.repeat(np.linspace(0.0, section.line.length * 0.98, STATIONS), 3)
     total = np.asarray(section.rubber_thickness(s))
     depth = np.where(np.arange(len(s)) % 3 == 0, SKIN, np.where(np.arange(len(s)) % 3 == 1, total / 2, total - SKIN))
-    values = [one.at(s, depth) for one in pair]
+    values = [simulation.at(s, depth) for simulation in pair]
     gradient = np.zeros_like(values[0])
     for along, deeper in ((SKIN / 2, 0.0), (0.0, SKIN / 2)):
         moved = pair[0].at(*section.clamp(s + along, depth + deeper, SKIN / 4))
         gradient = gradient + ((moved - values[0]) / (SKIN / 2)) ** 2
     spread = np.sqrt(gradient) * 1e-3
     level = ("inside", "middle", "outside")
-    found = [
+    places = [
         (
             f"s = {s[i] * 1e3:.0f} mm, {level[i % 3]}",
             {"s_m": float(s[i]), "depth_m": float(depth[i])},
@@ -105,8 +105,8 @@ def _places(study: StudyData, pair: list[FixedStepRun]) -> list[tuple[str, dict[
     ]
     gas = pair[0].readings[GAS] - pair[1].readings[GAS]
     if GAS not in study.sensors:
-        found.append(("contained air", {}, gas, np.zeros_like(gas), pair[0].grid))
-    return found
+        places.append(("contained air", {}, gas, np.zeros_like(gas), pair[0].grid))
+    return places
 
 
 def _gain(
@@ -135,13 +135,14 @@ def drive_gain(model: ForwardModel, name: str, factors: Mapping[str, float], *va
         noises = {name: sensor.noise for name, sensor in study.sensors.items()} or {GAS: NOISE}
         sensors = tuple(SensorSampling(name, times, sd, 0.1, 100.0) for name, sd in noises.items())
         pair = [
-            ForwardModel(model.study, (DriveSampling(name, changed, True, sensors),)).simulate(0, one) for one in values
+            ForwardModel(model.study, (DriveSampling(name, changed, True, sensors),)).simulate(0, fitted)
+            for fitted in values
         ]
     except InputError:
         return None
     gain, largest, where = 0.0, 0.0, ""
     for sensor, sd in noises.items():
-        a, b = (one.readings for one in pair)
+        a, b = (simulation.readings for simulation in pair)
         delta = a[sensor] - b[sensor]
         # The sensors are the old ones: what their place and offset can do was used up by the fit.
         gain += _gain(pair[0].grid, delta, np.zeros_like(delta), study, sd, 0.1)

@@ -47,7 +47,7 @@ class Modes:
 
 
 def modes_of(
-    base: FixedStepRun, unknowns: Sequence[Unknown], found: Tangents | None, settings: DiagnosisSettings
+    base: FixedStepRun, unknowns: Sequence[Unknown], tangents: Tangents | None, settings: DiagnosisSettings
 ) -> Array:
     """(n, m) modes of a drive and of what unknowns change in it, from tangents that are at hand.
 
@@ -60,12 +60,14 @@ def modes_of(
     except NotReducibleError:
         return np.zeros((len(base.values[0]), 0))
     rows = [base.values[np.unique(np.linspace(0, last, settings.drive_fields).round().astype(int))]]
-    if found is not None:
+    if tangents is not None:
         # Early and evenly: what changes the start of a phase is gone later.
         when = np.unique(
             np.concatenate([np.arange(2, 10, 2), np.linspace(0, last, settings.tangent_fields)[1:].round().astype(int)])
         )
-        rows += [tangent[when[when <= last]] * one.sd for one, tangent in zip(unknowns, found.values, strict=True)]
+        rows += [
+            tangent[when[when <= last]] * unknown.sd for unknown, tangent in zip(unknowns, tangents.values, strict=True)
+        ]
     operators = tyre.problem.operators
     everywhere = {region: operators.dofs(region) for region in tyre.bodies}
     return modes(np.vstack(rows), weight(tyre, everywhere), settings.modes_left_out, settings.most_modes)
@@ -86,26 +88,26 @@ class ReducedDrive:
         operators = tyre.problem.operators
         samples = {zone: np.arange(len(operators.dofs(zone))) for zone in tyre.sources}
         everywhere = {region: operators.dofs(region) for region in tyre.bodies}
-        count = sum(len(one) for one in samples.values())
+        count = sum(len(nodes) for nodes in samples.values())
         return ReducedModel(tyre, self.modes.V, samples, np.eye(count), everywhere)
 
     @functools.cached_property
-    def own(self) -> Readings:
+    def unchanged(self) -> Readings:
         """Readings of the drive as the study has it."""
-        (found,), _ = self.readings([self.base.study])
-        if found is None:
+        (readings,), _ = self.readings([self.base.study])
+        if readings is None:
             raise NotReducibleError("the drive as it is")
-        return found
+        return readings
 
     def readings(self, studies: Sequence[StudyData]) -> tuple[list[Readings | None], list[int]]:
         """Readings on the drive's grid by study, None where there are none; numbers of those it can never follow."""
-        found: list[Readings | None] = [None] * len(studies)
+        readings: list[Readings | None] = [None] * len(studies)
         marched, refused = self._marched([RollingTyre(study, self.base.tyre) for study in studies])
         for numbers, part in marched:
             states = part.states(self.base.grid)
             for place, number in enumerate(numbers):
-                found[number] = self.read(studies[number], part.batch.balances[place], states[:, place])
-        return found, refused
+                readings[number] = self.read(studies[number], part.batch.balances[place], states[:, place])
+        return readings, refused
 
     def slopes(
         self, here: StudyData, there: Sequence[tuple[StudyData, bool]], steps: Sequence[float]
@@ -135,22 +137,23 @@ class ReducedDrive:
         first = reading(here, place[0])
         others = [reading(study, at.get(number, place[0])) for number, (study, _) in enumerate(there)]
         return [
-            {name: (one[name] - first[name]) / step for name in first} for one, step in zip(others, steps, strict=True)
+            {name: (changed[name] - first[name]) / step for name in first}
+            for changed, step in zip(others, steps, strict=True)
         ]
 
     def _marched(self, tyres: Sequence[RollingTyre]) -> tuple[list[tuple[list[int], BatchSolution]], list[int]]:
         """Those that can be marched, together; numbers of those that the model cannot follow."""
-        found: list[tuple[list[int], BatchSolution]] = []
+        solutions: list[tuple[list[int], BatchSolution]] = []
         refused: list[int] = []
         tolerance, together = self.settings.reduced_time_tolerance, self.settings.marched_together
         # Where one of them takes no step any more, the fixed-step simulation says what is wrong with it.
         with contextlib.suppress(InputError):
             for numbers, part in batch_solutions(self.model, tyres, tolerance, together):
                 if isinstance(part, BatchSolution):
-                    found.append((numbers, part))
+                    solutions.append((numbers, part))
                 elif isinstance(part, NotReducible):
                     refused += numbers
-        return found, refused
+        return solutions, refused
 
     def read(self, study: StudyData, balance: ReducedBalance, states: Array) -> Readings:
         """What the study's logger records of states (n_grid, n): modes, then reservoirs."""

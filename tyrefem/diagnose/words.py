@@ -47,7 +47,7 @@ def amount(value: float, sd: float, unit: str) -> str:
     value, sd = value * factor, sd * factor
     decimals = _decimals(sd if sd > 0 and math.isfinite(sd) else abs(value) / 100)
     scale = 10.0 ** min(decimals, 0)
-    first, second = (round(one * scale) / scale for one in (value, sd)) if decimals < 0 else (value, sd)
+    first, second = (round(number * scale) / scale for number in (value, sd)) if decimals < 0 else (value, sd)
     places = max(decimals, 0)
     return f"{first:+z.{places}f} ± {second:.{places}f} {shown}".rstrip()
 
@@ -67,15 +67,18 @@ def parameter_name(unknown: Unknown) -> str:
 
 def effect_amounts(candidate: Candidate, fit: FittedSet) -> list[str]:
     """Each fitted parameter of an effect: meaning and amount."""
-    known = [one for one in candidate.unknowns if one in fit.values]
-    return [f"{parameter_name(one)}: {amount(one.value(fit.values[one]), fit.sd[one], one.unit)}" for one in known]
+    known = [unknown for unknown in candidate.unknowns if unknown in fit.values]
+    return [
+        f"{parameter_name(unknown)}: {amount(unknown.value(fit.values[unknown]), fit.sd[unknown], unknown.unit)}"
+        for unknown in known
+    ]
 
 
 def effect_words(candidate: Candidate, fit: FittedSet) -> str:
     """An effect in one clause: its sentence, which variant, and how much."""
-    said = candidate.effect.sentence.rstrip(".")
+    sentence = candidate.effect.sentence.rstrip(".")
     parts = [value for _, value in candidate.choice] + effect_amounts(candidate, fit)
-    return f"{said} ({'; '.join(parts)})"
+    return f"{sentence} ({'; '.join(parts)})"
 
 
 def verdict_words(d: DiagnosisData) -> tuple[str, ...]:
@@ -84,17 +87,17 @@ def verdict_words(d: DiagnosisData) -> tuple[str, ...]:
     if d.verdict == NO_GAP:
         extent = f"rms {_kelvin(d, after=False)}, noise {d.noise:.1f} K"
         return (f"Noise and the uncertainty of base numbers and sensors account for the deviation ({extent}).",)
-    clauses = [effect_words(one, d.best) for one in d.best.members]
+    clauses = [effect_words(member, d.best) for member in d.best.members]
     if d.verdict == IDENTIFIED:
-        said = _joined(clauses, [f"Probability {percent(d.judgement.probability)}."], closing)
-        return (*said, *again_words(d))
+        sentences = _joined(clauses, [f"Probability {percent(d.judgement.probability)}."], closing)
+        return (*sentences, *again_words(d))
     if d.verdict == CONFOUNDED:
         return _confounded(d, closing)
-    found = f"What is missing is most clearly {missing_words(d)}."
-    partly = [f"Part of the deviation is explained by {' and '.join(one.key for one in d.best.members)}."]
+    clearest = f"What is missing is most clearly {missing_words(d)}."
+    partly = [f"Part of the deviation is explained by {' and '.join(member.key for member in d.best.members)}."]
     return (
         "No effect in the catalogue accounts for the deviation.",
-        found,
+        clearest,
         *(partly if clauses else []),
         closing,
     )
@@ -121,14 +124,14 @@ def missing_words(d: DiagnosisData) -> str:
 
 def _confounded(d: DiagnosisData, closing: str) -> tuple[str, ...]:
     rivals, best = contenders(d), d.judgement.best
-    held, clauses = support(d, best), " And: ".join(effect_words(one, d.best) for one in best.members)
+    held, clauses = support(d, best), " And: ".join(effect_words(member, d.best) for member in best.members)
     if best.members and held >= d.gap.settings.sure:
         first = f"{clauses}: {percent(held)} probable."
         if not d.best.at_bound:
             alone = percent(best.probability)
             first += f" Whether it acts alone, these sensors and runs do not tell ({alone} that it does)."
     else:
-        shown = [f"{one.key} ({percent(support(d, one))})" for one in rivals[:4]]
+        shown = [f"{entry.key} ({percent(support(d, entry))})" for entry in rivals[:4]]
         more = len(rivals) - len(shown)
         shown += [f"one of {more} less probable sets"] if more else []
         first = f"Something is missing, but these sensors and runs cannot tell what: {', or '.join(shown)}."
@@ -152,7 +155,7 @@ def next_words(d: DiagnosisData) -> str:
         offers.append(f"a thermocouple at {sensor['place']} (up to {sensor['largest_K']:.1f} K apart)")
     if drive and drive["gain"] > odds:
         offers.append(f"a run at {drive['drive']} (up to {drive['largest_K']:.1f} K apart, {drive['sensor']})")
-    between = " and ".join(f"“{one}”" for one in d.next_experiment["between"])
+    between = " and ".join(f"“{key}”" for key in d.next_experiment["between"])
     if not offers:
         return f"No feasible sensor place or drive that was tried would tell {between} apart."
     return f"{' or '.join(offers)} would tell {between} apart best.".capitalize()
@@ -183,17 +186,17 @@ def _joined(clauses: Sequence[str], further: Sequence[str], closing: str) -> tup
 
 def again_words(d: DiagnosisData) -> tuple[str, ...]:
     """What further looks at the same data found, one sentence each; none where there was no further look."""
-    found = []
-    for number, one in enumerate(d.looks[1:], start=2):
-        if one.verdict == NO_GAP:
-            found.append("The amended study was held against the same data again: no gap is left.")
+    sentences = []
+    for number, diagnosis in enumerate(d.looks[1:], start=2):
+        if diagnosis.verdict == NO_GAP:
+            sentences.append("The amended study was held against the same data again: no gap is left.")
             continue
-        named = f": {one.judgement.best.key}" if one.verdict in (IDENTIFIED, CONFOUNDED) else ""
-        found.append(
-            f"The amended study was held against the same data again: {one.verdict}{named}; see the folder "
+        named = f": {diagnosis.judgement.best.key}" if diagnosis.verdict in (IDENTIFIED, CONFOUNDED) else ""
+        sentences.append(
+            f"The amended study was held against the same data again: {diagnosis.verdict}{named}; see the folder "
             f"{look_folder(number)}."
         )
-    return tuple(found)
+    return tuple(sentences)
 
 
 def look_folder(number: int) -> str:

@@ -94,7 +94,9 @@ def _look(
         known = tuple(work.known or responses(evaluations, unknowns, work.tick))
         sensitive = sensitivities(model.drives, unknowns, nuisance, known)
         residuals = residuals_of(study, trials, sensitive, settings)
-        predictions = Predictions(evaluations, [one.modes for one in known] if settings.reduced == "auto" else ())
+        predictions = Predictions(
+            evaluations, [response.modes for response in known] if settings.reduced == "auto" else ()
+        )
         ranking = rank(residuals, predictions, candidates, method, _Counted(work.tick))
         if not predictions.confirmed(ranking.best.members, ranking.best.values):
             work.tick("the reduced models do not hold there: simulating")
@@ -236,8 +238,9 @@ def _lacking(
         return best.values, best.sd, [unknown for member in best.members for unknown in member.unknowns]
     # Nothing is named: the study gets the heat of unknown origin that is more than two sd from none.
     heat = patches(residuals.study, residuals.settings)
-    lacking = [one for one in heat if abs(missing.values.get(one, 0.0)) > 2 * missing.sd.get(one, 1.0)]
-    return {one: x for one, x in missing.values.items() if one in lacking or one not in heat}, missing.sd, lacking
+    lacking = [patch for patch in heat if abs(missing.values.get(patch, 0.0)) > 2 * missing.sd.get(patch, 1.0)]
+    values = {unknown: x for unknown, x in missing.values.items() if unknown in lacking or unknown not in heat}
+    return values, missing.sd, lacking
 
 
 def _after(
