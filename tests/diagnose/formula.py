@@ -13,7 +13,7 @@ from numpy.typing import NDArray
 from tyrefem.diagnose.candidates import Candidate, Members
 from tyrefem.diagnose.multifidelity import Predictions
 from tyrefem.diagnose.residuals import Residuals
-from tyrefem.diagnose.runs import MeasuredSensor, Trial
+from tyrefem.diagnose.runs import MeasuredDrive, MeasuredSensor
 from tyrefem.diagnose.sensitivities import Sensitivities
 from tyrefem.diagnose.settings import DEFAULT, DiagnosisSettings
 from tyrefem.diagnose.unknowns import Unknown
@@ -78,7 +78,7 @@ class Case:
 
     @property
     def measured(self) -> Array:
-        return self.residuals.trials[0].measured
+        return self.residuals.runs[0].measured
 
 
 def case(
@@ -87,7 +87,7 @@ def case(
     """Measured readings (n,) against a formula of `STATED` and the candidates' amplitudes."""
     n = len(measured)
     readings = MeasuredSensor("crown", np.arange(float(n)), 1.0, 0.0, 1.0, n, measured=measured)
-    trial = Trial("run", {}, False, (readings,))
+    trial = MeasuredDrive("run", {}, False, (readings,))
     unknowns = (STATED, *(unknown for candidate in candidates for unknown in candidate.unknowns))
     here = law({})
     jacobian = slopes(law, [unknown.key for unknown in unknowns], {})

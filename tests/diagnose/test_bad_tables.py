@@ -16,7 +16,10 @@ TABLES = {
     "a word in a cell": ("time [s],crown-outer [degC]\n0,25\n60,hot\n", "hot"),
     "no unit": ("time [s],crown-outer\n0,25\n60,30\n", "unit"),
     "time runs back": ("time [s],crown-outer [degC]\n60,25\n0,30\n", "time"),
-    "after the drive": ("time [s],crown-outer [degC]\n5000,25\n6000,30\n", "no reading within the simulated drive"),
+    "after the drive": (
+        "time [s],crown-outer [degC]\n5000,25\n6000,30\n",
+        "no fitted run has a reading within the simulated drive",
+    ),
     "broken thermocouple": ("time [s],crown-outer [degC]\n0,25\n60,9999\n", "9999"),
 }
 

@@ -9,7 +9,7 @@ import pytest
 from formula import STATED, Array, Case, case, effect
 from scipy.optimize import minimize
 
-from tyrefem.diagnose.fits import FittedSet, carried_on, first_fits
+from tyrefem.diagnose.fits import FittedSet, continued, first_fits
 from tyrefem.diagnose.settings import DEFAULT, DiagnosisSettings
 
 BENDING = effect("bending")
@@ -40,7 +40,7 @@ def least(made: Case) -> float:
 
 def fitted(made: Case) -> FittedSet:
     first = first_fits(made.residuals, made.predictions, [(BENDING,)])
-    return carried_on(made.residuals, made.predictions, first)[0]
+    return continued(made.residuals, made.predictions, first)[0]
 
 
 def made_of(measured: Array, settings: DiagnosisSettings = DEFAULT) -> Case:
@@ -85,7 +85,7 @@ def test_a_larger_set_starts_where_its_part_has_converged() -> None:
     noise = np.random.default_rng(5).normal(size=10)
     made = made_of(saturating(at(0.25, 0.0)) + noise)
     residuals, predictions = made.residuals, made.predictions
-    (none,) = carried_on(residuals, predictions, first_fits(residuals, predictions, [()]))
+    (none,) = continued(residuals, predictions, first_fits(residuals, predictions, [()]))
     assert none.close
     made.formula.questions.clear()
     (warm,) = first_fits(residuals, predictions, [(BENDING,)], {(BENDING,): none})
@@ -97,17 +97,17 @@ def test_a_larger_set_starts_where_its_part_has_converged() -> None:
 def test_a_fit_does_not_change_when_it_is_carried_on() -> None:
     made = made_of(saturating(at(0.2, 5.0)) + np.random.default_rng(8).normal(size=10))
     (first,) = first_fits(made.residuals, made.predictions, [(BENDING,)])
-    before = {name: np.array(getattr(first.state, name)) for name in ("x", "r", "J", "trial")}
-    numbers = first.steps, first.misfit, first.log_evidence, first.state.unknowns, first.state.wants_tangents
-    (further,) = carried_on(made.residuals, made.predictions, [first])
+    before = {name: np.array(getattr(first.state, name)) for name in ("x", "r", "J", "next_point")}
+    numbers = first.steps, first.misfit, first.log_evidence, first.state.unknowns, first.state.needs_tangents
+    (further,) = continued(made.residuals, made.predictions, [first])
     assert further.steps > first.steps
     assert (
-        numbers == (first.steps, first.misfit, first.log_evidence, first.state.unknowns, first.state.wants_tangents)
+        numbers == (first.steps, first.misfit, first.log_evidence, first.state.unknowns, first.state.needs_tangents)
     )  # fmt: skip
     for name, values in before.items():
         np.testing.assert_array_equal(getattr(first.state, name), values)
     # Carried on again from the same fit, it comes to the same.
-    (again,) = carried_on(made.residuals, made.predictions, [first])
+    (again,) = continued(made.residuals, made.predictions, [first])
     np.testing.assert_array_equal(again.posterior.mean, further.posterior.mean)
 
 
@@ -116,8 +116,8 @@ def test_a_misfit_that_noise_seldom_makes_is_believed_with_tangents_at_its_own_p
     # What no unknown explains: the misfit stays poor, so that tangents corrected step by step are not enough.
     left = odd * np.where(np.arange(10) % 2, 1.0, -1.0)
     tangents = []
-    for seldom in (0.0, DEFAULT.seldom):
-        made = made_of(saturating(at(0.2, 3.0)) + left, DiagnosisSettings(seldom=seldom))
+    for doubtful_p in (0.0, DEFAULT.doubtful_p):
+        made = made_of(saturating(at(0.2, 3.0)) + left, DiagnosisSettings(doubtful_p=doubtful_p))
         fit = fitted(made)
         assert fit.converged
         assert fit.misfit == pytest.approx(least(made), abs=1.0)

@@ -87,7 +87,7 @@ def test_the_amended_study_runs_as_it_is_and_gives_what_was_shown(case: Case) ->
     assert entry["sd"]["warmer_by"].endswith("delta_degC")
     readings = amended.with_drive(RUNS[HELD_OUT]).run().readings
     number = list(RUNS).index(HELD_OUT)
-    trial = case.diagnosis.gap.trials[number]
+    trial = case.diagnosis.gap.runs[number]
     computed = np.concatenate([one.sampled(readings["time_s"], readings[one.sensor]) for one in trial.sensors])
     np.testing.assert_allclose(computed, case.diagnosis.after[number], atol=1e-9)
     table = pd.read_csv(case.folder / "histories.csv").query("run == @HELD_OUT")
@@ -210,7 +210,7 @@ def test_a_second_look_at_the_amended_study_finds_no_gap(case: Case) -> None:
 def test_noise_alone_is_no_gap(case: Case) -> None:
     d, rng = case.diagnosis, np.random.default_rng(5)
     runs = []
-    for number, one in enumerate(d.gap.trials):
+    for number, one in enumerate(d.gap.runs):
         columns = {}
         for readings in one.sensors:
             # The study's own prediction at the times of the readings, through the means of its blocks.

@@ -26,7 +26,7 @@ from tyrefem.diagnose.sensitivities import Sensitivities
 def known(case: Case) -> Sensitivities:
     """The study's planned runs, with the responses that the diagnosis of the same study found."""
     study = case.study
-    sensors = [one.sensor for one in case.diagnosis.gap.trials[0].sensors]
+    sensors = [one.sensor for one in case.diagnosis.gap.runs[0].sensors]
     model = ForwardModel(study, planned(study, sensors))
     return layout_sensitivities(Evaluations(model), case.diagnosis.gap.responses)
 
@@ -65,7 +65,7 @@ def test_the_margin_is_reached_at_the_smallest_amplitude_and_not_well_below(
 
 def test_twice_the_noise_needs_a_stronger_effect(case: Case, known: Sensitivities, found: Isolability) -> None:
     study = case.study
-    sensors = [one.sensor for one in case.diagnosis.gap.trials[0].sensors]
+    sensors = [one.sensor for one in case.diagnosis.gap.runs[0].sensors]
     louder = study.replace({f"sensors.{name}.noise": "1.5 delta_degC" for name in study.sensors})
     model = ForwardModel(louder, planned(louder, sensors))
     again = layout_sensitivities(Evaluations(model), case.diagnosis.gap.responses)

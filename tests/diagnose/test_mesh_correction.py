@@ -9,7 +9,7 @@ import numpy as np
 import pytest
 
 from tyrefem.diagnose.residuals import Residuals
-from tyrefem.diagnose.runs import Trial
+from tyrefem.diagnose.runs import MeasuredDrive
 from tyrefem.diagnose.sensitivities import Sensitivities
 
 START = 25.0
@@ -21,7 +21,7 @@ OWN, ADDED = np.array([3.0, 20.0, 30.0]), np.array([1.4, -0.2, 0.3])
 def residuals() -> Residuals:
     study = cast(Any, SimpleNamespace(card=SimpleNamespace(drive=SimpleNamespace(initial=START))))
     known = Sensitivities((), (), 0, (START + OWN,), (ADDED,), (np.zeros((3, 0)),))
-    return Residuals(study, (Trial("run", {}, False, ()),), known)
+    return Residuals(study, (MeasuredDrive("run", {}, False, ()),), known)
 
 
 def added(residuals: Residuals, rise: np.ndarray) -> np.ndarray:

@@ -11,7 +11,7 @@ import pytest
 from hidden import Case
 
 from tyrefem.diagnose import DiagnosisData
-from tyrefem.diagnose.contenders import contenders, support
+from tyrefem.diagnose.result_tables import competing_sets, inclusion_probability
 from tyrefem.diagnose.verdict import CONFOUNDED, IDENTIFIED, NO_GAP, UNEXPLAINED, RankedSet
 from tyrefem.diagnose.words import verdict_words
 
@@ -46,8 +46,8 @@ def confounded(d: DiagnosisData) -> DiagnosisData:
 def test_confounded_names_the_rivals_and_what_would_decide(case: Case, tmp_path: Path) -> None:
     d = confounded(case.diagnosis)
     # The hot road with an idle effect beside it is no rival of the hot road, but speaks for it.
-    assert [one.key for one in contenders(d)] == ["hot-road", "sun"]
-    assert support(d, contenders(d)[0]) == pytest.approx(0.74)
+    assert [one.key for one in competing_sets(d)] == ["hot-road", "sun"]
+    assert inclusion_probability(d, competing_sets(d)[0]) == pytest.approx(0.74)
     d.save(tmp_path)
     said = json.loads((tmp_path / "verdict.json").read_text(encoding="utf-8"))
     rivals = {row["name"]: row["confounded_with"] for row in said["candidates"]}
@@ -57,7 +57,7 @@ def test_confounded_names_the_rivals_and_what_would_decide(case: Case, tmp_path:
     assert said["next_experiment"]["sensors"][0]["largest_K"] == 2.5
     assert [one["name"] for one in said["effects"]] == ["hot-road"]
     words = " ".join(verdict_words(d))
-    assert "cannot tell what: hot-road (74 %), or sun (25 %)" in words
+    assert "cannot show which: hot-road (74 %), or sun (25 %)" in words
     assert "A thermocouple at s = 0 mm, outside" in words
     assert "twice the speed" not in words
     page = (tmp_path / "diagnosis.html").read_text(encoding="utf-8")
@@ -84,8 +84,8 @@ def test_unexplained_draws_the_missing_heat_and_names_nothing(case: Case, tmp_pa
     assert len(said["missing_heat"]["runs"]) == 2
     assert said["missing_heat"]["runs"][0]["heat_W_m3"] == [2e4] * len(missing.stations)
     words = verdict_words(d)
-    assert words[0] == "No effect in the catalogue accounts for the deviation."
-    assert "heat inside the tread while it rolls, in the crown" in words[1]
+    assert words[0] == "No effect in the catalogue explains the deviation."
+    assert "heat inside the tread while the tyre rolls, in the crown" in words[1]
     assert "+20.0 ± 1.0 kW/m³" in words[1]
     for name in ("missing-heat.png", "missing-heat-stations.png"):
         assert (tmp_path / name).stat().st_size > 10_000

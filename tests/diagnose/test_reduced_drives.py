@@ -17,7 +17,7 @@ from tyrefem.diagnose.candidates import Candidate, catalogue_candidates
 from tyrefem.diagnose.criterion import BIC
 from tyrefem.diagnose.evaluations import Evaluations
 from tyrefem.diagnose.exhaustive import Exhaustive
-from tyrefem.diagnose.forward_model import FOLLOWED, NOT_FOLLOWED, UNSAID, DriveResponse, ForwardModel
+from tyrefem.diagnose.forward_model import FOLLOWED, NO_ANSWER, NOT_FOLLOWED, DriveResponse, ForwardModel
 from tyrefem.diagnose.multifidelity import Predictions
 from tyrefem.diagnose.reduced_forward import Modes, ReducedDrive
 from tyrefem.diagnose.runs import trial
@@ -119,7 +119,7 @@ def test_what_no_model_can_follow_or_no_tyre_can_be_is_told_apart(drives: Drives
     sun = drives.candidate("sun").amplitudes[0]
     load = next(one for one in drives.unknowns if one.key == "drive.load")
     status, found = drives.model.reduced(DRIVE, drives.modes[DRIVE], [{sun: 200.0}, {load: 3.0}, {load: 0.05}])
-    assert status.tolist() == [NOT_FOLLOWED, UNSAID, FOLLOWED]
+    assert status.tolist() == [NOT_FOLLOWED, NO_ANSWER, FOLLOWED]
     assert np.isfinite(found).all(axis=1).tolist() == [False, False, True]
     # A step too far says nothing against the model.
     predictions = Predictions(Evaluations(drives.model), drives.modes)
@@ -162,7 +162,7 @@ def test_a_model_that_is_off_is_found_out_and_not_used(drives: Drives) -> None:
     predictions = Predictions(Evaluations(drives.model), [spoiled(one) for one in drives.modes])
     point = drives.drawn(4)
     found = predictions.predict([((), point)], [DRIVE])[0][0]
-    assert predictions.certificates[(), DRIVE].apart > DEFAULT.reduced_allowed
+    assert predictions.certificates[(), DRIVE].whitened_norm > DEFAULT.reduced_allowed
     np.testing.assert_array_equal(found, drives.model.predict(DRIVE, point))
     wanted = drives.unknowns[:3]
     J = predictions.jacobians([((), wanted, point)], [DRIVE])[0][0]
@@ -232,7 +232,7 @@ def test_a_keyword_that_is_none_is_refused(drives: Drives) -> None:
 
 
 def test_a_word_that_is_no_choice_is_refused(drives: Drives) -> None:
-    with pytest.raises(tf.InputError, match="reduced is 'auto' or 'never', not 'always'"):
+    with pytest.raises(tf.InputError, match="reduced must be 'auto' or 'never', not 'always'"):
         diagnosed(drives, reduced="always")
 
 

@@ -126,7 +126,7 @@ def test_a_criterion_of_a_linear_problem_is_the_same_by_fit_and_by_linear_model(
     made = case(linear_law(SHAPES), measured, candidates)
     problem = problem_of(made, candidates, criterion)
     sets = [(), candidates[1:2], candidates[1:5:3]]
-    fits = problem.carried_on(problem.fitted(sets, {}))
+    fits = problem.continued(problem.fitted(sets, {}))
     linear = made.residuals.linear([0])
     for members, fit in zip(sets, fits, strict=True):
         by_linear = criterion.of_linear(linear, members) + linear.constant
@@ -149,7 +149,7 @@ class Alone:
         """Takes any number."""
 
     def search(self, problem: SelectionProblem) -> list[ScoredSet]:
-        (none,) = problem.carried_on(problem.fitted([()], {}))
+        (none,) = problem.continued(problem.fitted([()], {}))
         singles = problem.fitted(list(sets_of(problem.candidates, 1)), {})
         fits = [none, *singles]
         return sorted((ScoredSet(problem.score(fit), fit.members, fit) for fit in fits), key=lambda entry: -entry.score)
@@ -161,9 +161,9 @@ def test_a_strategy_is_any_object_with_a_search() -> None:
 
 
 def test_settings_are_checked_and_frozen() -> None:
-    with pytest.raises(InputError, match="largest is a number of effects from 1 to 3, not 4"):
+    with pytest.raises(InputError, match="largest must be a number of effects from 1 to 3, not 4"):
         DiagnosisSettings(largest=4)
-    with pytest.raises(InputError, match="looks is at least 1"):
+    with pytest.raises(InputError, match="looks must be at least 1"):
         DiagnosisSettings(looks=0)
     with pytest.raises(AttributeError):
         DEFAULT.batch = 1  # type: ignore[misc]

@@ -24,7 +24,7 @@ def test_tangents_are_the_difference_quotients_of_the_record(case: Case, present
     study = case.study.replace({"diagnosis.exclude": []})
     known = {one.key: one.unknowns[0] for one in catalogue_candidates(study)}
     at: dict[Unknown, float] = {known[key]: AT[key] for key in present}
-    model = ForwardModel(study, tuple(one.sampling for one in case.diagnosis.gap.trials))
+    model = ForwardModel(study, tuple(one.sampling for one in case.diagnosis.gap.runs))
     wanted = [one for one in base_unknowns(study) if "tread" in one.key]
     assert wanted
     found = model.jacobian(0, wanted, at)

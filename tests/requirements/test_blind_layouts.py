@@ -64,7 +64,7 @@ def test_a_study_without_sensors_or_runs_is_tested_by_its_contained_air(
     found = run_blind(tf.study(write(here / "bare", sensors=False)), 2, 1, here / "out", mesh=COARSE)
     assert [row["verdict"] for row in found.rows] != ["failed", "failed"]
     words = " ".join(found.words())
-    assert "the contained air is all that is read" in words
+    assert "only the contained air is read" in words
     assert "No run is held out" in words
     save(found, here / "out")
     record = json.loads((here / "out/blind.json").read_text(encoding="utf-8"))
@@ -73,5 +73,5 @@ def test_a_study_without_sensors_or_runs_is_tested_by_its_contained_air(
 
 def test_one_fitted_run_is_enough(here: Path) -> None:
     found = run_blind(tf.study(write(here / "single", measured=[FITTED])), 2, 1, here / "out", mesh=COARSE)
-    assert found.notes == ("No run is held out, so nothing is said of runs that were not fitted.",)
+    assert found.notes == ("No run is held out, so the rates do not cover runs that were not fitted.",)
     assert all(row["held_out_rms_K"] == {"before": None, "after": None} for row in found.rows)

@@ -58,7 +58,7 @@ def test_readings_outside_the_drive_are_refused_before_anything_runs(here: Path,
     study = tf.study(write(here / "study", measured=[FITTED]))
     with pytest.raises(InputError, match=r"no measured time is within the simulated span.*0 to 60 s"):
         study.compare(late)
-    with pytest.raises(InputError, match="measured: no reading within the simulated drive"):
+    with pytest.raises(InputError, match="measured: no fitted run has a reading within the simulated drive"):
         study.diagnose(late)
 
 
@@ -83,8 +83,8 @@ def test_without_sensors_the_contained_air_alone_is_planned_and_said(here: Path)
     assert [[one.sensor for one in trial.sensors] for trial in planned(study)] == [["contained-air"]]
     found = isolability(study)
     assert set(found.table["effect"]) >= {"hot-road", "sun"}
-    assert "the contained air is all that is read" in " ".join(found.words())
-    assert "its own drive is the only run" in " ".join(found.to_dict()["notes"])
+    assert "only the contained air is read" in " ".join(found.words())
+    assert "its drive is the only run" in " ".join(found.to_dict()["notes"])
 
 
 def test_where_nothing_is_identifiable_no_runs_are_recommended(here: Path) -> None:

@@ -157,7 +157,7 @@ class _Work:
     def check(self) -> None:
         """Raises InputError for a word that is no choice."""
         if self.reduced not in ("auto", "never"):
-            raise InputError(f"reduced is 'auto' or 'never', not {self.reduced!r}")
+            raise InputError(f"reduced must be 'auto' or 'never', not {self.reduced!r}")
 
     def done(self, total: int) -> Callable[[int], None]:
         """What is called with the number of simulations made."""

@@ -1,6 +1,6 @@
-"""The diagnosis: where data and study disagree, which effect is missing, and the study that has it.
+"""The diagnosis: where data and study disagree, which effect is missing, and the amended study.
 
-Knows nothing of pages and pictures.
+This package does not import reports.
 """
 
 from __future__ import annotations

@@ -1,4 +1,4 @@
-"""The amended study: the old one with what was found, as few changes as say it."""
+"""The amended study: the original study with the missing effects and the corrections that matter."""
 
 from __future__ import annotations
 
@@ -17,7 +17,7 @@ from tyrefem.inputs.study import StudyData
 
 @dataclass(frozen=True)
 class Change:
-    """One number of the amended study: ``x`` with its standard deviation; ``missing``: part of a named effect."""
+    """A number of the amended study: ``x`` and its standard deviation; ``missing``: it belongs to a named effect."""
 
     unknown: Unknown
     x: float
@@ -32,13 +32,16 @@ def changes(
     sd: Mapping[Unknown, float],
     missing: Iterable[Unknown],
 ) -> tuple[Change, ...]:
-    """What a fit changes: what is ``missing`` first, then the corrections of base numbers and sensors that matter."""
-    fitted = [residuals.trials[number].name for number in residuals.fitted]
+    """The changes of a fit: the ``missing`` unknowns, then the corrections of base numbers and sensors.
+
+    A correction is left out if it changes every block mean by less than ``DiagnosisSettings.negligible``.
+    """
+    fitted = [residuals.runs[number].name for number in residuals.fitted]
     source = f"diagnosis of {residuals.study.name}, fitted to {', '.join(fitted)}"
-    lacking = set(missing)
+    missing_unknowns = set(missing)
     kept = []
-    for unknown in sorted(values, key=lambda unknown: unknown not in lacking):
-        if unknown in lacking:
+    for unknown in sorted(values, key=lambda unknown: unknown not in missing_unknowns):
+        if unknown in missing_unknowns:
             kept.append(Change(unknown, values[unknown], sd[unknown], True, source))
             continue
         column = residuals.unknowns.index(unknown)
@@ -49,21 +52,21 @@ def changes(
 
 
 def rounded(change: Sequence[Change]) -> dict[Unknown, float]:
-    """The changes' values, rounded to what their standard deviations carry."""
+    """The values of the changes, each rounded to a hundredth of its standard deviation."""
     return {each.unknown: _rounded(each.x, each.sd) for each in change}
 
 
 def amended(study: StudyData, change: Sequence[Change]) -> StudyData:
-    """The study with the changes, rounded, and where they come from.
+    """The study with the rounded changes and their sources.
 
-    A factor on a number of the drive applies to the drives of the ``[[measured]]`` runs too.
+    A factor on a number of the drive also applies to the drives of the ``[[measured]]`` runs.
     """
     totals = rounded(change)
     new = with_values(study, {unknown: x for unknown, x in totals.items() if unknown.effect})
     base = [each for each in change if not each.unknown.effect]
     for each in base:
         for key in each.unknown.keys or (each.unknown.key,):
-            new = new.replace({key: _restated(study, each, key), **_provenance(study, each, key)})
+            new = new.replace({key: _written_value(study, each, key), **_provenance(study, each, key)})
     runs = [dict(entry) for entry in new.data.get("measured", [])]
     for unknown, x in totals.items():
         if unknown.effect is None and unknown.key.startswith("drive."):
@@ -90,7 +93,7 @@ def amended(study: StudyData, change: Sequence[Change]) -> StudyData:
                     each.unknown.parameter.name: number if unit == "1" else f"{number!r} {unit}",
                 }
     if entries:
-        # Named effects first: they are what the study is about.
+        # The named effects stand first in the file.
         named = {each.unknown.effect for each in change if each.missing}
         entries.sort(key=lambda entry: entry["name"] not in named)
         new = new.replace({"effects": entries})
@@ -98,16 +101,16 @@ def amended(study: StudyData, change: Sequence[Change]) -> StudyData:
     return new.replace({"title": title}) if change else new
 
 
-def _restated(study: StudyData, change: Change, key: str) -> Any:
-    """A base number as the study writes it, changed, to the digits that a hundredth of its standard deviation has."""
+def _written_value(study: StudyData, change: Change, key: str) -> Any:
+    """A changed base number in the units of the study, rounded to a hundredth of its standard deviation."""
     written = value_at(study.data, key, study.folder)
     digits = max(3, int(np.ceil(-np.log10(max(change.sd, 1e-6) / 100))) + 1)
     return scaled(written, change.unknown.value(change.x), digits)
 
 
 def _provenance(study: StudyData, change: Change, key: str) -> dict[str, Any]:
-    """What a corrected number of a card must say: its new source and standard deviation."""
-    # What a law over frequency says has source and deviation in the table above it.
+    """The new source and standard deviation of a corrected number of a card."""
+    # The source and the deviation of a law over frequency stand in the table above it.
     table = key.rpartition(".")[0].removesuffix(".frequency")
     if not table.startswith("materials."):
         return {}
@@ -117,7 +120,7 @@ def _provenance(study: StudyData, change: Change, key: str) -> dict[str, Any]:
 
 
 def _rounded(x: float, sd: float) -> float:
-    """x to a hundredth of its standard deviation."""
+    """x, rounded to a hundredth of its standard deviation."""
     if sd <= 0 or not np.isfinite(sd):
         return x
     digits = int(np.ceil(-np.log10(sd / 100)))
@@ -125,7 +128,7 @@ def _rounded(x: float, sd: float) -> float:
 
 
 def difference(study: StudyData, new: StudyData) -> list[str]:
-    """The lines by which the amended study's file differs, as a unified difference."""
+    """The unified difference between the files of the study and of the amended study."""
     import difflib
 
     import tomli_w

@@ -1,4 +1,4 @@
-"""Blind tests: hide effects in synthetic data for a study's sensors and runs, and see what the diagnosis says."""
+"""Blind tests: effects are hidden in synthetic data of a study's sensors and runs, and the data are diagnosed."""
 
 from __future__ import annotations
 
@@ -31,12 +31,12 @@ KINDS = {"one": 0.55, "two": 0.15, "none": 0.15, "outside": 0.15}
 
 @dataclass(frozen=True, eq=False)
 class BlindCase:
-    """What is hidden in a case.
+    """The hidden cause of a blind case.
 
     Parameters
     ----------
-    number, seed, kind. hidden : the candidates; values : every unknown's x. uncatalogued : an effect of no catalogue,
-    with the station (m) where it heats. ``loud`` : the sensor that is far out of place in a case of kind "none".
+    number, seed, kind : of the case. hidden : the hidden candidates. values : x of every unknown.
+    uncatalogued : an effect outside the catalogue. station : where that effect heats, m.
     """
 
     number: int
@@ -46,21 +46,20 @@ class BlindCase:
     values: dict[Unknown, float]
     uncatalogued: Effect | None = None
     station: float = math.nan
-    loud: str = ""
 
     @property
     def names(self) -> list[str]:
-        """The hidden effects in words."""
+        """Keys of the hidden effects."""
         return [member.key for member in self.hidden] or (
             [] if self.uncatalogued is None else [type(self.uncatalogued).name]
         )
 
 
 def cases(study: StudyData, count: int, seed: int) -> list[BlindCase]:
-    """So many cases: kinds in fixed shares, every candidate effect in turn, amplitudes from barely visible to strong.
+    """``count`` blind cases; the kinds have the shares of `KINDS`, and the candidate effects take turns.
 
-    Variants of an effect (sensors) are drawn; amplitudes are log-uniform from 0.25 to 3 prior standard deviations.
-    A study that may lack fewer than two physical effects has one where two are due.
+    The variant of an effect (a sensor) is drawn at random. Amplitudes are log-uniform from 0.25 to 3 prior standard
+    deviations. If the study has fewer than two physical candidates, cases of kind "two" become cases of kind "one".
     """
     candidates = catalogue_candidates(study)
     names = sorted({candidate.name for candidate in candidates})
@@ -78,7 +77,7 @@ def cases(study: StudyData, count: int, seed: int) -> list[BlindCase]:
         base = (*base_unknowns(study), *sensor_unknowns(study, set(study.sensors)))
         values = {unknown: _within(unknown, rng.normal(0.0, unknown.sd)) for unknown in base}
         hidden: list[Candidate] = []
-        uncatalogued, station, loud = None, math.nan, ""
+        uncatalogued, station = None, math.nan
         if kind == "one":
             hidden = [_variant(candidates, next(turn), rng)]
         elif kind == "two":
@@ -87,7 +86,7 @@ def cases(study: StudyData, count: int, seed: int) -> list[BlindCase]:
         elif kind == "outside":
             uncatalogued, station = _uncatalogued(study, rng)
         elif rng.random() < 0.5 and study.uncertainty:
-            # Wrong numbers dressed up as physics: one base number at two and a half standard deviations.
+            # No effect is hidden, but one base number is wrong by two and a half standard deviations.
             wrong = base[int(rng.integers(len(study.uncertainty)))]
             values[wrong] = 2.5 * wrong.sd * rng.choice([-1.0, 1.0])
         for member in hidden:
@@ -98,12 +97,12 @@ def cases(study: StudyData, count: int, seed: int) -> list[BlindCase]:
                     rng.choice([-1.0, 1.0]) if unknown.low < 0 < unknown.high else (1.0 if unknown.high > 0 else -1.0)
                 )
                 values[unknown] = _within(unknown, side * size)
-        result.append(BlindCase(number, seed, kind, tuple(hidden), values, uncatalogued, station, loud))
+        result.append(BlindCase(number, seed, kind, tuple(hidden), values, uncatalogued, station))
     return result
 
 
 def _kind(number: int, count: int) -> str:
-    """Kinds spread evenly over the cases."""
+    """The kind of a case; the golden ratio spreads the kinds evenly over the numbers."""
     place, edge = (number * 0.6180339887) % 1.0, 0.0
     for kind, share in KINDS.items():
         edge += share
@@ -113,7 +112,7 @@ def _kind(number: int, count: int) -> str:
 
 
 def _within(unknown: Unknown, x: float) -> float:
-    """Not beyond 95 % of a bound."""
+    """x, limited to 95 % of the unknown's bounds."""
     return float(np.clip(x, 0.95 * unknown.low, 0.95 * unknown.high))
 
 
@@ -153,14 +152,17 @@ def _uncatalogued(study: StudyData, rng: np.random.Generator) -> tuple[Effect, f
 def measured(
     study: StudyData, case: BlindCase, logger: Logger | None = None, mesh: Mapping[str, Any] | None = None
 ) -> list[MeasuredRun]:
-    """The data of a case: what is hidden, simulated run by run and recorded; ``mesh``: default `synthetic_mesh`."""
+    """The synthetic data of a case: every run simulated with the hidden cause and recorded.
+
+    ``mesh``: changes of the study's mesh by dotted names; default: `synthetic_mesh`.
+    """
     logger, mesh = logger or Logger(), synthetic_mesh() if mesh is None else mesh
     extra = () if case.uncatalogued is None else (case.uncatalogued,)
     runs = []
     for number, drive in enumerate(planned(study)):
         rng = np.random.default_rng([case.seed, case.number + 1, number + 1])
         driven = study.with_drive(drive.drive) if drive.drive else study
-        # A load that is off by 2 % is off in every run, whatever each run's load.
+        # The values are factors, so a load error of 2 % acts on the load of every run.
         hidden = with_values(driven, case.values).replace(mesh)
         runs.append(record(hidden, drive.name, logger, rng, extra))
     return runs
@@ -168,7 +170,7 @@ def measured(
 
 @dataclass(frozen=True, eq=False)
 class BlindOutcome:
-    """What the diagnosis said of a case."""
+    """A blind case and the row of its diagnosis."""
 
     case: BlindCase
     identifiable: bool
@@ -191,9 +193,9 @@ class BlindOutcome:
 
 
 def identifiable(evaluations: Evaluations, known: Sequence[DriveResponse], case: BlindCase) -> bool:
-    """Would the linear model, without noise, put the hidden effects ahead of every other explanation by the margin?
+    """Whether the linear model ranks the hidden effects ahead of every other set by `MARGIN`, without noise.
 
-    Found from the response of the study itself (no data, no diagnosis), simulated at the hidden amplitude.
+    The signal is the difference of two simulations: with the hidden values, and without. It needs no diagnosis.
     """
     if not case.hidden:
         return False
@@ -220,19 +222,19 @@ def run_case(
     reduced: str = "auto",
     mesh: Mapping[str, Any] | None = None,
 ) -> BlindOutcome:
-    """Make the data of a case, diagnose them, and put both side by side.
+    """Make the synthetic data of a case and diagnose them.
 
     ``known``: responses of the planned runs; ``reduced`` as of `diagnose`; ``mesh`` of the data, see `measured`.
     """
     with evaluating(ForwardModel(study, planned(study))) as evaluations:
-        able = identifiable(evaluations, known, case)
+        is_identifiable = identifiable(evaluations, known, case)
     data = measured(study, case, mesh=mesh)
     diagnosis = diagnose(study, data, largest=2, known=known, rerun=False, looks=1, reduced=reduced)
-    return BlindOutcome(case, able, outcome_row(diagnosis))
+    return BlindOutcome(case, is_identifiable, outcome_row(diagnosis))
 
 
 def outcome_row(diagnosis: DiagnosisData) -> dict[str, Any]:
-    """What a diagnosis says, for a row of ``blind.json``."""
+    """The results of a diagnosis for a row of ``blind.json``."""
     judgement = diagnosis.judgement
     best = judgement.best
     named = [member.key for member in best.members] if diagnosis.verdict == "identified" else []

@@ -1,4 +1,4 @@
-"""Many blind cases, side by side and resumable, and how often the diagnosis was right."""
+"""Many blind cases in parallel, kept on disk, and the rates at which the diagnosis is right."""
 
 from __future__ import annotations
 
@@ -31,9 +31,9 @@ from tyrefem.simulation.surroundings import GAS
 from tyrefem.variants.answer_store import PROGRESS
 
 Row = dict[str, Any]
-#: What a blind test needs of a study.
+#: What a study must have for a blind test.
 NEEDS = Requirements("a blind test", fitted=True)
-#: The place of an uncatalogued cause is right when the missing heat is found within this part of the half meridian.
+#: The place of an uncatalogued cause counts as right within this share of the half meridian.
 NEAR = 1.5 / 7
 #: Amplitude, in prior standard deviations, from which an effect counts as strong.
 STRONG = 1.0
@@ -44,8 +44,8 @@ BINS = (0.5, 0.7, 0.8, 0.9, 0.95, 0.99, 1.0)
 class Rate:
     """``right`` of ``of`` cases, with a 95 % Wilson interval.
 
-    >>> one = Rate(19, 20)
-    >>> round(one.value, 2), [round(x, 2) for x in one.interval]
+    >>> rate = Rate(19, 20)
+    >>> round(rate.value, 2), [round(x, 2) for x in rate.interval]
     (0.95, [0.76, 0.99])
     """
 
@@ -54,7 +54,7 @@ class Rate:
 
     @property
     def value(self) -> float:
-        """Share; NaN of nothing."""
+        """Share of right cases; NaN without cases."""
         return self.right / self.of if self.of else math.nan
 
     @property
@@ -75,8 +75,10 @@ class Rate:
 
 @dataclass(frozen=True, eq=False)
 class Blind:
-    """Finished cases of a blind test and their rates; ``notes``: what the study has not, in sentences;
-    ``mesh``: of the synthetic data."""
+    """Finished cases of a blind test and their rates.
+
+    ``notes``: sentences on sensors and runs that the study lacks. ``mesh``: mesh of the synthetic data.
+    """
 
     study: str
     seed: int
@@ -89,18 +91,18 @@ class Blind:
 
     @cached_property
     def rates(self) -> dict[str, Rate]:
-        """What was asked -> how often it held."""
+        """Criterion -> rate of the cases that fulfil it."""
         single, two, none, outside = (self._of(kind) for kind in ("one", "two", "none", "outside"))
-        able = [row for row in single if row["identifiable"]]
-        able_two = [row for row in two if row["identifiable"]]
+        identifiable = [row for row in single if row["identifiable"]]
+        identifiable_pairs = [row for row in two if row["identifiable"]]
         named = [row for row in self.rows if row["verdict"] == "identified"]
-        strong = [row for row in able if min(map(abs, row["amplitude"].values()), default=1.0) >= STRONG]
-        right = [row for row in able if _right(row)]
+        strong = [row for row in identifiable if min(map(abs, row["amplitude"].values()), default=1.0) >= STRONG]
+        right = [row for row in identifiable if _right(row)]
         return {
             "one effect: identifiable": _rate(single, lambda row: row["identifiable"]),
-            "identifiable: named correctly": _rate(able, _right),
+            "identifiable: named correctly": _rate(identifiable, _right),
             "identifiable: true effect in the reported set": _rate(
-                able, lambda row: set(row["hidden"]) <= set(row["set"])
+                identifiable, lambda row: set(row["hidden"]) <= set(row["set"])
             ),
             "one effect: wrong name": _rate(single, _wrong),
             "no effect: no gap": _rate(none, lambda row: row["verdict"] == "no gap"),
@@ -111,7 +113,7 @@ class Blind:
                 lambda row: abs(row["missing_station_m"] - row["station_m"]) <= NEAR * row["length_m"],
             ),
             "two effects: both named": _rate(two, _right),
-            "two identifiable effects: both named": _rate(able_two, _right),
+            "two identifiable effects: both named": _rate(identifiable_pairs, _right),
             "named rightly: held-out rms at most 1.2 times the noise": _rate(
                 [row for row in right if _held_out(row)],
                 lambda row: row["held_out_rms_K"]["after"] <= 1.2 * row["noise_K"],
@@ -125,7 +127,7 @@ class Blind:
 
     @cached_property
     def reliability(self) -> list[Row]:
-        """Stated probability against the share that was right, of the verdicts 'identified'."""
+        """Stated probability and observed share of right names, for verdicts "identified", by bins of probability."""
         rates = []
         for low, high in pairwise(BINS):
             identified = [
@@ -141,7 +143,7 @@ class Blind:
 
     @cached_property
     def by_effect(self) -> list[Row]:
-        """One row per effect (variants together): cases, identifiable, named, and what it was taken for."""
+        """One row per effect (all variants): cases, identifiable, named, and the results of the missed cases."""
         effects: dict[str, Row] = {}
         for row in self._of("one"):
             name = row["hidden"][0].split(" (")[0]
@@ -154,7 +156,7 @@ class Blind:
         return sorted(effects.values(), key=lambda row: row["effect"])
 
     def to_dict(self) -> Row:
-        """What ``blind.json`` holds."""
+        """Contents of ``blind.json``."""
         return {
             "study": self.study,
             "seed": self.seed,
@@ -167,7 +169,7 @@ class Blind:
         }
 
     def words(self) -> list[str]:
-        """A table for people."""
+        """The rates as lines of text, then the notes."""
         lines = []
         for name, rate in self.rates.items():
             low, high = rate.interval
@@ -185,7 +187,7 @@ def _right(row: Row) -> bool:
 
 
 def _held_out(row: Row) -> bool:
-    """Was any run held out? Without one, `jsonable` has made null of its root mean square."""
+    """Whether any run is held out; without one the root mean square is null."""
     return row["held_out_rms_K"]["before"] is not None
 
 
@@ -194,13 +196,13 @@ def _wrong(row: Row) -> bool:
 
 
 def _shrunk(row: Row) -> bool:
-    """The gap beyond noise on held-out runs is at least three times smaller."""
+    """Whether the gap beyond noise on held-out runs becomes at least three times smaller."""
     noise = row["noise_K"]
     before, after = (max(row["held_out_rms_K"][when] ** 2 - noise**2, 0.0) ** 0.5 for when in ("before", "after"))
     return bool(before >= 3 * after)
 
 
-#: What is noted of a case whose diagnosis broke down.
+#: The row of a case whose diagnosis fails.
 FAILED: Row = {
     "verdict": "failed", "named": [], "set": [], "best": "", "probability": 0.0, "missing_station_m": math.nan,
     "rms_K": {}, "held_out_rms_K": {"before": 0.0, "after": math.inf}, "noise_K": 0.0,
@@ -209,7 +211,7 @@ FAILED: Row = {
 
 @dataclass(frozen=True, eq=False)
 class BlindTest:
-    """What all cases share: the study, how many there are, the seed, responses, and how data are made and diagnosed."""
+    """The inputs that all cases share: study, number of cases, seed, responses, ``reduced`` and the data's mesh."""
 
     study: StudyData
     count: int
@@ -219,7 +221,7 @@ class BlindTest:
     mesh: Mapping[str, Any]
 
 
-#: Of a worker process: the test that its cases belong to.
+#: The blind test of a worker process.
 _TEST: list[BlindTest] = []
 
 
@@ -237,7 +239,7 @@ def _case(test: BlindTest, number: int) -> Row:
     try:
         row = run_case(study, case, test.known, test.reduced, test.mesh).to_dict()
     except InputError as error:
-        # A diagnosis that breaks down is a wrong one.
+        # A diagnosis that fails counts as wrong.
         row = {**BlindOutcome(case, identifiable=True).to_dict(), **FAILED, "reason": str(error)}
     plain: Row = jsonable({**row, "station_m": case.station, "length_m": study.section.line.length})
     return plain
@@ -254,11 +256,11 @@ def run_blind(
     reduced: str = "auto",
     mesh: Mapping[str, Any] | None = None,
 ) -> Blind:
-    """Run cases side by side; every finished one is kept in ``folder``/cases.
+    """Run blind cases in parallel; finished cases are kept in ``folder``/cases.
 
-    Cases already there (same study, count, seed, ``reduced``, ``mesh`` and version) are not run again. ``reduced`` as
-    of `tyrefem.diagnose.diagnose`; all cases share what the reduced models are made of. ``mesh``: of the synthetic
-    data, as changes of a study by dotted names; default: `synthetic_mesh`.
+    Cases in the folder with the same study, count, seed, ``reduced``, ``mesh`` and version are not run again.
+    ``reduced``: see `tyrefem.diagnose.diagnose`; all cases share the modes of the reduced models. ``mesh``: mesh of
+    the synthetic data, as changes of a study by dotted names; default: `synthetic_mesh`.
 
     Raises
     ------
@@ -277,7 +279,7 @@ def run_blind(
     for path in store.glob(f"{tag}-*.json"):
         rows[int(path.stem.split("-")[1])] = json.loads(path.read_text(encoding="utf-8"))
     left = [number for number in range(count) if number not in rows]
-    # What the cases share is kept too until they are finished.
+    # The shared responses are kept until all cases are finished.
     progress = ProgressStore(folder / PROGRESS)
 
     def kept() -> str:
@@ -300,7 +302,7 @@ def run_blind(
                     tick(len(rows))
         notes = layout_notes(study)
         if not any(drive.hold_out for drive in drives):
-            notes += ("No run is held out, so nothing is said of runs that were not fitted.",)
+            notes += ("No run is held out, so the rates do not cover runs that were not fitted.",)
     progress.clear()
     return Blind(study.name, seed, tuple(rows[number] for number in sorted(rows)), notes, mesh)
 

@@ -1,6 +1,6 @@
-"""Which effects may be missing, and how probable every set of them is before any data.
+"""The effects that may be missing, and the prior probability of every set of effects.
 
-The catalogue holds the shipped effects and the user's own.
+The catalogue holds the shipped effects and the user's effects.
 """
 
 from __future__ import annotations
@@ -21,7 +21,7 @@ from tyrefem.inputs.study import StudyData
 class Candidate(Brief):
     """An effect that may be missing: one variant of one entry of the catalogue.
 
-    ``unknowns``: its amplitudes first, then the parameters that only shape it.
+    ``unknowns``: the amplitudes, then the shape parameters.
     """
 
     name: str
@@ -33,7 +33,7 @@ class Candidate(Brief):
 
     @property
     def key(self) -> str:
-        """Name with its variant."""
+        """Name and variant."""
         shown = ", ".join(value for _, value in self.choice)
         return f"{self.name} ({shown})" if shown else self.name
 
@@ -44,17 +44,17 @@ class Candidate(Brief):
 
     @property
     def amplitudes(self) -> tuple[Unknown, ...]:
-        """The unknowns that make the effect."""
+        """The unknowns that are the size of the effect; at 0 the effect is absent."""
         return tuple(unknown for unknown in self.unknowns if unknown.parameter and unknown.parameter.prior.amplitude)
 
     @property
     def presence(self) -> tuple[Unknown, ...]:
-        """The unknown of an effect that is there or not, with nothing in between."""
+        """The unknown of an effect without amplitude: x = 1 if the effect is present, 0 if it is absent."""
         return tuple(unknown for unknown in self.unknowns if unknown.fixed)
 
     @property
     def shapes(self) -> tuple[Unknown, ...]:
-        """The unknowns that only shape it."""
+        """The unknowns that are shape parameters."""
         return tuple(
             unknown for unknown in self.unknowns if unknown.parameter and not unknown.parameter.prior.amplitude
         )
@@ -62,12 +62,12 @@ class Candidate(Brief):
 
 #: A set of effects.
 Members = tuple[Candidate, ...]
-#: Which effects a study may lack.
+#: Function of a study: the effects that it may lack.
 CandidateSpace = Callable[[StudyData], tuple[Candidate, ...]]
 
 
 def catalogue_candidates(study: StudyData) -> tuple[Candidate, ...]:
-    """Every effect and variant of the catalogue that has a meaning in the study and is not in it already."""
+    """Every effect and variant of the catalogue that applies to the study and is not in it."""
     present = {(effect.name, tuple(effect.choice.items())) for effect in study.card.effects}
     candidates = []
     for name, effect in catalogue().items():
@@ -83,8 +83,9 @@ def catalogue_candidates(study: StudyData) -> tuple[Candidate, ...]:
 class SetPrior:
     """ln of the prior probability of a set.
 
-    No effect: 1 - ``expected``. A set of n: ``expected`` x ``shares[n - 1]``, shared evenly by all sets of n different
-    effects, and an effect's share by its variants. This is what corrects for the number of candidates tried.
+    No effect: 1 - ``expected``. Sets of n effects: ``expected`` x ``shares[n - 1]``, shared evenly by all sets of n
+    different effects. The share of an effect is shared evenly by its variants. The prior corrects for the number of
+    candidates.
     """
 
     def __init__(

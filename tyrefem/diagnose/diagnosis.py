@@ -1,4 +1,4 @@
-"""What a diagnosis found: verdict, amended study, gap before and after."""
+"""The result of a diagnosis: verdict, amended study, residuals before and after."""
 
 from __future__ import annotations
 
@@ -28,18 +28,18 @@ if TYPE_CHECKING:
 
 @dataclass(frozen=True, eq=False)
 class DiagnosisData(Brief):
-    """What a diagnosis found.
+    """The result of a diagnosis.
 
     Parameters
     ----------
-    original : the study that was held against the data. study : the amended one, ready to save and run.
-    judgement : verdict, sets with their probabilities, reasons. gap : measured - computed, and how it
-        changes with every unknown.
+    original : the study that was compared with the data. study : the amended study, ready to save and run.
+    judgement : verdict, sets with their probabilities, reasons. gap : measured - computed, and its sensitivities to
+        every unknown.
     null, best : the fits without any effect and with the most probable set. missing : heat of unknown origin.
-    changes : what ``study`` has that ``original`` has not. before, after : trial -> block means, degC.
-    next_experiment : what would tell the credible sets apart; empty where nothing needs telling.
-    predictions : what predicted for the fits, with every certificate of a reduced model. seconds : wall time.
-    again : what was found when the amended study was held against the same data.
+    changes : changes from ``original`` to ``study``. before, after : number of the run -> block means, degC.
+    next_experiment : sensors and drives that separate the credible sets; empty unless the verdict is "confounded".
+    predictions : numbers of model evaluations and the certificates of reduced models. seconds : wall time.
+    again : diagnosis of the amended study with the same data; None if there was no further look.
     """
 
     original: StudyData
@@ -81,7 +81,7 @@ class DiagnosisData(Brief):
 
     @property
     def looks(self) -> tuple[DiagnosisData, ...]:
-        """This diagnosis and those of what was left."""
+        """This diagnosis and the further diagnoses of the amended studies."""
         return (self, *(self.again.looks if self.again else ()))
 
     @property
@@ -91,12 +91,12 @@ class DiagnosisData(Brief):
 
     @functools.cached_property
     def where(self) -> pd.DataFrame:
-        """Disagreement of the original study with the data by run, sensor and stretch of time."""
+        """Residuals of the original study by run, sensor and stretch of time."""
         return residual_table(self.gap, self.before)
 
     @functools.cached_property
     def where_after(self) -> pd.DataFrame:
-        """The same for the amended study, at the same stretches of time."""
+        """Residuals of the amended study for the same stretches of time as `where`."""
         return residual_table(self.gap, self.after, self.before)
 
     @functools.cached_property
@@ -106,12 +106,12 @@ class DiagnosisData(Brief):
 
     def rms(self, *, after: bool, held_out: bool) -> float:
         """Root mean square of measured - computed, K."""
-        trials = self.gap.held_out if held_out else self.gap.fitted
-        return rms(self.gap, self.after if after else self.before, trials)
+        runs = self.gap.held_out if held_out else self.gap.fitted
+        return rms(self.gap, self.after if after else self.before, runs)
 
     @property
     def noise(self) -> float:
         """Root mean square of the readings' noise, K."""
-        sensors = [readings for trial in self.gap.trials for readings in trial.sensors]
+        sensors = [readings for run in self.gap.runs for readings in run.sensors]
         weights = np.array([len(readings.times) for readings in sensors], dtype=float)
         return float(np.sqrt(np.average([readings.noise**2 for readings in sensors], weights=weights)))

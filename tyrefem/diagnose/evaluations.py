@@ -1,4 +1,4 @@
-"""Evaluations of the forward model, in this process or in several; kept on disk for an interrupted diagnosis."""
+"""Evaluations of the forward model in one or several processes; kept on disk for an interrupted diagnosis."""
 
 from __future__ import annotations
 
@@ -23,29 +23,29 @@ if TYPE_CHECKING:
 
 @dataclass(eq=False)
 class ProgressStore(AnswerStore):
-    """Answers of a forward model by question, in a folder; of one study, its cards, its drives and one version only."""
+    """A folder with evaluations of one forward model: one study with its cards and drives, and one version."""
 
     def open(self, model: ForwardModel) -> int:
-        """Find what was left for this model, and drop what was left for any other; how many answers there are."""
+        """Resume the stored evaluations of this model and delete those of other models; returns their number."""
         return self.resume(key_of(model))
 
     def look(self, number: int) -> ProgressStore:
-        """The store of a further look at the same data; this one for the first."""
+        """The store of a further look at the same data; for the first look, this store."""
         return self if number == 0 else ProgressStore(self.folder.with_name(f"{self.folder.name}-{number + 1}"))
 
     def clear(self) -> None:
-        """Remove everything, of further looks too: the diagnosis is done."""
+        """Delete the stored evaluations of all looks, after the diagnosis is finished."""
         for folder in (self.folder, *self.folder.parent.glob(f"{self.folder.name}-*")):
             shutil.rmtree(folder, ignore_errors=True)
 
 
 def key_of(model: ForwardModel) -> str:
-    """Digest of everything that decides a model's answers: study, cards, effects' source, drives, versions.
+    """Digest of all inputs of a model's evaluations: study, cards, source code of the effects, drives, versions.
 
     >>> from tyrefem.diagnose.forward_model import ForwardModel
     >>> from tyrefem.inputs.study import study
-    >>> one, faster = study("nasa-22x5.5-8pr"), study("nasa-22x5.5-8pr", {"drive.speed": "25 mph"})
-    >>> key_of(ForwardModel(one, ())) == key_of(ForwardModel(faster, ()))
+    >>> stated, faster = study("nasa-22x5.5-8pr"), study("nasa-22x5.5-8pr", {"drive.speed": "25 mph"})
+    >>> key_of(ForwardModel(stated, ())) == key_of(ForwardModel(faster, ()))
     False
     """
     drives = [
@@ -74,9 +74,9 @@ def _task(name: str, arguments: tuple[Any, ...]) -> Any:
 
 @dataclass(frozen=True, eq=False)
 class Evaluations(Brief):
-    """Answers of a forward model, side by side if there are workers. Results come in the order of the questions.
+    """Evaluations of a forward model, in parallel if there are workers.
 
-    What ``store`` knows from an interrupted diagnosis is not simulated again.
+    Evaluations that ``store`` has from an interrupted diagnosis are not simulated again.
     """
 
     model: ForwardModel
@@ -84,11 +84,11 @@ class Evaluations(Brief):
     store: ProgressStore | None = None
 
     def __reduce__(self) -> tuple[Any, ...]:
-        """Processes and folders stay where they are; what asks again asks here."""
+        """A pickled copy has the model only, without processes and store."""
         return Evaluations, (self.model,)
 
     def of(self, name: str, questions: Sequence[tuple[Any, ...]], tick: Callable[[], None] | None = None) -> list[Any]:
-        """The answers of a method of `ForwardModel` to several questions (arguments)."""
+        """Results of the method ``name`` of `ForwardModel` for several tuples of arguments, in their order."""
         answers = [self.store.known(name, arguments) if self.store else None for arguments in questions]
         left = [number for number, answer in enumerate(answers) if answer is None]
         for _ in range(len(answers) - len(left)):
@@ -103,7 +103,7 @@ class Evaluations(Brief):
         return answers
 
     def _answers(self, name: str, questions: Mapping[int, tuple[Any, ...]]) -> Iterator[tuple[int, Any]]:
-        """Answers as they are ready, with their questions' numbers."""
+        """Yield (number of the question, result) as the results become ready."""
         if self.pool is None:
             for number, arguments in questions.items():
                 yield number, getattr(self.model, name)(*arguments)
@@ -115,7 +115,7 @@ class Evaluations(Brief):
 
 @contextmanager
 def evaluating(model: ForwardModel, workers: int = 1, store: ProgressStore | None = None) -> Iterator[Evaluations]:
-    """Evaluations of a model with so many processes; 1: in this one."""
+    """Evaluations of a model in ``workers`` processes; 1: in this process."""
     if workers <= 1:
         yield Evaluations(model, store=store)
         return

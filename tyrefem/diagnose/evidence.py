@@ -16,10 +16,10 @@ Array = NDArray[np.float64]
 
 @dataclass(frozen=True, eq=False)
 class Posterior(Brief):
-    """What the unknowns are, given data: ``mean`` (k,) within the bounds, ``covariance`` (k, k), which are at a bound.
+    """Posterior of the unknowns: ``mean`` (k,) within the bounds, ``covariance`` (k, k), ``at_bound`` (k,).
 
-    ``log_evidence`` leaves out -(1/2) |d|^2 and the constants that every model on the same data shares. ``beyond``
-    (k,): by how many standard deviations the data want a parameter beyond the bound that it is at; 0 elsewhere.
+    ``log_evidence`` is without -(1/2) |d|^2 and without the constants that all models of the same data share.
+    ``beyond`` (k,): distance of the best value beyond the active bound, in standard deviations; 0 for other parameters.
     """
 
     mean: Array
@@ -69,11 +69,11 @@ def posterior(gram: Array, overlap: Array, sd: Array, low: Array, high: Array) -
         beyond = (z < low_z - 1e-12) | (z > high_z + 1e-12)
         if not beyond.any():
             break
-        # Hold the one that is farthest out, in its own standard deviations, on its bound, and fit the rest again.
+        # Fix the parameter that is farthest (in standard deviations) beyond its bound; fit the others again.
         worst = int(np.argmax(np.maximum(low_z - z, z - high_z) / spread))
         held[worst] = True
         z = _held(matrix, right, np.clip(z, low_z, high_z), held)
-    # The slope of the misfit at a bound, over what it would be one standard deviation off the best place.
+    # The slope of the misfit at a bound, divided by its slope one standard deviation from the best point.
     beyond = np.where(held, np.abs(right - matrix @ z) * spread, 0.0)
     return Posterior(z * sd, covariance_z * sd[:, None] * sd[None, :], log_evidence, held, beyond)
 

@@ -16,7 +16,7 @@ from tyrefem.inputs.study import StudyData
 class Exhaustive:
     """All sets up to ``DiagnosisSettings.largest`` effects, each fitted to convergence.
 
-    A set starts where the best of its parts that nearly explains the data has ended, else from the study as it is.
+    The fit of a set starts from the best subset that nearly explains the data. Without one it starts from x = 0.
     """
 
     def check(self, study: StudyData, candidates: Members, settings: DiagnosisSettings) -> None:
@@ -24,7 +24,7 @@ class Exhaustive:
 
         Raises
         ------
-        InputError : there are more.
+        InputError : there are more sets.
         """
         count = sum(1 for size in range(settings.largest + 1) for _ in sets_of(candidates, size))
         if count > settings.most_exhaustive:
@@ -47,13 +47,13 @@ class Exhaustive:
     def _converged(
         self, problem: SelectionProblem, sets: list[Members], fits: dict[Members, FittedSet]
     ) -> list[FittedSet]:
-        """Fits of sets, carried on as often as a search may."""
+        """Fits of sets, each continued at most ``DiagnosisSettings.most_continuations`` times."""
         ahead = sorted((members for members, fit in fits.items() if fit.close), key=lambda m: -problem.score(fits[m]))
         parts = {members: next((part for part in ahead if set(part) < set(members)), None) for members in sets}
         current = problem.fitted(sets, {members: fits[part] for members, part in parts.items() if part is not None})
-        for _ in range(problem.settings.carried_times):
+        for _ in range(problem.settings.most_continuations):
             left = [number for number, fit in enumerate(current) if not fit.finished]
-            further = problem.carried_on([current[number] for number in left])
+            further = problem.continued([current[number] for number in left])
             for number, fit in zip(left, further, strict=True):
                 current[number] = fit
         return current

@@ -1,6 +1,6 @@
-"""The fixed-step simulation of the fit: no error control, no heat budget, only what the sensors read.
+"""Fixed-step simulation of a fit: readings only, without error control and heat budget.
 
-What unknowns change about a simulated drive: from tangents, or by simulating or measuring again.
+The sensitivities of the readings come from tangents, from a second simulation, or from a second measurement.
 """
 
 from __future__ import annotations
@@ -31,12 +31,12 @@ Array = NDArray[np.float64]
 
 @dataclass(frozen=True, eq=False)
 class FixedStepRun:
-    """A study simulated on fixed steps.
+    """A study simulated with fixed time steps.
 
     Parameters
     ----------
-    study : what the sensors and the logger are; may differ from the tyre's study in effects of measurement.
-    times : (n_times,) s, every step's start, stage and end; values (n_times, n), reservoirs (n_times, m): degC.
+    study : defines sensors and logger; it may differ from the tyre's study in effects of measurement.
+    times : (n_times,) s, start, stage and end of every step. values, reservoirs : (n_times, n), (n_times, m) degC.
     every : s between two readings on `grid`.
     """
 
@@ -48,7 +48,7 @@ class FixedStepRun:
     every: float
 
     def as_measured_by(self, study: StudyData) -> FixedStepRun:
-        """The same temperatures, measured by another study's sensors."""
+        """The same temperatures, measured by the sensors of another study."""
         return dataclasses.replace(self, study=study)
 
     @cached_property
@@ -57,7 +57,7 @@ class FixedStepRun:
         return time_grid(self.times, self.every)
 
     def dense(self, history: Array) -> Array:
-        """A history at ``times`` (n_times, ...) on `grid`: cubic between the ends of steps, phase by phase."""
+        """A history at ``times`` (n_times, ...) on `grid`: cubic splines between the ends of steps, phase by phase."""
         return on_grid(self.times, history, self.study.card.drive.starts, self.grid)
 
     def at(self, s: Array, depth: Array) -> Array:
@@ -72,7 +72,7 @@ class FixedStepRun:
 
     @cached_property
     def readings(self) -> dict[str, Array]:
-        """Sensor -> degC on `grid`; contained air and rim too."""
+        """Sensor -> degC on `grid`, contained air and rim included."""
         at_sensors = None
         if self.study.sensors:
             operator = located(self.tyre.problem.operators, self.sensor_points).value()
@@ -92,11 +92,11 @@ def sensor_points(study: StudyData, tyre: RollingTyre) -> Array:
 
 
 def read(study: StudyData, grid: Array, at_sensors: Array | None, lumped: dict[str, Array]) -> dict[str, Array]:
-    """Sensor -> degC on ``grid`` as the study's logger records it; contained air and rim too.
+    """Sensor -> degC on ``grid`` as the study's logger records it, contained air and rim included.
 
     Parameters
     ----------
-    at_sensors : (n_grid, n_sensors) degC; None without sensors. lumped : contained air and rim where they are bodies.
+    at_sensors : (n_grid, n_sensors) degC; None without sensors. lumped : contained air and rim if they are reservoirs.
     """
     readings = dict(lumped) if at_sensors is None else recorded(study, grid, at_sensors) | lumped
     if GAS not in readings:
@@ -108,7 +108,7 @@ def read(study: StudyData, grid: Array, at_sensors: Array | None, lumped: dict[s
 def fixed_step_run(
     study: StudyData, like: RollingTyre | None = None, near: NearbyCycles | None = None, *, every: float = 5.0
 ) -> FixedStepRun:
-    """Simulate a study's drive on fixed steps, read ``every`` s; ``like``, ``near``: see `RollingTyre`."""
+    """Simulate a study's drive with fixed steps and a reading ``every`` s; ``like``, ``near``: see `RollingTyre`."""
     tyre = RollingTyre(study, like, near=near)
     times = stage_times([*tyre.drive.starts, tyre.drive.end])
     return FixedStepRun(study, tyre, times, *fixed_step_solution(tyre.problem, times, tyre.drive.initial), every)
@@ -135,12 +135,12 @@ def on_grid(times: Array, history: Array, starts: tuple[float, ...], grid: Array
 
 @dataclass(frozen=True, eq=False)
 class ReadingSensitivities:
-    """What unknowns change about a solution.
+    """Sensitivities of the readings of a simulated drive.
 
     Parameters
     ----------
-    again : number of an unknown -> simulated again, or measured again, with the unknown a step further.
-    columns : the numbers of all others; tangents : theirs, in this order.
+    again : number of an unknown -> second simulation or measurement with the unknown one step further.
+    columns : numbers of the other unknowns. tangents : dT/dx of these unknowns, in this order.
     """
 
     base: FixedStepRun
@@ -150,8 +150,8 @@ class ReadingSensitivities:
     tangents: Tangents | None
 
     @property
-    def moved(self) -> list[Unknown]:
-        """The unknowns of the tangents."""
+    def of_tangents(self) -> list[Unknown]:
+        """The unknowns whose sensitivities come from tangents."""
         return [self.unknowns[column] for column in self.columns]
 
     def slopes(self, sensors: Sequence[str]) -> dict[str, Array]:

@@ -1,4 +1,4 @@
-"""A study and the runs it is held against: simulates one at a time, on fixed steps, on a few modes, or in full."""
+"""The forward model: values of unknowns -> readings of the sensors, by fixed-step, reduced or full simulation."""
 
 from __future__ import annotations
 
@@ -32,21 +32,21 @@ from tyrefem.simulation.surroundings import GAS, RIM
 
 Array = NDArray[np.float64]
 Values = Mapping[Unknown, float]
-#: A drive's reduced model follows a point; it never can, for such effects; it says nothing of this one, as of a tyre
-#: that cannot be.
-FOLLOWED, NOT_FOLLOWED, UNSAID = 0, 1, 2
+#: Status of a reduced model at a point: its readings hold; it cannot represent these effects; it has no answer at this
+#: point (an impossible tyre, for example).
+FOLLOWED, NOT_FOLLOWED, NO_ANSWER = 0, 1, 2
 
 
 @dataclass(frozen=True, eq=False)
 class DriveResponse(Brief):
-    """How a study's readings at one drive respond to unknowns, on an even grid of times; independent of any data.
+    """Readings of a study at one drive and their sensitivities to unknowns, on an even grid of times.
 
     Parameters
     ----------
     times : (n,) s. readings : sensor -> (n,) degC at x = 0, by the fixed-step simulation.
-    correction : sensor -> (n,) K that the study's own mesh and error control add.
+    correction : sensor -> (n,) K, full run minus fixed-step simulation.
     slopes : sensor -> (n, n_unknowns) d(reading)/dx at x = 0.
-    modes : for the drive's reduced model; learnt from the same tangents.
+    modes : POD modes of the drive's reduced model, from the same tangents.
     """
 
     unknowns: tuple[Unknown, ...]
@@ -68,14 +68,14 @@ class DriveResponse(Brief):
 
 @dataclass(frozen=True, eq=False)
 class ForwardModel(Brief):
-    """A study and the drives it is measured at; says what the sensors read at one drive at a time.
+    """A study and its measured drives: readings of the sensors at one drive for given values of the unknowns.
 
-    What was simulated once is kept: the coarse study and its reduced model at every drive.
+    The coarse simulation and the reduced model of every drive are kept.
 
     Parameters
     ----------
-    drives : of the measured runs, and when their sensors are read.
-    folder : where strain cycles by finite elements are left for other processes.
+    drives : drives of the measured runs, with the times of the readings.
+    folder : folder in which processes share strain cycles by finite elements.
     """
 
     study: StudyData
@@ -84,7 +84,7 @@ class ForwardModel(Brief):
     settings: DiagnosisSettings = DEFAULT
 
     def __reduce__(self) -> tuple[Any, ...]:
-        """Another process starts with what was stated, not with what was simulated."""
+        """A pickled copy has the inputs only, without simulations."""
         return ForwardModel, (self.study, self.drives, self.folder, self.settings)
 
     @functools.cached_property
@@ -103,12 +103,12 @@ class ForwardModel(Brief):
 
     @functools.cached_property
     def _bases(self) -> Cache[FixedStepRun]:
-        """One per drive: the coarse study simulated."""
+        """Number of the drive -> simulation of the coarse study."""
         return Cache(max(len(self.drives), 1))
 
     @functools.cached_property
     def _numbers(self) -> Cache[Any]:
-        """Numbers as the study and its cards have them."""
+        """Numbers of the study and its cards as they are written."""
         return Cache(512)
 
     def with_values(self, study: StudyData, values: Values, like: StudyData | None = None) -> StudyData:
@@ -125,21 +125,21 @@ class ForwardModel(Brief):
         return self._bases.get(number, lambda: self._based(number))
 
     def _based(self, number: int) -> FixedStepRun:
-        """All drives share the mesh and the operators of the first that was simulated."""
+        """All drives share the mesh and the operators of the drive that was simulated first."""
         first = next((other for other in range(len(self.drives)) if other in self._bases), None)
         like = None if first is None else self.base(first).tyre
         driven = self.driven(self.coarse, number)
         return fixed_step_run(driven, like, self.nearby(driven), every=self.settings.readings_every)
 
     def nearby(self, driven: StudyData) -> NearbyCycles | None:
-        """Strain cycles near those of the coarse study at a drive; None where each costs next to nothing."""
+        """Strain cycles near those of the coarse study at a drive; None if the strain law is not by finite elements."""
         if not strain_law(driven).by_elements:
             return None
         return NearbyCycles(driven, self._solved)
 
     @functools.cached_property
     def _solved(self) -> SolvedCycles:
-        """Strain cycles with a number moved, of all drives."""
+        """Strain cycles with one changed number, of all drives."""
         return SolvedCycles(self.folder)
 
     def blocks(self, number: int, times: Array, readings: Mapping[str, Any]) -> Array:
@@ -152,19 +152,19 @@ class ForwardModel(Brief):
         )
 
     def full(self, number: int, study: StudyData) -> Array:
-        """Block means at a drive from a run of a study (at that drive) with error control on its own mesh."""
+        """Block means at a drive from a full run; ``study``: the study at that drive."""
         readings = run(study).readings
         times = readings["time_s"].to_numpy(dtype=float)
         return self.blocks(number, times, {str(name): readings[name] for name in readings})
 
     @property
     def sensors(self) -> tuple[str, ...]:
-        """Everything that can be read: the study's sensors, the contained air, a lumped rim."""
+        """All possible sensors: the study's sensors, the contained air, a lumped rim."""
         lumped = isinstance(self.study.card.boundaries.rim, LumpedRim)
         return (*self.study.sensors, GAS, RIM) if lumped else (*self.study.sensors, GAS)
 
     def response(self, number: int, unknowns: Sequence[Unknown]) -> tuple[Array, Array, Array, Array, Array]:
-        """What a `DriveResponse` is made of: times; by sensor readings, correction and slopes, stacked; modes."""
+        """Contents of a `DriveResponse` as arrays: times; readings, correction and slopes stacked by sensor; modes."""
         base = self.base(number)
         fine = run(self.driven(self.study, number)).readings
         times = fine["time_s"].to_numpy(dtype=float)
@@ -178,7 +178,7 @@ class ForwardModel(Brief):
             readings,
             exact - readings,
             stacked,
-            modes_of(base, varied.moved, varied.tangents, self.settings),
+            modes_of(base, varied.of_tangents, varied.tangents, self.settings),
         )
 
     def jacobian(self, number: int, unknowns: Sequence[Unknown], at: Values) -> Array:
@@ -190,24 +190,24 @@ class ForwardModel(Brief):
         return np.concatenate([each.sampled(here.grid, slopes[each.sensor]) for each in samplings])
 
     def predict(self, number: int, values: Values) -> Array:
-        """Block means at a drive with unknowns at ``values``, on fixed steps; NaN where no tyre can be so."""
+        """Block means at a drive with unknowns at ``values``, by fixed-step simulation; NaN for an impossible tyre."""
         base = self.base(number)
         try:
             study = self.with_values(base.study, values)
             same = all(unknown.measures or x == 0.0 for unknown, x in values.items())
             simulated = base.as_measured_by(study) if same else fixed_step_run(study, base.tyre, every=base.every)
         except InputError:
-            # A load that the tyre cannot carry, say: the fit has stepped too far and will try a shorter step.
+            # For example a load that the tyre cannot carry: the fit will try a shorter step.
             return np.full(self.drives[number].size, np.nan)
         return self.blocks(number, simulated.grid, simulated.readings)
 
     def simulate(self, number: int, values: Values) -> FixedStepRun:
-        """A drive with unknowns at ``values``, by the fixed-step simulation: temperatures at any place."""
+        """Fixed-step simulation of a drive with unknowns at ``values``; it has temperatures at any place."""
         study = self.with_values(self.driven(self.coarse, number), values)
         return fixed_step_run(study, every=self.settings.readings_every)
 
     def differences(self, number: int, unknowns: Sequence[Unknown], at: Values) -> Array:
-        """(n_blocks, n_unknowns): difference quotients by simulating again."""
+        """(n_blocks, n_unknowns): difference quotients of two fixed-step simulations."""
         here = self.predict(number, at)
         columns = [
             (self.predict(number, {**at, unknown: at.get(unknown, 0.0) + unknown.step}) - here) / unknown.step
@@ -216,12 +216,12 @@ class ForwardModel(Brief):
         return np.column_stack(columns) if columns else np.zeros((len(here), 0))
 
     def reduced(self, number: int, modes: Modes, points: Sequence[Values]) -> tuple[Array, Array]:
-        """(n_points,) `FOLLOWED` or what else, and (n_points, n_blocks) block means by the drive's reduced model.
+        """Status (n_points,), see `FOLLOWED`, and block means (n_points, n_blocks) by the drive's reduced model.
 
-        They are the fixed-step simulation's at x = 0, and what unknowns at each of ``points`` change by the model.
+        Block means = fixed-step simulation at x = 0 + change from x = 0 to the point by the reduced model.
         """
         base, drive = self.base(number), self._reduced_drive(number, modes)
-        status = np.full(len(points), UNSAID)
+        status = np.full(len(points), NO_ANSWER)
         means = np.full((len(points), self.drives[number].size), np.nan)
         studies: dict[int, StudyData] = {}
         for place, values in enumerate(points):
@@ -231,18 +231,18 @@ class ForwardModel(Brief):
             correction = self.blocks(number, base.grid, base.readings) - self.blocks(number, base.grid, drive.unchanged)
         except NotReducibleError:
             return np.full(len(points), NOT_FOLLOWED), means
-        readings, refused = drive.readings(list(studies.values()))
+        readings, not_followed = drive.readings(list(studies.values()))
         for order, (place, of_study) in enumerate(zip(studies, readings, strict=True)):
             if of_study is not None:
                 status[place], means[place] = FOLLOWED, self.blocks(number, base.grid, of_study) + correction
-            elif order in refused:
+            elif order in not_followed:
                 status[place] = NOT_FOLLOWED
         return status, means
 
     def reduced_jacobian(
         self, number: int, modes: Modes, unknowns: Sequence[Unknown], at: Values
     ) -> tuple[Array, Array]:
-        """(1,) `FOLLOWED` or not, and `jacobian` by differences of the drive's reduced model."""
+        """Status (1,), see `FOLLOWED`, and `jacobian` by difference quotients of the drive's reduced model."""
         base, drive = self.base(number), self._reduced_drive(number, modes)
         here = self.with_values(base.study, at, base.study)
         there = [
@@ -259,7 +259,7 @@ class ForwardModel(Brief):
 
     @functools.cached_property
     def _reduced(self) -> Cache[ReducedDrive]:
-        """One per drive and modes."""
+        """Reduced models by drive and modes."""
         return Cache(2 * max(len(self.drives), 1))
 
     def _reduced_drive(self, number: int, modes: Modes) -> ReducedDrive:
@@ -268,7 +268,7 @@ class ForwardModel(Brief):
     def _varied(
         self, base: FixedStepRun, origin: StudyData, unknowns: Sequence[Unknown], at: Values
     ) -> ReadingSensitivities:
-        """What unknowns change about a solution; from its operators where the mesh stays."""
+        """Sensitivities about a solution: tangents if the unknown keeps the mesh, else a second simulation."""
         again: dict[int, FixedStepRun] = {}
         columns: list[int] = []
         perturbed: list[Perturbed] = []
@@ -278,7 +278,7 @@ class ForwardModel(Brief):
                 again[column] = base.as_measured_by(study)
                 continue
             tyre = RollingTyre(study, base.tyre)
-            # States that an effect keeps are unknowns that the base solution does not have.
+            # The state of an effect adds unknowns that the base solution does not have.
             if tyre.mesh is base.tyre.mesh and tyre.states is None and base.tyre.states is None:
                 columns.append(column)
                 perturbed.append(Perturbed(tyre.problem, unknown.step, tyre.drive.initial))

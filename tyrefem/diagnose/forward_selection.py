@@ -1,4 +1,4 @@
-"""Forward selection with the full model, each fit being the point from which larger sets are judged."""
+"""Forward selection with the full model; the linear model about each fit ranks larger sets."""
 
 from __future__ import annotations
 
@@ -19,20 +19,21 @@ from tyrefem.inputs.study import StudyData
 
 @dataclass(frozen=True)
 class ForwardSelection:
-    """Sets grow effect by effect from those that explain the data.
+    """Sets grow by one effect at a time from sets that explain the data.
 
-    No effect is fitted first. Where it nearly explains the data, all effects and pairs are judged in the linear model
-    about that fit, else in that of the study as it is, and the most promising effects are fitted with the full model.
-    From every good fit, each effect that could be added is judged in the linear model about it, and the promising sets
-    are fitted in turn. At the end every part of the best set has been fitted too (the backward check). Where a cause
-    outside the catalogue is far ahead, the search ends.
+    1. The empty set is fitted. If it nearly explains the data, the linear model about this fit ranks all effects and
+       pairs. Otherwise the linear model about x = 0 ranks them, and the best effects are fitted with the full model.
+    2. From every good fit, the linear model about it ranks the sets with one more effect. The best sets are fitted.
+    3. At the end every subset of the best set is fitted (backward check).
 
-    Two effects that explain the data together are missed where each alone explains them much worse than others do;
-    `tyrefem.diagnose.exhaustive.Exhaustive` finds them.
+    The search ends early if a cause outside the catalogue is far ahead.
+
+    The search can miss two effects that explain the data only together, each alone much worse than other effects.
+    `tyrefem.diagnose.exhaustive.Exhaustive` does not miss them.
     """
 
     def check(self, study: StudyData, candidates: Members, settings: DiagnosisSettings) -> None:
-        """Any number of candidates is welcome."""
+        """Accepts any number of candidates."""
 
     def search(self, problem: SelectionProblem) -> list[ScoredSet]:
         """See `tyrefem.diagnose.selection.Strategy`."""
@@ -40,7 +41,7 @@ class ForwardSelection:
         progress = _Progress(problem)
         progress.fit([()])
         singles, pairs = (progress.estimated(size) for size in (1, 2))
-        # Two effects that hide each other may both look weak alone: the parts of the best pair are tried as well.
+        # Two effects that cancel each other may both seem weak alone, so the members of the best pair are fitted too.
         ahead = [(member,) for member in (pairs[0] if pairs else ())]
         if progress.fits[()].close:
             progress.extend_none()
@@ -49,7 +50,7 @@ class ForwardSelection:
         batches = 0
         outside = problem.outside(progress.fits[()]) if problem.outside else -np.inf
         while len(progress.fits) < settings.most_sets:
-            if batches >= settings.largest and outside > progress.top + settings.hopeless:
+            if batches >= settings.largest and outside > progress.top + settings.outside_lead:
                 break
             batches += 1
             sets = progress.promising()[: settings.batch] or progress.missing_parts()
@@ -60,22 +61,22 @@ class ForwardSelection:
 
 
 def screened(problem: SelectionProblem, linear: LinearModel) -> list[tuple[float, Members]]:
-    """Single effects and pairs with their scores in a linear model, best first; the empty set included."""
+    """The empty set, single effects and pairs with their scores in a linear model, best first."""
     sizes = range(min(problem.settings.largest, 2) + 1)
     sets = [members for size in sizes for members in sets_of(problem.candidates, size)]
     return sorted(((problem.linear_score(linear, members), members) for members in sets), key=lambda pair: -pair[0])
 
 
 class _Progress:
-    """The sets fitted so far, and estimates for all others."""
+    """The fitted sets, and estimated scores of the other sets."""
 
     def __init__(self, problem: SelectionProblem) -> None:
         self.problem, self.settings = problem, problem.settings
         self.fits: dict[Members, FittedSet] = {}
-        #: Set -> how often its fit was carried on.
-        self._carried: Counter[Members] = Counter()
+        #: Set -> number of times that its fit was continued.
+        self._continuations: Counter[Members] = Counter()
         linear = problem.linear
-        #: Set -> (estimate of its score, whether it was judged from the fit of a part).
+        #: Set -> (estimated score, whether the estimate is from the fit of a subset).
         self._estimate: dict[Members, tuple[float, bool]] = {
             problem.ordered(members): (score + linear.constant, False) for score, members in screened(problem, linear)
         }
@@ -88,17 +89,17 @@ class _Progress:
         return max(self.score(members) for members in self.fits)
 
     def estimated(self, size: int) -> list[Members]:
-        """Sets of so many effects, best estimate first."""
+        """Sets of ``size`` effects, best estimate first."""
         sets = (members for members in self._estimate if len(members) == size)
         return sorted(sets, key=lambda members: -self._estimate[members][0])
 
     def fit(self, sets: Iterable[Members]) -> None:
-        """Fit sets; carry the leading fits on; judge what could be added to the good ones."""
+        """Fit sets, continue the leading fits, and estimate the sets that add one effect to a good fit."""
         wanted = [members for members in dict.fromkeys(sets) if members not in self.fits]
         self._take(self.problem.fitted(wanted, self._starts(wanted)))
-        # From a fit that has converged, the sets that add to it are judged once more.
-        for members in dict.fromkeys((*wanted, *self._carry_on())):
-            good = self.score(members) > self.top - self.settings.far
+        # A continued fit gives better estimates of the sets that add to it.
+        for members in dict.fromkeys((*wanted, *self._continue_leading())):
+            good = self.score(members) > self.top - self.settings.far_score
             if members and len(members) < self.settings.largest and good:
                 self._extend(members)
 
@@ -106,36 +107,39 @@ class _Progress:
         self.fits |= {self.problem.ordered(fit.members): fit for fit in fits}
 
     def _starts(self, sets: Sequence[Members]) -> dict[Members, FittedSet]:
-        """For every set the best of its parts that nearly explains the data, if any."""
+        """Set -> fit of its best subset that nearly explains the data, if there is one."""
         ahead = [members for members in sorted(self.fits, key=self.score, reverse=True) if self.fits[members].close]
         parts = {members: next((part for part in ahead if set(part) < set(members)), None) for members in sets}
         return {members: self.fits[part] for members, part in parts.items() if part is not None}
 
-    def _carry_on(self) -> list[Members]:
-        """Carry the leading fits on to convergence: their numbers decide. Returns which."""
-        settings, carried = self.settings, []
-        for _ in range(settings.carried_sets * settings.carried_times):
-            ahead = sorted(self.fits, key=self.score, reverse=True)[: settings.carried_sets]
-            far = self.top - settings.far
-            left = [members for members in ahead if self.score(members) > far and self._worth_carrying(members)]
+    def _continue_leading(self) -> list[Members]:
+        """Continue the leading fits to convergence, because they decide the verdict. Returns their sets."""
+        settings, continued = self.settings, []
+        for _ in range(settings.continued_sets * settings.most_continuations):
+            ahead = sorted(self.fits, key=self.score, reverse=True)[: settings.continued_sets]
+            far = self.top - settings.far_score
+            left = [members for members in ahead if self.score(members) > far and self._worth_continuing(members)]
             if not left:
                 break
-            self._take(self.problem.carried_on([self.fits[members] for members in left]))
-            self._carried.update(left)
-            carried += left
-        return carried
+            self._take(self.problem.continued([self.fits[members] for members in left]))
+            self._continuations.update(left)
+            continued += left
+        return continued
 
-    def _worth_carrying(self, members: Members) -> bool:
-        fit, times, settings = self.fits[members], self._carried[members], self.settings
-        if fit.finished or times >= settings.carried_times:
+    def _worth_continuing(self, members: Members) -> bool:
+        fit, times, settings = self.fits[members], self._continuations[members], self.settings
+        if fit.finished or times >= settings.most_continuations:
             return False
         if times or not any(self.fits):
-            return fit.misfit < (settings.doubted if times else settings.none_carried) * fit.readings
-        # The first steps of a strong effect may still be far off; what the linear model promises counts.
-        return -2 * fit.log_evidence < settings.lost * fit.readings
+            return (
+                fit.misfit
+                < (settings.continued_twice_misfit if times else settings.none_continued_misfit) * fit.readings
+            )
+        # The first steps of a strong effect may still be far off, so the misfit predicted by the linear model counts.
+        return -2 * fit.log_evidence < settings.continued_misfit * fit.readings
 
     def extend_none(self) -> None:
-        """Judge all single effects and pairs in the linear model about the fit of no effect."""
+        """Estimate all single effects and pairs in the linear model about the fit of no effect."""
         problem = self.problem
         about = problem.linear_about(self.fits[()], problem.candidates)
         of_none = problem.linear_score(about, ())
@@ -144,7 +148,7 @@ class _Progress:
                 self._estimate[problem.ordered(members)] = (self.score(()) + score - of_none, True)
 
     def _extend(self, members: Members) -> None:
-        """Judge every set that adds one effect, in the linear model about the fit."""
+        """Estimate every set with one more effect in the linear model about the fit."""
         problem, criterion = self.problem, self.problem.criterion
         taken = {member.name for member in members}
         others = [candidate for candidate in problem.candidates if candidate.name not in taken]
@@ -155,31 +159,31 @@ class _Progress:
             gain = criterion.of_linear(about, (candidate,)) - of_part + problem.prior(more) - problem.prior(members)
             known, judged = self._estimate.get(more, (0.0, False))
             value = self.score(members) + gain
-            # Judged from two parts, the better one counts.
+            # With estimates from two subsets, the larger one counts.
             self._estimate[more] = (max(value, known) if judged else value, True)
 
     def promising(self) -> list[Members]:
-        """Sets without a fit that may be the best, best estimate first."""
+        """Sets without a fit that may be the best set, best estimate first."""
         top, settings = self.top, self.settings
-        # A pair judged from afar waits until its parts have been fitted and it can be judged from there.
+        # A pair without an estimate from a subset waits until its members are fitted.
         sets = [
             (value, members)
             for members, (value, judged) in self._estimate.items()
             if members not in self.fits
-            and value > top - (settings.near if judged else settings.far)
+            and value > top - (settings.near_score if judged else settings.far_score)
             and (judged or len(members) < 2)
         ]
         return [members for _, members in sorted(sets, key=lambda pair: -pair[0])]
 
     def missing_parts(self) -> list[Members]:
-        """Parts of the best set that have no fit yet."""
+        """Subsets of the best set that have no fit."""
         best = max(self.fits, key=self.score)
         parts = [part for size in range(1, len(best)) for part in itertools.combinations(best, size)]
         return [part for part in parts if part not in self.fits]
 
     def scored(self) -> list[ScoredSet]:
-        """All sets, best first; one that was only judged from afar does not stand above the best that was fitted."""
-        highest = self.top - self.settings.near
+        """All sets, best first; no set without a fit ranks above the best fitted set."""
+        highest = self.top - self.settings.near_score
         sets = [ScoredSet(self.score(members), members, fit) for members, fit in self.fits.items()]
         sets += [
             ScoredSet(min(value, highest), members, None)

@@ -1,4 +1,4 @@
-"""One set of effects on its way to the best fit: Gauss-Newton with secant corrections, each step a new state."""
+"""Fit of one set of effects by Gauss-Newton steps with secant corrections; each step gives a new state."""
 
 from __future__ import annotations
 
@@ -22,19 +22,20 @@ Array = NDArray[np.float64]
 
 @dataclass(frozen=True, eq=False)
 class FitState(Brief):
-    """Where the fit of a set stands: r(x') = r - J (x' - x), and the point that is to be simulated next.
+    """State of the fit of a set: the linear model r(x') = r - J (x' - x) and the next point to simulate.
 
-    Gauss-Newton within a trust region, a box of so many prior standard deviations about the last good point. A step
-    that makes the fit worse, or leads to no possible tyre, shrinks it, and the next is proposed with what was learnt.
+    Gauss-Newton within a trust region, a box of ``radius`` prior standard deviations about the last good point. A step
+    that makes the fit worse, or leads to an impossible tyre, shrinks the region. The corrected J gives the next step.
 
     Parameters
     ----------
-    members : the set. unknowns : everything fitted (k). shapes : parameters that are fitted once tangents are taken.
+    members : the set. unknowns : all fitted unknowns (k). shapes : parameters that join the fit with new sensitivities.
     x : (k,) last good point. r : (n,) whitened residuals there. J : (n, k) -dr/dx.
-    computed : trial -> block means there. trial : (k,) next point. posterior : of the linear model about x.
-    radius : of the trust region, prior sd. limit : steps at most. steps, tangents : made; still allowed.
-    done, converged : nothing more is asked for; because nothing is to be gained. carried : after a first fit.
-    moved : J was not taken at x. wants_tangents : J is asked for at x. simulated : x was simulated.
+    computed : number of the run -> block means at x. next_point : (k,). posterior : of the linear model about x.
+    radius : of the trust region, prior sd. limit : most steps. steps : steps made. tangents : Jacobians still allowed.
+    done : the fit has ended. converged : further steps would not reduce the misfit noticeably.
+    continuation : the state continues a first fit. jacobian_outdated : J was not taken at x.
+    needs_tangents : J is needed at x. simulated : x was simulated.
     """
 
     members: Members
@@ -45,7 +46,7 @@ class FitState(Brief):
     r: Array
     J: Array
     computed: Mapping[int, Array]
-    trial: Array
+    next_point: Array
     posterior: Posterior
     radius: float
     limit: int
@@ -53,23 +54,23 @@ class FitState(Brief):
     tangents: int = 0
     done: bool = False
     converged: bool = False
-    carried: bool = False
-    moved: bool = False
-    wants_tangents: bool = False
+    continuation: bool = False
+    jacobian_outdated: bool = False
+    needs_tangents: bool = False
     simulated: bool = True
 
     @property
-    def point(self) -> dict[Unknown, float]:
-        """Values of the unknowns where the next simulation is."""
-        return self.named(self.trial)
+    def next_values(self) -> dict[Unknown, float]:
+        """Values of the unknowns at the next point."""
+        return self.by_unknown(self.next_point)
 
     @property
-    def place(self) -> dict[Unknown, float]:
+    def current_values(self) -> dict[Unknown, float]:
         """Values of the unknowns at the last good point."""
-        return self.named(self.x)
+        return self.by_unknown(self.x)
 
-    def named(self, x: Array) -> dict[Unknown, float]:
-        """Unknown -> its value; 1 for what is simply there."""
+    def by_unknown(self, x: Array) -> dict[Unknown, float]:
+        """Unknown -> its value; 1 for effects without amplitude."""
         fixed = [unknown for member in self.members for unknown in member.presence]
         return dict(zip(self.unknowns, (float(value) for value in x), strict=True)) | dict.fromkeys(fixed, 1.0)
 
@@ -79,7 +80,7 @@ class FitState(Brief):
         return limits[:, 0], limits[:, 1], limits[:, 2]
 
     def fitted(self, radius: float = np.inf) -> Posterior:
-        """The linear model about x fitted, within a box about it."""
+        """Posterior of the linear model about x, within a box of ``radius`` prior sd about x."""
         sd, low, high = self._prior
         low, high = np.maximum(low, self.x - radius * sd), np.minimum(high, self.x + radius * sd)
         return posterior(self.J.T @ self.J, self.J.T @ (self.r + self.J @ self.x), sd, low, high)
@@ -88,123 +89,135 @@ class FitState(Brief):
         """|r|^2 + |x/sd|^2."""
         return float(r @ r + ((x / self._prior[0]) ** 2).sum())
 
-    def _drop(self, x: Array) -> float:
-        """Drop of the misfit that the linear model promises at a point."""
+    def _reduction_at(self, x: Array) -> float:
+        """Reduction of the misfit at a point, predicted by the linear model."""
         return self.misfit(self.r, self.x) - self.misfit(self.r - self.J @ (x - self.x), x)
 
     @property
-    def promised(self) -> float:
-        """Drop of the misfit that is still to be had, by the linear model."""
-        return max(self._drop(self.posterior.mean), 0.0)
+    def predicted_reduction(self) -> float:
+        """Largest further reduction of the misfit, predicted by the linear model."""
+        return max(self._reduction_at(self.posterior.mean), 0.0)
 
     @property
-    def _may_learn(self) -> bool:
+    def _may_take_tangents(self) -> bool:
         return self.tangents > 0 and self.steps < self.limit
 
     @property
-    def _poor(self) -> bool:
-        """Would noise seldom make a misfit like this?"""
-        return float(chi2.sf(self.misfit(self.r, self.x), len(self.r))) < self.settings.seldom
+    def _misfit_is_improbable(self) -> bool:
+        """Whether noise alone would rarely give a misfit this large."""
+        return float(chi2.sf(self.misfit(self.r, self.x), len(self.r))) < self.settings.doubtful_p
 
-    # -- steps: each gives the next state
+    # -- steps: each returns the next state
 
     def proposed(self) -> FitState:
-        """The next point chosen, or the fit at its end."""
-        state = replace(self, posterior=self.fitted(), trial=self.fitted(self.radius).mean)
-        if state.promised < self.settings.settled:
+        """The state with the next point, or the finished fit."""
+        state = replace(self, posterior=self.fitted(), next_point=self.fitted(self.radius).mean)
+        if state.predicted_reduction < self.settings.least_reduction:
             return replace(state, done=True, converged=True)
         return replace(state, done=state.done or self.steps >= self.limit or self.radius < self.settings.trust_smallest)
 
-    def refused(self) -> FitState:
-        """After a point at which no tyre can be."""
+    def rejected(self) -> FitState:
+        """The state after a next point at which the tyre is impossible."""
         return replace(self, steps=self.steps + 1, radius=self.settings.trust_shorter * self._reach).proposed()
 
     @property
     def _reach(self) -> float:
-        """How far the next point is, prior sd."""
-        return float(np.abs((self.trial - self.x) / self._prior[0]).max(initial=0.0))
+        """Largest distance from x to the next point, prior sd."""
+        return float(np.abs((self.next_point - self.x) / self._prior[0]).max(initial=0.0))
 
     def accepted(self, computed: Mapping[int, Array], r: Array) -> FitState:
-        """After the simulations at the next point: block means by trial, and whitened residuals (n,)."""
+        """The state after the simulations at the next point: block means by run, and whitened residuals (n,)."""
         settings, sd, reach = self.settings, self._prior[0], self._reach
-        step = self.trial - self.x
-        missed = (self.r - self.J @ step) - r
-        promised, gained = self._drop(self.trial), self.misfit(self.r, self.x) - self.misfit(r, self.trial)
+        step = self.next_point - self.x
+        prediction_error = (self.r - self.J @ step) - r
+        predicted_reduction, reduction = (
+            self._reduction_at(self.next_point),
+            self.misfit(self.r, self.x) - self.misfit(r, self.next_point),
+        )
         J = self.J
         if reach > 0:
-            # Broyden: the smallest change of J (in units of the priors) that would have predicted this simulation.
-            J = J + np.outer(missed, step / sd**2) / float(((step / sd) ** 2).sum())
+            # Broyden's update: the smallest change of J, in prior sd, that predicts this simulation.
+            J = J + np.outer(prediction_error, step / sd**2) / float(((step / sd) ** 2).sum())
         state = replace(self, J=J, steps=self.steps + 1, simulated=True)
-        if gained < 0 and self.simulated:
+        if reduction < 0 and self.simulated:
             state = replace(state, radius=settings.trust_shorter * reach)
-            return state._with_tangents() if state.moved and state._may_learn else state.proposed()
+            return state._with_tangents() if state.jacobian_outdated and state._may_take_tangents else state.proposed()
         limited = bool((np.abs(step / sd) > 0.99 * self.radius).any())
-        radius = self.radius * settings.trust_wider if limited and gained > promised / 2 else self.radius
-        state = replace(state, x=self.trial, r=r, computed=dict(computed), moved=True, radius=radius)
+        radius = self.radius * settings.trust_wider if limited and reduction > predicted_reduction / 2 else self.radius
+        state = replace(state, x=self.next_point, r=r, computed=dict(computed), jacobian_outdated=True, radius=radius)
         if not self.simulated:
-            return state._asking_tangents(())
-        return state._judged(missed, gained, limited=limited)
+            return state._requesting_tangents(())
+        return state._judged(prediction_error, reduction, limited=limited)
 
-    def _judged(self, missed: Array, gained: float, *, limited: bool) -> FitState:
-        """After a good step: new tangents, the next point, or the end."""
-        settings, off = self.settings, float(np.linalg.norm(missed))
+    def _judged(self, prediction_error: Array, reduction: float, *, limited: bool) -> FitState:
+        """The state after a good step: request of tangents, next point, or end."""
+        settings, off = self.settings, float(np.linalg.norm(prediction_error))
         now = self.misfit(self.r, self.x)
-        slow = self.carried and now > max(settings.far_off * len(self.r), settings.slow * (now + gained))
-        if (self.shapes or off > settings.predicted_astray) and self._may_learn and not slow:
+        slow = self.continuation and now > max(
+            settings.slow_misfit * len(self.r), settings.slow_share * (now + reduction)
+        )
+        if (self.shapes or off > settings.poor_prediction) and self._may_take_tangents and not slow:
             return self._with_tangents()
         state = self.proposed()
-        if not limited and off < settings.predicted_close:
+        if not limited and off < settings.close_prediction:
             state = replace(state, done=True, converged=True)
         state = replace(state, done=state.done or slow)
-        if state.converged and state.carried and state.moved and state._may_learn and state._poor:
-            # Corrected step by step, tangents may say that nothing is left to gain where much is.
+        if (
+            state.converged
+            and state.continuation
+            and state.jacobian_outdated
+            and state._may_take_tangents
+            and state._misfit_is_improbable
+        ):
+            # After many secant corrections, J may wrongly predict that no reduction is left.
             return replace(state, done=False, converged=False)._with_tangents()
         return state
 
     def _with_tangents(self) -> FitState:
-        return replace(self, tangents=self.tangents - 1)._asking_tangents(self.shapes)
+        return replace(self, tangents=self.tangents - 1)._requesting_tangents(self.shapes)
 
-    def _asking_tangents(self, shapes: Sequence[Unknown]) -> FitState:
-        """Ask for tangents at this point; with an amplitude at hand, the parameters that shape it are fitted too."""
+    def _requesting_tangents(self, shapes: Sequence[Unknown]) -> FitState:
+        """The state that needs tangents at x; the shape parameters join the fit because the amplitudes are known."""
         return replace(
             self,
             unknowns=(*self.unknowns, *shapes),
             x=np.concatenate([self.x, np.zeros(len(shapes))]),
             shapes=tuple(unknown for unknown in self.shapes if unknown not in shapes),
-            moved=False,
-            wants_tangents=True,
+            jacobian_outdated=False,
+            needs_tangents=True,
         )
 
-    def carried_on(self) -> FitState:
-        """A fit that begins here with tangents and takes some more steps."""
+    def continued(self) -> FitState:
+        """The state that continues this fit with new tangents and more steps."""
         settings = self.settings
         further = replace(
             self,
             done=False,
-            carried=True,
+            continuation=True,
             tangents=settings.more_tangents - 1,
             limit=self.steps + settings.more_steps,
             radius=max(self.radius, 1.0),
         )
-        return further._asking_tangents(further.shapes)
+        return further._requesting_tangents(further.shapes)
 
     def with_jacobian(self, J: Array) -> FitState:
-        """After tangents at x: whitened (n, k)."""
-        return replace(self, J=J, wants_tangents=False).proposed()
+        """The state after the tangents at x; ``J``: whitened (n, k)."""
+        return replace(self, J=J, needs_tangents=False).proposed()
 
 
-def begun(
+def initial_state(
     linear: LinearModel,
     computed: Mapping[int, Array],
     members: Members,
     settings: DiagnosisSettings,
     part: FitState | None = None,
 ) -> FitState:
-    """The fit of a set at its beginning: at x = 0, or where the fit of a part of the set has come to.
+    """The initial state of the fit of a set: at x = 0, or at the result of the fit of a subset.
 
     Parameters
     ----------
-    linear : the linear model about x = 0. computed : block means there, by trial.
+    linear : the linear model about x = 0. computed : number of the run -> block means there.
+    part : state of the fit of a subset.
     """
     design = linear.design
     taken = () if part is None else part.members
@@ -223,7 +236,7 @@ def begun(
         J, computed, shapes = np.hstack([part.J, columns]), part.computed, (*part.shapes, *shapes)
     r = r - linear.jacobian[:, design.columns(present)].sum(axis=1)
     empty = Posterior(x, np.zeros((len(x), len(x))), 0.0, np.zeros(len(x), dtype=bool), np.zeros(len(x)))
-    # What is simply there changes what every unknown does: with it, the start is simulated, tangents taken first.
+    # An effect without amplitude changes all sensitivities, so its start is simulated and tangents are taken first.
     state = FitState(
         members, unknowns, shapes, settings, x, r, J, dict(computed), x, empty, settings.trust, settings.first_steps,
         simulated=not present,

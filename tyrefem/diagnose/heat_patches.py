@@ -1,4 +1,4 @@
-"""Unknown heat and flux at stations along the meridian: what may be missing where no effect of the catalogue is."""
+"""Unknowns for heat of unknown origin: heat and flux patches at stations along the meridian."""
 
 from __future__ import annotations
 
@@ -9,7 +9,7 @@ from tyrefem.inputs.study import StudyData
 
 
 def patches(study: StudyData, settings: DiagnosisSettings) -> tuple[Unknown, ...]:
-    """Unknown heat (while rolling) and unknown flux (always) at stations evenly spread from crown to bead."""
+    """Unknown heat (while the tyre rolls) and unknown flux (always) at even stations from crown to bead."""
     length = study.section.line.length
     spacing = length / settings.stations
     known = catalogue()

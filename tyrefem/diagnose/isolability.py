@@ -1,4 +1,4 @@
-"""Before any data: which effects a study's sensors and runs can tell apart, and how strong they must be to be seen."""
+"""Identifiability before any data: which effects the sensors and runs can distinguish, and from what amplitude."""
 
 from __future__ import annotations
 
@@ -28,31 +28,32 @@ if TYPE_CHECKING:
     import pandas as pd
 
 Array = NDArray[np.float64]
-#: What isolability needs of a study.
+#: What a study must have for isolability.
 NEEDS = Requirements("isolability", fitted=True)
-#: Nats by which the true explanation must be ahead of every other without noise, so that noise turns the order round,
-#: or leaves it undecided (less than 90 %), in one case of twenty: m - 1.645 sqrt(2 m) > ln 9.
+#: Lead m (nats, without noise) of the true set over every other set. With it, noise brings the probability of the true
+#: set below 90 % in one case of twenty: m - 1.645 sqrt(2 m) > ln 9.
 MARGIN = 9.3
-#: Readings are supposed this often, s.
-EVERY = 10.0
+#: Assumed interval between two readings, s.
+READING_INTERVAL = 10.0
 
 
 def planned(study: StudyData, sensors: Sequence[str] = ()) -> tuple[DriveSampling, ...]:
-    """The runs of a study's ``[[measured]]`` entries (or its own drive) with all its sensors read every 10 s.
+    """The planned runs: the study's ``[[measured]]`` entries, or its drive, with all sensors read every 10 s.
 
     Raises
     ------
-    InputError : a drive that is shorter than the time between two readings.
+    InputError : a drive is shorter than the interval between two readings.
     """
     entries = study.measured
     plans = [(entry.run or f"run {n + 1}", dict(entry.drive), entry.hold_out) for n, entry in enumerate(entries)]
     samplings = []
     for name, drive, hold_out in plans or [("the study's own drive", {}, False)]:
         driven = study.with_drive(drive) if drive else study
-        if driven.card.drive.end < EVERY:
-            message = f"{name} lasts {driven.card.drive.end:g} s; sensors are supposed to be read every {EVERY:g} s"
+        if driven.card.drive.end < READING_INTERVAL:
+            least = f"it must last at least {READING_INTERVAL:g} s, the interval between two readings"
+            message = f"{name} lasts {driven.card.drive.end:g} s; {least}"
             raise InputError(message, field="drive", file=study.file)
-        times = np.arange(0.0, driven.card.drive.end + EVERY / 2, EVERY)
+        times = np.arange(0.0, driven.card.drive.end + READING_INTERVAL / 2, READING_INTERVAL)
         choice = study.card.diagnosis
         names = list(sensors) or [*study.sensors, OUTSIDE_THE_RUBBER[0]]
         sampled = tuple(
@@ -70,26 +71,27 @@ def planned(study: StudyData, sensors: Sequence[str] = ()) -> tuple[DriveSamplin
 
 
 def layout_notes(study: StudyData) -> tuple[str, ...]:
-    """What a study has not, and what `planned` takes instead, in sentences."""
+    """Sentences on sensors and runs that the study lacks, and what `planned` takes instead."""
     notes = []
     if not study.sensors:
-        notes.append("The study has no [sensors]: the contained air is all that is read.")
+        notes.append("The study has no [sensors]: only the contained air is read.")
     if not study.measured:
-        notes.append("The study has no [[measured]] runs: its own drive is the only run.")
+        notes.append("The study has no [[measured]] runs: its drive is the only run.")
     return tuple(notes)
 
 
 @dataclass(frozen=True, eq=False)
 class Isolability:
-    """What a layout of sensors and runs can tell.
+    """Effects that a layout of sensors and runs can identify.
 
     Parameters
     ----------
-    study : its name. candidates : the effects. smallest : amplitude (own unit) from which each is told from all
-        others, infinite if never within its bounds; ``seen`` : from which it is told from no effect.
-    scale : prior sd of the amplitude. competitors : the last other explanation to be ruled out.
-    apart : (n, n) nats by which effect i at its scale is ahead of effect j fitted to it. runs : smallest sets of runs.
-    notes : what the study has not, in sentences.
+    study : name of the study. candidates : the n effects.
+    smallest : (n,) amplitude, in the effect's unit, from which the effect is distinguished from all others; infinite
+        if no amplitude within its bounds is enough. seen : the same for the effect against no effect.
+    scale : (n,) prior sd of the amplitude. competitors : (n,) the set that needs the largest amplitude to rule out.
+    separation : (n, n) nats by which effect i at its scale is ahead of effect j fitted to the same data.
+    runs : smallest sufficient sets of runs. notes : sentences on sensors and runs that the study lacks.
     """
 
     study: str
@@ -98,14 +100,14 @@ class Isolability:
     seen: Array
     scale: Array
     competitors: tuple[str, ...]
-    apart: Array
+    separation: Array
     runs: tuple[tuple[str, ...], ...]
     weights: Array
     notes: tuple[str, ...] = ()
 
     @cached_property
     def table(self) -> pd.DataFrame:
-        """One row per effect: from what amplitude it is seen, and told from all others."""
+        """One row per effect: amplitudes from which it is seen, and distinguished from all other effects."""
         import pandas as pd
 
         units = [candidate.unknowns[0].unit for candidate in self.candidates]
@@ -123,9 +125,9 @@ class Isolability:
 
     @cached_property
     def groups(self) -> tuple[tuple[str, ...], ...]:
-        """Effects that are not told apart at their usual strength: connected by pairs that are too close."""
+        """Groups of effects that are not distinguished at their usual amplitude, connected by pairs."""
         n = len(self.candidates)
-        close = (self.apart < MARGIN) & (self.apart.T < MARGIN)
+        close = (self.separation < MARGIN) & (self.separation.T < MARGIN)
         left, groups = set(range(n)), []
         while left:
             group, queue = set(), [min(left)]
@@ -147,39 +149,39 @@ class Isolability:
             "effects": self.table.to_dict(orient="records"),
             "groups": [list(group) for group in self.groups],
             "fewest_runs": [list(runs) for runs in self.runs],
-            "apart_nats": self.apart.round(2).tolist(),
+            "apart_nats": self.separation.round(2).tolist(),
             "notes": list(self.notes),
         }
 
     def words(self) -> list[str]:
-        """What an engineer who plans a test wants to know."""
+        """The results as lines of text: table, effects that are not seen, groups, fewest runs, notes."""
         table = self.table
         shown = table[["effect", "unit", "usual", "seen_from", "told_from", "last_rival"]]
         can = table["identifiable_at_usual"]
         lines = [shown.to_string(index=False, float_format="%.3g")]
-        lines.append(f"{int(can.sum())} of {len(table)} effects are identifiable at their usual strength.")
+        lines.append(f"{int(can.sum())} of {len(table)} effects are identifiable at their usual amplitude.")
         never = table.loc[~np.isfinite(table["seen_from"]), "effect"]
         if len(never):
-            lines.append("These sensors and runs cannot see, at any strength: " + ", ".join(never) + ".")
+            lines.append("Not seen by these sensors and runs at any amplitude: " + ", ".join(never) + ".")
         together = [", ".join(group) for group in self.groups if len(group) > 1]
-        lines += [f"Not told apart, or not seen, at usual strength: {names}." for names in together]
+        lines += [f"Not distinguished, or not seen, at the usual amplitude: {names}." for names in together]
         if self.runs:
             sets = "; ".join(" + ".join(runs) for runs in self.runs)
-            lines.append(f"Fewest runs that identify as much: {sets}.")
+            lines.append(f"Fewest runs that identify the same effects: {sets}.")
         return [*lines, *self.notes]
 
 
 def margins(
     linear: LinearModel, signal: Array, true: Members, competitors: Sequence[Members], prior: SetPrior
 ) -> list[float]:
-    """Nats by which ``true`` is ahead of each competitor for data that are ``signal`` without noise."""
+    """Lead (nats) of the set ``true`` over each competitor for the data ``signal``, without noise."""
     given = linear.with_data(signal)
     of_true = prior(true) + given.log_evidence(true)
     return [of_true - prior(members) - given.log_evidence(members) for members in competitors]
 
 
 def competitors_of(true: Members, candidates: Sequence[Candidate]) -> list[Members]:
-    """No effect, every other single effect, and every part of the true set; sets that hold it are no competitors."""
+    """The sets that compete with the true set: no effect, every other single effect, every subset of the true set."""
     sets: list[Members] = [()]
     sets += [(candidate,) for candidate in candidates if candidate not in true]
     for size in range(1, len(true)):
@@ -192,7 +194,7 @@ def candidates_of(study: StudyData) -> tuple[Candidate, ...]:
 
     Raises
     ------
-    InputError : there is none, so that there is nothing to tell apart.
+    InputError : there is none.
     """
     candidates = catalogue_candidates(study)
     if not candidates:
@@ -209,14 +211,14 @@ def isolability(
     known: Sensitivities | None = None,
     store: ProgressStore | None = None,
 ) -> Isolability:
-    """What the sensors and runs of a study can tell apart, by the linear model about the study as it is.
+    """Effects that the sensors and runs of a study can distinguish, by the linear model about x = 0.
 
-    ``known``: sensitivities of the planned runs, where they are at hand. ``store``: keeps finished simulations, which
-    an interrupted call takes up again.
+    ``known``: sensitivities of the planned runs, if they are available. ``store``: keeps finished simulations for the
+    next call after an interruption.
 
     Raises
     ------
-    InputError : a campaign; every run held out; every effect excluded; a run's drive that the tyre cannot take.
+    InputError : a campaign; every run held out; every effect excluded; a drive that is impossible for the tyre.
     """
     NEEDS.check(study)
     candidates = candidates_of(study)
@@ -231,11 +233,11 @@ def isolability(
     linear = _noiseless(known, known.fitted)
     n = len(candidates)
     smallest, seen, last = np.full(n, np.inf), np.full(n, np.inf), [""] * n
-    apart = np.zeros((n, n))
+    separation = np.zeros((n, n))
     for i, candidate in enumerate(candidates):
         response = _response(linear, candidate)
         at_scale = margins(linear, response, (candidate,), [(other,) for other in candidates], prior)
-        apart[i] = at_scale
+        separation[i] = at_scale
         smallest[i], last[i] = _threshold(linear, response, candidate, candidates, prior)
         seen[i], _ = _threshold(linear, response, candidate, (), prior)
     runs = _fewest_runs(known, candidates, prior, smallest)
@@ -248,7 +250,7 @@ def isolability(
         seen * scale,
         scale,
         tuple(last),
-        apart,
+        separation,
         runs,
         shares,
         layout_notes(study),
@@ -260,7 +262,7 @@ def layout_sensitivities(
     responses_at_hand: Sequence[DriveResponse] | None = None,
     progress: Callable[[str, int, int], None] | None = None,
 ) -> Sensitivities:
-    """How the sensors of planned runs respond to everything that a diagnosis of them may fit."""
+    """Sensitivities of the planned runs to all unknowns that their diagnosis may fit."""
     model = evaluations.model
     read = {name for drive in model.drives for name in drive.parts()}
     unknowns, nuisance = unknowns_of(model.study, read, catalogue_candidates(model.study), model.settings)
@@ -269,13 +271,13 @@ def layout_sensitivities(
 
 
 def _noiseless(known: Sensitivities, numbers: Sequence[int]) -> LinearModel:
-    """The linear model of some runs, to be given data."""
+    """The linear model of some runs with zero data."""
     design = known.design(numbers)
     return LinearModel(design, np.zeros(len(design.jacobian)))
 
 
 def _response(linear: LinearModel, candidate: Candidate) -> Array:
-    """Signal of an effect at its usual strength: all its amplitudes one prior sd from null, on the allowed side."""
+    """Signal of an effect at its usual amplitude: all its amplitudes at one prior sd, on the allowed side."""
     signal = np.zeros(len(linear.data))
     for unknown in candidate.presence:
         signal = signal + linear.jacobian[:, linear.design.place[unknown]]
@@ -290,7 +292,7 @@ def _response(linear: LinearModel, candidate: Candidate) -> Array:
 def _threshold(
     linear: LinearModel, response: Array, candidate: Candidate, candidates: Sequence[Candidate], prior: SetPrior
 ) -> tuple[float, str]:
-    """Amplitude, in prior sds, from which the effect is ahead of all others; and which of these holds out longest."""
+    """Amplitude (prior sd) from which the effect is ahead of all competitors, and the last competitor ruled out."""
     sets = competitors_of((candidate,), candidates)
     if not candidate.amplitudes:
         ahead = margins(linear, response, (candidate,), sets, prior)
@@ -313,7 +315,7 @@ def _threshold(
 def _fewest_runs(
     known: Sensitivities, candidates: Sequence[Candidate], prior: SetPrior, smallest: Array
 ) -> tuple[tuple[str, ...], ...]:
-    """The smallest sets of fitted runs that identify at twice their usual strength all that all runs together do."""
+    """The smallest sets of fitted runs that identify the same effects as all runs, at twice their usual amplitude."""
     names = [drive.name for drive in known.drives]
     wanted = [i for i in range(len(candidates)) if smallest[i] <= 2.0]
     if not wanted:

@@ -19,8 +19,9 @@ Array = NDArray[np.float64]
 
 @dataclass(frozen=True, eq=False)
 class DesignMatrix(Brief):
-    """How whitened readings depend on unknowns: ``jacobian`` (n, k); ``nuisance``: how many of the unknowns, the first,
-    belong to every model.
+    """Derivatives of whitened readings: ``jacobian`` (n, k).
+
+    ``nuisance``: number of the unknowns, the first ones, that belong to every model.
     """
 
     unknowns: tuple[Unknown, ...]
@@ -29,11 +30,11 @@ class DesignMatrix(Brief):
 
     @cached_property
     def place(self) -> dict[Unknown, int]:
-        """Unknown -> its column."""
+        """Unknown -> number of its column."""
         return {unknown: column for column, unknown in enumerate(self.unknowns)}
 
     def columns(self, unknowns: Sequence[Unknown]) -> NDArray[np.intp]:
-        """Columns of unknowns."""
+        """Numbers of the columns of unknowns."""
         return np.array([self.place[unknown] for unknown in unknowns], dtype=np.intp)
 
     @cached_property
@@ -48,14 +49,14 @@ class DesignMatrix(Brief):
 
     @cached_property
     def inverse(self) -> Array:
-        """(G + S^-2)^-1 of the nuisance."""
+        """(G + S^-2)^-1 of the nuisance unknowns."""
         n = self.nuisance
         sd = self.sd[:n]
         return np.asarray(np.linalg.inv(np.eye(n) + self.gram[:n, :n] * sd[:, None] * sd[None, :]) * np.outer(sd, sd))
 
     @cached_property
     def marginal(self) -> tuple[Array, Array, float]:
-        """With the nuisance integrated out: Gram of the others, G_en (G_nn + S^-2)^-1, and ln det(1 + S G S) / 2."""
+        """Nuisance integrated out: Gram matrix of the others, G_en (G_nn + S^-2)^-1, ln det(1 + S G S) / 2."""
         n = self.nuisance
         sd = self.sd[:n]
         projection = self.gram[n:, :n] @ self.inverse
@@ -71,7 +72,7 @@ class LinearModel(Brief):
     data: Array
 
     def with_data(self, data: Array) -> LinearModel:
-        """The same model of other data."""
+        """The same model for other data."""
         return LinearModel(self.design, data)
 
     @property
@@ -90,7 +91,7 @@ class LinearModel(Brief):
         overlap, fixed = self.overlap, 0.0
         present = design.columns([unknown for member in members for unknown in member.presence])
         if len(present):
-            # What is simply there is taken off the data: d' = d - J 1.
+            # The signal of effects without amplitude is subtracted from the data: d' = d - J 1.
             overlap = overlap - design.gram[:, present].sum(axis=1)
             fixed = float(self.overlap[present].sum() - design.gram[np.ix_(present, present)].sum() / 2)
         gram, projection, half = design.marginal
@@ -119,5 +120,5 @@ class LinearModel(Brief):
 
     @property
     def constant(self) -> float:
-        """-|d|^2/2, which evidences about other points need."""
+        """-|d|^2/2, needed to compare evidences of models about different points."""
         return float(-self.data @ self.data / 2)

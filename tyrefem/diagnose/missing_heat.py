@@ -1,4 +1,4 @@
-"""Heat of unknown origin: a regularised estimate of what is missing where no known effect explains the data."""
+"""Heat of unknown origin: a regularised estimate of missing heat and flux by station of the meridian."""
 
 from __future__ import annotations
 
@@ -13,7 +13,7 @@ from numpy.typing import NDArray
 from tyrefem.brief import Brief
 from tyrefem.diagnose.candidates import Candidate
 from tyrefem.diagnose.evidence import posterior
-from tyrefem.diagnose.fits import FittedSet, carried_on, first_fits
+from tyrefem.diagnose.fits import FittedSet, continued, first_fits
 from tyrefem.diagnose.multifidelity import Predictions
 from tyrefem.diagnose.residuals import Residuals
 from tyrefem.diagnose.unknowns import Unknown
@@ -24,15 +24,16 @@ Array = NDArray[np.float64]
 
 @dataclass(frozen=True, eq=False)
 class UnknownHeat(Brief):
-    """What is missing, patch by patch.
+    """Missing heat and flux by station and run.
 
     Parameters
     ----------
     stations : (n,) m along the meridian. heat, heat_sd : (n_runs, n) W/m3. flux, flux_sd : (n_runs, n) W/m2.
-    runs, speeds : names and fastest speeds (m/s) of the fitted runs. log_evidence : of the data, comparable with the
-        sets'. region : where most of the missing heat is. watts : (n,) W, mean over the runs, by station.
+    runs, speeds : names and top speeds (m/s) of the fitted runs.
+    log_evidence : ln evidence of the data, comparable with the sets of effects.
+    region, station : of the largest missing heat. watts : (n,) W, mean over the runs, by station.
     kind : "heat" inside (W/m3), or "flux" through the surface (W/m2).
-    values, sd : every unknown fitted along, and the patches (mean over the runs): x and its standard deviation.
+    values, sd : x and standard deviation of all fitted unknowns, and of the patches (mean over the runs).
     """
 
     stations: Array
@@ -52,11 +53,11 @@ class UnknownHeat(Brief):
 
 
 def missing_heat(residuals: Residuals, unknown: Sequence[Unknown], about: FittedSet) -> UnknownHeat:
-    """The patches' heat in every fitted run, fitted together with base numbers and sensors; priors regularise.
+    """Heat of the patches in every fitted run, fitted with base numbers and sensors; priors regularise.
 
-    Every patch has a part that all runs share and one of its own in each run, of half the standard deviation. Taken in
-    the linear model about the study as it is, or about ``about`` (a fit without it), whichever explains the data
-    better: a fit that lacks what is missing may have bent base numbers far. See `missing_heat_fitted`.
+    Every patch has a part that all runs share, and a part for each run with half the standard deviation. The model is
+    linear about x = 0 or about the fit ``about`` without patches; the one with the larger evidence counts. A fit
+    without the missing heat may have distorted base numbers. See `missing_heat_fitted`.
     """
     nuisance = residuals.unknowns[: residuals.nuisance]
     origin = residuals.linear(residuals.fitted)
@@ -73,14 +74,14 @@ def missing_heat_fitted(
     null: FittedSet,
     tick: Callable[[], None] | None = None,
 ) -> UnknownHeat:
-    """The same about a fit of the full model with the few patches that explain most, see `pursuit`.
+    """The estimate of `missing_heat` about a fit of the full model with the few patches of `pursuit`.
 
-    They say where the missing heat is; the fit, with base numbers and sensors, how much.
+    The patches give the place of the missing heat. The fit, with base numbers and sensors, gives its size.
     """
     chosen = pursuit(residuals, unknown)
     whole = (Candidate("not-in-the-catalogue", (), chosen),)
     first = first_fits(residuals, predictions, [whole], {whole: null} if null.close else {}, tick)
-    (fit,) = carried_on(residuals, predictions, first, tick)
+    (fit,) = continued(residuals, predictions, first, tick)
     J = fit.linear.jacobian
     other = [number for number, each in enumerate(fit.unknowns) if each not in chosen]
     origin = residuals.linear(residuals.fitted)
@@ -93,10 +94,10 @@ def missing_heat_fitted(
 
 
 def pursuit(residuals: Residuals, unknown: Sequence[Unknown]) -> tuple[Unknown, ...]:
-    """The patches that explain the data best, one after the other while the evidence rises; at least one.
+    """The patches that explain the data best, added one at a time while the evidence rises; at least one.
 
-    Each is judged in the linear model about the study as it is, with a heat of its own in every run that may not be
-    negative, so that a single source is not split into sources and sinks side by side.
+    The evidence is that of the linear model about x = 0, with one heat per patch and run. The heat is not negative, so
+    that a single source is not split into neighbouring sources and sinks.
     """
     linear = residuals.linear(residuals.fitted)
     n = residuals.nuisance
@@ -140,7 +141,7 @@ class _Point:
 def _estimated(
     residuals: Residuals, unknown: Sequence[Unknown], about: _Point, chosen: Unknown | None = None
 ) -> UnknownHeat:
-    trials = residuals.trials
+    runs = residuals.runs
     shared, of_runs = about.patches, []
     ends = np.cumsum([len(residuals.whitened[i]) for i in residuals.fitted])
     for end, i in zip(ends, residuals.fitted, strict=True):
@@ -178,7 +179,7 @@ def _estimated(
         spread[:, :half],
         mean[:, half:],
         spread[:, half:],
-        tuple(trials[i].name for i in residuals.fitted),
+        tuple(runs[i].name for i in residuals.fitted),
         np.array([drive.top_speed for drive in drives]),
         solution.log_evidence - float(about.data @ about.data) / 2,
         str(study.section.region_at(s, depth)[0]),
@@ -191,19 +192,19 @@ def _estimated(
 
 
 def _kind(mean: Array, spread: Array, half: int) -> str:
-    """Where the surest patch is."""
+    """Kind of the patch with the largest ratio of mean to standard deviation."""
     ratio = np.abs(mean.mean(axis=0)) / spread.mean(axis=0)
     return "heat" if ratio[:half].max() >= ratio[half:].max() else "flux"
 
 
 def _score(mean: Array, spread: Array, half: int) -> Array:
-    """How surely something is missing at each station: heat and flux together, in standard deviations."""
+    """Significance of the missing heat and flux at each station, in standard deviations."""
     ratio = mean.mean(axis=0) / spread.mean(axis=0)
     return np.hypot(ratio[:half], ratio[half:])
 
 
 def _watts(study: StudyData, stations: Array, heat: Array, flux: Array) -> Array:
-    """Missing heat of the whole tyre by station, W: patch height times ring volume and surface of its stretch."""
+    """Missing heat of the tyre by station, W: heat times ring volume plus flux times ring surface."""
     section = study.section
     spacing = section.line.length / len(stations)
     radius = section.line.position(stations)[:, 0]

@@ -1,4 +1,4 @@
-"""What the sensors read at a point of a fit: by a drive's reduced model where it is certified, else by simulation."""
+"""Readings at a point of a fit: by the reduced model of the drive if it is certified, else by simulation."""
 
 from __future__ import annotations
 
@@ -24,45 +24,46 @@ Tick = Callable[[], None] | None
 
 @dataclass(frozen=True)
 class DriveCertificate:
-    """What simulations say of a drive's reduced model with a set of effects, at points it had not learnt.
+    """Certificate of a drive's reduced model for a set of effects: its differences from fixed-step simulations.
 
     Parameters
     ----------
-    members, number : which effects, which trial. apart : largest whitened norm of what is between the two; infinite
-        where the model cannot follow. error : largest difference of a block mean, K. cases : points.
+    members, number : the set of effects, and the number of the drive. allowed : largest accepted whitened norm.
+    whitened_norm : largest whitened norm of the difference; infinite if the model cannot represent the effects.
+    error : largest difference of a block mean, K. cases : number of compared points.
     """
 
     members: Members
     number: int
     allowed: float
-    apart: float = 0.0
+    whitened_norm: float = 0.0
     error: float = 0.0
     cases: int = 0
 
     @property
     def good(self) -> bool:
-        """May the model speak for these effects at this drive?"""
-        return self.apart <= self.allowed
+        """Whether the model may be used for these effects at this drive."""
+        return self.whitened_norm <= self.allowed
 
-    def with_case(self, apart: float, error: float) -> DriveCertificate:
-        """After one more point."""
-        worst = max(apart, self.apart), max(error, self.error)
+    def with_case(self, whitened_norm: float, error: float) -> DriveCertificate:
+        """The certificate with one more point."""
+        worst = max(whitened_norm, self.whitened_norm), max(error, self.error)
         return DriveCertificate(self.members, self.number, self.allowed, *worst, self.cases + 1)
 
 
 @dataclass(eq=False)
 class Predictions(Brief):
-    """Predictions and tangents at the drives of a forward model, each by the cheapest model that may answer.
+    """Predictions and sensitivities at the drives of a forward model, by reduced models where they are certified.
 
-    The first point of every set of effects at every drive is simulated on fixed steps as well: that is the
-    certificate. Where a model cannot follow a set's effects, or is off by more than the settings allow, the set stays
-    with the simulation. This object keeps the certificates, so it changes while it answers.
+    The first point of every set of effects at every drive is also simulated with fixed steps; the difference gives the
+    certificate. A set is simulated if its effects cannot be reduced, or if the difference exceeds the settings.
+    The object is mutable: it collects the certificates.
 
     Parameters
     ----------
-    modes : of every trial's drive; none: simulations only.
-    certificates : set and trial -> what is known. reduced, simulated : how many points either answered.
-    given_up : the models were off at the best fit, which was then found without them.
+    modes : POD modes by drive; empty: simulations only.
+    certificates : set and number of the drive -> certificate. reduced, simulated : points evaluated by either model.
+    given_up : the reduced models failed at the best fit, and the search was repeated without them.
     """
 
     evaluations: Evaluations
@@ -74,52 +75,56 @@ class Predictions(Brief):
 
     @property
     def settings(self) -> DiagnosisSettings:
-        """Those of the forward model."""
+        """Settings of the forward model."""
         return self.evaluations.model.settings
 
     def predict(
-        self, asking: Sequence[tuple[Members, Values]], numbers: Sequence[int], tick: Tick = None
+        self, queries: Sequence[tuple[Members, Values]], numbers: Sequence[int], tick: Tick = None
     ) -> list[list[Array]]:
-        """Block means of some trials for every set and its point; NaN where no tyre can be so."""
-        blocks = self._by_model(asking, numbers, tick)
+        """Block means at some drives for every pair of a set and its values; NaN for an impossible tyre."""
+        blocks = self._by_model(queries, numbers, tick)
         fresh = {
             (place, i) for (place, i), row in blocks.items()
-            if (asking[place][0], i) not in self.certificates and np.isfinite(row).all()
+            if (queries[place][0], i) not in self.certificates and np.isfinite(row).all()
         }  # fmt: skip
-        left = [(k, i) for k in range(len(asking)) for i in numbers if (k, i) not in blocks or (k, i) in fresh]
-        answers = self.evaluations.of("predict", [(i, asking[k][1]) for k, i in left], tick)
+        left = [(k, i) for k in range(len(queries)) for i in numbers if (k, i) not in blocks or (k, i) in fresh]
+        answers = self.evaluations.of("predict", [(i, queries[k][1]) for k, i in left], tick)
         self.simulated += len(left)
         for (k, i), answer in zip(left, answers, strict=True):
-            if (k, i) in fresh and self._tried(asking[k][0], i, blocks[k, i], answer).good:
+            if (k, i) in fresh and self._certificate_after(queries[k][0], i, blocks[k, i], answer).good:
                 continue
             blocks[k, i] = answer
-        return [[blocks[k, i] for i in numbers] for k in range(len(asking))]
+        return [[blocks[k, i] for i in numbers] for k in range(len(queries))]
 
     def jacobians(
-        self, asking: Sequence[tuple[Members, tuple[Unknown, ...], Values]], numbers: Sequence[int], tick: Tick = None
+        self, queries: Sequence[tuple[Members, tuple[Unknown, ...], Values]], numbers: Sequence[int], tick: Tick = None
     ) -> list[list[Array]]:
-        """(n_blocks, n_unknowns) of some trials for every set, its unknowns and its point."""
-        wanted = [(k, i) for k in range(len(asking)) for i in numbers]
-        modal = [(k, i) for k, i in wanted if self.modes and self._known_good(asking[k][0], i)]
-        answers = self.evaluations.of("reduced_jacobian", [(i, self.modes[i], *asking[k][1:]) for k, i in modal], tick)
+        """Jacobians (n_blocks, n_unknowns) at some drives for every set with its unknowns and values."""
+        wanted = [(k, i) for k in range(len(queries)) for i in numbers]
+        modal = [(k, i) for k, i in wanted if self.modes and self._is_certified(queries[k][0], i)]
+        answers = self.evaluations.of("reduced_jacobian", [(i, self.modes[i], *queries[k][1:]) for k, i in modal], tick)
         tables = {
             pair: jacobian for pair, (status, jacobian) in zip(modal, answers, strict=True) if status[0] == FOLLOWED
         }
         left = [pair for pair in wanted if pair not in tables]
-        tables |= zip(left, self.evaluations.of("jacobian", [(i, *asking[k][1:]) for k, i in left], tick), strict=True)
-        return [[tables[k, i] for i in numbers] for k in range(len(asking))]
+        tables |= zip(left, self.evaluations.of("jacobian", [(i, *queries[k][1:]) for k, i in left], tick), strict=True)
+        return [[tables[k, i] for i in numbers] for k in range(len(queries))]
 
     def confirmed(self, members: Members, values: Values) -> bool:
-        """Is a point that matters what the simulation says, at every drive where the model spoke for it?"""
-        numbers = [i for i in range(len(self.evaluations.model.drives)) if self.modes and self._known_good(members, i)]
+        """Whether simulations confirm a point at every drive where reduced models gave the readings."""
+        numbers = [
+            i for i in range(len(self.evaluations.model.drives)) if self.modes and self._is_certified(members, i)
+        ]
         modal = self._by_model([(members, values)], numbers, None)
         answers = self.evaluations.of("predict", [(i, values) for i in numbers])
         self.simulated += len(numbers)
         pairs = [(i, modal.get((0, i)), answer) for i, answer in zip(numbers, answers, strict=True)]
-        return all(row is not None and self._tried(members, i, row, answer).good for i, row, answer in pairs)
+        return all(
+            row is not None and self._certificate_after(members, i, row, answer).good for i, row, answer in pairs
+        )
 
     def to_dict(self) -> dict[str, Any]:
-        """For `verdict.json`."""
+        """Contents of `verdict.json` under "reduced"."""
         good = [certificate for certificate in self.certificates.values() if certificate.good]
         names = [drive.name for drive in self.evaluations.model.drives]
         return {
@@ -128,7 +133,7 @@ class Predictions(Brief):
             "points_by_reduced_models": self.reduced,
             "points_by_lean_simulations": self.simulated,
             "allowed_whitened": self.settings.reduced_allowed,
-            "worst_whitened": max((certificate.apart for certificate in good), default=None),
+            "worst_whitened": max((certificate.whitened_norm for certificate in good), default=None),
             "worst_K": max((certificate.error for certificate in good), default=None),
             "certificates": [
                 {
@@ -136,7 +141,7 @@ class Predictions(Brief):
                     "run": names[certificate.number],
                     "used": certificate.good,
                     "points": certificate.cases,
-                    "whitened": certificate.apart if certificate.cases else None,
+                    "whitened": certificate.whitened_norm if certificate.cases else None,
                     "worst_K": certificate.error if certificate.cases else None,
                 }
                 for certificate in self.certificates.values()
@@ -144,46 +149,46 @@ class Predictions(Brief):
         }
 
     def _by_model(
-        self, asking: Sequence[tuple[Members, Values]], numbers: Sequence[int], tick: Tick
+        self, queries: Sequence[tuple[Members, Values]], numbers: Sequence[int], tick: Tick
     ) -> dict[tuple[int, int], Array]:
-        """(place, trial) -> block means by the models, of what they may be asked and can follow."""
-        places = {i: [k for k, (members, _) in enumerate(asking) if self._may(members, i)] for i in numbers}
+        """(number of the query, number of the drive) -> block means by reduced models, where they can be used."""
+        places = {i: [k for k, (members, _) in enumerate(queries) if self._is_allowed(members, i)] for i in numbers}
         places = {i: places_here for i, places_here in places.items() if places_here}
-        questions = [(i, self.modes[i], tuple(asking[k][1] for k in places_here)) for i, places_here in places.items()]
+        questions = [(i, self.modes[i], tuple(queries[k][1] for k in places_here)) for i, places_here in places.items()]
         modal: dict[tuple[int, int], Array] = {}
         for (i, places_here), (status, blocks) in zip(
             places.items(), self.evaluations.of("reduced", questions, tick), strict=True
         ):
             for k, state, row in zip(places_here, status, blocks, strict=True):
                 if state == NOT_FOLLOWED:
-                    members = asking[k][0]
+                    members = queries[k][0]
                     self.certificates[members, i] = DriveCertificate(
-                        members, i, self.settings.reduced_allowed, apart=np.inf, error=np.inf
+                        members, i, self.settings.reduced_allowed, whitened_norm=np.inf, error=np.inf
                     )
                 elif state == FOLLOWED:
                     modal[k, i] = row
         self.reduced += len(modal)
         return modal
 
-    def _may(self, members: Members, number: int) -> bool:
-        """May the model be asked: is it there, and has nothing been said against it?"""
+    def _is_allowed(self, members: Members, number: int) -> bool:
+        """Whether there is a reduced model of the drive, and no certificate that rejects it for this set."""
         if not self.modes or not self.modes[number].V.shape[1]:
             return False
         known = self.certificates.get((members, number))
         return known is None or known.good
 
-    def _known_good(self, members: Members, number: int) -> bool:
+    def _is_certified(self, members: Members, number: int) -> bool:
         known = self.certificates.get((members, number))
         return known is not None and known.good
 
-    def _tried(self, members: Members, number: int, modal: Array, simulated: Array) -> DriveCertificate:
+    def _certificate_after(self, members: Members, number: int, modal: Array, simulated: Array) -> DriveCertificate:
         """The certificate after one more point."""
         known = self.certificates.get((members, number)) or DriveCertificate(
             members, number, self.settings.reduced_allowed
         )
-        apart = float(np.linalg.norm(self.evaluations.model.drives[number].whitened(modal - simulated)))
+        whitened_norm = float(np.linalg.norm(self.evaluations.model.drives[number].whitened(modal - simulated)))
         error = float(np.abs(modal - simulated).max(initial=0.0))
-        finite = np.isfinite(apart)
-        certificate = known.with_case(apart if finite else np.inf, error if finite else np.inf)
+        finite = np.isfinite(whitened_norm)
+        certificate = known.with_case(whitened_norm if finite else np.inf, error if finite else np.inf)
         self.certificates[members, number] = certificate
         return certificate

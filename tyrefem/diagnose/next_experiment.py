@@ -1,4 +1,4 @@
-"""The next experiment: which sensor or drive would tell two explanations apart best."""
+"""The next experiment: the sensor place and the drive that best separate the two most probable sets."""
 
 from __future__ import annotations
 
@@ -19,7 +19,7 @@ from tyrefem.inputs.study import StudyData
 from tyrefem.simulation.surroundings import GAS
 
 Array = NDArray[np.float64]
-#: Feasible drives: factors on what the study's own drive says.
+#: Feasible drives: factors on the numbers of the study's drive.
 DRIVES = {
     "half the speed": {"speed": 0.5},
     "1.5 times the speed": {"speed": 1.5},
@@ -29,9 +29,9 @@ DRIVES = {
     "four fifths of the pressure": {"pressure": 0.8},
 }
 STATIONS = 9
-#: Standard deviation of a reading that no sensor's card states, K: a new sensor's, or the contained air's.
+#: Standard deviation of a reading without a sensor's card (new sensor, contained air), K.
 NOISE = 0.5
-#: A thermocouple is set no closer to a surface than this, m.
+#: Smallest distance between a thermocouple and a surface, m.
 SKIN = 1e-3
 
 
@@ -40,15 +40,15 @@ def next_experiment(
 ) -> dict[str, Any]:
     """The sensor place and the drive that separate the two most probable sets best.
 
-    The expected gain of a further history is ln of the odds that it adds to the true one of the two sets,
-    delta^T (C + position and offset of a new sensor)^-1 delta / 2, with delta the difference of their predictions, both
-    as fitted. Base numbers are not fitted again to the new history, so that the gain is an upper estimate.
+    The expected gain of a further history is the ln of the odds that it adds to the true set:
+    delta^T (C + position and offset of a new sensor)^-1 delta / 2, with delta the difference of the two predictions at
+    their fits. Base numbers are not fitted to the new history, so the gain is an upper estimate.
 
     Returns
     -------
     ``between`` (two sets), ``sensors`` and ``drives`` in order of gain; empty if only one set is left.
     """
-    sets = _contenders(judgement)
+    sets = _competing_sets(judgement)
     if len(sets) < 2:
         return {}
     fits = [entry.fit or fit_of(entry.members) for entry in sets]
@@ -70,8 +70,8 @@ def next_experiment(
     }
 
 
-def _contenders(judgement: Judgement) -> list[RankedSet]:
-    """The best set and the next one that is not the same with something idle added, or left out."""
+def _competing_sets(judgement: Judgement) -> list[RankedSet]:
+    """The best set and the next set that is neither its subset nor its superset."""
     sets = [entry for entry in judgement.credible if not entry.outside]
     for other in sets[1:]:
         ours, theirs = set(sets[0].members), set(other.members)
@@ -81,7 +81,7 @@ def _contenders(judgement: Judgement) -> list[RankedSet]:
 
 
 def _places(study: StudyData, pair: list[FixedStepRun]) -> list[tuple[str, dict[str, float], Array, Array, Array]]:
-    """(name, place, difference (n,), sd of a new sensor's place (n,) K, times) at every feasible place."""
+    """(name, position, difference (n,) K, sd from the position (n,) K, times) at every feasible sensor place."""
     section = study.section
     s = np.repeat(np.linspace(0.0, section.line.length * 0.98, STATIONS), 3)
     total = np.asarray(section.rubber_thickness(s))
@@ -122,7 +122,7 @@ def _gain(
 
 
 def drive_gain(model: ForwardModel, name: str, factors: Mapping[str, float], *values: Any) -> dict[str, Any] | None:
-    """A drive's gain with the study's sensors, or the contained air if it has none; None: the tyre cannot take it."""
+    """Gain of a drive with the study's sensors, or else with the contained air; None for an impossible drive."""
     from tyrefem.inputs.changes import scaled
 
     drive = model.study.data["drive"]
@@ -144,7 +144,7 @@ def drive_gain(model: ForwardModel, name: str, factors: Mapping[str, float], *va
     for sensor, sd in noises.items():
         a, b = (simulation.readings for simulation in pair)
         delta = a[sensor] - b[sensor]
-        # The sensors are the old ones: what their place and offset can do was used up by the fit.
+        # The existing sensors keep their fitted positions and offsets, so only a small offset remains.
         gain += _gain(pair[0].grid, delta, np.zeros_like(delta), study, sd, 0.1)
         if np.abs(delta).max() > largest:
             largest, where = float(np.abs(delta).max()), sensor

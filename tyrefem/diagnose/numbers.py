@@ -1,10 +1,10 @@
-"""Numbers of a diagnosis as people read them."""
+"""Probabilities of a diagnosis as text."""
 
 from __future__ import annotations
 
 
 def percent(probability: float) -> str:
-    """A probability, never rounded to certainty.
+    """A probability as text, never rounded to 0 or 100 %.
 
     >>> percent(0.99286), percent(0.99987), percent(0.99999), percent(0.0004), percent(0.62)
     ('99.3 %', '99.99 %', 'more than 99.99 %', 'less than 0.1 %', '62 %')

@@ -1,4 +1,4 @@
-"""How a diagnosis is made, in groups: its replaceable parts, names of columns, and how simulations are run."""
+"""Options of a diagnosis in groups: replaceable parts, names of columns, and execution of the simulations."""
 
 from __future__ import annotations
 
@@ -17,18 +17,18 @@ from tyrefem.diagnose.selection import Strategy
 from tyrefem.diagnose.sensitivities import Tick
 from tyrefem.diagnose.settings import DEFAULT, DiagnosisSettings
 
-#: Strategies by the names that the command line has for them.
+#: Name on the command line -> strategy.
 STRATEGIES: Mapping[str, Strategy] = {"forward": ForwardSelection(), "exhaustive": Exhaustive()}
 
 
 @dataclass(frozen=True)
 class Method:
-    """The parts of a diagnosis, each of which may be replaced.
+    """The replaceable parts of a diagnosis.
 
     Parameters
     ----------
-    candidates : study -> the effects that it may lack. criterion : how well a set explains the data.
-    strategy : which sets are fitted, in which order. settings : every number that steers the diagnosis.
+    candidates : study -> the effects that it may lack. criterion : quality of a set's explanation of the data.
+    strategy : search over sets of effects. settings : numerical parameters of the diagnosis.
     """
 
     candidates: CandidateSpace = catalogue_candidates
@@ -39,7 +39,7 @@ class Method:
 
 @dataclass(frozen=True)
 class SimulationWork:
-    """How the simulations of a diagnosis are made, see `DiagnosisOptions`."""
+    """Execution of the simulations of a diagnosis, see `DiagnosisOptions`."""
 
     workers: int = 1
     progress: Tick | None = None
@@ -48,14 +48,14 @@ class SimulationWork:
     store: ProgressStore | None = None
 
     def look(self, number: int) -> SimulationWork:
-        """The same for a further look at the data."""
+        """The options for the look with this number; 0 is the first look."""
         if not number:
             return self
         store = None if self.store is None else self.store.look(number)
         return replace(self, progress=_numbered(self.progress, number), known=None, store=store)
 
     def tick(self, what: str, done: int = 0, total: int = 0) -> None:
-        """Say what is done."""
+        """Report progress."""
         if self.progress is not None:
             self.progress(what, done, total)
 
@@ -86,7 +86,7 @@ class DiagnosisOptions(TypedDict, total=False):
 
 
 def grouped(options: Mapping[str, Any]) -> tuple[ColumnNames, Method, SimulationWork]:
-    """The keywords of `diagnose` by what they are about."""
+    """The keywords of `diagnose` in groups."""
     given = dict(options)
     columns = ColumnNames(dict(given.pop("rename", None) or {}), tuple(given.pop("ignore", ())))
     settings = given.pop("settings", DiagnosisSettings())

@@ -1,10 +1,10 @@
-"""What a program gets of a diagnosis: what `verdict.json` holds."""
+"""The contents of `verdict.json`: a diagnosis as plain data for programs."""
 
 from __future__ import annotations
 
 from typing import TYPE_CHECKING, Any
 
-from tyrefem.diagnose.contenders import candidate_rows, parameters, set_rows
+from tyrefem.diagnose.result_tables import candidate_rows, parameters, set_rows
 from tyrefem.diagnose.verdict import CONFOUNDED, IDENTIFIED, NO_GAP, UNEXPLAINED
 from tyrefem.diagnose.words import look_folder, verdict_words
 from tyrefem.output import jsonable, versions
@@ -17,9 +17,9 @@ AMENDED = "amended.toml"
 
 
 def record(d: DiagnosisData) -> dict[str, Any]:
-    """The diagnosis in numbers, SI and degC as the keys say; NaN is null.
+    """The diagnosis as numbers in SI units and degC, with the unit in the key; NaN becomes null.
 
-    ``effects`` are the members of the most probable set where the verdict is "identified" or "confounded".
+    ``effects``: members of the most probable set if the verdict is "identified" or "confounded", else empty.
     """
     named = d.best.members if d.verdict in (IDENTIFIED, CONFOUNDED) else ()
     contents = {
@@ -68,7 +68,7 @@ def record(d: DiagnosisData) -> dict[str, Any]:
 
 
 def where(d: DiagnosisData) -> dict[str, Any]:
-    """Where the original study disagrees most surely, and by more than noise."""
+    """The most significant residual of the original study among those larger than noise."""
     table = d.where
     large = table[table["mean_K"].abs() >= d.noise]
     row = (table if large.empty else large).sort_values("sigma", ascending=False, kind="stable").iloc[0]
@@ -86,7 +86,7 @@ def where(d: DiagnosisData) -> dict[str, Any]:
 
 
 def region_of(d: DiagnosisData, sensor: str) -> str:
-    """The region that a sensor is in; its own name if it is not in the rubber."""
+    """The region of a sensor; the sensor's name if it is not in the rubber."""
     card = d.original.sensors.get(sensor)
     if card is None:
         return sensor
@@ -96,7 +96,7 @@ def region_of(d: DiagnosisData, sensor: str) -> str:
 
 
 def change_rows(d: DiagnosisData) -> list[dict[str, Any]]:
-    """What the amended study changes: SI value of a parameter, factor of a base number, with standard deviation."""
+    """The changes of the amended study: SI value of a parameter or factor of a base number, with standard deviation."""
     return [
         {
             "key": change.unknown.key,
@@ -115,7 +115,7 @@ def change_rows(d: DiagnosisData) -> list[dict[str, Any]]:
 
 
 def missing_heat(d: DiagnosisData) -> dict[str, Any]:
-    """Heat of unknown origin by station: W/m3 inside while the tyre rolls, W/m2 through the outer surface always."""
+    """Heat of unknown origin by station: W/m3 inside while the tyre rolls, W/m2 through the outer surface."""
     heat = d.missing
     return {
         "kind": heat.kind,
@@ -138,7 +138,7 @@ def missing_heat(d: DiagnosisData) -> dict[str, Any]:
 
 
 def _look(d: DiagnosisData, number: int) -> dict[str, Any]:
-    """A further look at the same data in short; ``folder``: where the whole of it is, where something was found."""
+    """A further look at the same data in short; ``folder``: its full results, null if the verdict is "no gap"."""
     return {
         "verdict": d.verdict,
         "effects": [member.key for member in d.best.members] if d.verdict in (IDENTIFIED, CONFOUNDED) else [],
@@ -154,12 +154,12 @@ def _rms(d: DiagnosisData, *, after: bool) -> dict[str, float]:
 def _runs(d: DiagnosisData) -> list[dict[str, Any]]:
     return [
         {
-            "run": trial.name,
-            "hold_out": trial.hold_out,
-            "drive": trial.drive,
-            "readings": sum(len(readings.times) for readings in trial.sensors),
-            "end_s": max(float(readings.times[-1]) for readings in trial.sensors),
-            "noise_K": {readings.sensor: readings.noise for readings in trial.sensors},
+            "run": run.name,
+            "hold_out": run.hold_out,
+            "drive": run.drive,
+            "readings": sum(len(readings.times) for readings in run.sensors),
+            "end_s": max(float(readings.times[-1]) for readings in run.sensors),
+            "noise_K": {readings.sensor: readings.noise for readings in run.sensors},
         }
-        for trial in d.gap.trials
+        for run in d.gap.runs
     ]

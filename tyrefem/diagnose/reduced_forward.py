@@ -1,4 +1,4 @@
-"""A measured drive on a few modes: what its sensors read with other numbers and effects, at a tenth of the cost."""
+"""Reduced forward model of a measured drive: readings for other numbers and effects at a tenth of the cost."""
 
 from __future__ import annotations
 
@@ -33,13 +33,13 @@ Readings = dict[str, Array]
 
 @dataclass(frozen=True, eq=False)
 class Modes:
-    """V (n, m) of a drive on the mesh of the fit; m = 0: no reduced model follows the drive."""
+    """POD modes V (n, m) of a drive on the mesh of the fit; m = 0: the drive has no reduced model."""
 
     V: Array
 
     @functools.cached_property
     def digest(self) -> str:
-        """Of the numbers."""
+        """Short SHA-256 digest of V."""
         return hashlib.sha256(np.ascontiguousarray(self.V).tobytes()).hexdigest()[:16]
 
     def __repr__(self) -> str:
@@ -49,10 +49,10 @@ class Modes:
 def modes_of(
     base: FixedStepRun, unknowns: Sequence[Unknown], tangents: Tangents | None, settings: DiagnosisSettings
 ) -> Array:
-    """(n, m) modes of a drive and of what unknowns change in it, from tangents that are at hand.
+    """(n, m) POD modes of a drive's temperature fields and of their tangents dT/dx.
 
-    Tangents say what the mesh does with every unknown to first order; how far, and how two of them act together, is
-    left to the reduced equations.
+    The tangents give the first-order change of the fields with every unknown. The reduced equations give the size of
+    the change, and the joint effect of several unknowns.
     """
     tyre, last = base.tyre, len(base.times) - 1
     try:
@@ -61,7 +61,7 @@ def modes_of(
         return np.zeros((len(base.values[0]), 0))
     rows = [base.values[np.unique(np.linspace(0, last, settings.drive_fields).round().astype(int))]]
     if tangents is not None:
-        # Early and evenly: what changes the start of a phase is gone later.
+        # Early and even times: changes at the start of a phase fade later.
         when = np.unique(
             np.concatenate([np.arange(2, 10, 2), np.linspace(0, last, settings.tangent_fields)[1:].round().astype(int)])
         )
@@ -75,7 +75,7 @@ def modes_of(
 
 @dataclass(frozen=True, eq=False)
 class ReducedDrive:
-    """A drive's reduced model. Heat sources are evaluated at every node: on the mesh of the fit there are few."""
+    """The reduced model of a drive. Heat sources are evaluated at all nodes, because the mesh of the fit is coarse."""
 
     base: FixedStepRun
     modes: Modes
@@ -93,41 +93,41 @@ class ReducedDrive:
 
     @functools.cached_property
     def unchanged(self) -> Readings:
-        """Readings of the drive as the study has it."""
+        """Readings of the drive at x = 0."""
         (readings,), _ = self.readings([self.base.study])
         if readings is None:
-            raise NotReducibleError("the drive as it is")
+            raise NotReducibleError("the unchanged drive")
         return readings
 
     def readings(self, studies: Sequence[StudyData]) -> tuple[list[Readings | None], list[int]]:
-        """Readings on the drive's grid by study, None where there are none; numbers of those it can never follow."""
+        """Readings on the drive's grid by study (None if there are none), and the numbers of irreducible studies."""
         readings: list[Readings | None] = [None] * len(studies)
-        marched, refused = self._marched([RollingTyre(study, self.base.tyre) for study in studies])
-        for numbers, part in marched:
+        solutions, not_followed = self._integrated([RollingTyre(study, self.base.tyre) for study in studies])
+        for numbers, part in solutions:
             states = part.states(self.base.grid)
             for place, number in enumerate(numbers):
                 readings[number] = self.read(studies[number], part.batch.balances[place], states[:, place])
-        return readings, refused
+        return readings, not_followed
 
     def slopes(
         self, here: StudyData, there: Sequence[tuple[StudyData, bool]], steps: Sequence[float]
     ) -> list[Readings] | None:
-        """d(reading)/dx of the studies ``there``, each a step from ``here``; None where the model cannot follow.
+        """d(reading)/dx from the studies ``there``, each one step from ``here``; None if one is not reducible.
 
-        All are marched together, with the same steps and sweeps: differences are smooth however short the way.
+        All studies are integrated as one batch with the same time steps, so that differences of short steps are smooth.
 
         Parameters
         ----------
-        there : the study, and whether it only measures the tyre of ``here`` in another way.
+        there : (study, whether it changes only the measurement of the tyre of ``here``).
         """
         moved = [number for number, (_, measures) in enumerate(there) if not measures]
         tyre = RollingTyre(here, self.base.tyre)
         tyres = [tyre, *(RollingTyre(there[number][0], tyre) for number in moved)]
-        groups, _ = self._marched(tyres)
+        groups, _ = self._integrated(tyres)
         if len(groups) != 1 or len(groups[0][0]) != len(tyres):
             return None
-        numbers, marched = groups[0]
-        states, balances = marched.states(self.base.grid), marched.batch.balances
+        numbers, solution = groups[0]
+        states, balances = solution.states(self.base.grid), solution.batch.balances
         place = {number: where for where, number in enumerate(numbers)}
         at = {number: place[order] for order, number in enumerate(moved, start=1)}
 
@@ -141,22 +141,22 @@ class ReducedDrive:
             for changed, step in zip(others, steps, strict=True)
         ]
 
-    def _marched(self, tyres: Sequence[RollingTyre]) -> tuple[list[tuple[list[int], BatchSolution]], list[int]]:
-        """Those that can be marched, together; numbers of those that the model cannot follow."""
+    def _integrated(self, tyres: Sequence[RollingTyre]) -> tuple[list[tuple[list[int], BatchSolution]], list[int]]:
+        """(numbers of the tyres, solution) of each batch, and the numbers of irreducible tyres."""
         solutions: list[tuple[list[int], BatchSolution]] = []
-        refused: list[int] = []
-        tolerance, together = self.settings.reduced_time_tolerance, self.settings.marched_together
-        # Where one of them takes no step any more, the fixed-step simulation says what is wrong with it.
+        not_followed: list[int] = []
+        tolerance, together = self.settings.reduced_time_tolerance, self.settings.batch_size
+        # If the time integration of a tyre fails, the fixed-step simulation reports the error.
         with contextlib.suppress(InputError):
             for numbers, part in batch_solutions(self.model, tyres, tolerance, together):
                 if isinstance(part, BatchSolution):
                     solutions.append((numbers, part))
                 elif isinstance(part, NotReducible):
-                    refused += numbers
-        return solutions, refused
+                    not_followed += numbers
+        return solutions, not_followed
 
     def read(self, study: StudyData, balance: ReducedBalance, states: Array) -> Readings:
-        """What the study's logger records of states (n_grid, n): modes, then reservoirs."""
+        """Readings of the study's logger from states (n_grid, n): mode amplitudes, then reservoirs."""
         m = self.model.size
         at_sensors = None
         if study.sensors:

@@ -1,4 +1,4 @@
-"""Where, when and under which drive data and study disagree: residuals by run, sensor and stretch of time."""
+"""Residuals by run, sensor and stretch of time (heating, plateau, cooling)."""
 
 from __future__ import annotations
 
@@ -17,9 +17,9 @@ if TYPE_CHECKING:
     from tyrefem.diagnose.runs import MeasuredSensor
 
 Array = NDArray[np.float64]
-#: A sensor is on its plateau where it changes by less than this part of its fastest rate (a convention).
+#: A sensor is on its plateau while its rate is below this share of its fastest rate (a convention).
 SLOW = 0.1
-#: A history that changes by less than this is a plateau, K.
+#: A history with a smaller total change than this is a plateau, K.
 FLAT = 0.1
 STRETCHES = ("heating", "plateau", "cooling")
 
@@ -39,25 +39,25 @@ def stretches(readings: MeasuredSensor, computed: Array) -> NDArray[np.object_]:
 def residual_table(
     residuals: Residuals, computed: Mapping[int, Array], like: Mapping[int, Array] | None = None
 ) -> pd.DataFrame:
-    """One row per run, sensor and stretch: mean and rms of measured - computed, K, and how surely it is not nothing.
+    """One row per run, sensor and stretch: mean and rms of measured - computed, K, and the significance of the mean.
 
-    ``sigma`` is the mean over its standard deviation from noise, discrepancy (both with their correlation in time),
-    base numbers and sensors; ``sd_K`` that standard deviation.
+    ``sd_K``: standard deviation of the mean from noise, discrepancy, base numbers and sensors, correlated in time.
+    ``sigma``: absolute mean over ``sd_K``.
 
     Parameters
     ----------
-    computed : trial -> block means to hold against the data, e.g. the study's own.
-    like : trial -> block means whose slope tells the stretches apart; default: ``computed``.
+    computed : number of the run -> block means to compare with the data.
+    like : number of the run -> block means whose slope defines the stretches; default: ``computed``.
     """
     import pandas as pd
 
-    trials, rows = residuals.trials, []
+    runs, rows = residuals.runs, []
     prior = np.array([unknown.sd for unknown in residuals.unknowns[: residuals.nuisance]])
-    for number, trial in enumerate(trials):
-        measured = trial.measured
+    for number, run in enumerate(runs):
+        measured = run.measured
         drive = residuals.driven(number).card.drive
-        for readings in trial.sensors:
-            place = trial.parts()[readings.sensor]
+        for readings in run.sensors:
+            place = run.parts()[readings.sensor]
             residual = (measured - computed[number])[place]
             J = residuals.sensitivities.jacobians[number][place, : residuals.nuisance]
             covariance = readings.covariance + (J * prior**2) @ J.T
@@ -70,8 +70,8 @@ def residual_table(
                 mean, sd = float(weight @ residual), float(np.sqrt(weight @ covariance @ weight))
                 rows.append(
                     {
-                        "run": trial.name,
-                        "hold_out": trial.hold_out,
+                        "run": run.name,
+                        "hold_out": run.hold_out,
                         "sensor": readings.sensor,
                         "phase": kind,
                         "speed_m_s": float(np.mean([motion_at(drive, t).speed for t in readings.block_times[mask]])),
@@ -85,21 +85,21 @@ def residual_table(
     return pd.DataFrame(rows)
 
 
-def rms(residuals: Residuals, computed: Mapping[int, Array], trials: list[int], sensor: str | None = None) -> float:
-    """Root mean square of measured - computed over the readings of some trials (of one sensor), K; NaN without any.
+def rms(residuals: Residuals, computed: Mapping[int, Array], runs: list[int], sensor: str | None = None) -> float:
+    """Root mean square of measured - computed over the readings of some runs (of one sensor), K; NaN without readings.
 
-    Block means stand for their readings, so that the noise within a block is added to what the means show.
+    The residuals are those of block means; the noise within the blocks is added.
     """
     total = count = 0.0
-    for number in trials:
-        trial = residuals.trials[number]
-        for readings in trial.sensors:
+    for number in runs:
+        run = residuals.runs[number]
+        for readings in run.sensors:
             if sensor not in (None, readings.sensor):
                 continue
-            place = trial.parts()[readings.sensor]
-            residual = trial.measured[place] - computed[number][place]
+            place = run.parts()[readings.sensor]
+            residual = run.measured[place] - computed[number][place]
             within = readings.measured - np.repeat(readings.block_means(readings.measured), readings.sizes.astype(int))
-            # The signal's own change within a block is no noise: take it off with the computed one where it is known.
+            # The signal changes within a block too, so the stated noise limits the scatter that counts as noise.
             noise = np.minimum(
                 np.add.reduceat(within**2, readings.starts), readings.noise**2 * np.maximum(readings.sizes - 1, 0)
             )

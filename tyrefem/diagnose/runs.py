@@ -1,4 +1,4 @@
-"""The experiments of a diagnosis as data: measured readings in blocks of time, and how uncertain a block is."""
+"""The measured runs of a diagnosis: readings in blocks of time, with the uncertainty of each block."""
 
 from __future__ import annotations
 
@@ -24,13 +24,13 @@ class MeasuredSensor(SensorSampling):
 
     @property
     def sampling(self) -> SensorSampling:
-        """When it was read."""
+        """The sampling without the readings."""
         return SensorSampling(self.sensor, self.times, self.noise, self.discrepancy, self.correlation_time, self.blocks)
 
 
 @dataclass(frozen=True, eq=False)
-class Trial(DriveSampling):
-    """One measured run: its drive, and the readings of every sensor that was read."""
+class MeasuredDrive(DriveSampling):
+    """A measured run: its drive, and the readings of every sensor."""
 
     sensors: tuple[MeasuredSensor, ...]
 
@@ -41,13 +41,13 @@ class Trial(DriveSampling):
 
     @cached_property
     def sampling(self) -> DriveSampling:
-        """The run without its readings."""
+        """The drive and the sampling of the run, without the readings."""
         sensors = tuple(readings.sampling for readings in self.sensors)
         return DriveSampling(self.name, self.drive, self.hold_out, sensors)
 
 
-def trial(experiment: Experiment, study: StudyData, settings: DiagnosisSettings = DEFAULT) -> Trial:
-    """An experiment's readings within the simulated drive."""
+def measured_drive(experiment: Experiment, study: StudyData, settings: DiagnosisSettings = DEFAULT) -> MeasuredDrive:
+    """The measured run of an experiment, with its readings within the simulated drive."""
     choice, run = study.card.diagnosis, experiment.run
     driven = study.with_drive(dict(experiment.drive)) if experiment.drive else study
     end = driven.card.drive.end
@@ -63,14 +63,14 @@ def trial(experiment: Experiment, study: StudyData, settings: DiagnosisSettings 
         noise = max(stated, _scatter(times, measured))
         correlated = choice.discrepancy, choice.correlation_time
         sensors.append(MeasuredSensor(sensor, times, noise, *correlated, settings.blocks, measured=measured))
-    return Trial(experiment.name, dict(experiment.drive), experiment.hold_out, tuple(sensors))
+    return MeasuredDrive(experiment.name, dict(experiment.drive), experiment.hold_out, tuple(sensors))
 
 
 def _scatter(times: Array, values: Array) -> float:
-    """Noise seen in the readings themselves, K, if it is well above rounding: from second differences.
+    """Noise estimated from second differences of the readings, divided by 1.33, K; 0 for fewer than 12 readings.
 
-    Var(y_i - interpolation of its neighbours) = noise^2 (1 + w^2 + (1 - w)^2); the median is used, so that jumps and
-    outliers do not count. Only a scatter a third above the stated noise is taken for noise: returns 0 for few readings.
+    Var(y_i - interpolation of its neighbours) = noise^2 (1 + w^2 + (1 - w)^2). The median makes the estimate robust
+    against jumps and outliers. Because of the division, only a scatter a third above the stated noise replaces it.
     """
     if len(times) < 12:
         return 0.0

@@ -1,4 +1,4 @@
-"""When and how surely the sensors of a run were read; nothing of what they read."""
+"""Times and uncertainty of the readings of a run, without the readings."""
 
 from __future__ import annotations
 
@@ -17,10 +17,10 @@ Array = NDArray[np.float64]
 
 @dataclass(frozen=True, eq=False)
 class SensorSampling(Brief):
-    """When one sensor was read in one run: ``times`` (n,) s, ``noise`` K of one reading.
+    """Readings of one sensor in one run: ``times`` (n,) s, ``noise`` K of one reading.
 
-    Means over at most ``blocks`` blocks of neighbouring readings stand for them. The noise of a block of m readings is
-    noise/sqrt(m), and what the model misses even when it is right is correlated over time:
+    Neighbouring readings are averaged into at most ``blocks`` blocks. The noise of a block of m readings is
+    noise/sqrt(m). The discrepancy of a correct model is correlated over time:
     C = noise^2/m + d^2 exp(-|t - t'|/tau), with the ``discrepancy`` d (K) and the ``correlation_time`` tau (s).
     """
 
@@ -33,7 +33,7 @@ class SensorSampling(Brief):
 
     @cached_property
     def starts(self) -> NDArray[np.intp]:
-        """First reading of every block."""
+        """Number of the first reading of every block."""
         count = min(len(self.times), self.blocks)
         return np.unique(np.linspace(0, len(self.times), count + 1).astype(np.intp)[:-1])
 
@@ -77,7 +77,7 @@ class SensorSampling(Brief):
 
 @dataclass(frozen=True, eq=False)
 class DriveSampling(Brief):
-    """A measured run as the forward model needs it: its drive, and when every sensor was read."""
+    """The drive of a measured run and the sampling of its sensors, as the forward model needs them."""
 
     name: str
     drive: dict[str, object]
@@ -86,16 +86,16 @@ class DriveSampling(Brief):
 
     @property
     def size(self) -> int:
-        """Number of blocks, of all sensors one after the other."""
+        """Number of blocks of all sensors."""
         return sum(len(sampling.starts) for sampling in self.sensors)
 
     def whitened(self, blocks: Array) -> Array:
-        """Whitened values of all sensors, one after the other."""
+        """Whitened values of all sensors, in the order of ``sensors``."""
         pieces = np.split(blocks, np.cumsum([len(sampling.starts) for sampling in self.sensors])[:-1])
         return np.concatenate([sampling.whitened(piece) for sampling, piece in zip(self.sensors, pieces, strict=True)])
 
     def parts(self) -> dict[str, slice]:
-        """Sensor -> its place among the blocks."""
+        """Sensor -> slice of its blocks."""
         places, start = {}, 0
         for sampling in self.sensors:
             places[sampling.sensor] = slice(start, start + len(sampling.starts))

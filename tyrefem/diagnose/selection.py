@@ -1,4 +1,4 @@
-"""What a search for the missing effects is given, and what it gives back; the search itself is a `Strategy`."""
+"""The search for missing effects: the problem, the scored sets, and the interface of a search strategy."""
 
 from __future__ import annotations
 
@@ -11,7 +11,7 @@ from typing import NamedTuple, Protocol
 from tyrefem.brief import Brief
 from tyrefem.diagnose.candidates import Candidate, Members, SetPrior
 from tyrefem.diagnose.criterion import Criterion
-from tyrefem.diagnose.fits import FittedSet, carried_on, first_fits, linear_about
+from tyrefem.diagnose.fits import FittedSet, continued, first_fits, linear_about
 from tyrefem.diagnose.linear_model import LinearModel
 from tyrefem.diagnose.multifidelity import Predictions
 from tyrefem.diagnose.residuals import Residuals
@@ -22,7 +22,7 @@ Tick = Callable[[str], None]
 
 
 class ScoredSet(NamedTuple):
-    """A set with ln(prior) + criterion; estimated where it was not fitted."""
+    """A set with its score ln(prior) + criterion, estimated if there is no fit."""
 
     score: float
     members: Members
@@ -30,22 +30,22 @@ class ScoredSet(NamedTuple):
 
 
 def sets_of(candidates: Members, size: int) -> Iterator[Members]:
-    """All sets of so many different effects."""
+    """All sets of ``size`` different effects."""
     combined = itertools.combinations(candidates, size)
     return (members for members in combined if len({member.name for member in members}) == size)
 
 
 @dataclass(frozen=True, eq=False)
 class SelectionProblem(Brief):
-    """Data, candidates and criterion: everything but the order in which sets are tried.
+    """Inputs of a search: data, candidates, prior and criterion.
 
     Parameters
     ----------
-    residuals : measured minus computed. predictions : what the sensors read at other points.
+    residuals : measured minus computed. predictions : readings at other values of the unknowns.
     candidates : effects that may be missing. prior : ln of the prior probability of a set.
-    criterion : how well a set explains the data.
-    outside : score of a cause outside the catalogue, given the fit of no effect; None: not asked for.
-    tick : called with what is done at every simulation.
+    criterion : quality of a set's explanation of the data.
+    outside : fit of no effect -> score of a cause outside the catalogue; None: not considered.
+    tick : called at every simulation with a description.
     """
 
     residuals: Residuals
@@ -58,12 +58,12 @@ class SelectionProblem(Brief):
 
     @property
     def settings(self) -> DiagnosisSettings:
-        """Those of the diagnosis."""
+        """Settings of the diagnosis."""
         return self.residuals.settings
 
     @cached_property
     def linear(self) -> LinearModel:
-        """The linear model of the fitted runs about the study as it is."""
+        """The linear model of the fitted runs about x = 0."""
         return self.residuals.linear(self.residuals.fitted)
 
     @cached_property
@@ -71,7 +71,7 @@ class SelectionProblem(Brief):
         return {candidate: number for number, candidate in enumerate(self.candidates)}
 
     def ordered(self, members: Iterable[Candidate]) -> Members:
-        """A set in the order of the candidates: the same set is always the same tuple."""
+        """A set in the order of the candidates, so that equal sets are equal tuples."""
         return tuple(sorted(members, key=self._order.__getitem__))
 
     def score(self, fit: FittedSet) -> float:
@@ -79,19 +79,19 @@ class SelectionProblem(Brief):
         return self.prior(self.ordered(fit.members)) + self.criterion.of_fit(fit)
 
     def linear_score(self, model: LinearModel, members: Members) -> float:
-        """The same in a linear model, without the constant that all its sets share."""
+        """ln(prior) + criterion of a set in a linear model, without the constant that all sets share."""
         return self.prior(members) + self.criterion.of_linear(model, members)
 
     def fitted(self, sets: Sequence[Members], starts: Mapping[Members, FittedSet]) -> list[FittedSet]:
-        """First fits with the full model; ``starts``: the fit of a part of a set to begin with."""
+        """First fits with the full model; ``starts``: set -> fit of a subset to start from."""
         return first_fits(self.residuals, self.predictions, sets, starts, self._count)
 
-    def carried_on(self, fits: Sequence[FittedSet]) -> list[FittedSet]:
-        """Fits carried on to convergence."""
-        return carried_on(self.residuals, self.predictions, fits, self._count)
+    def continued(self, fits: Sequence[FittedSet]) -> list[FittedSet]:
+        """Fits continued to convergence."""
+        return continued(self.residuals, self.predictions, fits, self._count)
 
     def linear_about(self, fit: FittedSet, candidates: Sequence[Candidate]) -> LinearModel:
-        """The linear model about a fit, with further effects' columns as in the study as it is."""
+        """The linear model about a fit; the columns of further effects are those at x = 0."""
         unknowns = [unknown for each in candidates for unknown in (*each.amplitudes, *each.presence)]
         return linear_about(self.residuals, fit, unknowns)
 
@@ -101,20 +101,20 @@ class SelectionProblem(Brief):
 
 
 class Strategy(Protocol):
-    """Which sets are fitted, in which order."""
+    """A search over sets of effects."""
 
     def check(self, study: StudyData, candidates: Members, settings: DiagnosisSettings) -> None:
-        """Refuse what the search cannot do, before anything is simulated.
+        """Check the inputs of the search before the first simulation.
 
         Raises
         ------
-        InputError : what is too much, and what to do.
+        InputError : the search is too large; the message names the limit and the remedy.
         """
         ...
 
     def search(self, problem: SelectionProblem) -> list[ScoredSet]:
-        """Sets with their scores, best first, among them that of no effect and all single effects.
+        """Sets with their scores, best first; the empty set and all single effects are included.
 
-        Every set that may be the best one has a fit. No effect has one in any case.
+        Every set that may be the best set has a fit, and the empty set has a fit.
         """
         ...

@@ -1,4 +1,4 @@
-"""How the sensors of every run respond to every unknown: the dear part of a diagnosis, the same for any data."""
+"""Sensitivities of the readings of every run to every unknown: the costly part of a diagnosis, independent of data."""
 
 from __future__ import annotations
 
@@ -28,13 +28,13 @@ Tick = Callable[[str, int, int], None]
 
 @dataclass(frozen=True, eq=False)
 class Sensitivities(Brief):
-    """What the study computes at every drive, and how that changes with every unknown.
+    """Computed block means at every drive and their derivatives with respect to every unknown.
 
     Parameters
     ----------
-    drives : when the sensors are read. unknowns : nuisance first. nuisance : how many belong to every model.
-    computed : per drive (n_blocks,) degC on the coarse mesh. correction : per drive, K that the study's own mesh adds.
-    jacobians : per drive (n_blocks, k), K per unit of x. responses : what these were sampled from.
+    drives : drives and sampling of the sensors. unknowns : nuisance unknowns first. nuisance : number of these.
+    computed : by drive (n_blocks,) degC on the coarse mesh. correction : by drive (n_blocks,) K, full run minus coarse.
+    jacobians : by drive (n_blocks, k), K per unit of x. responses : responses from which the blocks were sampled.
     """
 
     drives: tuple[DriveSampling, ...]
@@ -47,12 +47,12 @@ class Sensitivities(Brief):
 
     @property
     def fitted(self) -> list[int]:
-        """Numbers of the drives that are fitted."""
+        """Numbers of the fitted drives."""
         return [number for number, drive in enumerate(self.drives) if not drive.hold_out]
 
     @property
     def held_out(self) -> list[int]:
-        """Numbers of the drives that are held out."""
+        """Numbers of the held-out drives."""
         return [number for number, drive in enumerate(self.drives) if drive.hold_out]
 
     @cached_property
@@ -69,7 +69,7 @@ class Sensitivities(Brief):
 def unknowns_of(
     study: StudyData, measured: Iterable[str], candidates: Members, settings: DiagnosisSettings = DEFAULT
 ) -> tuple[tuple[Unknown, ...], int]:
-    """Everything that a diagnosis with these sensors may fit, and how many of it, the first, are in every model."""
+    """All unknowns that a diagnosis with these sensors may fit, and the number of nuisance unknowns (the first)."""
     nuisance = (*base_unknowns(study), *sensor_unknowns(study, set(measured)))
     effects = [unknown for each in candidates for unknown in (*each.amplitudes, *each.presence)]
     return (*nuisance, *effects, *patches(study, settings)), len(nuisance)
@@ -78,7 +78,7 @@ def unknowns_of(
 def responses(
     evaluations: Evaluations, unknowns: tuple[Unknown, ...], tick: Tick | None = None
 ) -> tuple[DriveResponse, ...]:
-    """The response of every drive: the dear part of a diagnosis, and the same for any data."""
+    """The response of every drive: the costly part of a diagnosis, independent of data."""
     model = evaluations.model
     count = len(model.drives)
     done = 0
@@ -91,7 +91,7 @@ def responses(
 
     near = model.nearby(model.coarse)
     if tick and near is not None:
-        tick(f"solving the strain cycle of every drive again for {len(near.numbers)} numbers", 0, 0)
+        tick(f"solving the strain cycle of every drive for {len(near.numbers)} changed numbers", 0, 0)
     answers = evaluations.of("response", [(number, unknowns) for number in range(count)], step)
 
     def by_sensor(table: Array) -> dict[str, Array]:
@@ -109,14 +109,14 @@ def sensitivities(
     nuisance: int,
     responses: Sequence[DriveResponse],
 ) -> Sensitivities:
-    """The responses of drives as their sensors are read.
+    """The responses of drives, sampled at the readings of their sensors.
 
     Raises
     ------
-    InputError : the responses are to other unknowns.
+    InputError : the responses belong to other unknowns.
     """
     if any(response.unknowns != unknowns for response in responses):
-        raise InputError("the responses at hand are of another study, or of other sensors")
+        raise InputError("the given responses belong to another study or to other sensors")
     computed, correction, jacobians = zip(
         *(response.blocks(drive) for response, drive in zip(responses, drives, strict=True)), strict=True
     )

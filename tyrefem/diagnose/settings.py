@@ -1,4 +1,4 @@
-"""Every number that steers a diagnosis, in one frozen object, each with its meaning."""
+"""Numerical parameters of a diagnosis, each with its meaning."""
 
 from __future__ import annotations
 
@@ -9,7 +9,7 @@ from tyrefem.errors import InputError
 
 @dataclass(frozen=True)
 class DiagnosisSettings:
-    """How a diagnosis works; what is true of the tyre stands in the study's ``[diagnosis]`` table instead.
+    """Numerical parameters of a diagnosis; assumptions about the tyre are in the study's ``[diagnosis]`` table.
 
     >>> from dataclasses import replace
     >>> replace(DiagnosisSettings(), largest=2).largest
@@ -17,148 +17,150 @@ class DiagnosisSettings:
 
     Raises
     ------
-    InputError : ``reduced`` is no choice, or a number of effects or looks that is not at least 1.
+    InputError : ``reduced`` is neither "auto" nor "never"; ``largest`` or ``looks`` is out of range.
     """
 
-    # -- what is tried
-    #: Effects at most in a set.
+    # -- extent of the search
+    #: Largest number of effects in a set.
     largest: int = 3
-    #: Diagnoses at most, each of what the one before it has left.
+    #: Largest number of diagnoses; each further one is of the study amended by the one before.
     looks: int = 3
-    #: "auto" lets reduced models of the drives predict for the fits where simulations confirm them; "never" does not.
+    #: "auto": certified reduced models of the drives predict readings for the fits; "never": only simulations do.
     reduced: str = "auto"
 
     # -- prior
-    #: Probability of one, two, three effects, given that there are any (estimate).
+    #: Probability of one, two, three effects, if any effect is missing (estimate).
     size_shares: tuple[float, ...] = (0.75, 0.22, 0.03)
-    #: Probability that the cause is not in the catalogue, given that there is any (estimate).
+    #: Probability that the cause is outside the catalogue, if there is a cause (estimate).
     outside_share: float = 0.05
 
     # -- readings and forward model
-    #: Readings of one sensor in one run are averaged into so many blocks at most.
+    #: Largest number of blocks into which the readings of one sensor in one run are averaged.
     blocks: int = 40
-    #: Mesh, elements and time tolerance of the fit. One run with the study's own corrects what they leave, at x = 0.
+    #: Mesh, elements and time tolerance of the fit. A full run on the study's mesh corrects the readings at x = 0.
     mesh_size: str = "3.5 mm"
     mesh_element: str = "P1"
     tolerance: str = "0.05 delta_degC"
-    #: The fit's simulations give readings this often, s.
+    #: Interval between two readings of the fit's simulations, s.
     readings_every: float = 5.0
-    #: What a mesh leaves may be so many times smaller or larger than in the study as it is.
+    #: Limits of the factor that scales the mesh correction from x = 0 to other points.
     mesh_error_scales: tuple[float, float] = (0.2, 5.0)
 
     # -- reduced models of the drives
-    #: Rms that the modes leave out of the drive's fields, and of what every unknown does to them at one prior standard
-    #: deviation, K.
+    #: Rms error of the modes in the drive's fields, and in the fields' change by one prior sd of every unknown, K.
     modes_left_out: float = 5e-4
-    #: Modes at most.
+    #: Largest number of modes.
     most_modes: int = 150
-    #: Fields taken of the drive, and of every unknown's tangent.
+    #: Number of fields of the drive, and of fields of every unknown's tangent, for the modes.
     drive_fields: int = 30
     tangent_fields: int = 12
-    #: Time tolerance of the reduced model, K; what it leaves is a hundredth of it.
+    #: Time tolerance of the reduced model, K; its actual time error is about a hundredth.
     reduced_time_tolerance: float = 0.1
-    #: Tyres marched together: all that a tangent needs, so that they have their steps in common.
-    marched_together: int = 96
-    #: Reduced model and simulation may be apart by this much, in the whitened norm of a drive's readings, as a fit's
-    #: linear model may be: ln of the evidence changes by about as much times a normal number.
+    #: Largest number of tyres that are integrated as one batch, with common time steps.
+    batch_size: int = 96
+    #: Largest difference of reduced model and simulation, whitened norm of a drive's readings. The ln evidence changes
+    #: by about this much times a standard normal number.
     reduced_allowed: float = 1.0
 
     # -- fit of one set
-    #: The prediction of the linear model is good enough when it misses the simulation by this much (whitened norm).
-    predicted_close: float = 1.0
-    #: So far off, new tangents are taken.
-    predicted_astray: float = 6.0
-    #: A fit has converged when the linear model about it promises no more than this drop of the misfit.
-    settled: float = 0.5
-    #: A misfit that noise makes this seldom is not believed to be the smallest before tangents are taken where it is.
-    seldom: float = 0.1
-    #: With more misfit than this times the number of readings, a slow fit is given up ...
-    far_off: float = 3.0
-    #: ... slow meaning that a step leaves more than this share of the misfit.
-    slow: float = 0.9
-    #: Steps of a first fit; further steps and tangents of a fit that is carried on.
+    #: Below this error (whitened norm) the prediction of the linear model is good enough.
+    close_prediction: float = 1.0
+    #: Above this error new tangents are taken.
+    poor_prediction: float = 6.0
+    #: A fit has converged when the linear model predicts a smaller reduction of the misfit than this.
+    least_reduction: float = 0.5
+    #: If noise gives the misfit with a smaller probability than this, new tangents confirm that the fit has converged.
+    doubtful_p: float = 0.1
+    #: A slow fit ends if its misfit is larger than this times the number of readings.
+    slow_misfit: float = 3.0
+    #: A fit is slow if a step leaves more than this share of the misfit.
+    slow_share: float = 0.9
+    #: Steps of a first fit; further steps and tangents of a continued fit.
     first_steps: int = 4
     more_steps: int = 14
     more_tangents: int = 4
-    #: Trust region: no unknown moves by more than so many prior sd in the first step.
+    #: Initial radius of the trust region, prior sd.
     trust: float = 3.0
-    #: A step that fails leaves this much of itself as the next radius; a good one widens it by the second.
+    #: Factor on a failed step that gives the next radius; factor on the radius after a good step.
     trust_shorter: float = 0.4
     trust_wider: float = 2.0
-    #: With a smaller radius the fit stays where it is.
+    #: The fit ends when the radius is smaller than this.
     trust_smallest: float = 0.01
-    #: A fit with a misfit of so many times the number of readings nearly explains them.
-    nearly: float = 1.3
-    #: A misfit that noise makes with at least this probability is nothing unusual.
-    usual: float = 0.01
-    #: So many standard deviations beyond a bound that physics sets, and the fit counts as one that ends there.
-    pressed: float = 2.0
+    #: A fit nearly explains the data if its misfit is smaller than this times the number of readings.
+    close_misfit: float = 1.3
+    #: Noise can explain a misfit if it gives it with at least this probability.
+    usual_p: float = 0.01
+    #: A fit counts as ending on a physical bound if its best value is this many standard deviations beyond it.
+    beyond_bound: float = 2.0
 
     # -- search
-    #: Single effects that are fitted whatever comes.
+    #: Number of single effects that are always fitted.
     singles: int = 4
-    #: Sets fitted at once, and in all.
+    #: Number of sets that are fitted in one batch, and largest number in total.
     batch: int = 4
     most_sets: int = 14
-    #: Leading fits that are carried on to convergence after every batch; so often at most each.
-    carried_sets: int = 2
-    carried_times: int = 2
-    #: A fit is not carried on where even the linear model promises no misfit below this times the number of readings.
-    lost: float = 50.0
-    #: A fit is not carried on twice with more misfit than this times the number of readings.
-    doubted: float = 3.0
-    #: The fit of no effect is carried on before anything else only with less misfit than this times the readings.
-    none_carried: float = 10.0
-    #: Heat of unknown origin ahead of every set of the catalogue by this much, nats: no more sets are fitted.
-    hopeless: float = 500.0
-    #: A set whose score is estimated so far below the best needs no fit, nats: when judged from the study as it is ...
-    far: float = 12.0
-    #: ... and when judged from the fit of a part of it.
-    near: float = 3.0
-    #: The exhaustive search refuses more sets than this.
+    #: Number of leading fits that are continued to convergence after every batch; most continuations of each.
+    continued_sets: int = 2
+    most_continuations: int = 2
+    #: A fit is continued only if the linear model predicts a misfit below this times the number of readings.
+    continued_misfit: float = 50.0
+    #: A fit is continued a second time only if its misfit is below this times the number of readings.
+    continued_twice_misfit: float = 3.0
+    #: The fit of no effect is continued first only if its misfit is below this times the number of readings.
+    none_continued_misfit: float = 10.0
+    #: The search ends if heat of unknown origin is ahead of every set of the catalogue by this, nats.
+    outside_lead: float = 500.0
+    #: A set is not fitted if its score, estimated about x = 0, is this far below the best, nats.
+    far_score: float = 12.0
+    #: The same for a score that is estimated about the fit of a subset, nats.
+    near_score: float = 3.0
+    #: Largest number of sets of the exhaustive search.
     most_exhaustive: int = 300
 
     # -- heat of unknown origin
     #: Stations along the half meridian.
     stations: int = 7
-    #: Prior of the missing heat, W/m3: a share of the hottest zone's hysteresis; of a missing flux, W/m2 (estimates).
+    #: Prior sd of the missing heat, W/m3 (a share of the hottest zone's hysteresis), and of the missing flux, W/m2
+    #: (estimates).
     missing_heat: float = 4e4
     missing_flux: float = 400.0
-    #: A single source may be so many times stronger than a patch of many; and so many sources are sought.
+    #: Prior sd of a single source over that of a patch; largest number of sources.
     source_spread: float = 3.0
     most_sources: int = 3
-    #: A further source must raise the log evidence by this much.
+    #: Least gain of log evidence by a further source.
     source_gain: float = 3.0
-    #: Where the linear model puts it this far, or less, below the best set, it is fitted in the full model, nats.
+    #: Heat of unknown origin is fitted with the full model if its score is at most this far below the best set, nats.
     missing_near: float = 10.0
 
     # -- verdict and amended study
-    #: A set is named when it is this probable.
-    sure: float = 0.9
-    #: Sets of joint probability up to this are reported.
-    credible: float = 0.99
-    #: A set is named only when nothing more is missing with at least this probability.
-    whole: float = 0.5
-    #: A misfit less probable than this, were the model right, is not accepted.
-    improbable: float = 1e-4
-    #: A correction of a base number or a sensor that moves no block mean by this much is left out, K.
+    #: A set is named if its members act with at least this probability.
+    named_probability: float = 0.9
+    #: Joint probability of the reported (credible) sets.
+    credible_mass: float = 0.99
+    #: A set is named only if no further effect is missing with at least this probability.
+    alone_probability: float = 0.5
+    #: A set is rejected if a correct model would give its misfit with a smaller probability than this.
+    rejected_p: float = 1e-4
+    #: A correction of a base number or a sensor is left out if it changes every block mean by less than this, K.
     negligible: float = 0.2
 
     @property
     def of_simulations(self) -> tuple[object, ...]:
-        """The settings that the answers of simulations depend on."""
+        """The settings that affect the results of simulations."""
         mesh = self.mesh_size, self.mesh_element, self.tolerance, self.readings_every, self.blocks
         fields = self.modes_left_out, self.most_modes, self.drive_fields, self.tangent_fields
-        return (*mesh, *fields, self.reduced_time_tolerance, self.marched_together)
+        return (*mesh, *fields, self.reduced_time_tolerance, self.batch_size)
 
     def __post_init__(self) -> None:
         if self.reduced not in ("auto", "never"):
-            raise InputError(f"reduced is 'auto' or 'never', not {self.reduced!r}")
+            raise InputError(f"reduced must be 'auto' or 'never', not {self.reduced!r}")
         if not 1 <= self.largest <= len(self.size_shares):
-            raise InputError(f"largest is a number of effects from 1 to {len(self.size_shares)}, not {self.largest!r}")
+            raise InputError(
+                f"largest must be a number of effects from 1 to {len(self.size_shares)}, not {self.largest!r}"
+            )
         if self.looks < 1:
-            raise InputError(f"looks is at least 1, not {self.looks!r}")
+            raise InputError(f"looks must be at least 1, not {self.looks!r}")
 
 
-#: As shipped.
+#: Default settings.
 DEFAULT = DiagnosisSettings()

@@ -1,6 +1,6 @@
-"""Synthetic data for blind tests: made otherwise than the diagnosis analyses, and read by imperfect sensors.
+"""Synthetic data for blind tests, with a mesh, a time integration and sensors that differ from the diagnosis.
 
-Effects that are in no catalogue, for blind tests of the verdict "unexplained".
+Two effects outside the catalogue serve blind tests of the verdict "unexplained".
 """
 
 from __future__ import annotations
@@ -34,15 +34,15 @@ from tyrefem.simulation.surroundings import GAS
 Array = NDArray[np.float64]
 
 
-#: Step of the data's own time integration, s.
+#: Time step of the synthetic data, s.
 STEP = 4.0
 
 
 @functools.cache
 def synthetic_mesh() -> dict[str, str]:
-    """The mesh of synthetic data, finer than the diagnosis uses: unstructured quadratic triangles by gmsh.
+    """The mesh of synthetic data, finer than that of the diagnosis: quadratic triangles by gmsh.
 
-    Without gmsh the mapped mesher's triangles.
+    Without gmsh the triangles are those of the mapped mesher.
     """
     mesher = "gmsh" if gmsh_works() else "mapped"
     return {"mesh.mesher": mesher, "mesh.cell": "tri", "mesh.element": "P2", "mesh.size": "2.5 mm"}
@@ -50,7 +50,10 @@ def synthetic_mesh() -> dict[str, str]:
 
 @dataclass(frozen=True)
 class Logger:
-    """How a run is recorded: readings about ``every`` s, jittered; each sensor misses stretches; Gaussian noise."""
+    """Recording of a run: random times about ``every`` s apart, Gaussian ``noise`` (K), and missing readings.
+
+    ``gap``: probability that a sensor has a stretch without readings.
+    """
 
     every: float = 10.0
     noise: float = 0.5
@@ -58,9 +61,9 @@ class Logger:
 
 
 def backward(problem: Conduction, times: Array, initial: float) -> tuple[Array, Array]:
-    """March with BDF2 on even steps (the first one backward Euler), the remainder extrapolated: (values, reservoirs).
+    """Time integration by BDF2 with even steps and an extrapolated remainder: (values, reservoirs).
 
-    Another method than the solver's own, for data that are not made as they are analysed.
+    The first step is backward Euler. The method differs from the solver's, so that synthetic data have other errors.
     """
     balance = problem._balance()
     state = problem._initial(balance, initial, float(times[0]), None)
@@ -96,20 +99,20 @@ def backward(problem: Conduction, times: Array, initial: float) -> tuple[Array, 
 
 @dataclass(frozen=True, eq=False)
 class ExtraEffectsTyre(RollingTyre):
-    """A study's tyre on which further effects act that the study cannot name: they are in no catalogue."""
+    """A study's tyre with further effects from outside the catalogue."""
 
     extra: tuple[Effect, ...] = ()
 
     @functools.cached_property
     def acting(self) -> Acting:
-        """The study's effects, then the further ones."""
+        """The study's effects, then the further effects."""
         return Acting(self, (*self.study.effects, *self.extra))
 
 
 def record(
     study: StudyData, name: str, logger: Logger, rng: np.random.Generator, extra: tuple[Effect, ...] = ()
 ) -> MeasuredRun:
-    """A run as a logger records it. ``study``: with what is hidden; ``extra``: effects of no catalogue."""
+    """A run as a logger records it. ``study``: with the hidden effects; ``extra``: effects outside the catalogue."""
     tyre = ExtraEffectsTyre(study, extra=extra)
     edges = [*tyre.drive.starts, tyre.drive.end]
     times = np.unique(np.concatenate([np.linspace(a, b, round((b - a) / STEP) + 1) for a, b in pairwise(edges)]))
@@ -138,11 +141,11 @@ def record(
 
 
 class HotRing(Effect):
-    """A ring of the wall heats itself between two stations, as with a delamination that rubs: q += heat (v/v_0)^n."""
+    """Heat in a ring of the wall between two stations, as by a rubbing delamination: q += heat (v/v_0)^n."""
 
-    name: ClassVar[str] = "stranger-hot-ring"
+    name: ClassVar[str] = "uncatalogued-hot-ring"
     family: ClassVar[str] = "heat"
-    sentence: ClassVar[str] = "A delaminated ring rubs and heats itself."
+    sentence: ClassVar[str] = "A delaminated ring rubs and generates heat."
     source: ClassVar[str] = "estimate: made up for blind tests"
 
     start: Annotated[float, Unit("m", ge=0)]
@@ -160,9 +163,9 @@ class HotRing(Effect):
 
 
 class Lamp(Effect):
-    """Something hot stands beside the tyre for a while and shines on a stretch of the outer wall."""
+    """Radiation of a hot object beside the tyre on a stretch of the outer wall, until a given time."""
 
-    name: ClassVar[str] = "stranger-lamp"
+    name: ClassVar[str] = "uncatalogued-lamp"
     family: ClassVar[str] = "boundary"
     sentence: ClassVar[str] = "A hot body beside the tyre, an exhaust say, shines on a stretch of the wall."
     source: ClassVar[str] = "estimate: made up for blind tests"
@@ -174,6 +177,6 @@ class Lamp(Effect):
     shine: Annotated[float, Prior("W/m**2", "flux", 500.0, 0.0, 1e5)] = 0.0
 
     def flux(self, tyre: Tyre, surface: str, x: Array, t: float) -> Factor:
-        """W/m2 between the stations, until it goes."""
+        """W/m2 between the stations before the time ``until``."""
         s, _ = tyre.places(x.reshape(2, -1))
         return np.asarray(self.shine * ((s > self.start) & (s < self.end)) * (t < self.until))

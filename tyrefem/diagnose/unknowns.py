@@ -1,4 +1,4 @@
-"""What a diagnosis does not know: base numbers, sensors, effects. Each is one real number, null at zero."""
+"""The unknowns of a diagnosis: base numbers, sensors, effects. Each is a real number x, 0 for the study as written."""
 
 from __future__ import annotations
 
@@ -15,21 +15,21 @@ from tyrefem.inputs.study import StudyData
 from tyrefem.quantity import parse
 
 Choice = tuple[tuple[str, str], ...]
-#: Effects that every sensor may have within what its card states: place, lag, offset.
+#: Effects that every sensor may have within the limits of its card: position, lag, offset.
 OF_SENSORS = ("sensor-misplaced", "sensor-lag", "sensor-offset")
 
 
 @dataclass(frozen=True)
 class Unknown:
-    """One unknown number x; the study as written has x = 0.
+    """An unknown number x; the study as written has x = 0.
 
     Parameters
     ----------
     key : dotted name of a base number (x = ln of its factor), or of an effect's parameter (x = value - origin, SI).
     sd : standard deviation of its prior. low, high : bounds of x.
-    keys : of a base number, every dotted name that holds it: a card's number in all regions that take it from there.
+    keys : all dotted names of a base number: a number of a card belongs to every region with this card.
     effect, choice, parameter : for an effect's parameter: name, variant, and the parameter.
-    origin : the parameter's value at x = 0 where the study has the effect already.
+    origin : the parameter's value at x = 0 if the study has the effect.
     """
 
     key: str
@@ -44,7 +44,7 @@ class Unknown:
 
     @property
     def step(self) -> float:
-        """Step of a difference quotient; towards the inside of the bounds."""
+        """Step of a difference quotient, towards the inside of the bounds."""
         if self.fixed:
             return 1.0
         size = 0.02 * self.sd if self.effect else 0.01
@@ -52,7 +52,7 @@ class Unknown:
 
     @property
     def label(self) -> str:
-        """Its key, and the other regions in which a base number is moved with it.
+        """The key, and the other regions in which the base number changes with it.
 
         >>> Unknown("materials.a.k.value", 0.1, keys=("materials.a.k.value", "materials.b.k.value")).label
         'materials.a.k.value (also b)'
@@ -62,16 +62,16 @@ class Unknown:
 
     @property
     def fixed(self) -> bool:
-        """Is it there (x = 1) or not (x = 0), with nothing in between?"""
+        """Whether the effect has no amplitude: it is present (x = 1) or absent (x = 0)."""
         return self.effect is not None and self.parameter is None
 
     @property
     def measures(self) -> bool:
-        """Does it change what is measured, but not the tyre?"""
+        """Whether the unknown changes only the measurement, not the tyre."""
         return self.effect is not None and catalogue()[self.effect].only_measures()
 
     def value(self, x: float) -> float:
-        """The parameter's own value, SI: a factor for a base number."""
+        """The value of the parameter, SI; for a base number its factor."""
         if self.parameter is None:
             return x if self.fixed else math.exp(x)
         return (self.parameter.prior.origin if self.origin is None else self.origin) + x
@@ -85,7 +85,7 @@ class Unknown:
 def of_effect(
     effect: type[Effect], choice: Choice, sd: float | None = None, stated: Effect | None = None
 ) -> tuple[Unknown, ...]:
-    """The unknowns of an effect; ``stated``: how the study has it, with the standard deviations it states."""
+    """The unknowns of an effect; ``stated``: the effect in the study, with its values and standard deviations."""
     tag = ".".join((effect.name, *(value for _, value in choice)))
     if not effect.parameters():
         return (Unknown(f"effects.{tag}", 1.0, 0.0, 1.0, effect.name, choice),)
@@ -103,8 +103,7 @@ def of_effect(
 
 
 def base_unknowns(study: StudyData) -> tuple[Unknown, ...]:
-    """The uncertain base numbers: those of the study that can matter, the films, and effects stated with uncertain
-    values."""
+    """The uncertain base numbers: relevant numbers of the study, film coefficients, and uncertain values of effects."""
     numbers = tuple(
         Unknown(number.key, number.sd, keys=number.keys) for number in study.uncertain_numbers if not number.idle
     )
@@ -125,13 +124,13 @@ def base_unknowns(study: StudyData) -> tuple[Unknown, ...]:
 
 
 def _stated(study: StudyData, name: str, choice: Choice) -> Effect | None:
-    """The effect as the study has it, if it has."""
+    """The effect in the study; None if the study does not have it."""
     effects = study.card.effects
     return next((each for each in effects if each.name == name and tuple(each.choice.items()) == choice), None)
 
 
 def sensor_unknowns(study: StudyData, measured: set[str]) -> tuple[Unknown, ...]:
-    """Place, lag and offset of every sensor that was read; contained air and rim have an offset only."""
+    """Position, lag and offset of every measured sensor of the study."""
     known = catalogue()
     unknowns: list[Unknown] = []
     for name, sensor in study.sensors.items():
@@ -147,12 +146,12 @@ def sensor_unknowns(study: StudyData, measured: set[str]) -> tuple[Unknown, ...]
 def with_values(
     study: StudyData, values: Mapping[Unknown, float], like: StudyData | None = None, written: Cache[Any] | None = None
 ) -> StudyData:
-    """The study with unknowns set to values x; exactly the study itself where all are zero.
+    """The study with unknowns set to values x; the same object if all are zero.
 
     Parameters
     ----------
-    like : a study close to it, with which it shares what it can; see `StudyData.replace`.
-    written : remembers the numbers as they are written, which take a look through the cards to find.
+    like : a similar study that shares its contents; see `StudyData.replace`.
+    written : cache of the numbers as they are written in study and cards.
     """
     entries = [dict(entry) for entry in study.data.get("effects", [])]
     changes: dict[str, Any] = {}
@@ -163,7 +162,7 @@ def with_values(
                 keys = unknown.keys or (unknown.key,)
                 changes |= {key: scaled(_written(study, key, written), math.exp(x)) for key in keys}
         else:
-            # A sensor's offset may stand twice: as what every sensor has, and as a candidate that it is far off.
+            # A sensor's offset may occur twice: as a nuisance unknown, and as a candidate.
             totals[unknown.key] = unknown, totals.get(unknown.key, (unknown, 0.0))[1] + x
     for unknown, x in totals.values():
         if unknown.parameter is None:
@@ -181,7 +180,7 @@ def with_values(
 
 
 def _written(study: StudyData, key: str, known: Cache[Any] | None) -> Any:
-    """The number at a dotted name as it is written: it follows from the study's table of the first part of the name."""
+    """The number at a dotted name as it is written; it depends on the study's table of the first part of the name."""
     if known is None:
         return value_at(study.data, key, study.folder)
     table = repr(study.data.get(key.split(".", maxsplit=1)[0]))

@@ -13,13 +13,13 @@ from tyrefem.diagnose.selection import ScoredSet
 from tyrefem.diagnose.settings import DEFAULT, DiagnosisSettings
 
 IDENTIFIED, CONFOUNDED, UNEXPLAINED, NO_GAP = "identified", "confounded", "unexplained", "no gap"
-#: So many sets are named in a reason.
+#: Largest number of sets in a reason.
 SHOWN = 8
 
 
 @dataclass(frozen=True)
 class RankedSet(Brief):
-    """A set of effects and how it stands: ``score`` = ln(prior x evidence), ``probability``, the fit if any."""
+    """A set of effects with its ``score`` = ln(prior x evidence), its ``probability`` and its fit, if there is one."""
 
     members: Members
     score: float
@@ -32,7 +32,7 @@ class RankedSet(Brief):
 
     @property
     def key(self) -> str:
-        """The set in words."""
+        """The keys of the members, or "no effect", or "not in the catalogue"."""
         if self.outside:
             return "not in the catalogue"
         return " + ".join(sorted(member.key for member in self.members)) or "no effect"
@@ -40,9 +40,9 @@ class RankedSet(Brief):
 
 @dataclass(frozen=True)
 class Judgement(Brief):
-    """The verdict, the sets in order of probability, and the reasons in sentences.
+    """The verdict, the sets in order of probability, and the reasons as sentences.
 
-    ``named``: candidate key -> probability that it acts. ``credible``: the sets that make up 99 %.
+    ``named``: candidate key -> probability that it acts. ``credible``: the sets with 99 % joint probability.
     """
 
     verdict: str
@@ -58,7 +58,7 @@ class Judgement(Brief):
 
     @property
     def probability(self) -> float:
-        """Probability that all of the best set acts, whatever else does."""
+        """Probability that all members of the best set act, alone or with other effects."""
         return probability(self.ranking)
 
 
@@ -70,8 +70,8 @@ def ranked(scored: Sequence[ScoredSet], outside: float | None = None) -> tuple[R
     top = max(score for score, *_ in rows)
     total = sum(math.exp(score - top) for score, *_ in rows)
     sets = [
-        RankedSet(members, score, math.exp(score - top) / total, fit, elsewhere)
-        for score, members, fit, elsewhere in rows
+        RankedSet(members, score, math.exp(score - top) / total, fit, is_outside)
+        for score, members, fit, is_outside in rows
     ]
     return tuple(sorted(sets, key=lambda entry: -entry.score))
 
@@ -86,7 +86,7 @@ def inclusion(ranking: Sequence[RankedSet]) -> dict[str, float]:
 
 
 def probability(ranking: Sequence[RankedSet]) -> float:
-    """Joint probability of the best set and of all sets that hold it."""
+    """Joint probability of the best set and of all its supersets."""
     best = ranking[0]
     keys = {member.key for member in best.members}
     if not keys or best.outside:
@@ -101,17 +101,19 @@ def judge(
 ) -> Judgement:
     """The verdict on sets ranked by probability.
 
-    A set is *identified* when it acts with at least 90 % probability, and alone with at least 50 %,
-    no amplitude is pressed against a bound, the misfit is one that noise makes, and the held-out runs do not reject
-    it. Without such a set: *no gap* if no effect is the most probable,
-    *unexplained* if the cause is outside the catalogue or the best set does not fit, else *confounded*.
+    - *unexplained*: heat of unknown origin is most probable, or the best set leaves a misfit that noise cannot explain,
+      or the held-out runs reject the best set.
+    - *no gap*: the empty set is most probable.
+    - *identified*: the best set acts with at least 90 % probability, and alone with at least 50 %; no best value of an
+      amplitude lies beyond a bound.
+    - *confounded*: all other cases.
     """
     best = ranking[0]
     credible, mass = [], 0.0
     for entry in ranking:
         credible.append(entry)
         mass += entry.probability
-        if mass >= settings.credible:
+        if mass >= settings.credible_mass:
             break
     named = inclusion(ranking)
     fit = best.fit or fit_of(best.members)
@@ -123,26 +125,26 @@ def judge(
     if best.outside:
         reasons.append("heat of unknown origin explains the data better than any set of effects in the catalogue")
         return verdict(UNEXPLAINED)
-    if fit is not None and fit.p_value < settings.improbable:
+    if fit is not None and fit.p_value < settings.rejected_p:
         reasons.append(
-            f"the best set ({best.key}) leaves a misfit that noise makes with probability {fit.p_value:.1g}: "
-            "something else is missing"
+            f"the best set ({best.key}) leaves a misfit that noise gives with probability {fit.p_value:.1g}: "
+            "another effect is missing"
         )
         return verdict(UNEXPLAINED)
     if not best.members:
-        reasons.append("noise and the uncertainty of base numbers and sensors account for the disagreement")
+        reasons.append("noise and the uncertainty of base numbers and sensors explain the deviation")
         return verdict(NO_GAP)
-    if fit is not None and fit.held_out_p < settings.improbable:
+    if fit is not None and fit.held_out_p < settings.rejected_p:
         reasons.append(f"the held-out runs reject {best.key} (probability {fit.held_out_p:.1g})")
         return verdict(UNEXPLAINED)
     if fit is not None and fit.at_bound:
-        reasons.append("the data want it beyond a bound that physics sets: " + ", ".join(fit.at_bound))
+        reasons.append("the best value lies beyond a physical bound: " + ", ".join(fit.at_bound))
         return verdict(CONFOUNDED)
     sure = probability(ranking)
-    if sure >= settings.sure and best.probability >= settings.whole:
-        reasons.append(f"{best.key} is missing with {100 * sure:.1f} % probability, by all sets of effects tried")
+    if sure >= settings.named_probability and best.probability >= settings.alone_probability:
+        reasons.append(f"{best.key} is missing with {100 * sure:.1f} % probability, summed over all sets of effects")
         return verdict(IDENTIFIED)
     more = f"; and {len(credible) - SHOWN} more" if len(credible) > SHOWN else ""
     shown = "; ".join(entry.key for entry in credible[:SHOWN])
-    reasons.append(f"these sensors and runs cannot tell apart: {shown}{more}")
+    reasons.append(f"these sensors and runs cannot distinguish: {shown}{more}")
     return verdict(CONFOUNDED)

@@ -1,4 +1,4 @@
-"""The diagnosis: readings, residuals, candidates, fits, ranking, verdict; and the study that has what was missing."""
+"""The diagnosis step by step: readings, residuals, candidates, fits, ranking, verdict, amended study."""
 
 from __future__ import annotations
 
@@ -24,7 +24,7 @@ from tyrefem.diagnose.multifidelity import Predictions
 from tyrefem.diagnose.next_experiment import next_experiment
 from tyrefem.diagnose.options import DiagnosisOptions, Method, SimulationWork, grouped
 from tyrefem.diagnose.residuals import Residuals, residuals_of
-from tyrefem.diagnose.runs import Trial, trial
+from tyrefem.diagnose.runs import MeasuredDrive, measured_drive
 from tyrefem.diagnose.selection import SelectionProblem
 from tyrefem.diagnose.sensitivities import responses, sensitivities, unknowns_of
 from tyrefem.diagnose.settings import DiagnosisSettings
@@ -34,34 +34,34 @@ from tyrefem.errors import InputError
 from tyrefem.inputs.study import StudyData
 from tyrefem.requirements import Requirements
 
-#: What a diagnosis needs of a study.
+#: What a study must have for a diagnosis.
 NEEDS = Requirements("a diagnosis", measured=True, fitted=True)
 
 
 def diagnose(study: StudyData, table: Table | None = None, **options: Unpack[DiagnosisOptions]) -> DiagnosisData:
-    """Find where study and data disagree, name the missing effect, add it and show what is left.
+    """Compare a study with data, find the missing effects and add them to the study.
 
-    What is identified is added, and the amended study is held against the same data again, until nothing more is
-    identified: see `DiagnosisData.again`.
+    If effects are identified, the amended study is diagnosed with the same data. This repeats until no further effect
+    is identified: see `DiagnosisData.again`.
 
     Parameters
     ----------
-    study : the study; its cards and sensors state what is uncertain, its ``[diagnosis]`` table the rest.
-    table : as of `compare`; None = the study's own ``[[measured]]`` entries. ignore, rename : see `compare`.
-    settings : every number that steers the diagnosis, see `DiagnosisSettings`.
-    largest, looks, reduced : in place of what ``settings`` say: effects at most in a set; diagnoses at most; "auto" or
-        "never", whether reduced models of the drives predict for the fits where simulations confirm them.
-    candidates : function of the study that gives the effects it may lack; default: all of the catalogue.
-    criterion : how well a set explains the data: `LogEvidence` (default), `BIC`, or any `Criterion`.
-    strategy : which sets are fitted: `ForwardSelection` (default), `Exhaustive`, or any `Strategy`.
-    workers : processes. progress : called with (what is done, number, of how many).
-    known : responses of the runs' drives already at hand (see `responses`), for many diagnoses of one layout.
-    rerun : run the amended study on its own mesh at the end; else ``after`` is the fit's own prediction.
-    store : where finished simulations are kept, so that an interrupted diagnosis takes them up again.
+    study : the study. Its cards and sensors state the uncertainties, its ``[diagnosis]`` table the other assumptions.
+    table : see `compare`; None = the study's ``[[measured]]`` entries. ignore, rename : see `compare`.
+    settings : numerical parameters of the diagnosis, see `DiagnosisSettings`.
+    largest, looks, reduced : values that replace those of ``settings``: most effects in a set; most diagnoses; "auto"
+        or "never" for certified reduced models in the fits.
+    candidates : function: study -> effects that it may lack; default: the whole catalogue.
+    criterion : quality of a set's explanation of the data: `LogEvidence` (default), `BIC`, or any `Criterion`.
+    strategy : search over sets of effects: `ForwardSelection` (default), `Exhaustive`, or any `Strategy`.
+    workers : number of processes. progress : called with (description, number of the step, number of steps).
+    known : responses of the runs' drives (see `responses`), for many diagnoses of one layout.
+    rerun : run the amended study on its mesh at the end; otherwise ``after`` is the prediction of the fit.
+    store : store of finished simulations, from which an interrupted diagnosis continues.
 
     Raises
     ------
-    InputError : as `compare`; or every run is held out, or read outside the simulated drive only.
+    InputError : as `compare`; or every run is held out, or no reading is within the simulated drive.
     TypeError : a keyword that is none of these.
     """
     columns, method, work = grouped(options)
@@ -79,36 +79,36 @@ def diagnose(study: StudyData, table: Table | None = None, **options: Unpack[Dia
 def _look(
     study: StudyData, table: Table | None, columns: ColumnNames, method: Method, work: SimulationWork
 ) -> DiagnosisData:
-    """One diagnosis: what is measured goes forwards from residuals to ranking, verdict and amended study."""
+    """One diagnosis, from the measured runs to the amended study."""
     began = time.perf_counter()
     settings = method.settings
-    trials, candidates = _trials(study, table, columns, settings), method.candidates(study)
+    runs, candidates = _measured_drives(study, table, columns, settings), method.candidates(study)
     method.strategy.check(study, candidates, settings)
-    model = ForwardModel(study, tuple(run.sampling for run in trials), settings=settings)
+    model = ForwardModel(study, tuple(run.sampling for run in runs), settings=settings)
     if work.known is None:
         check_effort(model, f"the diagnosis of {study.name}", 1.0, work.workers)
     if work.store is not None and work.store.open(model):
-        work.tick(f"taking up {work.store.resumed} simulations")
-    unknowns, nuisance = unknowns_of(study, {name for run in trials for name in run.parts()}, candidates, settings)
+        work.tick(f"resuming with {work.store.resumed} finished simulations")
+    unknowns, nuisance = unknowns_of(study, {name for run in runs for name in run.parts()}, candidates, settings)
     with evaluating(model, work.workers, work.store) as evaluations:
         known = tuple(work.known or responses(evaluations, unknowns, work.tick))
         sensitive = sensitivities(model.drives, unknowns, nuisance, known)
-        residuals = residuals_of(study, trials, sensitive, settings)
+        residuals = residuals_of(study, runs, sensitive, settings)
         predictions = Predictions(
             evaluations, [response.modes for response in known] if settings.reduced == "auto" else ()
         )
-        ranking = rank(residuals, predictions, candidates, method, _Counted(work.tick))
+        ranking = rank(residuals, predictions, candidates, method, _SimulationCounter(work.tick))
         if not predictions.confirmed(ranking.best.members, ranking.best.values):
-            work.tick("the reduced models do not hold there: simulating")
+            work.tick("reduced models are not accurate at the best fit: repeating with simulations")
             predictions = replace(predictions, modes=(), given_up=True)
-            ranking = rank(residuals, predictions, candidates, method, _Counted(work.tick))
-        values, sd, lacking = _lacking(residuals, ranking)
-        change = changes(residuals, values, sd, lacking)
+            ranking = rank(residuals, predictions, candidates, method, _SimulationCounter(work.tick))
+        values, sd, missing_unknowns = _missing_unknowns(residuals, ranking)
+        change = changes(residuals, values, sd, missing_unknowns)
         work.tick("running the amended study")
         after = _after(residuals, evaluations, change if work.rerun else None, values)
         further: Mapping[str, Any] = {}
         if ranking.judgement.verdict == CONFOUNDED:
-            work.tick("looking for the experiment that decides")
+            work.tick("ranking next experiments")
             further = next_experiment(evaluations.model, ranking.judgement, ranking.fit_of)
     return DiagnosisData(
         original=study,
@@ -128,27 +128,27 @@ def _look(
     )
 
 
-def _trials(
+def _measured_drives(
     study: StudyData, table: Table | None, columns: ColumnNames, settings: DiagnosisSettings
-) -> tuple[Trial, ...]:
+) -> tuple[MeasuredDrive, ...]:
     """The measured runs as blocks of readings within the simulated drives."""
     planned = experiments(study, table, ignore=columns.ignore, rename=columns.rename)
     NEEDS.check_fitted(study, [experiment.hold_out for experiment in planned])
-    trials = tuple(run for run in (trial(experiment, study, settings) for experiment in planned) if run.sensors)
-    if all(run.hold_out for run in trials):
-        message = "no reading within the simulated drive in any run that is not held out"
+    runs = tuple(run for run in (measured_drive(experiment, study, settings) for experiment in planned) if run.sensors)
+    if all(run.hold_out for run in runs):
+        message = "no fitted run has a reading within the simulated drive"
         raise InputError(message, field="measured", file=study.file)
-    return trials
+    return runs
 
 
 @dataclass(frozen=True, eq=False)
 class Ranking(Brief):
-    """What the search of one look comes to.
+    """Result of the search of one look.
 
     Parameters
     ----------
-    judgement : verdict, and sets with their probabilities. best, null : fits with the most probable set and with none.
-    missing : heat of unknown origin. fit_of : the fit of a set, made if it has none.
+    judgement : verdict, and sets with their probabilities. best, null : fits of the most probable and of the empty set.
+    missing : heat of unknown origin. fit_of : set -> its fit, made if there is none.
     """
 
     judgement: Judgement
@@ -165,7 +165,7 @@ def rank(
     method: Method,
     tick: Callable[[str], None] | None = None,
 ) -> Ranking:
-    """Search the sets that explain the residuals, and judge them against each other and against an unknown cause."""
+    """Search for sets that explain the residuals, and rank them with heat of unknown origin."""
     settings, expected = residuals.settings, residuals.study.card.diagnosis.effects_expected
     prior = SetPrior(candidates, expected, settings.size_shares)
     origin = _UnknownOrigin(residuals, predictions, method.criterion, math.log(expected * settings.outside_share))
@@ -188,7 +188,7 @@ def rank(
         return fits[members]
 
     missing, best = origin.of(null), scored[0]
-    doubtful = best.fit is None or min(best.fit.p_value, best.fit.held_out_p) < settings.improbable
+    doubtful = best.fit is None or min(best.fit.p_value, best.fit.held_out_p) < settings.rejected_p
     if doubtful or origin.score(null, missing) > best.score - settings.missing_near:
         missing = missing_heat_fitted(
             residuals,
@@ -203,23 +203,23 @@ def rank(
 
 
 class _UnknownOrigin:
-    """Heat of unknown origin as a rival of all sets of the catalogue; ``prior``: ln of its prior probability."""
+    """Heat of unknown origin as an alternative to all sets of the catalogue; ``prior``: ln of its prior probability."""
 
     def __init__(self, residuals: Residuals, predictions: Predictions, criterion: Criterion, prior: float) -> None:
         self.residuals, self.criterion, self.prior = residuals, criterion, prior
         self.patches = patches(residuals.study, residuals.settings)
 
     def of(self, null: FittedSet) -> UnknownHeat:
-        """In the linear model about the fit of no effect."""
+        """The heat, estimated in the linear model about the fit of no effect."""
         return missing_heat(self.residuals, self.patches, null)
 
     def score(self, null: FittedSet, heat: UnknownHeat) -> float:
-        """ln(prior) + criterion: of no effect, and what the evidence gains by the heat."""
+        """ln(prior) + criterion of no effect + gain of ln evidence by the heat."""
         return self.prior + self.criterion.of_fit(null) + (heat.log_evidence - null.log_evidence)
 
 
-class _Counted:
-    """Counts the simulations of the fits, of which nobody knows beforehand how many there will be."""
+class _SimulationCounter:
+    """Counts the simulations of the fits; their total number is not known in advance."""
 
     def __init__(self, tick: Callable[[str, int, int], None]) -> None:
         self.tick, self.done = tick, 0
@@ -229,25 +229,25 @@ class _Counted:
         self.tick(what, self.done, 0)
 
 
-def _lacking(
+def _missing_unknowns(
     residuals: Residuals, ranking: Ranking
 ) -> tuple[Mapping[Unknown, float], Mapping[Unknown, float], list[Unknown]]:
-    """Values and sd of the unknowns, and which of them the study lacks."""
+    """Values and sd of the unknowns, and the unknowns that the study lacks."""
     best, missing = ranking.best, ranking.missing
     if ranking.judgement.verdict != UNEXPLAINED:
         return best.values, best.sd, [unknown for member in best.members for unknown in member.unknowns]
-    # Nothing is named: the study gets the heat of unknown origin that is more than two sd from none.
+    # No effect is named: the amended study gets the patches of heat that differ from 0 by more than two sd.
     heat = patches(residuals.study, residuals.settings)
-    lacking = [patch for patch in heat if abs(missing.values.get(patch, 0.0)) > 2 * missing.sd.get(patch, 1.0)]
-    values = {unknown: x for unknown, x in missing.values.items() if unknown in lacking or unknown not in heat}
-    return values, missing.sd, lacking
+    missing_unknowns = [patch for patch in heat if abs(missing.values.get(patch, 0.0)) > 2 * missing.sd.get(patch, 1.0)]
+    values = {unknown: x for unknown, x in missing.values.items() if unknown in missing_unknowns or unknown not in heat}
+    return values, missing.sd, missing_unknowns
 
 
 def _after(
     residuals: Residuals, evaluations: Evaluations, change: tuple[Change, ...] | None, values: Mapping[Unknown, float]
 ) -> dict[int, Any]:
-    """Block means of every trial with the changes, on the study's own mesh; as fitted, if there are None."""
-    numbers = range(len(residuals.trials))
+    """Block means of every run: full runs with the changes, or predictions of the fit if ``change`` is None."""
+    numbers = range(len(residuals.runs))
     if change is None:
         answers = evaluations.of("predict", [(number, values) for number in numbers])
         return {number: residuals.corrected(number, answer) for number, answer in enumerate(answers)}

@@ -11,9 +11,9 @@ from typing import TYPE_CHECKING, Any
 import tyrefem
 from tyrefem.diagnose import words
 from tyrefem.diagnose.amend import Change, difference
-from tyrefem.diagnose.contenders import candidate_rows, finite, history_table, set_rows, where_table
 from tyrefem.diagnose.numbers import percent
 from tyrefem.diagnose.record import AMENDED, record, where
+from tyrefem.diagnose.result_tables import candidate_rows, finite, history_table, set_rows, where_table
 from tyrefem.diagnose.unknowns import Unknown
 from tyrefem.diagnose.verdict import CONFOUNDED, IDENTIFIED, NO_GAP, UNEXPLAINED
 from tyrefem.inputs.changes import value_at

@@ -8,9 +8,9 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
-from tyrefem.diagnose.contenders import candidate_rows, rms_table, set_rows
 from tyrefem.diagnose.numbers import percent
-from tyrefem.diagnose.runs import MeasuredSensor, Trial
+from tyrefem.diagnose.result_tables import candidate_rows, rms_table, set_rows
+from tyrefem.diagnose.runs import MeasuredDrive, MeasuredSensor
 from tyrefem.diagnose.verdict import UNEXPLAINED
 from tyrefem.reports.diagnosis_sections import missing_figures, residual_figures
 from tyrefem.reports.figures.phases import Phase, draw_phases, make_room
@@ -46,8 +46,8 @@ def pictures(d: DiagnosisData) -> dict[str, bytes]:
     drawn = {"rms.png": rms_figure(d), **residual_figures(d), "probabilities.png": probabilities_figure(d)}
     if d.verdict == UNEXPLAINED:
         drawn |= missing_figures(d)
-    for number, trial in enumerate(d.gap.trials):
-        name = re.sub(r"[^\w.-]+", "-", trial.name).strip("-.") or "run"
+    for number, run in enumerate(d.gap.runs):
+        name = re.sub(r"[^\w.-]+", "-", run.name).strip("-.") or "run"
         file, again = f"histories-{name}.png", 2
         while file in drawn:
             file, again = f"histories-{name}-{again}.png", again + 1
@@ -135,16 +135,16 @@ def _dashes(color: str) -> Any:
 
 def histories_figure(d: DiagnosisData, number: int) -> Figure:
     """Draw one run, a panel per sensor: measured readings and both curves, with the deviations of both below."""
-    trial = d.gap.trials[number]
-    columns = min(3, len(trial.sensors))
-    rows = math.ceil(len(trial.sensors) / columns)
+    run = d.gap.runs[number]
+    columns = min(3, len(run.sensors))
+    rows = math.ceil(len(run.sensors) / columns)
     wide, high, low = 3.0 if columns > 2 else 4.2, 1.75, 0.8
     left, step_x, step_y = 0.75, wide + 0.42, high + low + 0.72
     drawn = figure(left + columns * step_x, rows * step_y + TITLE + 0.12)
-    divisor, unit = time_unit(_last(trial))
-    spans = _spans(d, number, trial)
+    divisor, unit = time_unit(_last(run))
+    spans = _spans(d, number, run)
     phases = _phases(d, number, divisor)
-    for place, series in enumerate(trial.sensors):
+    for place, series in enumerate(run.sensors):
         row, column = divmod(place, columns)
         bottom = 0.5 + (rows - 1 - row) * step_y
         lower = add_axes(drawn, left + column * step_x, bottom, wide, low)
@@ -162,22 +162,22 @@ def histories_figure(d: DiagnosisData, number: int) -> Figure:
         else:
             upper.tick_params(labelleft=False)
             lower.tick_params(labelleft=False)
-        if place + columns >= len(trial.sensors):
+        if place + columns >= len(run.sensors):
             lower.set_xlabel(f"time [{unit}]", fontsize=FONT)
-    held = "held out: used in no fit" if trial.hold_out else "fitted"
-    title(drawn, f"{trial.name} ({held})", "")
+    held = "held out: used in no fit" if run.hold_out else "fitted"
+    title(drawn, f"{run.name} ({held})", "")
     _legend(drawn, [("original", BEFORE), ("amended", AFTER)], "noise ± 1 sd of a block", measured=True)
     return drawn
 
 
-def _last(trial: Trial) -> float:
+def _last(run: MeasuredDrive) -> float:
     """Time of the last reading, s."""
-    return max(float(series.times[-1]) for series in trial.sensors)
+    return max(float(series.times[-1]) for series in run.sensors)
 
 
 def _phases(d: DiagnosisData, number: int, divisor: float) -> list[Phase]:
     """The phases of a run's drive, up to the last reading."""
-    drive, last = d.gap.driven(number).card.drive, _last(d.gap.trials[number])
+    drive, last = d.gap.driven(number).card.drive, _last(d.gap.runs[number])
     return [
         (phase.name, start / divisor, min(start + phase.duration, last) / divisor)
         for start, phase in zip(drive.starts, drive.phases, strict=True)
@@ -185,10 +185,10 @@ def _phases(d: DiagnosisData, number: int, divisor: float) -> list[Phase]:
     ]
 
 
-def _spans(d: DiagnosisData, number: int, trial: Trial) -> tuple[tuple[float, float], tuple[float, float]]:
+def _spans(d: DiagnosisData, number: int, run: MeasuredDrive) -> tuple[tuple[float, float], tuple[float, float]]:
     """Common axis limits of temperature and deviation for all sensors of a run."""
-    values = np.concatenate([trial.measured, d.before[number], d.after[number]])
-    left = np.concatenate([trial.measured - d.before[number], trial.measured - d.after[number], [0.5, -0.5]])
+    values = np.concatenate([run.measured, d.before[number], d.after[number]])
+    left = np.concatenate([run.measured - d.before[number], run.measured - d.after[number], [0.5, -0.5]])
     return tuple(  # type: ignore[return-value]
         (float(curve.min() - 0.06 * np.ptp(curve)), float(curve.max() + 0.06 * np.ptp(curve)))
         for curve in (values, left)
@@ -196,8 +196,8 @@ def _spans(d: DiagnosisData, number: int, trial: Trial) -> tuple[tuple[float, fl
 
 
 def _history(d: DiagnosisData, number: int, series: MeasuredSensor, upper: Axes, lower: Axes, divisor: float) -> None:
-    trial = d.gap.trials[number]
-    place = trial.parts()[series.sensor]
+    run = d.gap.runs[number]
+    place = run.parts()[series.sensor]
     t = series.block_times / divisor
     step = max(1, math.ceil(len(series.times) / 300))
     upper.plot(series.times[::step] / divisor, series.measured[::step], ".", color=QUIET, ms=2.6, alpha=0.8, zorder=2)
@@ -206,11 +206,11 @@ def _history(d: DiagnosisData, number: int, series: MeasuredSensor, upper: Axes,
     lower.axhline(0.0, color=INK, lw=0.6, zorder=1)
     for computed, color in ((d.before[number][place], BEFORE), (d.after[number][place], AFTER)):
         upper.plot(t, computed, color=color, lw=1.5, ls=_dashes(color), zorder=3)
-        lower.plot(t, trial.measured[place] - computed, color=color, lw=1.2, ls=_dashes(color), zorder=3)
+        lower.plot(t, run.measured[place] - computed, color=color, lw=1.2, ls=_dashes(color), zorder=3)
     for axes in (upper, lower):
         tidy(axes)
-        axes.set_xlim(0.0, _last(trial) / divisor)
-        if trial.hold_out:
+        axes.set_xlim(0.0, _last(run) / divisor)
+        if run.hold_out:
             axes.set_facecolor(HELD_OUT)
     upper.set_title(short(series.sensor, 34), fontsize=FONT, loc="left", pad=3)
 

@@ -6,7 +6,7 @@ import numpy as np
 import pytest
 
 from tyrefem.diagnose.residual_tables import stretches
-from tyrefem.diagnose.runs import MeasuredSensor, Trial, _scatter
+from tyrefem.diagnose.runs import MeasuredDrive, MeasuredSensor, _scatter
 from tyrefem.diagnose.settings import DEFAULT
 
 
@@ -53,7 +53,7 @@ def test_whitening_leaves_independent_numbers_of_unit_variance() -> None:
 
 def test_a_trial_takes_its_series_one_after_the_other() -> None:
     first, second = _series(30), _series(80, noise=2.0)
-    trial = Trial("run", {}, False, (first, second))
+    trial = MeasuredDrive("run", {}, False, (first, second))
     blocks = np.arange(30.0 + DEFAULT.blocks)
     expected = np.concatenate([first.whitened(blocks[:30]), second.whitened(blocks[30:])])
     np.testing.assert_array_equal(trial.whitened(blocks), expected)

@@ -1,6 +1,6 @@
-"""Every explanation that was tried, and how well it does: candidates one by one, and sets of them.
+"""Tables of a diagnosis: candidates, sets of effects, and residuals of the original and of the amended study.
 
-Before and after as tables: by run, sensor and stretch of time; by run and sensor; reading by reading.
+The residuals are given by run, sensor and stretch of time; by run and sensor; and by block of readings.
 """
 
 from __future__ import annotations
@@ -22,12 +22,12 @@ if TYPE_CHECKING:
     from tyrefem.diagnose.diagnosis import DiagnosisData
     from tyrefem.diagnose.fits import FittedSet
 
-#: Sets that a record lists at most.
+#: A record lists at most this many sets.
 MOST_SETS = 30
 
 
 def parameters(unknowns: Sequence[Unknown], fit: FittedSet) -> dict[str, dict[str, Any]]:
-    """Parameter -> value and standard deviation, SI, of those that were fitted."""
+    """Fitted parameter -> value and standard deviation, SI."""
     return {
         unknown.parameter.name: {
             "value": unknown.value(fit.values[unknown]),
@@ -40,7 +40,7 @@ def parameters(unknowns: Sequence[Unknown], fit: FittedSet) -> dict[str, dict[st
 
 
 def fitness(d: DiagnosisData, fit: FittedSet | None) -> dict[str, Any]:
-    """How well a fitted set does, K and probabilities; empty where the full model was not fitted."""
+    """Quality of a fitted set, K and probabilities; empty if the set was not fitted with the full model."""
     if fit is None:
         return {}
     return {
@@ -59,9 +59,9 @@ def fitness(d: DiagnosisData, fit: FittedSet | None) -> dict[str, Any]:
 def candidate_rows(d: DiagnosisData) -> list[dict[str, Any]]:
     """One row per candidate, most probable first.
 
-    ``probability``: that it acts. ``log_evidence``: ln p(fitted data | it alone), up to a constant of
-    the data; ``log_evidence_gain``: the same minus that of no effect. ``confounded_with``: what takes its place in
-    other credible sets, where the verdict is "confounded".
+    ``probability``: that the effect acts. ``log_evidence``: ln p(fitted data | this effect alone), up to a constant of
+    the data. ``log_evidence_gain``: the same minus that of no effect. ``confounded_with``: the effects in its place in
+    other credible sets, if the verdict is "confounded".
     """
     alone = {ranked.members[0]: ranked for ranked in d.judgement.ranking if len(ranked.members) == 1}
     none = next(ranked for ranked in d.judgement.ranking if not ranked.members and not ranked.outside)
@@ -85,7 +85,7 @@ def candidate_rows(d: DiagnosisData) -> list[dict[str, Any]]:
 
 
 def set_rows(d: DiagnosisData, most: int = MOST_SETS) -> list[dict[str, Any]]:
-    """The most probable sets, with the score relative to the best."""
+    """The most probable sets, with their scores relative to the best set."""
     best = d.judgement.best.score
     return [
         {
@@ -100,8 +100,8 @@ def set_rows(d: DiagnosisData, most: int = MOST_SETS) -> list[dict[str, Any]]:
     ]
 
 
-def contenders(d: DiagnosisData) -> list[RankedSet]:
-    """Credible sets that none of their own parts outdoes: sets with an idle effect are left out."""
+def competing_sets(d: DiagnosisData) -> list[RankedSet]:
+    """Credible sets without a more probable subset; this leaves out sets with an effect that explains nothing."""
     kept: list[RankedSet] = []
     for ranked in d.judgement.credible:
         parts = [each for each in kept if not each.outside and set(each.members) < set(ranked.members)]
@@ -110,8 +110,8 @@ def contenders(d: DiagnosisData) -> list[RankedSet]:
     return kept
 
 
-def support(d: DiagnosisData, ranked: RankedSet) -> float:
-    """Probability that all members of a set act, whatever is beside them."""
+def inclusion_probability(d: DiagnosisData, ranked: RankedSet) -> float:
+    """Probability that all members of a set act, alone or with other effects."""
     if ranked.outside:
         return ranked.probability
     having = (each for each in d.judgement.ranking if not each.outside and set(ranked.members) <= set(each.members))
@@ -119,8 +119,8 @@ def support(d: DiagnosisData, ranked: RankedSet) -> float:
 
 
 def confounded_with(d: DiagnosisData, candidate: Candidate) -> list[str]:
-    """What other contenders have in a candidate's place; empty unless the verdict is "confounded"."""
-    sets = contenders(d)
+    """The members of competing sets without the candidate; empty unless the verdict is "confounded"."""
+    sets = competing_sets(d)
     if d.verdict != CONFOUNDED or not any(candidate in ranked.members for ranked in sets):
         return []
     others: dict[str, None] = {}
@@ -131,38 +131,38 @@ def confounded_with(d: DiagnosisData, candidate: Candidate) -> list[str]:
 
 
 def _log_evidence(d: DiagnosisData, ranked: RankedSet) -> float:
-    """Fitted with the full model where that was done, else by the linear one."""
+    """ln evidence of the fit with the full model, or of the linear model if there is no fit."""
     if ranked.fit is not None:
         return ranked.fit.log_evidence
     return ranked.score - d.prior(ranked.members)
 
 
 def finite(row: Mapping[str, Any], key: str) -> float | None:
-    """A number of a row, if it has one."""
+    """A number of a row; None if it is missing or not finite."""
     value = row.get(key)
     return None if value is None or not math.isfinite(value) else float(value)
 
 
 def where_table(d: DiagnosisData) -> pd.DataFrame:
-    """One row per run, sensor and stretch: the columns of `residual_table`, and what is left in the amended study."""
+    """One row per run, sensor and stretch: the columns of `residual_table`, and the residuals of the amended study."""
     keys = ["run", "hold_out", "sensor", "phase"]
     after = d.where_after.rename(columns={"mean_K": "mean_after_K", "rms_K": "rms_after_K"})
     return d.where.merge(after[[*keys, "mean_after_K", "rms_after_K"]], on=keys, how="left", validate="1:1")
 
 
 def rms_table(d: DiagnosisData) -> pd.DataFrame:
-    """One row per run and sensor: root mean square of the readings' deviations before and after, noise included, K."""
+    """One row per run and sensor: rms of measured - computed before and after, including noise, K."""
     import pandas as pd
 
     rows = []
-    for number, trial in enumerate(d.gap.trials):
-        for readings in trial.sensors:
-            place = trial.parts()[readings.sensor]
-            left = [trial.measured[place] - computed[number][place] for computed in (d.before, d.after)]
+    for number, run in enumerate(d.gap.runs):
+        for readings in run.sensors:
+            place = run.parts()[readings.sensor]
+            left = [run.measured[place] - computed[number][place] for computed in (d.before, d.after)]
             rows.append(
                 {
-                    "run": trial.name,
-                    "hold_out": trial.hold_out,
+                    "run": run.name,
+                    "hold_out": run.hold_out,
                     "sensor": readings.sensor,
                     "n": len(readings.times),
                     "before_K": rms(d.gap, d.before, [number], readings.sensor),
@@ -176,19 +176,19 @@ def rms_table(d: DiagnosisData) -> pd.DataFrame:
 
 
 def history_table(d: DiagnosisData) -> pd.DataFrame:
-    """One row per block of readings: measured mean, and what the original and the amended study say, degC."""
+    """One row per block of readings: means measured, and computed by the original and by the amended study, degC."""
     import pandas as pd
 
     rows = []
-    for number, trial in enumerate(d.gap.trials):
-        measured, before, after = trial.measured, d.before[number], d.after[number]
-        for readings in trial.sensors:
-            place = trial.parts()[readings.sensor]
+    for number, run in enumerate(d.gap.runs):
+        measured, before, after = run.measured, d.before[number], d.after[number]
+        for readings in run.sensors:
+            place = run.parts()[readings.sensor]
             rows.append(
                 pd.DataFrame(
                     {
-                        "run": trial.name,
-                        "hold_out": trial.hold_out,
+                        "run": run.name,
+                        "hold_out": run.hold_out,
                         "sensor": readings.sensor,
                         "time_s": readings.block_times,
                         "readings": readings.sizes.astype(int),
