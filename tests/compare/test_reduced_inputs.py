@@ -31,7 +31,7 @@ class Counting(Executor):
 
     def map(self, function, *given, **_):
         for each in zip(*given, strict=True):
-            self.full += function.__name__ in ("driven", "taught", "full")
+            self.full += function.__name__ in ("base_run", "training_run", "full_run")
             yield function(*each)
 
 
@@ -88,7 +88,7 @@ def test_what_does_not_hold_is_run_in_full(quick: Study, table: Path) -> None:
     assert found.reduced is None
     assert counting.full == 15
     assert found.inputs["key"].nunique() == 14
-    assert any("full ones" in note for note in found.notes)
+    assert any("full runs" in note for note in found.notes)
 
 
 def test_one_model_for_all_drives_and_in_processes(quick: Study, full: ComparisonData) -> None:

@@ -10,7 +10,7 @@ import pytest
 
 import tyrefem as tf
 from tyrefem.compare import runs
-from tyrefem.compare.reduced_inputs import Neighbours, ReducedInputCertificate, ReducedInputSettings
+from tyrefem.compare.reduced_inputs import ReducedInputCertificate, ReducedInputRuns, ReducedInputSettings
 from tyrefem.compare.runs import Runs
 from tyrefem.inputs.study import StudyData
 from tyrefem.mechanics.footprint.pressed_tyre import REMEMBERED_TYRES
@@ -42,7 +42,7 @@ class Counted:
 
     def __init__(self, monkeypatch: pytest.MonkeyPatch) -> None:
         self.made: list[str] = []
-        for name in ("driven", "taught", "full"):
+        for name in ("base_run", "training_run", "full_run"):
             monkeypatch.setattr(runs, name, self.counting(name, getattr(runs, name)))
 
     def counting(self, name, function):
@@ -78,7 +78,7 @@ def test_an_interrupted_comparison_goes_on(
     counted.made.clear()
     again = quick.compare(measured, reduced="never", store=AnswerStore(tmp_path / "kept"), begin=said.append)
     # The drive itself is run again, for its mesh and operators.
-    assert counted.made == ["driven", *["full"] * (count - 5)]
+    assert counted.made == ["base_run", *["full_run"] * (count - 5)]
     assert said == [
         "15 simulations: 1 drive as driven; 14 with one uncertain input changed; 4 are taken up from an interrupted "
         "comparison"
@@ -97,7 +97,7 @@ def test_runs_of_a_reduced_model_and_its_certificate_are_kept_too(
 ) -> None:
     first = quick.compare(measured, store=AnswerStore(tmp_path))
     assert first.reduced is not None
-    assert counted.made == ["driven", "taught", "taught", "taught"]
+    assert counted.made == ["base_run", "training_run", "training_run", "training_run"]
     counted.made.clear()
     again = quick.compare(measured, store=AnswerStore(tmp_path))
     assert counted.made == []
@@ -106,11 +106,11 @@ def test_runs_of_a_reduced_model_and_its_certificate_are_kept_too(
     pd.testing.assert_frame_equal(again.inputs, first.inputs)
     # Full runs are asked for: those of the model do not count.
     quick.compare(measured, store=AnswerStore(tmp_path), reduced="never")
-    assert counted.made == ["driven", *["full"] * 11]
+    assert counted.made == ["base_run", *["full_run"] * 11]
     # Another study has nothing of it.
     counted.made.clear()
     quick.replace({"drive.speed": "21 mph"}).compare(measured, store=AnswerStore(tmp_path), inputs=False)
-    assert counted.made == ["driven"]
+    assert counted.made == ["base_run"]
 
 
 def remembered() -> int:
@@ -153,7 +153,7 @@ def test_a_long_drive_is_followed_from_its_first_readings() -> None:
     def certificate(settings: ReducedInputSettings) -> ReducedInputCertificate:
         with Runs(studies, keys) as made:
             made.begin()
-            return Neighbours(made, settings).solve()
+            return ReducedInputRuns(made, settings).solve()
 
     assert certificate(ReducedInputSettings()).worst < 0.01
     with pytest.raises(NotReducibleError, match="full runs are off by"):

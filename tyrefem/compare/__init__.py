@@ -1,6 +1,6 @@
 """Computed against measured temperatures: deviations in kelvin, judged against their uncertainty.
 
-Knows nothing of diagnoses, pages and pictures.
+This package does not import diagnoses or reports.
 """
 
 from tyrefem.compare.comparison import ComparisonData

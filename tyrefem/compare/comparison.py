@@ -1,4 +1,4 @@
-"""A comparison of computed and measured histories: table, residuals, one honest line, files."""
+"""The result of a comparison: deviations by run, sensor and phase, residuals, and a summary of one line."""
 
 from __future__ import annotations
 
@@ -35,12 +35,12 @@ class ComparisonData(Brief):
         readings, ``beyond`` and ``verdict``.
     residuals : one row per reading: ``run, time_s, sensor, phase, measured_degC, computed_degC, error_K`` and
         ``u_val_K``, the standard validation uncertainty of that reading.
-    inputs : one row per run, sensor, phase and uncertain input ``key``: ``relative_sd``, the ``regions`` that it is
-        moved in together (a card's number is one in all that take it from there) and ``change_K``,
-        the change of the mean when that input is one standard deviation higher.
+    inputs : one row per run, sensor, phase and uncertain input ``key``: ``relative_sd``, the ``regions`` in which the
+        input changes (a number of a card changes in all regions with this card) and ``change_K``, the change of the
+        mean when the input is one standard deviation higher.
     curves : run -> computed readings at the saved times (``time_s``, degC).
-    notes : what was left out, in sentences; those beginning with "ERROR" also stand in the summary.
-    k : coverage factor. reduced : certificate of the reduced model that answered for changed inputs, if one did.
+    notes : sentences on omitted data and uncertainties; those beginning with "ERROR" also stand in the summary.
+    k : coverage factor. reduced : certificate of the reduced model for changed inputs; None: full runs only.
     """
 
     study: str
@@ -58,13 +58,14 @@ class ComparisonData(Brief):
     def _facts(self) -> Mapping[str, Any]:
         runs = list(dict.fromkeys(self.residuals["run"]))
         worst = [f"{name} {value:.2f} K" for name, value in self.by_sensor.items()]
-        whole = self.table[self.table["phase"] == ALL]
+        all_phases = self.table[self.table["phase"] == ALL]
         return {
             "runs": runs,
             "readings": f"{len(self.residuals):,} of {_plural(len(self.by_sensor), 'sensor')}",
             "computed - measured": f"{self.bias_K:+.2f} K on average, {self.rms_K:.2f} K rms",
             "rms by sensor": worst,
-            "beyond uncertainty": f"{int(whole['beyond'].sum())} of {len(whole)} sensor histories (k = {self.k:g})",
+            "beyond uncertainty": f"{int(all_phases['beyond'].sum())} of {len(all_phases)} sensor histories "
+            f"(k = {self.k:g})",
             "uncertain inputs": f"{self.inputs['key'].nunique()}",
             "notes": f"{len(self.notes)}",
         }
@@ -94,21 +95,21 @@ class ComparisonData(Brief):
 
     @cached_property
     def by_input(self) -> pd.DataFrame:
-        """Change (K) of each sensor's mean with each uncertain input, rms over the runs; strongest input first."""
-        whole = self.inputs[self.inputs["phase"] == ALL]
-        squares = whole.assign(square=whole["change_K"] ** 2)
+        """Change (K) of each sensor's mean with each uncertain input, rms over the runs, largest change first."""
+        all_phases = self.inputs[self.inputs["phase"] == ALL]
+        squares = all_phases.assign(square=all_phases["change_K"] ** 2)
         changes = squares.pivot_table(index="key", columns="sensor", values="square", sort=False) ** 0.5
         strongest = (changes**2).sum(axis="columns").sort_values(ascending=False, kind="stable").index
         return changes.loc[strongest]
 
     def part(self, *, hold_out: bool) -> pd.DataFrame:
-        """The residuals of the held-out runs, or of the others."""
+        """The residuals of the held-out runs, or of the other runs."""
         marked = self.table.loc[self.table["hold_out"] == hold_out, "run"].unique()
         return self.residuals[self.residuals["run"].isin(marked)]
 
     @property
     def summary(self) -> str:
-        """One line: overall deviation, worst sensor, and how much of it is beyond the uncertainty."""
+        """One line: overall deviation, worst sensor, and number of histories beyond the uncertainty."""
         runs, sensors = self.residuals["run"].nunique(), self.residuals["sensor"].nunique()
         count = f"{_plural(runs, 'run')}, {_plural(sensors, 'sensor')}, {_plural(len(self.residuals), 'reading')}"
         overall = f"computed - measured {self.bias_K:+.2f} K on average, {self.rms_K:.2f} K rms"
@@ -118,20 +119,20 @@ class ComparisonData(Brief):
             if len(fitted):
                 parts.insert(0, f"fitted {fitted['error_K'].mean():+.2f}, {_rms(fitted):.2f} K rms")
             overall += f" ({'; '.join(parts)})"
-        whole = self.table["phase"] == ALL
+        all_phases = self.table["phase"] == ALL
         beyond = self.table["beyond"]
         judged = (
-            f"beyond validation uncertainty (k = {self.k:g}): {int((beyond & whole).sum())} of "
-            f"{int(whole.sum())} sensor histories"
+            f"beyond validation uncertainty (k = {self.k:g}): {int((beyond & all_phases).sum())} of "
+            f"{int(all_phases.sum())} sensor histories"
         )
         if self.has_phases:
-            judged += f", {int((beyond & ~whole).sum())} of {int((~whole).sum())} sensor phases"
+            judged += f", {int((beyond & ~all_phases).sum())} of {int((~all_phases).sum())} sensor phases"
         worst = f"worst sensor {self.by_sensor.index[0]}: {self.by_sensor.iloc[0]:.2f} K rms"
         errors = "".join(f"{note}. " for note in self.notes if note.startswith("ERROR"))
         return f"{errors}{self.study}: {count}: {overall}; {worst}; {judged}."
 
     def to_dict(self) -> dict[str, Any]:
-        """Everything but the single readings as plain data for JSON; NaN becomes null."""
+        """The comparison without single readings as plain data for JSON; NaN becomes null."""
         parts = {
             name: {"bias_K": float(part["error_K"].mean()), "rms_K": _rms(part), "n": len(part)}
             for name, part in (
@@ -167,7 +168,7 @@ def comparison_of(
     k: float = 2.0,
     reduced: ReducedInputCertificate | None = None,
 ) -> ComparisonData:
-    """The comparison that follows from paired histories; ``regions``: input -> the regions that it is moved in."""
+    """The comparison of measured and computed histories; ``regions``: input -> regions in which it changes."""
     import pandas as pd
 
     rows, inputs = [], []

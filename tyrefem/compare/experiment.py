@@ -22,14 +22,14 @@ Table = Any
 
 @dataclass(frozen=True, eq=False)
 class Experiment:
-    """A measured run and what the study says of it.
+    """A measured run and the data of its ``[[measured]]`` entry.
 
     Parameters
     ----------
     run : the measured histories, on the clock of the simulation.
     drive : dotted overrides of the study's drive for this run; empty = the study's own drive.
-    noise : K, standard deviation of a reading; None = what each sensor's card says.
-    hold_out : whether the run is kept from every fit.
+    noise : K, standard deviation of a reading; None = the noise of each sensor's card.
+    hold_out : whether no fit may use the run.
     """
 
     run: MeasuredRun
@@ -50,19 +50,19 @@ def experiments(
     ignore: Iterable[str] = (),
     rename: Mapping[str, str] | None = None,
 ) -> tuple[Experiment, ...]:
-    """The runs to compare with: those of ``table``, else of the study's own ``[[measured]]`` entries.
+    """The runs to compare with: those of ``table``, or else of the study's ``[[measured]]`` entries.
 
-    A run of a given table takes drive, noise, offset and names of columns from the entry of the same file, or of the
-    same run name; a run without an entry is compared with the study's own drive.
+    A run of a given table has the drive, noise, offset and column names of the entry with the same file or run name. A
+    run without an entry is compared with the study's drive.
 
     Parameters
     ----------
-    ignore : columns to leave out. rename : column -> sensor. Both act on every table, beside what its entry says.
+    ignore : columns to leave out. rename : column -> sensor. Both act on every table, in addition to its entry.
 
     Raises
     ------
-    InputError : no run; an entry names a run that the table lacks; columns that are no sensors of the study; a
-        column to rename or to ignore that no table has.
+    InputError : no run; an entry names a run that is not in the table; a column is no sensor of the study; no table
+        has a column that is to be renamed or ignored.
     """
     given = ColumnNames(dict(rename or {}), tuple(ignore))
     entries = list(study.measured) if table is None else []
@@ -76,25 +76,25 @@ def experiments(
         known = [entry for entry in study.measured if _is_file(each, entry.table)]
         entries += known
         if not known:
-            whole = _whole(each, given)
-            runs += whole.runs
-            columns += [*whole.columns, *whole.headings]
+            measured = _measured_table(each, given)
+            runs += measured.runs
+            columns += [*measured.columns, *measured.headings]
     at_hand: dict[str, MeasuredTable] = {}
     tables = [(entry, _table(entry, given, at_hand)) for entry in entries]
-    for entry, whole in tables:
-        columns += [*whole.columns, *whole.headings, *entry.rename.values()]
+    for entry, measured in tables:
+        columns += [*measured.columns, *measured.headings, *entry.rename.values()]
     given.require(columns)
-    planned = [experiment for entry, whole in tables for experiment in _of_entry(entry, whole)]
-    planned += [_matched(run, study) for run in runs]
+    planned = [experiment for entry, measured in tables for experiment in _of_entry(entry, measured)]
+    planned += [_with_entry(run, study) for run in runs]
     if not planned:
         raise InputError("there is no measured run to compare with")
-    planned = [_without(experiment, given.ignore) for experiment in planned]
-    _known_sensors([experiment.run for experiment in planned], study)
-    return _distinct(planned)
+    planned = [_without_columns(experiment, given.ignore) for experiment in planned]
+    _check_sensors([experiment.run for experiment in planned], study)
+    return _with_distinct_names(planned)
 
 
 def _listed(table: Table | None) -> Sequence[Any]:
-    """The tables and runs of what was given: one, several or none."""
+    """The given tables and runs as a sequence."""
     if table is None:
         return ()
     if isinstance(table, str | Path | MeasuredRun) or is_frame(table):
@@ -108,8 +108,8 @@ def _is_file(table: Any, file: str | Path) -> bool:
     return isinstance(table, str | Path) and Path(table).absolute() == Path(file).absolute()
 
 
-def _whole(table: Any, given: ColumnNames) -> MeasuredTable:
-    """A file's or a frame's runs."""
+def _measured_table(table: Any, given: ColumnNames) -> MeasuredTable:
+    """The table of a file or a data frame."""
     if is_frame(table):
         return frame_table(table, rename=given.rename, ignore=given.ignore)
     if isinstance(table, str | Path):
@@ -126,13 +126,13 @@ def _no_table(table: object) -> InputError:
 
 @dataclass(frozen=True)
 class ColumnNames:
-    """What the caller says of all tables: ``rename``, column -> sensor, and columns to ``ignore``."""
+    """Names for the columns of all tables: ``rename``, column -> sensor, and columns to ``ignore``."""
 
     rename: Mapping[str, str]
     ignore: tuple[str, ...]
 
     def require(self, columns: Sequence[str]) -> None:
-        """Refuse names that no table has."""
+        """Raises InputError for names that no table has."""
         for names, purpose in ((self.rename, "to rename"), (self.ignore, "to ignore")):
             missing = [name for name in names if name not in {*columns, *self.rename.values()}]
             if missing:
@@ -140,48 +140,50 @@ class ColumnNames:
 
 
 def _table(entry: MeasuredEntryLike, given: ColumnNames, at_hand: dict[str, MeasuredTable]) -> MeasuredTable:
-    """An entry's table, read once; its own names of columns must be there, those given for all tables may be."""
+    """The table of an entry, read once; it must have the columns that the entry names."""
     rename, ignore = {**entry.rename, **given.rename}, (*entry.ignore, *given.ignore)
     key = repr((entry.table, entry.time_offset, rename, ignore))
     if key not in at_hand:
         at_hand[key] = read(entry.table, time_offset=entry.time_offset, rename=rename, ignore=ignore)
-    whole = at_hand[key]
+    measured = at_hand[key]
     for names, purpose in ((entry.rename, "to rename"), (entry.ignore, "to ignore")):
-        missing = whole.missing(names)
+        missing = measured.missing(names)
         if missing:
-            raise missing_columns_error(missing, purpose, whole.columns, whole.file)
-    return whole
+            raise missing_columns_error(missing, purpose, measured.columns, measured.file)
+    return measured
 
 
-def _of_entry(entry: MeasuredEntryLike, whole: MeasuredTable) -> list[Experiment]:
-    names = [run.name for run in whole.runs]
+def _of_entry(entry: MeasuredEntryLike, measured: MeasuredTable) -> list[Experiment]:
+    names = [run.name for run in measured.runs]
     if entry.run is not None and entry.run not in names:
         wrong = f"no run '{entry.run}'{nearest(entry.run, names)}"
         raise InputError(wrong, field="measured.run", file=entry.table)
     return [
         Experiment(run, dict(entry.drive), entry.noise, entry.hold_out)
-        for run in whole.runs
+        for run in measured.runs
         if entry.run in (None, run.name)
     ]
 
 
-def _matched(run: MeasuredRun, study: StudyLike) -> Experiment:
+def _with_entry(run: MeasuredRun, study: StudyLike) -> Experiment:
     for entry in study.measured:
         if run.name == (entry.run or Path(entry.table).stem):
             shifted = run.shifted(entry.time_offset).renamed(entry.rename)
-            return _without(Experiment(shifted, dict(entry.drive), entry.noise, entry.hold_out), tuple(entry.ignore))
+            return _without_columns(
+                Experiment(shifted, dict(entry.drive), entry.noise, entry.hold_out), tuple(entry.ignore)
+            )
     return Experiment(run)
 
 
-def _without(experiment: Experiment, ignore: tuple[str, ...]) -> Experiment:
+def _without_columns(experiment: Experiment, ignore: tuple[str, ...]) -> Experiment:
     kept = [sensor for sensor in experiment.run.sensors if sensor not in ignore]
     if not kept:
         raise InputError(f"run '{experiment.name}': every sensor is ignored", file=experiment.run.file)
     return replace(experiment, run=replace(experiment.run, temperatures=experiment.run.temperatures[kept]))
 
 
-def _known_sensors(runs: Sequence[MeasuredRun], study: StudyLike) -> None:
-    """Refuse columns that are no sensors, all of them at once, and a sensor's column in a unit of no temperature."""
+def _check_sensors(runs: Sequence[MeasuredRun], study: StudyLike) -> None:
+    """Raises InputError for all columns that are no sensors, and for a sensor's column without a temperature unit."""
     allowed = {*study.sensors, *OUTSIDE_THE_RUBBER}
     unknown: dict[str, list[MeasuredRun]] = {}
     for run in runs:
@@ -208,8 +210,8 @@ def _known_sensors(runs: Sequence[MeasuredRun], study: StudyLike) -> None:
     )
 
 
-def _distinct(experiments: Sequence[Experiment]) -> tuple[Experiment, ...]:
-    """The same experiments with no run name twice: two loggers on one run are two runs."""
+def _with_distinct_names(experiments: Sequence[Experiment]) -> tuple[Experiment, ...]:
+    """The experiments with distinct run names; the records of two loggers of one run are two runs."""
     taken: dict[str, int] = {}
     result = []
     for experiment in experiments:

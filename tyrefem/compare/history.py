@@ -1,4 +1,4 @@
-"""One sensor in one run: measured and computed readings at the same times, and what blurs them."""
+"""Measured and computed readings of one sensor in one run at the same times, with their uncertainties."""
 
 from __future__ import annotations
 
@@ -27,7 +27,7 @@ class SensorHistory:
     phases : (n,) name of the drive's phase of each reading; "" between phases.
     gradient : (n,) K/m, magnitude of the computed temperature gradient at the sensor.
     changes : dotted key -> (n,) K, change of the computed reading when that input is one sd higher.
-    noise, accuracy : K; standard deviation of one reading, and of what all readings share.
+    noise, accuracy : K; standard deviation of one reading, and of the offset that all readings share.
     position_sd : m. ``numerical`` : K, standard uncertainty of the computation.
     """
 
@@ -71,7 +71,7 @@ def histories(
     result: ResultLike,
     perturbed: Mapping[str, ResultLike],
 ) -> tuple[list[SensorHistory], int]:
-    """The histories of a run's sensors, and how many measured times lie outside the simulated span.
+    """The histories of a run's sensors, and the number of measured times outside the simulated span.
 
     Computed readings are interpolated linearly between saved times and never extrapolated.
 
@@ -139,7 +139,7 @@ def _gradient(result: ResultLike, sensor: str, times: Array) -> Array:
 def phase_names(times: Array, phases: Sequence[PhaseLike]) -> NDArray[np.object_]:
     """(n,) name of the phase of each time; a time at a border belongs to the phase that ends there.
 
-    Phases of the same name are told apart by a number, and "all" is kept for the sum of them.
+    Phases with the same name get numbers; "all" is reserved for all phases together.
     """
     names = np.full(len(times), "", dtype=object)
     taken = {ALL: 1}

@@ -1,6 +1,6 @@
-"""What a comparison needs to know of a study and of its result.
+"""The interface of studies and results that a comparison uses.
 
-What a comparison needs of a result; unlike a result, small enough to come from another process, or from a file.
+`Computed` is the part of a result that a comparison needs; it is small enough for other processes and for files.
 """
 
 from __future__ import annotations
@@ -74,7 +74,7 @@ class ResultLike(Protocol):
 
 
 class StudyLike(Protocol):
-    """A study that can be changed; run by the code that computes it."""
+    """A study whose numbers and drive can be changed."""
 
     @property
     def name(self) -> str: ...
@@ -97,7 +97,7 @@ Arrays = tuple[NDArray[Any], ...]
 
 @dataclass(frozen=True, eq=False)
 class Computed:
-    """Readings and their gradients of a run, see `ResultLike`."""
+    """Readings and gradients of a run, see `ResultLike`."""
 
     study: Any
     readings: pd.DataFrame
@@ -107,7 +107,7 @@ class Computed:
 
 @dataclass(frozen=True)
 class Stretch:
-    """A phase as far as a comparison knows it: ``start`` and ``end`` in s."""
+    """A phase of a drive with ``start`` and ``end`` in s."""
 
     name: str
     start: float
@@ -115,7 +115,7 @@ class Stretch:
 
 
 def computed_of(result: ResultLike) -> Computed:
-    """The same of a whole result."""
+    """The readings, gradients and phases of a result."""
     return Computed(result.study, result.readings, result.gradient_at_sensors, result.phases)
 
 
@@ -132,7 +132,7 @@ def arrays_of(computed: Computed) -> Arrays:
 
 
 def computed_from(arrays: Arrays, study: Any) -> Computed:
-    """The run of a study again; raises ValueError if these are not its arrays."""
+    """The run of a study from its arrays, see `arrays_of`; raises ValueError for other arrays."""
     import pandas as pd
 
     columns, readings, gradients, names, spans = arrays

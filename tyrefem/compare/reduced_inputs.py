@@ -1,4 +1,4 @@
-"""Runs with one uncertain input changed, by a reduced model of the drives' own runs, tried on full ones."""
+"""Runs with one changed input by a reduced model of the unchanged runs, certified by full runs."""
 
 from __future__ import annotations
 
@@ -24,37 +24,37 @@ from tyrefem.reduced.variant import Variant
 
 @dataclass(frozen=True)
 class ReducedInputSettings:
-    """How a reduced model is made for changed inputs, and when it is believed."""
+    """Numerical parameters of the reduced model for changed inputs and of its certificate."""
 
-    #: A reading of a changed run may be off by this much, K, or by twice the time error that the study allows full
-    #: runs, as either of the two that are compared may be off by that.
-    finest: float = 0.02
-    #: Share of that which the fresh runs may take up.
+    #: Least tolerance of a reading of a changed run, K. The tolerance is twice the study's time error if that is
+    #: larger, because both compared runs have this error.
+    least_tolerance: float = 0.02
+    #: Largest error of the fresh runs, as a share of the tolerance.
     safety: float = 0.8
-    #: Fresh runs that a certificate needs at least; how often one is tried.
+    #: Least number of fresh runs of a certificate; number of attempts.
     fresh: int = 3
     trials: int = 2
-    #: Rounds of corrections before the first certificate, or as many as drives.
+    #: Least number of correction rounds before the first certificate; it is at least the number of drives.
     rounds: int = 2
-    #: The modes' share of the tolerance.
-    finer: float = 0.25
-    #: Modes at most: many numbers, each with an early and a late change of its own, need more than a few in a box.
+    #: Error of the modes, as a share of the tolerance.
+    modes_share: float = 0.25
+    #: Largest number of modes; many inputs, each with an early and a late change, need many modes.
     most_modes: int = 200
-    #: With fewer changed runs a model is not worth its making.
-    worth: int = 12
-    #: The first field that a phase is corrected at is one of its first s.
+    #: Least number of changed runs for which a reduced model is made.
+    least_runs: int = 12
+    #: The first field at which a phase is corrected lies within this time from its start, s.
     early: float = EARLY
 
 
-#: As shipped.
+#: Default settings.
 DEFAULT = ReducedInputSettings()
 
 
-def followed(studies: Mapping[Key, StudyData]) -> dict[Key, StudyData]:
-    """The runs that a reduced model is worth making for: of strain cycles that take longer than a run, those that have
-    their drive's.
+def reducible(studies: Mapping[Key, StudyData]) -> dict[Key, StudyData]:
+    """The runs for which a reduced model saves time.
 
-    What changes the strain cycle needs a solution of its own either way, and more of them to learn from.
+    With strain cycles by finite elements these are the runs with the strain cycle of their drive. An input that changes
+    the strain cycle needs a new finite-element solution in any case, and further solutions as training data.
     """
     return {
         (drive, name): study
@@ -63,19 +63,19 @@ def followed(studies: Mapping[Key, StudyData]) -> dict[Key, StudyData]:
     }
 
 
-def worth(studies: Mapping[Key, StudyData], settings: ReducedInputSettings = DEFAULT) -> bool:
-    """Are there changed runs enough?"""
-    return sum(name is not None for _, name in studies) >= settings.worth
+def enough_changed_runs(studies: Mapping[Key, StudyData], settings: ReducedInputSettings = DEFAULT) -> bool:
+    """Whether there are enough changed runs for a reduced model."""
+    return sum(name is not None for _, name in studies) >= settings.least_runs
 
 
 @dataclass(frozen=True, eq=False)
 class ReducedInputCertificate:
-    """What full runs say of those of the reduced model.
+    """Certificate of the reduced model: its difference from full runs that are not in its training data.
 
     Parameters
     ----------
-    worst : largest difference of any reading to ``cases`` full runs that it had not learnt from, K; ``tolerance`` is
-        what was allowed. reduced, full : changed runs by either. corrections : that it learnt from besides full runs.
+    worst : largest difference of any reading from ``cases`` full runs, K. tolerance : largest allowed difference, K.
+    reduced, full : numbers of changed runs by either model. corrections : corrections in the training data.
     """
 
     worst: float
@@ -87,28 +87,28 @@ class ReducedInputCertificate:
 
     @property
     def values(self) -> list[float]:
-        """All of it as numbers."""
+        """The fields as numbers, in their order."""
         return [float(getattr(self, name.name)) for name in fields(self)]
 
     @classmethod
     def of(cls, values: Any) -> ReducedInputCertificate:
-        """The certificate of such numbers."""
+        """The certificate from the numbers of `values`."""
         worst, tolerance, *counts = (float(value) for value in values)
         return cls(worst, tolerance, *(round(count) for count in counts))
 
     @property
     def sentence(self) -> str:
-        """For the notes of a comparison."""
+        """The certificate as a note of a comparison."""
         return (
-            f"Note: {self.reduced} of {self.reduced + self.full} runs with a changed input are a reduced model's; "
-            f"{self.cases} full ones differ from it by {self.worst:.2g} K at most"
+            f"Note: a reduced model computed {self.reduced} of {self.reduced + self.full} runs with a changed input; "
+            f"{self.cases} full runs differ from it by {self.worst:.2g} K at most"
         )
 
 
-def amended(task: tuple[PackedModel, Work, float, float]) -> Snapshots | None:
-    """Done in a worker: what the full model makes of the reduced run of a study, over a horizon.
+def corrected_run(task: tuple[PackedModel, Work, float, float]) -> Snapshots | None:
+    """In a worker: the full model's correction of the reduced run of a study, over a horizon.
 
-    None: no reduced model can follow it. It will be run in full, which says what is wrong, if anything is.
+    None: the study is not reducible. It is then run in full, and errors of the study appear there.
     """
     packed, work, share, early = task
     first = work.drive.first or work.drive
@@ -120,11 +120,11 @@ def amended(task: tuple[PackedModel, Work, float, float]) -> Snapshots | None:
 
 
 @dataclass(eq=False)
-class Neighbours:
-    """Runs of some drives, and of each with one input changed, most of them by a reduced model.
+class ReducedInputRuns:
+    """Runs with one changed input, most of them by a reduced model.
 
-    A changed run is its drive's full run plus what the reduced model says that the change does: what the model gets
-    wrong in both drops out. ``runs``: begun.
+    A changed run is the full run of its drive plus the difference of two reduced runs, with and without the change.
+    Errors that both reduced runs share cancel. ``runs``: after `Runs.begin`.
     """
 
     runs: Runs
@@ -138,35 +138,36 @@ class Neighbours:
         study = runs.studies[drive, None]
         if study.card.mechanics.feedback is not None:
             raise NotReducibleError("strain cycles that follow the temperature")
-        #: Those that the model is made for.
-        self.studies = followed(runs.studies)
+        #: The runs for which the model is made.
+        self.studies = reducible(runs.studies)
         self.changed = [key for key in self.studies if key[1] is not None]
-        if not worth(self.studies, self.settings):
-            raise NotReducibleError(f"fewer than {self.settings.worth} runs with a changed input")
-        self.tolerance = max(self.settings.finest, 2 * study.tolerance)
+        if not enough_changed_runs(self.studies, self.settings):
+            raise NotReducibleError(f"fewer than {self.settings.least_runs} runs with a changed input")
+        self.tolerance = max(self.settings.least_tolerance, 2 * study.tolerance)
         first = runs.work((drive, None)).drive
         self.packed, self.base = first.packed, first.tyre
         remember(self.packed, self.base)
 
     @property
     def computed(self) -> dict[Key, Computed]:
-        """All runs made so far."""
+        """All runs so far."""
         return self.runs.computed
 
     def solve(self) -> ReducedInputCertificate:
-        """Find every run.
+        """Compute every run.
 
         Raises
         ------
-        NotReducibleError : no model, or one that fresh runs do not bear out; the full runs made so far are found.
+        NotReducibleError : there is no reduced model, or fresh full runs do not confirm it. The full runs so far are
+            kept.
         """
         runs = self.runs
         for drive in runs.drives:
             if runs.work((drive, None)).tyre.mesh is not self.base.mesh:
                 raise NotReducibleError(f"another mesh{f' at the drive {drive}' if drive else ''}")
-        if len({training.fields.shape[1] for training in runs.learnt} | {self.base.problem.operators.size}) > 1:
+        if len({sample.fields.shape[1] for sample in runs.training} | {self.base.problem.operators.size}) > 1:
             raise NotReducibleError("another mesh")
-        model, worst = trained(self.base, runs.learnt, self._fineness), np.inf
+        model, worst = trained(self.base, runs.training, self._fineness), np.inf
         for trial in range(self.settings.trials):
             for _ in range(1 if trial else max(self.settings.rounds, len(runs.drives))):
                 model = self._round(model)
@@ -174,7 +175,7 @@ class Neighbours:
             fresh = self._fresh(reduced)
             if not fresh:
                 break
-            runs.teach(fresh)
+            runs.run_for_training(fresh)
             errors = [_difference(reduced[key], self.computed[key]) for key in fresh if key in reduced]
             worst = max(errors, default=np.inf)
             if worst <= self.settings.safety * self.tolerance:
@@ -182,16 +183,18 @@ class Neighbours:
         raise NotReducibleError(
             f"full runs are off by {worst:.2g} K; allowed: {self.settings.safety:g} x {self.tolerance:g} K"
             if np.isfinite(worst)
-            else "no run to certify with"
+            else "there is no run for a certificate"
         )
 
     @property
     def _fineness(self) -> ReducedFineness:
         most = self.settings.most_modes
-        return replace(ReducedFineness.of(self.settings.finer * self.tolerance), most_modes=most, most_sources=most)
+        return replace(
+            ReducedFineness.of(self.settings.modes_share * self.tolerance), most_modes=most, most_sources=most
+        )
 
     def _filled(self, reduced: Mapping[Key, Computed], worst: float, cases: int) -> ReducedInputCertificate:
-        """Take the reduced runs; what no reduced model can follow is run in full."""
+        """Take the reduced runs; run the other ones in full."""
         taken = {key: reduced[key] for key in self.changed if key not in self.computed and key in reduced}
         self.runs.take(taken)
         self.runs.fill()
@@ -199,22 +202,25 @@ class Neighbours:
         return ReducedInputCertificate(worst, self.tolerance, cases, len(taken), in_full, self.corrections)
 
     def _round(self, model: ReducedModel) -> ReducedModel:
-        """Corrections: every input lowered once, at one drive after the other; what is wanted raised stays untaught."""
+        """A round of corrections: every input is lowered once, and the drives take turns.
+
+        The wanted runs have raised inputs, so they are not in the training data.
+        """
         runs, drives = self.runs, self.runs.drives
         inputs = dict.fromkeys(name for _, name in self.changed)
         packed, number, early = pack(model, self.packed), self.rounds, self.settings.early
-        # The model goes with each: an executor's map names no workers, nor need they read this machine's files.
+        # Each task carries the model, because workers may run on machines without access to files of this process.
         work = [
             (packed, runs.work((drives[n % len(drives)], name), lowered=True), HORIZONS[n % len(HORIZONS)], early)
             for n, name in enumerate(inputs, number)
         ]
-        lessons = [lesson for lesson in runs.each(amended, work) if lesson is not None]
-        runs.learnt += lessons
-        self.rounds, self.corrections = number + 1, self.corrections + len(lessons)
-        return trained(self.base, runs.learnt, self._fineness)
+        samples = [sample for sample in runs.each(corrected_run, work) if sample is not None]
+        runs.training += samples
+        self.rounds, self.corrections = number + 1, self.corrections + len(samples)
+        return trained(self.base, runs.training, self._fineness)
 
     def _fresh(self, reduced: Mapping[Key, Computed]) -> list[Key]:
-        """Runs to certify with: at every drive that which changes most, of those not made yet; no input twice."""
+        """Runs for the certificate: at every drive the run with the largest change; no input twice if possible."""
         left = [key for key in self.changed if key in reduced and key not in self.computed]
         left.sort(key=lambda key: -self._size(reduced, key))
         drives = self.runs.drives
@@ -229,14 +235,14 @@ class Neighbours:
         return _difference(reduced[key], self.computed[key[0], None])
 
     def _reduced(self, model: ReducedModel) -> dict[Key, Computed]:
-        """All runs that the model can follow, each its drive's full run and what the change does."""
+        """All reducible runs, each the full run of its drive plus the reduced model's change."""
         keys = list(self.studies)
         outcomes = outcomes_of(model, [self.runs.work(key).tyre for key in keys])
         variants = {keys[number]: variant for number, variant in outcomes if isinstance(variant, Variant)}
         computed = {}
         for key, variant in variants.items():
             base, full = variants.get((key[0], None)), self.computed[key[0], None]
-            # Where readings come at other times, or from other places, nothing can be told from the difference.
+            # Readings at other times or of other sensors cannot be subtracted.
             if key[1] is None or base is None or not np.array_equal(variant.times, base.times):
                 continue
             mine, theirs = variant.readings, base.readings
@@ -250,5 +256,5 @@ class Neighbours:
 def _difference(computed: Computed, other: Computed) -> float:
     """Largest difference of any reading, K."""
     if len(computed.readings) != len(other.readings):
-        raise NotReducibleError("runs with other times of their readings")
+        raise NotReducibleError("the runs have readings at different times")
     return float(np.abs((computed.readings - other.readings).drop(columns="time_s").to_numpy()).max())

@@ -1,4 +1,4 @@
-"""The simulations of a comparison: every drive as it is, and with one uncertain input changed."""
+"""The simulations of a comparison: every drive unchanged, and with one changed uncertain input."""
 
 from __future__ import annotations
 
@@ -29,22 +29,22 @@ from tyrefem.simulation.simulate import simulate
 from tyrefem.variants.answer_store import AnswerStore, digest, effects_source, plain
 from tyrefem.variants.task import Bundle, bundle, unpacked
 
-#: Drive and changed input; None: as the study has it.
+#: Drive and changed input; None: no input is changed.
 Key = tuple[str, str | None]
-#: Fields taken of a full run to learn from.
+#: Number of fields of a full run for training.
 FIELDS = 30
-#: Names under which runs are kept: with what a reduced model learns of them, without, and those of such a model.
-TAUGHT, FULL, REDUCED = "taught", "full", "reduced"
+#: Names under which runs are kept: full runs with training data, full runs, and reduced runs.
+TRAINING, FULL, REDUCED = "taught", "full", "reduced"
 
 
 @dataclass(frozen=True, eq=False)
 class PackedDrive:
-    """A drive as it is, for any process: its changed runs share its mesh, operators and strain cycles.
+    """An unchanged drive for any process; its changed runs share its mesh, operators and strain cycles.
 
     Parameters
     ----------
-    packed : its study. first : the drive whose mesh all share; None: this one. cycles : file with its strain cycles, if
-        they take long to solve; where it cannot be read they are solved again.
+    packed : the study. first : the drive whose mesh all drives share; None: this drive. cycles : file with strain
+        cycles that are costly to solve; if it cannot be read they are solved again.
     """
 
     packed: Bundle
@@ -53,7 +53,7 @@ class PackedDrive:
 
     @property
     def tyre(self) -> RollingTyre:
-        """Its tyre, made once in a process."""
+        """The tyre of the drive, made once in a process."""
         if self.name not in _TYRES:
             like = None if self.first is None else self.first.tyre
             study = unpacked(self.packed)
@@ -64,11 +64,11 @@ class PackedDrive:
 
     @property
     def name(self) -> str:
-        """Of this drive among those that a process has met."""
+        """Unique name of the drive in a process."""
         return self.packed.digest + self.cycles
 
     def _read(self) -> CycleSchedule | None:
-        # Written by the process that gave the work, see `Runs.begin`.
+        # The file is written by the main process, see `Runs.begin`.
         with suppress(OSError):
             cycles: CycleSchedule | None = pickle.loads(Path(self.cycles).read_bytes()) if self.cycles else None
             return cycles
@@ -81,14 +81,14 @@ _TYRES: dict[str, RollingTyre] = {}
 
 @dataclass(frozen=True, eq=False)
 class Work:
-    """A drive with some of its study's numbers changed, by dotted names; none: as it is."""
+    """A run: a drive with ``changes`` of its study by dotted names; empty: unchanged."""
 
     drive: PackedDrive
     changes: Mapping[str, Any] = field(default_factory=dict)
 
     @property
     def tyre(self) -> RollingTyre:
-        """The tyre; what it has in common with its drive's is shared."""
+        """The tyre; it shares mesh, operators and, if unchanged, strain cycles with the tyre of its drive."""
         base = self.drive.tyre
         if not self.changes:
             return base
@@ -96,52 +96,52 @@ class Work:
         return RollingTyre(study, base, base.cycles if same_cycles(study, base.study) else None)
 
     def result(self) -> ResultData:
-        """Simulate it."""
+        """The simulated run."""
         tyre = self.tyre
         return simulate(tyre) if tyre.study.card.mechanics.feedback is None else run(tyre.study)
 
 
 def _computed(result: ResultData) -> Computed:
-    # The study need not travel: who gave the work has it.
+    # The main process has the study, so it is not sent back.
     return replace(computed_of(result), study=None)
 
 
-def driven(packed: Bundle) -> tuple[Computed, Snapshots, CycleSchedule | None]:
-    """Done in a worker: a drive as it is, and its strain cycles if they took long."""
+def base_run(packed: Bundle) -> tuple[Computed, Snapshots, CycleSchedule | None]:
+    """In a worker: an unchanged drive, its training data, and its strain cycles if they are costly."""
     result = run(unpacked(packed))
-    return _computed(result), snapshots(result, FIELDS), _dear(result)
+    return _computed(result), snapshots(result, FIELDS), _costly_cycles(result)
 
 
-def _dear(result: ResultData) -> CycleSchedule | None:
-    dear = strain_law(result.study).by_elements and result.study.card.mechanics.feedback is None
-    return result.tyre.schedule if dear else None
+def _costly_cycles(result: ResultData) -> CycleSchedule | None:
+    costly = strain_law(result.study).by_elements and result.study.card.mechanics.feedback is None
+    return result.tyre.schedule if costly else None
 
 
-def taught(work: Work) -> tuple[Computed, Snapshots]:
-    """Done in a worker: a full run, and what a reduced model learns of it."""
+def training_run(work: Work) -> tuple[Computed, Snapshots]:
+    """In a worker: a full run and its training data."""
     result = work.result()
     return _computed(result), snapshots(result, FIELDS)
 
 
-def full(work: Work) -> Computed:
-    """Done in a worker: a full run."""
+def full_run(work: Work) -> Computed:
+    """In a worker: a full run."""
     return _computed(work.result())
 
 
 def store_key(study: StudyData) -> str:
-    """Digest of what decides the runs of a study and its uncertain numbers."""
+    """Digest of all inputs that affect the runs of a study."""
     return digest([versions(), effects_source(), plain(study)])
 
 
 @dataclass(eq=False)
 class Runs:
-    """Makes the runs of a comparison, in this process or in several, and keeps what is finished; a context manager.
+    """The runs of a comparison in one or several processes; finished runs are kept. It is a context manager.
 
     Parameters
     ----------
-    studies : (drive, input) -> study; input None: the drive as it is, else with the input one sd higher.
-    keys : input -> its relative standard deviation. known : drive -> its result, where it is at hand.
-    executor : makes runs side by side. store : keeps them, opened. done : called with how many are made.
+    studies : (drive, input) -> study with the input one sd higher; input None: unchanged drive.
+    keys : input -> its relative standard deviation. known : drive -> its result, if it is available.
+    executor : makes runs in parallel. store : store of finished runs. done : called with the number of finished runs.
     """
 
     studies: Mapping[Key, StudyData]
@@ -150,9 +150,9 @@ class Runs:
     executor: Executor | None = None
     store: AnswerStore | None = None
     done: Callable[[int], None] = lambda count: None
-    #: (drive, input) -> its run, as far as made; what a reduced model learns of those made to learn from.
+    #: (drive, input) -> finished run; training data of a reduced model.
     computed: dict[Key, Computed] = field(default_factory=dict)
-    learnt: list[Snapshots] = field(default_factory=list)
+    training: list[Snapshots] = field(default_factory=list)
 
     def __enter__(self) -> Runs:
         self._folder = tempfile.TemporaryDirectory(prefix="tyrefem-")
@@ -166,7 +166,7 @@ class Runs:
 
     @property
     def drives(self) -> list[str]:
-        """All drives."""
+        """The drives."""
         return [drive for drive, name in self.studies if name is None]
 
     @property
@@ -175,28 +175,28 @@ class Runs:
         return [key for key in self.studies if key[1] is not None]
 
     def workload(self, *, model: bool) -> str:
-        """How many simulations there are, in a sentence. ``model``: a reduced one is tried."""
+        """The number of simulations as text. ``model``: a reduced model is tried."""
         drives, changed = len(self.drives), self.changed
         parts = [f"{drives} drive{'' if drives == 1 else 's'} as driven"]
         if changed:
             fewer = ", fewer if a reduced model holds" if model else ""
             parts.append(f"{len(changed)} with one uncertain input changed{fewer}")
         if self._by_elements:
-            parts.append(f"strain cycles to be solved by finite elements: {drives + self._moved}")
-        # The drives themselves are run again, for their meshes, unless nothing else is left to do.
-        kept = len(self.computed) or sum(self._has(key) for key in changed)
+            parts.append(f"strain cycles to be solved by finite elements: {drives + self._changed_cycles}")
+        # The unchanged drives are run again for their meshes, unless all runs are kept.
+        kept = len(self.computed) or sum(self._is_kept(key) for key in changed)
         if kept:
             parts.append(f"{kept} are taken up from an interrupted comparison")
         return f"{len(self.studies)} simulations: {'; '.join(parts)}"
 
     @property
     def cost(self) -> list[str]:
-        """For the notes: what the changed inputs cost, where strain cycles take longer than a run."""
+        """Note on the cost of changed inputs, if strain cycles are by finite elements."""
         if not self.changed or not self._by_elements:
             return []
         return [
-            f"Note: {len(self.changed)} runs with a changed input; {self._moved} of them change the strain cycle, "
-            "which finite elements solve anew"
+            f"Note: {len(self.changed)} runs with a changed input; {self._changed_cycles} of them change the strain "
+            "cycle, which needs a new finite-element solution"
         ]
 
     @property
@@ -204,11 +204,11 @@ class Runs:
         return strain_law(self.studies[self.drives[0], None]).by_elements
 
     @functools.cached_property
-    def _moved(self) -> int:
+    def _changed_cycles(self) -> int:
         return sum(not same_cycles(self.studies[key], self.studies[key[0], None]) for key in self.changed)
 
     def work(self, key: Key, *, lowered: bool = False) -> Work:
-        """How a run is made, after `begin`; ``lowered``: with the input one standard deviation lower instead."""
+        """The work of a run, after `begin`; ``lowered``: the input is one standard deviation lower, not higher."""
         drive, name = key
         if name is None:
             return Work(self._drives[drive])
@@ -217,19 +217,19 @@ class Runs:
         return Work(self._drives[drive], number.changes(1 / factor if lowered else factor))
 
     def each(self, function: Callable[[Any], Any], work: Iterable[Any]) -> Iterator[Any]:
-        """The function's answers, in order."""
+        """The results of the function, in the order of ``work``."""
         return map(function, work) if self.executor is None else self.executor.map(function, work)
 
     def begin(self) -> None:
-        """Run every drive as it is; its strain cycles are solved once for all its changed runs."""
-        cycles = {drive: _dear(result) for drive, result in self.known.items()}
+        """Run every unchanged drive; its changed runs share its strain cycles."""
+        cycles = {drive: _costly_cycles(result) for drive, result in self.known.items()}
         packed = {drive: bundle(self.studies[drive, None]) for drive in self.drives}
         for drive, result in self.known.items():
             self._add((drive, None), computed_of(result), snapshots(result, FIELDS))
         left = [drive for drive in self.drives if drive not in self.known]
-        answers = self._answers(driven, [packed[drive] for drive in left], [(drive, None) for drive in left])
-        for drive, (computed, lesson, cycles[drive]) in zip(left, answers, strict=True):
-            self._add((drive, None), computed, lesson)
+        answers = self._answers(base_run, [packed[drive] for drive in left], [(drive, None) for drive in left])
+        for drive, (computed, sample, cycles[drive]) in zip(left, answers, strict=True):
+            self._add((drive, None), computed, sample)
             self._keep(FULL, (drive, None), arrays_of(computed))
             self.done(len(self.computed))
         first: PackedDrive | None = None
@@ -240,57 +240,57 @@ class Runs:
             self._drives[drive] = PackedDrive(packed[drive], first, str(path) if path.exists() else "")
             first = first or self._drives[drive]
 
-    def teach(self, keys: Sequence[Key]) -> None:
-        """Full runs, which are learnt from too."""
+    def run_for_training(self, keys: Sequence[Key]) -> None:
+        """Full runs whose fields are training data too."""
         left = []
         for key in keys:
-            arrays = self._kept(TAUGHT, key)
+            arrays = self._kept(TRAINING, key)
             if arrays is None:
                 left.append(key)
             else:
                 self._add(key, computed_from(arrays[:-2], None), Snapshots(*arrays[-2:]))
-        answers = self._answers(taught, [self.work(key) for key in left], left)
-        for key, (computed, lesson) in zip(left, answers, strict=True):
-            self._add(key, computed, lesson)
-            self._keep(TAUGHT, key, (*arrays_of(computed), lesson.fields, lesson.sources))
+        answers = self._answers(training_run, [self.work(key) for key in left], left)
+        for key, (computed, sample) in zip(left, answers, strict=True):
+            self._add(key, computed, sample)
+            self._keep(TRAINING, key, (*arrays_of(computed), sample.fields, sample.sources))
             self.done(len(self.computed))
 
     def fill(self) -> None:
-        """Full runs of all that are not made yet."""
-        self._take_up(self.changed, (FULL, TAUGHT))
-        # The same change at one drive after the other: what takes long to find for a change, its drives may share.
+        """Full runs of all inputs that have no run yet."""
+        self._take_up(self.changed, (FULL, TRAINING))
+        # Drives with the same change follow each other, because they can share costly intermediate results.
         order = {name: number for number, name in enumerate(self.keys)}
         left = sorted((key for key in self.changed if key not in self.computed), key=lambda key: order[str(key[1])])
-        answers = self._answers(full, [self.work(key) for key in left], left)
+        answers = self._answers(full_run, [self.work(key) for key in left], left)
         for key, computed in zip(left, answers, strict=True):
             self._record(key, computed)
             self._keep(FULL, key, arrays_of(computed))
             self.done(len(self.computed))
 
     def take(self, reduced: Mapping[Key, Computed]) -> None:
-        """Runs of a reduced model that was found good."""
+        """Take the runs of a certified reduced model."""
         for key, computed in reduced.items():
             self._record(key, computed)
             self._keep(REDUCED, key, arrays_of(computed))
         self.done(len(self.computed))
 
     def take_up_all(self, *, reduced: bool) -> bool:
-        """Take up everything; False, and nothing is taken: some of it is missing. ``reduced``: such runs too."""
+        """Take up all runs from the store, with ``reduced`` also reduced runs; False, and none, if a run is missing."""
         for drive, result in self.known.items():
             self._record((drive, None), computed_of(result))
-        self._take_up(list(self.studies), (FULL, TAUGHT, REDUCED) if reduced else (FULL, TAUGHT))
+        self._take_up(list(self.studies), (FULL, TRAINING, REDUCED) if reduced else (FULL, TRAINING))
         if len(self.computed) == len(self.studies):
             return True
         self.computed.clear()
         return False
 
-    def note(self, verdict: Any) -> None:
-        """Keep what became of the reduced model: numbers, or why there is none."""
+    def keep_verdict(self, verdict: Any) -> None:
+        """Keep the outcome of the reduced model: numbers of its certificate, or the reason why there is none."""
         self._keep(REDUCED, "verdict", np.array(verdict))
 
     @property
-    def noted(self) -> Any:
-        """What `note` has kept; None: nothing."""
+    def kept_verdict(self) -> Any:
+        """The outcome that `keep_verdict` has kept, or None."""
         return self._kept(REDUCED, "verdict")
 
     def _take_up(self, keys: Sequence[Key], names: Sequence[str]) -> None:
@@ -302,7 +302,7 @@ class Runs:
         self.done(len(self.computed))
 
     def _answers(self, function: Callable[[Any], Any], work: Sequence[Any], keys: Sequence[Key]) -> Iterator[Any]:
-        """Of work for these runs: errors name the study's file."""
+        """Results of the function for these runs; errors name the study's file."""
         answers = iter(self.each(function, work))
         for key in keys:
             try:
@@ -313,12 +313,12 @@ class Runs:
     def _record(self, key: Key, computed: Computed) -> None:
         self.computed[key] = replace(computed, study=self.studies[key])
 
-    def _add(self, key: Key, computed: Computed, lesson: Snapshots) -> None:
+    def _add(self, key: Key, computed: Computed, sample: Snapshots) -> None:
         self._record(key, computed)
-        self.learnt.append(lesson)
+        self.training.append(sample)
 
-    def _has(self, key: Key) -> bool:
-        return self.store is not None and any(self.store.has(name, key) for name in (FULL, TAUGHT))
+    def _is_kept(self, key: Key) -> bool:
+        return self.store is not None and any(self.store.has(name, key) for name in (FULL, TRAINING))
 
     def _kept(self, name: str, key: Any) -> Any:
         return None if self.store is None else self.store.known(name, key)

@@ -1,4 +1,4 @@
-"""What a study file names and only its users look up: uncertain numbers, drives, runs and columns of tables."""
+"""Check of the names in a study file: uncertain numbers, drives, measured runs and columns of tables."""
 
 from __future__ import annotations
 
@@ -9,12 +9,12 @@ from tyrefem.mechanics.cycle_schedule import check_cases
 
 
 def check_study(study: StudyData) -> int:
-    """Follow every name of a study to its end without running it; the number of its measured runs.
+    """Check all names of a study without running it; returns the number of its measured runs.
 
     Raises
     ------
-    InputError : a load that the section cannot take, an uncertain number that is not there, a drive of a measured
-        table that is wrong, a table, run or column that is not there.
+    InputError : an impossible load, a missing uncertain number, a wrong drive of a measured table, a missing table, run
+        or column.
     """
     check_cases(study)
     _ = study.uncertainty

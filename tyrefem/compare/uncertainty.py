@@ -1,7 +1,4 @@
-"""The validation uncertainty of a mean deviation, in the manner of ASME V&V 20.
-
-What a row of a comparison says: deviation, uncertainty and a verdict in words.
-"""
+"""The validation uncertainty of a mean deviation by ASME V&V 20, and the rows of a comparison."""
 
 from __future__ import annotations
 
@@ -16,10 +13,10 @@ from tyrefem.compare.history import Array, SensorHistory
 
 
 def effective_number(errors: Array) -> float:
-    """How many independent readings a series of correlated ones is worth.
+    """The effective number of independent readings of a correlated series.
 
-    n_eff = n (1 - r1) / (1 + r1), 1 <= n_eff <= n, with r1 the lag-1 autocorrelation about the mean. A
-    deviation that drifts is correlated too, so n_eff errs on the small side.
+    n_eff = n (1 - r1) / (1 + r1), 1 <= n_eff <= n, with r1 the lag-1 autocorrelation about the mean. A drift of the
+    deviation also raises r1, so n_eff is a low estimate.
 
     Parameters
     ----------
@@ -35,7 +32,7 @@ def effective_number(errors: Array) -> float:
     number = len(errors)
     centred = errors - errors.mean()
     variance = float(centred @ centred)
-    # Below rounding the scatter carries no information on correlation.
+    # A scatter below rounding has no information on correlation.
     if number < 2 or variance <= number * (1e-12 * (1.0 + float(np.abs(errors).max()))) ** 2:
         return float(number)
     correlation = float(centred[:-1] @ centred[1:]) / variance
@@ -77,7 +74,7 @@ class Uncertainty:
 
     @property
     def data(self) -> float:
-        """u_D; noise averages out with the number of independent readings, the rest does not."""
+        """u_D; only the noise decreases with the number of independent readings."""
         return math.hypot(self.noise / math.sqrt(self.n_effective), self.accuracy, self.position)
 
     @property
@@ -110,8 +107,8 @@ def row(
 ) -> tuple[dict[str, Any], dict[str, float]]:
     """The row of one sensor, run and phase, and the change (K) of its mean with each uncertain input.
 
-    The mean deviation is judged against k u_val. A deviation that changes sign within the phase has a small mean,
-    so the rms is judged too, against k times the uncertainty of single readings (noise not averaged).
+    The mean deviation is compared with k u_val. A deviation that changes sign within the phase has a small mean, so the
+    rms is compared too, with k times the uncertainty of single readings.
     """
     error = history.error[mask]
     given = uncertainty(history, mask)
@@ -127,9 +124,9 @@ def row(
 
 
 def verdict(bias: float, rms: float, u_val: float, u_reading: float, k: float) -> tuple[bool, str]:
-    """Whether the model is in error beyond its uncertainty, and what can be said of that error.
+    """Whether the deviation is beyond the uncertainty, and the verdict as text.
 
-    |E| <= k u_val: the model's error is hidden by the uncertainty. Else it lies in E +/- k u_val.
+    |E| <= k u_val: the uncertainty hides the model error. Otherwise the model error lies in E +/- k u_val.
 
     Source: ASME V&V 20-2009; the test of the rms is an addition for histories.
 

@@ -1,4 +1,4 @@
-"""Simulate what was measured and compare: the way from a study and a table to a `ComparisonData`."""
+"""The comparison step by step: experiments, simulations, histories, deviations."""
 
 from __future__ import annotations
 
@@ -15,11 +15,11 @@ from tyrefem.compare.history import histories
 from tyrefem.compare.interface import ResultLike, StudyLike, computed_of
 from tyrefem.compare.reduced_inputs import (
     DEFAULT,
-    Neighbours,
     ReducedInputCertificate,
+    ReducedInputRuns,
     ReducedInputSettings,
-    followed,
-    worth,
+    enough_changed_runs,
+    reducible,
 )
 from tyrefem.compare.runs import Runs, store_key
 from tyrefem.errors import InputError
@@ -30,7 +30,7 @@ from tyrefem.simulation.result import ResultData
 from tyrefem.simulation.run import run
 from tyrefem.variants.answer_store import AnswerStore
 
-#: What a comparison needs of a study.
+#: What a study must have for a comparison.
 NEEDS = Requirements("a comparison", measured=True)
 
 
@@ -61,25 +61,25 @@ def compare(
     ----------
     study : the study; its sensors give names, noise, accuracy and uncertainty of position.
     table : CSV file (see `tyrefem.measured.read_table`), pandas DataFrame with the same columns, runs already read, or
-        a list of these; None = the study's own ``[[measured]]`` entries, with their drives, noise and offsets.
-    result : the study's result if it is known; used for every run that was driven at the study's own drive,
-        and for a single run in any case if it comes from another (amended, other drive) study.
-    inputs : run the study again with each number of ``study.uncertainty`` one standard deviation higher: all that its
-        cards and ``[uncertainty]`` state and that can matter, a card's number in all its regions at once.
-    ignore : columns of the tables to leave out. ``rename`` : column name -> sensor name; both beside what the
-        ``[[measured]]`` entries say.
+        a list of these; None = the study's ``[[measured]]`` entries, with their drives, noise and offsets.
+    result : the study's result if it is known; used for every run at the study's drive, and for a single run in any
+        case if it is the result of another study (amended, or with another drive).
+    inputs : run the study with each number of ``study.uncertainty`` one standard deviation higher. These are the
+        relevant numbers of its cards and of ``[uncertainty]``; a number of a card changes in all its regions.
+    ignore : columns of the tables to leave out. ``rename`` : column name -> sensor name; both in addition to the
+        ``[[measured]]`` entries.
     k : coverage factor of the verdict; 2 for about 95 %.
-    executor : runs the simulations side by side (`concurrent.futures.ProcessPoolExecutor` or alike).
+    executor : runs the simulations in parallel (`concurrent.futures.ProcessPoolExecutor` or alike).
     progress : called with (simulations done, simulations in all) after each.
-    reduced : "auto" makes a reduced model of the drives' runs for the changed inputs, where there are at least 12 of
-        these, tries it on three or more of them that are run in full, and uses it if it held; "never" does not.
-    store : keeps finished simulations, so that an interrupted comparison takes them up again.
-    settings : how reduced models are made and when they are believed.
-    begin : called before the first simulation with a sentence of how many there are.
+    reduced : "auto": with at least 12 changed runs, a reduced model computes them if three or more full runs confirm
+        it. "never": all runs are full runs.
+    store : store of finished simulations, from which an interrupted comparison continues.
+    settings : numerical parameters of the reduced models.
+    begin : called before the first simulation with a sentence on the number of simulations.
 
     Raises
     ------
-    InputError : a campaign; no measured runs; the table cannot be read, a column is no sensor, no measured time is
+    InputError : a campaign; no measured runs; the table cannot be read; a column is no sensor; no measured time is
         within the simulated span.
     TypeError : a keyword that is none of these.
 
@@ -93,7 +93,7 @@ def compare(
     if result is None and isinstance(study, StudyData):
         _check_times(study, planned)
     keys = dict(study.uncertainty) if judged.inputs else {}
-    solved, certificate, of_model = _solved(study, planned, result, keys, work)
+    solved, certificate, model_notes = _solved(study, planned, result, keys, work)
     all_histories, curves, notes = [], {}, []
     for experiment in planned:
         computed, perturbed = solved[_drive(experiment)]
@@ -101,10 +101,10 @@ def compare(
         all_histories += of_experiment
         curves[experiment.name] = computed.readings
         first, last = computed.readings["time_s"].iloc[[0, -1]]
-        notes += _outside(experiment, first, last, outside)
+        notes += _outside_note(experiment, first, last, outside)
     if not all_histories:
         raise InputError("no measured time is within the simulated span: " + "; ".join(notes))
-    notes += [*of_model, *_left_out(planned), *_unstated(study, planned, judged.inputs)]
+    notes += [*model_notes, *_other_columns_note(planned), *_uncertainty_notes(study, planned, judged.inputs)]
     regions = {number.key: number.regions for number in getattr(study, "uncertain_numbers", ())}
     return comparison_of(
         study.name, all_histories, curves=curves, relative_sd=keys, regions=regions, notes=tuple(notes), k=judged.k,
@@ -123,7 +123,7 @@ Solved = tuple[dict[Key, ResultLike], ReducedInputCertificate | None, list[str]]
 
 
 def _grouped(options: Mapping[str, Any]) -> tuple[ColumnNames, _Judged, _Work]:
-    """The keywords of `compare` by what they are about."""
+    """The keywords of `compare` in groups."""
     given = dict(options)
     columns = ColumnNames(dict(given.pop("rename", None) or {}), tuple(given.pop("ignore", ())))
     judged = {name: given.pop(name) for name in ("inputs", "k") if name in given}
@@ -132,20 +132,20 @@ def _grouped(options: Mapping[str, Any]) -> tuple[ColumnNames, _Judged, _Work]:
 
 @dataclass(frozen=True)
 class _Judged:
-    """What a deviation is judged against, see `compare`."""
+    """Uncertainties that a deviation is compared with, see `compare`."""
 
     inputs: bool = True
     k: float = 2.0
 
     def check(self) -> None:
-        """Raises InputError for a coverage factor that is none."""
+        """Raises InputError for a coverage factor out of range."""
         if not 0.0 < self.k < 100.0:
             raise InputError(f"the coverage factor k must be more than 0 and less than 100, not {self.k!r}")
 
 
 @dataclass(frozen=True, eq=False)
 class _Work:
-    """How the simulations are made, see `compare`."""
+    """Execution of the simulations, see `compare`."""
 
     executor: Executor | None = None
     progress: Callable[[int, int], None] | None = None
@@ -155,12 +155,12 @@ class _Work:
     settings: ReducedInputSettings = DEFAULT
 
     def check(self) -> None:
-        """Raises InputError for a word that is no choice."""
+        """Raises InputError for another word than "auto" or "never"."""
         if self.reduced not in ("auto", "never"):
             raise InputError(f"reduced must be 'auto' or 'never', not {self.reduced!r}")
 
     def done(self, total: int) -> Callable[[int], None]:
-        """What is called with the number of simulations made."""
+        """Function to be called with the number of finished simulations."""
         return lambda count: self.progress(count, total) if self.progress is not None else None
 
 
@@ -171,7 +171,7 @@ def _solved(
     keys: Mapping[str, float],
     work: _Work,
 ) -> tuple[dict[str, tuple[ResultLike, dict[str, ResultLike]]], ReducedInputCertificate | None, list[str]]:
-    """Drive -> its result, and its results with each uncertain input one sd higher; certificate; notes."""
+    """Drive -> its result and its results with each uncertain input one sd higher; certificate; notes."""
     known: dict[str, ResultLike] = {}
     studies: dict[Key, StudyLike] = {}
     for experiment in planned:
@@ -190,7 +190,7 @@ def _solved(
     if len(as_data) == len(studies) and len(at_hand) == len(known):
         solutions, certificate, notes = _by_runs(as_data, at_hand, keys, work)
     else:
-        solutions, certificate, notes = _one_by_one(studies, known, work)
+        solutions, certificate, notes = _by_full_runs(studies, known, work)
     together = {
         drive: (solution, {key: solutions[drive, key] for key in keys})
         for (drive, name), solution in solutions.items()
@@ -199,8 +199,8 @@ def _solved(
     return together, certificate, notes
 
 
-def _one_by_one(studies: Mapping[Key, StudyLike], known: Mapping[str, ResultLike], work: _Work) -> Solved:
-    """The runs of studies of any kind, every one in full."""
+def _by_full_runs(studies: Mapping[Key, StudyLike], known: Mapping[str, ResultLike], work: _Work) -> Solved:
+    """Full runs of studies of any kind."""
     each: Any = work.executor.map if work.executor is not None else map
     results: dict[Key, ResultLike] = {(drive, None): result for drive, result in known.items()}
     missing, done = [key for key in studies if key not in results], work.done(len(studies))
@@ -218,12 +218,12 @@ def _run(study: StudyLike) -> ResultLike:
 def _by_runs(
     studies: Mapping[Key, StudyData], known: Mapping[str, ResultData], keys: Mapping[str, float], work: _Work
 ) -> Solved:
-    """The runs of studies, those with a changed input by a reduced model where it holds."""
-    model = work.reduced == "auto" and worth(followed(studies), work.settings)
+    """The runs of studies; a certified reduced model computes runs with a changed input."""
+    model = work.reduced == "auto" and enough_changed_runs(reducible(studies), work.settings)
     if work.store is not None:
         work.store.resume(store_key(next(iter(studies.values()))))
     with Runs(studies, keys, known, work.executor, work.store, work.done(len(studies))) as runs:
-        verdict = runs.noted if model else None
+        verdict = runs.kept_verdict if model else None
         refused = verdict is not None and verdict.dtype.kind == "U"
         certified = verdict is not None and not refused
         complete = work.store is not None and runs.take_up_all(reduced=certified)
@@ -232,30 +232,30 @@ def _by_runs(
         if complete:
             certificate = ReducedInputCertificate.of(verdict) if certified else None
             why = str(verdict) if refused else ""
-            return dict(runs.computed), certificate, [*runs.cost, *_of_model(model, certificate, why)]
+            return dict(runs.computed), certificate, [*runs.cost, *_model_notes(model, certificate, why)]
         runs.begin()
         certificate, why = None, str(verdict) if refused else ""
         if model and not why:
             try:
-                certificate = Neighbours(runs, work.settings).solve()
-                runs.note(certificate.values)
+                certificate = ReducedInputRuns(runs, work.settings).solve()
+                runs.keep_verdict(certificate.values)
             except (InputError, np.linalg.LinAlgError) as error:
-                # What is wrong with the study itself is said by its full run.
+                # An error of the study itself appears in its full run.
                 why = str(error)
-                runs.note(why)
+                runs.keep_verdict(why)
         runs.fill()
-    return dict(runs.computed), certificate, [*runs.cost, *_of_model(model, certificate, why)]
+    return dict(runs.computed), certificate, [*runs.cost, *_model_notes(model, certificate, why)]
 
 
-def _of_model(model: bool, certificate: ReducedInputCertificate | None, why: str) -> list[str]:
-    """What the notes say of the reduced model."""
+def _model_notes(model: bool, certificate: ReducedInputCertificate | None, why: str) -> list[str]:
+    """Notes on the reduced model."""
     if certificate is not None:
         return [certificate.sentence]
-    return [f"Note: all runs with a changed input are full ones: {why}"] if model else []
+    return [f"Note: all runs with a changed input are full runs: {why}"] if model else []
 
 
 def _check_times(study: StudyData, planned: Sequence[Experiment]) -> None:
-    """Refuse readings that are all outside their runs' drives, before these are simulated."""
+    """Raises InputError before the simulations if all readings are outside the drives of their runs."""
     notes: list[str] = []
     for experiment in planned:
         driven = study.with_drive(dict(experiment.drive)) if experiment.drive else study
@@ -263,11 +263,11 @@ def _check_times(study: StudyData, planned: Sequence[Experiment]) -> None:
         outside = int(np.sum((times < 0.0) | (times > end * (1 + 1e-9))))
         if outside < len(times):
             return
-        notes += _outside(experiment, 0.0, end, outside)
+        notes += _outside_note(experiment, 0.0, end, outside)
     raise InputError("no measured time is within the simulated span: " + "; ".join(notes))
 
 
-def _outside(experiment: Experiment, first: float, last: float, outside: int) -> list[str]:
+def _outside_note(experiment: Experiment, first: float, last: float, outside: int) -> list[str]:
     if not outside:
         return []
     total = len(experiment.run.times)
@@ -278,18 +278,18 @@ def _outside(experiment: Experiment, first: float, last: float, outside: int) ->
     ]
 
 
-def _left_out(planned: Sequence[Experiment]) -> list[str]:
+def _other_columns_note(planned: Sequence[Experiment]) -> list[str]:
     channels = dict.fromkeys(heading for experiment in planned for heading in experiment.run.channels)
-    return [f"Note: no temperatures, left out: {', '.join(channels)}"] if channels else []
+    return [f"Note: columns without temperatures are left out: {', '.join(channels)}"] if channels else []
 
 
-def _unstated(study: StudyLike, planned: Sequence[Experiment], inputs: bool) -> list[str]:
-    """What the uncertainty leaves out, because nobody stated it."""
+def _uncertainty_notes(study: StudyLike, planned: Sequence[Experiment], inputs: bool) -> list[str]:
+    """Notes on uncertainties that are not stated."""
     notes = []
     if not study.uncertainty:
         notes.append("Note: the study states no uncertainty of its inputs, so u_input is 0")
     elif not inputs:
-        notes.append("Note: the uncertainty of the inputs was left out, so u_input is 0")
+        notes.append("Note: the uncertainty of the inputs is left out, so u_input is 0")
     if inputs:
         notes += [f"Note: inputs {line}" for line in left_out(getattr(study, "uncertain_numbers", ()))]
     silent = {
@@ -300,5 +300,5 @@ def _unstated(study: StudyLike, planned: Sequence[Experiment], inputs: bool) -> 
         and (experiment.noise is not None or not getattr(study.sensors.get(sensor), "noise", 0.0))
     }
     if silent:
-        notes.append(f"Note: no measurement noise stated for {', '.join(silent)}")
+        notes.append(f"Note: no measurement noise is stated for {', '.join(silent)}")
     return notes
