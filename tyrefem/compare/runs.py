@@ -257,7 +257,7 @@ class Runs:
 
     def fill(self) -> None:
         """Full runs of all inputs that have no run yet."""
-        self._take_up(self.changed, (FULL, TRAINING))
+        self._resume(self.changed, (FULL, TRAINING))
         # Drives with the same change follow each other, because they can share costly intermediate results.
         order = {name: number for number, name in enumerate(self.keys)}
         left = sorted((key for key in self.changed if key not in self.computed), key=lambda key: order[str(key[1])])
@@ -274,11 +274,11 @@ class Runs:
             self._keep(REDUCED, key, arrays_of(computed))
         self.done(len(self.computed))
 
-    def take_up_all(self, *, reduced: bool) -> bool:
-        """Take up all runs from the store, with ``reduced`` also reduced runs; False, and none, if a run is missing."""
+    def resume_all(self, *, reduced: bool) -> bool:
+        """Resume all runs from the store, with ``reduced`` also reduced runs; False, and none, if a run is missing."""
         for drive, result in self.known.items():
             self._record((drive, None), computed_of(result))
-        self._take_up(list(self.studies), (FULL, TRAINING, REDUCED) if reduced else (FULL, TRAINING))
+        self._resume(list(self.studies), (FULL, TRAINING, REDUCED) if reduced else (FULL, TRAINING))
         if len(self.computed) == len(self.studies):
             return True
         self.computed.clear()
@@ -293,7 +293,7 @@ class Runs:
         """The outcome that `keep_verdict` has kept, or None."""
         return self._kept(REDUCED, "verdict")
 
-    def _take_up(self, keys: Sequence[Key], names: Sequence[str]) -> None:
+    def _resume(self, keys: Sequence[Key], names: Sequence[str]) -> None:
         for key in keys:
             for name in names:
                 arrays = None if key in self.computed else self._kept(name, key)

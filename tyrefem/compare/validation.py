@@ -226,7 +226,7 @@ def _by_runs(
         verdict = runs.kept_verdict if model else None
         refused = verdict is not None and verdict.dtype.kind == "U"
         certified = verdict is not None and not refused
-        complete = work.store is not None and runs.take_up_all(reduced=certified)
+        complete = work.store is not None and runs.resume_all(reduced=certified)
         if work.begin is not None:
             work.begin(runs.workload(model=model))
         if complete:
