@@ -88,7 +88,7 @@ def test_what_cannot_matter_says_why() -> None:
     series = {"law": "prony", "equilibrium": "1 MPa", "series": [["0.4 MPa", "1 ms"]], "source": "test"}
     loss = {"law": "frequency", "frequency": series, "source": "test", "relative_sd": 0.2}
     prony = by_key(radial().replace({"materials.tread": {"base": "rubber-tread-passenger", "loss_tangent": loss}}))
-    assert "no one number" in prony["materials.tread.loss_tangent"].idle
+    assert "no single number" in prony["materials.tread.loss_tangent"].idle
 
 
 def test_softening_counts_where_temperatures_act_back() -> None:
@@ -109,7 +109,7 @@ def test_the_studys_own_table_speaks_of_the_same_numbers() -> None:
     assert study.uncertainty["drive.load"] == pytest.approx(0.02)
     assert study.uncertainty["materials.tread.density.value"] == pytest.approx(0.03)
     twice = radial().replace({"uncertainty": {turn_up: "5 %", ply: "6 %"}})
-    with pytest.raises(tf.InputError, match=r"uncertainty\.materials\.body-ply.*one number with 'materials\.turn-up"):
+    with pytest.raises(tf.InputError, match=r"uncertainty\.materials\.body-ply.*is the same number as 'materials\.turn-up"):
         _ = twice.uncertainty
 
 
