@@ -143,7 +143,7 @@ def test_rig_keeps_fits_and_tables(rig: Path) -> None:
     assert json.loads((rig / "layers/summary.json").read_text(encoding="utf-8"))["complete"] is False
     identify = ("rig", "identify", "mine.toml", "sim/low.csv", "--constant", "--out", "identified")
     line = clean(rig, interrupted(*identify, at=PICTURE, folder=rig))
-    assert line == "tyrefem: interrupted; the tables and cards are in identified, the page is not\n"
+    assert line == "tyrefem: interrupted; identified has the tables and cards, but not the page\n"
     assert (rig / "identified/rig.json").is_file()
 
 
