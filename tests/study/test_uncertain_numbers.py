@@ -109,7 +109,9 @@ def test_the_studys_own_table_speaks_of_the_same_numbers() -> None:
     assert study.uncertainty["drive.load"] == pytest.approx(0.02)
     assert study.uncertainty["materials.tread.density.value"] == pytest.approx(0.03)
     twice = radial().replace({"uncertainty": {turn_up: "5 %", ply: "6 %"}})
-    with pytest.raises(tf.InputError, match=r"uncertainty\.materials\.body-ply.*is the same number as 'materials\.turn-up"):
+    with pytest.raises(
+        tf.InputError, match=r"uncertainty\.materials\.body-ply.*is the same number as 'materials\.turn-up"
+    ):
         _ = twice.uncertainty
 
 
