@@ -18,7 +18,7 @@ from tyrefem.compare.experiment import experiments
 from tyrefem.diagnose.candidates import catalogue_candidates
 from tyrefem.diagnose.evaluations import evaluating
 from tyrefem.diagnose.forward_model import ForwardModel
-from tyrefem.diagnose.runs import trial
+from tyrefem.diagnose.runs import measured_drive
 from tyrefem.diagnose.sensitivities import responses, unknowns_of
 from tyrefem.diagnose.workflow import diagnose
 from tyrefem.simulation.surroundings import GAS
@@ -31,7 +31,7 @@ def main() -> None:
     parser.add_argument("--workers", type=int, default=os.cpu_count() or 1)
     given = parser.parse_args()
     study = tf.study(given.study)
-    model = ForwardModel(study, tuple(trial(one, study).sampling for one in experiments(study)))
+    model = ForwardModel(study, tuple(measured_drive(one, study).sampling for one in experiments(study)))
     unknowns, nuisance = unknowns_of(study, [*study.sensors, GAS], catalogue_candidates(study))
     began = time.perf_counter()
     model.driven(study, 0).run()

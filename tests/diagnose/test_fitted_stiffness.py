@@ -13,7 +13,7 @@ import tyrefem as tf
 from tyrefem.compare.experiment import experiments
 from tyrefem.diagnose.amend import Change, amended
 from tyrefem.diagnose.forward_model import ForwardModel
-from tyrefem.diagnose.runs import trial
+from tyrefem.diagnose.runs import measured_drive
 from tyrefem.diagnose.unknowns import base_unknowns, with_values
 
 STIFF = {"relative_sd": 0.2}
@@ -51,7 +51,9 @@ def test_fits_solve_no_strain_cycle_for_each_point(tmp_path: Path, monkeypatch: 
     pd.DataFrame({"time [s]": readings["time_s"], "crown-inner [degC]": readings["crown-inner"]}).to_csv(
         tmp_path / "run.csv", index=False
     )
-    model = ForwardModel(fem, tuple(trial(one, fem).sampling for one in experiments(fem, tmp_path / "run.csv")))
+    model = ForwardModel(
+        fem, tuple(measured_drive(one, fem).sampling for one in experiments(fem, tmp_path / "run.csv"))
+    )
     unknowns = base_unknowns(fem)
     stiff, load = (next(one for one in unknowns if one.key == key) for key in (KEY, "drive.load"))
     solved: list[Any] = []

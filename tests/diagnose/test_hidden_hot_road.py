@@ -228,10 +228,10 @@ def test_python_can_start_workers_and_they_agree(case: Case) -> None:
     code = (
         "import sys; import tyrefem as tf; from tyrefem.diagnose.forward_model import ForwardModel\n"
         "from tyrefem.diagnose.evaluations import evaluating\n"
-        "from tyrefem.compare.experiment import experiments; from tyrefem.diagnose.runs import trial\n"
+        "from tyrefem.compare.experiment import experiments; from tyrefem.diagnose.runs import measured_drive\n"
         "if __name__ == '__main__':\n"
         "    study = tf.study(sys.argv[1])\n"
-        "    model = ForwardModel(study, tuple(trial(one, study).sampling for one in experiments(study)))\n"
+        "    model = ForwardModel(study, tuple(measured_drive(one, study).sampling for one in experiments(study)))\n"
         "    with evaluating(model, 2) as evaluations:\n"
         "        here = [model.predict(i, {}) for i in (0, 1)]\n"
         "        there = evaluations.of('predict', [(0, {}), (1, {})])\n"

@@ -20,7 +20,7 @@ from tyrefem.diagnose.exhaustive import Exhaustive
 from tyrefem.diagnose.forward_model import FOLLOWED, NO_ANSWER, NOT_FOLLOWED, DriveResponse, ForwardModel
 from tyrefem.diagnose.multifidelity import Predictions
 from tyrefem.diagnose.reduced_forward import Modes, ReducedDrive
-from tyrefem.diagnose.runs import trial
+from tyrefem.diagnose.runs import measured_drive
 from tyrefem.diagnose.sensitivities import responses, unknowns_of
 from tyrefem.diagnose.settings import DEFAULT, DiagnosisSettings
 from tyrefem.diagnose.unknowns import Unknown, with_values
@@ -59,7 +59,7 @@ def drives(tmp_path_factory: pytest.TempPathFactory) -> Drives:
     owner = study(tmp_path_factory.mktemp("reduced"))
     measure(owner, [{"name": "hot-road", "warmer_by": f"{WARMER} delta_degC"}])
     planned = experiments(owner, None, ignore=(), rename=None)
-    model = ForwardModel(owner, tuple(trial(one, owner).sampling for one in planned))
+    model = ForwardModel(owner, tuple(measured_drive(one, owner).sampling for one in planned))
     unknowns, nuisance = unknowns_of(owner, set(owner.sensors), catalogue_candidates(owner))
     return Drives(owner, model, unknowns, nuisance, responses(Evaluations(model), unknowns))
 
