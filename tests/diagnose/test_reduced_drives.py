@@ -251,7 +251,7 @@ def test_no_modes_where_the_drive_itself_is_not_followed(drives: Drives) -> None
 def test_a_drive_that_its_model_cannot_march_is_left_to_simulations(
     drives: Drives, monkeypatch: pytest.MonkeyPatch
 ) -> None:
-    monkeypatch.setattr(ReducedDrive, "_marched", lambda self, tyres: ([], []))
+    monkeypatch.setattr(ReducedDrive, "_integrated", lambda self, tyres: ([], []))
     model = ForwardModel(drives.study, drives.model.drives)
     predictions = Predictions(Evaluations(model), drives.modes)
     point = drives.drawn(5)
