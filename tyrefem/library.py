@@ -1,4 +1,4 @@
-"""Find a section, material or study: explicit path, the user's folders, the shipped library."""
+"""Find a section, material or study: explicit path, the user's folders, the shipped library. A section may be a size."""
 
 from __future__ import annotations
 
@@ -9,6 +9,7 @@ from typing import Any
 
 from tyrefem.cards import merged, read_toml
 from tyrefem.errors import InputError, nearest
+from tyrefem.sizes import is_size, section_of_size
 
 FOLDERS = {"section": "geometry", "material": "materials", "study": "studies", "sweep": "studies"}
 #: Kinds of card that are a folder with this file in it; the folder's name is the card's name.
@@ -87,12 +88,34 @@ def load(kind: str, reference: object, near: Path | None = None) -> tuple[dict[s
     """Plain data, file and name of a referenced card.
 
     ``reference`` is a name or path, or a table ``{base = NAME, ...}`` whose other keys replace those
-    of that card.
+    of that card. A section may be a size such as
+    ``"205/60R15"``, or a table ``{size = ..., parameters = ...}``.
     """
+    if of_size(kind, reference, near):
+        data, laid = section_of_size(reference)  # type: ignore[arg-type]
+        name = str(reference["size"] if isinstance(reference, Mapping) else reference)
+        return merged(data, laid), Path(name), name
     card, changes = _split(kind, reference)
     path = find(kind, card, near)
     name = Path(os.path.abspath(path)).parent.name if kind in FILES else path.stem
     return merged(read_toml(path), changes), path, name
+
+
+def of_size(kind: str, reference: object, near: Path | None = None) -> bool:
+    """Is a reference a tyre's size? A file or card of that name goes first.
+
+    >>> of_size("section", "205/60R15"), of_size("material", "205/60R15"), of_size("section", "nasa-22x5.5-8pr")
+    (True, False, False)
+    """
+    if kind != "section" or not is_size(reference):
+        return False
+    if isinstance(reference, Mapping):
+        return True
+    try:
+        find(kind, str(reference), near)
+    except InputError:
+        return True
+    return False
 
 
 def _split(kind: str, reference: object) -> tuple[str, Mapping[str, Any]]:
@@ -122,6 +145,8 @@ def over(kind: str, reference: object, present: object, data: Mapping[str, Any])
 
 def located(kind: str, reference: Any, near: Path | None = None) -> Any:
     """The reference for use in another folder: a card that is not found by name there gets its full path."""
+    if of_size(kind, reference, near):
+        return reference
     name = reference["base"] if isinstance(reference, Mapping) else reference
     path = find(kind, name, near).resolve()
     if not path.is_relative_to(shipped().resolve()):

@@ -10,6 +10,7 @@ from tyrefem import library
 from tyrefem.errors import InputError, nearest
 from tyrefem.inputs.drive_table import EXCLUSIVE_KEYS
 from tyrefem.quantity import written
+from tyrefem.sizes import completed_materials, is_size
 
 #: Tables whose text value names a card: a change of a value below it overrides the card's value.
 _REFERENCES = {"section": "section", "materials.*": "material"}
@@ -45,6 +46,8 @@ def all_changed(data: Mapping[str, Any], changes: Mapping[str, Any]) -> dict[str
 def _change(data: dict[str, Any], key: str, value: Any) -> None:
     parts = _parts(data, key)
     _refuse_overridden(data, parts)
+    if parts[0] == "section":
+        _as_table(data, parts)
     place: Any = data
     for depth, part in enumerate(parts[:-1]):
         place = _step(place, part, ".".join(parts[: depth + 1]), parts[: depth + 1])
@@ -54,6 +57,17 @@ def _change(data: dict[str, Any], key: str, value: Any) -> None:
     else:
         place[last] = value
         _drop_exclusive(parts, place)
+
+
+def _as_table(data: dict[str, Any], parts: list[str]) -> None:
+    """A size as a table, so that its numbers can be set; another size in place of a card, another card in place of a size."""
+    section = data.get("section")
+    if isinstance(section, str) and is_size(section) and len(parts) > 1:
+        data["section"] = {"size": section}
+    elif parts[1:] == ["size"] and not (isinstance(section, Mapping) and "size" in section):
+        data["section"] = {}
+    elif parts[1:] == ["base"] and isinstance(section, Mapping) and "size" in section:
+        data["section"] = {}
 
 
 def _parts(data: Mapping[str, Any], key: str) -> list[str]:
@@ -69,7 +83,7 @@ def _section_parts(name: str) -> list[str]:
     """Parts of a section's dotted name: ``section.crown_radius`` is a parameter, ``section.cord_angle`` a rating."""
     from tyrefem.geometry.card import RatingCard, SectionCard
 
-    if name in SectionCard.model_fields:
+    if name in SectionCard.model_fields or name in ("size", "rim_width"):
         return ["section", name]
     return ["section", "rating" if name in RatingCard.model_fields else "parameters", name]
 
@@ -126,6 +140,8 @@ def value_at(data: Mapping[str, Any], key: str, near: Any = None) -> Any:
     """The value at a dotted name, looked up through the cards that the study refers to."""
     place: Any = data
     parts = _parts(data, key)
+    if parts[0] == "materials" and "section" in data:
+        place = {**data, "materials": completed_materials(data["section"], data.get("materials", {}))}
     for depth, part in enumerate(parts):
         reference = (depth == 1 and parts[0] == "section") or (depth == 2 and parts[0] == "materials")
         if reference:

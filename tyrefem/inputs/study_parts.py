@@ -14,6 +14,7 @@ from tyrefem.inputs.drive_table import as_written
 from tyrefem.inputs.sensor_places import sensor_places
 from tyrefem.inputs.study_card import StudyCard
 from tyrefem.inputs.study_materials import StudyMaterials
+from tyrefem.sizes import completed_materials
 
 if TYPE_CHECKING:
     from tyrefem.geometry import Section
@@ -63,7 +64,7 @@ class StudyParts(Brief):
             new_section = _section(data["section"], card, folder, file)
         section = _worn(new_section, card)
         materials = StudyMaterials.read(
-            data["materials"], new_section, folder, file, None if like is None else like.materials
+            completed(data["section"], data["materials"], file), new_section, folder, file, None if like is None else like.materials
         )
         _check_energy(card, new_section, file)
         if like is not None and new_section is like.new_section and card.sensors == like.card.sensors:
@@ -93,6 +94,14 @@ def error_as_written(error: InputError, data: Mapping[str, Any]) -> InputError:
     if not isinstance(drive, Mapping) or not (error.field or "").startswith("drive.phases."):
         return error
     return InputError(error.message, field=as_written(drive, str(error.field)), file=error.file)
+
+
+def completed(section: object, materials: Mapping[str, Any], file: Path | None) -> Mapping[str, Any]:
+    """``[materials]``, with the cards of the section's size where it names none."""
+    try:
+        return completed_materials(section, materials)
+    except InputError as error:
+        raise error if error.file else error.within(field="section", file=file) from None
 
 
 def _section(reference: object, card: StudyCard, folder: Path | None, file: Path | None) -> Section:

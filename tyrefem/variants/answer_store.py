@@ -20,6 +20,7 @@ from tyrefem.effects import catalogue
 from tyrefem.inputs.study import StudyData
 from tyrefem.interruption import interruption_delayed
 from tyrefem.output import atomic_path, jsonable
+from tyrefem.sizes import completed_materials
 
 #: Folder within ``--out`` that holds finished simulations until the command ends.
 PROGRESS = ".progress"
@@ -109,7 +110,8 @@ def plain(value: Any) -> Any:
 
 def _study(study: StudyData) -> list[Any]:
     cards = [library.load("section", study.data["section"], study.folder)[0]]
-    cards += [library.load("material", reference, study.folder)[0] for reference in study.data["materials"].values()]
+    materials = completed_materials(study.data["section"], study.data["materials"])
+    cards += [library.load("material", reference, study.folder)[0] for reference in materials.values()]
     mesh = study.card.mesh.file
     mesh_file = hashlib.sha256(((study.folder or Path()) / mesh).read_bytes()).hexdigest() if mesh else None
     return [jsonable(study.data), jsonable(cards), mesh_file]

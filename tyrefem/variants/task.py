@@ -94,6 +94,8 @@ def bundle(study: StudyData) -> Bundle:
 
 def _packed(kind: str, reference: Any, near: Path | None, files: dict[str, bytes]) -> Any:
     """The reference for a machine that has only the package and ``files``."""
+    if library.of_size(kind, reference, near):
+        return reference
     name = reference["base"] if isinstance(reference, Mapping) else reference
     path = library.find(kind, name, near).resolve()
     if not path.is_relative_to(library.shipped().resolve()):

@@ -1,0 +1,161 @@
+"""A tyre's size as it stands on its wall: ``205/60R15 91V``, ``LT245/75R16``, ``11R22.5``, ``22x5.5 8PR``, ``H44.5x16.5-21``."""
+
+from __future__ import annotations
+
+import re
+from dataclasses import dataclass
+
+from tyrefem.errors import InputError
+from tyrefem.sizes.load_index import load_of_index
+
+INCH, MM = 0.0254, 1e-3
+_NUMBER = r"\d{1,4}(?:\.\d{1,3})?"
+#: Load index with speed symbol, as "91V", "152/148M", "(94Y)", "98W XL".
+_SERVICE = r"(?:\s+\(?(?P<index>\d{2,3})(?:/\d{2,3})?\s*(?P<symbol>[A-HJ-NP-Y])\)?)?(?:\s+XL)?"
+_PLIES = r"(?:\s*,?\s*(?P<plies>\d{1,2})\s*-?\s*(?:PR|ply))?"
+_METRIC = re.compile(
+    rf"(?P<service>P|LT)?\s?(?P<width>\d{{3}})/(?P<series>\d{{2,3}})\s?Z?(?P<build>R|-|D|B)F?\s?"
+    rf"(?P<rim>\d{{2}}(?:\.5)?)(?P<commercial>C)?{_SERVICE}{_PLIES}",
+    re.IGNORECASE,
+)
+_TRUCK = re.compile(rf"(?P<width>\d{{1,2}}(?:\.\d{{1,2}})?)(?P<build>R)(?P<rim>\d{{2}}\.5){_SERVICE}{_PLIES}", re.IGNORECASE)
+_AIRCRAFT = re.compile(
+    rf"(?P<service>[BCH])?(?P<outside>{_NUMBER})\s?[x×X]\s?(?P<width>{_NUMBER})(?:\s?(?P<build>[-R])\s?(?P<rim>{_NUMBER}))?{_PLIES}",
+    re.IGNORECASE,
+)
+#: One size of each kind, for messages.
+EXAMPLES = ("205/60R15", "P205/60R15 91V", "LT245/75R16", "295/80R22.5", "11R22.5", "22x5.5 8PR", "H44.5x16.5-21", "46x17R20")
+#: Height of a truck section over its width where the size gives the width in inches. Estimate: 10R22.5 to 12R22.5
+#: are 0.85 to 0.88 by the standard (ETRTO, from memory).
+FULL_SERIES = 0.865
+
+
+@dataclass(frozen=True)
+class TyreSize:
+    """A size, SI units; None: the text does not tell.
+
+    ``kind``: the rules that it follows, a module of `tyrefem.sizes.kinds`. ``series``: section height over width.
+    ``outside_diameter``: of aircraft sizes, which give it in place of the series.
+
+    >>> size = parse_size("205/60R15 91V")
+    >>> size.kind, round(size.width, 3), size.series, round(size.rim_diameter, 3), size.load
+    ('passenger', 0.205, 0.6, 0.381, 6031.1)
+    >>> parse_size("H44.5x16.5-21").text
+    'H44.5x16.5-21'
+    """
+
+    text: str
+    kind: str
+    width: float
+    series: float | None = None
+    rim_diameter: float | None = None
+    outside_diameter: float | None = None
+    load: float | None = None
+    ply_rating: int | None = None
+
+    @property
+    def section_height(self) -> float | None:
+        """Height of the section by the designation, m."""
+        return None if self.series is None else self.series * self.width
+
+
+def parse_size(text: object) -> TyreSize:
+    """The size of a designation.
+
+    Raises
+    ------
+    InputError : not a size; says what is allowed and the nearest that is.
+
+    >>> parse_size("295/80R22.5").kind, parse_size("LT245/75R16").kind, parse_size("46x17R20").kind
+    ('truck', 'light-truck', 'aircraft-radial')
+    """
+    if not isinstance(text, str):
+        raise InputError(f"{text!r} is no tyre size; write one like {_listed()}", field="size")
+    tidy = " ".join(text.split())
+    if match := _METRIC.fullmatch(tidy):
+        return _metric(tidy, match)
+    if match := _TRUCK.fullmatch(tidy):
+        width = float(match["width"]) * INCH
+        return TyreSize(_tidy(tidy), "truck", width, FULL_SERIES, float(match["rim"]) * INCH, None, _load(match), _plies(match))
+    if match := _AIRCRAFT.fullmatch(tidy):
+        return _aircraft(tidy, match)
+    raise InputError(f"'{text}' is no tyre size{_nearest(tidy)}", field="size")
+
+
+def looks_like_size(text: object) -> bool:
+    """Is a text meant as a size, right or wrong? Names of cards begin with a letter or have no such signs.
+
+    >>> looks_like_size("205/60R15"), looks_like_size("22x5.5 8PR"), looks_like_size("nasa-22x5.5-8pr")
+    (True, True, False)
+    """
+    if not isinstance(text, str) or text.lower().endswith(".toml"):
+        return False
+    return bool(re.match(r"\s*(?:P|LT|[BCH])?\s?\d+(?:\.\d+)?\s?(?:/\s?\d|[x×X]\s?\d|R\s?\d)", text, re.IGNORECASE))
+
+
+def _metric(text: str, match: re.Match[str]) -> TyreSize:
+    build, rim, series = match["build"].upper(), float(match["rim"]), float(match["series"])
+    if build != "R":
+        raise InputError(
+            f"'{text}' is a bias-ply road tyre, which has no rules here; radials are written {text.replace(match['build'], 'R', 1)}",
+            field="size",
+        )
+    if not 20 <= series <= 100:
+        raise InputError(f"'{text}' has the series {series:g}; allowed: 20 to 100 (section height in % of the width)", field="size")
+    kind = "passenger"
+    if rim % 1:
+        kind = "truck"
+    elif (match["service"] or "").upper() == "LT" or match["commercial"]:
+        kind = "light-truck"
+    width = float(match["width"]) * MM
+    return TyreSize(_tidy(text), kind, width, series / 100, rim * INCH, None, _load(match), _plies(match))
+
+
+def _aircraft(text: str, match: re.Match[str]) -> TyreSize:
+    outside, width = float(match["outside"]), float(match["width"])
+    unit = MM if outside > 100 else INCH
+    rim = float(match["rim"]) * INCH if match["rim"] else None
+    kind = "aircraft-radial" if (match["build"] or "").upper() == "R" else "aircraft-bias"
+    if not (1.2 * width < outside < 8 * width and (rim is None or 0.2 * outside * unit < rim < 0.85 * outside * unit)):
+        raise InputError(
+            f"'{text}' is no aircraft size: its outside diameter, width and rim diameter do not go together"
+            "; allowed: diameter x width, or diameter x width - rim (R for radials), in inches, such as 22x5.5-12",
+            field="size",
+        )
+    return TyreSize(_tidy(text), kind, width * unit, None, rim, outside * unit, None, _plies(match))
+
+
+def _tidy(text: str) -> str:
+    return re.sub(r"\s?[×X]\s?", "x", text)
+
+
+def _plies(match: re.Match[str]) -> int | None:
+    return int(match["plies"]) if match["plies"] else None
+
+
+def _load(match: re.Match[str]) -> float | None:
+    return load_of_index(int(match["index"])) if match["index"] else None
+
+
+def _listed() -> str:
+    return ", ".join(EXAMPLES[:-1]) + " or " + EXAMPLES[-1]
+
+
+def _nearest(text: str) -> str:
+    """The nearest valid form: the text's own numbers put as a size is written."""
+    numbers = re.findall(r"\d+(?:\.\d+)?", text)
+    attempts = []
+    if len(numbers) >= 3:
+        a, b, c = numbers[:3]
+        attempts = [f"{a}/{b}R{c}", f"{a}x{b}-{c}"]
+    elif len(numbers) == 2:
+        attempts = [f"{numbers[0]}x{numbers[1]}", f"{numbers[0]}R{numbers[1]}"]
+    if "x" in text.lower():
+        attempts.reverse()
+    for attempt in attempts:
+        try:
+            parse_size(attempt)
+        except InputError:
+            continue
+        return f"; did you mean '{attempt}'? Allowed are sizes like {_listed()}"
+    return f"; allowed are sizes like {_listed()}"

@@ -1,0 +1,76 @@
+"""Radial aircraft tyres: ``46x17R20``, ``1400x530R23``."""
+
+from __future__ import annotations
+
+import math
+
+from tyrefem.sizes.aircraft import aircraft_numbers
+from tyrefem.sizes.bead import bead_wire_area
+from tyrefem.sizes.designation import TyreSize
+from tyrefem.sizes.drawn import Drawn
+from tyrefem.sizes.radial import Belt, Radial
+from tyrefem.sizes.rules import Rules
+
+BEAD_FILL = 0.37
+ESTIMATE = "estimate: ordinary practice"
+#: How many times the rated pressure the plies hold, and the strength of their cords over a metre, N/m (estimates).
+SAFETY, PLY_STRENGTH, BELT_STRENGTH = 4.0, 780 * 300.0, 900 * 600.0
+
+
+def draw(size: TyreSize, rule: Rules) -> Drawn:
+    """Nylon body plies and textile belts near the circumference, as many as hold four times the rated pressure."""
+    rim, pressure = aircraft_numbers(size, rule, 30)
+    outer, width = rule["outer_diameter"].value, size.width
+    height = (outer - rim.diameter) / 2
+    tread_width = rule("tread_width", 0.78 * width, "mm", f"{ESTIMATE}, 0.78 nominal widths", 0.3 * width)
+    rule("crown_radius", 1.5 * width, "mm", f"{ESTIMATE}, 1.5 nominal widths; of the plies' line", 0.05, 20)
+    rule("tread_radius", 1.8 * width, "mm", f"{ESTIMATE}, 1.8 nominal widths; of the tread's surface", 0.05, 20)
+    rule("cord_angle", math.pi / 2, "deg", "radial body plies", 1.4, 1.5708)
+    plies = max(2, math.ceil(SAFETY * 0.55 * height * pressure / PLY_STRENGTH))
+    plies = round(rule("plies", plies, "1", f"estimate: cords hold {SAFETY:g} times the rated pressure, pull 0.55 p x height", 1, 20))
+    rule("ply_gauge", 1.1e-3, "mm", f"{ESTIMATE}, nylon 0.75 mm in rubber", 5e-4)
+    belts_needed = max(4, 2 * math.ceil(SAFETY * pressure * outer / 2 / BELT_STRENGTH / 2))
+    belts_needed = round(rule("belt_plies", belts_needed, "1", f"estimate: belts hold {SAFETY:g} times the rated pressure, pull p x radius", 2, 30))
+    belt = rule("inner_belts_width", 0.93 * tread_width, "mm", f"{ESTIMATE}, 0.93 tread widths", 0.02)
+    rule("outer_belts_width", 0.90 * belt, "mm", f"{ESTIMATE}, 0.9 of the inner belts'", 0.02)
+    one_ply = rule("belt_ply_gauge", 1.0e-3, "mm", f"{ESTIMATE}, cord 0.75 mm in rubber", 5e-4)
+    first, second = (belts_needed + 1) // 2, belts_needed // 2
+    rule("inner_belts_gauge", first * one_ply, "mm", f"{first} belt plies", 5e-4)
+    rule("outer_belts_gauge", second * one_ply, "mm", f"{second} belt plies", 5e-4)
+    rule("liner_gauge", 1.6e-3, "mm", f"{ESTIMATE}, tubeless", 3e-4)
+    rule("undertread_gauge", 2.1e-3, "mm", ESTIMATE, 3e-4)
+    tread = rule("tread_gauge", 8e-3 + 0.015 * width, "mm", "estimate: 8 mm + 0.015 widths", 2e-3)
+    rule("grooves", 0 if width < 0.2 else 4, "1", f"{ESTIMATE}; 0: smooth", 0, 9)
+    rule("groove_share", 0.15, "1", f"{ESTIMATE}: of the tread's width", 0.01, 0.6)
+    rule("sidewall_gauge", 2.5e-3, "mm", f"{ESTIMATE}: rubber at the widest place", 1.2e-3)
+    rule("rest_gauge", 0.6e-3, "mm", "estimate: what a belt's layer has left beyond its cushion, sidewall rubber as well", 2e-4)
+    rule("chafer_gauge", 4e-3, "mm", f"{ESTIMATE}: rim strip at the bead", 1.2e-3)
+    area = bead_wire_area(rule, outer / 2 - tread - 8e-3, rim.diameter, pressure)
+    bead = rule("bead_height", 1.46 * (area / BEAD_FILL) ** 0.5, "mm", f"{ESTIMATE}: {BEAD_FILL:.0%} of the bundle is wire, 2.1 times as high as wide", 3e-3)
+    rule("bead_width", area / BEAD_FILL / bead, "mm", f"{ESTIMATE}: of the bundle's area", 2e-3)
+    rule("apex_height", 0.20 * height, "mm", f"{ESTIMATE}: 0.2 section heights above the wires", 5e-3)
+    rule("turn_up_height", 0.13 * height, "mm", f"{ESTIMATE}: 0.13 section heights above the wires", 4e-3)
+    rule("toe_gauge", 3e-3, "mm", f"{ESTIMATE}: rubber below the wires", 1e-3)
+    rule("chafer_height", 0.3 * height, "mm", f"{ESTIMATE}: along the line from the seat", 10e-3)
+    rule.check_all_used()
+    belts = (Belt("inner-belts", 2.6e-3), Belt("outer-belts", 2.2e-3))
+    radial = Radial(size, rule, rim, "body-plies", belts, (("apex", 1.0),), f"{size.text} radial aircraft tyre by its size", BEAD_FILL)
+    ply = {"base": "aircraft-body-ply", "cords": {"angle_radius": radial.radius(), "ends": f"{780 * plies} 1/m", "plies": plies}}
+    materials = {
+        "liner": "rubber-liner",
+        "body-plies": ply,
+        "turn-up": ply,
+        "bead-wrap": ply,
+        **{
+            belt.region: {"base": "aircraft-belt", "cords": {"angle_radius": radial.radius(belt), "ends": f"{900 * count} 1/m", "plies": count}}
+            for belt, count in zip(belts, (first, second), strict=True)
+        },
+        "undertread": "rubber-undertread",
+        "tread": "rubber-tread-aircraft",
+        "shoulder-cushion": "rubber-cushion",
+        "sidewall": "rubber-sidewall",
+        "apex": "rubber-apex",
+        "bead": {"base": "aircraft-bead", "cords": radial.bead_ends(1e-3, 7)},
+        "chafer": "rubber-chafer",
+    }
+    return radial.drawn(materials)

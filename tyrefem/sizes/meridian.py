@@ -1,0 +1,198 @@
+"""The meridian of a size: an arc under the belt, the membrane in equilibrium, the bead round the rim's flange."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from functools import cached_property
+from typing import Any
+
+import numpy as np
+from numpy.typing import ArrayLike, NDArray
+
+from tyrefem.errors import InputError
+from tyrefem.sizes.membrane import Membrane
+from tyrefem.sizes.rim import Rim
+
+Array = NDArray[np.float64]
+#: Samples of the line between the points that a file gets.
+FINE = 241
+
+
+@dataclass(frozen=True)
+class SizedMeridian:
+    """Carcass line from the crown to the bead seat.
+
+    Crown arc of ``crown_radius`` over ``join`` rad; `Membrane` from there to the angle ``leaves``, where the line begins to
+    follow the flange; an arc about the flange's centre, ``offset`` (the material outside of the line at the bead) further out;
+    a straight part at right angles to the seat.
+    """
+
+    membrane: Membrane
+    crown: float
+    crown_radius: float
+    join: float
+    leaves: float
+    rim: Rim
+    offset: float
+
+    @cached_property
+    def _line(self) -> tuple[Array, Array, Array, Array]:
+        """s, r, z, phi of fine samples."""
+        theta = np.linspace(0.0, self.join, 60) if self.join > 0 else np.zeros(1)
+        r = self.crown - self.crown_radius * (1 - np.cos(theta))
+        z = self.crown_radius * np.sin(theta)
+        parts = [(self.crown_radius * theta, r, z, np.pi / 2 - theta)]
+        phi, r, z, s = self.membrane.run(np.pi / 2 - self.join, self.leaves, FINE)
+        parts.append((parts[-1][0][-1] + s, r, parts[-1][2][-1] + z, phi))
+        bend = self.rim.radius + self.offset
+        phi = np.linspace(self.leaves, self.rim.taper, 80)
+        c = self.rim.centre
+        r, z = c[0] - bend * np.sin(phi), c[1] - bend * np.cos(phi)
+        parts.append((parts[-1][0][-1] + bend * (phi - self.leaves), r, z, phi))
+        h = np.linspace(0.0, self.rim.straight, 12)
+        t = self.rim.taper
+        parts.append((parts[-1][0][-1] + h, r[-1] - h * np.cos(t), z[-1] + h * np.sin(t), np.full(h.shape, t)))
+        joined = [np.concatenate([part[k][bool(n) :] for n, part in enumerate(parts)]) for k in range(4)]
+        return joined[0], joined[1], joined[2], joined[3]
+
+    @property
+    def length(self) -> float:
+        """Crown to bead seat, m."""
+        return float(self._line[0][-1])
+
+    @property
+    def join_s(self) -> float:
+        """Where the membrane begins, m from the crown."""
+        return self.crown_radius * self.join if self.join > 0 else 0.0
+
+    @property
+    def flange_s(self) -> float:
+        """Where the line begins to follow the flange."""
+        bend = self.rim.radius + self.offset
+        return self.length - self.rim.straight - bend * (self.rim.taper - self.leaves)
+
+    @property
+    def widest_s(self) -> float:
+        """Where the line is widest."""
+        s, _, z, _ = self._line
+        return float(s[int(np.argmax(z))])
+
+    @property
+    def half_width(self) -> float:
+        """Largest z of the line, m."""
+        return float(self._line[2].max())
+
+    def at(self, s: ArrayLike) -> tuple[Array, Array, Array]:
+        """r, z and phi at places of the line."""
+        along, _, _, phi = self._line
+        place = self._curve(s)
+        return place[..., 0], place[..., 1], np.asarray(np.interp(s, along, phi))
+
+    @cached_property
+    def _curve(self) -> Any:
+        """Cubic through the samples with their tangents dr/ds = -cos phi, dz/ds = sin phi."""
+        from scipy.interpolate import CubicHermiteSpline
+
+        s, r, z, phi = self._line
+        return CubicHermiteSpline(s, np.stack([r, z], axis=-1), np.stack([-np.cos(phi), np.sin(phi)], axis=-1))
+
+    def points(self, count: int) -> list[tuple[float, float]]:
+        """(r, z) for a file: about so many, closer where the line bends more, with one at every change of curvature."""
+        s, r, z, phi = self._line
+        marks = [0.0, *([self.join_s] if self.join_s > 2e-3 else []), self.flange_s, self.length - self.rim.straight, self.length]
+        turned = np.concatenate([[0.0], np.cumsum(np.abs(np.diff(phi)))])
+        measure = turned / turned[-1] + s / s[-1]
+        stations = [0.0]
+        for a, b in zip(marks[:-1], marks[1:], strict=True):
+            ends = np.interp([a, b], s, measure)
+            gaps = max(2, round((ends[1] - ends[0]) / 2 * count))
+            stations += np.interp(np.linspace(*ends, gaps + 1)[1:], measure, s).tolist()
+        r, z, _ = self.at(np.array(stations))
+        return [(float(a), float(b)) for a, b in zip(r, z, strict=True)]
+
+
+def radial_meridian(crown: float, crown_radius: float, half_width: float, rim: Rim, offset: float) -> SizedMeridian:
+    """The line of a belted radial: r_m, the end of the crown arc and the angle at the flange are solved for.
+
+    Raises
+    ------
+    InputError : no such line.
+    """
+
+    def line(x: Array) -> SizedMeridian:
+        widest, join, leaves = (float(value) for value in x)
+        edge = crown - crown_radius * (1 - np.cos(join))
+        constant = (edge**2 - widest**2) / np.cos(join)
+        return SizedMeridian(Membrane(widest, constant), crown, crown_radius, join, leaves, rim, offset)
+
+    def misses(x: Array) -> list[float]:
+        drawn = line(x)
+        start = crown_radius * np.sin(drawn.join)
+        _, _, z, _ = drawn.membrane.run(np.pi / 2 - drawn.join, 0.0, 40)
+        return [start + z[-1] - half_width, *_flange_misses(drawn, start)]
+
+    starts = [(np.array([share * rim.diameter / 2 + (1 - share) * crown, join, leaves])) for share in (0.45, 0.35) for join in (0.1, 0.2, 0.05, 0.35) for leaves in (-0.9, -0.6)]
+    solution = _solved(misses, starts, lambda x: rim.diameter / 2 < x[0] < crown and 0 < x[1] < 1.2 and -1.55 < x[2] < rim.taper)
+    if solution is None:
+        raise _impossible(half_width, rim)
+    return line(solution)
+
+
+def bias_meridian(crown: float, half_width: float, rim: Rim, offset: float, angle: float | None) -> tuple[SizedMeridian, float]:
+    """The line of bias plies, in equilibrium from the crown on, and the crown angle of the cords.
+
+    Without an ``angle`` it is the one at which the section is ``half_width`` wide on its rim; with one, the width follows.
+
+    Raises
+    ------
+    InputError : no such line.
+    """
+
+    def line(x: Array) -> SizedMeridian:
+        widest, leaves = float(x[0]), float(x[1])
+        crown_angle = float(x[2]) if angle is None else angle
+        lift = np.cos(crown_angle) / crown
+        membrane = Membrane(widest, (crown**2 - widest**2) * np.sin(crown_angle), lift)
+        return SizedMeridian(membrane, crown, 1.0, 0.0, leaves, rim, offset)
+
+    def misses(x: Array) -> list[float]:
+        drawn = line(x)
+        misses = _flange_misses(drawn, 0.0)
+        if angle is None:
+            _, _, z, _ = drawn.membrane.run(np.pi / 2, 0.0, 40)
+            misses.append(z[-1] - half_width)
+        return misses
+
+    unknown = 3 if angle is None else 2
+    starts = [np.array([share * rim.diameter / 2 + (1 - share) * crown, leaves, 0.61])[:unknown] for share in (0.5, 0.4, 0.6) for leaves in (-0.8, -0.5, -1.1)]
+    solution = _solved(misses, starts, lambda x: rim.diameter / 2 < x[0] < crown and -1.55 < x[1] < rim.taper and (unknown < 3 or 0.3 < x[2] < 1.2))
+    if solution is None:
+        raise _impossible(half_width, rim)
+    return line(solution), float(solution[2]) if angle is None else angle
+
+
+def _flange_misses(drawn: SizedMeridian, start: float) -> list[float]:
+    """How far the end of the membrane is from the circle about the flange's centre that it must touch."""
+    phi, r, z, _ = drawn.membrane.run(np.pi / 2 - drawn.join, drawn.leaves, 60)
+    bend = drawn.rim.radius + drawn.offset
+    c = drawn.rim.centre
+    return [r[-1] + bend * np.sin(phi[-1]) - c[0], start + z[-1] + bend * np.cos(phi[-1]) - c[1]]
+
+
+def _solved(misses: Any, starts: list[Array], possible: Any) -> Array | None:
+    from scipy.optimize import root
+
+    for start in starts:
+        with np.errstate(all="ignore"):
+            answer = root(misses, start, tol=1e-14)
+        if np.abs(misses(answer.x)).max() < 1e-9 and possible(answer.x):
+            return np.asarray(answer.x)
+    return None
+
+
+def _impossible(half_width: float, rim: Rim) -> InputError:
+    return InputError(
+        f"no carcass line in equilibrium is {2e3 * half_width:.4g} mm wide on a rim {1e3 * rim.width:.4g} mm wide; change rim_width,"
+        " section_width or crown_radius",
+        field="parameters",
+    )

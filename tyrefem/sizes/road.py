@@ -1,0 +1,95 @@
+"""What road tyres have in common: measuring rim and allowed rims, design width, load by volume."""
+
+from __future__ import annotations
+
+from tyrefem.errors import InputError
+from tyrefem.sizes.designation import INCH, TyreSize
+from tyrefem.sizes.load_index import GRAVITY, ROAD_EXPONENT, check_carries
+from tyrefem.sizes.rim import Rim
+from tyrefem.sizes.rules import Rules
+
+#: Rim diameters of road tyres that rules here are for, in.
+RIMS = (*range(10, 25), 17.5, 19.5, 22.5, 24.5)
+#: Allowed rims: so much narrower and wider than the measuring rim, of the nominal width (estimate: 205/60R15 5.5 to
+#: 7.5 in, 255/40R17 8.5 to 10 in by ETRTO, from memory).
+NARROWER, WIDER = 0.1, 0.19
+STANDARD = "ETRTO/ISO 4000-1 (from memory)"
+
+
+def check_rim_diameter(size: TyreSize) -> float:
+    """The rim diameter, m.
+
+    Raises
+    ------
+    InputError : there is no such rim.
+    """
+    diameter = size.rim_diameter or 0.0
+    inches = round(diameter / INCH, 2)
+    if inches not in RIMS:
+        near = min(RIMS, key=lambda rim: abs(rim - inches))
+        raise InputError(
+            f"'{size.text}' has the rim diameter {inches:g} in, which road tyres have not; nearest {near:g} in; allowed: 10 to 24 in, 17.5, 19.5, 22.5"
+            " and 24.5 in",
+            field="size",
+        )
+    return diameter
+
+
+def measuring_rim(size: TyreSize, rule: Rules, share: float, step: float, source: str) -> float:
+    """Rule of the rim's width: the nominal width times a share, to the nearest ``step``; the allowed range around it.
+
+    Raises
+    ------
+    InputError : a given rim is too narrow or too wide.
+    """
+    measuring = round(size.width * share / step) * step
+    low, high = measuring - NARROWER * size.width, measuring + WIDER * size.width
+    given = rule("rim_width", measuring, "in", source)
+    if not low - 1e-4 <= given <= high + 1e-4:
+        raise InputError(
+            f"{given / INCH:.4g} in is too {'narrow' if given < low else 'wide'} for {size.text}; allowed: {low / INCH:.3g} to {high / INCH:.3g} in "
+            f"(measuring rim {measuring / INCH:g} in)",
+            field="rim_width",
+        )
+    return given
+
+
+def design_width(size: TyreSize, rule: Rules, rim_width: float, theoretical: float) -> float:
+    """Section width on this rim: the nominal width and 0.4 of what the rim is wider than the theoretical one."""
+    source = f"{STANDARD}: nominal width + 0.4 (rim width - {theoretical:g} nominal widths)"
+    width = size.width + 0.4 * (rim_width - theoretical * size.width)
+    return rule("section_width", width, "mm", source, 0.8 * size.width, 1.25 * size.width)
+
+
+def road_rim(rule: Rules, diameter: float, width: float, height: float, radius: float, taper: float, source: str) -> Rim:
+    """The rim of its named numbers."""
+    return Rim(
+        rule("rim_diameter", diameter, "mm", "of the size"),
+        width,
+        rule("flange_height", height, "mm", source, 5e-3, 60e-3),
+        rule("flange_radius", radius, "mm", source, 3e-3, 40e-3),
+        rule("seat_taper", taper, "deg", source, 0, 0.35),
+    )
+
+
+def rated(size: TyreSize, rule: Rules, density: float, pressure: float, source: str) -> float:
+    """Rated load and pressure: of the load index, or so many kg per litre of section width x height x mean diameter.
+
+    Returns the pressure. A load and pressure of use are checked against it.
+
+    Raises
+    ------
+    InputError : the pressure of use cannot carry the load of use.
+    """
+    height = size.section_height or 0.0
+    volume = size.width * height * ((size.rim_diameter or 0.0) + height) * 1e3
+    load = round(density * volume * GRAVITY, -1)
+    words = f"estimate: {density:g} kg per litre of width x height x mean diameter; {source}"
+    if size.load is not None:
+        load, words = size.load, "of the load index (ISO 4000-1)"
+    load = rule("rated_load", load, "N", words, 100, 1e6)
+    pressure = rule("rated_pressure", pressure, "kPa", source, 5e4, 2e6)
+    if "load" in rule.given or "pressure" in rule.given:
+        at = rule("pressure", pressure, "kPa", "as rated", 1e4, 3e6)
+        check_carries(load, pressure, rule("load", load if at >= pressure else 0.0, "N", "as rated"), at, ROAD_EXPONENT)
+    return pressure
