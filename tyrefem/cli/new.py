@@ -10,24 +10,49 @@ from typing import Annotated, Any
 
 import typer
 
+from tyrefem.cli.common import SetOption, settings
 from tyrefem.cli.show import complete_names
 from tyrefem.errors import InputError, nearest
 from tyrefem.interruption import interruption_delayed
+from tyrefem.sizes import looks_like_size
 
 DEFAULTS = {"study": "nasa-22x5.5-8pr", "section": "nasa-22x5.5-8pr", "material": "nasa-tread"}
 
 
 def new(
     kind: Annotated[str, typer.Argument(help="study, section or material.")],
-    name: Annotated[str, typer.Argument(help="Name of the new card: letters, digits, . _ -")],
-    copy_of: Annotated[str | None, typer.Option("--from", help="Card to copy.", autocompletion=complete_names)] = None,
+    name: Annotated[str, typer.Argument(help="Name of the new card: letters, digits, . _ -; or a tyre's size.")],
+    copy_of: Annotated[
+        str | None, typer.Option("--from", help="Card to copy.", autocompletion=complete_names)
+    ] = None,
+    out: Annotated[Path | None, typer.Option("--out", help="Of a size: the file to write.")] = None,
+    rim: Annotated[str | None, typer.Option("--rim", help="Of a size: the rim's width, e.g. '6 in'.")] = None,
+    load: Annotated[str | None, typer.Option("--load", help="Of a size: a load that it must carry.")] = None,
+    pressure: Annotated[
+        str | None, typer.Option("--pressure", help="Of a size: the pressure it carries it at.")
+    ] = None,
+    changes: SetOption = None,
 ) -> None:
-    """Copy a study, section or material card into this folder under a new name, to be edited."""
+    """Copy a study, section or material card into this folder under a new name, to be edited.
+
+    A section or study may be made from a tyre's size: `tyrefem new section 205/60R15 --rim "6 in"`.
+    """
     from tyrefem import library
     from tyrefem.output import atomic_path, place_of_output
 
     if kind not in DEFAULTS:
         raise InputError(f"no kind '{kind}'{nearest(kind, DEFAULTS)}")
+    of_size = {"rim_width": rim, "load": load, "pressure": pressure, **settings(changes)}
+    of_size = {key: value for key, value in of_size.items() if value is not None}
+    if kind != "material" and copy_of is None and looks_like_size(name):
+        from tyrefem.cli.new_size import new_size
+
+        new_size(kind, name, of_size, out)
+        return
+    if of_size or out is not None:
+        raise InputError(
+            "--out, --rim, --load, --pressure and --set go with a tyre's size such as 205/60R15", field="name"
+        )
     if not re.fullmatch(r"\w[\w.-]*", name) or name.endswith(".toml"):
         raise InputError(
             f"'{name}' is not allowed as a card's name; allowed: letters, digits, . _ -, without '.toml' at the end"

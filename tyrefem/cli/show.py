@@ -11,6 +11,7 @@ from tyrefem.cli.common import CaseOption, ForceOption, SetOption, settings, war
 from tyrefem.errors import InputError, nearest
 from tyrefem.output.file import PICTURES, results_file
 from tyrefem.requirements import Requirements
+from tyrefem.sizes import looks_like_size
 
 if TYPE_CHECKING:
     from tyrefem.api import Study
@@ -71,7 +72,10 @@ def show(
         with results_file(out, MESHES, force=force):
             _write_mesh(name, values, case, out)
         return
-    path = out or Path(f"{kind}-{Path(name).stem if name.endswith('.toml') else Path(name).resolve().name}.png")
+    stem = Path(name).stem if name.endswith(".toml") else Path(name).resolve().name
+    if looks_like_size(name):
+        stem = name.replace("/", "-").replace(" ", "-")
+    path = out or Path(f"{kind}-{stem}.png")
     from tyrefem.output import atomic_path
     from tyrefem.reports.figures.style import picture
 

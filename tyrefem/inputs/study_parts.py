@@ -64,7 +64,11 @@ class StudyParts(Brief):
             new_section = _section(data["section"], card, folder, file)
         section = _worn(new_section, card)
         materials = StudyMaterials.read(
-            completed(data["section"], data["materials"], file), new_section, folder, file, None if like is None else like.materials
+            completed(data["section"], data["materials"], file),
+            new_section,
+            folder,
+            file,
+            None if like is None else like.materials,
         )
         _check_energy(card, new_section, file)
         if like is not None and new_section is like.new_section and card.sensors == like.card.sensors:

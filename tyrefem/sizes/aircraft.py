@@ -33,21 +33,59 @@ def aircraft_numbers(size: TyreSize, rule: Rules, plies: int) -> tuple[Rim, floa
             field="size",
         )
     rating = row.ply_rating if row else size.ply_rating or plies
-    rule("ply_rating", size.ply_rating or rating, "1", "of the size" if size.ply_rating else f"{SOURCE if row else 'estimate'}: the size names none", 2, 60)
-    diameter = rule("rim_diameter", diameter or 0.0, "in", SOURCE if row else "of the size", 0.2 * outside, 0.85 * outside)
-    outer = rule("outer_diameter", row.outer_diameter if row else 0.985 * outside, "in", f"{SOURCE}: mean of least and largest" if row else "estimate: 0.985 of the nominal (largest) diameter", diameter + 0.04)
-    rule("section_width", row.section_width if row else 0.975 * width, "in", f"{SOURCE}: mean of least and largest" if row else "estimate: 0.975 of the nominal (largest) width", 0.6 * width, 1.2 * width)
+    rule(
+        "ply_rating",
+        size.ply_rating or rating,
+        "1",
+        "of the size" if size.ply_rating else f"{SOURCE if row else 'estimate'}: the size names none",
+        2,
+        60,
+    )
+    diameter = rule(
+        "rim_diameter", diameter or 0.0, "in", SOURCE if row else "of the size", 0.2 * outside, 0.85 * outside
+    )
+    outer = rule(
+        "outer_diameter",
+        row.outer_diameter if row else 0.985 * outside,
+        "in",
+        f"{SOURCE}: mean of least and largest" if row else "estimate: 0.985 of the nominal (largest) diameter",
+        diameter + 0.04,
+    )
+    rule(
+        "section_width",
+        row.section_width if row else 0.975 * width,
+        "in",
+        f"{SOURCE}: mean of least and largest" if row else "estimate: 0.975 of the nominal (largest) width",
+        0.6 * width,
+        1.2 * width,
+    )
     between = row.rim_width if row else 0.74 * width
-    rim_width = rule("rim_width", between, "in", f"{SOURCE}: between the flanges" if row else "estimate: 0.74 nominal widths between the flanges (mean of the data book's bias tyres)")
+    rim_width = rule(
+        "rim_width",
+        between,
+        "in",
+        f"{SOURCE}: between the flanges"
+        if row
+        else "estimate: 0.74 nominal widths between the flanges (mean of the data book's bias tyres)",
+    )
     low, high = between - 0.12 * width, between + 0.12 * width
     if not low <= rim_width <= high:
         raise InputError(
             f"{rim_width / INCH:.4g} in is too {'narrow' if rim_width < low else 'wide'} for {size.text}; allowed: {low / INCH:.3g} to {high / INCH:.3g} in",
             field="rim_width",
         )
-    height = rule("flange_height", row.flange_height if row else 0.105 * width, "in", SOURCE if row else "estimate: 0.105 nominal widths", 5e-3, 80e-3)
+    height = rule(
+        "flange_height",
+        row.flange_height if row else 0.105 * width,
+        "in",
+        SOURCE if row else "estimate: 0.105 nominal widths",
+        5e-3,
+        80e-3,
+    )
     radius = rule("flange_radius", 0.45 * height, "mm", "estimate: 0.45 flange heights", 3e-3, 60e-3)
-    rim = Rim(diameter, rim_width, height, radius, rule("seat_taper", math.radians(5), "deg", "estimate: 5 deg seat", 0, 0.35))
+    rim = Rim(
+        diameter, rim_width, height, radius, rule("seat_taper", math.radians(5), "deg", "estimate: 5 deg seat", 0, 0.35)
+    )
     pressure = _rated(size, rule, row, outer)
     return rim, pressure
 
@@ -57,10 +95,14 @@ def _rated(size: TyreSize, rule: Rules, row: DataBookRow | None, outer: float) -
     words = "estimate: 100 psi in x ply rating over the width"
     pressure = rule("rated_pressure", row.pressure if row else guess, "psi", SOURCE if row else words, 5e4, 4e6)
     load = row.load if row else _tr_r64(size.width, outer, 0.5 * (outer - rule["rim_diameter"].value), pressure)
-    load = rule("rated_load", load, "lbf", SOURCE if row else f"estimate: NASA TR R-64 at {DEFLECTION:.0%} deflection", 100, 1e6)
+    load = rule(
+        "rated_load", load, "lbf", SOURCE if row else f"estimate: NASA TR R-64 at {DEFLECTION:.0%} deflection", 100, 1e6
+    )
     if "load" in rule.given or "pressure" in rule.given:
         at = rule("pressure", pressure, "psi", "as rated", 1e4, 4e6)
-        check_carries(load, pressure, rule("load", load if at >= pressure else 0.0, "lbf", "as rated"), at, AIRCRAFT_EXPONENT)
+        check_carries(
+            load, pressure, rule("load", load if at >= pressure else 0.0, "lbf", "as rated"), at, AIRCRAFT_EXPONENT
+        )
     return pressure
 
 

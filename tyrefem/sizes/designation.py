@@ -18,13 +18,24 @@ _METRIC = re.compile(
     rf"(?P<rim>\d{{2}}(?:\.5)?)(?P<commercial>C)?{_SERVICE}{_PLIES}",
     re.IGNORECASE,
 )
-_TRUCK = re.compile(rf"(?P<width>\d{{1,2}}(?:\.\d{{1,2}})?)(?P<build>R)(?P<rim>\d{{2}}\.5){_SERVICE}{_PLIES}", re.IGNORECASE)
+_TRUCK = re.compile(
+    rf"(?P<width>\d{{1,2}}(?:\.\d{{1,2}})?)(?P<build>R)(?P<rim>\d{{2}}\.5){_SERVICE}{_PLIES}", re.IGNORECASE
+)
 _AIRCRAFT = re.compile(
     rf"(?P<service>[BCH])?(?P<outside>{_NUMBER})\s?[x×X]\s?(?P<width>{_NUMBER})(?:\s?(?P<build>[-R])\s?(?P<rim>{_NUMBER}))?{_PLIES}",
     re.IGNORECASE,
 )
 #: One size of each kind, for messages.
-EXAMPLES = ("205/60R15", "P205/60R15 91V", "LT245/75R16", "295/80R22.5", "11R22.5", "22x5.5 8PR", "H44.5x16.5-21", "46x17R20")
+EXAMPLES = (
+    "205/60R15",
+    "P205/60R15 91V",
+    "LT245/75R16",
+    "295/80R22.5",
+    "11R22.5",
+    "22x5.5 8PR",
+    "H44.5x16.5-21",
+    "46x17R20",
+)
 #: Height of a truck section over its width where the size gives the width in inches. Estimate: 10R22.5 to 12R22.5
 #: are 0.85 to 0.88 by the standard (ETRTO, from memory).
 FULL_SERIES = 0.865
@@ -76,7 +87,9 @@ def parse_size(text: object) -> TyreSize:
         return _metric(tidy, match)
     if match := _TRUCK.fullmatch(tidy):
         width = float(match["width"]) * INCH
-        return TyreSize(_tidy(tidy), "truck", width, FULL_SERIES, float(match["rim"]) * INCH, None, _load(match), _plies(match))
+        return TyreSize(
+            _tidy(tidy), "truck", width, FULL_SERIES, float(match["rim"]) * INCH, None, _load(match), _plies(match)
+        )
     if match := _AIRCRAFT.fullmatch(tidy):
         return _aircraft(tidy, match)
     raise InputError(f"'{text}' is no tyre size{_nearest(tidy)}", field="size")
@@ -101,7 +114,9 @@ def _metric(text: str, match: re.Match[str]) -> TyreSize:
             field="size",
         )
     if not 20 <= series <= 100:
-        raise InputError(f"'{text}' has the series {series:g}; allowed: 20 to 100 (section height in % of the width)", field="size")
+        raise InputError(
+            f"'{text}' has the series {series:g}; allowed: 20 to 100 (section height in % of the width)", field="size"
+        )
     kind = "passenger"
     if rim % 1:
         kind = "truck"

@@ -52,14 +52,26 @@ def table(name: str, rows: Iterable[tuple[float, float]], regions: list[dict[str
             continue
         kept.append((s, thickness))
     s, thickness = zip(*kept, strict=True)
-    return {"name": name, "s": millimetres(s), "thickness": millimetres(thickness), "regions": regions, "source": source}
+    return {
+        "name": name,
+        "s": millimetres(s),
+        "thickness": millimetres(thickness),
+        "regions": regions,
+        "source": source,
+    }
 
 
-def section_data(size: TyreSize, rules: Rules, line: SizedMeridian, reference: str, layers: list[dict[str, Any]], **more: Any) -> dict[str, Any]:
+def section_data(
+    size: TyreSize, rules: Rules, line: SizedMeridian, reference: str, layers: list[dict[str, Any]], **more: Any
+) -> dict[str, Any]:
     """The tables that all kinds have. ``more``: shoulder_s and bead_length, m; grooves, wrap, rating, title."""
     points = line.points(POINTS)
     radial = line.membrane.lift == 0
-    words = "sin phi = (r^2 - r_m^2)/(r_c^2 - r_m^2)" if radial else "sin phi ~ (r^2 - r_m^2) sin alpha, cos alpha/r constant"
+    words = (
+        "sin phi = (r^2 - r_m^2)/(r_c^2 - r_m^2)"
+        if radial
+        else "sin phi ~ (r^2 - r_m^2) sin alpha, cos alpha/r constant"
+    )
     return {
         "title": more["title"],
         "line": {
@@ -77,7 +89,8 @@ def section_data(size: TyreSize, rules: Rules, line: SizedMeridian, reference: s
             "bead_length": length(more["bead_length"]),
             "rim_length": length(line.length - line.flange_s),
             "flange_radius": rules["flange_radius"].text,
-            "source": f"{size.text}: " + rules.sources("outer_diameter", "section_width", "tread_width", "flange_radius"),
+            "source": f"{size.text}: "
+            + rules.sources("outer_diameter", "section_width", "tread_width", "flange_radius"),
         },
         "layers": layers,
         **({"grooves": more["grooves"]} if more.get("grooves") else {}),

@@ -99,7 +99,13 @@ class SizedMeridian:
     def points(self, count: int) -> list[tuple[float, float]]:
         """(r, z) for a file: about so many, closer where the line bends more, with one at every change of curvature."""
         s, r, z, phi = self._line
-        marks = [0.0, *([self.join_s] if self.join_s > 2e-3 else []), self.flange_s, self.length - self.rim.straight, self.length]
+        marks = [
+            0.0,
+            *([self.join_s] if self.join_s > 2e-3 else []),
+            self.flange_s,
+            self.length - self.rim.straight,
+            self.length,
+        ]
         turned = np.concatenate([[0.0], np.cumsum(np.abs(np.diff(phi)))])
         measure = turned / turned[-1] + s / s[-1]
         stations = [0.0]
@@ -131,14 +137,23 @@ def radial_meridian(crown: float, crown_radius: float, half_width: float, rim: R
         _, _, z, _ = drawn.membrane.run(np.pi / 2 - drawn.join, 0.0, 40)
         return [start + z[-1] - half_width, *_flange_misses(drawn, start)]
 
-    starts = [(np.array([share * rim.diameter / 2 + (1 - share) * crown, join, leaves])) for share in (0.45, 0.35) for join in (0.1, 0.2, 0.05, 0.35) for leaves in (-0.9, -0.6)]
-    solution = _solved(misses, starts, lambda x: rim.diameter / 2 < x[0] < crown and 0 < x[1] < 1.2 and -1.55 < x[2] < rim.taper)
+    starts = [
+        (np.array([share * rim.diameter / 2 + (1 - share) * crown, join, leaves]))
+        for share in (0.45, 0.35)
+        for join in (0.1, 0.2, 0.05, 0.35)
+        for leaves in (-0.9, -0.6)
+    ]
+    solution = _solved(
+        misses, starts, lambda x: rim.diameter / 2 < x[0] < crown and 0 < x[1] < 1.2 and -1.55 < x[2] < rim.taper
+    )
     if solution is None:
         raise _impossible(half_width, rim)
     return line(solution)
 
 
-def bias_meridian(crown: float, half_width: float, rim: Rim, offset: float, angle: float | None) -> tuple[SizedMeridian, float]:
+def bias_meridian(
+    crown: float, half_width: float, rim: Rim, offset: float, angle: float | None
+) -> tuple[SizedMeridian, float]:
     """The line of bias plies, in equilibrium from the crown on, and the crown angle of the cords.
 
     Without an ``angle`` it is the one at which the section is ``half_width`` wide on its rim; with one, the width follows.
@@ -164,8 +179,16 @@ def bias_meridian(crown: float, half_width: float, rim: Rim, offset: float, angl
         return misses
 
     unknown = 3 if angle is None else 2
-    starts = [np.array([share * rim.diameter / 2 + (1 - share) * crown, leaves, 0.61])[:unknown] for share in (0.5, 0.4, 0.6) for leaves in (-0.8, -0.5, -1.1)]
-    solution = _solved(misses, starts, lambda x: rim.diameter / 2 < x[0] < crown and -1.55 < x[1] < rim.taper and (unknown < 3 or 0.3 < x[2] < 1.2))
+    starts = [
+        np.array([share * rim.diameter / 2 + (1 - share) * crown, leaves, 0.61])[:unknown]
+        for share in (0.5, 0.4, 0.6)
+        for leaves in (-0.8, -0.5, -1.1)
+    ]
+    solution = _solved(
+        misses,
+        starts,
+        lambda x: rim.diameter / 2 < x[0] < crown and -1.55 < x[1] < rim.taper and (unknown < 3 or 0.3 < x[2] < 1.2),
+    )
     if solution is None:
         raise _impossible(half_width, rim)
     return line(solution), float(solution[2]) if angle is None else angle

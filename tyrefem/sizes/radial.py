@@ -67,7 +67,12 @@ class Radial:
     @cached_property
     def crown_outside(self) -> float:
         """From the middle of the plies to the tread's surface, m."""
-        return self.ply_gauge / 2 + sum(self.n(belt.gauge) for belt in self.belts) + self.n("undertread_gauge") + self.n("tread_gauge")
+        return (
+            self.ply_gauge / 2
+            + sum(self.n(belt.gauge) for belt in self.belts)
+            + self.n("undertread_gauge")
+            + self.n("tread_gauge")
+        )
 
     @cached_property
     def wall_outside(self) -> float:
@@ -128,21 +133,39 @@ class Radial:
         for name, number in (("tip", "apex_height"), ("turn-up", "turn_up_height")):
             if not wide + 2e-3 < places[name] < bead - 2e-3:
                 most = bead - wide - 2e-3
-                raise InputError(f"must be from 2 mm to {most * 1e3:.4g} mm here: from the bead to below the widest place", field=f"parameters.{number}")
+                raise InputError(
+                    f"must be from 2 mm to {most * 1e3:.4g} mm here: from the bead to below the widest place",
+                    field=f"parameters.{number}",
+                )
         if not places["flange"] < bead + self.n("bead_height"):
             raise InputError("the bead is higher than the rim's flange allows", field="parameters.bead_height")
         widest_belt = max(self.n(belt.width) for belt in self.belts) / 2
         if widest_belt > places["peak"] - 1e-3:
-            raise InputError(f"a belt {2e3 * widest_belt:.4g} mm wide does not fit under a tread {1e3 * self.n('tread_width'):.4g} mm wide", field="parameters.tread_width")
+            raise InputError(
+                f"a belt {2e3 * widest_belt:.4g} mm wide does not fit under a tread {1e3 * self.n('tread_width'):.4g} mm wide",
+                field="parameters.tread_width",
+            )
         return places
 
     def _rows(self, index: int, belt: Belt) -> list[tuple[float, float]]:
         """(s, thickness) of a belt's layer, from the belt to the bead."""
         p, thin, gauge, edge = self.places, self.n("rest_gauge"), self.n(belt.gauge), self.n(belt.width) / 2
-        rows = [(0.0, gauge), (edge, gauge), (p["peak"], max(belt.cushion, thin)), (p["cushion"], 1.3 * thin), (p["wide"], thin)]
+        rows = [
+            (0.0, gauge),
+            (edge, gauge),
+            (p["peak"], max(belt.cushion, thin)),
+            (p["cushion"], 1.3 * thin),
+            (p["wide"], thin),
+        ]
         if index == 0:
             width = self.n("bead_width")
-            return [*rows, (p["tip"], thin), (p["bead"], 0.92 * width), ((p["bead"] + p["bottom"]) / 2, width), (p["end"], width)]
+            return [
+                *rows,
+                (p["tip"], thin),
+                (p["bead"], 0.92 * width),
+                ((p["bead"] + p["bottom"]) / 2, width),
+                (p["end"], width),
+            ]
         if index == 1:
             lead = min(2.5 * self.ply_gauge, (p["turn-up"] - p["wide"]) / 2)
             return [*rows, (p["turn-up"] - lead, thin), (p["turn-up"], self.ply_gauge), (p["end"], self.ply_gauge)]
@@ -157,13 +180,24 @@ class Radial:
             return [*regions, *self._wall()]
         below = [{"name": "bead-wrap", "to": self._back(p["bottom"] + self.ply_gauge)}, {"name": "chafer"}]
         if index == 1:
-            return [*regions, {"name": "sidewall", "to": self._back(p["turn-up"])}, {"name": "turn-up", "to": self._back(p["bottom"])}, *below]
+            return [
+                *regions,
+                {"name": "sidewall", "to": self._back(p["turn-up"])},
+                {"name": "turn-up", "to": self._back(p["bottom"])},
+                *below,
+            ]
         parts, reached = [], p["tip"]
         for number, (name, share) in enumerate(self.apex):
             reached += share * (p["bead"] - p["tip"])
             last = number == len(self.apex) - 1
             parts.append({"name": name, "to": "bead_start" if last else self._back(reached)})
-        return [*regions, {"name": "sidewall", "to": self._back(p["tip"])}, *parts, {"name": "bead", "to": self._back(p["bottom"])}, *below]
+        return [
+            *regions,
+            {"name": "sidewall", "to": self._back(p["tip"])},
+            *parts,
+            {"name": "bead", "to": self._back(p["bottom"])},
+            *below,
+        ]
 
     def _wall(self) -> list[dict[str, str]]:
         return [{"name": "sidewall", "to": f"-{length(self.n('chafer_height'))}"}, {"name": "chafer"}]
@@ -175,27 +209,51 @@ class Radial:
         """The tables, from the inside to the outside."""
         p, rules, thin = self.places, self.rules, self.n("rest_gauge")
         liner, gauge, end = self.n("liner_gauge"), self.ply_gauge, self.line.length
-        wrap = [{"name": self.ply, "to": self._back(p["bottom"])}, {"name": "bead-wrap", "to": self._back(p["bottom"] + gauge)}, {"name": "chafer"}]
+        wrap = [
+            {"name": self.ply, "to": self._back(p["bottom"])},
+            {"name": "bead-wrap", "to": self._back(p["bottom"] + gauge)},
+            {"name": "chafer"},
+        ]
         rows = {
             "liner": [(0.0, liner), (end, liner)],
             self.ply: [(0.0, gauge), (end, gauge)],
             **{f"{belt.region}": self._rows(index, belt) for index, belt in enumerate(self.belts)},
             "undertread": [
-                (0.0, self.n("undertread_gauge")), (self.shoulder, self.n("undertread_gauge")), (p["cushion"], 1.3 * thin), (p["wide"], thin), (end, thin),
+                (0.0, self.n("undertread_gauge")),
+                (self.shoulder, self.n("undertread_gauge")),
+                (p["cushion"], 1.3 * thin),
+                (p["wide"], thin),
+                (end, thin),
             ],
         }
         layers = [
-            table("liner", rows["liner"], [{"name": "liner", "to": "rim_start"}, {"name": "chafer"}], rules.sources("liner_gauge")),
+            table(
+                "liner",
+                rows["liner"],
+                [{"name": "liner", "to": "rim_start"}, {"name": "chafer"}],
+                rules.sources("liner_gauge"),
+            ),
             table(self.ply, rows[self.ply], wrap, rules.sources("plies", "ply_gauge")),
         ]
         ends = {0: " and apex", 1: " and turn-up"}
         more = {0: ("apex_height", "bead_height", "bead_width"), 1: ("turn_up_height",)}
         for index, belt in enumerate(self.belts):
             source = rules.sources(belt.width, belt.gauge, *more.get(index, ()), "rest_gauge")
-            layers.append(table(belt.region + ends.get(index, ""), rows[belt.region], self._regions(index, belt), source))
-        layers.append(table("undertread", rows["undertread"], [{"name": "undertread", "to": length(p["peak"])}, *self._wall()], rules.sources("undertread_gauge")))
+            layers.append(
+                table(belt.region + ends.get(index, ""), rows[belt.region], self._regions(index, belt), source)
+            )
+        layers.append(
+            table(
+                "undertread",
+                rows["undertread"],
+                [{"name": "undertread", "to": length(p["peak"])}, *self._wall()],
+                rules.sources("undertread_gauge"),
+            )
+        )
         surface = rules.sources("tread_gauge", "tread_radius", "sidewall_gauge", "chafer_gauge", "chafer_height")
-        layers.append(table("tread", self._surface(rows), [{"name": "tread", "to": "shoulder"}, *self._wall()], surface))
+        layers.append(
+            table("tread", self._surface(rows), [{"name": "tread", "to": "shoulder"}, *self._wall()], surface)
+        )
         return layers
 
     def _surface(self, rows: Mapping[str, list[tuple[float, float]]]) -> list[tuple[float, float]]:
@@ -206,12 +264,25 @@ class Radial:
         wall = np.linspace(p["wide"], p["flange"], 6)
         low = [s for layer in rows.values() for s, _ in layer if s > p["flange"]]
         s = np.unique(np.round(np.concatenate([tread, edge, wall, low, [p["end"]]]), 6))
-        below = sum(np.interp(s, *zip(*layer, strict=True)) for name, layer in rows.items() if name not in ("liner", self.ply)) + self.ply_gauge / 2
+        below = (
+            sum(
+                np.interp(s, *zip(*layer, strict=True))
+                for name, layer in rows.items()
+                if name not in ("liner", self.ply)
+            )
+            + self.ply_gauge / 2
+        )
         shoulder = float(self._to_tread(np.array([sh]))[0])
         drop = np.clip((s - sh) / (p["wide"] - sh), 0, 1)
         rise = np.clip((s - p["wide"]) / (p["flange"] - p["wide"]), 0, 1)
-        outside = np.where(s <= sh, self._to_tread(np.minimum(s, sh)), self.wall_outside + (shoulder - self.wall_outside) * (1 - drop) ** 2)
-        outside = np.where(s > p["wide"], self.wall_outside + (self.bead_outside - self.wall_outside) * rise**1.5, outside)
+        outside = np.where(
+            s <= sh,
+            self._to_tread(np.minimum(s, sh)),
+            self.wall_outside + (shoulder - self.wall_outside) * (1 - drop) ** 2,
+        )
+        outside = np.where(
+            s > p["wide"], self.wall_outside + (self.bead_outside - self.wall_outside) * rise**1.5, outside
+        )
         return list(zip(s.tolist(), np.maximum(outside - below, SKIN).tolist(), strict=True))
 
     def drawn(self, materials: Mapping[str, Any]) -> Drawn:
@@ -225,10 +296,21 @@ class Radial:
             share = (np.arange(count) + 1) / (count + 1)
             at = np.sort(np.abs(2 * share - 1)[: (count + 1) // 2]) * self.shoulder * 0.95
             width = self.n("groove_share") * self.n("tread_width") / count
-            grooves = {"at": [length(max(x, 1e-6)) for x in at], "width": length(width), "source": rules.sources("grooves", "groove_share")}
+            grooves = {
+                "at": [length(max(x, 1e-6)) for x in at],
+                "width": length(width),
+                "source": rules.sources("grooves", "groove_share"),
+            }
         data = section_data(
-            self.size, rules, line, self.ply, layers, title=self.title, shoulder_s=self.shoulder,
-            bead_length=line.length - self.places["bead"], grooves=grooves,
+            self.size,
+            rules,
+            line,
+            self.ply,
+            layers,
+            title=self.title,
+            shoulder_s=self.shoulder,
+            bead_length=line.length - self.places["bead"],
+            grooves=grooves,
             wrap={"region": "bead-wrap", "source": "estimate: the plies keep their thickness below the bead wires"},
         )
         return Drawn(self.size, rules, line, data, materials)

@@ -61,7 +61,9 @@ def design_width(size: TyreSize, rule: Rules, rim_width: float, theoretical: flo
     return rule("section_width", width, "mm", source, 0.8 * size.width, 1.25 * size.width)
 
 
-def road_rim(rule: Rules, diameter: float, width: float, height: float, radius: float, taper: float, source: str) -> Rim:
+def road_rim(
+    rule: Rules, diameter: float, width: float, height: float, radius: float, taper: float, source: str
+) -> Rim:
     """The rim of its named numbers."""
     return Rim(
         rule("rim_diameter", diameter, "mm", "of the size"),

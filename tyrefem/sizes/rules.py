@@ -79,7 +79,9 @@ class Rules:
                 raise error.within(field=f"parameters.{name}") from None
         if not low <= value <= high:
             limits = f"{written(low, unit)} to {written(high, unit)}"
-            raise InputError(f"{written(value, unit)} is outside what is possible here: {limits}", field=f"parameters.{name}")
+            raise InputError(
+                f"{written(value, unit)} is outside what is possible here: {limits}", field=f"parameters.{name}"
+            )
         self.numbers[name] = Number(name, value, unit, source)
         return value
 
@@ -97,4 +99,6 @@ class Rules:
         """Raise `InputError` where a given number is not one of the rules."""
         for name in self.given:
             if name not in self.numbers:
-                raise InputError(f"this size has no number '{name}'{nearest(name, self.numbers)}", field=f"parameters.{name}")
+                raise InputError(
+                    f"this size has no number '{name}'{nearest(name, self.numbers)}", field=f"parameters.{name}"
+                )

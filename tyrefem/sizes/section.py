@@ -55,7 +55,9 @@ def drawn_of(reference: Mapping[str, Any] | str) -> Drawn:
         return draw_size(reference)
     for key in reference:
         if key not in ("size", "parameters", *NUMBERS, *_OVER):
-            raise InputError(f"unknown key '{key}'{nearest(str(key), ('size', 'parameters', *NUMBERS, *_OVER))}", field=str(key))
+            raise InputError(
+                f"unknown key '{key}'{nearest(str(key), ('size', 'parameters', *NUMBERS, *_OVER))}", field=str(key)
+            )
     parameters = reference.get("parameters", {})
     if not isinstance(parameters, Mapping):
         raise InputError("must be a table of names and quantities", field="parameters")

@@ -20,21 +20,66 @@ def draw(size: TyreSize, rule: Rules) -> Drawn:
     """Nylon bias plies whose crown angle is that of equilibrium at the data book's width; the four regions of the NASA sections."""
     rim, pressure = aircraft_numbers(size, rule, 16)
     outer, width = rule["outer_diameter"].value, size.width
-    plies = rule("plies", max(2, round(0.65 * rule["ply_rating"].value)), "1", "estimate: 0.65 of the ply rating, nylon (22x5.5 8PR and 12PR of Clark & Dodge 1980: 5 and 8)", 2, 60)
-    carcass = plies * rule("ply_gauge", 1.02e-3, "mm", "Clark & Dodge 1980, table H1: 0.2 in of carcass of the 8PR; estimate: five plies", 3e-4)
-    tread = rule("tread_gauge", 10e-3 + 0.037 * width, "mm", "estimate: 10 mm + 0.037 widths with undertread (22x5.5 of Clark & Dodge 1980: 0.6 in)", 3e-3)
-    shoulder_gauge = rule("shoulder_gauge", 0.73 * tread, "mm", "estimate: 0.73 of the crown's (Clark & Dodge 1980, table H1)", 2e-3)
+    plies = rule(
+        "plies",
+        max(2, round(0.65 * rule["ply_rating"].value)),
+        "1",
+        "estimate: 0.65 of the ply rating, nylon (22x5.5 8PR and 12PR of Clark & Dodge 1980: 5 and 8)",
+        2,
+        60,
+    )
+    carcass = plies * rule(
+        "ply_gauge",
+        1.02e-3,
+        "mm",
+        "Clark & Dodge 1980, table H1: 0.2 in of carcass of the 8PR; estimate: five plies",
+        3e-4,
+    )
+    tread = rule(
+        "tread_gauge",
+        10e-3 + 0.037 * width,
+        "mm",
+        "estimate: 10 mm + 0.037 widths with undertread (22x5.5 of Clark & Dodge 1980: 0.6 in)",
+        3e-3,
+    )
+    shoulder_gauge = rule(
+        "shoulder_gauge", 0.73 * tread, "mm", "estimate: 0.73 of the crown's (Clark & Dodge 1980, table H1)", 2e-3
+    )
     wall = rule("sidewall_gauge", 3.5e-3, "mm", "estimate (Clark & Dodge 1980, table H1: 0.14 in)", 1.2e-3)
-    tread_width = rule("tread_width", 0.75 * width, "mm", "estimate: shoulder at 0.75 half widths (Clark & Dodge 1980, appendix A), of the carcass line", 0.2 * width)
+    tread_width = rule(
+        "tread_width",
+        0.75 * width,
+        "mm",
+        "estimate: shoulder at 0.75 half widths (Clark & Dodge 1980, appendix A), of the carcass line",
+        0.2 * width,
+    )
     grooves = round(rule("grooves", 0, "1", "estimate: drawn smooth; 0.22 of the width are grooves on most", 0, 9))
     share = rule("groove_share", 0.22, "1", f"{ESTIMATE}: of the tread's width", 0.01, 0.6)
     crown = outer / 2 - tread - carcass / 2
     area = bead_wire_area(rule, crown, rim.diameter, pressure)
     bundle = float((area / BEAD_FILL) ** 0.5)
-    bead_width = rule("bead_width", 0.9 * carcass + bundle, "mm", f"estimate: 0.9 of the plies and a square bundle, {BEAD_FILL:.0%} wire (Clark & Dodge 1980: 0.8 and 0.65 in)", 3e-3)
-    bead_height = rule("bead_height", 1.9 * bundle, "mm", "estimate: 1.9 bundles from the seat (8PR of Clark & Dodge 1980: 0.785 in)", 5e-3)
+    bead_width = rule(
+        "bead_width",
+        0.9 * carcass + bundle,
+        "mm",
+        f"estimate: 0.9 of the plies and a square bundle, {BEAD_FILL:.0%} wire (Clark & Dodge 1980: 0.8 and 0.65 in)",
+        3e-3,
+    )
+    bead_height = rule(
+        "bead_height",
+        1.9 * bundle,
+        "mm",
+        "estimate: 1.9 bundles from the seat (8PR of Clark & Dodge 1980: 0.785 in)",
+        5e-3,
+    )
     chafer = rule("chafer_gauge", 6e-3, "mm", "estimate (Clark & Dodge 1980, table H1: 0.25 in)", 1.5e-3)
-    turn_up = rule("turn_up_height", 0.35 * (crown - rim.diameter / 2), "mm", "estimate: from the seat, 0.35 of the plies' height; the plies are twice as thick below", 5e-3)
+    turn_up = rule(
+        "turn_up_height",
+        0.35 * (crown - rim.diameter / 2),
+        "mm",
+        "estimate: from the seat, 0.35 of the plies' height; the plies are twice as thick below",
+        5e-3,
+    )
     if crown < rim.diameter / 2 + 0.02:
         raise InputError("leaves no room for a sidewall above the rim", field="parameters.outer_diameter")
     angle = rule("cord_angle", 0.6, "deg", "", 0.3, 1.2) if "cord_angle" in rule.given else None
@@ -42,33 +87,89 @@ def draw(size: TyreSize, rule: Rules) -> Drawn:
     half = rule["section_width"].value / 2 - carcass / 2 - wall
     line, angle = bias_meridian(crown, half, rim, offset, angle)
     if "cord_angle" not in rule.given:
-        rule("cord_angle", angle, "deg", "solved for: at this crown angle the plies in equilibrium have the section's width on the rim", 0.2, 1.3)
+        rule(
+            "cord_angle",
+            angle,
+            "deg",
+            "solved for: at this crown angle the plies in equilibrium have the section's width on the rim",
+            0.2,
+            1.3,
+        )
     rule.check_all_used()
     end, wide, flange = line.length, line.widest_s, line.flange_s
     s = np.linspace(0, wide, 2000)
     shoulder = float(np.interp(tread_width / 2, line.at(s)[1], s))
     up = end - turn_up
     if not wide < up < end - bead_height:
-        raise InputError(f"must be from {bead_height * 1e3:.4g} to {(end - wide) * 1e3:.4g} mm here: between the bead and the widest place", field="parameters.turn_up_height")
-    inner = [(0.0, carcass), (max(wide, up - 0.3 * turn_up), carcass), (up, 1.5 * carcass), (end - bead_height, 0.75 * bead_width), (end, bead_width)]
+        raise InputError(
+            f"must be from {bead_height * 1e3:.4g} to {(end - wide) * 1e3:.4g} mm here: between the bead and the widest place",
+            field="parameters.turn_up_height",
+        )
+    inner = [
+        (0.0, carcass),
+        (max(wide, up - 0.3 * turn_up), carcass),
+        (up, 1.5 * carcass),
+        (end - bead_height, 0.75 * bead_width),
+        (end, bead_width),
+    ]
     if 1.5 * carcass > 0.75 * bead_width:
         inner.pop(2)
-    places = np.unique(np.round([*np.linspace(0, shoulder, 5), *np.linspace(shoulder, wide, 6), *np.linspace(wide, flange, 6), *(x for x, _ in inner if x > flange), end], 6))
+    places = np.unique(
+        np.round(
+            [
+                *np.linspace(0, shoulder, 5),
+                *np.linspace(shoulder, wide, 6),
+                *np.linspace(wide, flange, 6),
+                *(x for x, _ in inner if x > flange),
+                end,
+            ],
+            6,
+        )
+    )
     below = np.interp(places, *zip(*inner, strict=True)) / 2
     x = np.clip(places / shoulder, 0, 1)
-    drop, rise = np.clip((places - shoulder) / (wide - shoulder), 0, 1), np.clip((places - wide) / (flange - wide), 0, 1)
+    drop, rise = (
+        np.clip((places - shoulder) / (wide - shoulder), 0, 1),
+        np.clip((places - wide) / (flange - wide), 0, 1),
+    )
     least = carcass / 2 + wall
-    outside = np.where(places <= shoulder, carcass / 2 + tread + (shoulder_gauge - tread) * x**2, least + (shoulder_gauge - wall) * (1 - drop) ** 1.5)
+    outside = np.where(
+        places <= shoulder,
+        carcass / 2 + tread + (shoulder_gauge - tread) * x**2,
+        least + (shoulder_gauge - wall) * (1 - drop) ** 1.5,
+    )
     outside = np.where(places > wide, least + (offset - least) * rise**1.5, outside)
     rubber = list(zip(places.tolist(), np.maximum(outside - below, 2e-3).tolist(), strict=True))
     layers = [
-        table("carcass", inner, [{"name": "carcass", "to": "bead_start"}, {"name": "bead"}], rule.sources("plies", "ply_gauge", "turn_up_height", "bead_width", "bead_height")),
-        table("rubber", rubber, [{"name": "tread", "to": "shoulder"}, {"name": "sidewall"}], rule.sources("tread_gauge", "shoulder_gauge", "sidewall_gauge", "chafer_gauge")),
+        table(
+            "carcass",
+            inner,
+            [{"name": "carcass", "to": "bead_start"}, {"name": "bead"}],
+            rule.sources("plies", "ply_gauge", "turn_up_height", "bead_width", "bead_height"),
+        ),
+        table(
+            "rubber",
+            rubber,
+            [{"name": "tread", "to": "shoulder"}, {"name": "sidewall"}],
+            rule.sources("tread_gauge", "shoulder_gauge", "sidewall_gauge", "chafer_gauge"),
+        ),
     ]
     cut = None
     if grooves:
         at = np.sort(np.abs(2 * (np.arange(grooves) + 1) / (grooves + 1) - 1)[: (grooves + 1) // 2]) * shoulder * 0.95
-        cut = {"at": [length(max(a, 1e-6)) for a in at], "width": length(share * tread_width / grooves), "source": rule.sources("grooves", "groove_share")}
+        cut = {
+            "at": [length(max(a, 1e-6)) for a in at],
+            "width": length(share * tread_width / grooves),
+            "source": rule.sources("grooves", "groove_share"),
+        }
     title = f"{size.text} bias aircraft tyre by its size"
-    data = section_data(size, rule, line, "carcass", layers, title=title, shoulder_s=shoulder, bead_length=bead_height, grooves=cut)
-    return Drawn(size, rule, line, data, {"carcass": "nasa-carcass", "tread": "nasa-tread", "sidewall": "nasa-sidewall", "bead": "nasa-bead"})
+    data = section_data(
+        size, rule, line, "carcass", layers, title=title, shoulder_s=shoulder, bead_length=bead_height, grooves=cut
+    )
+    return Drawn(
+        size,
+        rule,
+        line,
+        data,
+        {"carcass": "nasa-carcass", "tread": "nasa-tread", "sidewall": "nasa-sidewall", "bead": "nasa-bead"},
+    )

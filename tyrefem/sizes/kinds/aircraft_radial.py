@@ -27,10 +27,28 @@ def draw(size: TyreSize, rule: Rules) -> Drawn:
     rule("tread_radius", 1.8 * width, "mm", f"{ESTIMATE}, 1.8 nominal widths; of the tread's surface", 0.05, 20)
     rule("cord_angle", math.pi / 2, "deg", "radial body plies", 1.4, 1.5708)
     plies = max(2, math.ceil(SAFETY * 0.55 * height * pressure / PLY_STRENGTH))
-    plies = round(rule("plies", plies, "1", f"estimate: cords hold {SAFETY:g} times the rated pressure, pull 0.55 p x height", 1, 20))
+    plies = round(
+        rule(
+            "plies",
+            plies,
+            "1",
+            f"estimate: cords hold {SAFETY:g} times the rated pressure, pull 0.55 p x height",
+            1,
+            20,
+        )
+    )
     rule("ply_gauge", 1.1e-3, "mm", f"{ESTIMATE}, nylon 0.75 mm in rubber", 5e-4)
     belts_needed = max(4, 2 * math.ceil(SAFETY * pressure * outer / 2 / BELT_STRENGTH / 2))
-    belts_needed = round(rule("belt_plies", belts_needed, "1", f"estimate: belts hold {SAFETY:g} times the rated pressure, pull p x radius", 2, 30))
+    belts_needed = round(
+        rule(
+            "belt_plies",
+            belts_needed,
+            "1",
+            f"estimate: belts hold {SAFETY:g} times the rated pressure, pull p x radius",
+            2,
+            30,
+        )
+    )
     belt = rule("inner_belts_width", 0.93 * tread_width, "mm", f"{ESTIMATE}, 0.93 tread widths", 0.02)
     rule("outer_belts_width", 0.90 * belt, "mm", f"{ESTIMATE}, 0.9 of the inner belts'", 0.02)
     one_ply = rule("belt_ply_gauge", 1.0e-3, "mm", f"{ESTIMATE}, cord 0.75 mm in rubber", 5e-4)
@@ -43,10 +61,22 @@ def draw(size: TyreSize, rule: Rules) -> Drawn:
     rule("grooves", 0 if width < 0.2 else 4, "1", f"{ESTIMATE}; 0: smooth", 0, 9)
     rule("groove_share", 0.15, "1", f"{ESTIMATE}: of the tread's width", 0.01, 0.6)
     rule("sidewall_gauge", 2.5e-3, "mm", f"{ESTIMATE}: rubber at the widest place", 1.2e-3)
-    rule("rest_gauge", 0.6e-3, "mm", "estimate: what a belt's layer has left beyond its cushion, sidewall rubber as well", 2e-4)
+    rule(
+        "rest_gauge",
+        0.6e-3,
+        "mm",
+        "estimate: what a belt's layer has left beyond its cushion, sidewall rubber as well",
+        2e-4,
+    )
     rule("chafer_gauge", 4e-3, "mm", f"{ESTIMATE}: rim strip at the bead", 1.2e-3)
     area = bead_wire_area(rule, outer / 2 - tread - 8e-3, rim.diameter, pressure)
-    bead = rule("bead_height", 1.46 * (area / BEAD_FILL) ** 0.5, "mm", f"{ESTIMATE}: {BEAD_FILL:.0%} of the bundle is wire, 2.1 times as high as wide", 3e-3)
+    bead = rule(
+        "bead_height",
+        1.46 * (area / BEAD_FILL) ** 0.5,
+        "mm",
+        f"{ESTIMATE}: {BEAD_FILL:.0%} of the bundle is wire, 2.1 times as high as wide",
+        3e-3,
+    )
     rule("bead_width", area / BEAD_FILL / bead, "mm", f"{ESTIMATE}: of the bundle's area", 2e-3)
     rule("apex_height", 0.20 * height, "mm", f"{ESTIMATE}: 0.2 section heights above the wires", 5e-3)
     rule("turn_up_height", 0.13 * height, "mm", f"{ESTIMATE}: 0.13 section heights above the wires", 4e-3)
@@ -54,15 +84,30 @@ def draw(size: TyreSize, rule: Rules) -> Drawn:
     rule("chafer_height", 0.3 * height, "mm", f"{ESTIMATE}: along the line from the seat", 10e-3)
     rule.check_all_used()
     belts = (Belt("inner-belts", 2.6e-3), Belt("outer-belts", 2.2e-3))
-    radial = Radial(size, rule, rim, "body-plies", belts, (("apex", 1.0),), f"{size.text} radial aircraft tyre by its size", BEAD_FILL)
-    ply = {"base": "aircraft-body-ply", "cords": {"angle_radius": radial.radius(), "ends": f"{780 * plies} 1/m", "plies": plies}}
+    radial = Radial(
+        size,
+        rule,
+        rim,
+        "body-plies",
+        belts,
+        (("apex", 1.0),),
+        f"{size.text} radial aircraft tyre by its size",
+        BEAD_FILL,
+    )
+    ply = {
+        "base": "aircraft-body-ply",
+        "cords": {"angle_radius": radial.radius(), "ends": f"{780 * plies} 1/m", "plies": plies},
+    }
     materials = {
         "liner": "rubber-liner",
         "body-plies": ply,
         "turn-up": ply,
         "bead-wrap": ply,
         **{
-            belt.region: {"base": "aircraft-belt", "cords": {"angle_radius": radial.radius(belt), "ends": f"{900 * count} 1/m", "plies": count}}
+            belt.region: {
+                "base": "aircraft-belt",
+                "cords": {"angle_radius": radial.radius(belt), "ends": f"{900 * count} 1/m", "plies": count},
+            }
             for belt, count in zip(belts, (first, second), strict=True)
         },
         "undertread": "rubber-undertread",

@@ -20,19 +20,44 @@ def draw(size: TyreSize, rule: Rules) -> Drawn:
     return draw_with(size, rule, plies=1, tread=8.3e-3, pressure=250e3, density=50.0, apex=0.24)
 
 
-def draw_with(size: TyreSize, rule: Rules, *, plies: int, tread: float, pressure: float, density: float, apex: float) -> Drawn:
+def draw_with(
+    size: TyreSize, rule: Rules, *, plies: int, tread: float, pressure: float, density: float, apex: float
+) -> Drawn:
     """A passenger construction with its plies, tread gauge (m), rated pressure (Pa), load density (kg/litre), apex over height."""
     series, height = size.series or 0.0, size.section_height or 0.0
     diameter = check_rim_diameter(size)
     share = next(share for top, share in RIM_SHARES if series <= top)
-    rim_width = measuring_rim(size, rule, share, INCH / 2, f"{STANDARD}: measuring rim, {share:g} nominal widths to the half inch")
+    rim_width = measuring_rim(
+        size, rule, share, INCH / 2, f"{STANDARD}: measuring rim, {share:g} nominal widths to the half inch"
+    )
     rim = road_rim(rule, diameter, rim_width, 17.3e-3, 9.5e-3, 0.0872664626, f"J contour of a 5 deg seat, {STANDARD}")
-    outer = rule("outer_diameter", diameter + 2 * height, "mm", f"{STANDARD}: rim diameter + 2 section heights", diameter + 0.04)
+    outer = rule(
+        "outer_diameter", diameter + 2 * height, "mm", f"{STANDARD}: rim diameter + 2 section heights", diameter + 0.04
+    )
     design_width(size, rule, rim_width, 0.85 if series < 0.5 else 0.7)
-    pressure = rated(size, rule, density, pressure, f"reference pressure {pressure / 1e3:g} kPa ({STANDARD}); mean of eight sizes, 3 % either way")
-    tread_width = rule("tread_width", (1.075 - 0.5 * series) * size.width, "mm", "design tread width (1.075 - 0.5 series) x nominal width (from memory of the Tire and Rim Association)", 0.4 * size.width)
+    pressure = rated(
+        size,
+        rule,
+        density,
+        pressure,
+        f"reference pressure {pressure / 1e3:g} kPa ({STANDARD}); mean of eight sizes, 3 % either way",
+    )
+    tread_width = rule(
+        "tread_width",
+        (1.075 - 0.5 * series) * size.width,
+        "mm",
+        "design tread width (1.075 - 0.5 series) x nominal width (from memory of the Tire and Rim Association)",
+        0.4 * size.width,
+    )
     radius = 1.65 * size.width / series
-    rule("crown_radius", radius, "mm", "estimate: 1.65 nominal widths over the series, the lower the flatter; of the plies' line", 0.05, 20)
+    rule(
+        "crown_radius",
+        radius,
+        "mm",
+        "estimate: 1.65 nominal widths over the series, the lower the flatter; of the plies' line",
+        0.05,
+        20,
+    )
     rule("tread_radius", radius, "mm", "estimate: as crown_radius; of the tread's surface", 0.05, 20)
     rule("cord_angle", 1.5707963268, "deg", "radial body ply", 1.4, 1.5708)
     belt = rule("belt_1_width", 0.95 * tread_width, "mm", f"{ESTIMATE}, 0.95 tread widths", 0.03)
@@ -48,22 +73,51 @@ def draw_with(size: TyreSize, rule: Rules, *, plies: int, tread: float, pressure
     rule("tread_gauge", tread, "mm", f"{ESTIMATE}: depth of a new tread", 1e-3)
     rule("grooves", 4, "1", f"{ESTIMATE}; 0: smooth", 0, 9)
     rule("groove_share", 0.22, "1", f"{ESTIMATE}: of the tread's width", 0.01, 0.6)
-    rule("sidewall_gauge", 2.2e-3, "mm", f"{ESTIMATE}: rubber at the widest place, with the rests below it 3.7 mm", 1.2e-3)
-    rule("rest_gauge", 0.4e-3, "mm", "estimate: what a belt's layer has left beyond its cushion, sidewall rubber as well", 2e-4)
+    rule(
+        "sidewall_gauge",
+        2.2e-3,
+        "mm",
+        f"{ESTIMATE}: rubber at the widest place, with the rests below it 3.7 mm",
+        1.2e-3,
+    )
+    rule(
+        "rest_gauge",
+        0.4e-3,
+        "mm",
+        "estimate: what a belt's layer has left beyond its cushion, sidewall rubber as well",
+        2e-4,
+    )
     rule("chafer_gauge", 2.8e-3, "mm", f"{ESTIMATE}: rim strip at the bead", 1.2e-3)
     crown = outer / 2 - tread - 5e-3
     area = bead_wire_area(rule, crown, diameter, pressure)
-    bead = rule("bead_height", 1.36 * (area / BEAD_FILL) ** 0.5, "mm", f"{ESTIMATE}: {BEAD_FILL:.0%} of the bundle is wire, 1.85 times as high as wide", 3e-3)
+    bead = rule(
+        "bead_height",
+        1.36 * (area / BEAD_FILL) ** 0.5,
+        "mm",
+        f"{ESTIMATE}: {BEAD_FILL:.0%} of the bundle is wire, 1.85 times as high as wide",
+        3e-3,
+    )
     rule("bead_width", area / BEAD_FILL / bead, "mm", f"{ESTIMATE}: of the bundle's area", 2e-3)
     rule("apex_height", apex * height, "mm", f"{ESTIMATE}: {apex:g} section heights above the wires", 4e-3)
     rule("turn_up_height", (apex + 0.06) * height, "mm", f"{ESTIMATE}: 0.06 section heights above the apex", 4e-3)
     rule("toe_gauge", 3.4e-3, "mm", f"{ESTIMATE}: rubber below the wires", 1e-3)
-    rule("chafer_height", 50e-3 if height > 0.09 else 0.45 * height, "mm", f"{ESTIMATE}: along the line from the seat", 10e-3)
+    rule(
+        "chafer_height",
+        50e-3 if height > 0.09 else 0.45 * height,
+        "mm",
+        f"{ESTIMATE}: along the line from the seat",
+        10e-3,
+    )
     rule.check_all_used()
     belts = (Belt("belt-1", 2.6e-3), Belt("belt-2", 1.1e-3), Belt("cap-ply", 0.0))
-    radial = Radial(size, rule, rim, "body-ply", belts, (("apex", 1.0),), f"{size.text} {size.kind} radial by its size", BEAD_FILL)
+    radial = Radial(
+        size, rule, rim, "body-ply", belts, (("apex", 1.0),), f"{size.text} {size.kind} radial by its size", BEAD_FILL
+    )
     count = round(radial.n("plies"))
-    ply = {"base": "passenger-body-ply", "cords": {"angle_radius": radial.radius(), "ends": f"{1100 * count} 1/m", "plies": count}}
+    ply = {
+        "base": "passenger-body-ply",
+        "cords": {"angle_radius": radial.radius(), "ends": f"{1100 * count} 1/m", "plies": count},
+    }
     materials = {
         "liner": "rubber-liner",
         "body-ply": ply,

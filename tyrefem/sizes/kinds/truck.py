@@ -18,14 +18,33 @@ def draw(size: TyreSize, rule: Rules) -> Drawn:
     """One steel body ply, a transition belt, two working belts and a protector belt."""
     width, height = size.width, size.section_height or 0.0
     diameter = check_rim_diameter(size)
-    rim_width = measuring_rim(size, rule, 0.75, 0.75 * INCH, f"{STANDARD}: measuring rim, 0.75 nominal widths to 3/4 in")
-    rim = road_rim(rule, diameter, rim_width, 12.7e-3, 8e-3, 0.2617993878, f"15 deg drop-centre rim, flange height 12.7 mm, {STANDARD}; estimate: rounding")
-    outer = rule("outer_diameter", diameter + 2 * height, "mm", f"{STANDARD}: rim diameter + 2 section heights", diameter + 0.1)
+    rim_width = measuring_rim(
+        size, rule, 0.75, 0.75 * INCH, f"{STANDARD}: measuring rim, 0.75 nominal widths to 3/4 in"
+    )
+    rim = road_rim(
+        rule,
+        diameter,
+        rim_width,
+        12.7e-3,
+        8e-3,
+        0.2617993878,
+        f"15 deg drop-centre rim, flange height 12.7 mm, {STANDARD}; estimate: rounding",
+    )
+    outer = rule(
+        "outer_diameter", diameter + 2 * height, "mm", f"{STANDARD}: rim diameter + 2 section heights", diameter + 0.1
+    )
     design_width(size, rule, rim_width, 0.75)
     pressure = rated(size, rule, 61.0, 850e3, f"850 kPa ({STANDARD}); mean of three sizes, 4 % either way")
     tread_width = rule("tread_width", 0.72 * width, "mm", f"{ESTIMATE}, 0.72 nominal widths", 0.4 * width)
     rule("crown_radius", 2.4 * width, "mm", f"{ESTIMATE}, 2.4 nominal widths; of the plies' line", 0.1, 20)
-    rule("tread_radius", 3.5 * width, "mm", f"{ESTIMATE}, 3.5 nominal widths, flatter than the plies; of the tread's surface", 0.1, 20)
+    rule(
+        "tread_radius",
+        3.5 * width,
+        "mm",
+        f"{ESTIMATE}, 3.5 nominal widths, flatter than the plies; of the tread's surface",
+        0.1,
+        20,
+    )
     rule("cord_angle", 1.5707963268, "deg", "radial body ply", 1.4, 1.5708)
     for name, share, gauge, words in (
         ("belt_1", 0.57, 2.0e-3, "transition belt"),
@@ -42,27 +61,62 @@ def draw(size: TyreSize, rule: Rules) -> Drawn:
     tread = rule("tread_gauge", 15e-3, "mm", f"{ESTIMATE}: depth of a new steer-axle tread", 2e-3)
     rule("grooves", 4, "1", f"{ESTIMATE}; 0: smooth", 0, 9)
     rule("groove_share", 0.21, "1", f"{ESTIMATE}: of the tread's width", 0.01, 0.6)
-    rule("sidewall_gauge", 2.4e-3, "mm", f"{ESTIMATE}: rubber at the widest place, with the rests below it 5.4 mm", 1.2e-3)
-    rule("rest_gauge", 0.6e-3, "mm", "estimate: what a belt's layer has left beyond its cushion, sidewall rubber as well", 2e-4)
+    rule(
+        "sidewall_gauge",
+        2.4e-3,
+        "mm",
+        f"{ESTIMATE}: rubber at the widest place, with the rests below it 5.4 mm",
+        1.2e-3,
+    )
+    rule(
+        "rest_gauge",
+        0.6e-3,
+        "mm",
+        "estimate: what a belt's layer has left beyond its cushion, sidewall rubber as well",
+        2e-4,
+    )
     rule("chafer_gauge", 5e-3, "mm", f"{ESTIMATE}: rim strip at the bead", 1.2e-3)
     area = bead_wire_area(rule, outer / 2 - tread - 15e-3, diameter, pressure)
-    bead = rule("bead_height", 1.14 * (area / BEAD_FILL) ** 0.5, "mm", f"{ESTIMATE}: {BEAD_FILL:.0%} of the bundle is wire, 1.3 times as high as wide", 3e-3)
+    bead = rule(
+        "bead_height",
+        1.14 * (area / BEAD_FILL) ** 0.5,
+        "mm",
+        f"{ESTIMATE}: {BEAD_FILL:.0%} of the bundle is wire, 1.3 times as high as wide",
+        3e-3,
+    )
     rule("bead_width", area / BEAD_FILL / bead, "mm", f"{ESTIMATE}: of the bundle's area", 2e-3)
-    rule("apex_height", 0.34 * height, "mm", f"{ESTIMATE}: 0.34 section heights above the wires, half of it hard", 10e-3)
+    rule(
+        "apex_height", 0.34 * height, "mm", f"{ESTIMATE}: 0.34 section heights above the wires, half of it hard", 10e-3
+    )
     rule("turn_up_height", 0.22 * height, "mm", f"{ESTIMATE}: 0.22 section heights above the wires", 6e-3)
     rule("toe_gauge", 8e-3, "mm", f"{ESTIMATE}: rubber below the wires", 2e-3)
     rule("chafer_height", 0.34 * height, "mm", f"{ESTIMATE}: along the line from the seat", 10e-3)
     rule.check_all_used()
     belts = (Belt("belt-1", 7e-3), Belt("belt-2", 2.4e-3), Belt("belt-3", 1.6e-3), Belt("belt-4", 0.0))
-    radial = Radial(size, rule, rim, "body-ply", belts, (("apex-soft", 0.5), ("apex", 0.5)), f"{size.text} truck radial by its size", BEAD_FILL)
-    ply = {"base": "truck-body-ply", "cords": {"angle_radius": radial.radius(), "ends": f"{600 * round(radial.n('plies'))} 1/m"}}
+    radial = Radial(
+        size,
+        rule,
+        rim,
+        "body-ply",
+        belts,
+        (("apex-soft", 0.5), ("apex", 0.5)),
+        f"{size.text} truck radial by its size",
+        BEAD_FILL,
+    )
+    ply = {
+        "base": "truck-body-ply",
+        "cords": {"angle_radius": radial.radius(), "ends": f"{600 * round(radial.n('plies'))} 1/m"},
+    }
     cards = ("truck-transition-belt", "truck-belt", "truck-belt", "truck-protector-belt")
     materials = {
         "liner": "rubber-liner",
         "body-ply": ply,
         "turn-up": ply,
         "bead-wrap": ply,
-        **{belt.region: {"base": card, "cords": {"angle_radius": radial.radius(belt)}} for belt, card in zip(belts, cards, strict=True)},
+        **{
+            belt.region: {"base": card, "cords": {"angle_radius": radial.radius(belt)}}
+            for belt, card in zip(belts, cards, strict=True)
+        },
         "undertread": "rubber-undertread",
         "tread": "rubber-tread-truck",
         "shoulder-cushion": "rubber-cushion",

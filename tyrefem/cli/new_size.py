@@ -1,0 +1,68 @@
+"""`tyrefem new section 205/60R15`: a section or a study from a tyre's size."""
+
+from __future__ import annotations
+
+import os
+import re
+import shlex
+from collections.abc import Mapping
+from pathlib import Path
+from typing import Any
+
+import typer
+
+from tyrefem.errors import InputError
+
+#: Speed of a new study.
+SPEED = "60 km/h"
+
+
+def new_size(kind: str, size: str, numbers: Mapping[str, Any], out: Path | None) -> None:
+    """Write the file of a size. ``numbers``: name -> quantity, in place of the rules' own.
+
+    Raises
+    ------
+    InputError : no such size or number; the file exists.
+    """
+    from tyrefem import library
+    from tyrefem.geometry import load
+    from tyrefem.output import atomic_path, place_of_output
+    from tyrefem.sizes import drawn_of
+    from tyrefem.sizes.section import NUMBERS
+    from tyrefem.sizes.text import section_text, study_text
+
+    of_use = {key: value for key, value in numbers.items() if key in NUMBERS}
+    named = {
+        key.removeprefix("section.").removeprefix("parameters."): value
+        for key, value in numbers.items()
+        if key not in NUMBERS
+    }
+    reference = {"size": size, **of_use, **({"parameters": named} if named else {})}
+    drawn = drawn_of(reference)
+    section = load(reference)  # also checks that the section can be built
+    name = re.sub(r"[^\w.]+", "-", drawn.size.text.lower())
+    folder = Path(library.FOLDERS[kind])
+    target = out or (folder / name / "study.toml" if kind == "study" else folder / f"{name}.toml")
+    if kind == "study" and target.suffix != ".toml":
+        target = target / "study.toml"
+    if target.suffix != ".toml":
+        raise InputError("must be a .toml file", field="--out", file=target)
+    if os.path.lexists(target):
+        raise InputError("exists already; nothing was written", file=target)
+    place_of_output(target.parent)
+    options = " ".join(f"--set {key}={shlex.quote(str(value))}" for key, value in numbers.items())
+    command = f"tyrefem new {kind} {shlex.quote(size)} {options}".rstrip()
+    text = section_text(drawn, command) if kind == "section" else study_text(drawn, reference, SPEED)
+    with atomic_path(target) as temporary:
+        temporary.write_text(text, encoding="utf-8")
+    for warning in section.warnings:
+        typer.echo(f"warning: {warning}", err=True)
+    guesses = sum("estimate" in number.source for number in drawn.rules)
+    typer.echo(
+        f"{target} written: {drawn.size.text} by the rules of kind {drawn.size.kind}, {len(drawn.rules.numbers)} numbers, {guesses} estimates"
+    )
+    typer.echo(
+        f"outer diameter {section.outer_diameter * 1e3:.1f} mm, width {section.overall_width * 1e3:.1f} mm on a rim {drawn.rules['rim_width'].text} wide"
+    )
+    shown = target.parent if kind == "study" else target
+    typer.echo(f"see it: tyrefem show {kind} {shown}" if kind == "section" else f"then: tyrefem press {shown}")

@@ -1,0 +1,128 @@
+"""A size's section as the text of a file: every named number with its source on top, then the section's tables."""
+
+from __future__ import annotations
+
+import textwrap
+from collections.abc import Iterator, Mapping
+from typing import Any
+
+from tyrefem.sizes.drawn import Drawn
+
+#: Longest line of lists of numbers.
+WIDTH = 120
+
+
+def section_text(drawn: Drawn, command: str) -> str:
+    """The section's file. ``command`` made it.
+
+    >>> from tyrefem.sizes import draw_size
+    >>> text = section_text(draw_size("205/60R15"), "tyrefem new section 205/60R15")
+    >>> "# rim_width" in text and "[[layers]]" in text
+    True
+    """
+    return "\n".join([*_head(drawn, command), "", *_tables(drawn.data), "", *_materials(drawn), ""])
+
+
+def study_text(drawn: Drawn, section: Mapping[str, Any] | str, speed: str) -> str:
+    """A study of a size: its section, its materials, its rated load and pressure, mechanics by finite elements."""
+    rules = drawn.rules
+    lines = [
+        f"title = {_value(f'{drawn.size.text}: rated load and pressure at {speed}')}",
+        f"section = {_value(section)}",
+        "",
+        "[materials]                 # without a line here a region has the card of its size, which follows another size or number:",
+        *(f"# {_key(region)} = {_value(card)}" for region, card in drawn.materials.items()),
+        "",
+        "[drive]",
+        f"speed = {_value(speed)}",
+        f"load = {_value(rules['rated_load'].text)}      # {rules['rated_load'].source}",
+        f"pressure = {_value(rules['rated_pressure'].text)}      # {rules['rated_pressure'].source}",
+        'duration = "1800 s"',
+        'ambient = "25 degC"',
+        "",
+        "[mesh]",
+        'size = "5 mm"',
+        "through = 1                 # one quadratic element through a ply",
+        "",
+        "[mechanics]",
+        'strain = "fem"',
+        'loss_convention = "sinusoid"',
+        "",
+    ]
+    return "\n".join(lines)
+
+
+def _head(drawn: Drawn, command: str) -> Iterator[str]:
+    yield f"# {drawn.size.text}, kind {drawn.size.kind}. Written by: {command}"
+    yield "# No maker's design, nothing measured: sizes of the standard or data book, the inside by rules of the trade."
+    yield "# The named numbers that the tables below follow from; change one with --set NAME=VALUE and write the file anew."
+    yield "#"
+    wide = max(len(number.name) for number in drawn.rules)
+    for number in drawn.rules:
+        rows = textwrap.wrap(number.source, 100)
+        yield f"# {number.name:{wide}}  {number.text:14}  {rows[0] if rows else ''}"
+        for row in rows[1:]:
+            yield f"# {'':{wide}}  {'':14}  {row}"
+
+
+def _materials(drawn: Drawn) -> Iterator[str]:
+    yield "# Material cards for a study of this section (a study whose section is the size itself needs none of these lines):"
+    yield "# [materials]"
+    for region, card in drawn.materials.items():
+        yield f"# {_key(region)} = {_value(card)}"
+
+
+def _tables(data: Mapping[str, Any]) -> Iterator[str]:
+    for key, value in data.items():
+        if isinstance(value, Mapping):
+            yield ""
+            yield f"[{key}]"
+            yield from _pairs(value)
+        elif isinstance(value, list) and key == "layers":
+            for entry in value:
+                yield ""
+                yield f"[[{key}]]"
+                yield from _pairs(entry)
+        elif isinstance(value, list):
+            for entry in value:
+                yield f"[[{key}]]" if entry is not value[0] else f"\n[[{key}]]"
+                yield from _pairs(entry)
+        else:
+            yield f"{key} = {_value(value)}"
+
+
+def _pairs(table: Mapping[str, Any]) -> Iterator[str]:
+    for key, value in table.items():
+        text = _value(value)
+        if len(text) > WIDTH and isinstance(value, Mapping) and isinstance(value.get("values"), list):
+            yield f"{key} = {{ unit = {_value(value['unit'])}, values = ["
+            row = ""
+            for item in map(_value, value["values"]):
+                if len(row) + len(item) > WIDTH - 6:
+                    yield f"    {row.rstrip()}"
+                    row = ""
+                row += f"{item}, "
+            yield f"    {row.rstrip()}"
+            yield "] }"
+        elif len(text) > WIDTH and isinstance(value, list):
+            yield f"{key} = ["
+            yield from (f"    {_value(item)}," for item in value)
+            yield "]"
+        else:
+            yield f"{key} = {text}"
+
+
+def _value(value: Any) -> str:
+    if isinstance(value, str):
+        return '"' + value.replace("\\", "\\\\").replace('"', '\\"') + '"'
+    if isinstance(value, bool):
+        return str(value).lower()
+    if isinstance(value, Mapping):
+        return "{ " + ", ".join(f"{_key(key)} = {_value(item)}" for key, item in value.items()) + " }"
+    if isinstance(value, list | tuple):
+        return "[" + ", ".join(map(_value, value)) + "]"
+    return repr(value)
+
+
+def _key(key: str) -> str:
+    return key if key.replace("-", "").replace("_", "").isalnum() else f'"{key}"'
