@@ -236,7 +236,7 @@ def study(name: str | Path, changes: Mapping[str, Any] | None = None, case: str 
 
 
 def section_from_size(size: str, numbers: Mapping[str, Any] | None = None) -> Section:
-    """A section from a tyre's size: ``"205/60R15"``, ``"LT245/75R16"``, ``"295/80R22.5"``, ``"22x5.5 8PR"``, ``"46x17R20"``.
+    """A section from a tyre's size: ``"205/60R15"``, ``"295/80R22.5"``, ``"22x5.5 8PR"``, ``"46x17R20"``.
 
     Parameters
     ----------

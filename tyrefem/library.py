@@ -1,4 +1,7 @@
-"""Find a section, material or study: explicit path, the user's folders, the shipped library. A section may be a size."""
+"""Find a section, material or study: explicit path, the user's folders, the shipped library.
+
+A section may also be a tyre's size.
+"""
 
 from __future__ import annotations
 

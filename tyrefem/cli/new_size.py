@@ -59,10 +59,12 @@ def new_size(kind: str, size: str, numbers: Mapping[str, Any], out: Path | None)
         typer.echo(f"warning: {warning}", err=True)
     guesses = sum("estimate" in number.source for number in drawn.rules)
     typer.echo(
-        f"{target} written: {drawn.size.text} by the rules of kind {drawn.size.kind}, {len(drawn.rules.numbers)} numbers, {guesses} estimates"
+        f"{target} written: {drawn.size.text} by the rules of kind {drawn.size.kind}, {len(drawn.rules.numbers)} "
+        f"numbers, {guesses} estimates"
     )
     typer.echo(
-        f"outer diameter {section.outer_diameter * 1e3:.1f} mm, width {section.overall_width * 1e3:.1f} mm on a rim {drawn.rules['rim_width'].text} wide"
+        f"outer diameter {section.outer_diameter * 1e3:.1f} mm, width {section.overall_width * 1e3:.1f} mm on a "
+        f"rim {drawn.rules['rim_width'].text} wide"
     )
     shown = target.parent if kind == "study" else target
     typer.echo(f"see it: tyrefem show {kind} {shown}" if kind == "section" else f"then: tyrefem press {shown}")

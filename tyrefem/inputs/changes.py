@@ -60,13 +60,11 @@ def _change(data: dict[str, Any], key: str, value: Any) -> None:
 
 
 def _as_table(data: dict[str, Any], parts: list[str]) -> None:
-    """A size as a table, so that its numbers can be set; another size in place of a card, another card in place of a size."""
+    """A size as a table, so that its numbers can be set; a size in place of a card, a card in place of a size."""
     section = data.get("section")
     if isinstance(section, str) and is_size(section) and len(parts) > 1:
         data["section"] = {"size": section}
-    elif parts[1:] == ["size"] and not (isinstance(section, Mapping) and "size" in section):
-        data["section"] = {}
-    elif parts[1:] == ["base"] and isinstance(section, Mapping) and "size" in section:
+    elif parts[1:] in (["size"], ["base"]) and not (isinstance(section, Mapping) and parts[1] in section):
         data["section"] = {}
 
 

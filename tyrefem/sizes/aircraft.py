@@ -17,7 +17,9 @@ DEFLECTION = 0.32
 
 
 def aircraft_numbers(size: TyreSize, rule: Rules, plies: int) -> tuple[Rim, float]:
-    """Rules of size, rim, load and pressure; the rim and the rated pressure, Pa. ``plies``: the ply rating if none is known.
+    """Rules of size, rim, load and pressure; the rim and the rated pressure, Pa.
+
+    ``plies``: the ply rating if none is known.
 
     Raises
     ------
@@ -28,7 +30,8 @@ def aircraft_numbers(size: TyreSize, rule: Rules, plies: int) -> tuple[Rim, floa
     diameter = row.rim_diameter if row else size.rim_diameter
     if diameter is None and "rim_diameter" not in rule.given:
         raise InputError(
-            f"'{size.text}' does not name its rim and is not in the data book: write it with the rim, such as {size.text.split(' ')[0]}-"
+            f"'{size.text}' does not name its rim and is not in the data book: write it with the rim, such as "
+            f"{size.text.split(' ')[0]}-"
             f"{max(4, round(0.53 * outside / INCH))}, or give rim_diameter",
             field="size",
         )
@@ -71,7 +74,8 @@ def aircraft_numbers(size: TyreSize, rule: Rules, plies: int) -> tuple[Rim, floa
     low, high = between - 0.12 * width, between + 0.12 * width
     if not low <= rim_width <= high:
         raise InputError(
-            f"{rim_width / INCH:.4g} in is too {'narrow' if rim_width < low else 'wide'} for {size.text}; allowed: {low / INCH:.3g} to {high / INCH:.3g} in",
+            f"{rim_width / INCH:.4g} in is too {'narrow' if rim_width < low else 'wide'} for {size.text}; "
+            f"allowed: {low / INCH:.3g} to {high / INCH:.3g} in",
             field="rim_width",
         )
     height = rule(
@@ -107,5 +111,5 @@ def _rated(size: TyreSize, rule: Rules, row: DataBookRow | None, outer: float) -
 
 
 def _tr_r64(width: float, diameter: float, height: float, pressure: float) -> float:
-    """NASA TR R-64 (Smiley and Horne 1958): F = 1.08 p w sqrt(w d) 2.4 (u - C_z), u deflection/w > 10 C_z/3, C_z = 0.02."""
+    """NASA TR R-64 (Smiley and Horne 1958): F = 1.08 p w sqrt(w d) 2.4 (u - C_z), u = deflection/w, C_z = 0.02."""
     return float(1.08 * pressure * width * math.sqrt(width * diameter) * 2.4 * (DEFLECTION * height / width - 0.02))

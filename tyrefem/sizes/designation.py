@@ -1,4 +1,4 @@
-"""A tyre's size as it stands on its wall: ``205/60R15 91V``, ``LT245/75R16``, ``11R22.5``, ``22x5.5 8PR``, ``H44.5x16.5-21``."""
+"""A tyre's size as it stands on its wall: ``205/60R15 91V``, ``11R22.5``, ``22x5.5 8PR``, ``H44.5x16.5-21``."""
 
 from __future__ import annotations
 
@@ -110,7 +110,8 @@ def _metric(text: str, match: re.Match[str]) -> TyreSize:
     build, rim, series = match["build"].upper(), float(match["rim"]), float(match["series"])
     if build != "R":
         raise InputError(
-            f"'{text}' is a bias-ply road tyre, which has no rules here; radials are written {text.replace(match['build'], 'R', 1)}",
+            f"'{text}' is a bias-ply road tyre, which has no rules here; radials are written "
+            f"{text.replace(match['build'], 'R', 1)}",
             field="size",
         )
     if not 20 <= series <= 100:

@@ -42,20 +42,25 @@ def length(value: float) -> str:
     return f"{round(value * 1e3, 3):g} mm"
 
 
+def thickness(rows: Iterable[tuple[float, float]], at: Array) -> Array:
+    """Thickness at stations by rows (s, thickness), linear between them."""
+    s, values = np.array(list(rows)).T
+    return np.asarray(np.interp(at, s, values))
+
+
 def table(name: str, rows: Iterable[tuple[float, float]], regions: list[dict[str, str]], source: str) -> dict[str, Any]:
     """A layer of a section file; rows (s, thickness) of one station are joined."""
     kept: list[tuple[float, float]] = []
-    *rows, (last, thickness) = sorted(rows)
+    *before, (last, at_end) = sorted(rows)
     # The line through the file's rounded points is a little longer or shorter than the one that they are taken from.
-    for s, thickness in [*rows, (1.004 * last, thickness)]:
+    for s, height in [*before, (1.004 * last, at_end)]:
         if kept and s - kept[-1][0] < 5e-4:
             continue
-        kept.append((s, thickness))
-    s, thickness = zip(*kept, strict=True)
+        kept.append((s, height))
     return {
         "name": name,
-        "s": millimetres(s),
-        "thickness": millimetres(thickness),
+        "s": millimetres(s for s, _ in kept),
+        "thickness": millimetres(height for _, height in kept),
         "regions": regions,
         "source": source,
     }
@@ -78,8 +83,10 @@ def section_data(
             "kind": "points",
             "reference": reference,
             "points": {"unit": "mm", "values": [[round(r * 1e3, 4), round(z * 1e3, 4)] for r, z in points]},
-            "source": f"cords in equilibrium under pressure, {words} (Purdy), from {line.join_s * 1e3:.1f} mm to {line.flange_s * 1e3:.1f} mm along "
-            f"the line, r_m {line.membrane.widest * 1e3:.1f} mm; an arc before, the rim's flange and seat behind it; fitted to {size.text} by "
+            "source": f"cords in equilibrium under pressure, {words} (Purdy), from {line.join_s * 1e3:.1f} mm to "
+            f"{line.flange_s * 1e3:.1f} mm along "
+            f"the line, r_m {line.membrane.widest * 1e3:.1f} mm; an arc before, the rim's flange and seat behind "
+            f"it; fitted to {size.text} by "
             "tyrefem.sizes",
         },
         "parameters": {

@@ -51,7 +51,8 @@ def check_carries(load: float, pressure: float, wanted: float, at: float, expone
     if wanted > most * (1 + 1e-6):
         needed = pressure * (wanted / load) ** (1 / exponent)
         raise InputError(
-            f"{at / 1e3:.4g} kPa carries {most:.5g} N, not {wanted:.5g} N: at least {needed / 1e3:.4g} kPa are needed (load goes "
+            f"{at / 1e3:.4g} kPa carries {most:.5g} N, not {wanted:.5g} N: at least {needed / 1e3:.4g} kPa are "
+            "needed (load goes "
             f"with pressure to the power {exponent:g} from {load:.5g} N at {pressure / 1e3:.4g} kPa)",
             field="pressure",
         )

@@ -1,7 +1,7 @@
 r"""Meridians of an inflated membrane of cords in equilibrium.
 
-A shell of revolution under pressure p, with the angle phi between its normal and the wheel's axis plane measured so that
-sin phi = 1 where the tangent is axial (crown) and 0 where it is radial (widest place), satisfies
+A shell of revolution under pressure p, with the angle phi between its normal and the wheel's axis plane measured so
+that sin phi = 1 where the tangent is axial (crown) and 0 where it is radial (widest place), satisfies
 
     N_phi kappa_phi + N_theta kappa_theta = p,    kappa_phi = d(sin phi)/dr,    kappa_theta = sin phi / r.
 
@@ -9,15 +9,15 @@ Axial balance of the part between r and the widest place r_m, where the membrane
 
     2 pi r N_phi sin phi = pi p (r^2 - r_m^2).
 
-Cords at +-alpha to the circumference carry N_theta / N_phi = cot^2 alpha. With the lift law cos alpha = k r (a green tyre is
-shaped over its drum, every cord crossing every parallel), dividing the first equation by the second,
+Cords at +-alpha to the circumference carry N_theta / N_phi = cot^2 alpha. With the lift law cos alpha = k r (a green
+tyre is shaped over its drum, every cord crossing every parallel), dividing the first equation by the second,
 
     d ln(sin phi)/dr = 2 r/(r^2 - r_m^2) - cot^2(alpha)/r,   and since  d ln(sin alpha)/dr = -cot^2(alpha)/r,
 
     sin phi = (r^2 - r_m^2) sin alpha / A,    sin alpha = sqrt(1 - k^2 r^2),
 
-A a constant (Hofferberth 1956; Purdy 1963, Mathematics underlying the design of pneumatic tires). A radial ply has k = 0:
-sin phi = (r^2 - r_m^2)/(r_c^2 - r_m^2) with A = r_c^2 - r_m^2. Then r N_phi = p A/(2 sin alpha).
+A a constant (Hofferberth 1956; Purdy 1963, Mathematics underlying the design of pneumatic tires). A radial ply has k
+= 0: sin phi = (r^2 - r_m^2)/(r_c^2 - r_m^2) with A = r_c^2 - r_m^2. Then r N_phi = p A/(2 sin alpha).
 """
 
 from __future__ import annotations

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from dataclasses import dataclass
 from functools import cached_property
+from itertools import pairwise
 from typing import Any
 
 import numpy as np
@@ -22,9 +23,9 @@ FINE = 241
 class SizedMeridian:
     """Carcass line from the crown to the bead seat.
 
-    Crown arc of ``crown_radius`` over ``join`` rad; `Membrane` from there to the angle ``leaves``, where the line begins to
-    follow the flange; an arc about the flange's centre, ``offset`` (the material outside of the line at the bead) further out;
-    a straight part at right angles to the seat.
+    Crown arc of ``crown_radius`` over ``join`` rad; `Membrane` from there to the angle ``leaves``; an arc of radius
+    ``bend`` the other way, about the rim's flange; a straight part at right angles to the seat. ``offset``: material
+    outside of the line at the bead.
     """
 
     membrane: Membrane
@@ -34,6 +35,21 @@ class SizedMeridian:
     leaves: float
     rim: Rim
     offset: float
+    bend: float
+
+    @property
+    def bend_centre(self) -> tuple[float, float]:
+        """(r, z) of the centre of the bend: on the flange's centre line, where the straight part ends."""
+        away = self.rim.radius + self.offset - self.bend
+        r, z = self.rim.centre
+        return r - away * float(np.sin(self.rim.taper)), z - away * float(np.cos(self.rim.taper))
+
+    def to_flange(self, s: ArrayLike) -> Array:
+        """From the line to the flange's rounding along the line's normal, m, from `flange_s` to the straight part."""
+        away = self.rim.radius + self.offset - self.bend
+        turn = self.rim.taper - self.at(s)[2]
+        depth = np.sqrt(np.maximum(self.rim.radius**2 - (away * np.sin(turn)) ** 2, 0.0))
+        return np.asarray(self.bend + away * np.cos(turn) - depth)
 
     @cached_property
     def _line(self) -> tuple[Array, Array, Array, Array]:
@@ -44,9 +60,9 @@ class SizedMeridian:
         parts = [(self.crown_radius * theta, r, z, np.pi / 2 - theta)]
         phi, r, z, s = self.membrane.run(np.pi / 2 - self.join, self.leaves, FINE)
         parts.append((parts[-1][0][-1] + s, r, parts[-1][2][-1] + z, phi))
-        bend = self.rim.radius + self.offset
+        bend = self.bend
         phi = np.linspace(self.leaves, self.rim.taper, 80)
-        c = self.rim.centre
+        c = self.bend_centre
         r, z = c[0] - bend * np.sin(phi), c[1] - bend * np.cos(phi)
         parts.append((parts[-1][0][-1] + bend * (phi - self.leaves), r, z, phi))
         h = np.linspace(0.0, self.rim.straight, 12)
@@ -68,8 +84,7 @@ class SizedMeridian:
     @property
     def flange_s(self) -> float:
         """Where the line begins to follow the flange."""
-        bend = self.rim.radius + self.offset
-        return self.length - self.rim.straight - bend * (self.rim.taper - self.leaves)
+        return self.length - self.rim.straight - self.bend * (self.rim.taper - self.leaves)
 
     @property
     def widest_s(self) -> float:
@@ -109,7 +124,7 @@ class SizedMeridian:
         turned = np.concatenate([[0.0], np.cumsum(np.abs(np.diff(phi)))])
         measure = turned / turned[-1] + s / s[-1]
         stations = [0.0]
-        for a, b in zip(marks[:-1], marks[1:], strict=True):
+        for a, b in pairwise(marks):
             ends = np.interp([a, b], s, measure)
             gaps = max(2, round((ends[1] - ends[0]) / 2 * count))
             stations += np.interp(np.linspace(*ends, gaps + 1)[1:], measure, s).tolist()
@@ -117,7 +132,9 @@ class SizedMeridian:
         return [(float(a), float(b)) for a, b in zip(r, z, strict=True)]
 
 
-def radial_meridian(crown: float, crown_radius: float, half_width: float, rim: Rim, offset: float) -> SizedMeridian:
+def radial_meridian(
+    crown: float, crown_radius: float, half_width: float, rim: Rim, offset: float, bend: float
+) -> SizedMeridian:
     """The line of a belted radial: r_m, the end of the crown arc and the angle at the flange are solved for.
 
     Raises
@@ -129,7 +146,7 @@ def radial_meridian(crown: float, crown_radius: float, half_width: float, rim: R
         widest, join, leaves = (float(value) for value in x)
         edge = crown - crown_radius * (1 - np.cos(join))
         constant = (edge**2 - widest**2) / np.cos(join)
-        return SizedMeridian(Membrane(widest, constant), crown, crown_radius, join, leaves, rim, offset)
+        return SizedMeridian(Membrane(widest, constant), crown, crown_radius, join, leaves, rim, offset, bend)
 
     def misses(x: Array) -> list[float]:
         drawn = line(x)
@@ -152,11 +169,12 @@ def radial_meridian(crown: float, crown_radius: float, half_width: float, rim: R
 
 
 def bias_meridian(
-    crown: float, half_width: float, rim: Rim, offset: float, angle: float | None
+    crown: float, half_width: float, rim: Rim, offset: float, bend: float, angle: float | None
 ) -> tuple[SizedMeridian, float]:
     """The line of bias plies, in equilibrium from the crown on, and the crown angle of the cords.
 
-    Without an ``angle`` it is the one at which the section is ``half_width`` wide on its rim; with one, the width follows.
+    Without an ``angle`` it is the one at which the section is ``half_width`` wide on its rim; with one, the width
+    follows.
 
     Raises
     ------
@@ -168,7 +186,7 @@ def bias_meridian(
         crown_angle = float(x[2]) if angle is None else angle
         lift = np.cos(crown_angle) / crown
         membrane = Membrane(widest, (crown**2 - widest**2) * np.sin(crown_angle), lift)
-        return SizedMeridian(membrane, crown, 1.0, 0.0, leaves, rim, offset)
+        return SizedMeridian(membrane, crown, 1.0, 0.0, leaves, rim, offset, bend)
 
     def misses(x: Array) -> list[float]:
         drawn = line(x)
@@ -197,8 +215,7 @@ def bias_meridian(
 def _flange_misses(drawn: SizedMeridian, start: float) -> list[float]:
     """How far the end of the membrane is from the circle about the flange's centre that it must touch."""
     phi, r, z, _ = drawn.membrane.run(np.pi / 2 - drawn.join, drawn.leaves, 60)
-    bend = drawn.rim.radius + drawn.offset
-    c = drawn.rim.centre
+    bend, c = drawn.bend, drawn.bend_centre
     return [r[-1] + bend * np.sin(phi[-1]) - c[0], start + z[-1] + bend * np.cos(phi[-1]) - c[1]]
 
 
@@ -215,7 +232,8 @@ def _solved(misses: Any, starts: list[Array], possible: Any) -> Array | None:
 
 def _impossible(half_width: float, rim: Rim) -> InputError:
     return InputError(
-        f"no carcass line in equilibrium is {2e3 * half_width:.4g} mm wide on a rim {1e3 * rim.width:.4g} mm wide; change rim_width,"
+        f"no carcass line in equilibrium is {2e3 * half_width:.4g} mm wide on a rim {1e3 * rim.width:.4g} mm "
+        "wide; change rim_width,"
         " section_width or crown_radius",
         field="parameters",
     )

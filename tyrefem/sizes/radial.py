@@ -12,7 +12,7 @@ from numpy.typing import NDArray
 
 from tyrefem.errors import InputError
 from tyrefem.sizes.designation import TyreSize
-from tyrefem.sizes.drawn import Drawn, length, section_data, table
+from tyrefem.sizes.drawn import Drawn, length, section_data, table, thickness
 from tyrefem.sizes.meridian import radial_meridian
 from tyrefem.sizes.rim import Rim
 from tyrefem.sizes.rules import Rules
@@ -42,8 +42,8 @@ class Belt:
 class Radial:
     """A radial to be drawn: rules that hold all its numbers, its rim, and the names of its regions.
 
-    The first belt's layer goes on as the apex, the second's as the turn-up. ``apex``: region of the apex and share of its
-    height that it takes, from the tip on.
+    The first belt's layer goes on as the apex, the second's as the turn-up. ``apex``: region of the apex and share
+    of its height that it takes, from the tip on.
     """
 
     size: TyreSize
@@ -92,7 +92,7 @@ class Radial:
         if crown < self.rim.diameter / 2 + 0.02:
             raise InputError("leaves no room for a sidewall above the rim", field="parameters.outer_diameter")
         half = self.n("section_width") / 2 - self.wall_outside
-        return radial_meridian(crown, self.n("crown_radius"), half, self.rim, self.bead_outside)
+        return radial_meridian(crown, self.n("crown_radius"), half, self.rim, self.bead_outside, self.n("bend_radius"))
 
     @cached_property
     def shoulder(self) -> float:
@@ -142,7 +142,8 @@ class Radial:
         widest_belt = max(self.n(belt.width) for belt in self.belts) / 2
         if widest_belt > places["peak"] - 1e-3:
             raise InputError(
-                f"a belt {2e3 * widest_belt:.4g} mm wide does not fit under a tread {1e3 * self.n('tread_width'):.4g} mm wide",
+                f"a belt {2e3 * widest_belt:.4g} mm wide does not fit under a tread "
+                f"{1e3 * self.n('tread_width'):.4g} mm wide",
                 field="parameters.tread_width",
             )
         return places
@@ -264,14 +265,8 @@ class Radial:
         wall = np.linspace(p["wide"], p["flange"], 6)
         low = [s for layer in rows.values() for s, _ in layer if s > p["flange"]]
         s = np.unique(np.round(np.concatenate([tread, edge, wall, low, [p["end"]]]), 6))
-        below = (
-            sum(
-                np.interp(s, *zip(*layer, strict=True))
-                for name, layer in rows.items()
-                if name not in ("liner", self.ply)
-            )
-            + self.ply_gauge / 2
-        )
+        inside = [layer for name, layer in rows.items() if name not in ("liner", self.ply)]
+        below = self.ply_gauge / 2 + np.sum([thickness(layer, s) for layer in inside], axis=0)
         shoulder = float(self._to_tread(np.array([sh]))[0])
         drop = np.clip((s - sh) / (p["wide"] - sh), 0, 1)
         rise = np.clip((s - p["wide"]) / (p["flange"] - p["wide"]), 0, 1)
@@ -284,6 +279,14 @@ class Radial:
             s > p["wide"], self.wall_outside + (self.bead_outside - self.wall_outside) * rise**1.5, outside
         )
         return list(zip(s.tolist(), np.maximum(outside - below, SKIN).tolist(), strict=True))
+
+    def add_bend(self) -> None:
+        """Rule of the bend's radius: material outside of the plies lies evenly round the flange."""
+        radius = self.n("flange_radius") + self.bead_outside
+        source = (
+            "flange_radius and what lies outside of the plies at the bead: the plies bend about the flange's centre"
+        )
+        self.rules("bend_radius", radius, "mm", source, 3e-3)
 
     def drawn(self, materials: Mapping[str, Any]) -> Drawn:
         """The section's file."""

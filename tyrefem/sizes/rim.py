@@ -13,8 +13,10 @@ Point = tuple[float, float]
 class Rim:
     """Contour of a rim, m and rad.
 
-    ``diameter``: at the heel, where seat and flange meet; ``width``: between the flanges; ``height``: of the flange above the
-    heel; ``radius``: of its rounding; ``taper``: of the seat. ``least``: straight part of the bead's outside above the heel.
+    ``diameter``: at the heel, where seat and flange meet; ``width``: between the flanges; ``height``: of the flange
+    above the
+    heel; ``radius``: of its rounding; ``taper``: of the seat. ``least``: straight part of the bead's outside above
+    the heel.
     """
 
     diameter: float

@@ -28,7 +28,8 @@ def check_rim_diameter(size: TyreSize) -> float:
     if inches not in RIMS:
         near = min(RIMS, key=lambda rim: abs(rim - inches))
         raise InputError(
-            f"'{size.text}' has the rim diameter {inches:g} in, which road tyres have not; nearest {near:g} in; allowed: 10 to 24 in, 17.5, 19.5, 22.5"
+            f"'{size.text}' has the rim diameter {inches:g} in, which road tyres have not; nearest {near:g} in; "
+            "allowed: 10 to 24 in, 17.5, 19.5, 22.5"
             " and 24.5 in",
             field="size",
         )
@@ -47,7 +48,8 @@ def measuring_rim(size: TyreSize, rule: Rules, share: float, step: float, source
     given = rule("rim_width", measuring, "in", source)
     if not low - 1e-4 <= given <= high + 1e-4:
         raise InputError(
-            f"{given / INCH:.4g} in is too {'narrow' if given < low else 'wide'} for {size.text}; allowed: {low / INCH:.3g} to {high / INCH:.3g} in "
+            f"{given / INCH:.4g} in is too {'narrow' if given < low else 'wide'} for {size.text}; allowed: "
+            f"{low / INCH:.3g} to {high / INCH:.3g} in "
             f"(measuring rim {measuring / INCH:g} in)",
             field="rim_width",
         )

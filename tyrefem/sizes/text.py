@@ -30,7 +30,8 @@ def study_text(drawn: Drawn, section: Mapping[str, Any] | str, speed: str) -> st
         f"title = {_value(f'{drawn.size.text}: rated load and pressure at {speed}')}",
         f"section = {_value(section)}",
         "",
-        "[materials]                 # without a line here a region has the card of its size, which follows another size or number:",
+        "[materials]                 # without a line here a region has the card of its size, which follows "
+        "another size or number:",
         *(f"# {_key(region)} = {_value(card)}" for region, card in drawn.materials.items()),
         "",
         "[drive]",
@@ -55,7 +56,7 @@ def study_text(drawn: Drawn, section: Mapping[str, Any] | str, speed: str) -> st
 def _head(drawn: Drawn, command: str) -> Iterator[str]:
     yield f"# {drawn.size.text}, kind {drawn.size.kind}. Written by: {command}"
     yield "# No maker's design, nothing measured: sizes of the standard or data book, the inside by rules of the trade."
-    yield "# The named numbers that the tables below follow from; change one with --set NAME=VALUE and write the file anew."
+    yield "# The named numbers that the tables below follow from; change one with --set NAME=VALUE and write anew."
     yield "#"
     wide = max(len(number.name) for number in drawn.rules)
     for number in drawn.rules:
@@ -66,7 +67,7 @@ def _head(drawn: Drawn, command: str) -> Iterator[str]:
 
 
 def _materials(drawn: Drawn) -> Iterator[str]:
-    yield "# Material cards for a study of this section (a study whose section is the size itself needs none of these lines):"
+    yield "# Material cards for a study of this section (not needed where the section is the size itself):"
     yield "# [materials]"
     for region, card in drawn.materials.items():
         yield f"# {_key(region)} = {_value(card)}"

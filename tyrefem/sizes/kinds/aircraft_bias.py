@@ -8,7 +8,7 @@ from tyrefem.errors import InputError
 from tyrefem.sizes.aircraft import aircraft_numbers
 from tyrefem.sizes.bead import bead_wire_area
 from tyrefem.sizes.designation import TyreSize
-from tyrefem.sizes.drawn import Drawn, length, section_data, table
+from tyrefem.sizes.drawn import Drawn, length, section_data, table, thickness
 from tyrefem.sizes.meridian import bias_meridian
 from tyrefem.sizes.rules import Rules
 
@@ -17,7 +17,7 @@ ESTIMATE = "estimate: ordinary practice"
 
 
 def draw(size: TyreSize, rule: Rules) -> Drawn:
-    """Nylon bias plies whose crown angle is that of equilibrium at the data book's width; the four regions of the NASA sections."""
+    """Nylon bias plies, crown angle that of equilibrium at the data book's width; regions as the NASA sections."""
     rim, pressure = aircraft_numbers(size, rule, 16)
     outer, width = rule["outer_diameter"].value, size.width
     plies = rule(
@@ -60,9 +60,9 @@ def draw(size: TyreSize, rule: Rules) -> Drawn:
     bundle = float((area / BEAD_FILL) ** 0.5)
     bead_width = rule(
         "bead_width",
-        0.9 * carcass + bundle,
+        bundle + 0.25 * carcass,
         "mm",
-        f"estimate: 0.9 of the plies and a square bundle, {BEAD_FILL:.0%} wire (Clark & Dodge 1980: 0.8 and 0.65 in)",
+        f"estimate: a square bundle, {BEAD_FILL:.0%} wire, and turned-up plies, between plies inside and outside of it",
         3e-3,
     )
     bead_height = rule(
@@ -77,15 +77,23 @@ def draw(size: TyreSize, rule: Rules) -> Drawn:
         "turn_up_height",
         0.35 * (crown - rim.diameter / 2),
         "mm",
-        "estimate: from the seat, 0.35 of the plies' height; the plies are twice as thick below",
+        "estimate: from the seat, 0.35 of the plies' height; filler between the plies down to the bundle",
         5e-3,
     )
     if crown < rim.diameter / 2 + 0.02:
         raise InputError("leaves no room for a sidewall above the rim", field="parameters.outer_diameter")
     angle = rule("cord_angle", 0.6, "deg", "", 0.3, 1.2) if "cord_angle" in rule.given else None
-    offset = bead_width / 2 + chafer
+    third = carcass / 3
+    offset = bead_width / 2 + third + chafer
     half = rule["section_width"].value / 2 - carcass / 2 - wall
-    line, angle = bias_meridian(crown, half, rim, offset, angle)
+    bend = rule(
+        "bend_radius",
+        rim.radius + offset,
+        "mm",
+        "flange_radius and what lies outside of the carcass line at the bead: it bends about the flange's centre",
+        3e-3,
+    )
+    line, angle = bias_meridian(crown, half, rim, offset, bend, angle)
     if "cord_angle" not in rule.given:
         rule(
             "cord_angle",
@@ -102,31 +110,25 @@ def draw(size: TyreSize, rule: Rules) -> Drawn:
     up = end - turn_up
     if not wide < up < end - bead_height:
         raise InputError(
-            f"must be from {bead_height * 1e3:.4g} to {(end - wide) * 1e3:.4g} mm here: between the bead and the widest place",
+            f"must be from {bead_height * 1e3:.4g} to {(end - wide) * 1e3:.4g} mm here: between the bead and the "
+            "widest place",
             field="parameters.turn_up_height",
         )
-    inner = [
-        (0.0, carcass),
-        (max(wide, up - 0.3 * turn_up), carcass),
-        (up, 1.5 * carcass),
-        (end - bead_height, 0.75 * bead_width),
-        (end, bead_width),
-    ]
-    if 1.5 * carcass > 0.75 * bead_width:
-        inner.pop(2)
+    core = [(0.0, third), (up, third), (end - bead_height, 0.9 * bead_width), (end, bead_width)]
     places = np.unique(
         np.round(
             [
                 *np.linspace(0, shoulder, 5),
                 *np.linspace(shoulder, wide, 6),
                 *np.linspace(wide, flange, 6),
-                *(x for x, _ in inner if x > flange),
+                *np.linspace(flange, end - rim.straight, 4),
+                *(x for x, _ in core if x > flange),
                 end,
             ],
             6,
         )
     )
-    below = np.interp(places, *zip(*inner, strict=True)) / 2
+    below = third + thickness(core, places) / 2
     x = np.clip(places / shoulder, 0, 1)
     drop, rise = (
         np.clip((places - shoulder) / (wide - shoulder), 0, 1),
@@ -138,15 +140,24 @@ def draw(size: TyreSize, rule: Rules) -> Drawn:
         carcass / 2 + tread + (shoulder_gauge - tread) * x**2,
         least + (shoulder_gauge - wall) * (1 - drop) ** 1.5,
     )
-    outside = np.where(places > wide, least + (offset - least) * rise**1.5, outside)
+    top = float(line.to_flange(flange))
+    outside = np.where(places > wide, least + (top - least) * rise**1.5, outside)
+    outside = np.where(places > flange, line.to_flange(np.minimum(places, end - rim.straight)), outside)
     rubber = list(zip(places.tolist(), np.maximum(outside - below, 2e-3).tolist(), strict=True))
+    plain = [(0.0, third), (end, third)]
     layers = [
+        table("inner plies", plain, [{"name": "carcass"}], rule.sources("plies", "ply_gauge")),
         table(
-            "carcass",
-            inner,
-            [{"name": "carcass", "to": "bead_start"}, {"name": "bead"}],
-            rule.sources("plies", "ply_gauge", "turn_up_height", "bead_width", "bead_height"),
+            "middle plies and bead",
+            core,
+            [
+                {"name": "carcass", "to": f"-{length(turn_up)}"},
+                {"name": "sidewall", "to": "bead_start"},
+                {"name": "bead"},
+            ],
+            rule.sources("turn_up_height", "bead_width", "bead_height"),
         ),
+        table("outer plies", plain, [{"name": "carcass"}], rule.sources("plies", "ply_gauge")),
         table(
             "rubber",
             rubber,
@@ -164,7 +175,15 @@ def draw(size: TyreSize, rule: Rules) -> Drawn:
         }
     title = f"{size.text} bias aircraft tyre by its size"
     data = section_data(
-        size, rule, line, "carcass", layers, title=title, shoulder_s=shoulder, bead_length=bead_height, grooves=cut
+        size,
+        rule,
+        line,
+        "middle plies and bead",
+        layers,
+        title=title,
+        shoulder_s=shoulder,
+        bead_length=bead_height,
+        grooves=cut,
     )
     return Drawn(
         size,

@@ -82,7 +82,6 @@ def draw(size: TyreSize, rule: Rules) -> Drawn:
     rule("turn_up_height", 0.13 * height, "mm", f"{ESTIMATE}: 0.13 section heights above the wires", 4e-3)
     rule("toe_gauge", 3e-3, "mm", f"{ESTIMATE}: rubber below the wires", 1e-3)
     rule("chafer_height", 0.3 * height, "mm", f"{ESTIMATE}: along the line from the seat", 10e-3)
-    rule.check_all_used()
     belts = (Belt("inner-belts", 2.6e-3), Belt("outer-belts", 2.2e-3))
     radial = Radial(
         size,
@@ -94,6 +93,8 @@ def draw(size: TyreSize, rule: Rules) -> Drawn:
         f"{size.text} radial aircraft tyre by its size",
         BEAD_FILL,
     )
+    radial.add_bend()
+    rule.check_all_used()
     ply = {
         "base": "aircraft-body-ply",
         "cords": {"angle_radius": radial.radius(), "ends": f"{780 * plies} 1/m", "plies": plies},

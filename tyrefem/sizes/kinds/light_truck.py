@@ -9,5 +9,5 @@ from tyrefem.sizes.rules import Rules
 
 
 def draw(size: TyreSize, rule: Rules) -> Drawn:
-    """The construction of a passenger tyre with two body plies and a deeper tread, at the pressure of load range E."""
-    return draw_with(size, rule, plies=2, tread=11e-3, pressure=550e3, density=53.0, apex=0.24)
+    """A passenger construction with three body plies and a deeper tread, at the pressure of load range E."""
+    return draw_with(size, rule, plies=3, tread=11e-3, pressure=550e3, density=53.0, apex=0.24)

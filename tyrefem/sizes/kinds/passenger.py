@@ -23,7 +23,7 @@ def draw(size: TyreSize, rule: Rules) -> Drawn:
 def draw_with(
     size: TyreSize, rule: Rules, *, plies: int, tread: float, pressure: float, density: float, apex: float
 ) -> Drawn:
-    """A passenger construction with its plies, tread gauge (m), rated pressure (Pa), load density (kg/litre), apex over height."""
+    """A passenger construction. ``tread``: gauge, m; ``density`` of the load, kg/l; ``apex`` over section height."""
     series, height = size.series or 0.0, size.section_height or 0.0
     diameter = check_rim_diameter(size)
     share = next(share for top, share in RIM_SHARES if series <= top)
@@ -108,11 +108,12 @@ def draw_with(
         f"{ESTIMATE}: along the line from the seat",
         10e-3,
     )
-    rule.check_all_used()
     belts = (Belt("belt-1", 2.6e-3), Belt("belt-2", 1.1e-3), Belt("cap-ply", 0.0))
     radial = Radial(
         size, rule, rim, "body-ply", belts, (("apex", 1.0),), f"{size.text} {size.kind} radial by its size", BEAD_FILL
     )
+    radial.add_bend()
+    rule.check_all_used()
     count = round(radial.n("plies"))
     ply = {
         "base": "passenger-body-ply",

@@ -35,7 +35,7 @@ def draw(size: TyreSize, rule: Rules) -> Drawn:
     )
     design_width(size, rule, rim_width, 0.75)
     pressure = rated(size, rule, 61.0, 850e3, f"850 kPa ({STANDARD}); mean of three sizes, 4 % either way")
-    tread_width = rule("tread_width", 0.72 * width, "mm", f"{ESTIMATE}, 0.72 nominal widths", 0.4 * width)
+    rule("tread_width", 0.72 * width, "mm", f"{ESTIMATE}, 0.72 nominal widths", 0.4 * width)
     rule("crown_radius", 2.4 * width, "mm", f"{ESTIMATE}, 2.4 nominal widths; of the plies' line", 0.1, 20)
     rule(
         "tread_radius",
@@ -91,7 +91,6 @@ def draw(size: TyreSize, rule: Rules) -> Drawn:
     rule("turn_up_height", 0.22 * height, "mm", f"{ESTIMATE}: 0.22 section heights above the wires", 6e-3)
     rule("toe_gauge", 8e-3, "mm", f"{ESTIMATE}: rubber below the wires", 2e-3)
     rule("chafer_height", 0.34 * height, "mm", f"{ESTIMATE}: along the line from the seat", 10e-3)
-    rule.check_all_used()
     belts = (Belt("belt-1", 7e-3), Belt("belt-2", 2.4e-3), Belt("belt-3", 1.6e-3), Belt("belt-4", 0.0))
     radial = Radial(
         size,
@@ -103,6 +102,8 @@ def draw(size: TyreSize, rule: Rules) -> Drawn:
         f"{size.text} truck radial by its size",
         BEAD_FILL,
     )
+    radial.add_bend()
+    rule.check_all_used()
     ply = {
         "base": "truck-body-ply",
         "cords": {"angle_radius": radial.radius(), "ends": f"{600 * round(radial.n('plies'))} 1/m"},
