@@ -161,6 +161,7 @@ def _section(card: SectionCard, name: str, half: bool, line: Line) -> Section:
         inner_volume=card.parameters.inner_volume,
         half=half,
         flange_radius=card.parameters.flange_radius,
+        flange_centre=_flange_centre(card),
         wrap=card.wrap.region if card.wrap else None,
         groove_boundary=card.grooves.boundary if card.grooves else "outside_air",
     )
@@ -169,6 +170,11 @@ def _section(card: SectionCard, name: str, half: bool, line: Line) -> Section:
     except InputError as error:
         raise error if error.field else error.within(field="wrap.region") from None
     return section
+
+
+def _flange_centre(card: SectionCard) -> tuple[float, float] | None:
+    r, z = card.parameters.flange_r, card.parameters.flange_z
+    return None if r is None or z is None else (r, z)
 
 
 def _grooved(card: SectionCard, layers: tuple[Layer, ...], outer: Division) -> tuple[Layer, ...]:

@@ -109,6 +109,8 @@ class ParametersCard(Card):
     bead_length: PositiveLength | None = None
     rim_length: PositiveLength | None = None
     flange_radius: PositiveLength | None = None
+    flange_r: PositiveLength | None = None
+    flange_z: PositiveLength | None = None
     inner_volume: Annotated[float, Unit("m**3", gt=0)] | None = None
     thickness_scale: dict[str, Scale] = {}  # noqa: RUF012
     source: Text
@@ -184,6 +186,11 @@ class SectionCard(Card):
                 raise InputError("missing; give it or crown_midline_radius", field="parameters.outer_diameter")
             if not given & {"shoulder_fraction", "overall_width"}:
                 raise InputError("missing; give it or overall_width", field="parameters.shoulder_fraction")
+        for name, other in (("flange_r", "flange_z"), ("flange_z", "flange_r")):
+            if name in given and other not in given:
+                raise InputError(
+                    f"missing; the flange's centre needs both {name} and {other}", field=f"parameters.{other}"
+                )
         regions = {part.name for layer in self.layers for part in layer.regions}
         for name in self.parameters.thickness_scale:
             if name not in regions:

@@ -76,6 +76,7 @@ class Section(Brief, PickledFields):
     half: bool = True
     as_built: tuple[Layer, ...] | None = None
     flange_radius: float | None = None
+    flange_centre: tuple[float, float] | None = None
     groove_boundary: str = "outside_air"
     wrap: str | None = None
 

@@ -96,6 +96,8 @@ def section_data(
             "bead_length": length(more["bead_length"]),
             "rim_length": length(line.length - line.flange_s),
             "flange_radius": rules["flange_radius"].text,
+            "flange_r": length(line.rim.centre[0]),
+            "flange_z": length(line.rim.centre[1]),
             "source": f"{size.text}: "
             + rules.sources("outer_diameter", "section_width", "tread_width", "flange_radius"),
         },

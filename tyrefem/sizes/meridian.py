@@ -101,7 +101,7 @@ class SizedMeridian:
         """r, z and phi at places of the line."""
         along, _, _, phi = self._line
         place = self._curve(s)
-        return place[..., 0], place[..., 1], np.asarray(np.interp(s, along, phi))
+        return place[..., 0], place[..., 1], np.asarray(np.interp(np.asarray(s, dtype=float), along, phi))
 
     @cached_property
     def _curve(self) -> Any:
@@ -125,9 +125,9 @@ class SizedMeridian:
         measure = turned / turned[-1] + s / s[-1]
         stations = [0.0]
         for a, b in pairwise(marks):
-            ends = np.interp([a, b], s, measure)
-            gaps = max(2, round((ends[1] - ends[0]) / 2 * count))
-            stations += np.interp(np.linspace(*ends, gaps + 1)[1:], measure, s).tolist()
+            first, last = (float(end) for end in np.interp(np.array([a, b]), s, measure))
+            gaps = max(2, round((last - first) / 2 * count))
+            stations.extend(np.interp(np.linspace(first, last, gaps + 1)[1:], measure, s).tolist())
         r, z, _ = self.at(np.array(stations))
         return [(float(a), float(b)) for a, b in zip(r, z, strict=True)]
 

@@ -326,7 +326,8 @@ class Radial:
             r += self.ply_gauge / 2 + sum(self.n(other.gauge) for other in inside) + self.n(belt.gauge) / 2
         return f"{r * 1e3:.2f} mm"
 
-    def bead_ends(self, diameter: float, plies: int) -> dict[str, Any]:
+    def bead_ends(self, diameter: float) -> dict[str, Any]:
         """Bead wires per metre of the bundle's height, as a material card has them."""
         area = self.rules["bead_wire_area"].value
+        plies = max(1, int(np.ceil(area / (np.pi * diameter / 4) / self.n("bead_height") / 0.9)))
         return {"ends": f"{area / (np.pi * diameter**2 / 4) / self.n('bead_height'):.5g} 1/m", "plies": plies}

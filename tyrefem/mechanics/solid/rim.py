@@ -113,7 +113,13 @@ class Flange:
         return sp.coo_matrix((blocks.ravel(), place), shape=(n, n)).tocsc()
 
 
-def on_rim(mesh: Any, radius: float, rim: str = "rim", outside: str = "outside_air") -> tuple[Any, tuple[Flange, ...]]:
+def on_rim(
+    mesh: Any,
+    radius: float,
+    rim: str = "rim",
+    outside: str = "outside_air",
+    centre: tuple[float, float] | None = None,
+) -> tuple[Any, tuple[Flange, ...]]:
     """A tyre's mesh with the boundaries `SEAT` and `FLANGE` in place of the rim, and a flange on each side.
 
     The part of ``rim`` on the outer face is as high as the flange. The flange's circle touches the undeformed outer
@@ -123,6 +129,7 @@ def on_rim(mesh: Any, radius: float, rim: str = "rim", outside: str = "outside_a
     Parameters
     ----------
     mesh : skfem ``MeshQuad`` with the boundaries ``rim`` and ``outside``. radius : of the flange, m.
+    centre : (r, z) of the flange's circle where it is known, m; then the circle is as large as the face leaves room.
 
     Raises
     ------
@@ -140,15 +147,19 @@ def on_rim(mesh: Any, radius: float, rim: str = "rim", outside: str = "outside_a
         below = np.cumsum(np.hypot(*np.diff(mesh.p[:, down[1]], axis=1)))
         held = max(min(int(np.abs(below - radius).argmin()) + 1, len(down[1]) - 2), 0)
         touching = np.concatenate([down[1][held::-1], up[1][1:]])
-        centre, size = _tangent_circle(mesh.p[:, touching], side, radius)
+        if centre is None:
+            middle, size = _tangent_circle(mesh.p[:, touching], side, radius)
+        else:
+            middle = (centre[0], side * centre[1])
+            size = min(radius, _distance(mesh.p[:, touching], middle))
         middles = mesh.p[:, mesh.facets[:, up[0]]].mean(axis=1)
-        near = up[0][np.hypot(*(middles - np.reshape(centre, (2, 1)))) < (1 + REACH) * radius]
+        near = up[0][np.hypot(*(middles - np.reshape(middle, (2, 1)))) < (1 + REACH) * radius]
         lying.append(np.concatenate([down[0][:held], near]))
-        flanges.append((centre, size, side))
+        flanges.append((middle, size, side))
     flange = np.concatenate([np.zeros(0, dtype=np.int64), *lying])
     named = mesh.with_boundaries({FLANGE: np.sort(flange), SEAT: np.setdiff1d(seat, flange)})
     rings = Rings(named)
-    return named, tuple(Flange(rings, centre, size, side=side) for centre, size, side in flanges)
+    return named, tuple(Flange(rings, middle, size, side=side) for middle, size, side in flanges)
 
 
 def _chain(mesh: Any, facets: Indices, other: Indices) -> tuple[Indices, Indices]:
@@ -165,6 +176,14 @@ def _chain(mesh: Any, facets: Indices, other: Indices) -> tuple[Indices, Indices
         point = int(ends[:, after[0]].sum() - point)
         points.append(point)
     return facets[order], np.array(points)
+
+
+def _distance(points: Array, place: tuple[float, float]) -> float:
+    """Least distance of a place from a line of points (2, n), m."""
+    start, along = points[:, :-1], np.diff(points, axis=1)
+    to = np.reshape(place, (2, 1)) - start
+    share = np.clip((to * along).sum(axis=0) / (along**2).sum(axis=0), 0.0, 1.0)
+    return float(np.hypot(*(to - share * along)).min())
 
 
 def _tangent_circle(points: Array, side: int, radius: float) -> tuple[tuple[float, float], float]:

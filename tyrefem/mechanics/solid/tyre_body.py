@@ -58,8 +58,9 @@ def tyre_body(study: StudyData, mesh: TyreMesh | None = None) -> Body:
             parts[region] = reader.part(region)
         except InputError as error:
             raise error if error.file else error.within(field=f"materials.{region}", file=study.file) from None
-    named, flanges = on_rim(meshed.mesh, study.section.flange_radius or FLANGE_RADIUS)
-    held = {SEAT: "rz", **({"symmetry": "z"} if study.section.half else {})}
+    section = study.section
+    named, flanges = on_rim(meshed.mesh, section.flange_radius or FLANGE_RADIUS, centre=section.flange_centre)
+    held = {SEAT: "rz", **({"symmetry": "z"} if section.half else {})}
     return Body(named, parts, held, flanges=flanges)
 
 

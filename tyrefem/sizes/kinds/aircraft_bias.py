@@ -77,7 +77,7 @@ def draw(size: TyreSize, rule: Rules) -> Drawn:
         "turn_up_height",
         0.35 * (crown - rim.diameter / 2),
         "mm",
-        "estimate: from the seat, 0.35 of the plies' height; filler between the plies down to the bundle",
+        "estimate: from the seat, 0.35 of the plies' height; turned-up plies thicken the carcass down to the bundle",
         5e-3,
     )
     if crown < rim.diameter / 2 + 0.02:
@@ -150,11 +150,7 @@ def draw(size: TyreSize, rule: Rules) -> Drawn:
         table(
             "middle plies and bead",
             core,
-            [
-                {"name": "carcass", "to": f"-{length(turn_up)}"},
-                {"name": "sidewall", "to": "bead_start"},
-                {"name": "bead"},
-            ],
+            [{"name": "carcass", "to": "bead_start"}, {"name": "bead"}],
             rule.sources("turn_up_height", "bead_width", "bead_height"),
         ),
         table("outer plies", plain, [{"name": "carcass"}], rule.sources("plies", "ply_gauge")),

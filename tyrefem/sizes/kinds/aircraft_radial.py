@@ -116,7 +116,7 @@ def draw(size: TyreSize, rule: Rules) -> Drawn:
         "shoulder-cushion": "rubber-cushion",
         "sidewall": "rubber-sidewall",
         "apex": "rubber-apex",
-        "bead": {"base": "aircraft-bead", "cords": radial.bead_ends(1e-3, 7)},
+        "bead": {"base": "aircraft-bead", "cords": radial.bead_ends(1e-3)},
         "chafer": "rubber-chafer",
     }
     return radial.drawn(materials)

@@ -132,7 +132,7 @@ def draw_with(
         "shoulder-cushion": "rubber-cushion",
         "sidewall": "rubber-sidewall",
         "apex": "rubber-apex",
-        "bead": {"base": "passenger-bead", "cords": radial.bead_ends(1e-3, 4)},
+        "bead": {"base": "passenger-bead", "cords": radial.bead_ends(1e-3)},
         "chafer": "rubber-chafer",
     }
     return radial.drawn(materials)

@@ -124,7 +124,7 @@ def draw(size: TyreSize, rule: Rules) -> Drawn:
         "sidewall": "rubber-sidewall",
         "apex": "rubber-apex",
         "apex-soft": "rubber-apex-soft",
-        "bead": {"base": "truck-bead", "cords": radial.bead_ends(1.6e-3, 9)},
+        "bead": {"base": "truck-bead", "cords": radial.bead_ends(1.6e-3)},
         "chafer": "rubber-chafer",
     }
     return radial.drawn(materials)
