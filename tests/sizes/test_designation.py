@@ -1,0 +1,97 @@
+"""A size as it stands on the tyre's wall, and what is no size."""
+
+from __future__ import annotations
+
+import pytest
+
+from tyrefem.errors import InputError
+from tyrefem.sizes import looks_like_size, parse_size
+from tyrefem.sizes.load_index import AIRCRAFT_EXPONENT, GRAVITY, ROAD_EXPONENT, capacity, check_carries, load_of_index
+
+pytestmark = pytest.mark.fast
+INCH = 0.0254
+
+
+@pytest.mark.parametrize(
+    ("text", "kind", "width", "series", "rim"),
+    [
+        ("205/60R15", "passenger", 0.205, 0.60, 15),
+        ("P205/60R15 91V", "passenger", 0.205, 0.60, 15),
+        ("255/40ZR17 98W XL", "passenger", 0.255, 0.40, 17),
+        ("205/55 R16 (94Y)", "passenger", 0.205, 0.55, 16),
+        ("LT245/75R16", "light-truck", 0.245, 0.75, 16),
+        ("LT245/75R16 120/116R", "light-truck", 0.245, 0.75, 16),
+        ("195/70R15C 104/102R", "light-truck", 0.195, 0.70, 15),
+        ("295/80R22.5 152/148M", "truck", 0.295, 0.80, 22.5),
+        ("11R22.5", "truck", 11 * INCH, None, 22.5),
+    ],
+)
+def test_road_sizes(text: str, kind: str, width: float, series: float | None, rim: float) -> None:
+    size = parse_size(text)
+    assert size.kind == kind
+    assert size.width == pytest.approx(width)
+    assert size.rim_diameter == pytest.approx(rim * INCH)
+    if series is not None:
+        assert size.series == pytest.approx(series)
+
+
+@pytest.mark.parametrize(
+    ("text", "kind", "outside", "width", "rim", "plies"),
+    [
+        ("22x5.5", "aircraft-bias", 22, 5.5, None, None),
+        ("22x5.5 8PR", "aircraft-bias", 22, 5.5, None, 8),
+        ("22x5.5-8", "aircraft-bias", 22, 5.5, 8, None),
+        ("H44.5x16.5-21 28 PR", "aircraft-bias", 44.5, 16.5, 21, 28),
+        ("B24x9.5-10.5", "aircraft-bias", 24, 9.5, 10.5, None),
+        ("46x17R20", "aircraft-radial", 46, 17, 20, None),
+        ("1400x530R23", "aircraft-radial", 1400 / 25.4, 530 / 25.4, 23, None),
+    ],
+)
+def test_aircraft_sizes(text: str, kind: str, outside: float, width: float, rim: float | None, plies: int | None) -> None:
+    size = parse_size(text)
+    assert size.kind == kind
+    assert size.outside_diameter == pytest.approx(outside * INCH)
+    assert size.width == pytest.approx(width * INCH)
+    assert size.rim_diameter == (None if rim is None else pytest.approx(rim * INCH))
+    assert size.ply_rating == plies
+
+
+@pytest.mark.parametrize(
+    ("text", "message"),
+    [
+        ("205/60X15", "did you mean '205/60R15'"),
+        ("205-60-15", "did you mean '205/60R15'"),
+        ("22x5,5", "allowed are sizes like"),
+        ("205/60-15", "radials are written 205/60R15"),
+        ("205/05R15", "series 5; allowed: 20 to 100"),
+        ("22x21-12", "do not go together"),
+        ("22x5.5-30", "do not go together"),
+        ("205/60R15 30V", "load index 30 is outside 60 to 179"),
+        ("", "is no tyre size"),
+        (205, "is no tyre size"),
+    ],
+)
+def test_what_is_no_size_says_what_is_allowed(text: object, message: str) -> None:
+    with pytest.raises(InputError, match="(?s)" + message.replace("(", r"\(")):
+        parse_size(text)
+
+
+def test_names_of_cards_are_no_sizes() -> None:
+    names = ("nasa-22x5.5-8pr", "passenger-205-55r16", "mine", "geometry/205.toml", "H44", "205/60R15.toml")
+    assert not any(map(looks_like_size, names))
+    assert looks_like_size("205/60X15")
+
+
+@pytest.mark.parametrize(("index", "mass"), [(75, 387), (82, 475), (91, 615), (98, 750), (120, 1400), (152, 3550), (160, 4500)])
+def test_loads_of_load_indices(index: int, mass: float) -> None:
+    """ISO 4000-1: from memory, and within 1 % of 45 x 10^(index/80) kg."""
+    assert load_of_index(index) == pytest.approx(mass * GRAVITY, abs=0.06)
+    assert load_of_index(index) == pytest.approx(45 * 10 ** (index / 80) * GRAVITY, rel=0.012)
+
+
+def test_a_load_goes_with_pressure() -> None:
+    assert capacity(6000.0, 250e3, 125e3, ROAD_EXPONENT) == pytest.approx(6000 * 0.5**0.8)
+    assert capacity(6000.0, 250e3, 300e3, ROAD_EXPONENT) == 6000.0
+    check_carries(6000.0, 250e3, 3000.0, 125e3, AIRCRAFT_EXPONENT)
+    with pytest.raises(InputError, match="pressure: 125 kPa carries 3000 N, not 3100 N: at least 129.2 kPa are needed"):
+        check_carries(6000.0, 250e3, 3100.0, 125e3, AIRCRAFT_EXPONENT)

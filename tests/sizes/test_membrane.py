@@ -1,0 +1,95 @@
+"""Carcass lines in equilibrium: balance of the membrane, closed forms, exact lengths."""
+
+from __future__ import annotations
+
+import numpy as np
+import pytest
+from scipy.integrate import quad, solve_ivp
+
+from tyrefem.geometry.spline import SplineLine
+from tyrefem.sizes import draw_size
+from tyrefem.sizes.membrane import Membrane
+
+pytestmark = pytest.mark.fast
+SIZES = ("205/60R15", "255/40R17", "LT245/75R16", "295/80R22.5", "22x5.5 8PR", "40x14", "46x17R20")
+
+
+@pytest.mark.parametrize("lift", [0.0, np.cos(np.radians(36)) / 0.26])
+def test_the_line_balances_the_pressure(lift: float) -> None:
+    """N_phi kappa_phi + N_theta kappa_theta = p, curvature by differences of the line itself."""
+    membrane = Membrane(0.21, 0.015 * (np.sqrt(1 - (lift * 0.26) ** 2) if lift else 1.0), lift)
+    top = np.arcsin(min(float(membrane.sine(0.25)), 0.99))
+    phi, r, _, s = membrane.run(top, -0.8, 4001)
+    bend = -np.gradient(phi, s)
+    cotangent = (lift * r) ** 2 / (1 - (lift * r) ** 2)
+    pressure = membrane.tension(r) * (bend + cotangent * np.sin(phi) / r)
+    assert np.abs(pressure[2:-2] - 1).max() < 1e-5
+    assert np.abs(membrane.residual(r)).max() < 1e-12
+
+
+@pytest.mark.parametrize("lift", [0.0, np.cos(np.radians(36)) / 0.26])
+def test_the_axial_pull_is_the_pressure_on_the_ring(lift: float) -> None:
+    """2 pi r N_phi sin(phi) = pi p (r^2 - r_m^2)."""
+    membrane = Membrane(0.21, 0.012, lift)
+    r = np.linspace(0.18, 0.25, 40)
+    assert 2 * r * membrane.tension(r) * membrane.sine(r) == pytest.approx(r**2 - 0.21**2, abs=1e-15)
+
+
+def test_the_radial_line_is_the_integral_of_tan_phi() -> None:
+    membrane = Membrane(0.25, 0.3**2 - 0.25**2)
+
+    def slope(r: float) -> float:
+        sine = float(membrane.sine(r))
+        return sine / np.sqrt(1 - sine**2)
+
+    first, last = np.arcsin(float(membrane.sine(0.29))), 0.0
+    z = membrane.run(first, last, 30)[2][-1]
+    assert z == pytest.approx(quad(slope, 0.25, 0.29)[0], rel=1e-10)
+
+
+def test_bias_plies_agree_with_their_differential_equation() -> None:
+    """dr/ds = -cos phi, dz/ds = sin phi, dphi/ds = -(p/N_phi - cot^2(alpha) sin(phi)/r), N_phi from the axial balance."""
+    crown, angle, widest = 0.262, np.radians(34), 0.208
+    lift = np.cos(angle) / crown
+    membrane = Membrane(widest, (crown**2 - widest**2) * np.sin(angle), lift)
+
+    def rates(_: float, x: np.ndarray) -> list[float]:
+        r, _, phi = x
+        # Tension along a cord is constant where the membrane is in balance: r N_phi sin(alpha) = p A/2.
+        tension = membrane.constant / (2 * r * np.sqrt(1 - (lift * r) ** 2))
+        cotangent = (lift * r) ** 2 / (1 - (lift * r) ** 2)
+        return [-np.cos(phi), np.sin(phi), -(1 / tension - cotangent * np.sin(phi) / r)]
+
+    _, r, z, s = membrane.run(np.pi / 2, -0.7, 80)
+    answer = solve_ivp(rates, (0, s[-1]), [crown, 0.0, np.pi / 2], rtol=1e-11, atol=1e-13)
+    assert answer.y[0, -1] == pytest.approx(r[-1], abs=1e-8)
+    assert answer.y[1, -1] == pytest.approx(z[-1], abs=1e-8)
+    assert answer.y[2, -1] == pytest.approx(-0.7, abs=1e-7)
+
+
+@pytest.mark.parametrize("size", SIZES)
+def test_the_line_is_smooth_ends_on_the_seat_and_keeps_its_length(size: str) -> None:
+    line = draw_size(size).meridian
+    s, r, z, phi = line._line
+    assert np.hypot(np.diff(r), np.diff(z)).sum() == pytest.approx(line.length, rel=1e-4)
+    assert np.abs(np.diff(phi)).max() < 0.05
+    heel = np.array(line.rim.heel)
+    normal = np.array([np.sin(phi[-1]), np.cos(phi[-1])])
+    assert np.array([r[-1], z[-1]]) + line.offset * normal == pytest.approx(heel, abs=1e-9)
+    assert phi[-1] == line.rim.taper
+
+
+@pytest.mark.parametrize("size", SIZES)
+def test_the_points_of_a_file_give_the_line_again(size: str) -> None:
+    """The spline through the points of the file is in balance, too, away from the ends of the membrane."""
+    line = draw_size(size).meridian
+    drawn = SplineLine(tuple(line.points(44)), 0.5 * line.length)
+    assert drawn.length == pytest.approx(line.length, rel=2e-4)
+    s = np.linspace(line.join_s + 0.1 * (line.flange_s - line.join_s), line.flange_s - 0.1 * line.length, 60)
+    r, z = drawn.position(s).T
+    exact_r, exact_z, phi = line.at(s)
+    assert np.hypot(r - exact_r, z - exact_z).max() < 5e-5
+    tension = line.membrane.tension(r)
+    cotangent = (line.membrane.lift * r) ** 2 / (1 - (line.membrane.lift * r) ** 2)
+    pressure = tension * (drawn.curvature(s) + cotangent * np.sin(phi) / r)
+    assert np.abs(pressure - 1).max() < 0.02

@@ -1,0 +1,135 @@
+"""Sections by their sizes: published dimensions, named numbers, files, what is refused."""
+
+from __future__ import annotations
+
+import tomllib
+
+import numpy as np
+import pytest
+
+import tyrefem as tf
+from tyrefem.errors import InputError
+from tyrefem.geometry import SectionCard, build, load
+from tyrefem.geometry.meshing import build as mesh_of
+from tyrefem.sizes import draw_size
+from tyrefem.sizes.data_book import data_book
+from tyrefem.sizes.text import section_text
+
+pytestmark = pytest.mark.fast
+INCH = 0.0254
+SIZES = (
+    "205/60R15", "255/40R17", "195/65R15", "LT245/75R16", "295/80R22.5", "11R22.5",
+    "22x5.5 8PR", "22x5.5 12PR", "40x14", "46x17R20",
+)  # fmt: skip
+
+
+@pytest.mark.parametrize(
+    ("size", "diameter", "width", "rim"),
+    [
+        ("205/60R15", 627, 209, 6.0),
+        ("205/55R16", 632, 214, 6.5),
+        ("195/65R15", 635, 201, 6.0),
+        ("255/40R17", 636, 260, 9.0),
+        ("225/45R17", 634, 225, 7.5),
+        ("295/80R22.5", 1044, 298, 9.0),
+        ("11R22.5", 1054, 279, 8.25),
+    ],
+)
+def test_road_tyres_have_the_standards_size(size: str, diameter: float, width: float, rim: float) -> None:
+    """Overall diameter, section width and measuring rim of ETRTO/ISO 4000-1, 4209-1 (from memory), mm and in."""
+    section = tf.section_from_size(size)
+    assert section.outer_diameter * 1e3 == pytest.approx(diameter, abs=1.0)
+    assert section.overall_width * 1e3 == pytest.approx(width, abs=1.6)
+    assert draw_size(size).rules["rim_width"].value == pytest.approx(rim * INCH)
+
+
+@pytest.mark.parametrize("size", ["22x5.5 8PR", "22x5.5 12PR", "40x14 24PR", "24x7.7 16PR", "H40x14.5-19 26PR", "49x17 30PR"])
+def test_bias_tyres_lie_within_the_data_book(size: str) -> None:
+    section, rules = tf.section_from_size(size), draw_size(size).rules
+    name, plies = size.removesuffix("PR").split()
+    row = next(row for row in data_book() if row.size == name and row.ply_rating == int(plies))
+    assert row.diameter[0] <= section.outer_diameter <= row.diameter[1]
+    assert row.width[0] <= section.overall_width <= row.width[1] * 1.005
+    assert rules["rated_load"].value == row.load
+    assert 20 < np.degrees(rules["cord_angle"].value) < 45
+
+
+@pytest.mark.parametrize("size", SIZES)
+def test_a_size_is_meshed_and_nothing_is_odd(size: str) -> None:
+    section = tf.section_from_size(size)
+    assert section.warnings == ()
+    mesh = mesh_of(section, size=8e-3, through=1)
+    assert set(mesh.mesh.subdomains) == set(section.regions)
+    assert sum(mesh.area(region) for region in section.regions) == pytest.approx(section.area(), rel=0.01)
+
+
+@pytest.mark.parametrize("size", SIZES)
+def test_every_number_has_a_source_and_the_file_is_the_section(size: str) -> None:
+    drawn = draw_size(size)
+    assert all(number.source for number in drawn.rules)
+    text = section_text(drawn, "test")
+    read = build(SectionCard.check(tomllib.loads(text)), name=size)
+    made = tf.section_from_size(size)
+    assert read.regions == made.regions
+    assert read.area() == pytest.approx(made.area(), rel=1e-12)
+    for number in drawn.rules:
+        assert f"# {number.name} " in text
+        assert number.text in text
+
+
+@pytest.mark.parametrize("size", ["205/60R15", "295/80R22.5", "22x5.5 8PR", "46x17R20"])
+def test_every_number_can_be_given(size: str) -> None:
+    """Each number given back as written changes nothing; the rounding of six digits is left."""
+    drawn = draw_size(size)
+    solved = {"cord_angle"} if size == "22x5.5 8PR" else set()
+    given = {number.name: number.text for number in drawn.rules if number.name not in solved}
+    again = draw_size(size, given)
+    assert again.meridian.length == pytest.approx(drawn.meridian.length, abs=3e-6)
+    assert {number.source for number in again.rules if number.name not in solved} == {"given"}
+
+
+def test_numbers_change_the_section() -> None:
+    usual, wide = tf.section_from_size("205/60R15"), tf.section_from_size("205/60R15", {"rim_width": "7 in"})
+    assert wide.overall_width - usual.overall_width == pytest.approx(0.4 * INCH, abs=2e-4)
+    flat = tf.section_from_size("205/60R15", {"grooves": 0, "tread_gauge": "4 mm"})
+    assert not flat.grooves
+    assert usual.grooves
+    assert flat.outer_diameter == pytest.approx(usual.outer_diameter, abs=1e-6)
+
+
+def test_a_given_cord_angle_decides_the_width() -> None:
+    steep = draw_size("22x5.5 8PR", {"cord_angle": "34 deg"}).meridian
+    assert np.arccos(steep.membrane.lift * steep.crown) == pytest.approx(np.radians(34))
+    assert steep.half_width != pytest.approx(draw_size("22x5.5 8PR").meridian.half_width, abs=1e-3)
+
+
+def test_the_size_of_the_clark_and_dodge_tyre_is_its_section() -> None:
+    """The published 22x5.5 8PR: carcass crown at 10.34 in, crown radius 3.48 in (two arcs), 5.82 in from crown to bead."""
+    line = draw_size("22x5.5 8PR").meridian
+    assert line.crown / INCH == pytest.approx(10.337, abs=0.15)
+    assert 1 / float(line.membrane.curvature(line.crown)) / INCH == pytest.approx(3.48, rel=0.15)
+    assert line.length / INCH == pytest.approx(5.82, rel=0.08)
+
+
+@pytest.mark.parametrize(
+    ("reference", "message"),
+    [
+        ({"size": "205/60R15", "rim_width": "4 in"}, "rim_width: 4 in is too narrow for 205/60R15; allowed: 5.19 to 7.53"),
+        ({"size": "205/60R15", "rim_width": "9 in"}, "too wide"),
+        ({"size": "205/60R15", "load": "6 kN", "pressure": "200 kPa"}, "pressure: 200 kPa carries 5211.5 N, not 6000 N"),
+        ({"size": "205/60R15", "load": "9 kN"}, "load: 9000 N is more than the rated load of 6230 N"),
+        ({"size": "22x5.5 8PR", "load": "4350 lbf", "pressure": "100 psi"}, "at least 930.8 kPa are needed"),
+        ({"size": "205/60R35"}, "rim diameter 35 in, which road tyres have not; nearest 24.5 in"),
+        ({"size": "25x9.1"}, "does not name its rim and is not in the data book: write it with the rim, such as 25x9.1-13"),
+        ({"size": "205/60R15", "parameters": {"crown_radus": "4 in"}}, "did you mean 'crown_radius'"),
+        ({"size": "205/60R15", "parameters": {"crown_radius": "4 kg"}}, "parameters.crown_radius"),
+        ({"size": "205/60R15", "parameters": {"crown_radius": "1 mm"}}, "outside what is possible here: 50 mm to"),
+        ({"size": "205/60R15", "parameters": {"apex_height": "200 mm"}}, "from the bead to below the widest place"),
+        ({"size": "205/60R15", "parameters": {"section_width": "165 mm", "rim_width": "7.5 in"}}, "."),
+        ({"size": "205/60R15", "color": "black"}, "unknown key 'color'"),
+    ],
+)  # fmt: skip
+def test_what_cannot_be_is_one_error(reference: dict[str, object], message: str) -> None:
+    with pytest.raises(InputError) as error:
+        load(reference)
+    assert message in str(error.value)
