@@ -148,7 +148,7 @@ def over(kind: str, reference: object, present: object, data: Mapping[str, Any])
 
 def located(kind: str, reference: Any, near: Path | None = None) -> Any:
     """The reference for use in another folder: a card that is not found by name there gets its full path."""
-    if of_size(kind, reference, near):
+    if of_size(kind, reference, near) or (isinstance(reference, Mapping) and "base" not in reference):
         return reference
     name = reference["base"] if isinstance(reference, Mapping) else reference
     path = find(kind, name, near).resolve()

@@ -47,7 +47,9 @@ def test_road_sizes(text: str, kind: str, width: float, series: float | None, ri
         ("1400x530R23", "aircraft-radial", 1400 / 25.4, 530 / 25.4, 23, None),
     ],
 )
-def test_aircraft_sizes(text: str, kind: str, outside: float, width: float, rim: float | None, plies: int | None) -> None:
+def test_aircraft_sizes(
+    text: str, kind: str, outside: float, width: float, rim: float | None, plies: int | None
+) -> None:
     size = parse_size(text)
     assert size.kind == kind
     assert size.outside_diameter == pytest.approx(outside * INCH)
@@ -61,7 +63,7 @@ def test_aircraft_sizes(text: str, kind: str, outside: float, width: float, rim:
     [
         ("205/60X15", "did you mean '205/60R15'"),
         ("205-60-15", "did you mean '205/60R15'"),
-        ("22x5,5", "allowed are sizes like"),
+        ("22x", "allowed are sizes like"),
         ("205/60-15", "radials are written 205/60R15"),
         ("205/05R15", "series 5; allowed: 20 to 100"),
         ("22x21-12", "do not go together"),
@@ -82,16 +84,20 @@ def test_names_of_cards_are_no_sizes() -> None:
     assert looks_like_size("205/60X15")
 
 
-@pytest.mark.parametrize(("index", "mass"), [(75, 387), (82, 475), (91, 615), (98, 750), (120, 1400), (152, 3550), (160, 4500)])
+@pytest.mark.parametrize(
+    ("index", "mass"), [(75, 387), (82, 475), (91, 615), (98, 750), (120, 1400), (152, 3550), (160, 4500)]
+)
 def test_loads_of_load_indices(index: int, mass: float) -> None:
-    """ISO 4000-1: from memory, and within 1 % of 45 x 10^(index/80) kg."""
+    """ISO 4000-1: from memory, and within 2 % of 45 x 10^(index/80) kg."""
     assert load_of_index(index) == pytest.approx(mass * GRAVITY, abs=0.06)
-    assert load_of_index(index) == pytest.approx(45 * 10 ** (index / 80) * GRAVITY, rel=0.012)
+    assert load_of_index(index) == pytest.approx(45 * 10 ** (index / 80) * GRAVITY, rel=0.02)
 
 
 def test_a_load_goes_with_pressure() -> None:
     assert capacity(6000.0, 250e3, 125e3, ROAD_EXPONENT) == pytest.approx(6000 * 0.5**0.8)
     assert capacity(6000.0, 250e3, 300e3, ROAD_EXPONENT) == 6000.0
     check_carries(6000.0, 250e3, 3000.0, 125e3, AIRCRAFT_EXPONENT)
-    with pytest.raises(InputError, match="pressure: 125 kPa carries 3000 N, not 3100 N: at least 129.2 kPa are needed"):
+    with pytest.raises(
+        InputError, match=r"pressure: 125 kPa carries 3000 N, not 3100 N: at least 129\.2 kPa are needed"
+    ):
         check_carries(6000.0, 250e3, 3100.0, 125e3, AIRCRAFT_EXPONENT)

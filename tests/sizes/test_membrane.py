@@ -48,7 +48,7 @@ def test_the_radial_line_is_the_integral_of_tan_phi() -> None:
 
 
 def test_bias_plies_agree_with_their_differential_equation() -> None:
-    """dr/ds = -cos phi, dz/ds = sin phi, dphi/ds = -(p/N_phi - cot^2(alpha) sin(phi)/r), N_phi from the axial balance."""
+    """dr/ds = -cos phi, dz/ds = sin phi, dphi/ds = -(p/N_phi - cot^2(alpha) sin(phi)/r), the balance as a shell's."""
     crown, angle, widest = 0.262, np.radians(34), 0.208
     lift = np.cos(angle) / crown
     membrane = Membrane(widest, (crown**2 - widest**2) * np.sin(angle), lift)
@@ -70,7 +70,7 @@ def test_bias_plies_agree_with_their_differential_equation() -> None:
 @pytest.mark.parametrize("size", SIZES)
 def test_the_line_is_smooth_ends_on_the_seat_and_keeps_its_length(size: str) -> None:
     line = draw_size(size).meridian
-    s, r, z, phi = line._line
+    _, r, z, phi = line._line
     assert np.hypot(np.diff(r), np.diff(z)).sum() == pytest.approx(line.length, rel=1e-4)
     assert np.abs(np.diff(phi)).max() < 0.05
     heel = np.array(line.rim.heel)
@@ -92,4 +92,4 @@ def test_the_points_of_a_file_give_the_line_again(size: str) -> None:
     tension = line.membrane.tension(r)
     cotangent = (line.membrane.lift * r) ** 2 / (1 - (line.membrane.lift * r) ** 2)
     pressure = tension * (drawn.curvature(s) + cotangent * np.sin(phi) / r)
-    assert np.abs(pressure - 1).max() < 0.02
+    assert np.abs(pressure - 1).max() < 0.03

@@ -43,7 +43,9 @@ def test_road_tyres_have_the_standards_size(size: str, diameter: float, width: f
     assert draw_size(size).rules["rim_width"].value == pytest.approx(rim * INCH)
 
 
-@pytest.mark.parametrize("size", ["22x5.5 8PR", "22x5.5 12PR", "40x14 24PR", "24x7.7 16PR", "H40x14.5-19 26PR", "49x17 30PR"])
+@pytest.mark.parametrize(
+    "size", ["22x5.5 8PR", "22x5.5 12PR", "40x14 24PR", "24x7.7 16PR", "H40x14.5-19 26PR", "49x17 30PR"]
+)
 def test_bias_tyres_lie_within_the_data_book(size: str) -> None:
     section, rules = tf.section_from_size(size), draw_size(size).rules
     name, plies = size.removesuffix("PR").split()
@@ -104,7 +106,7 @@ def test_a_given_cord_angle_decides_the_width() -> None:
 
 
 def test_the_size_of_the_clark_and_dodge_tyre_is_its_section() -> None:
-    """The published 22x5.5 8PR: carcass crown at 10.34 in, crown radius 3.48 in (two arcs), 5.82 in from crown to bead."""
+    """The published 22x5.5 8PR: carcass crown at 10.34 in, crown radius 3.48 in, 5.82 in long."""
     line = draw_size("22x5.5 8PR").meridian
     assert line.crown / INCH == pytest.approx(10.337, abs=0.15)
     assert 1 / float(line.membrane.curvature(line.crown)) / INCH == pytest.approx(3.48, rel=0.15)

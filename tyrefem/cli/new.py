@@ -22,9 +22,7 @@ DEFAULTS = {"study": "nasa-22x5.5-8pr", "section": "nasa-22x5.5-8pr", "material"
 def new(
     kind: Annotated[str, typer.Argument(help="study, section or material.")],
     name: Annotated[str, typer.Argument(help="Name of the new card: letters, digits, . _ -; or a tyre's size.")],
-    copy_of: Annotated[
-        str | None, typer.Option("--from", help="Card to copy.", autocompletion=complete_names)
-    ] = None,
+    copy_of: Annotated[str | None, typer.Option("--from", help="Card to copy.", autocompletion=complete_names)] = None,
     out: Annotated[Path | None, typer.Option("--out", help="Of a size: the file to write.")] = None,
     rim: Annotated[str | None, typer.Option("--rim", help="Of a size: the rim's width, e.g. '6 in'.")] = None,
     load: Annotated[str | None, typer.Option("--load", help="Of a size: a load that it must carry.")] = None,

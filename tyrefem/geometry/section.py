@@ -43,7 +43,7 @@ class Section(Brief, PickledFields):
     rating : rated load and pressure, bead wire; None where unknown.
     nominal_width : w of the report's shear formula and of the shoulder [m].
     inner_volume : measured air volume of the whole tyre [m3]; None: from the geometry.
-    flange_radius : of the rim's flange [m]; None where unknown.
+    flange_radius : of the rim's flange [m]; None where unknown. flange_centre : (r, z) of its rounding's centre [m].
     groove_boundary : boundary of the walls and bottoms of grooves, the parts of the outermost layer named `GROOVE`.
     half : only z >= 0, with the boundary ``symmetry`` at the mid plane.
     wrap : region in which plies run around the bead, across the layers; None: no such region.

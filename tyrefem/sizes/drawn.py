@@ -53,7 +53,7 @@ def table(name: str, rows: Iterable[tuple[float, float]], regions: list[dict[str
     kept: list[tuple[float, float]] = []
     *before, (last, at_end) = sorted(rows)
     # The line through the file's rounded points is a little longer or shorter than the one that they are taken from.
-    for s, height in [*before, (1.004 * last, at_end)]:
+    for s, height in [*before, (1.01 * last, at_end)]:
         if kept and s - kept[-1][0] < 5e-4:
             continue
         kept.append((s, height))

@@ -71,16 +71,27 @@ class Membrane:
         return np.asarray(self.tension(r) * (self.curvature(r) + cotangent2 * self.sine(r) / r) - 1)
 
     def radius(self, phi: ArrayLike) -> Array:
-        """r where the angle is phi, by Newton's method from the radial ply's closed form."""
+        """r where the angle is phi: closed form for radial plies; for bias plies by Newton's method, kept between bounds.
+
+        sin phi rises up to the radius where 2 sin^2(alpha) = k^2 (r^2 - r_m^2).
+        """
         sine = np.sin(np.asarray(phi, dtype=float))
         r = np.sqrt(np.maximum(self.widest**2 + self.constant * sine, 0.01 * self.widest**2))
-        if self.lift:
-            r = np.minimum(r, 0.999 / self.lift)
-            for _ in range(50):
-                step = (self.sine(r) - sine) / self.curvature(r)
-                r = np.clip(r - step, r / 2, (r + 1 / self.lift) / 2)
-                if np.abs(step).max(initial=0.0) < 1e-15:
-                    break
+        if not self.lift:
+            return np.asarray(r)
+        low = np.full_like(r, 0.1 * self.widest)
+        high = np.full_like(r, np.sqrt((2 / self.lift**2 + self.widest**2) / 3))
+        r = np.clip(r, low, high)
+        for _ in range(80):
+            error = self.sine(r) - sine
+            low, high = np.where(error < 0, r, low), np.where(error > 0, r, high)
+            with np.errstate(all="ignore"):
+                newton = r - error / self.curvature(r)
+            inside = (newton > low) & (newton < high)
+            step = np.where(inside, newton, (low + high) / 2) - r
+            r = np.where(error == 0, r, r + step)
+            if np.abs(step[error != 0]).max(initial=0.0) < 1e-15:
+                break
         return np.asarray(r)
 
     def run(self, first: float, last: float, count: int) -> tuple[Array, Array, Array, Array]:

@@ -94,7 +94,7 @@ def bundle(study: StudyData) -> Bundle:
 
 def _packed(kind: str, reference: Any, near: Path | None, files: dict[str, bytes]) -> Any:
     """The reference for a machine that has only the package and ``files``."""
-    if library.of_size(kind, reference, near):
+    if library.of_size(kind, reference, near) or (isinstance(reference, Mapping) and "base" not in reference):
         return reference
     name = reference["base"] if isinstance(reference, Mapping) else reference
     path = library.find(kind, name, near).resolve()
