@@ -71,7 +71,7 @@ class Membrane:
         return np.asarray(self.tension(r) * (self.curvature(r) + cotangent2 * self.sine(r) / r) - 1)
 
     def radius(self, phi: ArrayLike) -> Array:
-        """r where the angle is phi: closed form for radial plies; for bias plies by Newton's method, kept between bounds.
+        """r where the angle is phi: radial plies in closed form, bias plies by Newton steps between bounds.
 
         sin phi rises up to the radius where 2 sin^2(alpha) = k^2 (r^2 - r_m^2).
         """
