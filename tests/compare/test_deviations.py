@@ -19,18 +19,18 @@ EVERY_20 = np.arange(0.0, 1201.0, 20.0)
 
 def row(comparison, sensor, phase="all", run="run-1"):
     table = comparison.table
-    (found,) = table[(table.sensor == sensor) & (table.phase == phase) & (table.run == run)].to_dict("records")
-    return found
+    (entry,) = table[(table.sensor == sensor) & (table.phase == phase) & (table.run == run)].to_dict("records")
+    return entry
 
 
 def test_the_sign_is_computed_minus_measured(study):
     comparison = compare(study, measured_from(study, EVERY_20, bias=5.0))
     for sensor in ("crown", "shoulder"):
-        found = row(comparison, sensor)
-        assert found["bias_K"] == pytest.approx(5.0, abs=1e-12)
-        assert found["rms_K"] == pytest.approx(5.0, abs=1e-12)
-        assert found["n"] == 61
-        assert found["n_effective"] == 61.0
+        entry = row(comparison, sensor)
+        assert entry["bias_K"] == pytest.approx(5.0, abs=1e-12)
+        assert entry["rms_K"] == pytest.approx(5.0, abs=1e-12)
+        assert entry["n"] == 61
+        assert entry["n_effective"] == 61.0
     assert comparison.bias_K == pytest.approx(5.0)
 
 
@@ -39,10 +39,10 @@ def test_rms_of_an_alternating_error_and_its_largest(study):
     signs = np.where(np.arange(61) % 2, 1.0, -1.0)
     signs[30] = -4.0
     shifted = MeasuredRun("run-1", run.times, run.temperatures.add(3.0 * signs, axis=0))
-    found = row(compare(study, shifted), "crown")
-    assert found["rms_K"] == pytest.approx(3.0 * math.sqrt((60 + 16) / 61), rel=1e-12)
-    assert found["bias_K"] == pytest.approx(-3.0 * signs.mean(), rel=1e-9)
-    assert (found["largest_K"], found["at_s"]) == (pytest.approx(12.0), 600.0)
+    entry = row(compare(study, shifted), "crown")
+    assert entry["rms_K"] == pytest.approx(3.0 * math.sqrt((60 + 16) / 61), rel=1e-12)
+    assert entry["bias_K"] == pytest.approx(-3.0 * signs.mean(), rel=1e-9)
+    assert (entry["largest_K"], entry["at_s"]) == (pytest.approx(12.0), 600.0)
 
 
 def test_a_late_clock_shows_as_the_slope_times_the_delay(study):
@@ -102,9 +102,9 @@ def test_no_reading_is_no_deviation(study):
 
 def test_contained_air_is_compared_without_a_place(study):
     run = measured_from(study, EVERY_20, sensors=("contained-air",), bias=-0.5)
-    found = row(compare(replace(study, gradient=1e3), run), "contained-air")
-    assert found["bias_K"] == pytest.approx(-0.5)
-    assert found["u_data_K"] == 0.0
+    entry = row(compare(replace(study, gradient=1e3), run), "contained-air")
+    assert entry["bias_K"] == pytest.approx(-0.5)
+    assert entry["u_data_K"] == 0.0
 
 
 def test_unknown_column_says_the_nearest_or_is_ignored(study):
@@ -129,24 +129,24 @@ class TestRuns:
 
     def test_each_entry_runs_at_its_own_drive_and_equal_drives_run_once(self, study, tmp_path):
         fast = {"drive": {"drive.speed": 1.5}}
-        own = self.own(study, tmp_path, a={}, b=dict(fast), c=dict(fast))
-        comparison = compare(own)
+        with_entries = self.own(study, tmp_path, a={}, b=dict(fast), c=dict(fast))
+        comparison = compare(with_entries)
         assert comparison.rms_K == pytest.approx(0.0, abs=1e-12)
         assert study.runs == [(1.0, 25.0, 1.0), (1.0, 25.0, 1.5)]
 
     def test_held_out_runs_are_told_apart(self, study, tmp_path):
-        own = self.own(study, tmp_path, a={"bias": 1.0}, b={"bias": -3.0, "hold_out": True})
-        comparison = compare(own)
+        with_entries = self.own(study, tmp_path, a={"bias": 1.0}, b={"bias": -3.0, "hold_out": True})
+        comparison = compare(with_entries)
         assert comparison.to_dict()["fitted"]["bias_K"] == pytest.approx(1.0)
         assert comparison.to_dict()["held_out"]["rms_K"] == pytest.approx(3.0)
         assert "(fitted +1.00, 1.00 K rms; held out -3.00, 3.00 K rms)" in comparison.summary
 
     def test_a_named_table_takes_its_entry(self, study, tmp_path):
-        own = self.own(study, tmp_path, a={"drive": {"drive.speed": 1.5}}, b={})
-        assert compare(own, tmp_path / "a.csv").rms_K == pytest.approx(0.0, abs=1e-12)
+        with_entries = self.own(study, tmp_path, a={"drive": {"drive.speed": 1.5}}, b={})
+        assert compare(with_entries, tmp_path / "a.csv").rms_K == pytest.approx(0.0, abs=1e-12)
         copy = (tmp_path / "elsewhere").mkdir() or tmp_path / "elsewhere" / "a.csv"
         copy.write_bytes((tmp_path / "a.csv").read_bytes())
-        assert compare(own, copy).rms_K == pytest.approx(0.0, abs=1e-12)
+        assert compare(with_entries, copy).rms_K == pytest.approx(0.0, abs=1e-12)
 
     def test_a_known_result_is_not_computed_again(self, study):
         result = study.run()
@@ -155,8 +155,8 @@ class TestRuns:
         assert study.runs == []
 
     def test_a_result_at_the_studys_drive_is_not_used_for_another_drive(self, study, tmp_path):
-        own = self.own(study, tmp_path, a={"drive": {"drive.speed": 1.5}})
-        assert compare(own, result=own.run()).rms_K == pytest.approx(0.0, abs=1e-12)
+        with_entries = self.own(study, tmp_path, a={"drive": {"drive.speed": 1.5}})
+        assert compare(with_entries, result=with_entries.run()).rms_K == pytest.approx(0.0, abs=1e-12)
 
     def test_an_amended_result_is_used(self, study):
         amended = replace(study, heat=1.1)
@@ -167,8 +167,8 @@ class TestRuns:
     def test_one_run_of_a_file_and_a_wrong_one(self, study, tmp_path):
         frame = pd.DataFrame({"time [s]": [0.0, 0.0], "run": ["a", "b"], "crown [degC]": [25.0, 99.0]})
         frame.to_csv(tmp_path / "both.csv", index=False)
-        own = replace(study, measured=(Entry(tmp_path / "both.csv", run="a"),))
-        assert compare(own).rms_K == 0.0
+        with_entries = replace(study, measured=(Entry(tmp_path / "both.csv", run="a"),))
+        assert compare(with_entries).rms_K == 0.0
         with pytest.raises(InputError, match=r"both.csv: measured.run: no run 'c'"):
             compare(replace(study, measured=(Entry(tmp_path / "both.csv", run="c"),)))
 

@@ -28,16 +28,16 @@ def logged(study: Study, name: str = "run-1", **names: str) -> MeasuredRun:
 @pytest.mark.parametrize("form", ["table", "run", "runs", "entry", "entries", "entry by run name"])
 def test_renamed_alike_wherever_it_is_said(study: Study, tmp_path: Path, form: str) -> None:
     file = logged(study).write(tmp_path / "run-1.csv")
-    said = {"T1": "crown", "T2": "shoulder"}
-    asked = {
-        "table": lambda: compare(study, file, rename=said),
-        "run": lambda: compare(study, logged(study), rename=said),
-        "runs": lambda: compare(study, [logged(study)], rename=said),
-        "entry": lambda: compare(replace(study, measured=(Entry(file, rename=said),))),
-        "entries": lambda: compare(replace(study, measured=(Entry(file),)), rename=said),
-        "entry by run name": lambda: compare(replace(study, measured=(Entry(file, rename=said),)), logged(study)),
+    names = {"T1": "crown", "T2": "shoulder"}
+    forms = {
+        "table": lambda: compare(study, file, rename=names),
+        "run": lambda: compare(study, logged(study), rename=names),
+        "runs": lambda: compare(study, [logged(study)], rename=names),
+        "entry": lambda: compare(replace(study, measured=(Entry(file, rename=names),))),
+        "entries": lambda: compare(replace(study, measured=(Entry(file),)), rename=names),
+        "entry by run name": lambda: compare(replace(study, measured=(Entry(file, rename=names),)), logged(study)),
     }
-    comparison = asked[form]()
+    comparison = forms[form]()
     assert set(comparison.table.sensor) == {"crown", "shoulder"}
     assert comparison.rms_K == pytest.approx(0.0, abs=1e-12)
 

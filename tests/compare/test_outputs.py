@@ -65,7 +65,7 @@ def test_json_holds_the_table(folder, comparison):
     assert data["overall"]["rms_K"] == pytest.approx(comparison.rms_K, rel=1e-15)
     assert len(data["rows"]) == len(comparison.table)
     assert isinstance(data["rows"][0]["beyond"], bool)
-    assert {one["key"] for one in data["inputs"]} == {"heat"}
+    assert {item["key"] for item in data["inputs"]} == {"heat"}
     assert data["summary"] == comparison.summary
 
 

@@ -57,13 +57,13 @@ def full(quick: Study, table: Path) -> ComparisonData:
 
 
 def test_reduced_inputs_are_those_of_full_runs(reduced: ComparisonData, full: ComparisonData) -> None:
-    found = reduced.reduced
-    assert found is not None
-    assert found.worst <= 0.8 * found.tolerance
+    certificate = reduced.reduced
+    assert certificate is not None
+    assert certificate.worst <= 0.8 * certificate.tolerance
     assert list(reduced.inputs["key"]) == list(full.inputs["key"])
     # Means of readings: no more than any reading may be off by, in all runs that no certificate has seen.
-    np.testing.assert_allclose(reduced.inputs["change_K"], full.inputs["change_K"], rtol=0, atol=found.tolerance)
-    np.testing.assert_allclose(reduced.table["u_input_K"], full.table["u_input_K"], rtol=0, atol=found.tolerance)
+    np.testing.assert_allclose(reduced.inputs["change_K"], full.inputs["change_K"], rtol=0, atol=certificate.tolerance)
+    np.testing.assert_allclose(reduced.table["u_input_K"], full.table["u_input_K"], rtol=0, atol=certificate.tolerance)
     # What is not about inputs is from the same full runs.
     np.testing.assert_allclose(reduced.residuals["error_K"], full.residuals["error_K"], rtol=0, atol=1e-9)
     assert list(reduced.table["verdict"]) == list(full.table["verdict"])
@@ -72,11 +72,11 @@ def test_reduced_inputs_are_those_of_full_runs(reduced: ComparisonData, full: Co
 def test_few_runs_are_full_and_the_comparison_says_so(
     reduced: ComparisonData, full: ComparisonData, counting: Counting
 ) -> None:
-    found = reduced.reduced
-    assert found is not None
-    assert counting.full == 1 + found.full <= 7
-    assert found.reduced + found.full == 14
-    assert reduced.to_dict()["reduced"]["worst"] == found.worst
+    certificate = reduced.reduced
+    assert certificate is not None
+    assert counting.full == 1 + certificate.full <= 7
+    assert certificate.reduced + certificate.full == 14
+    assert reduced.to_dict()["reduced"]["worst"] == certificate.worst
     assert any("reduced model" in note for note in reduced.notes)
     assert full.to_dict()["reduced"] is None
 
@@ -84,20 +84,20 @@ def test_few_runs_are_full_and_the_comparison_says_so(
 def test_what_does_not_hold_is_run_in_full(quick: Study, table: Path) -> None:
     """No model can be so near: every run is made, and none twice."""
     rough, counting = quick.replace({"numerics.tolerance": "1 delta_degC"}), Counting()
-    found = rough.compare(table, executor=counting, settings=ReducedInputSettings(safety=1e-9))
-    assert found.reduced is None
+    comparison = rough.compare(table, executor=counting, settings=ReducedInputSettings(safety=1e-9))
+    assert comparison.reduced is None
     assert counting.full == 15
-    assert found.inputs["key"].nunique() == 14
-    assert any("full runs" in note for note in found.notes)
+    assert comparison.inputs["key"].nunique() == 14
+    assert any("full runs" in note for note in comparison.notes)
 
 
 def test_one_model_for_all_drives_and_in_processes(quick: Study, full: ComparisonData) -> None:
     with processes(2) as pool:
-        found = quick.compare(executor=pool)
-    assert found.reduced is not None
-    assert found.reduced.reduced >= 36
-    first = found.inputs[found.inputs["run"] == full.inputs["run"].iloc[0]]
-    np.testing.assert_allclose(first["change_K"], full.inputs["change_K"], rtol=0, atol=found.reduced.tolerance)
+        comparison = quick.compare(executor=pool)
+    assert comparison.reduced is not None
+    assert comparison.reduced.reduced >= 36
+    first = comparison.inputs[comparison.inputs["run"] == full.inputs["run"].iloc[0]]
+    np.testing.assert_allclose(first["change_K"], full.inputs["change_K"], rtol=0, atol=comparison.reduced.tolerance)
 
 
 def test_other_words_are_refused(quick: Study) -> None:

@@ -64,7 +64,7 @@ def test_an_interrupted_comparison_goes_on(
     whole = quick.compare(measured, reduced="never")
     count = len(counted.made)
     assert count == 1 + len(quick.uncertainty)
-    said: list[str] = []
+    messages: list[str] = []
 
     def stop(done: int, total: int) -> None:
         if done == 5:
@@ -76,10 +76,10 @@ def test_an_interrupted_comparison_goes_on(
     assert store.count == 5
     assert store.kept == "5 finished simulations are kept; the same command resumes from there"
     counted.made.clear()
-    again = quick.compare(measured, reduced="never", store=AnswerStore(tmp_path / "kept"), begin=said.append)
+    again = quick.compare(measured, reduced="never", store=AnswerStore(tmp_path / "kept"), begin=messages.append)
     # The drive itself is run again, for its mesh and operators.
     assert counted.made == ["base_run", *["full_run"] * (count - 5)]
-    assert said == [
+    assert messages == [
         "15 simulations: 1 drive as driven; 14 with one uncertain input changed; 4 are taken up from an interrupted "
         "comparison"
     ]
@@ -127,15 +127,15 @@ def pressed() -> StudyData:
 
 def test_finite_elements_are_solved_once_for_all_that_does_not_change_them(pressed: StudyData) -> None:
     measured = pressed.run().readings[["time_s", "crown"]]
-    said: list[str] = []
+    messages: list[str] = []
     with processes(1) as pool:
-        found = pressed.compare(measured, executor=pool, reduced="never", begin=said.append)
+        comparison = pressed.compare(measured, executor=pool, reduced="never", begin=messages.append)
         assert pool.submit(remembered).result() == 1
-    assert "strain cycles to be solved by finite elements: 1" in said[0]
+    assert "strain cycles to be solved by finite elements: 1" in messages[0]
     # The same as on its own.
     key = "materials.tread.loss_tangent.value"
     alone = pressed.scaled(key, 1.0 + pressed.uncertainty[key]).run().readings["crown"]
-    change = found.inputs.set_index(["key", "phase"])["change_K"][key, "all"]
+    change = comparison.inputs.set_index(["key", "phase"])["change_K"][key, "all"]
     assert change == pytest.approx((alone - measured["crown"]).mean(), abs=1e-9)
 
 

@@ -27,11 +27,11 @@ def measured(study: tf.Study, folder: Path) -> Path:
 
 def test_a_shared_stiffness_is_one_input_moved_in_all_its_regions(tmp_path: Path) -> None:
     study = tf.study("nasa-22x5.5-8pr", {**SHORT, **SHARED})
-    found = study.compare(measured(study, tmp_path))
-    rows = found.inputs[(found.inputs["key"] == KEY) & (found.inputs["phase"] == "all")]
+    comparison = study.compare(measured(study, tmp_path))
+    rows = comparison.inputs[(comparison.inputs["key"] == KEY) & (comparison.inputs["phase"] == "all")]
     assert rows["regions"].tolist() == ["tread, sidewall"]
-    assert "materials.sidewall.shear_modulus.value" not in set(found.inputs["key"])
-    factor = {f"materials.{one}.shear_modulus.value": "402 psi" for one in ("tread", "sidewall")}
+    assert "materials.sidewall.shear_modulus.value" not in set(comparison.inputs["key"])
+    factor = {f"materials.{item}.shear_modulus.value": "402 psi" for item in ("tread", "sidewall")}
     assert study.materials["tread"].shear_modulus.value == pytest.approx(335 * 6894.757, rel=1e-6)
     both = study.replace(factor).run().readings["crown-inner"] - study.run().readings["crown-inner"]
     assert rows["change_K"].iloc[0] == pytest.approx(float(both.mean()), abs=2e-3)
@@ -55,23 +55,23 @@ def test_each_changed_stiffness_costs_one_solution_and_the_rest_none(
         return inflate(*given)
 
     monkeypatch.setattr(inflation, "inflate", counted)
-    found = study.compare(table)
-    inputs = set(found.inputs["key"])
+    comparison = study.compare(table)
+    inputs = set(comparison.inputs["key"])
     assert KEY in inputs
     assert len(inputs) == 10
     assert len(solved) == 2
-    assert any("10 runs with a changed input; 1 of them change the strain cycle" in note for note in found.notes)
+    assert any("10 runs with a changed input; 1 of them change the strain cycle" in note for note in comparison.notes)
 
 
 def test_what_cannot_matter_is_left_out_in_words(tmp_path: Path) -> None:
     idle = {"materials.bead.shear_modulus": {"value": "1 MPa", "source": "test", "relative_sd": 0.2}}
     study = tf.study("nasa-22x5.5-8pr", {**SHORT, **idle})
-    found = study.compare(measured(study, tmp_path))
-    assert "materials.bead.shear_modulus.value" not in set(found.inputs["key"])
-    (note,) = [note for note in found.notes if "left out" in note]
+    comparison = study.compare(measured(study, tmp_path))
+    assert "materials.bead.shear_modulus.value" not in set(comparison.inputs["key"])
+    (note,) = [note for note in comparison.notes if "left out" in note]
     assert (
         note
         == "Note: inputs left out, because the strain law 'arcs' does not read them: materials.bead.shear_modulus.value"
     )
-    html = found.save(tmp_path / "compared").read_text()
+    html = comparison.save(tmp_path / "compared").read_text()
     assert "materials.bead.shear_modulus.value" in html

@@ -22,8 +22,8 @@ EVERY_10 = np.arange(0.0, 1201.0, 10.0)
 
 def whole(comparison, sensor="crown"):
     table = comparison.table
-    (found,) = table[(table.sensor == sensor) & (table.phase == "all")].to_dict("records")
-    return found
+    (entry,) = table[(table.sensor == sensor) & (table.phase == "all")].to_dict("records")
+    return entry
 
 
 def test_white_noise_is_worth_all_its_readings():
@@ -64,20 +64,20 @@ def test_by_hand(study):
     errors = 4.0 + np.array([1.0, -1.0, 1.0, -1.0])
     run = MeasuredRun("run-1", np.array([100.0, 200.0, 300.0, 400.0]), pd.DataFrame({"crown": 65.0 - errors}))
     comparison = compare(study, run)
-    found = whole(comparison)
-    assert found["bias_K"] == pytest.approx(4.0)
-    assert found["rms_K"] == pytest.approx(math.sqrt(17.0))
-    assert found["n_effective"] == pytest.approx(4.0)
-    assert found["u_num_K"] == pytest.approx(0.5)
-    assert found["u_data_K"] == pytest.approx(math.sqrt(0.65))
-    assert found["u_input_K"] == pytest.approx(math.sqrt(41.0))
-    assert found["u_val_K"] == pytest.approx(math.sqrt(0.25 + 0.65 + 41.0))
-    assert found["u_reading_K"] == pytest.approx(math.sqrt(0.25 + 1.44 + 0.25 + 0.04 + 41.0))
+    entry = whole(comparison)
+    assert entry["bias_K"] == pytest.approx(4.0)
+    assert entry["rms_K"] == pytest.approx(math.sqrt(17.0))
+    assert entry["n_effective"] == pytest.approx(4.0)
+    assert entry["u_num_K"] == pytest.approx(0.5)
+    assert entry["u_data_K"] == pytest.approx(math.sqrt(0.65))
+    assert entry["u_input_K"] == pytest.approx(math.sqrt(41.0))
+    assert entry["u_val_K"] == pytest.approx(math.sqrt(0.25 + 0.65 + 41.0))
+    assert entry["u_reading_K"] == pytest.approx(math.sqrt(0.25 + 1.44 + 0.25 + 0.04 + 41.0))
     changes = comparison.inputs[comparison.inputs.phase == "all"].set_index("key").change_K
     assert changes.to_dict() == pytest.approx({"heat": 4.0, "air": 5.0})
     assert comparison.by_input["crown"].to_dict() == pytest.approx({"air": 5.0, "heat": 4.0})
     assert list(comparison.by_input.index) == ["air", "heat"]
-    assert found["verdict"] == WITHIN
+    assert entry["verdict"] == WITHIN
 
     blunt = compare(study, run, inputs=False)
     assert whole(blunt)["u_val_K"] == pytest.approx(math.sqrt(0.9))
@@ -121,13 +121,13 @@ def test_data_equal_to_the_model_and_noise_are_within(study):
 def test_five_kelvin_are_beyond_and_come_out_as_five(study):
     comparison = compare(study, measured_from(study, EVERY_10, noise=0.5, bias=5.0))
     assert comparison.table.beyond.all()
-    for found in comparison.table.to_dict("records"):
-        assert abs(found["bias_K"] - 5.0) < 2.0 * found["u_val_K"]
-        assert found["verdict"].startswith("model error of about +")
+    for entry in comparison.table.to_dict("records"):
+        assert abs(entry["bias_K"] - 5.0) < 2.0 * entry["u_val_K"]
+        assert entry["verdict"].startswith("model error of about +")
 
 
 def test_five_kelvin_are_hidden_by_a_thermocouple_that_may_be_three_off(study):
-    unsure = replace(study, sensors={one: Sensor(accuracy=3.0) for one in study.sensors})
+    unsure = replace(study, sensors={name: Sensor(accuracy=3.0) for name in study.sensors})
     assert not compare(unsure, measured_from(study, EVERY_10, noise=0.5, bias=5.0)).table.beyond.any()
 
 
@@ -135,11 +135,11 @@ def test_an_error_that_changes_sign_is_not_lost_in_its_mean(study):
     run = measured_from(study, EVERY_10)
     wave = 4.0 * np.sin(2 * np.pi * EVERY_10 / 600.0)
     comparison = compare(study, MeasuredRun("run-1", run.times, run.temperatures.add(wave, axis=0)))
-    found = whole(comparison)
-    assert abs(found["bias_K"]) < 0.1
-    assert found["rms_K"] == pytest.approx(4.0 / math.sqrt(2.0), rel=0.01)
-    assert found["beyond"]
-    assert "changes sign" in found["verdict"]
+    entry = whole(comparison)
+    assert abs(entry["bias_K"]) < 0.1
+    assert entry["rms_K"] == pytest.approx(4.0 / math.sqrt(2.0), rel=0.01)
+    assert entry["beyond"]
+    assert "changes sign" in entry["verdict"]
 
 
 def test_the_verdict_is_wrong_as_rarely_as_k_promises(study):

@@ -100,6 +100,6 @@ def measured_from(study, times, *, name="run-1", bias=0.0, noise=0.0, delay=0.0,
     rng = np.random.default_rng(7)
     times = np.asarray(times, dtype=float)
     frame = pd.DataFrame(
-        {one: study.at(one, times - delay) - bias + noise * rng.normal(size=len(times)) for one in sensors}
+        {name: study.at(name, times - delay) - bias + noise * rng.normal(size=len(times)) for name in sensors}
     )
     return MeasuredRun(name, times, frame)

@@ -28,14 +28,14 @@ TABLES = {
 def test_a_bad_table_is_refused(name: str, tmp_path: Path, capfd: pytest.CaptureFixture[str]) -> None:
     owner = study(tmp_path / "study")
     table = tmp_path / "table.csv"
-    text, said = TABLES[name]
+    text, message = TABLES[name]
     table.write_text(text, encoding="utf-8")
     assert main(["diagnose", str(owner.file), str(table), "--out", str(tmp_path / "out"), "--workers", "1"]) == 2
     out, err = capfd.readouterr()
     assert out == ""
     assert err.startswith("tyrefem: ")
     assert err.count("\n") == 1
-    assert said in err
+    assert message in err
     assert not (tmp_path / "out").exists()
 
 
@@ -43,7 +43,7 @@ def test_bad_arguments_are_refused(tmp_path: Path, capfd: pytest.CaptureFixture[
     owner = study(tmp_path / "study")
     taken = tmp_path / "taken"
     taken.write_text("mine", encoding="utf-8")
-    for arguments, said in (
+    for arguments, printed in (
         (["--rename", "T1"], "COLUMN=SENSOR"),
         (["--out", str(taken)], "a file is in the place"),
         ([str(tmp_path / "missing.csv")], "missing.csv"),
@@ -51,7 +51,7 @@ def test_bad_arguments_are_refused(tmp_path: Path, capfd: pytest.CaptureFixture[
         (["--largest", "7"], "--largest"),
     ):
         assert main(["diagnose", str(owner.file), *arguments]) == 2
-        assert said in capfd.readouterr().err
+        assert printed in capfd.readouterr().err
     assert main(["diagnose", "nasa-22x5.5-8pr"]) == 2
     assert "[[measured]]" in capfd.readouterr().err
     assert taken.read_text(encoding="utf-8") == "mine"

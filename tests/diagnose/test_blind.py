@@ -29,21 +29,21 @@ def test_the_truth_s_own_time_integration_agrees_with_the_solver() -> None:
     assert np.abs(gas[:, 0] - exact.reservoirs["contained-air"]).max() < 0.05
     # Second order: half the step leaves about a quarter.
     finer, _ = backward(tyre.problem, np.linspace(0.0, 1200.0, 1201), 25.0)
-    coarse, fine = (np.abs(found[-1] - exact.values[-1]).max() for found in (values, finer))
+    coarse, fine = (np.abs(result[-1] - exact.values[-1]).max() for result in (values, finer))
     assert fine < 0.5 * coarse + 0.003
 
 
 def test_cases_are_seeded_and_of_every_kind() -> None:
     study = tf.study("hidden-effect")
     first, again, other = cases(study, 60, 3), cases(study, 60, 3), cases(study, 60, 4)
-    assert [one.names for one in first] == [one.names for one in again]
+    assert [item.names for item in first] == [item.names for item in again]
     assert first[0].values == again[0].values
-    assert [one.names for one in first] != [one.names for one in other]
+    assert [item.names for item in first] != [item.names for item in other]
     for kind, share in KINDS.items():
-        assert abs(sum(one.kind == kind for one in first) - 60 * share) <= 3
-    for one in first:
-        assert all(unknown.low <= x <= unknown.high for unknown, x in one.values.items())
-        assert len(one.hidden) == {"one": 1, "two": 2, "none": 0, "outside": 0}[one.kind]
+        assert abs(sum(item.kind == kind for item in first) - 60 * share) <= 3
+    for item in first:
+        assert all(unknown.low <= x <= unknown.high for unknown, x in item.values.items())
+        assert len(item.hidden) == {"one": 1, "two": 2, "none": 0, "outside": 0}[item.kind]
 
 
 def test_wilson_intervals() -> None:
@@ -99,8 +99,8 @@ def test_finished_cases_are_not_run_again(tmp_path: Path, monkeypatch: pytest.Mo
     with pytest.raises(KeyboardInterrupt):
         blind_rates.run_blind(study, 4, 7, tmp_path)
     assert not (tmp_path / "blind.json").exists()
-    found = blind_rates.run_blind(study, 4, 7, tmp_path)
-    blind_picture.save(found, tmp_path)
+    result = blind_rates.run_blind(study, 4, 7, tmp_path)
+    blind_picture.save(result, tmp_path)
     assert ran == [0, 1, 2, 2, 3]
-    assert found.rates["no effect: no gap"].right == 4
+    assert result.rates["no effect: no gap"].right == 4
     assert (tmp_path / "blind.json").is_file()

@@ -17,7 +17,7 @@ from tyrefem.diagnose.runs import measured_drive
 from tyrefem.diagnose.unknowns import base_unknowns, with_values
 
 STIFF = {"relative_sd": 0.2}
-SHARED = {f"materials.{one}": {"base": "nasa-tread", "shear_modulus": STIFF} for one in ("tread", "sidewall")}
+SHARED = {f"materials.{entry}": {"base": "nasa-tread", "shear_modulus": STIFF} for entry in ("tread", "sidewall")}
 SHORT = {"mesh.size": "14 mm", "mesh.element": "P1", "drive.duration": "120 s", **SHARED}
 KEY = "materials.tread.shear_modulus.value"
 
@@ -28,18 +28,18 @@ def study(law: str = "fem") -> tf.Study:
 
 def test_a_card_in_two_regions_is_one_unknown_and_amended_in_both() -> None:
     arcs = study("arcs")
-    (unknown,) = [one for one in base_unknowns(arcs) if "shear_modulus" in one.key]
+    (unknown,) = [entry for entry in base_unknowns(arcs) if "shear_modulus" in entry.key]
     assert unknown.keys == (KEY, KEY.replace("tread", "sidewall"))
     assert unknown.label == f"{KEY} (also sidewall)"
     moved = with_values(arcs, {unknown: np.log(1.1)})
     new = amended(arcs, [Change(unknown, float(np.log(1.1)), 0.05, False, "a test")])
-    for found in (moved, new):
+    for result in (moved, new):
         for region in ("tread", "sidewall"):
-            modulus = found.materials[region].shear_modulus
+            modulus = result.materials[region].shear_modulus
             assert modulus.value == pytest.approx(1.1 * arcs.materials[region].shear_modulus.value, rel=1e-3)
     assert new.materials["sidewall"].shear_modulus.relative_sd == pytest.approx(0.05)
     assert new.materials["sidewall"].shear_modulus.source.startswith("factor 1.100")
-    (again,) = [one for one in base_unknowns(new) if "shear_modulus" in one.key]
+    (again,) = [entry for entry in base_unknowns(new) if "shear_modulus" in entry.key]
     assert set(again.keys) == set(unknown.keys)
 
 
@@ -52,10 +52,10 @@ def test_fits_solve_no_strain_cycle_for_each_point(tmp_path: Path, monkeypatch: 
         tmp_path / "run.csv", index=False
     )
     model = ForwardModel(
-        fem, tuple(measured_drive(one, fem).sampling for one in experiments(fem, tmp_path / "run.csv"))
+        fem, tuple(measured_drive(unknown, fem).sampling for unknown in experiments(fem, tmp_path / "run.csv"))
     )
     unknowns = base_unknowns(fem)
-    stiff, load = (next(one for one in unknowns if one.key == key) for key in (KEY, "drive.load"))
+    stiff, load = (next(unknown for unknown in unknowns if unknown.key == key) for key in (KEY, "drive.load"))
     solved: list[Any] = []
     inflate = inflation.inflate
 
@@ -66,13 +66,13 @@ def test_fits_solve_no_strain_cycle_for_each_point(tmp_path: Path, monkeypatch: 
     monkeypatch.setattr(inflation, "inflate", counted)
     here = model.predict(0, {})
     rng = np.random.default_rng(1)
-    points = [{one: float(rng.normal(0, one.sd)) for one in (stiff, load)} for _ in range(4)]
-    found = [model.predict(0, point) for point in points]
+    points = [{unknown: float(rng.normal(0, unknown.sd)) for unknown in (stiff, load)} for _ in range(4)]
+    result = [model.predict(0, point) for point in points]
     slopes = model.jacobian(0, (stiff, load), points[0])
     # The study's own on the mesh of the fit, and one with each of the two numbers moved (the load needs no inflation).
     assert len(solved) == 2
     exact = [ForwardModel(with_values(fem, point), model.drives).predict(0, {}) for point in points[:2]]
     rise = float(here.max() - here.min())
-    for one, other in zip(found, exact, strict=False):
-        assert float(np.abs(one - other).max()) < 0.01 * rise
+    for fast, other in zip(result, exact, strict=False):
+        assert float(np.abs(fast - other).max()) < 0.01 * rise
     assert np.abs(slopes).max(axis=0).min() > 0.1

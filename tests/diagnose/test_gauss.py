@@ -34,49 +34,49 @@ def test_evidence_of_one_parameter_with_bounds(seed: int, low: float, high: floa
     mass = norm.cdf(high / sd[0]) - norm.cdf(low / sd[0])
     ends = max(low, -12 * sd[0]), min(high, 12 * sd[0])
     wanted, _ = quad(lambda x: _likelihood(J, d, np.array([x])) * norm.pdf(x, scale=sd[0]) / mass, *ends, limit=200)
-    found = posterior(J.T @ J, J.T @ d, sd, np.array([low]), np.array([high]))
-    assert found.log_evidence == pytest.approx(np.log(wanted), abs=1e-6)
+    fit = posterior(J.T @ J, J.T @ d, sd, np.array([low]), np.array([high]))
+    assert fit.log_evidence == pytest.approx(np.log(wanted), abs=1e-6)
 
 
 def test_evidence_mean_and_covariance_of_two_parameters() -> None:
     J, d, sd = _problem(7, 2)
-    found = posterior(J.T @ J, J.T @ d, sd, *(np.repeat(one, 2) for one in FREE))
+    fit = posterior(J.T @ J, J.T @ d, sd, *(np.repeat(bound, 2) for bound in FREE))
 
-    axes = [np.linspace(m - 9 * s, m + 9 * s, 501) for m, s in zip(found.mean, found.sd, strict=True)]
+    axes = [np.linspace(m - 9 * s, m + 9 * s, 501) for m, s in zip(fit.mean, fit.sd, strict=True)]
     x = np.stack(np.meshgrid(*axes, indexing="ij"), axis=-1)
     r = d - x @ J.T
     density = np.exp(-(r**2).sum(axis=-1) / 2 + d @ d / 2) * norm.pdf(x, scale=sd).prod(axis=-1)
     cell = (axes[0][1] - axes[0][0]) * (axes[1][1] - axes[1][0])
     total = density.sum() * cell
-    assert found.log_evidence == pytest.approx(np.log(total), abs=1e-9)
+    assert fit.log_evidence == pytest.approx(np.log(total), abs=1e-9)
     mean = (density[..., None] * x).sum(axis=(0, 1)) * cell / total
-    np.testing.assert_allclose(found.mean, mean, rtol=1e-9)
+    np.testing.assert_allclose(fit.mean, mean, rtol=1e-9)
     apart = x - mean
     covariance = np.einsum("ij,ijk,ijl->kl", density, apart, apart) * cell / total
-    np.testing.assert_allclose(found.covariance, covariance, rtol=1e-8)
+    np.testing.assert_allclose(fit.covariance, covariance, rtol=1e-8)
 
 
 def test_evidence_is_that_of_the_data_themselves() -> None:
     # d ~ N(0, 1 + J S^2 J^T) when x is integrated out.
     J, d, sd = _problem(3, 5)
-    found = posterior(J.T @ J, J.T @ d, sd, *(np.repeat(one, 5) for one in FREE))
+    fit = posterior(J.T @ J, J.T @ d, sd, *(np.repeat(bound, 5) for bound in FREE))
     wanted = multivariate_normal(cov=np.eye(len(d)) + (J * sd**2) @ J.T).logpdf(d)
-    assert found.log_evidence - d @ d / 2 - len(d) / 2 * np.log(2 * np.pi) == pytest.approx(wanted, abs=1e-9)
+    assert fit.log_evidence - d @ d / 2 - len(d) / 2 * np.log(2 * np.pi) == pytest.approx(wanted, abs=1e-9)
 
 
 @pytest.mark.parametrize("seed", range(6))
 def test_a_fit_within_bounds_is_the_best_there(seed: int) -> None:
     J, d, sd = _problem(seed, 3)
     low, high = np.array([0.0, -0.2, -np.inf]), np.array([np.inf, 0.2, 0.1])
-    found = posterior(J.T @ J, J.T @ d, sd, low, high)
+    fit = posterior(J.T @ J, J.T @ d, sd, low, high)
 
     def misfit(x: np.ndarray) -> float:
         return float(((d - J @ x) ** 2).sum() + ((x / sd) ** 2).sum())
 
     wanted = minimize(misfit, np.zeros(3), bounds=list(zip(low, high, strict=True)), tol=1e-14)
-    assert misfit(found.mean) == pytest.approx(wanted.fun, rel=1e-6)
-    on_bound = np.isclose(found.mean, low) | np.isclose(found.mean, high)
-    np.testing.assert_array_equal(found.at_bound, on_bound)
+    assert misfit(fit.mean) == pytest.approx(wanted.fun, rel=1e-6)
+    on_bound = np.isclose(fit.mean, low) | np.isclose(fit.mean, high)
+    np.testing.assert_array_equal(fit.at_bound, on_bound)
 
 
 def test_a_needless_parameter_costs_what_occam_says() -> None:
@@ -88,10 +88,10 @@ def test_a_needless_parameter_costs_what_occam_says() -> None:
 @pytest.mark.parametrize("beyond", [0.5, 3.0])
 def test_beyond_says_how_far_the_data_want_a_parameter_off_its_bound(beyond: float) -> None:
     J, _, sd = _problem(2, 3)
-    free = posterior(J.T @ J, np.zeros(3), sd, *(np.repeat(one, 3) for one in FREE))
+    free = posterior(J.T @ J, np.zeros(3), sd, *(np.repeat(bound, 3) for bound in FREE))
     # Data whose best place is so many of its standard deviations above the bound 1 of the first parameter.
     wanted = np.array([1.0 + beyond * free.sd[0], 0.3, -0.2])
     overlap = (J.T @ J + np.diag(sd**-2.0)) @ wanted
     high = np.array([1.0, np.inf, np.inf])
-    found = posterior(J.T @ J, overlap, sd, np.full(3, -np.inf), high)
-    np.testing.assert_allclose(found.beyond, [beyond, 0.0, 0.0], rtol=1e-9)
+    fit = posterior(J.T @ J, overlap, sd, np.full(3, -np.inf), high)
+    np.testing.assert_allclose(fit.beyond, [beyond, 0.0, 0.0], rtol=1e-9)

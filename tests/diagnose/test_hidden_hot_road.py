@@ -26,7 +26,7 @@ from tyrefem.variants.answer_store import PROGRESS
 def test_the_hidden_effect_is_named_with_its_size(case: Case) -> None:
     d = case.diagnosis
     assert d.verdict == "identified"
-    assert [one.name for one in d.best.members] == ["hot-road"]
+    assert [item.name for item in d.best.members] == ["hot-road"]
     amplitude = d.best.members[0].amplitudes[0]
     assert abs(d.best.values[amplitude] - WARMER) < 4 * d.best.sd[amplitude]
     assert d.best.sd[amplitude] < 0.4 * WARMER
@@ -41,45 +41,45 @@ def test_the_gap_shrinks_to_the_noise_on_the_run_no_fit_has_seen(case: Case) -> 
 
 
 def test_verdict_json_says_what_the_diagnosis_found(case: Case) -> None:
-    said = json.loads((case.folder / "verdict.json").read_text(encoding="utf-8"))
+    record = json.loads((case.folder / "verdict.json").read_text(encoding="utf-8"))
     d = case.diagnosis
-    assert said["verdict"] == "identified"
-    (effect,) = said["effects"]
+    assert record["verdict"] == "identified"
+    (effect,) = record["effects"]
     assert effect["name"] == "hot-road"
     assert 0.9 < effect["probability"] <= 1.0
     amplitude = d.best.members[0].amplitudes[0]
     assert effect["parameters"] == {
         "warmer_by": {"value": d.best.values[amplitude], "sd": d.best.sd[amplitude], "unit": "delta_degC"}
     }
-    assert said["candidates"][0]["name"] == "hot-road"
-    assert len(said["candidates"]) == len(d.candidates)
-    for row in said["candidates"]:
+    assert record["candidates"][0]["name"] == "hot-road"
+    assert len(record["candidates"]) == len(d.candidates)
+    for row in record["candidates"]:
         assert {"name", "variant", "probability", "log_evidence", "confounded_with"} <= set(row)
     # Evidence is a likelihood of the same data: the true effect beats no effect by far, and every rival alone.
-    gains = [row["log_evidence_gain"] for row in said["candidates"]]
+    gains = [row["log_evidence_gain"] for row in record["candidates"]]
     assert gains[0] > 40
     assert gains[0] == max(gains)
-    assert said["candidates"][0]["rms_K"] < 1.2 * NOISE
+    assert record["candidates"][0]["rms_K"] < 1.2 * NOISE
     for state, after in (("before", False), ("after", True)):
-        assert said["gap"][state]["rms_K"] == pytest.approx(d.rms(after=after, held_out=False))
-        assert said["gap"][state]["held_out_rms_K"] == pytest.approx(d.rms(after=after, held_out=True))
-    assert said["gap"]["noise_K"] == pytest.approx(NOISE)
+        assert record["gap"][state]["rms_K"] == pytest.approx(d.rms(after=after, held_out=False))
+        assert record["gap"][state]["held_out_rms_K"] == pytest.approx(d.rms(after=after, held_out=True))
+    assert record["gap"]["noise_K"] == pytest.approx(NOISE)
     # The road heats the tread: the sensor next to it is where the study fails most.
-    assert said["where"]["sensor"] == "crown-outer"
-    assert said["where"]["region"] == "tread"
-    assert said["where"]["phase"] in ("heating", "plateau", "cooling")
-    assert said["where"]["run"] in RUNS
-    assert said["next_experiment"] == {}
-    assert said["missing_heat"] is None
-    assert said["versions"]["tyrefem"] == tf.__version__
-    assert said["input"]["drive"]["speed"] == "20 mph"
-    assert {run["run"]: run["hold_out"] for run in said["runs"]} == {name: name == HELD_OUT for name in RUNS}
-    assert sum(row["probability"] for row in said["sets"]) == pytest.approx(1.0, abs=1e-6)
+    assert record["where"]["sensor"] == "crown-outer"
+    assert record["where"]["region"] == "tread"
+    assert record["where"]["phase"] in ("heating", "plateau", "cooling")
+    assert record["where"]["run"] in RUNS
+    assert record["next_experiment"] == {}
+    assert record["missing_heat"] is None
+    assert record["versions"]["tyrefem"] == tf.__version__
+    assert record["input"]["drive"]["speed"] == "20 mph"
+    assert {run["run"]: run["hold_out"] for run in record["runs"]} == {name: name == HELD_OUT for name in RUNS}
+    assert sum(row["probability"] for row in record["sets"]) == pytest.approx(1.0, abs=1e-6)
 
 
 def test_the_amended_study_runs_as_it_is_and_gives_what_was_shown(case: Case) -> None:
-    said = json.loads((case.folder / "verdict.json").read_text(encoding="utf-8"))
-    amended = tf.study(case.folder / said["amended_study"])
+    record = json.loads((case.folder / "verdict.json").read_text(encoding="utf-8"))
+    amended = tf.study(case.folder / record["amended_study"])
     assert amended.effects[0].name == "hot-road"
     assert amended.title.endswith("(amended)")
     entry = amended.data["effects"][0]
@@ -88,7 +88,9 @@ def test_the_amended_study_runs_as_it_is_and_gives_what_was_shown(case: Case) ->
     readings = amended.with_drive(RUNS[HELD_OUT]).run().readings
     number = list(RUNS).index(HELD_OUT)
     trial = case.diagnosis.gap.runs[number]
-    computed = np.concatenate([one.sampled(readings["time_s"], readings[one.sensor]) for one in trial.sensors])
+    computed = np.concatenate(
+        [sensor_series.sampled(readings["time_s"], readings[sensor_series.sensor]) for sensor_series in trial.sensors]
+    )
     np.testing.assert_allclose(computed, case.diagnosis.after[number], atol=1e-9)
     table = pd.read_csv(case.folder / "histories.csv").query("run == @HELD_OUT")
     np.testing.assert_allclose(table["amended_degC"], computed, atol=1e-9)
@@ -99,7 +101,7 @@ def test_the_difference_is_readable_and_only_what_was_found(case: Case) -> None:
     added = [line[1:] for line in lines[2:] if line.startswith("+")]
     removed = [line[1:] for line in lines[2:] if line.startswith("-")]
     assert any(line.startswith("warmer_by = ") for line in added)
-    changed = {one.unknown.key for one in case.diagnosis.changes}
+    changed = {unknown.unknown.key for unknown in case.diagnosis.changes}
     # Every line that goes is the title, or a number (or the card of one) that was corrected.
     for line in removed:
         name = line.split(" = ")[0]
@@ -150,7 +152,7 @@ def test_kept_simulations_belong_to_one_study_and_its_data(case: Case) -> None:
     model = ForwardModel(case.study, drives)
     other = ForwardModel(case.study.replace({"drive.speed": "21 mph"}), drives)
     fewer = ForwardModel(case.study, drives[:2])
-    assert len({key_of(one) for one in (model, other, fewer)}) == 3
+    assert len({key_of(item) for item in (model, other, fewer)}) == 3
     assert key_of(model) == key_of(ForwardModel(tf.study(case.study.file), drives))
     store = ProgressStore(case.kept.with_name("copied"))
     (store.folder / "left-by-another").mkdir(parents=True)
@@ -174,16 +176,18 @@ def test_the_command_goes_on_where_it_was_and_says_so(
     (out / "summary.json").write_text(json.dumps(mark), encoding="utf-8")
     flags = ["--workers", "1", "--largest", "1", "--looks", "2", "--quiet"]
     assert main(["diagnose", str(case.study.file), "--out", str(out), *flags]) == 0
-    said, err = capfd.readouterr()
+    printed, err = capfd.readouterr()
     assert err == ""
-    assert said.startswith(f"{len(list(case.kept.rglob('*.npz')))} simulations of an interrupted diagnosis were reused")
-    assert "IDENTIFIED: The road is warmer than stated" in said
-    assert str(out / "diagnosis.html") in said
+    assert printed.startswith(
+        f"{len(list(case.kept.rglob('*.npz')))} simulations of an interrupted diagnosis were reused"
+    )
+    assert "IDENTIFIED: The road is warmer than stated" in printed
+    assert str(out / "diagnosis.html") in printed
     # Nothing hidden is left: neither what was kept, nor a temporary file.
     assert not [file for file in out.rglob("*") if file.name.startswith(".")]
     ours, theirs = (json.loads((folder / "verdict.json").read_text()) for folder in (out, case.folder))
-    for one in (ours, theirs):
-        one.pop("wall_time_s")
+    for item in (ours, theirs):
+        item.pop("wall_time_s")
     assert ours == theirs
 
 
@@ -197,10 +201,10 @@ def test_a_second_look_at_the_amended_study_finds_no_gap(case: Case) -> None:
     ]
     assert verdict_words(d)[-1].endswith("no gap is left.")
     # What is known of the effect now belongs to the base numbers: from its value, with its standard deviation.
-    own = next(one for one in base_unknowns(d.study) if one.effect == "hot-road")
+    expected = next(unknown for unknown in base_unknowns(d.study) if unknown.effect == "hot-road")
     amplitude = d.best.members[0].amplitudes[0]
-    assert own.value(0.0) == pytest.approx(d.best.values[amplitude], abs=0.02 * d.best.sd[amplitude])
-    assert own.sd == pytest.approx(d.best.sd[amplitude], rel=0.06)
+    assert expected.value(0.0) == pytest.approx(d.best.values[amplitude], abs=0.02 * d.best.sd[amplitude])
+    assert expected.sd == pytest.approx(d.best.sd[amplitude], rel=0.06)
     unknowns = (*base_unknowns(d.study), *sensor_unknowns(d.study, set(d.study.sensors)))
     assert dict(with_values(d.study, dict.fromkeys(unknowns, 0.0)).run().readings.iloc[-1]) == pytest.approx(
         dict(d.study.run().readings.iloc[-1])
@@ -210,18 +214,20 @@ def test_a_second_look_at_the_amended_study_finds_no_gap(case: Case) -> None:
 def test_noise_alone_is_no_gap(case: Case) -> None:
     d, rng = case.diagnosis, np.random.default_rng(5)
     runs = []
-    for number, one in enumerate(d.gap.runs):
+    for number, sensor_series in enumerate(d.gap.runs):
         columns = {}
-        for readings in one.sensors:
+        for readings in sensor_series.sensors:
             # The study's own prediction at the times of the readings, through the means of its blocks.
-            own = np.interp(readings.times, readings.block_times, d.before[number][one.parts()[readings.sensor]])
-            columns[readings.sensor] = own + NOISE * rng.normal(size=len(readings.times))
-        runs.append(MeasuredRun(one.name, one.sensors[0].times, pd.DataFrame(columns)))
+            expected = np.interp(
+                readings.times, readings.block_times, d.before[number][sensor_series.parts()[readings.sensor]]
+            )
+            columns[readings.sensor] = expected + NOISE * rng.normal(size=len(readings.times))
+        runs.append(MeasuredRun(sensor_series.name, sensor_series.sensors[0].times, pd.DataFrame(columns)))
     # The same layout: the responses at hand serve.
-    found = case.study.diagnose(runs, largest=1, known=d.gap.responses)
-    assert found.verdict == "no gap"
-    assert found.to_dict()["effects"] == []
-    assert found.rms(after=False, held_out=False) == pytest.approx(NOISE, rel=0.15)
+    result = case.study.diagnose(runs, largest=1, known=d.gap.responses)
+    assert result.verdict == "no gap"
+    assert result.to_dict()["effects"] == []
+    assert result.rms(after=False, held_out=False) == pytest.approx(NOISE, rel=0.15)
 
 
 def test_python_can_start_workers_and_they_agree(case: Case) -> None:

@@ -30,12 +30,12 @@ def test_interruption_keeps_what_is_finished_and_nothing_else(case: Case, tmp_pa
                 time.sleep(0.05)
             # A terminal sends it to the whole group, workers too.
             os.killpg(running.pid, signal.SIGINT)
-            said, err = running.communicate(timeout=120)
+            printed, err = running.communicate(timeout=120)
         finally:
             if running.poll() is None:
                 os.killpg(running.pid, signal.SIGKILL)
     assert running.returncode == 130
-    assert said == ""
+    assert printed == ""
     assert err.startswith("tyrefem: interrupted; ")
     assert "the same command resumes from there" in err
     assert err.count("\n") == 1

@@ -26,7 +26,7 @@ from tyrefem.diagnose.sensitivities import Sensitivities
 def known(case: Case) -> Sensitivities:
     """The study's planned runs, with the responses that the diagnosis of the same study found."""
     study = case.study
-    sensors = [one.sensor for one in case.diagnosis.gap.runs[0].sensors]
+    sensors = [sensor_series.sensor for sensor_series in case.diagnosis.gap.runs[0].sensors]
     model = ForwardModel(study, planned(study, sensors))
     return layout_sensitivities(Evaluations(model), case.diagnosis.gap.responses)
 
@@ -36,38 +36,42 @@ def found(case: Case, known: Sensitivities) -> Isolability:
     return isolability(case.study, known=known)
 
 
-def test_every_candidate_has_a_row_and_nothing_else(found: Isolability) -> None:
-    assert {name.split(" (")[0] for name in found.table["effect"]} == RIVALS
-    assert [run for runs in found.runs for run in runs if run == "fast"] == [], "the held-out run is not planned on"
+def test_every_candidate_has_a_row_and_nothing_else(isolability_result: Isolability) -> None:
+    assert {name.split(" (")[0] for name in isolability_result.table["effect"]} == RIVALS
+    assert [run for runs in isolability_result.runs for run in runs if run == "fast"] == [], (
+        "the held-out run is not planned on"
+    )
 
 
-def test_to_be_told_from_all_takes_at_least_what_being_seen_takes(found: Isolability) -> None:
-    assert (found.smallest >= found.seen).all()
-    assert np.isfinite(found.seen).any()
+def test_to_be_told_from_all_takes_at_least_what_being_seen_takes(isolability_result: Isolability) -> None:
+    assert (isolability_result.smallest >= isolability_result.seen).all()
+    assert np.isfinite(isolability_result.seen).any()
 
 
 def test_the_margin_is_reached_at_the_smallest_amplitude_and_not_well_below(
-    case: Case, known: Sensitivities, found: Isolability
+    case: Case, known: Sensitivities, isolability_result: Isolability
 ) -> None:
     design = known.design(known.fitted)
     linear = LinearModel(design, np.zeros(len(design.jacobian)))
-    prior = SetPrior(found.candidates, case.study.card.diagnosis.effects_expected)
-    number = [one.name for one in found.candidates].index("hot-road")
-    road = found.candidates[number]
+    prior = SetPrior(isolability_result.candidates, case.study.card.diagnosis.effects_expected)
+    number = [candidate.name for candidate in isolability_result.candidates].index("hot-road")
+    road = isolability_result.candidates[number]
     column = linear.jacobian[:, design.place[road.amplitudes[0]]]
-    sets = competitors_of((road,), found.candidates)
+    sets = competitors_of((road,), isolability_result.candidates)
 
     def lead(amplitude: float) -> float:
         return min(margins(linear, amplitude * column, (road,), sets, prior))
 
-    assert lead(found.smallest[number]) >= MARGIN > lead(0.7 * found.smallest[number])
+    assert lead(isolability_result.smallest[number]) >= MARGIN > lead(0.7 * isolability_result.smallest[number])
 
 
-def test_twice_the_noise_needs_a_stronger_effect(case: Case, known: Sensitivities, found: Isolability) -> None:
+def test_twice_the_noise_needs_a_stronger_effect(
+    case: Case, known: Sensitivities, isolability_result: Isolability
+) -> None:
     study = case.study
-    sensors = [one.sensor for one in case.diagnosis.gap.runs[0].sensors]
+    sensors = [sensor_series.sensor for sensor_series in case.diagnosis.gap.runs[0].sensors]
     louder = study.replace({f"sensors.{name}.noise": "1.5 delta_degC" for name in study.sensors})
     model = ForwardModel(louder, planned(louder, sensors))
     again = layout_sensitivities(Evaluations(model), case.diagnosis.gap.responses)
-    assert (isolability(louder, known=again).seen >= found.seen).all()
-    assert (isolability(louder, known=again).seen > found.seen).any()
+    assert (isolability(louder, known=again).seen >= isolability_result.seen).all()
+    assert (isolability(louder, known=again).seen > isolability_result.seen).any()

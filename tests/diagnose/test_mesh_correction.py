@@ -38,8 +38,8 @@ def test_it_grows_with_the_heat(residuals: Residuals) -> None:
 
 def test_a_warmer_surface_alone_does_not_make_it_larger(residuals: Residuals) -> None:
     # A hot road warms the surface fivefold: the gradient there, and with it what the mesh adds, stays about the same.
-    found = added(residuals, OWN + np.array([12.0, 5.0, 3.0]))
-    assert (np.abs(found - ADDED) < 0.3 * np.abs(ADDED)).all()
+    result = added(residuals, OWN + np.array([12.0, 5.0, 3.0]))
+    assert (np.abs(result - ADDED) < 0.3 * np.abs(ADDED)).all()
 
 
 def test_a_tyre_that_cannot_be_stays_one(residuals: Residuals) -> None:

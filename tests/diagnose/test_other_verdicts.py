@@ -29,33 +29,33 @@ NEXT = {
 
 def confounded(d: DiagnosisData) -> DiagnosisData:
     """As if hot road and sun were 60 : 25, and an idle effect beside the hot road took the rest."""
-    by_name = {one.name: one for one in d.candidates}
+    by_name = {candidate.name: candidate for candidate in d.candidates}
     hot, sun, idle = by_name["hot-road"], by_name["sun"], by_name["sensor-offset"]
-    fits = {one.members: one.fit for one in d.judgement.ranking}
+    fits = {candidate.members: candidate.fit for candidate in d.judgement.ranking}
     sets = [((hot,), 0.6), ((sun,), 0.25), ((hot, idle), 0.14), ((), 0.01)]
-    alone = [((one,), 0.0) for one in d.candidates if one not in (hot, sun)]
-    found = tuple(
+    alone = [((candidate,), 0.0) for candidate in d.candidates if candidate not in (hot, sun)]
+    result = tuple(
         RankedSet(members, float(np.log(probability + 1e-30)), probability, fits.get(members))
         for members, probability in [*sets, *alone]
     )
     named = {"hot-road": 0.74, "sun": 0.25}
-    judged = replace(d.judgement, verdict=CONFOUNDED, ranking=found, credible=found[:3], named=named)
+    judged = replace(d.judgement, verdict=CONFOUNDED, ranking=result, credible=result[:3], named=named)
     return replace(d, judgement=judged, next_experiment=NEXT)
 
 
 def test_confounded_names_the_rivals_and_what_would_decide(case: Case, tmp_path: Path) -> None:
     d = confounded(case.diagnosis)
     # The hot road with an idle effect beside it is no rival of the hot road, but speaks for it.
-    assert [one.key for one in competing_sets(d)] == ["hot-road", "sun"]
+    assert [unknown.key for unknown in competing_sets(d)] == ["hot-road", "sun"]
     assert inclusion_probability(d, competing_sets(d)[0]) == pytest.approx(0.74)
     d.save(tmp_path)
-    said = json.loads((tmp_path / "verdict.json").read_text(encoding="utf-8"))
-    rivals = {row["name"]: row["confounded_with"] for row in said["candidates"]}
+    record = json.loads((tmp_path / "verdict.json").read_text(encoding="utf-8"))
+    rivals = {row["name"]: row["confounded_with"] for row in record["candidates"]}
     assert rivals["hot-road"] == ["sun"]
     assert rivals["sun"] == ["hot-road"]
     assert rivals["sensor-offset"] == []
-    assert said["next_experiment"]["sensors"][0]["largest_K"] == 2.5
-    assert [one["name"] for one in said["effects"]] == ["hot-road"]
+    assert record["next_experiment"]["sensors"][0]["largest_K"] == 2.5
+    assert [unknown["name"] for unknown in record["effects"]] == ["hot-road"]
     words = " ".join(verdict_words(d))
     assert "cannot show which: hot-road (74 %), or sun (25 %)" in words
     assert "A thermocouple at s = 0 mm, outside" in words
@@ -78,11 +78,11 @@ def test_unexplained_draws_the_missing_heat_and_names_nothing(case: Case, tmp_pa
     )  # fmt: skip
     d = replace(d, judgement=judged, missing=missing, best=d.null)
     d.save(tmp_path)
-    said = json.loads((tmp_path / "verdict.json").read_text(encoding="utf-8"))
-    assert said["effects"] == []
-    assert said["missing_heat"]["kind"] == "heat"
-    assert len(said["missing_heat"]["runs"]) == 2
-    assert said["missing_heat"]["runs"][0]["heat_W_m3"] == [2e4] * len(missing.stations)
+    record = json.loads((tmp_path / "verdict.json").read_text(encoding="utf-8"))
+    assert record["effects"] == []
+    assert record["missing_heat"]["kind"] == "heat"
+    assert len(record["missing_heat"]["runs"]) == 2
+    assert record["missing_heat"]["runs"][0]["heat_W_m3"] == [2e4] * len(missing.stations)
     words = verdict_words(d)
     assert words[0] == "No effect in the catalogue explains the deviation."
     assert "heat inside the tread while the tyre rolls, in the crown" in words[1]

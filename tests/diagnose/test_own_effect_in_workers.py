@@ -36,9 +36,9 @@ RECEIVE = "import pickle, sys; print(pickle.load(sys.stdin.buffer).effects[0].co
 
 def test_an_own_effect_is_built_again_where_the_study_arrives(tmp_path: Path) -> None:
     (tmp_path / "draught.py").write_text(EFFECT, encoding="utf-8")
-    own = {"env": os.environ | {"TYREFEM_EFFECTS": str(tmp_path)}, "check": True, "timeout": 120}
-    sent = subprocess.run([sys.executable, "-c", SEND], stdout=subprocess.PIPE, **own)  # type: ignore[call-overload]
+    options = {"env": os.environ | {"TYREFEM_EFFECTS": str(tmp_path)}, "check": True, "timeout": 120}
+    sent = subprocess.run([sys.executable, "-c", SEND], stdout=subprocess.PIPE, **options)  # type: ignore[call-overload]
     came = subprocess.run(  # type: ignore[call-overload]
-        [sys.executable, "-c", RECEIVE], input=sent.stdout, stdout=subprocess.PIPE, **own
+        [sys.executable, "-c", RECEIVE], input=sent.stdout, stdout=subprocess.PIPE, **options
     )
     assert came.stdout.decode().strip() == "3.0"

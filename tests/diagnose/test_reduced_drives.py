@@ -42,16 +42,16 @@ class Drives:
 
     @property
     def modes(self) -> list[Modes]:
-        return [one.modes for one in self.known]
+        return [item.modes for item in self.known]
 
     def candidate(self, name: str) -> Candidate:
-        return next(one for one in catalogue_candidates(self.study) if one.name == name)
+        return next(candidate for candidate in catalogue_candidates(self.study) if candidate.name == name)
 
     def drawn(self, seed: int) -> dict[Unknown, float]:
         """Base numbers and sensors drawn from their priors."""
         rng = np.random.default_rng(seed)
         base = self.unknowns[: self.nuisance]
-        return {one: float(np.clip(rng.normal(0.0, one.sd), 0.9 * one.low, 0.9 * one.high)) for one in base}
+        return {item: float(np.clip(rng.normal(0.0, item.sd), 0.9 * item.low, 0.9 * item.high)) for item in base}
 
 
 @pytest.fixture(scope="module")
@@ -59,7 +59,7 @@ def drives(tmp_path_factory: pytest.TempPathFactory) -> Drives:
     owner = study(tmp_path_factory.mktemp("reduced"))
     measure(owner, [{"name": "hot-road", "warmer_by": f"{WARMER} delta_degC"}])
     planned = experiments(owner, None, ignore=(), rename=None)
-    model = ForwardModel(owner, tuple(measured_drive(one, owner).sampling for one in planned))
+    model = ForwardModel(owner, tuple(measured_drive(run, owner).sampling for run in planned))
     unknowns, nuisance = unknowns_of(owner, set(owner.sensors), catalogue_candidates(owner))
     return Drives(owner, model, unknowns, nuisance, responses(Evaluations(model), unknowns))
 
@@ -75,12 +75,12 @@ def exact(drives: Drives, values: dict[Unknown, float]) -> Array:
 def test_base_numbers_and_sensors_change_what_full_runs_say(drives: Drives, seed: int) -> None:
     origin, values = exact(drives, {}), drives.drawn(seed)
     change = exact(drives, values) - origin
-    status, found = drives.model.reduced(DRIVE, drives.modes[DRIVE], [{}, values])
+    status, result = drives.model.reduced(DRIVE, drives.modes[DRIVE], [{}, values])
     assert status.tolist() == [FOLLOWED, FOLLOWED]
     assert np.abs(change).max() > 1.0
-    assert np.abs(found[1] - found[0] - change).max() < 0.02
+    assert np.abs(result[1] - result[0] - change).max() < 0.02
     # As it is, the drive reads what the fixed-step simulation says.
-    np.testing.assert_allclose(found[0], drives.model.predict(DRIVE, {}), atol=1e-12)
+    np.testing.assert_allclose(result[0], drives.model.predict(DRIVE, {}), atol=1e-12)
 
 
 FOLLOWED_EFFECTS = ("hot-road", "cord-conduction", "gas-mixing", "loss-temperature-law", "pressure-rise", "wet-road")
@@ -89,16 +89,18 @@ FOLLOWED_EFFECTS = ("hot-road", "cord-conduction", "gas-mixing", "loss-temperatu
 @pytest.mark.parametrize("name", FOLLOWED_EFFECTS)
 def test_effects_that_were_never_simulated_are_met(drives: Drives, name: str) -> None:
     open_study = drives.study.replace({"diagnosis.exclude": []})
-    amplitude = next(one for one in catalogue_candidates(open_study) if one.name == name).amplitudes[0]
+    amplitude = next(candidate for candidate in catalogue_candidates(open_study) if candidate.name == name).amplitudes[
+        0
+    ]
     values = {amplitude: 2.0 * amplitude.sd * (1.0 if amplitude.high > 0 else -1.0)}
     base = drives.model.base(DRIVE)
     unknowns = (*drives.unknowns, amplitude)
-    own = Modes(drives.model.response(DRIVE, unknowns)[-1])
+    expected = Modes(drives.model.response(DRIVE, unknowns)[-1])
     change = exact(drives, values) - exact(drives, {})
-    status, found = drives.model.reduced(DRIVE, own, [values])
+    status, result = drives.model.reduced(DRIVE, expected, [values])
     assert status.tolist() == [FOLLOWED]
     fixed = drives.model.predict(DRIVE, values) - drives.model.blocks(DRIVE, base.grid, base.readings)
-    reduced = found[0] - drives.model.blocks(DRIVE, base.grid, base.readings)
+    reduced = result[0] - drives.model.blocks(DRIVE, base.grid, base.readings)
     assert np.abs(change).max() > 0.05
     # No further from the truth than what it stands for, or by a fiftieth of a kelvin.
     assert np.abs(reduced - change).max() < max(np.abs(fixed - change).max(), 0.02)
@@ -107,20 +109,20 @@ def test_effects_that_were_never_simulated_are_met(drives: Drives, name: str) ->
 def test_tangents_are_those_of_simulations(drives: Drives) -> None:
     model, at = drives.model, drives.drawn(3)
     wanted = drives.unknowns[: drives.nuisance]
-    status, found = model.reduced_jacobian(DRIVE, drives.modes[DRIVE], wanted, at)
+    status, derivatives = model.reduced_jacobian(DRIVE, drives.modes[DRIVE], wanted, at)
     assert status.tolist() == [FOLLOWED]
     full = model.jacobian(DRIVE, wanted, at)
-    sd = np.array([one.sd for one in wanted])
+    sd = np.array([item.sd for item in wanted])
     assert (np.abs(full * sd).max(axis=0) > 0.5).sum() > 5
-    assert np.abs((found - full) * sd).max() < 0.05
+    assert np.abs((derivatives - full) * sd).max() < 0.05
 
 
 def test_what_no_model_can_follow_or_no_tyre_can_be_is_told_apart(drives: Drives) -> None:
     sun = drives.candidate("sun").amplitudes[0]
-    load = next(one for one in drives.unknowns if one.key == "drive.load")
-    status, found = drives.model.reduced(DRIVE, drives.modes[DRIVE], [{sun: 200.0}, {load: 3.0}, {load: 0.05}])
+    load = next(unknown for unknown in drives.unknowns if unknown.key == "drive.load")
+    status, result = drives.model.reduced(DRIVE, drives.modes[DRIVE], [{sun: 200.0}, {load: 3.0}, {load: 0.05}])
     assert status.tolist() == [NOT_FOLLOWED, NO_ANSWER, FOLLOWED]
-    assert np.isfinite(found).all(axis=1).tolist() == [False, False, True]
+    assert np.isfinite(result).all(axis=1).tolist() == [False, False, True]
     # A step too far says nothing against the model.
     predictions = Predictions(Evaluations(drives.model), drives.modes)
     assert np.isnan(predictions.predict([((), {load: 3.0})], [DRIVE])[0][0]).all()
@@ -132,8 +134,8 @@ def test_a_set_is_simulated_once_and_then_left_to_the_model(drives: Drives) -> N
     road = (drives.candidate("hot-road"),)
     predictions = Predictions(Evaluations(drives.model), drives.modes)
     points = [{road[0].amplitudes[0]: x} for x in (10.0, 20.0, 30.0)]
-    for one in points:
-        predictions.predict([(road, one)], [DRIVE])
+    for item in points:
+        predictions.predict([(road, item)], [DRIVE])
     assert (predictions.reduced, predictions.simulated) == (3, 1)
     certificate = predictions.certificates[road, DRIVE]
     assert certificate.good
@@ -148,8 +150,8 @@ def test_an_effect_that_no_model_follows_stays_with_the_simulation(drives: Drive
     predictions = Predictions(Evaluations(drives.model), drives.modes)
     point = {sun[0].amplitudes[0]: 300.0}
     both = [predictions.predict([(sun, point)], [DRIVE])[0][0] for _ in range(2)]
-    for one in both:
-        np.testing.assert_array_equal(one, drives.model.predict(DRIVE, point))
+    for item in both:
+        np.testing.assert_array_equal(item, drives.model.predict(DRIVE, point))
     assert (predictions.reduced, predictions.simulated) == (0, 2)
 
 
@@ -159,11 +161,11 @@ def spoiled(modes: Modes) -> Modes:
 
 
 def test_a_model_that_is_off_is_found_out_and_not_used(drives: Drives) -> None:
-    predictions = Predictions(Evaluations(drives.model), [spoiled(one) for one in drives.modes])
+    predictions = Predictions(Evaluations(drives.model), [spoiled(item) for item in drives.modes])
     point = drives.drawn(4)
-    found = predictions.predict([((), point)], [DRIVE])[0][0]
+    result = predictions.predict([((), point)], [DRIVE])[0][0]
     assert predictions.certificates[(), DRIVE].whitened_norm > DEFAULT.reduced_allowed
-    np.testing.assert_array_equal(found, drives.model.predict(DRIVE, point))
+    np.testing.assert_array_equal(result, drives.model.predict(DRIVE, point))
     wanted = drives.unknowns[:3]
     J = predictions.jacobians([((), wanted, point)], [DRIVE])[0][0]
     np.testing.assert_array_equal(J, drives.model.jacobian(DRIVE, wanted, point))
@@ -181,15 +183,19 @@ def never(drives: Drives) -> DiagnosisData:
 def test_the_verdict_is_that_of_simulations_alone(drives: Drives, never: DiagnosisData) -> None:
     auto = diagnosed(drives)
     assert auto.verdict == never.verdict == "identified"
-    assert [one.key for one in auto.best.members] == [one.key for one in never.best.members] == ["hot-road"]
-    for one, x in never.best.values.items():
-        assert abs(auto.best.values[one] - x) < 0.15 * max(never.best.sd[one], 1e-9)
+    assert (
+        [unknown.key for unknown in auto.best.members]
+        == [unknown.key for unknown in never.best.members]
+        == ["hot-road"]
+    )
+    for unknown, x in never.best.values.items():
+        assert abs(auto.best.values[unknown] - x) < 0.15 * max(never.best.sd[unknown], 1e-9)
     assert auto.judgement.probability == pytest.approx(never.judgement.probability, abs=0.02)
     account = auto.to_dict()["reduced"]
     assert account["used"]
     assert account["points_by_reduced_models"] > account["points_by_lean_simulations"] / 2
     assert account["worst_whitened"] <= DEFAULT.reduced_allowed
-    assert {one["run"] for one in account["certificates"]} == {"slow", "loaded", "fast"}
+    assert {unknown["run"] for unknown in account["certificates"]} == {"slow", "loaded", "fast"}
     assert never.to_dict()["reduced"]["points_by_reduced_models"] == 0
 
 
@@ -197,9 +203,9 @@ def test_where_the_best_fit_is_not_confirmed_everything_is_simulated(
     drives: Drives, never: DiagnosisData, monkeypatch: pytest.MonkeyPatch
 ) -> None:
     monkeypatch.setattr(Predictions, "confirmed", lambda *_: False)
-    found = diagnosed(drives)
-    assert found.to_dict()["reduced"]["used"] is False
-    assert found.best.log_evidence == pytest.approx(never.best.log_evidence, abs=1e-6)
+    result = diagnosed(drives)
+    assert result.to_dict()["reduced"]["used"] is False
+    assert result.best.log_evidence == pytest.approx(never.best.log_evidence, abs=1e-6)
 
 
 PARTS: dict[str, dict[str, Any]] = {
@@ -213,17 +219,17 @@ PARTS: dict[str, dict[str, Any]] = {
 @pytest.mark.parametrize("parts", PARTS)
 def test_the_parts_of_a_diagnosis_are_replaced_one_by_one(drives: Drives, never: DiagnosisData, parts: str) -> None:
     known = {} if parts == "few candidates" else {"known": drives.known}
-    found = drives.study.diagnose(largest=1, looks=1, rerun=False, **known, **PARTS[parts])
-    assert found.verdict == "identified"
-    assert [one.key for one in found.best.members] == ["hot-road"]
-    (amplitude,) = found.best.members[0].amplitudes
-    assert found.best.values[amplitude] == pytest.approx(
+    result = drives.study.diagnose(largest=1, looks=1, rerun=False, **known, **PARTS[parts])
+    assert result.verdict == "identified"
+    assert [unknown.key for unknown in result.best.members] == ["hot-road"]
+    (amplitude,) = result.best.members[0].amplitudes
+    assert result.best.values[amplitude] == pytest.approx(
         never.best.values[amplitude], abs=0.5 * never.best.sd[amplitude]
     )
     if parts == "exhaustive":
-        assert all(one.fit is not None for one in found.judgement.ranking if not one.outside)
+        assert all(unknown.fit is not None for unknown in result.judgement.ranking if not unknown.outside)
     if parts == "few candidates":
-        assert len(found.candidates) == 2
+        assert len(result.candidates) == 2
 
 
 def test_a_keyword_that_is_none_is_refused(drives: Drives) -> None:
@@ -242,8 +248,8 @@ def test_no_modes_where_the_drive_itself_is_not_followed(drives: Drives) -> None
     model = ForwardModel(radiating, drives.model.drives[:1])
     *_, V = model.response(0, drives.unknowns[:1])
     assert V.shape[1] == 0
-    one = replace(drives.known[0], modes=Modes(V))
-    predictions = Predictions(Evaluations(model), [one.modes])
+    item = replace(drives.known[0], modes=Modes(V))
+    predictions = Predictions(Evaluations(model), [item.modes])
     assert np.isfinite(predictions.predict([((), {})], [0])[0][0]).all()
     assert (predictions.reduced, predictions.simulated) == (0, 1)
 
@@ -255,6 +261,6 @@ def test_a_drive_that_its_model_cannot_march_is_left_to_simulations(
     model = ForwardModel(drives.study, drives.model.drives)
     predictions = Predictions(Evaluations(model), drives.modes)
     point = drives.drawn(5)
-    found = predictions.predict([((), point)], [DRIVE])[0][0]
-    np.testing.assert_array_equal(found, model.predict(DRIVE, point))
+    result = predictions.predict([((), point)], [DRIVE])[0][0]
+    np.testing.assert_array_equal(result, model.predict(DRIVE, point))
     assert not predictions.certificates[(), DRIVE].good

@@ -66,7 +66,7 @@ SHAPES = {
 }
 
 
-@pytest.mark.parametrize("criterion", CRITERIA, ids=lambda one: type(one).__name__)
+@pytest.mark.parametrize("criterion", CRITERIA, ids=lambda item: type(item).__name__)
 @pytest.mark.parametrize("hidden", [(), ("middle",), ("slow", "swing"), ("step", "end")], ids="+".join)
 def test_forward_and_exhaustive_search_find_what_is_hidden(hidden: tuple[str, ...], criterion: Criterion) -> None:
     noise = np.random.default_rng(4).normal(size=N)
@@ -110,7 +110,7 @@ def test_too_many_sets_are_refused_in_one_sentence() -> None:
     ForwardSelection().check(study, candidates, settings)
 
 
-@pytest.mark.parametrize("strategy", STRATEGIES, ids=lambda one: type(one).__name__)
+@pytest.mark.parametrize("strategy", STRATEGIES, ids=lambda item: type(item).__name__)
 def test_every_single_effect_has_a_score_and_the_best_has_a_fit(strategy: Strategy) -> None:
     noise = np.random.default_rng(7).normal(size=N)
     scored = searched(SHAPES, linear_law(SHAPES)({"slow": 2.0}) + noise, strategy)
@@ -119,7 +119,7 @@ def test_every_single_effect_has_a_score_and_the_best_has_a_fit(strategy: Strate
     assert next(entry for entry in scored if not entry.members).fit is not None
 
 
-@pytest.mark.parametrize("criterion", CRITERIA, ids=lambda one: type(one).__name__)
+@pytest.mark.parametrize("criterion", CRITERIA, ids=lambda item: type(item).__name__)
 def test_a_criterion_of_a_linear_problem_is_the_same_by_fit_and_by_linear_model(criterion: Criterion) -> None:
     measured = linear_law(SHAPES)({"slow": 1.0, "swing": 0.5}) + np.random.default_rng(9).normal(size=N)
     candidates = tuple(effect(name) for name in SHAPES)

@@ -67,8 +67,8 @@ def test_tangents_are_what_changed_runs_say(mesh: Any) -> None:
         for name, step in steps.items()
     ]
     # All on the operators of one mesh, as the tyre's are.
-    found = tangents(base, times, history.values, gas, perturbed)
-    at_points = found.at(POINTS)
+    derivatives = tangents(base, times, history.values, gas, perturbed)
+    at_points = derivatives.at(POINTS)
     for number, name in enumerate(VALUES):
         h = 0.03 * VALUES[name]
         high, low = (run(mesh, times, **{name: VALUES[name] + sign * h}) for sign in (1, -1))
@@ -77,7 +77,7 @@ def test_tangents_are_what_changed_runs_say(mesh: Any) -> None:
         # Ends of steps: the stages within are of lower order.
         close = {"rtol": 0, "atol": 0.02 * np.abs(wanted).max(), "err_msg": name}
         np.testing.assert_allclose(at_points[number, ::2], wanted[::2], **close)
-        np.testing.assert_allclose(found.reservoirs[number, ::2, 0], wanted_gas[::2], **close)
+        np.testing.assert_allclose(derivatives.reservoirs[number, ::2, 0], wanted_gas[::2], **close)
 
 
 def test_error_falls_with_the_square_of_the_step(mesh: Any) -> None:
@@ -90,9 +90,9 @@ def test_error_falls_with_the_square_of_the_step(mesh: Any) -> None:
         times = stage_times((0.0, 300.0), first=size, growth=1.0, longest=size)
         base = problem(mesh, **even)
         history = base.transient(times, VALUES["initial"], 1e-5)
-        one = Perturbed(problem(mesh, heat=VALUES["heat"] + step, **even), step, VALUES["initial"])
-        found = tangents(base, times, history.values, history.reservoirs["gas"][:, None], [one])
-        errors.append(float(np.abs(found.at(POINTS)[0, -1] - wanted).max()))
+        item = Perturbed(problem(mesh, heat=VALUES["heat"] + step, **even), step, VALUES["initial"])
+        derivatives = tangents(base, times, history.values, history.reservoirs["gas"][:, None], [item])
+        errors.append(float(np.abs(derivatives.at(POINTS)[0, -1] - wanted).max()))
     orders = np.log2(np.array(errors[:-1]) / errors[1:])
     assert orders.min() > 1.6
 

@@ -22,13 +22,13 @@ AT = {
 @pytest.mark.parametrize("present", [list(AT), ["swapped-channels (crown-outer, sidewall-outer)"], ["clock-offset"]])
 def test_tangents_are_the_difference_quotients_of_the_record(case: Case, present: list[str]) -> None:
     study = case.study.replace({"diagnosis.exclude": []})
-    known = {one.key: one.unknowns[0] for one in catalogue_candidates(study)}
+    known = {candidate.key: candidate.unknowns[0] for candidate in catalogue_candidates(study)}
     at: dict[Unknown, float] = {known[key]: AT[key] for key in present}
-    model = ForwardModel(study, tuple(one.sampling for one in case.diagnosis.gap.runs))
-    wanted = [one for one in base_unknowns(study) if "tread" in one.key]
+    model = ForwardModel(study, tuple(candidate.sampling for candidate in case.diagnosis.gap.runs))
+    wanted = [candidate for candidate in base_unknowns(study) if "tread" in candidate.key]
     assert wanted
-    found = model.jacobian(0, wanted, at)
+    derivatives = model.jacobian(0, wanted, at)
     quotients = model.differences(0, wanted, at)
     scale = np.abs(quotients).max(axis=0)
     assert (scale > 1.0).all(), "K per unit of the logarithm: something to compare"
-    assert np.abs(found - quotients).max(axis=0) / scale == pytest.approx(0.0, abs=0.05)
+    assert np.abs(derivatives - quotients).max(axis=0) / scale == pytest.approx(0.0, abs=0.05)

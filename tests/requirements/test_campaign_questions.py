@@ -66,10 +66,10 @@ def test_a_command_asks_for_one_case(
 
 def test_every_command_that_takes_a_study_takes_a_case() -> None:
     commands = typer.main.get_command(app).commands.items()  # type: ignore[attr-defined]
-    of_studies = {name: command for name, command in commands if any(one.name == "study" for one in command.params)}
+    of_studies = {name: command for name, command in commands if any(item.name == "study" for item in command.params)}
     assert set(of_studies) - {"run"} <= {parts[0] for parts in COMMANDS.values()}
     for name, command in of_studies.items():
-        assert "case" in [one.name for one in command.params], name
+        assert "case" in [item.name for item in command.params], name
 
 
 @pytest.mark.parametrize("name", VERBS)

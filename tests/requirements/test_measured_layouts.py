@@ -80,29 +80,33 @@ def test_a_drive_shorter_than_the_time_between_readings_is_refused(
 
 def test_without_sensors_the_contained_air_alone_is_planned_and_said(here: Path) -> None:
     study = tf.study(write(here / "bare", sensors=False))
-    assert [[one.sensor for one in trial.sensors] for trial in planned(study)] == [["contained-air"]]
-    found = isolability(study)
-    assert set(found.table["effect"]) >= {"hot-road", "sun"}
-    assert "only the contained air is read" in " ".join(found.words())
-    assert "its drive is the only run" in " ".join(found.to_dict()["notes"])
+    assert [[sensor_series.sensor for sensor_series in trial.sensors] for trial in planned(study)] == [
+        ["contained-air"]
+    ]
+    isolability_result = isolability(study)
+    assert set(isolability_result.table["effect"]) >= {"hot-road", "sun"}
+    assert "only the contained air is read" in " ".join(isolability_result.words())
+    assert "its drive is the only run" in " ".join(isolability_result.to_dict()["notes"])
 
 
 def test_where_nothing_is_identifiable_no_runs_are_recommended(here: Path) -> None:
     # RankedSet in the shade at ambient temperature: whatever warms a rolling tyre is not there to be seen.
     study = tf.study(write(here / "standing", sensors=False, rivals=["tread-slip"], drive={"speed": "0 mph"}))
-    found = isolability(study)
-    assert not found.table["identifiable_at_usual"].any()
-    assert found.runs == ()
+    isolability_result = isolability(study)
+    assert not isolability_result.table["identifiable_at_usual"].any()
+    assert isolability_result.runs == ()
 
 
 def test_without_sensors_the_next_drive_is_judged_by_the_contained_air(here: Path) -> None:
     study = tf.study(write(here / "bare", sensors=False, measured=[FITTED]))
     bench = ForwardModel(study, planned(study))
-    warmer, brighter = ({one.amplitudes[0]: one.amplitudes[0].sd} for one in catalogue_candidates(study)[:2])
-    found = drive_gain(bench, "half the speed", {"speed": 0.5}, warmer, brighter)
-    assert found is not None
-    assert found["sensor"] == "contained-air"
-    assert found["gain"] > 0
+    warmer, brighter = (
+        {candidate.amplitudes[0]: candidate.amplitudes[0].sd} for candidate in catalogue_candidates(study)[:2]
+    )
+    result = drive_gain(bench, "half the speed", {"speed": 0.5}, warmer, brighter)
+    assert result is not None
+    assert result["sensor"] == "contained-air"
+    assert result["gain"] > 0
 
 
 @pytest.mark.parametrize("phases", [1, 2])
@@ -110,11 +114,11 @@ def test_a_diagnosis_without_held_out_runs_claims_nothing_of_them(phases: int, h
     drive = {} if phases == 1 else {"phases": [{"duration": "40 s"}, {"speed": "0 mph", "duration": "20 s"}]}
     folder = write(here / "fitted", measured=[FITTED], drive=drive)
     table(folder / "a.csv", list(SENSORS), rate=0.3)
-    found = tf.study(folder).diagnose(largest=1, looks=1)
-    assert math.isnan(found.null.held_out_p)
-    found.save(here / "out")
+    result = tf.study(folder).diagnose(largest=1, looks=1)
+    assert math.isnan(result.null.held_out_p)
+    result.save(here / "out")
     record = json.loads((here / "out/verdict.json").read_text(encoding="utf-8"))
     assert record["gap"]["after"]["held_out_rms_K"] is None
-    assert {one["held_out_p"] for one in record["sets"] if "held_out_p" in one} == {None}
-    assert found.verdict != "no gap"
+    assert {item["held_out_p"] for item in record["sets"] if "held_out_p" in item} == {None}
+    assert result.verdict != "no gap"
     assert "No run is held out" in " ".join(record["summary"])
