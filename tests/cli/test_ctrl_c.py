@@ -224,7 +224,7 @@ def test_a_comparison_goes_on(here: Path) -> None:
     done = interrupted(*command, at="tyrefem.reports.comparison:pictures:1", folder=here)
     lines = done.err.splitlines()
     assert done.code == 130
-    assert lines[0].endswith("; 2 are taken up from an interrupted comparison")
+    assert lines[0].endswith("; 2 are reused from an interrupted comparison")
     assert lines[1:] == ["tyrefem: interrupted; 45 finished simulations are kept; the same command resumes from there"]
     assert main([*command, "--quiet"]) == 0
     assert not (here / "out/.progress").exists()

@@ -80,7 +80,7 @@ def test_an_interrupted_comparison_goes_on(
     # The drive itself is run again, for its mesh and operators.
     assert counted.made == ["base_run", *["full_run"] * (count - 5)]
     assert messages == [
-        "15 simulations: 1 drive as driven; 14 with one uncertain input changed; 4 are taken up from an interrupted "
+        "15 simulations: 1 drive as driven; 14 with one uncertain input changed; 4 are reused from an interrupted "
         "comparison"
     ]
     pd.testing.assert_frame_equal(again.table, whole.table)

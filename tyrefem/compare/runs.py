@@ -186,7 +186,7 @@ class Runs:
         # The unchanged drives are run again for their meshes, unless all runs are kept.
         kept = len(self.computed) or sum(self._is_kept(key) for key in changed)
         if kept:
-            parts.append(f"{kept} are taken up from an interrupted comparison")
+            parts.append(f"{kept} are reused from an interrupted comparison")
         return f"{len(self.studies)} simulations: {'; '.join(parts)}"
 
     @property
