@@ -205,7 +205,13 @@ def bias_meridian(
     solution = _solved(
         misses,
         starts,
-        lambda x: rim.diameter / 2 < x[0] < crown and -1.55 < x[1] < rim.taper and (unknown < 3 or 0.3 < x[2] < 1.2),
+        lambda x: (
+            rim.diameter / 2 < x[0] < crown
+            and -1.55 < x[1] < rim.taper
+            and (unknown < 3 or 0.3 < x[2] < 1.2)
+            # Flatter crowns have a hollow in the middle.
+            and float(line(x).membrane.curvature(crown)) > 0.3 / crown
+        ),
     )
     if solution is None:
         raise _impossible(half_width, rim)

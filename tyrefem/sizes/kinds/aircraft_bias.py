@@ -12,7 +12,7 @@ from tyrefem.sizes.drawn import Drawn, length, section_data, table, thickness
 from tyrefem.sizes.meridian import bias_meridian
 from tyrefem.sizes.rules import Rules
 
-BEAD_FILL = 0.37
+BEAD_FILL = 0.5
 ESTIMATE = "estimate: ordinary practice"
 
 
@@ -60,9 +60,9 @@ def draw(size: TyreSize, rule: Rules) -> Drawn:
     bundle = float((area / BEAD_FILL) ** 0.5)
     bead_width = rule(
         "bead_width",
-        bundle + 0.25 * carcass,
+        bundle,
         "mm",
-        f"estimate: a square bundle, {BEAD_FILL:.0%} wire, and turned-up plies, between plies inside and outside of it",
+        f"estimate: a square bundle, {BEAD_FILL:.0%} wire, between plies inside and outside of it",
         3e-3,
     )
     bead_height = rule(
@@ -72,7 +72,7 @@ def draw(size: TyreSize, rule: Rules) -> Drawn:
         "estimate: 1.9 bundles from the seat (8PR of Clark & Dodge 1980: 0.785 in)",
         5e-3,
     )
-    chafer = rule("chafer_gauge", 6e-3, "mm", "estimate (Clark & Dodge 1980, table H1: 0.25 in)", 1.5e-3)
+    chafer = rule("chafer_gauge", 3e-3, "mm", "estimate: rubber between the plies and the flange", 1.5e-3)
     turn_up = rule(
         "turn_up_height",
         0.35 * (crown - rim.diameter / 2),

@@ -11,7 +11,7 @@ from tyrefem.sizes.drawn import Drawn
 from tyrefem.sizes.radial import Belt, Radial
 from tyrefem.sizes.rules import Rules
 
-BEAD_FILL = 0.37
+BEAD_FILL = 0.5
 ESTIMATE = "estimate: ordinary practice"
 #: How many times the rated pressure the plies hold, and the strength of their cords over a metre, N/m (estimates).
 SAFETY, PLY_STRENGTH, BELT_STRENGTH = 4.0, 780 * 300.0, 900 * 600.0
@@ -68,7 +68,7 @@ def draw(size: TyreSize, rule: Rules) -> Drawn:
         "estimate: what a belt's layer has left beyond its cushion, sidewall rubber as well",
         2e-4,
     )
-    rule("chafer_gauge", 4e-3, "mm", f"{ESTIMATE}: rim strip at the bead", 1.2e-3)
+    rule("chafer_gauge", 3e-3, "mm", f"{ESTIMATE}: rim strip at the bead", 1.2e-3)
     area = bead_wire_area(rule, outer / 2 - tread - 8e-3, rim.diameter, pressure)
     bead = rule(
         "bead_height",

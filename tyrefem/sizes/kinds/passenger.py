@@ -11,7 +11,7 @@ from tyrefem.sizes.rules import Rules
 
 #: Series -> measuring rim over nominal width, up to that series.
 RIM_SHARES = ((0.44, 0.90), (0.49, 0.85), (0.59, 0.80), (0.74, 0.75), (1.0, 0.70))
-BEAD_FILL = 0.14
+BEAD_FILL = 0.3
 ESTIMATE = "estimate: ordinary practice"
 
 

@@ -9,7 +9,7 @@ from tyrefem.sizes.radial import Belt, Radial
 from tyrefem.sizes.road import check_rim_diameter, design_width, measuring_rim, rated, road_rim
 from tyrefem.sizes.rules import Rules
 
-BEAD_FILL = 0.25
+BEAD_FILL = 0.5
 STANDARD = "ETRTO/ISO 4209-1 (from memory)"
 ESTIMATE = "estimate: ordinary practice"
 
@@ -26,7 +26,7 @@ def draw(size: TyreSize, rule: Rules) -> Drawn:
         diameter,
         rim_width,
         12.7e-3,
-        8e-3,
+        12e-3,
         0.2617993878,
         f"15 deg drop-centre rim, flange height 12.7 mm, {STANDARD}; estimate: rounding",
     )
@@ -75,7 +75,7 @@ def draw(size: TyreSize, rule: Rules) -> Drawn:
         "estimate: what a belt's layer has left beyond its cushion, sidewall rubber as well",
         2e-4,
     )
-    rule("chafer_gauge", 5e-3, "mm", f"{ESTIMATE}: rim strip at the bead", 1.2e-3)
+    rule("chafer_gauge", 3.5e-3, "mm", f"{ESTIMATE}: rim strip at the bead", 1.2e-3)
     area = bead_wire_area(rule, outer / 2 - tread - 15e-3, diameter, pressure)
     bead = rule(
         "bead_height",
