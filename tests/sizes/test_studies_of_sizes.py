@@ -9,7 +9,7 @@ import pytest
 import tyrefem as tf
 from tyrefem.api import Study
 from tyrefem.errors import InputError
-from tyrefem.inputs.changes import all_changed
+from tyrefem.inputs.changes import all_changed, value_at
 from tyrefem.variants.task import bundle
 
 pytestmark = pytest.mark.fast
@@ -56,6 +56,15 @@ def test_dotted_names_reach_the_rules(sized: Study) -> None:
     stiffer = sized.replace({"materials.belt-1.cords.modulus": "180 GPa"})
     assert stiffer.materials["belt-1"].cords.modulus == 1.8e11
     assert stiffer.materials["belt-1"].cords.angle_radius == sized.materials["belt-1"].cords.angle_radius
+
+
+def test_numbers_of_the_rules_can_be_varied_by_factors(sized: Study) -> None:
+    assert value_at(sized.data, "section.crown_radius") == "700 mm"
+    assert value_at(sized.data, "section.parameters.tread_gauge") == "8.3 mm"
+    assert value_at(sized.data, "section.size") == "205/60R15"
+    assert value_at(sized.data, "materials.belt-1.cords.modulus") == "150 GPa"
+    thin = sized.replace({"section.tread_gauge": "4.15 mm"})
+    assert sized.scaled("section.tread_gauge", 0.5).section == thin.section
 
 
 def test_another_size_takes_its_own_cards(sized: Study) -> None:

@@ -10,7 +10,7 @@ from tyrefem import library
 from tyrefem.errors import InputError, nearest
 from tyrefem.inputs.drive_table import EXCLUSIVE_KEYS
 from tyrefem.quantity import written
-from tyrefem.sizes import completed_materials, is_size
+from tyrefem.sizes import completed_materials, is_size, with_numbers
 
 #: Tables whose text value names a card: a change of a value below it overrides the card's value.
 _REFERENCES = {"section": "section", "materials.*": "material"}
@@ -143,7 +143,9 @@ def value_at(data: Mapping[str, Any], key: str, near: Any = None) -> Any:
     for depth, part in enumerate(parts):
         reference = (depth == 1 and parts[0] == "section") or (depth == 2 and parts[0] == "materials")
         if reference:
-            place, _, _ = library.load("section" if depth == 1 else "material", place, near)
+            sized = depth == 1 and library.of_size("section", place, near)
+            card, _, _ = library.load("section" if depth == 1 else "material", place, near)
+            place = with_numbers(place, card) if sized else card
         if isinstance(place, list):
             place = place[_index(place, part, key)]
         elif isinstance(place, Mapping) and part in place:

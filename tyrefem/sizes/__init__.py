@@ -5,7 +5,7 @@ Knows no meshes and no studies: it gives the plain data of a section's file and 
 
 from tyrefem.sizes.designation import TyreSize, looks_like_size, parse_size
 from tyrefem.sizes.drawn import Drawn
-from tyrefem.sizes.section import completed_materials, draw_size, drawn_of, is_size, section_of_size
+from tyrefem.sizes.section import completed_materials, draw_size, drawn_of, is_size, section_of_size, with_numbers
 
 __all__ = [
     "Drawn",
@@ -17,4 +17,5 @@ __all__ = [
     "looks_like_size",
     "parse_size",
     "section_of_size",
+    "with_numbers",
 ]

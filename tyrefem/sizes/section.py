@@ -82,6 +82,19 @@ def section_of_size(reference: Mapping[str, Any] | str) -> tuple[dict[str, Any],
     return dict(drawn.data), over
 
 
+def with_numbers(section: object, data: Mapping[str, Any]) -> dict[str, Any]:
+    """The file of a size, ``data``, with its size and all numbers of its rules among the parameters.
+
+    >>> with_numbers("205/60R15", {"parameters": {}})["parameters"]["rim_width"]
+    '6 in'
+    """
+    assert isinstance(section, Mapping | str)
+    drawn = drawn_of(section)
+    numbers = {number.name: number.text for number in drawn.rules}
+    beside = {"size": drawn.size.text, "rim_width": numbers["rim_width"]}
+    return {**data, **beside, "parameters": {**numbers, **data["parameters"]}}
+
+
 def completed_materials(section: object, materials: Mapping[str, Any]) -> dict[str, Any]:
     """A study's ``[materials]``, with the cards of its section's size where it names none.
 
