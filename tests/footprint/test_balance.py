@@ -8,6 +8,7 @@ from footprint_bodies import half_torus
 
 from tyrefem.errors import InputError
 from tyrefem.mechanics.footprint.contact import Pressing
+from tyrefem.mechanics.footprint.directions import SearchedDirections
 from tyrefem.mechanics.footprint.example_tyre import PlainTyre, pressurised, stress_free
 from tyrefem.mechanics.footprint.harmonic_balance import Balance
 from tyrefem.mechanics.footprint.harmonics import Harmonics
@@ -91,6 +92,47 @@ def test_balance_under_a_load(tyre: Pressing) -> None:
     assert footprint.load == pytest.approx(600.0, rel=1e-3)
     assert footprint.deflection > tyre.at_load(600.0, 12).deflection
     assert np.isfinite(StrainHarmonics(footprint).amplitudes).all()
+
+
+def test_balances_are_those_of_exact_newton_steps(tyre: Pressing) -> None:
+    """Numbers of this solver before it kept directions, rates and short tangents: the way must not alter the end."""
+    balance = Balance(tyre, 12, tolerance=1e-7)
+    at_deflection, at_load = balance.at_deflection(0.012), balance.at_load(1000.0)
+    assert at_deflection.load == pytest.approx(1394.5054469, rel=1e-6)
+    assert at_deflection.work == pytest.approx(6.4258098408, rel=1e-6)
+    assert at_deflection.area == pytest.approx(0.0080601363466, rel=1e-6)
+    assert at_deflection.rolling_radius == pytest.approx(0.31523842578, rel=1e-6)
+    assert at_load.deflection == pytest.approx(0.00944257174, rel=1e-6)
+    assert at_load.area == pytest.approx(0.0068355106879, rel=1e-6)
+    assert at_load.stiffness == pytest.approx(154168.03, rel=1e-5)
+
+
+def test_searched_directions_solve_what_they_span() -> None:
+    """H J s = s for the directions of the last block; H stays symmetric and positive with an older block."""
+    rng = np.random.default_rng(4)
+    size, shape = 24, (2, 12)
+    weights = np.repeat([2.0, 1.0], 12)  # work counts n = 0 twice
+    root = rng.normal(size=(size, size))
+    stiffness = root @ root.T + size * np.eye(size)  # of the work; forces are those over the weights
+    values, vectors = np.linalg.eigh(stiffness)
+    searched = SearchedDirections()
+    for part, factor in ((slice(0, 4), 1.1), (slice(3, 9), 1.0)):
+        moved = vectors[:, part].T / np.sqrt(values[part])[:, None]
+        bent = factor * moved @ stiffness / weights
+        searched.add(
+            [s.reshape(shape) for s in moved.astype(np.float32)],
+            [y.reshape(shape) for y in bent.astype(np.float32)],
+            [1.0] * len(moved),
+        )
+
+    def corrected(force: np.ndarray) -> np.ndarray:
+        return searched.corrected(force.reshape(shape), lambda right: right * weights.reshape(shape) / 30).ravel()
+
+    for s in moved:
+        assert corrected(stiffness @ s / weights) == pytest.approx(s, abs=1e-5 * np.abs(s).max())
+    matrix = np.stack([corrected(row / weights) for row in np.eye(size)])
+    assert matrix == pytest.approx(matrix.T, abs=1e-5 * np.abs(matrix).max())
+    assert np.linalg.eigvalsh((matrix + matrix.T) / 2).min() > 0
 
 
 def test_out_of_reach_says_how_far_it_got(tyre: Pressing) -> None:

@@ -16,6 +16,8 @@ from tyrefem.mechanics.footprint.example_tyre import PlainTyre
 from tyrefem.mechanics.footprint.footprint import Footprint
 from tyrefem.mechanics.footprint.harmonic_balance import Balance
 from tyrefem.mechanics.footprint.nonlinear import NonlinearForces
+from tyrefem.mechanics.solid.compounds import Compound
+from tyrefem.mechanics.solid.finite_law import BodyLaw
 from tyrefem.mechanics.solid.inflation import Inflation, inflate
 
 COARSE = 18e-3
@@ -63,6 +65,29 @@ def test_the_product_is_the_derivative_of_the_forces(pressing: Pressing, with_la
     w = motion(chosen, 5, 1e-6, 2)
     share = np.array([2.0, 1, 1, 1, 1, 1])[:, None]
     assert (share * w * product).sum() == pytest.approx((share * v * outside.at(u).product(w)).sum(), rel=1e-9)
+
+
+def test_stress_and_tangent_by_vectors_are_those_of_the_tensors(bias: Inflation) -> None:
+    """Yeoh's compound directly, and by the spatial tensors of any compound, which a vanishing c01 asks for."""
+    law = bias.state.law
+    assert isinstance(law, BodyLaw)
+
+    def with_c01(c01: float) -> BodyLaw:
+        parts = {
+            name: replace(part, compound=Compound(5e5, c01, c20=-4e4, c30=2e4, bulk=5e7))
+            for name, part in law.parts.items()
+        }
+        return replace(law, parts=parts)
+
+    e, q = bias.body.rings.radii.shape
+    gradient = 0.1 * np.random.default_rng(5).normal(size=(e, 9, q, 4))
+    direct, general = (with_c01(c01).response(gradient) for c01 in (0.0, 1e-290))
+    for name in ("stress", "tangent", "volume"):
+        expected = getattr(general, name)
+        assert getattr(direct, name) == pytest.approx(expected, abs=1e-11 * np.abs(expected).max())
+    short = with_c01(0.0).response(gradient, np.float32)
+    assert short.tangent.dtype == np.float32
+    assert short.tangent == pytest.approx(direct.tangent, abs=1e-6 * np.abs(direct.tangent).max())
 
 
 def test_without_motion_the_product_is_the_linear_stiffness(pressing: Pressing) -> None:

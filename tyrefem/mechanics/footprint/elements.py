@@ -139,28 +139,23 @@ class WheelAngles:
         return value * self.shares, slope * self.shares
 
     def at_nodes(self, amplitudes: Array) -> tuple[Array, Array]:
-        """(n_nodes, m, 3) displacement and its derivative by the angle, of amplitudes (highest + 1, n_dofs)."""
-        u = np.asarray(amplitudes).reshape(self.highest + 1, -1, COMPONENTS)
-        samples = []
-        for waves in self.waves:
-            here = np.empty((u.shape[1], len(self.angles), COMPONENTS))
-            for c in range(COMPONENTS):
-                here[..., c] = u[..., c].T @ waves[c].T
-            samples.append(here)
-        return samples[0], samples[1]
+        """(3, n_nodes, m) displacement and its derivative by the angle, of amplitudes (highest + 1, n_dofs)."""
+        u = np.asarray(amplitudes).reshape(self.highest + 1, -1, COMPONENTS).transpose(2, 1, 0)
+        value, slope = (np.ascontiguousarray(u) @ waves.transpose(0, 2, 1) for waves in self.waves)
+        return value, slope
 
-    def from_nodes(self, value: Array, slope: Array) -> Array:
+    def from_nodes(self, value: Array, slope: Array | None = None) -> Array:
         """(highest + 1, n_dofs) forces on the amplitudes from forces on `at_nodes`; its adjoint."""
-        forces = np.empty((self.highest + 1, len(value), COMPONENTS))
-        for c in range(COMPONENTS):
-            forces[..., c] = (value[..., c] @ self._to_amplitudes[0][c] + slope[..., c] @ self._to_amplitudes[1][c]).T
-        return forces.reshape(self.highest + 1, -1)
+        forces = value @ self._to_amplitudes[0]
+        if slope is not None:
+            forces += slope @ self._to_amplitudes[1]
+        return np.ascontiguousarray(forces.transpose(2, 1, 0)).reshape(self.highest + 1, -1)
 
     @functools.cached_property
     def _derivatives(self) -> tuple[Array, Array]:
-        """Shape functions differentiated by r and z and divided by r: (e, 3 q, 9); divided by r only (e, q, 9)."""
+        """Shape functions differentiated by r and z (e, 2 q, 9); divided by r (e, q, 9)."""
         over_r = self.elements.values / self.elements.radii[..., None]
-        return np.concatenate([*self.elements.gradients, over_r], axis=1), over_r
+        return np.concatenate(list(self.elements.gradients), axis=1), over_r
 
     @functools.cached_property
     def _sums(self) -> Any:
@@ -172,26 +167,27 @@ class WheelAngles:
         return sp.csr_matrix((np.ones(len(nodes)), place), shape=(self.elements.n_nodes, len(nodes)))
 
     def gradient(self, amplitudes: Array) -> Array:
-        """(e, q, m, 9) displacement gradient H, component 3 k + i of (r, z, t)."""
+        """(e, 9, q, m) displacement gradient H, component 3 k + i of (r, z, t)."""
         value, slope = self.at_nodes(amplitudes)
         nodes, (by, over_r) = self.elements.element_nodes, self._derivatives
-        e, m = len(nodes), len(self.angles)
-        parts = (by @ value[nodes].reshape(e, 9, -1)).reshape(e, 3, -1, m, 3)
-        turned = (over_r @ slope[nodes].reshape(e, 9, -1)).reshape(e, -1, m, 3)
-        gradient = np.empty((*turned.shape, 3))
-        gradient[..., 0], gradient[..., 1], gradient[..., 2] = parts[:, 0], parts[:, 1], turned
-        gradient[..., 0, 2] -= parts[:, 2, ..., 2]
-        gradient[..., 2, 2] += parts[:, 2, ..., 0]
-        return gradient.reshape(*turned.shape[:3], 9)
+        slope[0] -= value[2]
+        slope[2] += value[0]
+        e, m, q = len(nodes), len(self.angles), over_r.shape[1]
+        gradient = np.empty((e, COMPONENTS, COMPONENTS * q, m))
+        for k in range(COMPONENTS):
+            np.matmul(by, value[k][nodes], out=gradient[:, k, : 2 * q])
+            np.matmul(over_r, slope[k][nodes], out=gradient[:, k, 2 * q :])
+        return gradient.reshape(e, 9, q, m)
 
     def forces(self, stress: Array) -> Array:
-        """(highest + 1, n_dofs) forces, N per radian, of a stress (e, q, m, 9) times r dA; adjoint to `gradient`."""
-        e, q, m, _ = stress.shape
-        p, (by, over_r) = stress.reshape(e, q, m, 3, 3), self._derivatives
-        parts = np.zeros((e, 3, q, m, 3))
-        parts[:, 0], parts[:, 1] = p[..., 0], p[..., 1]
-        parts[:, 2, ..., 0], parts[:, 2, ..., 2] = p[..., 2, 2], -p[..., 0, 2]
-        value = by.transpose(0, 2, 1) @ parts.reshape(e, 3 * q, -1)
-        slope = over_r.transpose(0, 2, 1) @ np.ascontiguousarray(p[..., 2]).reshape(e, q, -1)
-        value, slope = (self._sums @ part.reshape(9 * e, -1) for part in (value, slope))
-        return self.from_nodes(value.reshape(-1, m, 3), slope.reshape(-1, m, 3))
+        """(highest + 1, n_dofs) forces, N per radian, of a stress (e, 9, q, m) times r dA; adjoint to `gradient`."""
+        e, _, q, m = stress.shape
+        p, (by, over_r) = stress.reshape(e, COMPONENTS, COMPONENTS * q, m), self._derivatives
+        value, slope = np.empty((2, COMPONENTS, self.elements.n_nodes, m))
+        by, over_r = by.transpose(0, 2, 1), over_r.transpose(0, 2, 1)
+        for k in range(COMPONENTS):
+            value[k] = self._sums @ (by @ p[:, k, : 2 * q]).reshape(9 * e, m)
+            slope[k] = self._sums @ (over_r @ p[:, k, 2 * q :]).reshape(9 * e, m)
+        value[0] += slope[2]
+        value[2] -= slope[0]
+        return self.from_nodes(value, slope)

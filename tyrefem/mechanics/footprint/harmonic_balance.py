@@ -8,7 +8,7 @@ from dataclasses import dataclass, field, replace
 from tyrefem.errors import InputError
 from tyrefem.mechanics.footprint.contact import Pressing
 from tyrefem.mechanics.footprint.footprint import Footprint
-from tyrefem.mechanics.footprint.large_motion import BEFORE_RIM, DeflectedState, LargeMotion
+from tyrefem.mechanics.footprint.large_motion import BEFORE_RIM, STIFFNESS, DeflectedState, LargeMotion
 from tyrefem.mechanics.solid.finite_law import FiniteLaw
 
 #: Numbers of harmonics: the load steps use the first, the others refine the last step.
@@ -80,19 +80,31 @@ class Balance:
             raise InputError("give exactly one of 'deflection' and 'load'")
         self.pressing.check_harmonics(self.harmonics)
         ladder = (*(n for n in LADDER if n < self.harmonics), self.harmonics)
-        moment, footprint = self._load_steps(deflection, load, ladder[0]), None
+        moment = self._load_steps(deflection, load, ladder[0])
+        before: Footprint | None = None
+        footprint: Footprint | None = None
         for count in ladder:
             start = self.motion.refined(moment, count)
-            balanced = self.motion.balance(start, moment.deflection, self.tolerance, load)
-            if balanced is None:
-                raise self._no_balance_error(moment, deflection, load, f" with {count} harmonics")
-            moment, before, footprint = balanced, footprint, self.motion.footprint(balanced)
-            if before is not None:
-                footprint = footprint.compared(before)
-                if footprint.error <= tolerance:
-                    break
+            moment = self._balanced(start, max(self.tolerance, ON_THE_WAY), deflection, load)
+            before, footprint = footprint, self.motion.footprint(moment)
+            if before is not None and footprint.compared(before).error <= tolerance:
+                break
+        if self.tolerance < ON_THE_WAY:
+            moment = self._balanced(moment, self.tolerance, deflection, load)
+            footprint = self.motion.footprint(moment)
+        if before is not None:
+            footprint = footprint.compared(before)
         assert footprint is not None
-        return replace(footprint, stiffness=self.motion.stiffness(moment))
+        return replace(footprint, stiffness=self.motion.stiffness(moment, min(STIFFNESS, 5 * self.tolerance)))
+
+    def _balanced(
+        self, start: DeflectedState, tolerance: float, deflection: float | None, load: float | None
+    ) -> DeflectedState:
+        """The balance from a nearby one with the same harmonics; raises `InputError` without one."""
+        balanced = self.motion.balance(start, start.deflection, tolerance, load)
+        if balanced is None:
+            raise self._no_balance_error(start, deflection, load, f" with {start.harmonics} harmonics")
+        return balanced
 
     def _load_steps(self, deflection: float | None, load: float | None, harmonics: int) -> DeflectedState:
         """Load steps from the free tyre to near a deflection or a load; the motion limits their size."""

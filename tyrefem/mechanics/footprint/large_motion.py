@@ -9,6 +9,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from tyrefem.mechanics.footprint.contact import Pressing
+from tyrefem.mechanics.footprint.directions import SearchedDirections
 from tyrefem.mechanics.footprint.footprint import Footprint
 from tyrefem.mechanics.footprint.grid import ContactGrid
 from tyrefem.mechanics.footprint.newton import LinearFactors, NewtonStep, Touching, newton_step
@@ -23,10 +24,14 @@ AHEAD, CORRECTION, HOPELESS = 0.25, 0.5, 30.0
 ALIKE = 0.02
 #: Newton steps, and the number of them with negative stiffness after which the balance fails.
 STEPS, UNSTABLE = 12, 2
+#: After a Newton step the next one is smaller by more than this factor: a loose balance ends one step earlier.
+NEXT = 10.0
 #: Below this last change, changes of the contact set are allowed.
 LOOSE = 5e-3
-#: Relative residual of conjugate gradients: of a Newton step, for a change of deflection, and for the stiffness.
-INNER, BORDER, STIFFNESS = 0.05, 0.02, 0.001
+#: Accuracy of conjugate gradients: residual of a Newton step; energy for a change of deflection and for the stiffness.
+INNER, BORDER, STIFFNESS = 0.05, 0.02, 3e-3
+#: Residual that ends conjugate gradients, in the energy's norm, over the tolerance.
+ENERGY = 4.0
 #: The angles of possible contact are those of the deflection times this factor.
 WIDER = 1.6
 #: Largest deflection over that at which the crown meets the rim.
@@ -36,13 +41,14 @@ BEFORE_RIM = 0.999
 @dataclass(frozen=True, eq=False)
 class DeflectedState:
     """Amplitudes ``motion`` (harmonics + 1, n_dofs), m, and contact forces (k,) on a grid, N, at a deflection, m; the
-    load of the whole tyre, N."""
+    load of the whole tyre, N; ``rate``: motion and forces per metre of further deflection, None: not computed."""
 
     deflection: float
     motion: Array
     grid: ContactGrid
     forces: Array
     load: float = 0.0
+    rate: tuple[Array, Array] | None = None
 
     @property
     def harmonics(self) -> int:
@@ -65,6 +71,7 @@ class LargeMotion:
     law: FiniteLaw | None = None
     before_rim: float = BEFORE_RIM
     _forces: dict[int, NonlinearForces] = field(default_factory=dict, init=False, repr=False)
+    _searched: SearchedDirections = field(default_factory=SearchedDirections, init=False, repr=False)
 
     @functools.cached_property
     def factors(self) -> LinearFactors:
@@ -101,14 +108,23 @@ class LargeMotion:
         """The same motion and pressure with another number of harmonics."""
         if moment.harmonics == harmonics:
             return moment
-        motion = np.zeros((harmonics + 1, moment.motion.shape[1]))
-        count = min(len(motion), len(moment.motion))
-        motion[:count] = moment.motion[:count]
         old, grid = moment.grid, self._grid(harmonics, moment.deflection)
-        per_area = (moment.forces / (np.repeat(old.sides, len(old.tread.nodes)) * old.areas)).reshape(old.n_angles, -1)
-        pressure = np.stack([np.interp(grid.angles, old.angles, values, right=0.0) for values in per_area.T], axis=1)
-        forces = pressure.ravel() * np.repeat(grid.sides, len(grid.tread.nodes)) * grid.areas
-        return replace(moment, motion=motion, grid=grid, forces=forces)
+
+        def padded(motion: Array) -> Array:
+            fitted = np.zeros((harmonics + 1, motion.shape[1]))
+            count = min(len(fitted), len(motion))
+            fitted[:count] = motion[:count]
+            return fitted
+
+        def spread(forces: Array) -> Array:
+            per_area = (forces / (np.repeat(old.sides, len(old.tread.nodes)) * old.areas)).reshape(old.n_angles, -1)
+            pressure = [np.interp(grid.angles, old.angles, values, right=0.0) for values in per_area.T]
+            return np.asarray(
+                np.stack(pressure, axis=1).ravel() * np.repeat(grid.sides, len(grid.tread.nodes)) * grid.areas
+            )
+
+        rate = None if moment.rate is None else (padded(moment.rate[0]), spread(moment.rate[1]))
+        return replace(moment, motion=padded(moment.motion), grid=grid, forces=spread(moment.forces), rate=rate)
 
     def balance(
         self, start: DeflectedState, deflection: float, tolerance: float, load: float | None = None
@@ -124,23 +140,25 @@ class LargeMotion:
         outside = self.nonlinear(start.harmonics)
         u, forces = start.motion, start.forces
         closed: Flags | None = None
-        rate: NewtonStep | None = None
+        rate = start.rate
         tangent: Tangent | None = None
         unstable, change = 0, np.inf
         for count in range(STEPS):
-            tangent = replace(tangent, forces=outside.forces(u)) if tangent and change <= ALIKE else outside.at(u)
+            tangent = (
+                replace(tangent, forces=outside.forces(u)) if tangent and change <= ALIKE else outside.at(u, np.float32)
+            )
             gaps, normal_components, touching = self._road(replace(start, motion=u, deflection=deflection))
-            enough = tolerance**2 * self.factors.work(tangent.forces, u)
+            enough = (ENERGY * tolerance) ** 2 * self.factors.work(tangent.forces, u)
             if closed is None:
                 closed = touching.closed(gaps, forces, forces > 0)
-            step = newton_step(touching, closed, tangent, gaps, INNER, enough)
+            step = newton_step(touching, closed, tangent, gaps, INNER, enough, self._searched)
             change = self._gradient_change(outside, step)
             if count == 0 and change > AHEAD:
                 reduced_step = AHEAD / change * (deflection - start.deflection)
                 gaps = gaps + normal_components * (deflection - start.deflection - reduced_step)
                 deflection = start.deflection + reduced_step
                 closed = touching.closed(gaps, forces, forces > 0)
-                step = newton_step(touching, closed, tangent, gaps, INNER, enough)
+                step = newton_step(touching, closed, tangent, gaps, INNER, enough, self._searched)
                 change = self._gradient_change(outside, step)
             unstable += not step.stable
             if not change < HOPELESS or unstable > UNSTABLE:
@@ -150,18 +168,23 @@ class LargeMotion:
             before, closed = closed, touching.closed(gaps - touching.into(step.motion), step.forces, closed)
             now = self._sides * float(normal_components @ forces)
             last = share * float(np.abs(step.motion).max()) / max(float(np.abs(u).max()), 1e-300)
-            done = last <= tolerance and share == 1 and step.stable
+            done = last <= (tolerance if tolerance <= LOOSE else NEXT * tolerance) and share == 1 and step.stable
             done &= tolerance > LOOSE or bool((closed == before).all())
             if load is not None:
-                rate = rate or self._rate(touching, before, tangent, normal_components, BORDER)
-                slope = self._sides * float(normal_components @ rate.forces)
+                if rate is None:
+                    moved = self._rate(touching, before, tangent, normal_components, BORDER)
+                    rate = moved.motion, moved.forces
+                pushed = np.where(before, rate[1], 0.0)
+                slope = self._sides * float(normal_components @ pushed)
                 if not slope > 0:
                     return None
                 done &= abs(load - now) <= tolerance * load
                 more, now = (load - now) / slope, load
-                deflection, u, forces = deflection + more, u + more * rate.motion, forces + more * rate.forces
+                deflection, u, forces = deflection + more, u + more * rate[0], forces + more * pushed
             if done:
-                return replace(start, deflection=deflection, motion=u, forces=np.maximum(forces, 0.0), load=now)
+                return replace(
+                    start, deflection=deflection, motion=u, forces=np.maximum(forces, 0.0), load=now, rate=rate
+                )
         return None
 
     @staticmethod
@@ -176,13 +199,19 @@ class LargeMotion:
         gaps, normals = pressing.gaps(grid, displacements, pressing.reach - moment.deflection)
         return gaps, pressing.road.normal @ normals, Touching(self.factors, grid, grid.along(normals))
 
-    @staticmethod
     def _rate(
-        touching: Touching, closed: Flags, tangent: Tangent, normal_components: Array, accuracy: float
+        self,
+        touching: Touching,
+        closed: Flags,
+        tangent: Tangent,
+        normal_components: Array,
+        accuracy: float,
+        start: Array | None = None,
     ) -> NewtonStep:
-        """Motion and forces per metre of deflection with a constant contact set."""
+        """Motion and forces per metre of deflection with a constant contact set; ``accuracy`` of its energy."""
+        tangent = replace(tangent, forces=np.zeros_like(tangent.forces))
         return newton_step(
-            touching, closed, replace(tangent, forces=np.zeros_like(tangent.forces)), -normal_components, accuracy
+            touching, closed, tangent, -normal_components, 0.0, 0.0, self._searched, start, settled=accuracy
         )
 
     def footprint(self, moment: DeflectedState) -> Footprint:
@@ -193,9 +222,11 @@ class LargeMotion:
             moment.grid.displacements(moment.motion), gaps, balanced=moment.motion,
         )  # fmt: skip
 
-    def stiffness(self, moment: DeflectedState) -> float:
-        """d load / d deflection of a balance, N/m, with a constant contact set."""
+    def stiffness(self, moment: DeflectedState, accuracy: float = STIFFNESS) -> float:
+        """d load / d deflection of a balance, N/m, with a constant contact set: the energy of the rate of motion, to
+        ``accuracy``."""
         _, normal_components, touching = self._road(moment)
-        tangent = self.nonlinear(moment.harmonics).at(moment.motion)
-        rate = self._rate(touching, moment.forces > 0, tangent, normal_components, STIFFNESS)
-        return self._sides * float(normal_components @ rate.forces)
+        tangent = self.nonlinear(moment.harmonics).at(moment.motion, np.float32)
+        start = None if moment.rate is None else moment.rate[0]
+        rate = self._rate(touching, moment.forces > 0, tangent, normal_components, accuracy, start).motion
+        return self._sides * float(np.pi * self.factors.work(tangent.product(rate), rate))

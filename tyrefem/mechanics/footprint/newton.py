@@ -12,6 +12,7 @@ from numpy.typing import NDArray
 from tyrefem.errors import InputError
 from tyrefem.mechanics.footprint.complementarity import contact_forces
 from tyrefem.mechanics.footprint.contact import Pressing
+from tyrefem.mechanics.footprint.directions import SearchedDirections
 from tyrefem.mechanics.footprint.grid import ContactGrid
 from tyrefem.mechanics.footprint.harmonics import SYMMETRIC
 from tyrefem.mechanics.footprint.nonlinear import Tangent
@@ -21,6 +22,8 @@ Indices = NDArray[np.int64]
 Flags = NDArray[np.bool_]
 #: Largest number of conjugate-gradient iterations in a step.
 ITERATIONS = 400
+#: Iterations over which a rate of motion must have settled.
+DELAY = 8
 
 
 @dataclass(frozen=True, eq=False)
@@ -125,6 +128,15 @@ class Touching:
         flat = forces @ self.rows[points]
         return np.asarray(flat.reshape(-1, len(self.factors.tread)) * self.grid.shares[:, None])
 
+    def all_displacements(self, loads: Array) -> Array:
+        """(k, highest + 1, n_dofs) displacements, m, under loads (k, (highest + 1) c m) on the tread's amplitudes."""
+        highest, size = self.grid.harmonics, len(self.factors.tread)
+        split = loads.reshape(len(loads), highest + 1, size) * self.grid.shares[:, None]
+        displacements = np.zeros((len(loads), highest + 1, self.factors.pressing.harmonics.elements.n_dofs))
+        for n in range(highest + 1):
+            displacements[:, n, self.factors.free] = split[:, n] @ self.factors.under_tread(n).T
+        return displacements
+
     def loads(self, forces: Array, points: Any = slice(None)) -> Array:
         """(highest + 1, n_dofs) N per radian of unit forces into the road."""
         loads = np.zeros((self.grid.harmonics + 1, self.factors.pressing.harmonics.elements.n_dofs))
@@ -157,16 +169,22 @@ def newton_step(
     distance: Array,
     accuracy: float,
     least: float = 0.0,
+    searched: SearchedDirections | None = None,
+    start: Array | None = None,
+    settled: float = 0.0,
 ) -> NewtonStep:
     """J x + B' f = -g with B x = w on the closed points: conjugate gradients on the motions with B x = 0.
 
-    The preconditioner is the linear tyre with the same points fixed: K^-1 - K^-1 B' (B K^-1 B')^-1 B K^-1.
+    The preconditioner is the linear tyre with the same points fixed, K^-1 - K^-1 B' (B K^-1 B')^-1 B K^-1, corrected
+    by the directions of earlier steps.
 
     Parameters
     ----------
     touching : points and linear tyre. touched : (k,) contact set.
     tangent : g, internal forces, and J, their derivative. distance : w, gaps (k,) to close, m.
     accuracy : relative residual in the preconditioner's norm. least : the same for its work, J.
+    searched : directions of earlier steps; those of this step are added. start : a guess of the step, m.
+    settled : with g = 0, relative change of the energy x J x over the last `DELAY` iterations that ends the step.
     """
     from scipy.linalg import cho_factor, cho_solve
 
@@ -174,6 +192,8 @@ def newton_step(
     factors, held = touching.factors, touching.factors.pressing.harmonics.held
     factor = cho_factor(touching.compliance[np.ix_(closed, closed)]) if len(closed) else None
     total = np.zeros(len(closed))
+    searched = SearchedDirections() if searched is None else searched
+    rows = touching.rows[closed]
 
     def solve(right: Array) -> Array:
         return right if factor is None else np.asarray(cho_solve(factor, right))
@@ -182,25 +202,55 @@ def newton_step(
         forces[:, held] = 0.0
         return forces
 
-    def preconditioned(residual: Array) -> tuple[Array, Array]:
-        motion = factors.solve(residual)
-        forces = solve(touching.into(motion, closed))
-        total[:] += forces
-        return residual - touching.loads(forces, closed), motion - touching.displacements(forces, closed)
+    def into(motion: Array) -> Array:
+        return np.asarray(rows @ motion[:, factors.tread].ravel())
 
-    x = touching.displacements(solve(distance[closed]), closed)
+    def projected(motions: Any) -> Any:
+        at_tread = motions[:, :, factors.tread].reshape(len(motions), -1)
+        forces = solve((at_tread @ rows.T).T).T
+        return motions - touching.all_displacements(forces @ rows).astype(motions.dtype)
+
+    def preconditioned(residual: Array) -> tuple[Array, Array]:
+        forces = np.zeros(len(closed))
+
+        def linear(right: Array) -> Array:
+            motion = factors.solve(right)
+            forces[:] = solve(into(motion))
+            return motion - touching.displacements(forces, closed)
+
+        motion = searched.corrected(residual, linear)
+        total[:] += forces
+        return residual - touching.loads(forces, closed), motion
+
+    searched.refine(touching.grid.harmonics)
+    searched.project(projected)
+    x = np.zeros(tangent.forces.shape) if start is None else start
+    x = x + touching.displacements(solve(distance[closed] - into(x)), closed)
     residual, change = preconditioned(free(-tangent.forces - tangent.product(x)))
     size = first = factors.work(residual, change)
     along, stable, count = change, True, 0
+    moved: list[Any] = []
+    forced: list[Any] = []
+    energies: list[float] = []
+    drops: list[float] = []
+    left = factors.work(x, tangent.product(x)) if settled else 0.0
     while stable and count < ITERATIONS and size > max(accuracy**2 * first, least):
+        if settled and count >= DELAY and sum(drops[-DELAY:]) <= settled * (left - sum(drops)):
+            break
         bent = free(tangent.product(along))
         energy = factors.work(along, bent)
         stable, count = energy > 0, count + 1
         if stable:
             x = x + size / energy * along
+            drops.append(size**2 / energy)
+            scale = 1 / np.sqrt(energy)
+            moved.append((scale * along).astype(np.float32))
+            forced.append((scale * bent).astype(np.float32))
+            energies.append(1.0)
             residual, change = preconditioned(residual - size / energy * bent)
             size, before = factors.work(residual, change), size
             along = change + size / before * along
+    searched.add(moved, forced, energies)
     forces = np.zeros(len(touching.rows))
     forces[closed] = total
     return NewtonStep(x, forces, count, stable)

@@ -62,17 +62,20 @@ class NonlinearForces:
         """Forces of the inflated state: the reaction of the rim."""
         static = NonlinearForces(self.harmonics, 0, self.law)
         forces = np.zeros((self.highest + 1, self.harmonics.elements.n_dofs))
-        forces[0] = static._total(forces[:1], False)[0][0]
+        forces[0] = static._total(forces[:1], None)[0][0]
         return forces
 
-    def at(self, amplitudes: Array) -> Tangent:
-        """Forces of displacement amplitudes (highest + 1, n_dofs), N per radian, and their derivative."""
-        forces, response, wall = self._total(amplitudes, True)
+    def at(self, amplitudes: Array, precision: type = float) -> Tangent:
+        """Forces of displacement amplitudes (highest + 1, n_dofs), N per radian, and their derivative.
+
+        ``precision`` : of the derivative, ``numpy.float32`` for a search that need not be exact.
+        """
+        forces, response, wall = self._total(amplitudes, precision)
         return Tangent(self, forces - self._inflated_forces, response, wall)
 
     def forces(self, amplitudes: Array) -> Array:
         """(highest + 1, n_dofs) forces without derivative, N per radian."""
-        return np.asarray(self._total(amplitudes, False)[0] - self._inflated_forces)
+        return np.asarray(self._total(amplitudes, None)[0] - self._inflated_forces)
 
     def __call__(self, amplitudes: Array) -> Array:
         """(highest + 1, n_dofs) forces, N per radian, minus the linear ones of `Harmonics`."""
@@ -81,7 +84,7 @@ class NonlinearForces:
         forces[:, self.harmonics.held] = 0.0
         return np.asarray(forces)
 
-    def _total(self, amplitudes: Array, tangent: bool) -> tuple[Array, StressResponse, tuple[Array, Array]]:
+    def _total(self, amplitudes: Array, tangent: type | None) -> tuple[Array, StressResponse, tuple[Array, Array]]:
         response = self._law.response(self.round.gradient(amplitudes), tangent)
         wall = self._vectors(amplitudes)
         if self.harmonics.state.pressure:
@@ -124,7 +127,7 @@ class NonlinearForces:
         nodes, values, along, *_ = self._wall
         used, inverse = np.unique(nodes, return_inverse=True)
         cut = np.asarray(amplitudes).reshape(self.highest + 1, -1, COMPONENTS)[:, used]
-        value, slope = self.round.at_nodes(cut)
+        value, slope = (np.moveaxis(part, 0, -1) for part in self.round.at_nodes(cut))
         inverse = inverse.reshape(nodes.shape)
         shape = (*values.shape[:2], -1, 3)
         flat = value[inverse].reshape(len(nodes), 9, -1)
@@ -143,12 +146,12 @@ class NonlinearForces:
         weighted = (self.harmonics.state.pressure * weights)[..., None, None] * vectors
         local = values.transpose(0, 2, 1) @ weighted.reshape(f, q, -1)
         value = (sums @ local.reshape(9 * f, -1)).reshape(-1, m, 3)
-        return self.round.from_nodes(value, np.zeros_like(value))
+        return self.round.from_nodes(np.ascontiguousarray(np.moveaxis(value, -1, 0)))
 
     def second_strains(self, amplitudes: Array) -> Array:
         """(highest + 1, 6, e, q) amplitudes of H'H/2, the nonlinear part of Green's strain; shears doubled."""
         h = self.round.gradient(amplitudes)
-        h = h.reshape(*h.shape[:3], 3, 3)
+        h = np.moveaxis(h, 1, -1).reshape(len(h), *h.shape[2:], 3, 3)
         (cos, _, sin), _ = self.round.waves
         rows = []
         for i, j in ((0, 0), (1, 1), (2, 2), (0, 1), (0, 2), (1, 2)):

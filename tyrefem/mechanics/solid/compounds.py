@@ -63,7 +63,7 @@ class Compound:
     def stress(self, deformation: Array) -> Array:
         """Isochoric Kirchhoff stress tau = 2 W_1 dev b + 2 W_2 dev(I1 b - b^2), Pa, (6, ...); b at unit volume."""
         first, second, b, b2 = _invariants(deformation)
-        slope, _ = self._slopes(first)
+        slope, _ = self.slopes(first)
         g1, g2 = _directions(first, second, b, b2)
         return np.asarray(2 * (slope * g1 + self.c01 * g2))
 
@@ -76,7 +76,7 @@ class Compound:
         """
         first, second, b, b2 = _invariants(deformation)
         shape = first.shape
-        slope, curvature = self._slopes(first)
+        slope, curvature = self.slopes(first)
         unit, fourth = over(UNIT, shape), over(SYMMETRIC_UNIT, shape)
         ones = outer(unit, unit)
         six = components(b)
@@ -92,7 +92,8 @@ class Compound:
             tangent = tangent + self.c01 * (h2 + 4 / 9 * second * ones + 2 / 3 * second * fourth)
         return np.asarray(4 * tangent)
 
-    def _slopes(self, first: Array) -> tuple[Array, Array]:
+    def slopes(self, first: Array) -> tuple[Array, Array]:
+        """First and second derivative of W_iso by I1, Pa."""
         x = first - 3
         return self.c10 + 2 * self.c20 * x + 3 * self.c30 * x**2, 2 * self.c20 + 6 * self.c30 * x
 

@@ -98,16 +98,25 @@ class CordLayer:
             total = total + (curvature - slope / x) / x**2 / 2 * outer(dyad, dyad)
         return total
 
+    def slopes(self, stretch: Array) -> tuple[Array, Array]:
+        """W' and W'' of cords all in one direction, Pa."""
+        strain = np.asarray(stretch - 1)
+        curvature = np.where(strain >= 0, 1.0, self.compression) * self.stiffness
+        slope = curvature * strain
+        if np.isfinite(self.limit):
+            part = np.where(strain < 0, -slope / self.limit, 0.0)
+            slope, curvature = slope / (1 + part), curvature / (1 + part) ** 2
+        return slope, curvature
+
     def _law(self, stretch: Array) -> tuple[Array, Array, Array]:
         """W, W' and W'' of cords all in one direction, J/m3 and Pa."""
         strain = np.asarray(stretch - 1)
         stiffness = np.where(strain >= 0, 1.0, self.compression) * self.stiffness
-        energy, slope, curvature = stiffness * strain**2 / 2, stiffness * strain, stiffness * np.ones_like(strain)
+        energy = stiffness * strain**2 / 2
         if np.isfinite(self.limit):
-            part = np.where(strain < 0, -slope / self.limit, 0.0)
-            levelled = np.where(part > 1e-6, 2 * (part - np.log1p(part)) / np.maximum(part, 1e-6) ** 2, 1.0)
-            energy, slope, curvature = energy * levelled, slope / (1 + part), curvature / (1 + part) ** 2
-        return energy, slope, curvature
+            part = np.where(strain < 0, -stiffness * strain / self.limit, 0.0)
+            energy = energy * np.where(part > 1e-6, 2 * (part - np.log1p(part)) / np.maximum(part, 1e-6) ** 2, 1.0)
+        return energy, *self.slopes(stretch)
 
     def _deformed_directions(self, deformation: Array) -> tuple[Array, Array]:
         first, second = (np.einsum("ij...,j...->i...", deformation, d) for d in self.directions)

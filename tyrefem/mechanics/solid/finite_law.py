@@ -11,8 +11,9 @@ from typing import Protocol
 import numpy as np
 from numpy.typing import NDArray
 
-from tyrefem.mechanics.solid.compounds import determinant
-from tyrefem.mechanics.solid.elements import SYMMETRIC_UNIT, UNIT, Indices, Rings, over
+from tyrefem.mechanics.solid.compounds import Compound, determinant
+from tyrefem.mechanics.solid.cords import CordLayer
+from tyrefem.mechanics.solid.elements import Indices, Rings
 from tyrefem.mechanics.solid.parts import RegionMaterial
 
 Array = NDArray[np.float64]
@@ -20,10 +21,8 @@ Array = NDArray[np.float64]
 PLACE = np.array([[0, 3, 4], [3, 1, 5], [4, 5, 2]])
 #: The six components.
 PAIRS = ((0, 0), (1, 1), (2, 2), (0, 1), (0, 2), (1, 2))
-#: Contribution of a pressure p J 1 to the spatial tangent, over p J.
-PRESSED = np.multiply.outer(UNIT, UNIT) - 2 * SYMMETRIC_UNIT
-#: Number of angles computed together; it limits the memory of intermediate tensors.
-CHUNK = 8
+#: Number of points computed together: their tensors stay in the processor's cache.
+TOGETHER = 4000
 
 
 @dataclass(frozen=True, eq=False)
@@ -34,8 +33,8 @@ class StressResponse:
 
     Parameters
     ----------
-    stress : (e, q, m, 9) P, N m per radian; components 3 k + i with direction k of the force and i of the gradient.
-    tangent : (e, q, m, 9, 9) A. volume : (e, q, m, 9) V. Empty if only the stress is computed.
+    stress : (e, 9, q, m) P, N m per radian; components 3 k + i with direction k of the force and i of the gradient.
+    tangent : (e, 9, 9, q m) A. volume : (e, 9, q, m) V. Empty if only the stress is computed.
     functions : (e, q, 3) 1, xi, eta. bulk : (e, 3, 3) bulk stiffness between them.
     """
 
@@ -46,26 +45,31 @@ class StressResponse:
     bulk: Array
 
     def product(self, change: Array) -> Array:
-        """(e, q, m, 9) change of the stress due to a change (e, q, m, 9) of the gradient."""
-        product = (self.tangent @ change[..., None])[..., 0]
-        dilatation = np.einsum("eqmc,eqmc->eqm", self.volume, change)
+        """(e, 9, q, m) change of the stress due to a change (e, 9, q, m) of the gradient."""
+        short = change.reshape(len(change), 9, -1).astype(self.tangent.dtype, copy=False)
+        product = np.einsum("eijp,ejp->eip", self.tangent, short).reshape(change.shape)
+        dilatation = np.einsum("ecqm,ecqm->eqm", self.volume, change)
         moments = self.bulk @ (self.functions.transpose(0, 2, 1) @ dilatation)
-        product += self.volume * (self.functions @ moments)[..., None]
-        return np.asarray(product)
+        return np.asarray(product + self.volume * (self.functions @ moments)[:, None])
 
 
 class FiniteLaw(Protocol):
     """Stress as a function of displacement gradients from a pre-stressed configuration."""
 
-    def response(self, gradient: Array, tangent: bool = True) -> StressResponse:
-        """`StressResponse` at displacement gradients H (e, q, m, 9) from the pre-stressed configuration."""
+    def response(self, gradient: Array, tangent: type | None = float) -> StressResponse:
+        """`StressResponse` at displacement gradients H (e, 9, q, m) from the pre-stressed configuration.
+
+        ``tangent`` : precision of the tangent; None: only the stress.
+        """
         ...  # pragma: no cover
 
 
 def _deformation(gradient: Array) -> Array:
     """(3, 3, e, q, m) F = 1 + H."""
-    f = np.moveaxis(gradient.reshape(*gradient.shape[:3], 3, 3), (-2, -1), (0, 1))
-    return np.asarray(f + over(np.eye(3), gradient.shape[:3]))
+    e, _, q, m = gradient.shape
+    f = np.ascontiguousarray(gradient.transpose(1, 0, 2, 3))
+    f[[0, 4, 8]] += 1
+    return f.reshape(3, 3, e, q, m)
 
 
 def _inverse(f: Array) -> Array:
@@ -82,6 +86,11 @@ def _inverse(f: Array) -> Array:
 def _points(tensors: Array, axes: int) -> Array:
     """Tensors with their one or two component axes moved from the front to the end, contiguous."""
     return np.ascontiguousarray(np.moveaxis(tensors, range(axes), range(-axes, 0)))
+
+
+def _components(tensors: Array) -> Array:
+    """(e, 9, q, m) of components (e, q, m, 9)."""
+    return np.ascontiguousarray(np.moveaxis(tensors, -1, 1))
 
 
 def _tangent(strains: Array, stiffness: Array, initial: Array) -> Array:
@@ -112,8 +121,9 @@ class GreenLaw:
         functions, weights = self.rings.linear_functions, self.rings.weights
         return np.einsum("eqa,eq,eqb->eab", functions, weights * self.bulk_modulus, functions)
 
-    def response(self, gradient: Array, tangent: bool = True) -> StressResponse:
+    def response(self, gradient: Array, tangent: type | None = float) -> StressResponse:
         """P = F S, A = F c F' + 1 S."""
+        points = (*gradient.shape[:1], *gradient.shape[2:])
         f, functions, weights = _deformation(gradient), self.rings.linear_functions, self.rings.weights[..., None]
         green = [(f[:, i] * f[:, j]).sum(axis=0) - (i == j) for i, j in PAIRS]
         strain = np.stack([part / (2 if i == j else 1) for part, (i, j) in zip(green, PAIRS, strict=True)])
@@ -121,18 +131,20 @@ class GreenLaw:
         moments = self._bulk @ (functions.transpose(0, 2, 1) @ (weights * strain[:3].sum(axis=0)))
         six[:3] += functions @ moments
         s = _points(six[PLACE] * weights, 2)
-        stress = (_points(f, 2) @ s).reshape(gradient.shape)
-        if not tangent:
+        stress = _components((_points(f, 2) @ s).reshape(*points, 9))
+        if tangent is None:
             return StressResponse(stress, np.zeros(0), np.zeros(0), functions, self._bulk)
-        strains = np.zeros((*gradient.shape[:3], 6, 9))
+        strains = np.zeros((*points, 6, 9))
         for row, (i, j) in enumerate(PAIRS):
             for k in range(3):
                 strains[..., row, 3 * k + j] += f[k, i]
                 if i != j:
                     strains[..., row, 3 * k + i] += f[k, j]
         c = _points(self.modulus * self.rings.weights, 2)[:, :, None]
-        volume = _points(f * weights, 2).reshape(gradient.shape)
-        return StressResponse(stress, _tangent(strains, c, s), volume, functions, self._bulk)
+        volume = (f * weights).reshape(9, *points).transpose(1, 0, 2, 3)
+        matrix = _tangent(strains, c, s).transpose(0, 3, 4, 1, 2)
+        matrix = np.ascontiguousarray(matrix, dtype=tangent).reshape(len(gradient), 9, 9, -1)
+        return StressResponse(stress, matrix, np.ascontiguousarray(volume), functions, self._bulk)
 
 
 @dataclass(frozen=True, eq=False)
@@ -156,61 +168,157 @@ class BodyLaw:
     def _bulk(self) -> Array:
         return np.asarray(self.bulk_modulus[:, None, None] * np.eye(3))
 
-    @functools.cached_property
-    def _parts(self) -> dict[str, RegionMaterial]:
-        """The parts with a further axis in the values at the points, for the angles."""
-        parts = {}
+    def response(self, gradient: Array, tangent: type | None = float) -> StressResponse:
+        """P and A of every region, in groups of elements."""
+        e, _, q, m = gradient.shape
+        stress = np.empty(gradient.shape)
+        tangents = np.empty((e, 9, 9, q * m), dtype=tangent) if tangent else np.empty(0)
+        volume = np.empty(gradient.shape if tangent else 0)
+        count = max(1, TOGETHER // (q * m))
         for name, part in self.parts.items():
-            layers = [
-                replace(
-                    layer,
-                    angle=layer.angle[..., None],
-                    meridian=layer.meridian[..., None],
-                    stiffness=layer.stiffness[..., None],
+            members = np.asarray(self.members[name])
+            for k in range(0, len(members), count):
+                inside = slice(k, k + count)
+                some = members[inside]
+                group = _Group(self.rings, some, self.bulk_modulus[some], self.inflated[:, :, some], gradient[some])
+                cords = tuple(
+                    replace(
+                        layer,
+                        angle=layer.angle[inside],
+                        meridian=layer.meridian[:, inside],
+                        stiffness=layer.stiffness[inside][..., None],
+                    )
+                    for layer in part.cords
                 )
-                for layer in part.cords
-            ]
-            parts[name] = replace(part, cords=tuple(layers))
-        return parts
+                made = group.response(part.compound, cords, tangent)
+                stress[some] = made[0].transpose(1, 0, 2, 3)
+                if tangent:
+                    tangents[some] = made[1].reshape(9, 9, len(some), q * m).transpose(2, 0, 1, 3)
+                    volume[some] = made[2].transpose(1, 0, 2, 3)
+        return StressResponse(stress, tangents, volume, self.rings.linear_functions, self._bulk)
 
-    def _sum_of_parts(self, deformation: Array, method: str, axes: tuple[int, ...]) -> Array:
-        gathered = np.empty((*axes, *deformation.shape[2:]))
-        for name, part in self._parts.items():
-            members = self.members[name]
-            part_deformation = deformation[:, :, members]
-            total = getattr(part.compound, method)(part_deformation)
-            for layer in part.cords:
-                total = total + getattr(layer, method)(part_deformation)
-            gathered[..., members, :, :] = total
-        return gathered
 
-    def response(self, gradient: Array, tangent: bool = True) -> StressResponse:
-        """P = tau F^-T, A = F^-1 (J c + tau 1) F^-T."""
-        rings, size = self.rings, gradient.shape[2]
-        functions, weights = rings.linear_functions, rings.weights[..., None]
-        stress, volume = np.empty(gradient.shape), np.empty(gradient.shape)
-        tangents = np.empty((*gradient.shape, 9) if tangent else 0)
-        for k in range(0, size, CHUNK):
-            part = slice(k, k + CHUNK)
-            f = _deformation(gradient[:, :, part])
-            inverse = _points(_inverse(f), 2)
-            total_deformation = np.einsum("ijeqm,jkeq->ikeqm", f, self.inflated)
-            j = determinant(total_deformation)
-            p = functions @ (self._bulk @ (functions.transpose(0, 2, 1) @ (weights * (j - 1))))
-            six = self._sum_of_parts(total_deformation, "stress", (6,))
-            six[:3] += p * j
-            tau = _points(six[PLACE] * weights, 2)
-            shape = (*inverse.shape[:3], 9)
-            stress[:, :, part] = (tau @ inverse.swapaxes(-1, -2)).reshape(shape)
-            if tangent:
-                volume[:, :, part] = (inverse.swapaxes(-1, -2) * (j * weights)[..., None, None]).reshape(shape)
-                c = self._sum_of_parts(total_deformation, "tangent", (6, 6)) + p * j * over(PRESSED, p.shape)
-                strains = np.zeros((*shape[:3], 6, 9))
-                for row, (i, m) in enumerate(PAIRS):
-                    strains[..., row, 3 * i : 3 * i + 3] += inverse[..., m]
-                    if i != m:
-                        strains[..., row, 3 * m : 3 * m + 3] += inverse[..., i]
-                tangents[:, :, part] = _tangent(
-                    strains, _points(c * weights, 2), inverse @ tau @ inverse.swapaxes(-1, -2)
-                )
-        return StressResponse(stress, tangents, volume, functions, self._bulk)
+@dataclass(frozen=True, eq=False)
+class _Group:
+    """Elements of one region at all angles: F = 1 + H, F_0 (3, 3, e, q), and the elements' numbers and bulk moduli."""
+
+    rings: Rings
+    members: Indices
+    bulk: Array
+    inflated: Array
+    gradient: Array
+
+    def response(
+        self, compound: Compound, cords: tuple[CordLayer, ...], precision: type | None
+    ) -> tuple[Array, Array, Array]:
+        """P (9, e, q, m), A (9, 9, e, q, m) and V (9, e, q, m), times r dA.
+
+        With Q = F^-T, G = F_0 F_0', I1 = F : F G, c = J^(-2/3), s = 2 c W_1 and a = F d (d: cord after inflation):
+
+        P = s F G + h Q + sum W'/l a d,  h = p J - s I1/3,
+        A = s 1 G - 2/3 s (F G Q + Q F G) + (p J + 2/9 s I1) Q Q + 4 c^2 W_11 q q - h Q Q (crossed)
+            + sum [(W'' - W'/l)/l^2 a d a d + W'/l 1 d d],  q = F G - I1/3 Q.
+        """
+        f = _deformation(self.gradient)
+        functions = self.rings.linear_functions[self.members]
+        weights = self.rings.weights[self.members][..., None]
+        q_inverse = np.ascontiguousarray(_inverse(f).swapaxes(0, 1))
+        volume = determinant(f) * determinant(self.inflated)[..., None]
+        moments = functions.transpose(0, 2, 1) @ (weights * (volume - 1))
+        pressed = (functions @ (self.bulk[:, None, None] * moments)) * volume * weights
+        metric = np.einsum("ik...,jk...->ij...", self.inflated, self.inflated)[..., None]
+        along = [(i, j) for i in range(3) for j in range(3) if metric[i, j].any()]
+        if compound.c01:
+            stress, matrix = self._general(f, q_inverse, compound, weights, precision)
+            h, fg, s, curved, first = pressed, None, None, None, None
+            stress += h * q_inverse
+        else:
+            fg = np.zeros_like(f)
+            for i, j in along:
+                fg[:, j] += f[:, i] * metric[i, j]
+            first = (f * fg).sum(axis=(0, 1))
+            c = np.cbrt(volume) ** -2
+            slope, curvature = compound.slopes(c * first)
+            s, curved = 2 * c * slope * weights, 4 * c**2 * curvature * weights
+            h = pressed - s * first / 3
+            stress = s * fg + h * q_inverse
+            matrix = None
+        directions = []
+        for layer in cords:
+            for before in layer.directions:
+                d = np.einsum("ij...,j...->i...", self.inflated, before)[..., None]
+                a = f[:, 0] * d[0] + f[:, 1] * d[1] + f[:, 2] * d[2]
+                length = np.sqrt((a * a).sum(axis=0))
+                slope, curvature = layer.slopes(length)
+                pull = slope / length * weights / 2
+                stress += (pull * a)[:, None] * d
+                directions.append((a, d, pull, (curvature * weights / 2 - pull) / length**2))
+        if precision is None:
+            return stress.reshape(9, *volume.shape), np.zeros(0), np.zeros(0)
+        matrix = self._matrix(q_inverse, fg, s, first, curved, pressed, h, precision, matrix)
+        diagonal = {(i, j): s * metric[i, j] for i, j in along} if s is not None else {}
+        for a, d, pull, stiff in directions:
+            dyad = (a[:, None] * d).astype(precision)
+            stiffened = (stiff * dyad).astype(precision)
+            matrix += stiffened[:, :, None, None] * dyad
+            for i in range(3):
+                for j in range(3):
+                    diagonal[i, j] = diagonal.get((i, j), 0.0) + pull * (d[i] * d[j])
+        for (i, j), value in diagonal.items():
+            for k in range(3):
+                matrix[k, i, k, j] += value
+        shape = (9, *volume.shape)
+        return stress.reshape(shape), matrix.reshape(9, *shape), (volume * weights * q_inverse).reshape(shape)
+
+    @staticmethod
+    def _matrix(
+        q_inverse: Array,
+        fg: Array | None,
+        s: Array | None,
+        first: Array | None,
+        curved: Array | None,
+        pressed: Array,
+        h: Array,
+        precision: type,
+        matrix: Array | None,
+    ) -> Array:
+        """The terms of A with F^-T."""
+        q = q_inverse.astype(precision)
+        half, crossed = pressed / 2 * q_inverse, (h * q_inverse).astype(precision)
+        if fg is not None:
+            half += (s * first / 9) * q_inverse - (2 / 3 * s) * fg
+        x = half.astype(precision)
+        matrix = np.zeros((3, 3, *q.shape), dtype=precision) if matrix is None else matrix
+        bent = None
+        if fg is not None and np.any(curved):
+            bent = (fg - first / 3 * q_inverse).astype(precision)
+            curves = (curved * bent).astype(precision)
+        for k in range(3):
+            for i in range(3):
+                row = matrix[k, i]
+                row += x[k, i] * q
+                row += q[k, i] * x
+                row -= q[:, None, i] * crossed[None, k]
+                if bent is not None:
+                    row += curves[k, i] * bent
+        return matrix
+
+    def _general(
+        self, f: Array, q_inverse: Array, compound: Compound, weights: Array, precision: type | None
+    ) -> tuple[Array, Array | None]:
+        """Isochoric P = tau F^-T (3, 3, ...) and A = F^-1 (J c + tau 1) F^-T of any compound."""
+        whole = np.einsum("ijeqm,jkeq->ikeqm", f, self.inflated)
+        tau = compound.stress(whole)[PLACE] * weights
+        stress = np.einsum("ij...,jk...->ik...", tau, q_inverse)
+        if precision is None:
+            return stress, None
+        inverse = _points(q_inverse, 2).swapaxes(-1, -2)
+        strains = np.zeros((*inverse.shape[:3], 6, 9))
+        for row, (i, m) in enumerate(PAIRS):
+            strains[..., row, 3 * i : 3 * i + 3] += inverse[..., m]
+            if i != m:
+                strains[..., row, 3 * m : 3 * m + 3] += inverse[..., i]
+        initial = inverse @ _points(tau, 2) @ inverse.swapaxes(-1, -2)
+        matrix = _tangent(strains, _points(compound.tangent(whole) * weights, 2), initial)
+        matrix = np.ascontiguousarray(np.moveaxis(matrix, (-2, -1), (0, 1)), dtype=precision)
+        return stress, matrix.reshape(3, 3, 3, 3, *weights.shape[:2], -1)
