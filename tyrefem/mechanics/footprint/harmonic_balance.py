@@ -81,20 +81,17 @@ class Balance:
         self.pressing.check_harmonics(self.harmonics)
         ladder = (*(n for n in LADDER if n < self.harmonics), self.harmonics)
         moment = self._load_steps(deflection, load, ladder[0])
-        before: Footprint | None = None
-        footprint: Footprint | None = None
+        passed: list[Footprint] = []
         for count in ladder:
             start = self.motion.refined(moment, count)
             moment = self._balanced(start, max(self.tolerance, ON_THE_WAY), deflection, load)
-            before, footprint = footprint, self.motion.footprint(moment)
-            if before is not None and footprint.compared(before).error <= tolerance:
+            passed.append(self.motion.footprint(moment))
+            if len(passed) > 1 and passed[-1].compared(passed[-2]).error <= tolerance:
                 break
         if self.tolerance < ON_THE_WAY:
             moment = self._balanced(moment, self.tolerance, deflection, load)
-            footprint = self.motion.footprint(moment)
-        if before is not None:
-            footprint = footprint.compared(before)
-        assert footprint is not None
+            passed[-1] = self.motion.footprint(moment)
+        footprint = passed[-1].compared(passed[-2]) if len(passed) > 1 else passed[-1]
         return replace(footprint, stiffness=self.motion.stiffness(moment, min(STIFFNESS, 5 * self.tolerance)))
 
     def _balanced(

@@ -199,6 +199,16 @@ class BodyLaw:
 
 
 @dataclass(frozen=True, eq=False)
+class _FirstInvariant:
+    """A compound without c01: F G (3, 3, e, q, m), I1 = F : F G, s = 2 c W_1 and 4 c^2 W_11 (e, q, m), times r dA."""
+
+    fg: Array
+    first: Array
+    slope: Array
+    curvature: Array
+
+
+@dataclass(frozen=True, eq=False)
 class _Group:
     """Elements of one region at all angles: F = 1 + H, F_0 (3, 3, e, q), and the elements' numbers and bulk moduli."""
 
@@ -228,9 +238,11 @@ class _Group:
         pressed = (functions @ (self.bulk[:, None, None] * moments)) * volume * weights
         metric = np.einsum("ik...,jk...->ij...", self.inflated, self.inflated)[..., None]
         along = [(i, j) for i in range(3) for j in range(3) if metric[i, j].any()]
+        matrix: Array | None = None
+        direct: _FirstInvariant | None = None
         if compound.c01:
+            h = pressed
             stress, matrix = self._general(f, q_inverse, compound, weights, precision)
-            h, fg, s, curved, first = pressed, None, None, None, None
             stress += h * q_inverse
         else:
             fg = np.zeros_like(f)
@@ -239,10 +251,9 @@ class _Group:
             first = (f * fg).sum(axis=(0, 1))
             c = np.cbrt(volume) ** -2
             slope, curvature = compound.slopes(c * first)
-            s, curved = 2 * c * slope * weights, 4 * c**2 * curvature * weights
-            h = pressed - s * first / 3
-            stress = s * fg + h * q_inverse
-            matrix = None
+            direct = _FirstInvariant(fg, first, 2 * c * slope * weights, 4 * c**2 * curvature * weights)
+            h = pressed - direct.slope * first / 3
+            stress = direct.slope * fg + h * q_inverse
         directions = []
         for layer in cords:
             for before in layer.directions:
@@ -255,15 +266,17 @@ class _Group:
                 directions.append((a, d, pull, (curvature * weights / 2 - pull) / length**2))
         if precision is None:
             return stress.reshape(9, *volume.shape), np.zeros(0), np.zeros(0)
-        matrix = self._matrix(q_inverse, fg, s, first, curved, pressed, h, precision, matrix)
-        diagonal = {(i, j): s * metric[i, j] for i, j in along} if s is not None else {}
+        matrix = self._matrix(q_inverse, direct, pressed, h, precision, matrix)
+        diagonal: dict[tuple[int, int], Array] = {}
+        if direct is not None:
+            diagonal = {(i, j): direct.slope * metric[i, j] for i, j in along}
         for a, d, pull, stiff in directions:
             dyad = (a[:, None] * d).astype(precision)
             stiffened = (stiff * dyad).astype(precision)
             matrix += stiffened[:, :, None, None] * dyad
             for i in range(3):
                 for j in range(3):
-                    diagonal[i, j] = diagonal.get((i, j), 0.0) + pull * (d[i] * d[j])
+                    diagonal[i, j] = diagonal.get((i, j), np.zeros(())) + pull * (d[i] * d[j])
         for (i, j), value in diagonal.items():
             for k in range(3):
                 matrix[k, i, k, j] += value
@@ -273,10 +286,7 @@ class _Group:
     @staticmethod
     def _matrix(
         q_inverse: Array,
-        fg: Array | None,
-        s: Array | None,
-        first: Array | None,
-        curved: Array | None,
+        direct: _FirstInvariant | None,
         pressed: Array,
         h: Array,
         precision: type,
@@ -285,14 +295,15 @@ class _Group:
         """The terms of A with F^-T."""
         q = q_inverse.astype(precision)
         half, crossed = pressed / 2 * q_inverse, (h * q_inverse).astype(precision)
-        if fg is not None:
-            half += (s * first / 9) * q_inverse - (2 / 3 * s) * fg
+        bent: Array | None = None
+        curves = np.zeros(())
+        if direct is not None:
+            half += (direct.slope * direct.first / 9) * q_inverse - (2 / 3 * direct.slope) * direct.fg
+            if np.any(direct.curvature):
+                whole = direct.fg - direct.first / 3 * q_inverse
+                bent, curves = whole.astype(precision), (direct.curvature * whole).astype(precision)
         x = half.astype(precision)
         matrix = np.zeros((3, 3, *q.shape), dtype=precision) if matrix is None else matrix
-        bent = None
-        if fg is not None and np.any(curved):
-            bent = (fg - first / 3 * q_inverse).astype(precision)
-            curves = (curved * bent).astype(precision)
         for k in range(3):
             for i in range(3):
                 row = matrix[k, i]

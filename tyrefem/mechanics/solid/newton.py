@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from dataclasses import dataclass, field
+from typing import Any
 
 import numpy as np
 from numpy.typing import NDArray
@@ -17,6 +18,10 @@ Array = NDArray[np.float64]
 ROUND_OFF = 1e-13
 #: After a load step with at most this many evaluations, the next one is twice as large.
 EASY = 12
+#: Part of a Newton step's share by which it must reduce the work along it, or the residual.
+ENOUGH = 0.1
+#: SuperLU for matrices of a symmetric pattern: pivots are taken off the diagonal only where it is small.
+PIVOTS: dict[str, Any] = {"permc_spec": "MMD_AT_PLUS_A", "diag_pivot_thresh": 0.01, "options": {"SymmetricMode": True}}
 
 
 @dataclass(frozen=True)
@@ -28,10 +33,11 @@ class NewtonChoice:
     """
 
     tolerance: float = 1e-8
-    iterations: int = 25
+    iterations: int = 32
     first_step: float = 0.5
     smallest_step: float = 1e-3
     line_search: int = 3
+    largest_change: float = 0.3
 
 
 @dataclass(frozen=True, eq=False)
@@ -63,16 +69,17 @@ def equilibrium(body: Body, pressure: float, choice: NewtonChoice | None = None)
         raise InputError(f"the pressure must be a finite number, not {pressure:g} Pa", field="pressure")
     before = now = np.zeros((2, body.rings.n_nodes))
     reached, last, step = 0.0, 0.0, choice.first_step
+    easy = True
     steps: list[float] = []
     residuals: list[tuple[float, ...]] = []
     while pressure and reached < 1:
         aim = min(1.0, reached + step)
-        guess = now + (now - before) * (aim - reached) / last if last else now
+        guess = now + (now - before) * (aim - reached) / last if last and easy else now
         try:
             try:
                 displacement, history = _newton(body, guess, aim * pressure, choice)
             except _StuckError:
-                if not last:
+                if guess is now:
                     raise
                 displacement, history = _newton(body, now, aim * pressure, choice)
         except _StuckError as stuck:
@@ -87,7 +94,8 @@ def equilibrium(body: Body, pressure: float, choice: NewtonChoice | None = None)
         before, now, last, reached = now, displacement, aim - reached, aim
         steps.append(aim)
         residuals.append(history)
-        step *= 2.0 if len(history) <= EASY else 1.0
+        easy = len(history) <= EASY
+        step *= 2.0 if easy else 1.0
     return Equilibrium(now, pressure, tuple(steps), tuple(residuals))
 
 
@@ -106,7 +114,7 @@ def _newton(body: Body, start: Array, pressure: float, choice: NewtonChoice) -> 
         matrix = body.stiffness(now, pressure)[free][:, free]
         change = np.zeros(now.shape)
         try:
-            change.T.flat[free] = -splu(matrix.tocsc()).solve(residual[free])
+            change.T.flat[free] = -splu(matrix.tocsc(), **PIVOTS).solve(residual[free])
         except RuntimeError:
             raise _StuckError("nothing holds the body: its stiffness is singular") from None
         now, residual = _line_search(body, now, change, residual, pressure, choice)
@@ -119,17 +127,20 @@ def _newton(body: Body, start: Array, pressure: float, choice: NewtonChoice) -> 
 def _line_search(
     body: Body, now: Array, change: Array, residual: Array, pressure: float, choice: NewtonChoice
 ) -> tuple[Array, Array]:
-    """The step along ``change``, halved while it inverts elements or the work along it grows."""
+    """The step along ``change``, shortened to the largest change of a gradient, halved while it inverts elements or the
+    work along it grows."""
     free = body.free
     along = change.T.ravel()[free]
     work, size = abs(along @ residual[free]), np.linalg.norm(residual[free])
-    share, best = 1.0, None
+    gradient = body.deformation(change) - np.eye(3)[..., None, None]
+    share, best = min(1.0, choice.largest_change / max(float(np.abs(gradient).max()), 1e-300)), None
     for _ in range(choice.line_search + 1):
         tried = now + share * change
         if _possible(body, tried):
             left = body.residual(tried, pressure)
             better = abs(along @ left[free])
-            if better <= 0.9 * work or np.linalg.norm(left[free]) <= 0.9 * size:
+            less = 1 - ENOUGH * share
+            if better <= less * work or np.linalg.norm(left[free]) <= less * size:
                 return tried, left
             if best is None or better < best[0]:
                 best = (better, tried, left)
