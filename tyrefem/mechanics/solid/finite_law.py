@@ -293,8 +293,9 @@ class _Group:
         matrix: Array | None,
     ) -> Array:
         """The terms of A with F^-T."""
-        q = q_inverse.astype(precision)
-        half, crossed = pressed / 2 * q_inverse, (h * q_inverse).astype(precision)
+        q: Array = q_inverse.astype(precision)
+        half: Array = pressed / 2 * q_inverse
+        crossed: Array = (h * q_inverse).astype(precision)
         bent: Array | None = None
         curves = np.zeros(())
         if direct is not None:
@@ -302,7 +303,7 @@ class _Group:
             if np.any(direct.curvature):
                 whole = direct.fg - direct.first / 3 * q_inverse
                 bent, curves = whole.astype(precision), (direct.curvature * whole).astype(precision)
-        x = half.astype(precision)
+        x: Array = half.astype(precision)
         matrix = np.zeros((3, 3, *q.shape), dtype=precision) if matrix is None else matrix
         for k in range(3):
             for i in range(3):
