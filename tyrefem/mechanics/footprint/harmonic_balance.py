@@ -100,6 +100,9 @@ class Balance:
         """The balance from a nearby one with the same harmonics; raises `InputError` without one."""
         balanced = self.motion.balance(start, start.deflection, tolerance, load)
         if balanced is None:
+            self.motion.forget()
+            balanced = self.motion.balance(replace(start, rate=None), start.deflection, tolerance, load)
+        if balanced is None:
             raise self._no_balance_error(start, deflection, load, f" with {start.harmonics} harmonics")
         return balanced
 

@@ -41,14 +41,14 @@ BEFORE_RIM = 0.999
 @dataclass(frozen=True, eq=False)
 class DeflectedState:
     """Amplitudes ``motion`` (harmonics + 1, n_dofs), m, and contact forces (k,) on a grid, N, at a deflection, m; the
-    load of the whole tyre, N; ``rate``: motion and forces per metre of further deflection, None: not computed."""
+    load of the whole tyre, N; ``rate``: motion, forces and load per metre of further deflection, None: not computed."""
 
     deflection: float
     motion: Array
     grid: ContactGrid
     forces: Array
     load: float = 0.0
-    rate: tuple[Array, Array] | None = None
+    rate: tuple[Array, Array, float] | None = None
 
     @property
     def harmonics(self) -> int:
@@ -95,6 +95,10 @@ class LargeMotion:
             self._forces[harmonics] = NonlinearForces(self.pressing.harmonics, harmonics, self.law)
         return self._forces[harmonics]
 
+    def forget(self) -> None:
+        """Forget the searched directions of earlier Newton steps."""
+        self._searched.clear()
+
     def _grid(self, harmonics: int, deflection: float) -> ContactGrid:
         return self.pressing.grid(harmonics, min(WIDER * deflection, self.largest_deflection))
 
@@ -123,7 +127,7 @@ class LargeMotion:
                 np.stack(pressure, axis=1).ravel() * np.repeat(grid.sides, len(grid.tread.nodes)) * grid.areas
             )
 
-        rate = None if moment.rate is None else (padded(moment.rate[0]), spread(moment.rate[1]))
+        rate = None if moment.rate is None else (padded(moment.rate[0]), spread(moment.rate[1]), moment.rate[2])
         return replace(moment, motion=padded(moment.motion), grid=grid, forces=spread(moment.forces), rate=rate)
 
     def balance(
@@ -173,9 +177,8 @@ class LargeMotion:
             if load is not None:
                 if rate is None:
                     moved = self._rate(touching, before, tangent, normal_components, BORDER)
-                    rate = moved.motion, moved.forces
-                pushed = np.where(before, rate[1], 0.0)
-                slope = self._sides * float(normal_components @ pushed)
+                    rate = moved.motion, moved.forces, self._sides * float(normal_components @ moved.forces)
+                pushed, slope = np.where(before, rate[1], 0.0), rate[2]
                 if not slope > 0:
                     return None
                 done &= abs(load - now) <= tolerance * load
