@@ -47,6 +47,7 @@ RUNS = (
     f"export nasa-22x5.5-8pr --fmu --workers 1 --duration '60 s' {COARSE}",
     f"press nasa-22x5.5-8pr {COARSE}",
     f"press nasa-22x5.5-8pr --no-pictures --no-vtk --json --camber '1 deg' {COARSE}",
+    f"modes nasa-22x5.5-8pr --highest 1 {COARSE}",
     f"strain nasa-22x5.5-8pr --law arcs --law barrel {COARSE}",
     "rig simulate trtlab",
     "rig identify trtlab",

@@ -32,6 +32,7 @@ COMMANDS = {
     "isolability": ["isolability", "STUDY"],
     "blind": ["blind", "STUDY"],
     "press": ["press", "STUDY"],
+    "modes": ["modes", "STUDY"],
     "strain": ["strain", "STUDY"],
     "mesh": ["show", "mesh", "STUDY"],
     "mesh file": ["show", "mesh", "STUDY", "--out", "tyre.vtu"],

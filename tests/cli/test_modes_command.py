@@ -1,0 +1,53 @@
+"""`tyrefem modes`: files that agree with each other, a picture, and refusals in one line."""
+
+from __future__ import annotations
+
+import csv
+import json
+from collections.abc import Callable
+from pathlib import Path
+
+import pytest
+
+from tyrefem.cli import main
+
+STUDY = "nasa-22x5.5-8pr"
+COARSE = ["--set", "mesh.size=12 mm"]
+
+
+def test_files_and_picture(here: Path, capfd: pytest.CaptureFixture[str]) -> None:
+    line = ["modes", STUDY, "--highest", "2", "--count", "3", "--out", "out", *COARSE]
+    assert main([*line, "--json"]) == 0
+    numbers = json.loads(capfd.readouterr().out)
+    folder = here / "out"
+    assert numbers == json.loads((folder / "modes.json").read_text(encoding="utf-8"))
+    assert [mode["harmonic"] for mode in numbers["modes"]] == [0, 0, 0, 1, 1, 1, 2, 2, 2]
+    with (folder / "modes.csv").open(encoding="utf-8") as lines:
+        rows = list(csv.DictReader(lines))
+    assert [float(row["frequency_Hz"]) for row in rows] == [mode["frequency_Hz"] for mode in numbers["modes"]]
+    for mode in numbers["modes"]:
+        assert mode["radial"] + mode["lateral"] + mode["circumferential"] == pytest.approx(1, rel=1e-9)
+    assert (folder / "modes.png").read_bytes().startswith(b"\x89PNG")
+
+
+def test_words_and_pressure(here: Path, capfd: pytest.CaptureFixture[str]) -> None:
+    frequencies = []
+    for pressure in ("50 psi", "100 psi"):
+        line = ["modes", STUDY, "--highest", "0", "--no-pictures", "--pressure", pressure, "--out", "out", *COARSE]
+        assert main(line) == 0
+        (lateral,) = [row for row in capfd.readouterr().out.splitlines() if " lateral " in row and " Hz " not in row]
+        frequencies.append(float(lateral.split()[1]))
+    assert frequencies[1] > 1.05 * frequencies[0]
+    assert not (here / "out" / "modes.png").exists()
+
+
+@pytest.mark.parametrize(
+    ("arguments", "words"),
+    [
+        (["--pressure", "2.2"], "--pressure: '2.2' has no unit"),
+        (["--pressure", "0 bar"], "--pressure: '0 bar' is out of range: must be more than 0 Pa"),
+        (["--set", "drive.pressure=0 bar"], "drive.pressure: must be more than 0 Pa"),
+    ],
+)
+def test_bad_input_is_one_line(refused: Callable[..., str], arguments: list[str], words: str) -> None:
+    assert words in refused("modes", STUDY, *arguments)

@@ -1,0 +1,109 @@
+"""`tyrefem modes`: natural frequencies of a study's inflated tyre, rim held, without load."""
+
+from __future__ import annotations
+
+import json
+from pathlib import Path
+from typing import TYPE_CHECKING, Annotated
+
+import typer
+
+from tyrefem.cli.common import (
+    CaseOption,
+    ForceOption,
+    JsonOption,
+    QuietOption,
+    SetOption,
+    StudyArgument,
+    print_json,
+    settings,
+    warn,
+)
+from tyrefem.cli.progress import progress
+from tyrefem.errors import InputError
+from tyrefem.output.folder import results_folder
+
+if TYPE_CHECKING:
+    from tyrefem.mechanics.footprint.natural_frequencies import NaturalFrequencies
+
+#: Files that the command writes.
+FILES = ("modes.csv", "modes.json", "modes.png")
+
+
+def modes(
+    study: StudyArgument,
+    highest: Annotated[int, typer.Option(min=0, max=60, help="Highest number of waves round the wheel.")] = 5,
+    count: Annotated[int, typer.Option(min=1, max=40, help="Modes of each number of waves.")] = 2,
+    pressure: Annotated[str | None, typer.Option(help="Gauge pressure, e.g. '2.2 bar'.")] = None,
+    pictures: Annotated[bool, typer.Option(help="Draw the PNG picture.")] = True,
+    out: Annotated[Path | None, typer.Option("--out", help="Folder; default: results/STUDY-modes.")] = None,
+    force: ForceOption = False,
+    quiet: QuietOption = False,
+    as_json: JsonOption = False,
+    changes: SetOption = None,
+    case: CaseOption = None,
+) -> None:
+    """Natural frequencies and modes of the inflated, unloaded tyre that does not roll, with its rim held."""
+    from tyrefem.api import study as load
+    from tyrefem.mechanics.footprint.natural_frequencies import NEEDS, natural_frequencies
+    from tyrefem.output import atomic_folder, jsonable
+    from tyrefem.reports.modes import picture
+
+    given = None if pressure is None else _pressure(pressure)
+    loaded = load(study, settings(changes), case)
+    NEEDS.check(loaded)
+    warn(loaded.warnings)
+    with (
+        results_folder(out or Path("results") / f"{loaded.name}-modes", "modes", FILES, force=force) as folder,
+        progress(f"{loaded.name}: natural frequencies", quiet=quiet or as_json),
+    ):
+        try:
+            result = natural_frequencies(loaded, range(highest + 1), count, pressure=given)
+        except InputError as error:
+            field = "drive.phases.0.pressure" if error.field == "pressure" and given is None else error.field
+            placed = InputError(error.message, field=field, file=error.file or loaded.file)
+            raise error if error.file else loaded.as_written(placed) from None
+        with atomic_folder(folder) as temporary:
+            result.table.to_csv(temporary / "modes.csv", index=False, lineterminator="\n")
+            text = json.dumps(jsonable(result.summary()), indent=1, ensure_ascii=False, allow_nan=False)
+            (temporary / "modes.json").write_text(text + "\n", encoding="utf-8")
+            if pictures:
+                (temporary / "modes.png").write_bytes(picture(result))
+    if as_json:
+        print_json(result.summary())
+        return
+    typer.echo(_words(result))
+    typer.echo(f"results in {folder}")
+
+
+def _pressure(text: str) -> float:
+    from tyrefem.quantity import Unit
+
+    try:
+        return Unit("Pa", gt=0)(text)
+    except InputError as error:
+        raise error.within(field="--pressure") from None
+
+
+def _words(result: NaturalFrequencies) -> str:
+    lines = [
+        result.study.title,
+        f"  inflated to {result.tyre.pressure / 1e3:.1f} kPa, rim held, no load; mass {result.mass:.2f} kg",
+        f"  {'waves':>5} {'Hz':>8}  {'motion of the belt':24} radial  lateral  around",
+    ]
+    for natural in result.modes:
+        shares = natural.shares
+        lines.append(
+            f"  {natural.mode.harmonic:5d} {natural.mode.frequency:8.2f}  {natural.name:24} {shares['radial']:6.0%}"
+            f" {shares['lateral']:8.0%} {shares['circumferential']:7.0%}"
+        )
+    return "\n".join(lines)
+
+
+#: Place among the commands.
+ORDER = 46
+
+
+def register(app: typer.Typer) -> None:
+    """Add the command."""
+    app.command()(modes)
