@@ -45,9 +45,10 @@ def picture(result: NaturalFrequencies) -> bytes:
             moved_z = z + factor * sign * side * lateral
             moved_r = r + factor * sign * radial
             inflated = np.stack([z, r], axis=-1)[corners]
-            axes.add_collection(PolyCollection(inflated, facecolors="0.93", edgecolors="0.85", linewidths=0.3))
+            axes.add_collection(PolyCollection(list(inflated), facecolors="0.93", edgecolors="0.85", linewidths=0.3))
+            moved = np.stack([moved_z, moved_r], axis=-1)[corners]
             image = PolyCollection(
-                np.stack([moved_z, moved_r], axis=-1)[corners], array=sign * around[corners].mean(axis=1) / largest,
+                list(moved), array=sign * around[corners].mean(axis=1) / largest,
                 cmap="coolwarm", edgecolors="0.3", linewidths=0.2,
             )  # fmt: skip
             image.set_clim(-1, 1)
