@@ -10,7 +10,7 @@ from typing import Annotated, Any
 
 import typer
 
-from tyrefem.cli.common import SetOption, settings
+from tyrefem.cli.common import ForceOption, SetOption, settings
 from tyrefem.cli.show import complete_names
 from tyrefem.errors import InputError, nearest
 from tyrefem.interruption import interruption_delayed
@@ -23,13 +23,14 @@ def new(
     kind: Annotated[str, typer.Argument(help="study, section or material.")],
     name: Annotated[str, typer.Argument(help="Name of the new card: letters, digits, . _ -; or a tyre's size.")],
     copy_of: Annotated[str | None, typer.Option("--from", help="Card to copy.", autocompletion=complete_names)] = None,
-    out: Annotated[Path | None, typer.Option("--out", help="Of a size: the file to write.")] = None,
+    out: Annotated[Path | None, typer.Option("--out", help="The file to write, .toml.")] = None,
     rim: Annotated[str | None, typer.Option("--rim", help="Of a size: the rim's width, e.g. '6 in'.")] = None,
     load: Annotated[str | None, typer.Option("--load", help="Of a size: a load that it must carry.")] = None,
     pressure: Annotated[
         str | None, typer.Option("--pressure", help="Of a size: the pressure it carries it at.")
     ] = None,
     changes: SetOption = None,
+    force: ForceOption = False,
 ) -> None:
     """Copy a study, section or material card into this folder under a new name, to be edited.
 
@@ -37,6 +38,7 @@ def new(
     """
     from tyrefem import library
     from tyrefem.output import atomic_path, place_of_output
+    from tyrefem.output.file import results_file
 
     if kind not in DEFAULTS:
         raise InputError(f"no kind '{kind}'{nearest(kind, DEFAULTS)}")
@@ -45,12 +47,10 @@ def new(
     if kind != "material" and copy_of is None and looks_like_size(name):
         from tyrefem.cli.new_size import new_size
 
-        new_size(kind, name, of_size, out)
+        new_size(kind, name, of_size, out, force=force)
         return
-    if of_size or out is not None:
-        raise InputError(
-            "--out, --rim, --load, --pressure and --set go with a tyre's size such as 205/60R15", field="name"
-        )
+    if of_size:
+        raise InputError("--rim, --load, --pressure and --set go with a tyre's size such as 205/60R15", field="name")
     if not re.fullmatch(r"\w[\w.-]*", name) or name.endswith(".toml"):
         raise InputError(
             f"'{name}' is not allowed as a card's name; allowed: letters, digits, . _ -, without '.toml' at the end"
@@ -58,12 +58,15 @@ def new(
     source = library.find(kind, copy_of or DEFAULTS[kind])
     folder = Path(library.FOLDERS[kind])
     target = folder / name / "study.toml" if kind == "study" else folder / f"{name}.toml"
-    if os.path.lexists(target) or (kind == "study" and os.path.lexists(target.parent)):
+    if out is None and (os.path.lexists(target) or (kind == "study" and os.path.lexists(target.parent))):
         raise InputError("the file exists already; nothing was written", file=target)
+    if out is not None and out.is_file() and not force:
+        raise InputError("exists and may have been edited; replace it with --force", file=out, field="--out")
+    target = out or target
     place_of_output(target.parent)
     files = {target: source} | {target.parent / name: source.parent / name for name in _companions(kind, source)}
     first_line, note = _of_the_other_tyre(kind, source)
-    with interruption_delayed():
+    with results_file(target, (".toml",), force=force), interruption_delayed():
         for place, file in files.items():
             with atomic_path(place) as temporary:
                 shutil.copyfile(file, temporary)

@@ -17,7 +17,7 @@ from tyrefem.errors import InputError
 SPEED = "60 km/h"
 
 
-def new_size(kind: str, size: str, numbers: Mapping[str, Any], out: Path | None) -> None:
+def new_size(kind: str, size: str, numbers: Mapping[str, Any], out: Path | None, *, force: bool) -> None:
     """Write the file of a size. ``numbers``: name -> quantity, in place of the rules' own.
 
     Raises
@@ -27,6 +27,7 @@ def new_size(kind: str, size: str, numbers: Mapping[str, Any], out: Path | None)
     from tyrefem import library
     from tyrefem.geometry import load
     from tyrefem.output import atomic_path, place_of_output
+    from tyrefem.output.file import results_file
     from tyrefem.sizes import drawn_of
     from tyrefem.sizes.section import NUMBERS
     from tyrefem.sizes.text import section_text, study_text
@@ -45,15 +46,15 @@ def new_size(kind: str, size: str, numbers: Mapping[str, Any], out: Path | None)
     target = out or (folder / name / "study.toml" if kind == "study" else folder / f"{name}.toml")
     if kind == "study" and target.suffix != ".toml":
         target = target / "study.toml"
-    if target.suffix != ".toml":
-        raise InputError("must be a .toml file", field="--out", file=target)
-    if os.path.lexists(target):
-        raise InputError("exists already; nothing was written", file=target)
+    if out is None and os.path.lexists(target):
+        raise InputError("the file exists already; nothing was written", file=target)
+    if target.is_file() and not force:
+        raise InputError("exists and may have been edited; replace it with --force", file=target, field="--out")
     place_of_output(target.parent)
     options = " ".join(f"--set {key}={shlex.quote(str(value))}" for key, value in numbers.items())
     command = f"tyrefem new {kind} {shlex.quote(size)} {options}".rstrip()
     text = section_text(drawn, command) if kind == "section" else study_text(drawn, reference, SPEED)
-    with atomic_path(target) as temporary:
+    with results_file(target, (".toml",), force=force), atomic_path(target) as temporary:
         temporary.write_text(text, encoding="utf-8")
     for warning in section.warnings:
         typer.echo(f"warning: {warning}", err=True)
