@@ -63,7 +63,9 @@ print(json.dumps({
 
 def run(folder: Path, *arguments: str) -> str:
     """What Python says with the package of a folder."""
-    environment = {**os.environ, "PYTHONPATH": str(folder), "PYTHONDONTWRITEBYTECODE": "1"}
+    # Options for the outer pytest are not for an inner one: a second -q hides the names of tests.
+    environment = {name: value for name, value in os.environ.items() if name != "PYTEST_ADDOPTS"}
+    environment["PYTHONPATH"] = str(folder)
     done = subprocess.run(
         [sys.executable, *arguments], cwd=folder, env=environment, capture_output=True, text=True, check=False,
         timeout=300,

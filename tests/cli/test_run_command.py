@@ -142,7 +142,10 @@ def test_a_folder_that_cannot_be_written(refused: Callable[..., str]) -> None:
         ([NASA, "--set", "drive.speed=20 kg"], "is not a unit of this quantity"),
         ([NASA, "--set", "section=nasa-22x5.5-9pr"], "section: no section named"),
         ([NASA, "--set", "drive.load=1e7 lbf"], "drive"),
-        (["nasa-campaign", "--set", "drive.load=3000 lbf"], "every case of cases.csv sets 'drive.load' itself"),
+        (
+            ["nasa-campaign", "--set", "drive.load=3000 lbf"],
+            "every case of cases.csv sets 'drive.load': change it in that table",
+        ),
     ],
 )
 def test_bad_input_is_refused_in_one_line(refused: Callable[..., str], arguments: list[str], words: str) -> None:

@@ -31,7 +31,7 @@ def test_film(capfd):
     assert films[1] == ("constant", 10460.0)
     assert films[2][1] < films[3][1] == pytest.approx(7042.95 * 1.12838, abs=0.06)
     depth = propagation_depth(0.14 * 3.6 / 50, 0.25, 2e6) * 1e3
-    assert lines[-1].endswith(f"reaches {depth:.4g} mm into the tread")
+    assert lines[-1].endswith(f"penetrates {depth:.4g} mm into the tread")
 
 
 def test_averaging_and_figures(capfd, here):

@@ -201,7 +201,7 @@ def _listed(key: str, values: list[Any]) -> Varied:
 def in_one_unit(values: Sequence[Any]) -> list[Any]:
     """The values as numbers in the unit of the first quantity among them, so that equal values compare equal.
 
-    >>> alike(["10 mph", "4.4704 m/s", "10.0 mph"]), alike(["soft", "8 mm"])
+    >>> in_one_unit(["10 mph", "4.4704 m/s", "10.0 mph"]), in_one_unit(["soft", "8 mm"])
     ([10.0, 10.0, 10.0], ['soft', 8.0])
     """
     amounts = [_AMOUNT.match(value) if isinstance(value, str) else None for value in values]
