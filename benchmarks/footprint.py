@@ -18,7 +18,9 @@ from tyrefem.geometry.meshing import build
 from tyrefem.materials.loss_tangent import OfTemperature
 from tyrefem.mechanics.footprint.contact import Pressing
 from tyrefem.mechanics.footprint.example_tyre import PlainTyre
+from tyrefem.mechanics.footprint.harmonic_balance import Balance
 from tyrefem.mechanics.footprint.loss import RevolutionLoss
+from tyrefem.mechanics.footprint.pressed_tyre import TOLERANCE, mechanical_mesh
 from tyrefem.mechanics.footprint.reference_3d import Hexahedra, angles_near_contact
 from tyrefem.mechanics.footprint.road import Road
 from tyrefem.mechanics.footprint.strain_harmonics import StrainHarmonics
@@ -99,6 +101,29 @@ def against_hexahedra() -> dict[str, float]:
     }
 
 
+def in_large_motion() -> dict[str, float]:
+    """Processor seconds of the passenger at its rated load in large motion, linear, and of the truck's inflation."""
+    tyre = study("passenger-205-55r16")
+    began = time.process_time()
+    inflated = inflate(tyre, mesh=mechanical_mesh(tyre, large=True))
+    middle = time.process_time()
+    linear = Pressing(inflated.state, Road(2.0)).solve(load=4825.0, tolerance=TOLERANCE)
+    touched = time.process_time()
+    balance = Balance(Pressing(inflated.state, Road(2.0)))
+    large = balance.solve(load=4825.0, tolerance=TOLERANCE)
+    ended = time.process_time()
+    truck = inflate(study("truck-295-80r22.5"))
+    return {
+        "inflation": middle - began,
+        "linear": touched - middle,
+        "large": ended - touched,
+        "truck": time.process_time() - ended,
+        "truck_steps": float(len(truck.equilibrium.steps)),
+        "softer": large.deflection / linear.deflection,
+        "harmonics": large.harmonics,
+    }
+
+
 def main() -> None:
     """Run the tables."""
     parser = argparse.ArgumentParser(description=__doc__.split("\n")[0])
@@ -126,7 +151,15 @@ def main() -> None:
         f"\nhexahedra with {solid['unknowns']:.0f} unknowns: {solid['hexahedra_s']:.1f} s, by harmonics "
         f"{solid['harmonics_s']:.2f} s, {ratio:.0f} times less; load {solid['load_ratio']:.4f} of theirs"
     )
+    large = in_large_motion()
+    print(
+        f"\npassenger in large motion, {large['harmonics']:.0f} harmonics: inflation {large['inflation']:.1f} s of "
+        f"processor time, footprint {large['large']:.1f} s, {large['large'] / large['linear']:.0f} times the linear "
+        f"one, deflection {large['softer']:.3f} of it; truck inflated in {large['truck']:.1f} s, "
+        f"{large['truck_steps']:.0f} load steps"
+    )
     summary = {"seconds": round(goal["total"], 2), "peak_MB": round(goal["peak"]), "hexahedra": round(ratio, 1)}
+    summary["large_motion_over_linear"] = round(large["large"] / large["linear"], 1)
     print(json.dumps({**summary, "real_tyre_seconds": round(real["total"], 2)}))
 
 

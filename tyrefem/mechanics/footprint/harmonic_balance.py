@@ -84,11 +84,12 @@ class Balance:
         passed: list[Footprint] = []
         for count in ladder:
             start = self.motion.refined(moment, count)
-            moment = self._balanced(start, max(self.tolerance, ON_THE_WAY), deflection, load)
+            accuracy = self.tolerance if count == ladder[-1] else max(self.tolerance, ON_THE_WAY)
+            moment = self._balanced(start, accuracy, deflection, load)
             passed.append(self.motion.footprint(moment))
             if len(passed) > 1 and passed[-1].compared(passed[-2]).error <= tolerance:
                 break
-        if self.tolerance < ON_THE_WAY:
+        if accuracy > self.tolerance:
             moment = self._balanced(moment, self.tolerance, deflection, load)
             passed[-1] = self.motion.footprint(moment)
         footprint = passed[-1].compared(passed[-2]) if len(passed) > 1 else passed[-1]
