@@ -12,7 +12,7 @@ from tyrefem.mechanics.footprint.contact import Pressing
 from tyrefem.mechanics.footprint.directions import SearchedDirections
 from tyrefem.mechanics.footprint.footprint import Footprint
 from tyrefem.mechanics.footprint.grid import ContactGrid
-from tyrefem.mechanics.footprint.newton import LinearFactors, NewtonStep, Touching, newton_step
+from tyrefem.mechanics.footprint.newton import LinearFactors, NewtonStep, SearchEnd, Touching, newton_step
 from tyrefem.mechanics.footprint.nonlinear import NonlinearForces, Tangent
 from tyrefem.mechanics.solid.finite_law import FiniteLaw
 
@@ -155,14 +155,14 @@ class LargeMotion:
             enough = (ENERGY * tolerance) ** 2 * self.factors.work(tangent.forces, u)
             if closed is None:
                 closed = touching.closed(gaps, forces, forces > 0)
-            step = newton_step(touching, closed, tangent, gaps, INNER, enough, self._searched)
+            step = newton_step(touching, closed, tangent, gaps, SearchEnd(INNER, enough), self._searched)
             change = self._gradient_change(outside, step)
             if count == 0 and change > AHEAD:
                 reduced_step = AHEAD / change * (deflection - start.deflection)
                 gaps = gaps + normal_components * (deflection - start.deflection - reduced_step)
                 deflection = start.deflection + reduced_step
                 closed = touching.closed(gaps, forces, forces > 0)
-                step = newton_step(touching, closed, tangent, gaps, INNER, enough, self._searched)
+                step = newton_step(touching, closed, tangent, gaps, SearchEnd(INNER, enough), self._searched)
                 change = self._gradient_change(outside, step)
             unstable += not step.stable
             if not change < HOPELESS or unstable > UNSTABLE:
@@ -214,7 +214,7 @@ class LargeMotion:
         """Motion and forces per metre of deflection with a constant contact set; ``accuracy`` of its energy."""
         tangent = replace(tangent, forces=np.zeros_like(tangent.forces))
         return newton_step(
-            touching, closed, tangent, -normal_components, 0.0, 0.0, self._searched, start, settled=accuracy
+            touching, closed, tangent, -normal_components, SearchEnd(settled=accuracy), self._searched, start
         )
 
     def footprint(self, moment: DeflectedState) -> Footprint:

@@ -162,16 +162,25 @@ class NewtonStep:
     stable: bool
 
 
+@dataclass(frozen=True)
+class SearchEnd:
+    """What ends conjugate gradients: the relative ``residual`` in the preconditioner's norm, or its work, J, below
+    ``least``; or, without internal forces, a relative change of the energy x J x below ``settled`` over `DELAY`
+    iterations (0: never)."""
+
+    residual: float = 0.0
+    least: float = 0.0
+    settled: float = 0.0
+
+
 def newton_step(
     touching: Touching,
     touched: Flags,
     tangent: Tangent,
     distance: Array,
-    accuracy: float,
-    least: float = 0.0,
+    end: SearchEnd,
     searched: SearchedDirections | None = None,
     start: Array | None = None,
-    settled: float = 0.0,
 ) -> NewtonStep:
     """J x + B' f = -g with B x = w on the closed points: conjugate gradients on the motions with B x = 0.
 
@@ -182,9 +191,8 @@ def newton_step(
     ----------
     touching : points and linear tyre. touched : (k,) contact set.
     tangent : g, internal forces, and J, their derivative. distance : w, gaps (k,) to close, m.
-    accuracy : relative residual in the preconditioner's norm. least : the same for its work, J.
+    end : what ends the search.
     searched : directions of earlier steps; those of this step are added. start : a guess of the step, m.
-    settled : with g = 0, relative change of the energy x J x over the last `DELAY` iterations that ends the step.
     """
     from scipy.linalg import cho_factor, cho_solve
 
@@ -233,9 +241,9 @@ def newton_step(
     forced: list[Any] = []
     energies: list[float] = []
     drops: list[float] = []
-    left = factors.work(x, tangent.product(x)) if settled else 0.0
-    while stable and count < ITERATIONS and size > max(accuracy**2 * first, least):
-        if settled and count >= DELAY and sum(drops[-DELAY:]) <= settled * (left - sum(drops)):
+    left = factors.work(x, tangent.product(x)) if end.settled else 0.0
+    while stable and count < ITERATIONS and size > max(end.residual**2 * first, end.least):
+        if end.settled and count >= DELAY and sum(drops[-DELAY:]) <= end.settled * (left - sum(drops)):
             break
         bent = free(tangent.product(along))
         energy = factors.work(along, bent)
