@@ -3,8 +3,9 @@
 from __future__ import annotations
 
 import functools
+import weakref
 from collections.abc import Callable
-from dataclasses import dataclass
+from dataclasses import InitVar, dataclass, field
 from typing import Any
 
 import numpy as np
@@ -31,21 +32,31 @@ Array = NDArray[np.float64]
 class RollingTyre(Surroundings):
     """A study made into a conduction problem. Everything is built once, on demand.
 
-    ``like``: another tyre, whose mesh (and so the operators assembled on it) is taken if the section is the same.
+    ``like``: another tyre, whose mesh (and so the operators assembled on it) is taken if the section is the same. It is
+    not kept alive: parts that are not taken before it is gone are built anew.
     ``cycles``: strain cycles in place of those at the drive's own pressure and the cards' moduli.
     ``near``: takes strain cycles of studies near this one from few solutions, also for tyres that are ``like`` this.
     """
 
-    like: RollingTyre | None = None
+    like: InitVar[RollingTyre | None] = None
     cycles: CycleSchedule | None = None
     near: NearbyCycles | None = None
+    _similar: weakref.ref[RollingTyre] | None = field(default=None, init=False, repr=False)
+
+    def __post_init__(self, like: RollingTyre | None) -> None:
+        object.__setattr__(self, "_similar", None if like is None else weakref.ref(like))
+
+    @property
+    def similar(self) -> RollingTyre | None:
+        """The tyre given as ``like``; None without one, or once it is gone."""
+        return None if self._similar is None else self._similar()
 
     def __getstate__(self) -> dict[str, Any]:
         """Pickle only the mesh and the strain cycles, which take time; the rest is made again on demand."""
         known: dict[str, Any] = {
             name: self.__dict__[name] for name in ("mesh", "schedule", "states") if name in self.__dict__
         }
-        return {"study": self.study, "like": None, "cycles": self.cycles, **known}
+        return {"study": self.study, "_similar": None, "cycles": self.cycles, **known}
 
     def __repr__(self) -> str:
         return f"RollingTyre {self.study.name}"
@@ -53,15 +64,16 @@ class RollingTyre(Surroundings):
     def _as_in_like(self, tables: tuple[str, ...], ports: tuple[str, ...]) -> bool:
         """True if these tables of the study, the section, and the effects at these ports equal those of ``like``."""
         # Laws that depend on a state cannot be shared: functions of another tyre read that tyre's states.
-        if self.like is None or self.states is not None or self.like.states is not None:
+        like = self.similar
+        if like is None or self.states is not None or like.states is not None:
             return False
-        study, other = self.study, self.like.study
-        if "mechanics" in tables and self.cycles is not self.like.cycles:
+        study, other = self.study, like.study
+        if "mechanics" in tables and self.cycles is not like.cycles:
             return False
         return (
             study.section == other.section
             and all(study.data.get(table) == other.data.get(table) for table in tables)
-            and self.acting.at(*ports) == self.like.acting.at(*ports)
+            and self.acting.at(*ports) == like.acting.at(*ports)
         )
 
     @functools.cached_property
@@ -71,34 +83,33 @@ class RollingTyre(Surroundings):
             return self.cycles
         if self.near is not None:
             return self.near.schedule
-        if self.like is not None and self.like.cycles is None and same_cycles(self.study, self.like.study):
-            return self.like.schedule
+        like = self.similar
+        if like is not None and like.cycles is None and same_cycles(self.study, like.study):
+            return like.schedule
         nearby = None if self._nearby is None else self._nearby.schedule_of(self.study)
         return super().schedule if nearby is None else nearby
 
     @property
     def _nearby(self) -> NearbyCycles | None:
         """Strain cycles at nearby loads, shared with ``like``."""
-        return self.near if self.near is not None or self.like is None else self.like._nearby
+        like = self.similar
+        return self.near if self.near is not None or like is None else like._nearby
 
     @functools.cached_property
     def mesh(self) -> TyreMesh:
         """The mesh, with the strain zones added as named subdomains."""
         zones = self.schedule.zones
-        if self.like is not None:
-            study, other = self.study, self.like.study
-            if (
-                study.section == other.section
-                and study.card.mesh == other.card.mesh
-                and zones == self.like.schedule.zones
-            ):
-                return self.like.mesh
+        like = self.similar
+        if like is not None:
+            study, other = self.study, like.study
+            if study.section == other.section and study.card.mesh == other.card.mesh and zones == like.schedule.zones:
+                return like.mesh
         return self.study.mesh().with_zones({zone.name: (zone.region, zone.start, zone.end) for zone in zones})
 
     @functools.cached_property
     def bodies(self) -> dict[str, Material]:
         """Region -> its material, with effects."""
-        like, bodies = self.like, {}
+        like, bodies = self.similar, {}
         same = like is not None and self._as_in_like((), ("conductivity_factor", "capacity_factor"))
         for region, card in self.study.materials.items():
             if like is not None and same and self.mesh is like.mesh and card is like.study.materials[region]:
@@ -116,10 +127,10 @@ class RollingTyre(Surroundings):
     def boundaries(self) -> dict[str, list[Any]]:
         """Side -> its films, then the fluxes and radiation of effects."""
         ports = ("film_factor", "film_addend", "film_resistance", "sink_addend", "flux", "radiation")
-        if self._as_in_like(("boundaries", "drive", "mechanics"), ports):
-            assert self.like is not None
-            if self.tread == self.like.tread:
-                return self.like.boundaries
+        like = self.similar
+        same = like is not None and self._as_in_like(("boundaries", "drive", "mechanics"), ports)
+        if like is not None and same and self.tread == like.tread:
+            return like.boundaries
         added = {side: [condition for _, condition in self.acting.conditions(side)] for side in self._films}
         return {side: films + added[side] for side, films in self._films.items()}
 
@@ -209,7 +220,7 @@ class RollingTyre(Surroundings):
     @functools.cached_property
     def sources(self) -> dict[str, Source]:
         """Zone -> heat source of the strain cycle, changed by the study's effects."""
-        like, sources = self.like, {}
+        like, sources = self.similar, {}
         same = like is not None and self._as_in_like(("drive",), ("heat_factor", "heat_addend"))
         for zone in self.schedule.zones:
             if like is not None and same and self.schedule is like.schedule:

@@ -175,8 +175,7 @@ class RecentTyres(threading.local):
         return max(self.tyres, key=lambda tyre: _similarity(study, tyre.study), default=None)
 
     def remember(self, tyre: RollingTyre) -> None:
-        """Keep a tyre, without its reference to an older tyre."""
-        object.__setattr__(tyre, "like", None)
+        """Keep a tyre; one that has become too old is forgotten."""
         forgotten = self.tyres[REMEMBERED - 1 :]
         self.tyres[:] = [tyre, *self.tyres[: REMEMBERED - 1]]
         if any(all(old.mesh is not kept.mesh for kept in self.tyres) for old in forgotten):
