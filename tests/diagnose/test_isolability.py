@@ -32,7 +32,7 @@ def known(case: Case) -> Sensitivities:
 
 
 @pytest.fixture(scope="module")
-def found(case: Case, known: Sensitivities) -> Isolability:
+def isolability_result(case: Case, known: Sensitivities) -> Isolability:
     return isolability(case.study, known=known)
 
 

@@ -14,7 +14,6 @@ from tyrefem.cli.common import ForceOption, SetOption, settings
 from tyrefem.cli.show import complete_names
 from tyrefem.errors import InputError, nearest
 from tyrefem.interruption import interruption_delayed
-from tyrefem.sizes import looks_like_size
 
 DEFAULTS = {"study": "nasa-22x5.5-8pr", "section": "nasa-22x5.5-8pr", "material": "nasa-tread"}
 
@@ -39,6 +38,7 @@ def new(
     from tyrefem import library
     from tyrefem.output import atomic_path, place_of_output
     from tyrefem.output.file import results_file
+    from tyrefem.sizes import looks_like_size
 
     if kind not in DEFAULTS:
         raise InputError(f"no kind '{kind}'{nearest(kind, DEFAULTS)}")

@@ -11,7 +11,6 @@ from tyrefem.cli.common import CaseOption, ForceOption, SetOption, settings, war
 from tyrefem.errors import InputError, nearest
 from tyrefem.output.file import PICTURES, results_file
 from tyrefem.requirements import Requirements
-from tyrefem.sizes import looks_like_size
 
 if TYPE_CHECKING:
     from tyrefem.api import Study
@@ -55,6 +54,8 @@ def show(
     force: ForceOption = False,
 ) -> None:
     """Show a card: `section`, `mesh` and `strain` drawn; `material`, `study`, `sweep` and `effect` printed."""
+    from tyrefem.sizes import looks_like_size
+
     if kind not in KINDS:
         raise InputError(f"no kind '{kind}'{nearest(kind, KINDS)}")
     if case is not None and kind not in OF_A_CASE:

@@ -58,7 +58,7 @@ class Rules:
     given : name -> quantity as written.
 
     >>> rules = Rules({"crown_radius": "700 mm"})
-    >>> rules("crown_radius", 0.5, "mm", "estimate"), rules["crown_radius"].source
+    >>> round(rules("crown_radius", 0.5, "mm", "estimate"), 9), rules["crown_radius"].source
     (0.7, 'given')
     """
 

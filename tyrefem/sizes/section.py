@@ -42,7 +42,7 @@ def draw_size(size: object, numbers: Mapping[str, Any] | None = None) -> Drawn:
 
     >>> drawn = draw_size("205/60R15", {"rim_width": "6.5 in"})
     >>> drawn.rules["section_width"].text
-    '213.56 mm'
+    '213.64 mm'
     """
     given = dict(numbers or {})
     key = (str(size), json.dumps(given, sort_keys=True, default=str))
