@@ -99,6 +99,22 @@ def test_numbers_change_the_section() -> None:
     assert flat.outer_diameter == pytest.approx(usual.outer_diameter, abs=1e-6)
 
 
+def test_the_tread_is_rounded_off_at_its_shoulder() -> None:
+    """The road's boundary lies on the tread's arc, then on the shoulder's, tangent to it, up to the tread's width."""
+    size, rules = "255/40R17", draw_size("255/40R17").rules
+    section = tf.section_from_size(size, {"grooves": 0})
+    r, z = np.concatenate(section.boundary_line("road")).T
+    n = {number.name: number.value for number in rules}
+    crown, start = n["outer_diameter"] / 2, n["tread_width"] / 2 - n["shoulder_width"]
+    angle = np.arcsin(start / n["tread_radius"])
+    radius = np.where(z < start, n["tread_radius"], n["shoulder_radius"])
+    centre_r = np.where(z < start, crown, crown - (n["tread_radius"] - n["shoulder_radius"]) * (1 - np.cos(angle)))
+    centre_z = np.where(z < start, 0.0, (n["tread_radius"] - n["shoulder_radius"]) * np.sin(angle))
+    assert np.hypot(r - centre_r + radius, z - centre_z) == pytest.approx(radius, abs=1e-4)
+    assert z.max() == pytest.approx(n["tread_width"] / 2, abs=1e-3)
+    assert crown - r.min() > 1.2 * z.max() ** 2 / 2 / n["tread_radius"]
+
+
 def test_a_given_cord_angle_decides_the_width() -> None:
     steep = draw_size("22x5.5 8PR", {"cord_angle": "34 deg"}).meridian
     assert np.arccos(steep.membrane.lift * steep.crown) == pytest.approx(np.radians(34))

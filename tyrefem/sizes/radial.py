@@ -104,14 +104,31 @@ class Radial:
             raise InputError("is wider than the section", field="parameters.tread_width")
         return float(s[beyond[0]])
 
+    @property
+    def rounded_shoulder(self) -> tuple[float, float]:
+        """Radius of the arc that rounds the tread off at its shoulder, and its axial width, m."""
+        if "shoulder_radius" not in self.rules.numbers:
+            return self.n("tread_radius"), 0.0
+        return self.n("shoulder_radius"), self.n("shoulder_width")
+
     def _to_tread(self, s: Array) -> Array:
-        """From the line to the arc of the tread's surface along the line's normal, m."""
+        """From the line to the tread's surface along the line's normal, m: the tread's arc, then the shoulder's."""
         r, z, phi = self.line.at(s)
-        radius = self.n("tread_radius")
-        away = np.stack([r - (self.n("outer_diameter") / 2 - radius), z])
         normal = np.stack([np.sin(phi), np.cos(phi)])
-        along = (away * normal).sum(axis=0)
-        return np.asarray(np.sqrt(np.maximum(radius**2 - (away**2).sum(axis=0) + along**2, 0.0)) - along)
+        radius = self.n("tread_radius")
+        rounding, width = self.rounded_shoulder
+        centre = np.array([self.n("outer_diameter") / 2 - radius, 0.0])
+        angle = np.arcsin((self.n("tread_width") / 2 - width) / radius)
+        turn = np.array([np.cos(angle), np.sin(angle)])
+
+        def along(to: Array, of: float) -> Array:
+            away = np.stack([r - to[0], z - to[1]])
+            distance = (away * normal).sum(axis=0)
+            return np.asarray(np.sqrt(np.maximum(of**2 - (away**2).sum(axis=0) + distance**2, 0.0)) - distance)
+
+        tread = along(centre, radius)
+        beyond = z + tread * normal[1] > radius * turn[1]
+        return np.where(beyond, along(centre + (radius - rounding) * turn, rounding), tread)
 
     @cached_property
     def places(self) -> dict[str, float]:
@@ -261,10 +278,11 @@ class Radial:
         """(s, thickness) of the outermost layer: what is left up to the tyre's outside."""
         p, sh = self.places, self.shoulder
         tread = np.linspace(0.0, sh, 6)
+        rounded = sh - np.array([0.25, 0.5, 0.75, 1.0]) * self.rounded_shoulder[1]
         edge = sh + np.array([0.2, 0.4, 0.6, 0.8]) * (p["wide"] - sh)
         wall = np.linspace(p["wide"], p["flange"], 6)
         low = [s for layer in rows.values() for s, _ in layer if s > p["flange"]]
-        s = np.unique(np.round(np.concatenate([tread, edge, wall, low, [p["end"]]]), 6))
+        s = np.unique(np.round(np.concatenate([tread, rounded, edge, wall, low, [p["end"]]]), 6))
         inside = [layer for name, layer in rows.items() if name not in ("liner", self.ply)]
         below = self.ply_gauge / 2 + np.sum([thickness(layer, s) for layer in inside], axis=0)
         shoulder = float(self._to_tread(np.array([sh]))[0])

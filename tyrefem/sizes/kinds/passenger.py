@@ -59,6 +59,22 @@ def draw_with(
         20,
     )
     rule("tread_radius", radius, "mm", "estimate: as crown_radius; of the tread's surface", 0.05, 20)
+    rounding = rule(
+        "shoulder_radius",
+        radius / 8,
+        "mm",
+        "one eighth of tread_radius: 4 to 12 for a tread's outer arcs over its shoulder's (EP 0 424 155)",
+        5e-3,
+        20,
+    )
+    rule(
+        "shoulder_width",
+        0.1 * tread_width,
+        "mm",
+        "estimate: tread_width ends within the rounded shoulder; 0.1 tread widths of it on each side",
+        0.0,
+        min(0.4 * tread_width, 0.7 * rounding),
+    )
     rule("cord_angle", 1.5707963268, "deg", "radial body ply", 1.4, 1.5708)
     belt = rule("belt_1_width", 0.95 * tread_width, "mm", f"{ESTIMATE}, 0.95 tread widths", 0.03)
     rule("belt_2_width", belt - 10e-3, "mm", f"{ESTIMATE}, 10 mm narrower than belt-1", 0.02)
