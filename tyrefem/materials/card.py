@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import functools
+from collections.abc import Mapping
 from pathlib import Path
 from typing import Annotated, Any, ClassVar, Literal
 
@@ -27,6 +28,7 @@ from tyrefem.materials.elasticity import Cords, Elasticity
 from tyrefem.materials.loss_frequency import LossFrequency, loss_over_frequency
 from tyrefem.materials.loss_tangent import Loss
 from tyrefem.materials.properties import PropertyTable, Softening, Sourced, columns
+from tyrefem.materials.strain_dependence import StrainDependence
 from tyrefem.quantity import Unit
 
 Array = NDArray[np.float64]
@@ -262,6 +264,7 @@ class MaterialCard(Card):
     """One compound or composite. Read with `material`.
 
     ``softening`` applies to all moduli of the compound; cords have a table of softening too, or do not soften.
+    ``strain_dependence`` applies to the compound's shear modulus and loss; cords do not depend on strain.
     """
 
     kind: ClassVar[str] = "material"
@@ -277,6 +280,7 @@ class MaterialCard(Card):
     elasticity: Elasticity | None = None
     cords: Cords | None = None
     softening: Softening | None = None
+    strain_dependence: StrainDependence | None = None
     expansion: ThermalExpansion | None = None
 
     @property
@@ -301,6 +305,23 @@ class MaterialCard(Card):
             changes["cords"] = self.cords.times(self.cords.softening(temperature))
         return self.model_copy(update=changes) if changes else self
 
+    def at_amplitude(self, amplitude: float) -> MaterialCard:
+        """The same compound with its shear modulus at another shear strain amplitude.
+
+        A card without ``strain_dependence`` is returned as it is. The loss modulus at every amplitude stays the same.
+        """
+        law = self.strain_dependence
+        if law is None:
+            return self
+        factor = float(law.stiffening(amplitude))
+        changes: dict[str, Any] = {"strain_dependence": law.at_modulus_amplitude(amplitude)}
+        if self.shear_modulus is not None:
+            value = factor * self.shear_modulus.value
+            changes["shear_modulus"] = self.shear_modulus.model_copy(update={"value": value})
+        if self.elasticity is not None:
+            changes["elasticity"] = self.elasticity.times(factor)
+        return self.model_copy(update=changes)
+
     def heat_capacity(self) -> Any:
         """Volumetric heat capacity rho c, J/m3/K: a number or a function of temperature."""
         density, specific = self.density.law(), self.specific_heat.law()
@@ -322,3 +343,8 @@ def material(reference: object, near: Path | None = None) -> MaterialCard:
 
     data, path, _ = library.load("material", reference, near)
     return MaterialCard.check(data, path)
+
+
+def strain_laws(cards: Mapping[str, MaterialCard]) -> dict[str, StrainDependence]:
+    """Region -> moduli over strain, of the cards that have them."""
+    return {region: card.strain_dependence for region, card in cards.items() if card.strain_dependence is not None}

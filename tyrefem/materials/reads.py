@@ -11,7 +11,7 @@ if TYPE_CHECKING:
     Cards = Mapping[str, MaterialCard]
 
 #: Tables of a card that only strain laws read.
-STIFFNESS = ("shear_modulus", "youngs_modulus", "cord", "elasticity", "cords")
+STIFFNESS = ("shear_modulus", "youngs_modulus", "cord", "elasticity", "cords", "strain_dependence")
 #: Tables of the cards that the arcs read, by region.
 ARCS = {
     "carcass": ("shear_modulus", "cord"),
@@ -49,6 +49,13 @@ def read_by_elements(cards: Cards) -> dict[str, tuple[str, ...]]:
     return {region: tuple(dict.fromkeys(tables)) for region, tables in fields.items()}
 
 
+def read_by_footprint(cards: Cards) -> dict[str, tuple[str, ...]]:
+    """As `read_by_elements`, and the moduli over strain amplitude."""
+    fields = read_by_elements(cards)
+    depend = {region for region, card in cards.items() if card.strain_dependence is not None}
+    return {region: (*fields[region], *(("strain_dependence",) if region in depend else ())) for region in fields}
+
+
 def read_by_given(cards: Cards) -> dict[str, tuple[str, ...]]:
     """No data: the study gives the energies."""
     return {}
@@ -63,7 +70,7 @@ def read_by_unknown_law(cards: Cards) -> dict[str, tuple[str, ...]]:
 READS: dict[str, Callable[[Cards], dict[str, tuple[str, ...]]]] = {
     "arcs": read_by_arcs,
     "barrel": read_by_elements,
-    "fem": read_by_elements,
+    "fem": read_by_footprint,
     "given": read_by_given,
 }
 

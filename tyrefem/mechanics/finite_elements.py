@@ -6,7 +6,7 @@ From the Gauss points of a mechanical mesh to any points of the section.
 from __future__ import annotations
 
 import functools
-from collections.abc import Callable, Sequence
+from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass, field, replace
 from typing import TYPE_CHECKING, Any
 
@@ -14,6 +14,8 @@ import numpy as np
 from numpy.typing import NDArray
 
 from tyrefem.inputs.loading import PressedContact
+from tyrefem.materials.card import strain_laws
+from tyrefem.materials.strain_dependence import StrainDependence
 from tyrefem.mechanics.footprint.pressed_tyre import pressed_tyre
 from tyrefem.mechanics.strain_cycle import LOSS_FACTOR, Zone, by_order
 
@@ -109,8 +111,9 @@ class FiniteElements:
     A harmonic n runs n cycles per revolution. Each cycle loses pi tan d e_n : C' : e_n. The heat f U tan d v / (2 R)
     of `heating` is thus the loss of all harmonics per revolution of 2 pi R, for any factor f of the loss convention.
     R is the footprint's rolling radius, as in `solved_case`. `spectrum` keeps the harmonics apart, for a tan d that
-    depends on frequency. With ``one_cycle``, U is the energy of the largest change of strain, as if the revolution were
-    one cycle; then the heat depends on f.
+    depends on frequency. Where ``strain_laws`` give a compound's moduli over strain, e_n : C' : e_n is times the loss
+    modulus at the point's strain amplitude over the card's tan delta and modulus. With ``one_cycle``, U is the energy
+    of the largest change of strain, as if the revolution were one cycle; then the heat depends on f.
 
     Parameters
     ----------
@@ -123,6 +126,7 @@ class FiniteElements:
     case: LoadCase
     factor: float = 1.0
     one_cycle: bool = False
+    strain_laws: Mapping[str, StrainDependence] = field(default_factory=dict)
 
     @property
     def zones(self) -> tuple[Zone, ...]:
@@ -146,12 +150,17 @@ class FiniteElements:
         """(orders, n_elements, n_points) U, J/m3, at the Gauss points of the mechanical mesh, by `strain.ORDERS`."""
         if self.footprint is None:
             return np.zeros((1, *self.tyre.body.rings.weights.shape))
+        from tyrefem.mechanics.footprint.strain_amplitude import StrainAmplitude
         from tyrefem.mechanics.footprint.strain_harmonics import StrainHarmonics
 
         cycle = StrainHarmonics(self.footprint)
+        strain = StrainAmplitude(cycle, self.strain_laws)
         if self.one_cycle:
-            return np.asarray(cycle.largest_energy()[None])
+            largest = cycle.largest_energy()[None]
+            return np.asarray(largest * strain.factor if self.strain_laws else largest)
         products = cycle.storage_products
+        if self.strain_laws:
+            products = strain.effective(products, cycle.rubber_products)
         orders = np.arange(len(products))[:, None, None]
         return np.asarray(by_order(orders * products) / self.factor)
 
@@ -188,9 +197,10 @@ def provider(study: StudyData) -> Callable[[LoadCase], FiniteElements]:
     mechanics = study.card.mechanics
     factor, one_cycle = LOSS_FACTOR[mechanics.loss_convention], mechanics.revolution == "one-cycle"
     tyre = pressed_tyre(study)
+    laws = strain_laws(study.materials)
 
     def cycle(case: LoadCase) -> FiniteElements:
         footprint = tyre.footprint(case, large=mechanics.motion == "large")
-        return FiniteElements(tyre.inflated(case.pressure), footprint, case, factor, one_cycle)
+        return FiniteElements(tyre.inflated(case.pressure), footprint, case, factor, one_cycle, laws)
 
     return cycle

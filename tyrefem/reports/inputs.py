@@ -9,6 +9,7 @@ from collections.abc import Iterator, Mapping
 from typing import TYPE_CHECKING, Any
 
 from tyrefem.inputs.uncertain_numbers import stated_deviations
+from tyrefem.materials.card import strain_laws
 from tyrefem.mechanics.strain_laws import strain_law
 from tyrefem.quantity import Unit
 from tyrefem.reports.words import number
@@ -20,6 +21,7 @@ if TYPE_CHECKING:
     from tyrefem.materials.card import LossTangent, MaterialCard
     from tyrefem.materials.elasticity import Cords
     from tyrefem.materials.properties import Softening
+    from tyrefem.materials.strain_dependence import StrainDependence
 
 
 def material_rows(study: StudyData) -> tuple[list[dict[str, Any]], list[str]]:
@@ -52,6 +54,8 @@ def _properties(card: MaterialCard) -> Iterator[tuple[str, Any, str]]:
     for label, entry in (("softening", card.softening), ("softening of the cords", _cord_softening(card))):
         if entry is not None:
             yield label, entry, _softening(entry)
+    if card.strain_dependence is not None:
+        yield "strain dependence", card.strain_dependence, _strain_dependence(card.strain_dependence)
     for label, modulus in (("shear modulus", card.shear_modulus), ("Young's modulus", card.youngs_modulus)):
         if modulus is not None:
             yield label, modulus, f"{number(modulus.value / 1e6)} MPa"
@@ -91,6 +95,14 @@ def _softening(law: Softening) -> str:
     if law.law == "table":
         return f"table of {len(law.table or [])} rows"
     return f"modulus times exp(−{number(law.rate or 0)} (T − {number(law.at)} °C))"
+
+
+def _strain_dependence(law: StrainDependence) -> str:
+    return (
+        f"Kraus: G′ {number(law.small_strain_modulus / 1e6)} to {number(law.large_strain_modulus / 1e6)} MPa, "
+        f"G″ up to {number(law.greatest_loss_modulus / 1e6)} MPa at {number(100 * law.critical_strain)} %; card's "
+        f"modulus at {number(100 * law.modulus_amplitude)} %, tan δ at {number(100 * law.loss_amplitude)} %"
+    )
 
 
 def _cords(cords: Cords) -> str:
@@ -300,6 +312,9 @@ def assumptions(study: StudyData, estimates: list[str]) -> list[tuple[str, str]]
     laws = "depends on temperature, not on frequency"
     if over_frequency:
         laws = f"depends on temperature, and on frequency in: {', '.join(over_frequency)}"
+    over_strain = list(strain_laws(study.materials))
+    if over_strain and mechanics.strain == "fem":
+        laws += f"; the loss modulus follows each point's strain amplitude in: {', '.join(over_strain)}"
     cycle = (
         "The strain energy times tan δ is lost once per revolution (convention "
         f"{mechanics.loss_convention}); higher harmonics are neglected. tan δ {laws}."

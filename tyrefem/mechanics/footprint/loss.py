@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import functools
 from collections.abc import Mapping
-from dataclasses import dataclass
+from dataclasses import dataclass, field
 
 import numpy as np
 from numpy.typing import NDArray
@@ -12,7 +12,10 @@ from numpy.typing import NDArray
 from tyrefem.brief import Brief
 from tyrefem.errors import InputError, nearest
 from tyrefem.inputs.motion import Motion
+from tyrefem.materials.card import MaterialCard, strain_laws
 from tyrefem.materials.loss_tangent import Loss
+from tyrefem.materials.strain_dependence import StrainDependence
+from tyrefem.mechanics.footprint.strain_amplitude import StrainAmplitude
 from tyrefem.mechanics.footprint.strain_harmonics import StrainHarmonics
 
 Array = NDArray[np.float64]
@@ -33,6 +36,8 @@ class RevolutionLoss(Brief):
     tangents : region -> tan delta; regions without one lose nothing.
     speed : m/s.
     temperature : degC, one number or (n_elements, n_points).
+    strain_laws : region -> moduli of its compound over strain; its loss modulus is then that of each point's shear
+        strain amplitude (`strain_amplitude`), alike at every harmonic. Cords and other regions do not change.
 
     Raises
     ------
@@ -43,10 +48,19 @@ class RevolutionLoss(Brief):
     tangents: Mapping[str, Loss]
     speed: float
     temperature: float | Array = 25.0
+    strain_laws: Mapping[str, StrainDependence] = field(default_factory=dict)
+
+    @classmethod
+    def of_cards(
+        cls, cycle: StrainHarmonics, cards: Mapping[str, MaterialCard], speed: float, temperature: float | Array
+    ) -> RevolutionLoss:
+        """With the laws of the cards of regions: tan delta over frequency and temperature, loss modulus over strain."""
+        tangents = {region: card.loss_tangent.over_frequency for region, card in cards.items()}
+        return cls(cycle, tangents, speed, temperature, strain_laws(cards))
 
     def __post_init__(self) -> None:
         regions = self.cycle.elements.mesh.subdomains or {}
-        for region in self.tangents:
+        for region in (*self.tangents, *self.strain_laws):
             if region not in regions:
                 raise InputError(f"the mesh has no region '{region}'{nearest(region, regions)}")
         if not self.speed > 0:
@@ -68,9 +82,20 @@ class RevolutionLoss(Brief):
         return tangent
 
     @functools.cached_property
+    def strain(self) -> StrainAmplitude:
+        """The shear strain amplitude of every point."""
+        return StrainAmplitude(self.cycle, self.strain_laws)
+
+    @functools.cached_property
+    def effective_products(self) -> Array:
+        """(harmonics + 1, n_elements, n_points) e_n : C' : e_n with the loss of each point's strain amplitude, J/m3."""
+        products = self.cycle.storage_products
+        return self.strain.effective(products, self.cycle.rubber_products) if self.strain_laws else products
+
+    @functools.cached_property
     def densities(self) -> Array:
         """(harmonics + 1, n_elements, n_points) energy lost per revolution by each harmonic, J/m3."""
-        products = self.cycle.storage_products
+        products = self.effective_products
         densities = np.zeros_like(products)
         for n in range(1, len(products)):
             densities[n] = n * np.pi * self.tangent(n * self.frequency) * products[n]
@@ -84,11 +109,14 @@ class RevolutionLoss(Brief):
     def one_cycle_density(self, convention: str = "nasa", count: int = 180) -> Array:
         """(n_elements, n_points) J/m3 if the revolution were one cycle, as in the NASA report: pi U tan d(f).
 
-        U is `StrainCycle.largest_energy`; ``sinusoid`` takes 2 pi, exact for one sinusoid of that amplitude.
+        U is `StrainCycle.largest_energy`; ``sinusoid`` takes 2 pi, exact for one sinusoid of that amplitude. The loss
+        modulus follows the strain amplitude as with harmonics.
         """
         if convention not in ONE_CYCLE:
             raise InputError(f"no convention '{convention}'{nearest(convention, ONE_CYCLE)}")
         largest = self.cycle.largest_energy(count)
+        if self.strain_laws:
+            largest = largest * self.strain.factor
         return np.asarray(ONE_CYCLE[convention] * self.tangent(self.frequency) * largest)
 
     def total(self, density: Array) -> float:

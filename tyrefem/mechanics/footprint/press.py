@@ -118,8 +118,8 @@ class Pressed(Brief):
 
         if not self.speed:
             return None
-        laws = {region: self.study.materials[region].loss_tangent.over_frequency for region in self.tyre.body.parts}
-        return RevolutionLoss(self.cycle, laws, self.speed, self.study.card.drive.initial)
+        cards = {region: self.study.materials[region] for region in self.tyre.body.parts}
+        return RevolutionLoss.of_cards(self.cycle, cards, self.speed, self.study.card.drive.initial)
 
     @property
     def published(self) -> tuple[PublishedComparison, ...]:

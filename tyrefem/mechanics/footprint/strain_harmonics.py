@@ -120,7 +120,16 @@ class StrainHarmonics:
     @functools.cached_property
     def storage_products(self) -> Array:
         """(harmonics + 1, n_elements, n_points) e_n : C' : e_n, J/m3."""
-        storage = np.moveaxis(self.footprint.pressing.state.storage, (0, 1), (-2, -1))
+        return self._products(self.footprint.pressing.state.storage)
+
+    @functools.cached_property
+    def rubber_products(self) -> Array:
+        """(harmonics + 1, n_elements, n_points) the compounds' part of `storage_products`, J/m3."""
+        rubber = self.footprint.pressing.state.rubber
+        return self.storage_products if rubber is None else self._products(rubber)
+
+    def _products(self, moduli: Array) -> Array:
+        storage = np.moveaxis(moduli, (0, 1), (-2, -1))
         products = np.zeros((len(self.amplitudes), *self.elements.radii.shape))
         for n, amplitude in enumerate(self.amplitudes):
             e = np.moveaxis(amplitude, 0, -1)[..., None]

@@ -41,6 +41,7 @@ class Prestressed(Brief):
     tangent : (6, 6, n_elements, n_points) c with d(Truesdell stress) = c : e, Pa, without the bulk stiffness.
     bulk : (n_elements, n_points) bulk stiffness, Pa, that acts on the projected dilatation.
     storage : (6, 6, n_elements, n_points) the part of ``tangent`` that dissipates, Pa.
+    rubber : (6, 6, n_elements, n_points) the compounds' part of ``storage``, Pa; None: all of it.
     pressure : gauge pressure, Pa, that follows the boundary ``pressurised``.
     fixed : boundaries without displacement.
     pressurised, tread : boundary under pressure; boundary that may touch the road.
@@ -64,6 +65,7 @@ class Prestressed(Brief):
     support: Any = None
     rim_top: float = 0.0
     law: FiniteLaw | None = None
+    rubber: Array | None = None
 
 
 @dataclass(frozen=True, eq=False)
@@ -163,6 +165,15 @@ class Body(Brief):
             total[..., members, :] = rubber + cords
             dissipating[..., members, :] = rubber + part.cord_loss * cords
         return total, dissipating
+
+    def _compounds(self, deformation: Array, dissipating: Array) -> Array:
+        """The part of the dissipating tangent without the cords."""
+        rubber = dissipating.copy()
+        for name, part in self.parts.items():
+            if part.cords and part.cord_loss:
+                members = self.mesh.subdomains[name]
+                rubber[..., members, :] = part.compound.tangent(deformation[:, :, members])
+        return rubber
 
     def energy(self, displacement: Array) -> float:
         """Elastic energy per radian, J."""
@@ -294,6 +305,7 @@ class Body(Brief):
             support=self._support(displacement, 3) if self.flanges else None,
             rim_top=max((flange.centre[0] + flange.radius for flange in self.flanges), default=0.0),
             law=BodyLaw(self.rings, self.parts, self.mesh.subdomains, self.bulk, f),
+            rubber=self._compounds(f, dissipating) / volume,
         )  # fmt: skip
 
 
