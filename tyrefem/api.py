@@ -15,6 +15,8 @@ from tyrefem.compare import comparison
 from tyrefem.diagnose import diagnosis
 from tyrefem.heating_test import identification
 from tyrefem.inputs import study as studies
+from tyrefem.mechanics.footprint import natural_frequencies as vibrations
+from tyrefem.mechanics.footprint import press as presses
 from tyrefem.mechanics.strain_laws import strain_law
 from tyrefem.simulation import result
 from tyrefem.sweep import campaign, design
@@ -163,6 +165,41 @@ class Identification(identification.IdentificationData):
         return save(self, folder, base)
 
 
+class LoadedTyre(presses.Pressed):
+    """A study's tyre, inflated and pressed on the road, with `save`."""
+
+    def save(self, folder: str | Path, at: Iterable[str] = (), *, pictures: bool = True, vtk: bool = True) -> Path:
+        """Write the files of `tyrefem press`: ``press.json``, tables, pictures, ``tyre.vtu``; return the folder.
+
+        ``at``: places of the strain cycle, "r, z" or a region; by default the belt's edge and the greatest loss.
+
+        Raises
+        ------
+        InputError : a place is not in the section; the folder cannot be written.
+        """
+        from tyrefem.reports.press import write_files
+        from tyrefem.reports.press_places import cycle_places
+
+        write_files(self, Path(folder), cycle_places(self, at), self.curve(), pictures=pictures, vtk=vtk)
+        return Path(folder)
+
+
+class NaturalModes(vibrations.NaturalFrequencies):
+    """Natural frequencies of a study's inflated tyre, with `save`."""
+
+    def save(self, folder: str | Path, *, pictures: bool = True) -> Path:
+        """Write ``modes.csv``, ``modes.json``, and with pictures ``modes.png``; return the folder.
+
+        Raises
+        ------
+        InputError : the folder cannot be written.
+        """
+        from tyrefem.reports.modes import write_files
+
+        write_files(self, Path(folder), pictures=pictures)
+        return Path(folder)
+
+
 class Study(studies.StudyData):
     """A study, with methods to run, compare, diagnose and sweep it. `study` makes it; `replace` changes it.
 
@@ -217,6 +254,31 @@ class Study(studies.StudyData):
         from tyrefem.sweep.design import run_design_study
 
         return with_verbs(Design, run_design_study(self, vary, **options))
+
+    def press(self, **options: Any) -> LoadedTyre:
+        """Inflate the tyre and press it on the road: load, stiffness, footprint, cords, loss of a revolution.
+
+        Options, in SI: ``pressure``, ``load`` or ``deflection``, ``drum_diameter``, ``camber``, ``tolerance``,
+        ``motion``: see `tyrefem.mechanics.footprint.press.press`. By default the start of the drive's first phase.
+
+        >>> tyre = study("nasa-22x5.5-8pr", {"mesh.size": "12 mm"}).press(deflection=0.015, motion="linear")
+        >>> tyre.footprint.motion, 5e3 < tyre.footprint.load < 9e3
+        ('linear', True)
+        """
+        return with_verbs(LoadedTyre, presses.press(self, **options))
+
+    def natural_frequencies(
+        self, harmonics: Iterable[int] = vibrations.HARMONICS, count: int = vibrations.COUNT, **options: Any
+    ) -> NaturalModes:
+        """Natural frequencies of the inflated tyre without load and rotation, with its rim held.
+
+        ``harmonics``: waves round the wheel; ``count``: modes of each; option ``pressure``, Pa. See
+        `tyrefem.mechanics.footprint.natural_frequencies.natural_frequencies`.
+
+        >>> study("nasa-22x5.5-8pr", {"mesh.size": "12 mm"}).natural_frequencies([0], 1).table.name.tolist()
+        ['lateral']
+        """
+        return with_verbs(NaturalModes, vibrations.natural_frequencies(self, harmonics, count, **options))
 
     def campaign(self) -> Campaign:
         """The cases of the study's table, each of them a study."""

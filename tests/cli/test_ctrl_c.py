@@ -148,7 +148,7 @@ def test_rig_keeps_fits_and_tables(rig: Path) -> None:
 
 
 def test_press_keeps_its_tables(here: Path) -> None:
-    command = ("press", NASA, "--set", "mechanics.strain=fem", "--set", "mesh.size=12 mm", "--out", "out", "--no-vtk")
+    command = ("press", NASA, "--motion", "linear", "--set", "mesh.size=12 mm", "--out", "out", "--no-vtk")
     line = clean(here, interrupted(*command, at=PICTURE, folder=here))
     assert line == "tyrefem: interrupted; out has the tables, but not the pictures\n"
     assert (here / "out/press.json").is_file()

@@ -12,7 +12,7 @@ import pytest
 from tyrefem.cli import main
 
 STUDY = "nasa-22x5.5-8pr"
-COARSE = ["--set", "mesh.size=8 mm"]
+COARSE = ["--set", "mesh.size=8 mm", "--set", "mechanics.motion=linear"]
 
 
 def test_numbers_and_files(here: Path, capfd: pytest.CaptureFixture[str]) -> None:
@@ -53,6 +53,8 @@ def test_numbers_and_files(here: Path, capfd: pytest.CaptureFixture[str]) -> Non
         (["--drum", "-1 m"], "--drum: '-1 m' is out of range"),
         (["--set", "drive.load=0 N"], "drive.load: must be more than 0 N, not 0 N"),
         (["--set", "drive.pressure=0 psi"], "drive.pressure: must be more than 0 Pa"),
+        (["--motion", "larg"], "--motion: no motion 'larg'; did you mean 'large'"),
+        (["--motion", "linear", "--balanced"], "--motion: 'linear' contradicts --balanced, which is --motion large"),
     ],
 )
 def test_bad_input_is_one_line(refused: Callable[..., str], arguments: list[str], words: str) -> None:
@@ -69,12 +71,13 @@ def test_in_large_motion_the_tyre_is_softer_and_the_curve_is_its_way(
     here: Path, capfd: pytest.CaptureFixture[str]
 ) -> None:
     coarse = ["--set", "mesh.size=12 mm", "--deflection", "20 mm", "--no-pictures", "--no-vtk"]
-    assert main(["press", STUDY, "--balanced", "--json", "--out", "large", *coarse]) == 0
+    assert main(["press", STUDY, "--motion", "large", "--json", "--out", "large", *coarse]) == 0
     large = json.loads(capfd.readouterr().out)
-    assert main(["press", STUDY, "--json", "--out", "linear", *coarse]) == 0
+    assert main(["press", STUDY, "--motion", "linear", "--json", "--out", "linear", *coarse]) == 0
     linear = json.loads(capfd.readouterr().out)
-    assert large["balanced"]
-    assert not linear["balanced"]
+    assert (large["motion"], large["balanced"]) == ("large", True)
+    assert (linear["motion"], linear["balanced"]) == ("linear", False)
+    assert 0.1 < linear["left_out_by_linear_strains"]["mean"] < linear["left_out_by_linear_strains"]["greatest"]
     # TR R-64 gives 7595 N.
     assert large["load_N"] == pytest.approx(7595.0, rel=0.1)
     assert large["load_N"] < 0.8 * linear["load_N"]

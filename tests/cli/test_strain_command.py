@@ -13,7 +13,8 @@ from tyrefem.cli import main
 from tyrefem.simulation.law_comparison import TOTAL, compared_laws
 
 STUDY = "nasa-22x5.5-8pr"
-BRIEF = ("--set", "mesh.size=10 mm", "--set", "drive.duration=120 s", "--set", "numerics.tolerance=0.1 delta_degC")
+BRIEF = ("--set", "mesh.size=10 mm", "--set", "drive.duration=120 s", "--set", "numerics.tolerance=0.1 delta_degC",
+         "--set", "mechanics.motion=linear")  # fmt: skip
 
 
 def test_numbers_files_and_picture(here: Path, capfd: pytest.CaptureFixture[str]) -> None:

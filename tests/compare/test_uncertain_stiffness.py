@@ -44,7 +44,7 @@ def test_each_changed_stiffness_costs_one_solution_and_the_rest_none(
     from tyrefem.mechanics.footprint.pressed_tyre import REMEMBERED_TYRES
     from tyrefem.mechanics.solid import inflation
 
-    study = tf.study("nasa-22x5.5-8pr", {**SHORT, **SHARED, "mechanics.strain": "fem"})
+    study = tf.study("nasa-22x5.5-8pr", {**SHORT, **SHARED, "mechanics.strain": "fem", "mechanics.motion": "linear"})
     table = measured(study, tmp_path)
     REMEMBERED_TYRES.clear()
     solved: list[Any] = []

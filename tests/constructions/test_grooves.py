@@ -101,7 +101,9 @@ def test_impossible_grooves_are_refused(changes, field, words):
 
 @functools.cache
 def pressed(width: str) -> Pressed:
-    return press(tf.study("passenger-205-55r16", {"mesh.size": "12 mm", "section.grooves.width": width}))
+    return press(
+        tf.study("passenger-205-55r16", {"mesh.size": "12 mm", "section.grooves.width": width}), motion="linear"
+    )
 
 
 def test_the_footprint_is_as_wide_as_its_outline_and_empty_in_the_grooves():

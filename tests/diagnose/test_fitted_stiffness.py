@@ -23,7 +23,7 @@ KEY = "materials.tread.shear_modulus.value"
 
 
 def study(law: str = "fem") -> tf.Study:
-    return tf.study("nasa-22x5.5-8pr", {**SHORT, "mechanics.strain": law})
+    return tf.study("nasa-22x5.5-8pr", {**SHORT, "mechanics.strain": law, "mechanics.motion": "linear"})
 
 
 def test_a_card_in_two_regions_is_one_unknown_and_amended_in_both() -> None:

@@ -226,7 +226,7 @@ def test_presses_and_exports(free: Callable[[float], None], tmp_path: Path) -> N
     words = r"0.5 mm makes [\d,]+ nodes of the footprint's finite elements; .*; [\d.]+ mm or more would fit"
     refused(lambda: press(tyrefem.study(NASA, {"mesh.size": "0.5 mm"})), "mesh.size", words)
     small = {"mesh.size": "6 mm"}
-    refused(lambda: press(tyrefem.study(NASA, small), balanced=True), "mesh.size", "would fit")
+    refused(lambda: press(tyrefem.study(NASA, small), motion="large"), "mesh.size", "would fit")
     refused(lambda: export(tyrefem.study(NASA, {"mesh.size": "0.5 mm"}), tmp_path / "x.npz"), "mesh.size", "would fit")
     words = "less than the time error of the full runs; must be at least numerics.tolerance, 0.01 K"
     refused(lambda: export(tyrefem.study(NASA, COARSE), tmp_path / "x.npz", tolerance=1e-12), "tolerance", words)

@@ -20,7 +20,7 @@ from tyrefem.reports.press import RevolvedTyre, write_files
 from tyrefem.reports.press_places import cycle_places, read_place
 
 STUDY = "nasa-22x5.5-8pr"
-COARSE = {"mesh.size": "12 mm"}
+COARSE = {"mesh.size": "12 mm", "mechanics.motion": "linear"}
 
 
 @pytest.fixture(scope="module")
@@ -173,7 +173,7 @@ def test_unequal_sides_come_as_a_mesh_of_the_whole_section(tmp_path: Path) -> No
     mesh = build(section, size=24e-3, through=1).mesh
     mesh.doflocs[1] = np.where(mesh.p[1] > 0, 1.04 * mesh.p[1], mesh.p[1])
     file = write(mesh, tmp_path / "unequal.msh")
-    changes = {"mesh.file": str(file), "mesh.section": "full"}
+    changes = {"mesh.file": str(file), "mesh.section": "full", "mechanics.motion": "linear"}
     footprint = press(study(STUDY, changes), deflection=0.015, tolerance=0.1).footprint
     assert abs(centre_of_pressure(footprint)) > 2e-4
     assert footprint.pressure_integral == pytest.approx(footprint.load, rel=1e-9)

@@ -13,7 +13,6 @@ import skfem
 import tyrefem as tf
 from tyrefem.heating_test.grid import Fineness
 from tyrefem.heating_test.readings import matched
-from tyrefem.mechanics.footprint.press import press
 from tyrefem.reduced.surrogate import surrogate
 from tyrefem.rig import identify, load, simulate
 from tyrefem.variants.plan import plan_of
@@ -64,7 +63,8 @@ OBJECTS: dict[str, tuple[Callable[[], Any], str]] = {
     "conduction problem": (problem, "unknowns"),
     "field": (lambda: problem().steady(), "degC"),
     "history": (lambda: problem().transient(np.linspace(0.0, 10.0, 50)), "degC"),
-    "pressed tyre": (lambda: press(study()), "deflection"),
+    "pressed tyre": (lambda: study().press(motion="linear"), "deflection"),
+    "natural modes": (lambda: study().natural_frequencies([0], 1), "Hz"),
     "reduced model": (
         lambda: surrogate(
             plan_of(study(), {"drive.speed": ("15 mph", "20 mph")}, sample="sobol", count=16), tolerance=0.05

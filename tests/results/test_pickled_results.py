@@ -31,7 +31,7 @@ def again(thing: Any) -> Any:
     [
         ("nasa-22x5.5-8pr", EVERYTHING),
         ("nasa-brake-yaw-skid", {"mesh.size": "12 mm"}),
-        ("passenger-205-55r16", {"mesh.size": "16 mm", "drive.duration": "20 s"}),
+        ("passenger-205-55r16", {"mesh.size": "16 mm", "drive.duration": "20 s", "mechanics.motion": "linear"}),
     ],
     ids=["feedback and effects", "sliding", "finite-element strains, plies"],
 )

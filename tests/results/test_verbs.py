@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import dataclasses
+import json
 import pickle
 from dataclasses import dataclass
 from pathlib import Path
@@ -15,6 +16,7 @@ from tyrefem.api import Comparison, Diagnosis, with_verbs
 from tyrefem.brief import Brief
 from tyrefem.compare import compare
 from tyrefem.diagnose import diagnosis as diagnosis_data
+from tyrefem.mechanics.footprint.press import press
 
 
 @dataclass(frozen=True, eq=False)
@@ -52,6 +54,21 @@ def test_every_further_look_of_a_diagnosis_has_verbs() -> None:
     looks = Diagnosis.of(first).looks
     assert [type(look) for look in looks] == [Diagnosis, Diagnosis]
     assert first.again is second
+
+
+def test_a_tyre_is_pressed_and_its_frequencies_are_found_by_verbs(tmp_path: Path) -> None:
+    coarse = tf.study("nasa-22x5.5-8pr", {"mesh.size": "14 mm", "mechanics.motion": "linear"})
+    loaded = coarse.press(deflection=0.015)
+    assert loaded.footprint.load == pytest.approx(press(coarse, deflection=0.015).footprint.load, rel=1e-12)
+    assert loaded.footprint.motion == "linear"
+    assert loaded.save(tmp_path / "pressed", ["tread"], pictures=False, vtk=False) == tmp_path / "pressed"
+    assert json.loads((tmp_path / "pressed/press.json").read_text(encoding="utf-8"))["motion"] == "linear"
+    assert "tread" in (tmp_path / "pressed/strain-cycle.csv").read_text(encoding="utf-8").splitlines()[1]
+    modes = coarse.natural_frequencies([0], 1, pressure=4e5)
+    assert modes.table.name.tolist() == ["lateral"]
+    assert modes.tyre.pressure == 4e5
+    assert modes.save(tmp_path / "modes", pictures=False) == tmp_path / "modes"
+    assert sorted(path.name for path in (tmp_path / "modes").iterdir()) == ["modes.csv", "modes.json"]
 
 
 def test_a_comparison_has_verbs_and_its_data_have_none(tmp_path: Path) -> None:

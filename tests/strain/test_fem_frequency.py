@@ -28,7 +28,8 @@ PRONY = {
 
 
 def study(frequency: dict[str, Any] | None, **changes: Any) -> tf.Study:
-    base = {"mechanics.strain": "fem", "mesh.size": "10 mm", "drive.duration": "60 s", **changes}
+    base = {"mechanics.strain": "fem", "mechanics.motion": "linear", "mesh.size": "10 mm", "drive.duration": "60 s"}
+    base |= changes
     cards = {} if frequency is None else {f"materials.{r}.loss_tangent.frequency": frequency for r in REGIONS}
     return tf.study("nasa-22x5.5-8pr", {**base, **cards})
 

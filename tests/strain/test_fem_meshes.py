@@ -30,6 +30,7 @@ def test_gmshs_quadrilaterals_inflate_as_the_mapped_mesh() -> None:
 def test_a_run_on_gmshs_triangles_takes_its_strain_from_the_mapped_mesh() -> None:
     """Only the places where energies are read differ."""
     changes = {"mechanics.strain": "fem", "mesh.size": "10 mm", "drive.duration": "60 s", "drive.load": "2000 lbf"}
+    changes["mechanics.motion"] = "linear"
     studies = [tf.study(STUDY, {**changes, "mesh.mesher": item}) for item in ("gmsh", "mapped")]
     assert studies[0].mesh().cell == "tri"
     results = [study.run() for study in studies]

@@ -11,7 +11,8 @@ from tyrefem.mechanics.cycle_schedule import cycle_schedule
 from tyrefem.mechanics.finite_elements import FiniteElements
 from tyrefem.mechanics.footprint.loss import RevolutionLoss
 
-FEM = {"mechanics.strain": "fem", "mesh.size": "8 mm"}
+LINEAR = {"mechanics.motion": "linear"}
+FEM = {"mechanics.strain": "fem", "mesh.size": "8 mm", **LINEAR}
 BRIEF = {"drive.duration": "60 s"}
 
 
@@ -48,7 +49,7 @@ def test_rolling_resistance_rises_about_in_proportion_to_the_load() -> None:
 
 
 def test_a_passenger_radial_loses_what_such_tyres_do_and_is_hottest_at_the_belt_edge() -> None:
-    study = tf.study("passenger-205-55r16", {"mesh.size": "8 mm", "mesh.element": "P1"})
+    study = tf.study("passenger-205-55r16", {"mesh.size": "8 mm", "mesh.element": "P1", **LINEAR})
     assert study.card.mechanics.strain == "fem"
     result = study.run()
     # Usual passenger tyres: 0.006 to 0.014.
@@ -64,7 +65,7 @@ def test_a_passenger_radial_loses_what_such_tyres_do_and_is_hottest_at_the_belt_
 
 def test_a_truck_radial_is_hottest_between_the_edge_of_its_working_belts_and_its_shoulder() -> None:
     """Not under the middle of the tread, where the contact pressure is highest: there the rubber is thinnest."""
-    changes = {"mesh.size": "18 mm", "mesh.element": "P1", "numerics.tolerance": "0.2 delta_degC"}
+    changes = {"mesh.size": "18 mm", "mesh.element": "P1", "numerics.tolerance": "0.2 delta_degC", **LINEAR}
     result = tf.study("truck-295-80r22.5", changes).run()
     # Label classes A to E of truck tyres: 0.004 to 0.008.
     assert 0.004 < result.rolling_resistance.coefficient < 0.008
@@ -78,7 +79,7 @@ def test_a_truck_radial_is_hottest_between_the_edge_of_its_working_belts_and_its
 
 
 def test_an_aircraft_radial_is_stable_and_its_bodys_plies_stay_tight() -> None:
-    study = tf.study("aircraft-radial", {"mechanics.strain": "fem", "mesh.size": "6 mm", **BRIEF})
+    study = tf.study("aircraft-radial", {"mesh.size": "6 mm", **BRIEF, **LINEAR})
     result = study.run()
     cycle = result.tyre.schedule.cycles[0][0]
     assert isinstance(cycle, FiniteElements)

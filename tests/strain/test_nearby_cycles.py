@@ -22,6 +22,7 @@ SD = {
     "materials.tread.conductivity.value": 0.15,
 }
 COARSE = {"mesh.size": "14 mm", "mesh.element": "P1", "drive.duration": "60 s", "uncertainty": SD}
+COARSE["mechanics.motion"] = "linear"
 
 
 @functools.cache

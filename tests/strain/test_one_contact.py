@@ -14,12 +14,15 @@ from tyrefem.boundaries.road_film import propagation_depth, triangular_film
 from tyrefem.mechanics.cycle_schedule import cycle_schedule, rated_case
 from tyrefem.mechanics.footprint import pressed_tyre
 from tyrefem.mechanics.footprint.press import Pressed, press
+from tyrefem.reports.inputs import mechanics_rows
 from tyrefem.reports.run import headline
+from tyrefem.reports.run_files import loaded_cycle
 from tyrefem.simulation.rolling_tyre import RollingTyre
 from tyrefem.variants.answers import answers
 
 COARSE = {
     "mechanics.strain": "fem",
+    "mechanics.motion": "linear",
     "mesh.size": "10 mm",
     "mesh.element": "P1",
     "drive.duration": "60 s",
@@ -59,6 +62,12 @@ def test_run_summary_report_and_press_tell_one_contact(name: str) -> None:
     (card,) = [entry for entry in headline(run(name)) if entry["label"] == "Deflection"]
     assert card["value"] == f"{footprint.deflection * 1e3:.1f} mm"
     assert f"footprint {footprint.length * 1e3:.0f} mm, {footprint.area * 1e4:.0f} cm²" in card["note"]
+    summary = run(name).summary()["footprint"]
+    assert (summary["motion"], summary["deflection_m"]) == ("linear", pytest.approx(footprint.deflection, rel=1e-8))
+    left_out = summary["left_out_by_linear_strains"]
+    assert left_out["mean"] == pytest.approx(pressed(name).linearisation_error.mean, rel=1e-6)
+    stated = f"leave out {pressed(name).linearisation_error.mean:.0%} of themselves"
+    assert any(stated in value for label, value in mechanics_rows(study(name), loaded_cycle(run(name))))
     assert answers(run(name))["deflection_m"] == pytest.approx(footprint.deflection, rel=1e-8)
 
 

@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import json
 from pathlib import Path
 from typing import TYPE_CHECKING, Annotated
 
@@ -26,9 +25,6 @@ from tyrefem.output.folder import results_folder
 if TYPE_CHECKING:
     from tyrefem.mechanics.footprint.natural_frequencies import NaturalFrequencies
 
-#: Files that the command writes.
-FILES = ("modes.csv", "modes.json", "modes.png")
-
 
 def modes(
     study: StudyArgument,
@@ -46,8 +42,7 @@ def modes(
     """Natural frequencies and modes of the inflated, unloaded tyre that does not roll, with its rim held."""
     from tyrefem.api import study as load
     from tyrefem.mechanics.footprint.natural_frequencies import NEEDS, natural_frequencies
-    from tyrefem.output import atomic_folder, jsonable
-    from tyrefem.reports.modes import picture
+    from tyrefem.reports.modes import FILES, write_files
 
     given = None if pressure is None else _pressure(pressure)
     loaded = load(study, settings(changes), case)
@@ -63,12 +58,7 @@ def modes(
             field = "drive.phases.0.pressure" if error.field == "pressure" and given is None else error.field
             placed = InputError(error.message, field=field, file=error.file or loaded.file)
             raise error if error.file else loaded.as_written(placed) from None
-        with atomic_folder(folder) as temporary:
-            result.table.to_csv(temporary / "modes.csv", index=False, lineterminator="\n")
-            text = json.dumps(jsonable(result.summary()), indent=1, ensure_ascii=False, allow_nan=False)
-            (temporary / "modes.json").write_text(text + "\n", encoding="utf-8")
-            if pictures:
-                (temporary / "modes.png").write_bytes(picture(result))
+        write_files(result, folder, pictures=pictures)
     if as_json:
         print_json(result.summary())
         return

@@ -53,9 +53,16 @@ def press(
         list[str] | None,
         typer.Option(metavar="PLACE", help="Write the strain cycle of this place: 'r, z' or a region. Repeatable."),
     ] = None,
+    motion: Annotated[
+        str | None,
+        typer.Option(
+            metavar="large|linear",
+            help="Large motion, or linear about the inflated tyre (a quick look, too stiff). Default: the study's.",
+        ),
+    ] = None,
     balanced: Annotated[
         bool,
-        typer.Option("--balanced", help="Solve for large displacements, not linear about the inflated tyre: slower."),
+        typer.Option("--balanced", hidden=True, help="Older spelling of --motion large."),
     ] = False,
     pictures: Annotated[bool, typer.Option(help="Draw the PNG pictures.")] = True,
     vtk: Annotated[bool, typer.Option(help="Write the whole deformed tyre, tyre.vtu.")] = True,
@@ -75,6 +82,7 @@ def press(
 
     texts = {"pressure": pressure, "load": load, "deflection": deflection, "drum_diameter": drum, "camber": camber}
     given = {name: _read(name, text) for name, text in texts.items() if text is not None}
+    chosen = _motion(motion, balanced=balanced)
     loaded = load_study(study, settings(changes), case)
     NEEDS.check(loaded)
     warn(loaded.warnings)
@@ -85,7 +93,7 @@ def press(
         try:
             for place in at or ():
                 read_place(loaded.section, place)
-            result = pressed_by(loaded, **given, balanced=balanced)
+            result = pressed_by(loaded, **given, motion=chosen)
             places = cycle_places(result, at or ())
             curve = result.curve()
         except InputError as error:
@@ -114,10 +122,16 @@ def _read(name: str, text: str) -> float:
         raise error.within(field=option) from None
 
 
+def _motion(motion: str | None, *, balanced: bool) -> str | None:
+    if balanced and motion not in (None, "large"):
+        raise InputError(f"'{motion}' contradicts --balanced, which is --motion large", field="--motion")
+    return "large" if balanced else motion
+
+
 def _placed(error: InputError, given: dict[str, float], study: Study) -> InputError:
     """The error with its field: the option, or the study's drive that has the value."""
-    if error.field == "at":
-        return InputError(error.message, field="--at")
+    if error.field in ("at", "motion"):
+        return InputError(error.message, field=f"--{error.field}")
     if error.field in given:
         return InputError(error.message, field=OPTIONS[error.field][0])
     if error.field in OPTIONS:
@@ -127,6 +141,8 @@ def _placed(error: InputError, given: dict[str, float], study: Study) -> InputEr
 
 
 def _words(result: Pressed) -> str:
+    from tyrefem.reports.words import motion_words
+
     tyre, footprint, loss = result.tyre, result.footprint, result.loss
     drum = result.pressing.road.drum_diameter
     road = "flat road" if math.isinf(drum) else f"drum of {drum:.4g} m"
@@ -159,9 +175,7 @@ def _words(result: Pressed) -> str:
         f"{result.speed:.4g} m/s and {loss.temperature:.4g} degC",
         f"  harmonics           {footprint.harmonics}, error {footprint.error:.2%} (allowed {result.tolerance:.0%}); "
         f"{tyre.body.rings.n_nodes} nodes",
-        "  motion              {}; linear strains leave out {:.0%} of themselves on average, {:.0%} in the {}".format(
-            "large, in balance" if result.balanced else "linear about the inflated tyre", *result.linearisation_error
-        ),
+        f"  motion              {motion_words(footprint.motion, result.linearisation_error)}",
     ]
     lines += [f"  {value.words}" for value in result.published]
     return "\n".join(lines)

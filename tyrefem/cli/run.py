@@ -93,8 +93,8 @@ def _single(study: Study, folder: Path, pictures: bool, vtk: bool, revolved: boo
 
 def _words(result: Result) -> str:
     peak, region = result.extremes.iloc[0], result.summary()["hottest"]["region"]
-    from tyrefem.reports.run_files import of_run
-    from tyrefem.reports.words import phase_lines
+    from tyrefem.reports.run_files import loaded_cycle, of_run
+    from tyrefem.reports.words import motion_words, phase_lines
 
     resistance, budget = result.rolling_resistance, result.heat_budget
     rubbed = "" if result.sliding is None else f"sliding {budget.total('sliding') / 1e3:.1f} kJ, "
@@ -110,6 +110,11 @@ def _words(result: Result) -> str:
         f"{budget.total('stored') / 1e3:.1f} kJ, lost {budget.total('lost') / 1e3:.1f} kJ; "
         f"{budget.closing}",
     ]
+    cycle = loaded_cycle(result)
+    if cycle is not None:
+        motion = result.study.card.mechanics.motion
+        error = cycle.linearisation_error if motion == "linear" else None
+        lines.append(f"  motion              {motion_words(motion, error)}")
     if result.feedback is not None:
         lines.append(f"  feedback            {result.feedback.words}")
     lines += [f"  {value.words}" for value in of_run(result)]

@@ -102,6 +102,10 @@ class MeshChoice(Card):
     unit: str = "m"
 
 
+#: Motion of a footprint by finite elements.
+FootprintMotion = Literal["large", "linear"]
+
+
 class Feedback(Card):
     """Feedback of temperature on the strain cycle: `tyrefem.simulation.feedback`.
 
@@ -125,7 +129,7 @@ class Mechanics(Card):
     W = 2 pi U tan d with U = E' e0^2 / 2. ``poisson_term`` is c_a = 1 - nu_pt nu_tp (eq 7a); 0.75 is an estimate.
     ``strain``: ``arcs``, the NASA report's bias tyre; ``barrel``, its deformation by finite elements; ``fem``, the
     footprint by finite elements; or ``given``, the energies of the table ``energy`` (which only this law reads).
-    ``motion``: for ``fem``, footprint linear about the inflated tyre, or in ``large`` motion (`footprint.balance`).
+    ``motion``: footprint by finite elements in ``large`` motion, or ``linear`` about the inflated tyre: the quick look.
     ``revolution``: for ``fem``, all harmonics with their frequencies, or one cycle as in the report. ``feedback``:
     feedback of temperature on the strain cycle; none without this table.
     """
@@ -137,7 +141,7 @@ class Mechanics(Card):
     loss_convention: Literal["nasa", "sinusoid"] = "nasa"
     poisson_term: Annotated[float, Unit("1", ge=0, le=1)] = 0.75
     membrane_shear: bool = True
-    motion: Literal["linear", "large"] = "linear"
+    motion: FootprintMotion = "linear"
     revolution: Literal["harmonics", "one-cycle"] = "harmonics"
     feedback: Feedback | None = None
 

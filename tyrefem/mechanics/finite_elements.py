@@ -23,6 +23,7 @@ if TYPE_CHECKING:
     from tyrefem.inputs.loading import LoadCase
     from tyrefem.inputs.study import StudyData
     from tyrefem.mechanics.footprint.footprint import Footprint
+    from tyrefem.mechanics.footprint.strain_harmonics import LinearisationError
     from tyrefem.mechanics.solid.elements import Rings
     from tyrefem.mechanics.solid.inflation import Inflation
 
@@ -144,6 +145,15 @@ class FiniteElements:
         load = footprint.load if case.by_deflection else case.load
         contact = PressedContact(footprint.length, footprint.area, footprint.rolling_radius)
         return replace(case, load=load, deflection=footprint.deflection, contact=contact)
+
+    @functools.cached_property
+    def linearisation_error(self) -> LinearisationError | None:
+        """What linear strains leave out of the strain cycle; None without load."""
+        if self.footprint is None:
+            return None
+        from tyrefem.mechanics.footprint.strain_harmonics import StrainHarmonics
+
+        return StrainHarmonics(self.footprint).linearisation_error
 
     @functools.cached_property
     def densities(self) -> Array:

@@ -37,6 +37,10 @@ class StrainLaw(ABC):
     #: For the report: the assumption, and its consequence.
     assumption: ClassVar[tuple[str, str]] = ("", "")
 
+    def assumption_of(self, study: StudyData) -> tuple[str, str]:
+        """The assumption as the report of a study states it."""
+        return self.assumption
+
     @abstractmethod
     def provider(self, study: StudyData) -> Callable[[LoadCase], Any]:
         """A function from load case to strain cycle (`tyrefem.mechanics.strain_cycle.StrainCycle`), for one study.

@@ -12,7 +12,7 @@ from tyrefem.inputs.uncertain_numbers import stated_deviations
 from tyrefem.materials.card import strain_laws
 from tyrefem.mechanics.strain_laws import strain_law
 from tyrefem.quantity import Unit
-from tyrefem.reports.words import number
+from tyrefem.reports.words import motion_words, number
 
 if TYPE_CHECKING:
     from tyrefem.cards import Card
@@ -22,6 +22,7 @@ if TYPE_CHECKING:
     from tyrefem.materials.elasticity import Cords
     from tyrefem.materials.properties import Softening
     from tyrefem.materials.strain_dependence import StrainDependence
+    from tyrefem.mechanics.finite_elements import FiniteElements
 
 
 def material_rows(study: StudyData) -> tuple[list[dict[str, Any]], list[str]]:
@@ -139,8 +140,8 @@ def boundary_rows(study: StudyData) -> list[list[str]]:
     return rows
 
 
-def mechanics_rows(study: StudyData) -> list[list[str]]:
-    """Name and value of every setting of strain and load."""
+def mechanics_rows(study: StudyData, cycle: FiniteElements | None = None) -> list[list[str]]:
+    """Name and value of every setting of strain and load; ``cycle``: a strain cycle by finite elements of the run."""
     mechanics = study.card.mechanics
     law, energy = mechanics.load_law, mechanics.energy if mechanics.strain == "given" else None
     rows = [
@@ -148,6 +149,7 @@ def mechanics_rows(study: StudyData) -> list[list[str]]:
         _load(study)
         if strain_law(study).presses
         else ["load and deflection", "; ".join([str(law.law), *_numbers(law)])],
+        *_motion(study, cycle),
         ["loss convention", mechanics.loss_convention],
         *_feedback(mechanics),
     ]
@@ -173,6 +175,15 @@ def _load(study: StudyData) -> list[str]:
     if any(effect.name in ("pressure-rise", "pressure-loss") for effect in study.effects):
         words += ", except for the change of deflection by effects on the pressure"
     return ["load and deflection", words]
+
+
+def _motion(study: StudyData, cycle: FiniteElements | None) -> list[list[str]]:
+    """Row on the footprint's motion, with what a linear one leaves out; none if the law does not press the tyre."""
+    if not strain_law(study).presses:
+        return []
+    motion = study.card.mechanics.motion
+    error = cycle.linearisation_error if cycle is not None and motion == "linear" else None
+    return [["motion of the footprint", motion_words(motion, error)]]
 
 
 def _feedback(mechanics: Mechanics) -> list[list[str]]:
@@ -301,8 +312,8 @@ def assumptions(study: StudyData, estimates: list[str]) -> list[tuple[str, str]]
     given = mechanics.energy if mechanics.strain == "given" else None
     if given is not None:
         always[0] = ("Strain energy given, not computed", f"{GIVEN} Their source: {given.source}.")
-    if any(strain_law(study).assumption):
-        always[0] = strain_law(study).assumption
+    if any(assumption := strain_law(study).assumption_of(study)):
+        always[0] = assumption
     if mechanics.feedback is not None:
         always[-1] = ("Feedback of temperature on the strain cycle", _feedback_assumptions(mechanics.feedback))
     if slip is FREE and not all(effect.free_rolling for effect in study.effects):

@@ -1,19 +1,35 @@
-"""Picture of natural modes: the moved section at the angle of its greatest motion."""
+"""Files of natural modes: tables, and the moved section at the angle of its greatest motion."""
 
 from __future__ import annotations
 
 import io
+import json
+from pathlib import Path
 from typing import TYPE_CHECKING
 
 import numpy as np
 
+from tyrefem.output import atomic_folder, jsonable
+
 if TYPE_CHECKING:
     from tyrefem.mechanics.footprint.natural_frequencies import NaturalFrequencies
 
+#: Files of `write_files`.
+FILES = ("modes.csv", "modes.json", "modes.png")
 #: Largest displacement in the picture, over the section's height.
 DRAWN = 0.15
 #: Sections of a row, and of the picture.
 COLUMNS, MOST = 4, 12
+
+
+def write_files(result: NaturalFrequencies, folder: Path, *, pictures: bool = True) -> None:
+    """``modes.csv``, ``modes.json``, and with pictures ``modes.png``."""
+    with atomic_folder(folder) as temporary:
+        result.table.to_csv(temporary / "modes.csv", index=False, lineterminator="\n")
+        text = json.dumps(jsonable(result.summary()), indent=1, ensure_ascii=False, allow_nan=False)
+        (temporary / "modes.json").write_text(text + "\n", encoding="utf-8")
+        if pictures:
+            (temporary / "modes.png").write_bytes(picture(result))
 
 
 def picture(result: NaturalFrequencies) -> bytes:

@@ -22,7 +22,7 @@ from tyrefem.reports.inputs import (
     section_sources,
     study_text,
 )
-from tyrefem.reports.run_files import of_run, summary
+from tyrefem.reports.run_files import loaded_cycle, of_run, summary
 from tyrefem.reports.words import number, seconds
 
 if TYPE_CHECKING:
@@ -90,7 +90,7 @@ def content(result: ResultData) -> dict[str, Any]:
         "estimates": estimates,
         "boundaries": boundary_rows(study),
         "effects": effect_rows(study),
-        "mechanics": mechanics_rows(study),
+        "mechanics": mechanics_rows(study, loaded_cycle(result)),
         "sources": section_sources(study),
         "numerics": _numerics(result),
         "assumptions": assumptions(study, estimates),

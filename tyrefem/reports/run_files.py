@@ -11,20 +11,50 @@ from tyrefem.output import atomic_path, versions, write_json
 
 if TYPE_CHECKING:
     from tyrefem.inputs.study import StudyData
+    from tyrefem.mechanics.finite_elements import FiniteElements
     from tyrefem.simulation.result import ResultData
 
 
 def of_run(result: ResultData) -> tuple[PublishedComparison, ...]:
     """Compare a run with its study's published ranges: rolling resistance at the end, and with finite elements
     (``mechanics.strain = "fem"``) the footprint under the last load of the first loaded phase."""
+    values = {"rolling_resistance_coefficient": result.rolling_resistance.coefficient}
+    cycle = loaded_cycle(result)
+    if cycle is not None and cycle.footprint is not None:
+        values |= of_footprint(cycle.footprint)
+    return compared(result.study.card.published, values)
+
+
+def loaded_cycle(result: ResultData) -> FiniteElements | None:
+    """The strain cycle under the last load of the first loaded phase; None without finite elements or without load."""
     from tyrefem.mechanics.finite_elements import FiniteElements
 
-    values = {"rolling_resistance_coefficient": result.rolling_resistance.coefficient}
     for cycle in (cycles[-1] for cycles in result.tyre.schedule.cycles):
         if isinstance(cycle, FiniteElements) and cycle.footprint is not None:
-            values |= of_footprint(cycle.footprint)
-            break
-    return compared(result.study.card.published, values)
+            return cycle
+    return None
+
+
+def footprint_summary(cycle: FiniteElements | None) -> dict[str, Any]:
+    """Numbers of a strain cycle's footprint, SI; for a linear one also what its strains leave out."""
+    if cycle is None or cycle.footprint is None:
+        return {}
+    footprint = cycle.footprint
+    numbers: dict[str, Any] = {
+        "motion": footprint.motion,
+        "load_N": footprint.load,
+        "deflection_m": footprint.deflection,
+        "tangent_stiffness_N_m": footprint.stiffness,
+        "length_m": footprint.length,
+        "width_m": footprint.width,
+        "area_m2": footprint.area,
+        "rolling_radius_m": footprint.rolling_radius,
+        "harmonics": footprint.harmonics,
+        "error": footprint.error,
+    }
+    if footprint.motion == "linear" and cycle.linearisation_error is not None:
+        numbers["left_out_by_linear_strains"] = asdict(cycle.linearisation_error)
+    return {"footprint": numbers}
 
 
 #: Tables of a run, as CSV files.
@@ -57,6 +87,7 @@ def summary(result: ResultData) -> dict[str, Any]:
             "cold_coefficient": resistance.cold_coefficient,
         },
         "published": [value.to_dict() for value in of_run(result)],
+        **footprint_summary(loaded_cycle(result)),
         "contained_air": {
             "temperature_degC": float(result.gas_temperature[-1]),
             "gauge_pressure_Pa": float(result.gas_pressure[-1]),

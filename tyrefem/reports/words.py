@@ -9,6 +9,7 @@ from typing import TYPE_CHECKING
 from tyrefem.boundaries.friction_tables import IceRow, WoodRow, ice_distance
 
 if TYPE_CHECKING:
+    from tyrefem.mechanics.footprint.strain_harmonics import LinearisationError
     from tyrefem.simulation.sliding_outcome import SlidingOutcome
 
 
@@ -43,6 +44,22 @@ def seconds(value: float) -> str:
     if value >= 7200:
         return f"{text} ({number(value / 3600, 3)} h)"
     return f"{text} ({number(value / 60, 3)} min)" if value >= 300 else text
+
+
+def motion_words(motion: str, error: LinearisationError | None = None) -> str:
+    """A footprint's motion, and what linear strains leave out.
+
+    >>> motion_words("large"), motion_words("linear")
+    ('large', 'linear about the inflated tyre: a quick look, too stiff')
+    """
+    linear = motion == "linear"
+    words = "linear about the inflated tyre: a quick look, too stiff" if linear else "large"
+    if error is None:
+        return words
+    return (
+        f"{words}; linear strains {'' if linear else 'would '}leave out {error.mean:.0%} of themselves on average, "
+        f"{error.greatest:.0%} in the {error.region}"
+    )
 
 
 def phase_lines(outcome: SlidingOutcome) -> Iterator[str]:

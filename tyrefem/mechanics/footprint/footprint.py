@@ -57,9 +57,14 @@ class Footprint(Brief):
             "length, width": f"{self.length * 1e3:.1f} mm, {self.width * 1e3:.1f} mm",
             "pressure": f"{self.mean_pressure / 1e3:.4g} kPa on average, {self.pressure.max() / 1e3:.4g} kPa at most",
             "harmonics": f"{self.harmonics}{error}",
-            "motion": "linear about the inflated tyre" if self.balanced is None else "large",
+            "motion": "linear about the inflated tyre" if self.motion == "linear" else "large",
             "unstable": self.unstable,
         }
+
+    @property
+    def motion(self) -> str:
+        """``"large"``, or ``"linear"`` about the inflated tyre."""
+        return "linear" if self.balanced is None else "large"
 
     @property
     def harmonics(self) -> int:

@@ -4,18 +4,19 @@ from __future__ import annotations
 
 import functools
 from collections.abc import Mapping
-from dataclasses import dataclass
-from typing import TYPE_CHECKING, Any
+from dataclasses import asdict, dataclass
+from typing import TYPE_CHECKING, Any, get_args
 
 import numpy as np
 from numpy.typing import NDArray
 
 from tyrefem.brief import Brief
-from tyrefem.errors import InputError
+from tyrefem.errors import InputError, nearest
 from tyrefem.estimates import work as estimate
 from tyrefem.geometry.meshing.expected import QUADRATIC
 from tyrefem.inputs.motion import motion_in
-from tyrefem.mechanics.footprint.pressed_tyre import TOLERANCE, mechanical_mesh
+from tyrefem.inputs.study_card import FootprintMotion
+from tyrefem.mechanics.footprint.pressed_tyre import QUICK_LOOK, TOLERANCE, mechanical_mesh
 from tyrefem.mechanics.footprint.road import Road
 from tyrefem.requirements import Requirements
 
@@ -26,12 +27,13 @@ if TYPE_CHECKING:
     from tyrefem.mechanics.footprint.contact import Pressing
     from tyrefem.mechanics.footprint.footprint import Footprint
     from tyrefem.mechanics.footprint.loss import RevolutionLoss
-    from tyrefem.mechanics.footprint.strain_harmonics import StrainHarmonics
+    from tyrefem.mechanics.footprint.strain_harmonics import LinearisationError, StrainHarmonics
     from tyrefem.mechanics.solid.inflation import Inflation
 
 Array = NDArray[np.float64]
 #: Requirements of a footprint on the study.
 NEEDS = Requirements("a footprint")
+MOTIONS = get_args(FootprintMotion)
 #: The load-deflection curve ends at this factor beyond the footprint, or just before the rim.
 BEYOND = 1.25
 BEFORE_RIM = 0.98
@@ -68,7 +70,7 @@ class Pressed(Brief):
     @property
     def balanced(self) -> bool:
         """True if the footprint is in large motion."""
-        return self.footprint.balanced is not None
+        return self.footprint.motion == "large"
 
     @property
     def bead_tension(self) -> float | None:
@@ -101,15 +103,10 @@ class Pressed(Brief):
 
         return StrainHarmonics(self.footprint)
 
-    @functools.cached_property
-    def linearisation_error(self) -> tuple[float, float, str]:
-        """Ratio of Green's strain minus its linear part to the linear part (`StrainHarmonics.coarseness`): root mean
-        square by volume, largest value of an element, and the region of that element."""
-        coarse = self.cycle.coarseness()
-        worst = int(np.argmax(coarse))
-        volumes = self.cycle.elements.weights.sum(axis=1)
-        mean = float(np.sqrt((coarse**2 * volumes).sum() / volumes.sum()))
-        return mean, float(coarse[worst]), self.tyre.body.rings.region_of(worst)
+    @property
+    def linearisation_error(self) -> LinearisationError:
+        """What linear strains leave out."""
+        return self.cycle.linearisation_error
 
     @functools.cached_property
     def loss(self) -> RevolutionLoss | None:
@@ -184,10 +181,9 @@ class Pressed(Brief):
             "published": [value.to_dict() for value in self.published],
             "harmonics": footprint.harmonics,
             "error": footprint.error,
+            "motion": footprint.motion,
             "balanced": self.balanced,
-            "left_out_by_linear_strains": dict(
-                zip(("mean", "greatest", "region"), self.linearisation_error, strict=True)
-            ),
+            "left_out_by_linear_strains": asdict(self.linearisation_error),
             "tolerance": self.tolerance,
             "unstable_harmonics": list(footprint.unstable),
             "mesh": {**self.mesh.summary(), "nodes_of_nine_node_elements": self.tyre.body.rings.n_nodes},
@@ -204,7 +200,7 @@ def press(
     drum_diameter: float | None = None,
     camber: float = 0.0,
     tolerance: float = TOLERANCE,
-    balanced: bool = False,
+    motion: str | None = None,
 ) -> Pressed:
     """Inflate a study's tyre and press it on the road; defaults are the values at the start of the drive's first phase.
 
@@ -216,12 +212,13 @@ def press(
     drum_diameter : m; infinite for a flat road.
     camber : rad; positive: the side z > 0 moves down. A half section is completed by its mirror image.
     tolerance : allowed change with the number of harmonics.
-    balanced : in large motion (`footprint.balance`) instead of linear about the inflated state: slower.
+    motion : ``"large"``, or ``"linear"`` about the inflated state: the quick look. By default that of the study's
+        ``[mechanics]``.
 
     Raises
     ------
-    InputError : a campaign; a value that is not positive; both load and deflection; no equilibrium; a load that the
-        tyre cannot carry.
+    InputError : a campaign; a value that is not positive; both load and deflection; an unknown motion; no equilibrium;
+        a load that the tyre cannot carry.
 
     >>> from tyrefem import study
     >>> pressed = press(study("nasa-22x5.5-8pr", {"mesh.size": "12 mm"}), deflection=0.015)
@@ -232,6 +229,10 @@ def press(
     from tyrefem.mechanics.solid.inflation import inflate
 
     NEEDS.check(study)
+    motion = study.card.mechanics.motion if motion is None else motion
+    if motion not in MOTIONS:
+        raise InputError(f"no motion '{motion}'{nearest(motion, MOTIONS)}", field="motion")
+    large = motion == "large"
     phase = study.card.drive.phases[0]
     if load is not None and deflection is not None:
         raise InputError("give a load or a deflection, not both", field="load")
@@ -253,12 +254,16 @@ def press(
     road = Road(drum, camber)
     if camber and study.section.half:
         study = study.replace({"mesh.section": "full"})
-    mesh = mechanical_mesh(study, large=balanced)
+    mesh = mechanical_mesh(study, large=large)
     nodes = QUADRATIC * mesh.n_nodes
-    estimate.warn_if_long(estimate.mechanics(nodes, large=balanced).time, f"the footprint of {nodes:,} nodes")
+    estimate.warn_if_long(
+        estimate.mechanics(nodes, large=large).time,
+        f"the footprint of {nodes:,} nodes",
+        f"; {QUICK_LOOK}" if large else "",
+    )
     tyre = inflate(study, pressure, mesh)
     pressing = Pressing(tyre.state, road)
-    if not balanced:
+    if not large:
         footprint = pressing.solve(load=load, deflection=deflection, tolerance=tolerance)
         return Pressed(study, mesh, tyre, pressing, footprint, tolerance)
     from tyrefem.mechanics.footprint.harmonic_balance import Balance

@@ -26,6 +26,16 @@ class LargestEdgeShear:
     component: str
 
 
+@dataclass(frozen=True)
+class LinearisationError:
+    """What linear strains leave out of Green's strain, over the linear strain (`StrainHarmonics.coarseness`): root mean
+    square by volume, largest value of an element, and the region of that element."""
+
+    mean: float
+    greatest: float
+    region: str
+
+
 @dataclass(frozen=True, eq=False)
 class StrainHarmonics:
     """Strain e(t) = sum e_n (cos n t for rr, zz, tt, rz; sin n t for rt, zt) at the Gauss points, beyond inflation.
@@ -164,6 +174,15 @@ class StrainHarmonics:
             second += (half**2 * self.elements.weights).sum(axis=(0, 1, 3))
             first += (linear**2 * self.elements.weights).sum(axis=(0, 1, 3))
         return np.asarray(np.sqrt(second / np.maximum(first, 1e-300)))
+
+    @functools.cached_property
+    def linearisation_error(self) -> LinearisationError:
+        """`coarseness` of the whole section."""
+        coarse, volumes = self.coarseness(), self.elements.weights.sum(axis=1)
+        worst = int(np.argmax(coarse))
+        mean = float(np.sqrt((coarse**2 * volumes).sum() / volumes.sum()))
+        names = [name for name, members in (self.elements.mesh.subdomains or {}).items() if worst in members]
+        return LinearisationError(mean, float(coarse[worst]), names[0] if names else "")
 
     def gradient(self, angle: float) -> Array:
         """(3, 3, n_elements, n_points) displacement gradient H_ki at an angle, components (r, z, t)."""

@@ -21,11 +21,21 @@ class FootprintByElements(StrainLaw):
     by_elements: ClassVar[bool] = True
     presses: ClassVar[bool] = True
     assumption: ClassVar[tuple[str, str]] = (
-        "A small deflection about the inflated tyre",
-        "The section is inflated in large displacement and pressed on the road by Fourier harmonics of small motion "
-        "about that state: without friction, and with too much load at a large deflection. Nothing of it is compared "
-        "with a measured tyre.",
+        "A footprint without friction",
+        "The section is inflated and pressed on the road by Fourier harmonics in large motion: without friction and "
+        "inertia. The contact and the strains of a revolution are computed, not assumed.",
     )
+
+    def assumption_of(self, study: StudyData) -> tuple[str, str]:
+        """Large motion, or the linear one with what it leaves out."""
+        if study.card.mechanics.motion == "large":
+            return self.assumption
+        return (
+            "A small deflection about the inflated tyre",
+            "The section is inflated in large displacement and pressed on the road by Fourier harmonics of small "
+            "motion about that state, without friction. Rotations under the footprint are not small: the tyre is too "
+            'stiff and its strains too large. mechanics.motion = "large" computes them.',
+        )
 
     def provider(self, study: StudyData) -> Callable[[LoadCase], FiniteElements]:
         """As `tyrefem.mechanics.finite_elements.provider`."""
