@@ -272,7 +272,7 @@ class Study(studies.StudyData):
     ) -> NaturalModes:
         """Natural frequencies of the inflated tyre without load and rotation, with its rim held.
 
-        ``harmonics``: waves round the wheel; ``count``: modes of each; option ``pressure``, Pa. See
+        ``harmonics``: waves round the wheel; ``count``: modes of each; options ``pressure``, Pa, and ``amplitude``. See
         `tyrefem.mechanics.footprint.natural_frequencies.natural_frequencies`.
 
         >>> study("nasa-22x5.5-8pr", {"mesh.size": "12 mm"}).natural_frequencies([0], 1).table.name.tolist()

@@ -92,3 +92,35 @@ def test_numbers_out_of_range(folder: Path, harmonics: tuple[int, ...], count: i
 def test_an_unknown_name_lists_the_names(modes: NaturalFrequencies) -> None:
     with pytest.raises(InputError, match=r"no mode is called 'rocking'; there are lateral"):
         modes.frequency("rocking")
+
+
+SWEEP = {
+    "small_strain_modulus": "2.0 MPa",
+    "large_strain_modulus": "0.7 MPa",
+    "greatest_loss_modulus": "0.17 MPa",
+    "large_strain_loss_modulus": "0.05 MPa",
+    "critical_strain": "2 %",
+    "source": "test",
+}
+
+
+def test_small_vibrations_meet_the_modulus_of_their_amplitude(folder: Path, modes: NaturalFrequencies) -> None:
+    """At the amplitude of the card's modulus nothing changes; at a smaller one every mode is higher."""
+    changes = {"materials.sidewall": {"base": "rubber-sidewall", "strain_dependence": SWEEP}}
+    study = tf.study(folder / "study.toml", changes)
+    bare = tf.study(folder / "study.toml", {"materials.sidewall": "rubber-sidewall"})
+    as_given = natural_frequencies(bare, (0, 1), 2).table.frequency_Hz.to_numpy()
+    same = natural_frequencies(study, (0, 1), 2, amplitude=0.1)
+    assert same.table.frequency_Hz.to_numpy() == pytest.approx(as_given, rel=1e-9)
+    small = natural_frequencies(study, (0, 1), 2)
+    factor = small.stiffening["sidewall"]
+    assert small.amplitude == 1e-3
+    assert factor == pytest.approx(float(study.materials["sidewall"].strain_dependence.stiffening(1e-3)))
+    ratios = small.table.frequency_Hz.to_numpy() / as_given
+    assert (ratios > 1.01).all()
+    assert (ratios < np.sqrt(factor)).all()
+    # The inflated tyre is the same: only the stiffness of small motions changes.
+    assert small.tyre.radius_growth == same.tyre.radius_growth
+    assert small.summary()["modulus_over_that_of_the_card"]["sidewall"] == factor
+    with pytest.raises(InputError, match="amplitude"):
+        natural_frequencies(study, (0,), 1, amplitude=0.0)

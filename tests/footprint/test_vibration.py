@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+from dataclasses import replace
+
 import numpy as np
 import pytest
 from footprint_bodies import block, half_torus
@@ -11,6 +13,7 @@ from tyrefem.mechanics.footprint.elements import SectionElements
 from tyrefem.mechanics.footprint.example_tyre import PlainTyre, pressurised, stress_free
 from tyrefem.mechanics.footprint.harmonics import Harmonics
 from tyrefem.mechanics.footprint.vibration import Mode, Vibration, mass_matrix
+from tyrefem.mechanics.solid.stiffened import stiffened
 
 pytestmark = pytest.mark.fast
 SHEAR, BULK, DENSITY = 1e8, 1e11, 1200.0
@@ -177,3 +180,24 @@ def test_an_unstable_state_is_refused() -> None:
     stress[2] = -0.2 * YOUNG
     with pytest.raises(InputError, match="not stable: harmonic 2 has negative stiffness"):
         vibration(replace(body.harmonics.state, stress=stress)).modes(2, 2)
+
+
+def test_twice_the_modulus_of_an_unstressed_body_is_the_root_of_two_in_frequency() -> None:
+    state = PlainTyre().state(along=12)
+    unstressed = replace(state, pressure=0.0, stress=np.zeros_like(state.stress), storage=state.tangent, rubber=None)
+    harder = stiffened(unstressed, np.full(state.bulk.shape, 2.0))
+    density = np.full(state.bulk.shape, 1100.0)
+    soft, hard = (Vibration(Harmonics(each), density).modes(1, 2) for each in (unstressed, harder))
+    for before, after in zip(soft, hard, strict=True):
+        assert after.frequency == pytest.approx(np.sqrt(2) * before.frequency, rel=1e-8)
+
+
+def test_stiffer_compounds_leave_cords_and_stresses() -> None:
+    state = PlainTyre().state(along=12)
+    harder = stiffened(replace(state, rubber=0.5 * state.storage), np.full(state.bulk.shape, 3.0))
+    assert harder.tangent - state.tangent == pytest.approx(state.storage)
+    assert harder.storage - state.storage == pytest.approx(state.storage)
+    assert np.array_equal(harder.stress, state.stress)
+    assert harder.bulk == pytest.approx(3.0 * state.bulk)
+    same = stiffened(state, np.ones(state.bulk.shape))
+    assert np.array_equal(same.tangent, state.tangent)

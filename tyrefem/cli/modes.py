@@ -24,6 +24,7 @@ from tyrefem.output.folder import results_folder
 
 if TYPE_CHECKING:
     from tyrefem.mechanics.footprint.natural_frequencies import NaturalFrequencies
+    from tyrefem.quantity import Unit
 
 
 def modes(
@@ -31,6 +32,9 @@ def modes(
     highest: Annotated[int, typer.Option(min=0, max=60, help="Highest number of waves round the wheel.")] = 5,
     count: Annotated[int, typer.Option(min=1, max=40, help="Modes of each number of waves.")] = 2,
     pressure: Annotated[str | None, typer.Option(help="Gauge pressure, e.g. '2.2 bar'.")] = None,
+    amplitude: Annotated[
+        str, typer.Option(help="Shear strain amplitude of the vibration, for cards with strain_dependence.")
+    ] = "0.1 %",
     pictures: Annotated[bool, typer.Option(help="Draw the PNG picture.")] = True,
     out: Annotated[Path | None, typer.Option("--out", help="Folder; default: results/STUDY-modes.")] = None,
     force: ForceOption = False,
@@ -42,9 +46,11 @@ def modes(
     """Natural frequencies and modes of the inflated, unloaded tyre that does not roll, with its rim held."""
     from tyrefem.api import study as load
     from tyrefem.mechanics.footprint.natural_frequencies import NEEDS, natural_frequencies
+    from tyrefem.quantity import Unit
     from tyrefem.reports.modes import FILES, write_files
 
-    given = None if pressure is None else _pressure(pressure)
+    given = None if pressure is None else _quantity("--pressure", pressure, Unit("Pa", gt=0))
+    strain = _quantity("--amplitude", amplitude, Unit("1", gt=0, le=1))
     loaded = load(study, settings(changes), case)
     NEEDS.check(loaded)
     warn(loaded.warnings)
@@ -53,7 +59,7 @@ def modes(
         progress(f"{loaded.name}: natural frequencies", quiet=quiet or as_json),
     ):
         try:
-            result = natural_frequencies(loaded, range(highest + 1), count, pressure=given)
+            result = natural_frequencies(loaded, range(highest + 1), count, pressure=given, amplitude=strain)
         except InputError as error:
             field = "drive.phases.0.pressure" if error.field == "pressure" and given is None else error.field
             placed = InputError(error.message, field=field, file=error.file or loaded.file)
@@ -66,19 +72,18 @@ def modes(
     typer.echo(f"results in {folder}")
 
 
-def _pressure(text: str) -> float:
-    from tyrefem.quantity import Unit
-
+def _quantity(option: str, text: str, unit: Unit) -> float:
     try:
-        return Unit("Pa", gt=0)(text)
+        return unit(text)
     except InputError as error:
-        raise error.within(field="--pressure") from None
+        raise error.within(field=option) from None
 
 
 def _words(result: NaturalFrequencies) -> str:
     lines = [
         result.study.title,
         f"  inflated to {result.tyre.pressure / 1e3:.1f} kPa, rim held, no load; mass {result.mass:.2f} kg",
+        _moduli(result),
         f"  {'waves':>5} {'Hz':>8}  {'motion of the belt':24} radial  lateral  around",
     ]
     for natural in result.modes:
@@ -88,6 +93,13 @@ def _words(result: NaturalFrequencies) -> str:
             f" {shares['lateral']:8.0%} {shares['circumferential']:7.0%}"
         )
     return "\n".join(lines)
+
+
+def _moduli(result: NaturalFrequencies) -> str:
+    if not result.stiffening:
+        return "  moduli as in the cards: none gives a strain dependence"
+    factors = ", ".join(f"{region} {factor:.2f}" for region, factor in result.stiffening.items())
+    return f"  moduli at the strain amplitude {100 * result.amplitude:g} %, over those of the cards: {factors}"
 
 
 #: Place among the commands.

@@ -83,6 +83,14 @@ class StudyData(StudyContents):
         built = self.parts.warmed(temperatures)
         return type(self)(self.name, self.data, self.file, self.folder, built=built)
 
+    def at_amplitudes(self, amplitudes: Mapping[str, float]) -> Self:
+        """This study with the moduli of its cards at shear strain amplitudes of regions, where they depend on them.
+
+        All else is shared. Use it to compute strain cycles, not to write or change a study.
+        """
+        built = self.parts.at_amplitudes(amplitudes)
+        return type(self)(self.name, self.data, self.file, self.folder, built=built)
+
     def scaled(self, key: str, factor: float) -> Self:
         """A new study with the number at a dotted name times a factor, in every region with that card.
 

@@ -69,6 +69,14 @@ class StudyMaterials(Brief):
         cards = {region: card.warmed(temperatures[region]) for region, card in self.cards.items()}
         return StudyMaterials(self.references, self.folder, cards, self.written)
 
+    def at_amplitudes(self, amplitudes: Mapping[str, float]) -> StudyMaterials:
+        """The cards with their moduli at given shear strain amplitudes of the regions; others do not change."""
+        cards = {
+            region: card.at_amplitude(amplitudes[region]) if region in amplitudes else card
+            for region, card in self.cards.items()
+        }
+        return StudyMaterials(self.references, self.folder, cards, self.written)
+
 
 def _card(
     region: str, reference: object, folder: Path | None, like: StudyMaterials | None

@@ -81,6 +81,10 @@ class StudyParts(Brief):
         """The same parts with moduli at given mean temperatures of the regions, degC."""
         return replace(self, materials=self.materials.warmed(temperatures), temperatures=dict(temperatures))
 
+    def at_amplitudes(self, amplitudes: Mapping[str, float]) -> StudyParts:
+        """The same parts with moduli at given shear strain amplitudes of the regions."""
+        return replace(self, materials=self.materials.at_amplitudes(amplitudes))
+
     def __reduce__(self) -> tuple[Any, ...]:
         """Pickle the data, not the card, because a user's effect is in no importable module."""
         sections = (self.new_section, self.section)

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Iterable, Mapping
-from dataclasses import dataclass
+from dataclasses import dataclass, field
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
@@ -13,13 +13,16 @@ from tyrefem.brief import Brief
 from tyrefem.errors import InputError
 from tyrefem.estimates import work as estimate
 from tyrefem.geometry.meshing.expected import QUADRATIC
+from tyrefem.materials.card import strain_laws
 from tyrefem.mechanics.footprint.harmonics import Harmonics
 from tyrefem.mechanics.footprint.pressed_tyre import mechanical_mesh
 from tyrefem.mechanics.footprint.vibration import Mode, Vibration
+from tyrefem.mechanics.solid.stiffened import stiffened
 from tyrefem.requirements import Requirements
 
 if TYPE_CHECKING:
     from tyrefem.inputs.study import StudyData
+    from tyrefem.mechanics.solid.body import Prestressed
     from tyrefem.mechanics.solid.inflation import Inflation
 
 Array = NDArray[np.float64]
@@ -37,6 +40,8 @@ HIGHEST = 60
 RIGID_SHARE = 0.5
 #: The belt is at rest if its kinetic energy per mass is below this share of the tyre's.
 AT_REST = 0.5
+#: Shear strain amplitude of a vibration: small against the critical strain of filled rubber, about 2 %.
+AMPLITUDE = 1e-3
 #: Regions of the belt hold one of these words; without any the crown's tread and carcass are meant.
 BELT = ("belt", "cap-ply")
 
@@ -70,12 +75,16 @@ class NaturalFrequencies(Brief):
     ----------
     study : the study. tyre : the inflated tyre. vibration : stiffness and mass.
     modes : by harmonic, then frequency.
+    stiffening : region -> dynamic modulus of its compound over that of its card, where cards depend on strain;
+        ``amplitude``: the shear strain amplitude.
     """
 
     study: StudyData
     tyre: Inflation
     vibration: Vibration
     modes: tuple[NaturalMode, ...]
+    stiffening: Mapping[str, float] = field(default_factory=dict)
+    amplitude: float = AMPLITUDE
 
     def _title(self) -> str:
         return f"of {self.study.name}"
@@ -119,6 +128,8 @@ class NaturalFrequencies(Brief):
             "pressure_Pa": self.tyre.pressure,
             "mass_kg": self.mass,
             "modes": [mode.row() for mode in self.modes],
+            "strain_amplitude": self.amplitude,
+            "modulus_over_that_of_the_card": dict(self.stiffening),
             "nodes_of_nine_node_elements": self.tyre.body.rings.n_nodes,
             "versions": versions(),
         }
@@ -135,13 +146,15 @@ def natural_frequencies(
     count: int = COUNT,
     *,
     pressure: float | None = None,
+    amplitude: float = AMPLITUDE,
 ) -> NaturalFrequencies:
     """Natural frequencies of a study's tyre: inflated, unloaded, not rolling, the rim's seat held, air without mass.
 
     (K_n - w^2 M) x = 0, f = w/(2 pi). K_n is the stiffness of harmonic n about the inflated state (`Harmonics`), with
-    the static moduli of the cards; M is the consistent mass of the cards' densities (`vibration.mass_matrix`). The
-    equation is that of a body of revolution in Fourier series (Zienkiewicz & Taylor, The Finite Element Method); the
-    names of the first modes are those of the rigid ring on a sidewall (Zegelaar 1998).
+    the moduli of the cards; where a card has ``strain_dependence``, with the storage modulus at ``amplitude`` about the
+    inflation by the card's modulus (`stiffened`). M is the consistent mass of the cards' densities
+    (`vibration.mass_matrix`). The equation is that of a body of revolution in Fourier series (Zienkiewicz & Taylor,
+    The Finite Element Method); the names of the first modes are those of the rigid ring on a sidewall (Zegelaar 1998).
 
     Names: n = 0 "lateral", "wind-up"; n = 1 "fore-aft and vertical", "yaw and camber", if half of the belt's energy is
     this rigid motion; otherwise the belt's greatest component, e.g. "radial bending". "belt torsion" is a radial motion
@@ -151,6 +164,7 @@ def natural_frequencies(
     ----------
     study : the study. harmonics : waves round the wheel, 0 to 60. count : modes of each, 1 to 40.
     pressure : Pa above the ambient, positive; by default at the start of the drive's first phase.
+    amplitude : shear strain amplitude of the vibration, more than 0 to 1.
 
     Raises
     ------
@@ -173,18 +187,31 @@ def natural_frequencies(
     pressure = study.card.drive.phases[0].pressure.start if pressure is None else pressure
     if not pressure > 0:
         raise InputError(f"must be more than 0 Pa, not {pressure:g} Pa", field="pressure")
+    if not 0 < amplitude <= 1:
+        raise InputError(f"must be more than 0 to 100 %, not {100 * amplitude:g} %", field="amplitude")
     mesh = mechanical_mesh(study)
     nodes = QUADRATIC * mesh.n_nodes
     estimate.warn_if_long(estimate.mechanics(nodes, large=False).time, f"the frequencies of {nodes:,} nodes")
     tyre = inflate(study, pressure, mesh)
-    vibration = Vibration(Harmonics(tyre.state), densities(study, tyre))
+    stiffening = {region: float(law.stiffening(amplitude)) for region, law in strain_laws(study.materials).items()}
+    vibration = Vibration(Harmonics(dynamic_state(tyre, stiffening)), densities(study, tyre))
     belt = belt_elements(tyre)
     modes = []
     for n in sorted(orders):
         for mode in vibration.modes(n, count):
             shares = vibration.shares(mode, belt)
             modes.append(NaturalMode(mode, _name(mode, vibration.rigidity(mode, belt), shares), shares))
-    return NaturalFrequencies(study, tyre, vibration, tuple(modes))
+    return NaturalFrequencies(study, tyre, vibration, tuple(modes), stiffening, amplitude)
+
+
+def dynamic_state(tyre: Inflation, stiffening: Mapping[str, float]) -> Prestressed:
+    """The inflated state with compounds of regions stiffer by factors; the same state without factors."""
+    if not stiffening:
+        return tyre.state
+    factors = np.ones(tyre.body.rings.weights.shape)
+    for region, factor in stiffening.items():
+        factors[tyre.body.mesh.subdomains[region]] = factor
+    return stiffened(tyre.state, factors)
 
 
 def densities(study: StudyData, tyre: Inflation) -> Array:
