@@ -12,6 +12,7 @@ import tyrefem
 from tyrefem import library
 from tyrefem.conduction.operators import operators_of
 from tyrefem.estimates import work as estimate
+from tyrefem.estimates.work import duration
 from tyrefem.geometry.meshing import build
 from tyrefem.geometry.meshing.expected import expected_nodes
 from tyrefem.simulation.estimate import RunEstimate
@@ -92,3 +93,16 @@ def test_nothing_fits() -> None:
 def test_the_smallest_tolerance_is_some_hundred_roundings(hottest: float) -> None:
     least = estimate.smallest_tolerance(hottest)
     assert 200 < least / math.ulp(max(hottest, 100.0)) < 900
+
+
+def test_large_motion_says_what_it_takes_and_what_the_quick_look_would() -> None:
+    large = RunEstimate.of(tyrefem.study("passenger-205-55r16", {"mechanics.motion": "large"}))
+    assert large.beginning.startswith(", first its strain cycles in large motion: about ")
+    words = large.quick_look(lambda run: run.mechanics.time)
+    linear = RunEstimate.of(tyrefem.study("passenger-205-55r16", {"mechanics.motion": "linear"}))
+    assert words == f'; mechanics.motion = "linear" is the quick look: {duration(linear.mechanics.time)}'
+    arcs = RunEstimate.of(tyrefem.study(NASA, {"mechanics.motion": "large"}))
+    for run in (linear, arcs):
+        assert (run.beginning, run.quick_look(lambda _: 1.0)) == ("", "")
+    # Nothing is gained where temperatures take the time.
+    assert large.quick_look(lambda run: run.mechanics.time + 1e6) == ""

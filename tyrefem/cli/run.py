@@ -68,8 +68,11 @@ def run(
 
 
 def _single(study: Study, folder: Path, pictures: bool, vtk: bool, revolved: bool, as_json: bool, quiet: bool) -> None:
+    from tyrefem.simulation.estimate import RunEstimate
+
     warned = warn(study.warnings)
-    with progress(study.name, study.card.drive.end, quiet=quiet) as step:
+    begins = f"{study.name}{RunEstimate.of(study).beginning}"
+    with progress(begins, study.card.drive.end, quiet=quiet) as step:
         result = study.run(step, partial=True)
     reached = f"{result.times[-1]:g} s" if result.history.interrupted else ""
     tables = f"the tables up to {reached}" if reached else "the tables"

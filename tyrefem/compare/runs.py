@@ -16,12 +16,14 @@ import numpy as np
 
 from tyrefem.compare.interface import Computed, arrays_of, computed_from, computed_of
 from tyrefem.errors import InputError
+from tyrefem.estimates import work as estimate
 from tyrefem.inputs.study import StudyData
 from tyrefem.inputs.uncertain_numbers import uncertain_number
 from tyrefem.mechanics.cycle_schedule import CycleSchedule, same_cycles
 from tyrefem.mechanics.strain_laws import strain_law
 from tyrefem.output import versions
 from tyrefem.reduced.training import Snapshots, snapshots
+from tyrefem.simulation.estimate import WORTH_TELLING, RunEstimate
 from tyrefem.simulation.result import ResultData
 from tyrefem.simulation.rolling_tyre import RollingTyre
 from tyrefem.simulation.run import run
@@ -182,7 +184,9 @@ class Runs:
             fewer = ", fewer if a reduced model holds" if model else ""
             parts.append(f"{len(changed)} with one uncertain input changed{fewer}")
         if self._by_elements:
-            parts.append(f"strain cycles to be solved by finite elements: {drives + self._changed_cycles}")
+            parts.append(
+                f"strain cycles to be solved by finite elements: {drives + self._changed_cycles}{self._cycles_time}"
+            )
         # The unchanged drives are run again for their meshes, unless all runs are kept.
         kept = len(self.computed) or sum(self._is_kept(key) for key in changed)
         if kept:
@@ -206,6 +210,16 @@ class Runs:
     @functools.cached_property
     def _changed_cycles(self) -> int:
         return sum(not same_cycles(self.studies[key], self.studies[key[0], None]) for key in self.changed)
+
+    @property
+    def _cycles_time(self) -> str:
+        """Time of strain cycles in large motion; empty if it is short."""
+        count = len(self.drives) + self._changed_cycles
+        run = RunEstimate.of(self.studies[self.drives[0], None])
+        time = count * run.mechanics.time
+        if time < WORTH_TELLING or run.study.card.mechanics.motion == "linear":
+            return ""
+        return f", about {estimate.duration(time)}{run.quick_look(lambda run: count * run.mechanics.time)}"
 
     def work(self, key: Key, *, lowered: bool = False) -> Work:
         """The work of a run, after `begin`; ``lowered``: the input is one standard deviation lower, not higher."""

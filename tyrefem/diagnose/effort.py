@@ -24,11 +24,20 @@ def check_effort(model: ForwardModel, what: str, share: float, workers: int = 1)
     ------
     InputError : as `RunEstimate.check`.
     """
-    seconds = 0.0
+    runs: list[tuple[RunEstimate, float]] = []
     side_by_side = max(min(workers, len(model.drives)), 1)
     for number in range(len(model.drives)):
         full, fitted = (RunEstimate.of(model.driven(study, number)) for study in (model.study, model.coarse))
         full.check(side_by_side)
-        full_runs = STUDY_MESH * full.transient_run.time
-        seconds += FITTED * fitted.transient_run.time + full_runs + CYCLES * full.mechanics.time
-    estimate.warn_if_long(seconds * share / max(workers, 1), what)
+        temperatures = FITTED * fitted.transient_run.time + STUDY_MESH * full.transient_run.time
+        runs.append((full, temperatures))
+    scale = share / max(workers, 1)
+    heat = sum(temperatures for _, temperatures in runs)
+    cycles = CYCLES * sum(full.mechanics.time for full, _ in runs)
+
+    def quick_look() -> str:
+        full = runs[0][0]
+        part = cycles / full.mechanics.time if full.mechanics.time else 0.0
+        return full.quick_look(lambda run: scale * (heat + part * run.mechanics.time))
+
+    estimate.warn_if_long(scale * (heat + cycles), what, quick_look)

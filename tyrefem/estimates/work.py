@@ -145,10 +145,10 @@ def raise_memory_error(needed: float, free: float, what: str, fits: str = "", wo
     raise InputError(f"{what}; that takes about {gib(needed)} of memory, and {gib(free)} are free{each}{room}")
 
 
-def warn_if_long(seconds: float, what: str, more: str = "") -> None:
-    """Warn of work that takes longer than `LONG`; the command line prints one line on stderr."""
+def warn_if_long(seconds: float, what: str, more: Callable[[], str] = str) -> None:
+    """Warn of work that takes longer than `LONG`; the command line prints one line on stderr. ``more``: its end."""
     if seconds > LONG:
-        warnings.warn(f"{what} will take about {duration(seconds)}{more}", LongWorkWarning, stacklevel=3)
+        warnings.warn(f"{what} will take about {duration(seconds)}{more()}", LongWorkWarning, stacklevel=3)
 
 
 def smallest(fits: Callable[[float], bool], low: float, high: float, digits: int = 2) -> float | None:

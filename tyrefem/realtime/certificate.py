@@ -260,8 +260,12 @@ class _Training:
         run, workers = RunEstimate.of(study), getattr(self.scheduler, "workers", 1)
         if isinstance(self.scheduler, Here | Local):
             run.check(workers)
-        seconds = RUNS * run.transient_run.time / workers + CYCLES * run.mechanics.time + STEPPING * self.horizon
-        estimate.warn_if_long(seconds, f"training and certifying a real-time model of {self.study.name}")
+
+        def seconds(run: RunEstimate) -> float:
+            return RUNS * run.transient_run.time / workers + CYCLES * run.mechanics.time + STEPPING * self.horizon
+
+        what = f"training and certifying a real-time model of {self.study.name}"
+        estimate.warn_if_long(seconds(run), what, lambda: run.quick_look(seconds))
 
     def full(self, drives: Sequence[BoxDrive], what: str) -> list[DriveRun]:
         """Full runs of drives, in their order."""

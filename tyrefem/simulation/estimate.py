@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import functools
+from collections.abc import Callable
 from dataclasses import dataclass, replace
 from typing import TYPE_CHECKING
 
@@ -12,7 +13,7 @@ from tyrefem.estimates import work as estimate
 from tyrefem.estimates.work import Estimate
 from tyrefem.geometry.meshing.expected import QUADRATIC, expected_nodes
 from tyrefem.mechanics.cycle_schedule import ramp_knots
-from tyrefem.mechanics.footprint.pressed_tyre import COARSER
+from tyrefem.mechanics.footprint.pressed_tyre import COARSER, QUICK_LOOK
 from tyrefem.mechanics.strain_laws import strain_law
 
 if TYPE_CHECKING:
@@ -23,6 +24,8 @@ if TYPE_CHECKING:
 USUAL_RUNS = 5
 #: Largest number of additional readings in a phase with slip.
 SLIP_READINGS = 24
+#: s of strain cycles in large motion that are stated before the work begins.
+WORTH_TELLING = 20.0
 
 
 @dataclass(frozen=True, eq=False)
@@ -121,7 +124,23 @@ class RunEstimate:
         parts = [f"{self.unknowns:,.0f} unknowns", f"{many:,.0f} time steps", f"{self.readings:,.0f} readings"]
         if self.mechanics.time > self.total.time / 2:
             parts.append("most of it strain cycles by finite elements")
-        estimate.warn_if_long(self.total.time, f"a run of {self.study.name} ({', '.join(parts)})")
+        what = f"a run of {self.study.name} ({', '.join(parts)})"
+        estimate.warn_if_long(self.total.time, what, lambda: self.quick_look(lambda run: run.total.time))
+
+    @property
+    def beginning(self) -> str:
+        """What a run does before its first time step, if that takes long: footprints in large motion."""
+        time = self.mechanics.time
+        if time < WORTH_TELLING or self.study.card.mechanics.motion == "linear":
+            return ""
+        return f", first its strain cycles in large motion: about {estimate.duration(time)}"
+
+    def quick_look(self, time: Callable[[RunEstimate], float]) -> str:
+        """What work takes with a linear footprint; empty if that does not halve it. ``time``: s of the work."""
+        if not strain_law(self.study).presses or self.study.card.mechanics.motion == "linear":
+            return ""
+        linear = time(RunEstimate(self.study.replace({"mechanics.motion": "linear"}), self.mesh))
+        return f"; {QUICK_LOOK}: {estimate.duration(linear)}" if linear < time(self) / 2 else ""
 
     def _output(self, free: float) -> tuple[str, str, str]:
         """Too many readings: the field, their number, and a value that would fit."""

@@ -79,13 +79,18 @@ class CampaignData(Brief):
     def _warn(self) -> None:
         """Warn of long work; the time is estimated from some of the cases."""
         some = self.cases[:: max(len(self.cases) // SAMPLED_CASES, 1)]
-        times: list[float] = []
+        runs: list[RunEstimate] = []
         for case in some:
             with suppress(InputError):  # an invalid case becomes a row with its failure
-                times.append(RunEstimate.of(self.case_study(case)).total.time)
-        if times:
-            mean = sum(times) / len(times)
-            estimate.warn_if_long(mean * len(self.cases), f"{len(self.cases):,} cases of {self.study.name}")
+                runs.append(RunEstimate.of(self.case_study(case)))
+        if runs:
+            count = len(self.cases)
+            mean = sum(run.total.time for run in runs) / len(runs)
+            estimate.warn_if_long(
+                mean * count,
+                f"{count:,} cases of {self.study.name}",
+                lambda: runs[0].quick_look(lambda run: run.total.time * count),
+            )
 
     def outcome(self, case: Case) -> ResultData | str:
         """The result of a case, or the reason of its failure."""

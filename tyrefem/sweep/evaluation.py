@@ -118,12 +118,20 @@ class VariantEvaluation:
         workers = max(min(getattr(where, "workers", 1), expected), 1)
         if isinstance(where, Here | Local):
             run.check(workers)
-        full = expected * run.total.time / workers
-        time, more = full, ""
-        if self._trains(expected):
-            time = (estimate.TRAINING * run.total.time + expected * estimate.REDUCED) / workers
-            more = f" by a reduced model, or {estimate.duration(full)} by full runs if none can be certified"
-        estimate.warn_if_long(time, f"{self.at_most}{expected:,} variants of {self.plan.study.name}", more)
+        trains = self._trains(expected)
+
+        def full(run: RunEstimate) -> float:
+            return expected * run.total.time / workers
+
+        def time(run: RunEstimate) -> float:
+            reduced = (estimate.TRAINING * run.total.time + expected * estimate.REDUCED) / workers
+            return reduced if trains else full(run)
+
+        def more() -> str:
+            fails = f" by a reduced model, or {estimate.duration(full(run))} by full runs if none can be certified"
+            return f"{fails if trains else ''}{run.quick_look(time)}"
+
+        estimate.warn_if_long(time(run), f"{self.at_most}{expected:,} variants of {self.plan.study.name}", more)
 
     def _train_model(self) -> None:
         from tyrefem.reduced.model import NotReducibleError

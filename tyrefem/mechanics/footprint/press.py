@@ -259,7 +259,7 @@ def press(
     estimate.warn_if_long(
         estimate.mechanics(nodes, large=large).time,
         f"the footprint of {nodes:,} nodes",
-        f"; {QUICK_LOOK}" if large else "",
+        lambda: f"; {QUICK_LOOK}" if large else "",
     )
     tyre = inflate(study, pressure, mesh)
     pressing = Pressing(tyre.state, road)
