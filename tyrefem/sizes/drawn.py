@@ -69,7 +69,11 @@ def table(name: str, rows: Iterable[tuple[float, float]], regions: list[dict[str
 def section_data(
     size: TyreSize, rules: Rules, line: SizedMeridian, reference: str, layers: list[dict[str, Any]], **more: Any
 ) -> dict[str, Any]:
-    """The tables that all kinds have. ``more``: shoulder_s and bead_length, m; grooves, wrap, rating, title."""
+    """The tables that all kinds have.
+
+    ``more``: shoulder_s and bead_length, m; outer_diameter before inflation, m, where it differs from the rules';
+    grooves, wrap, rating, title.
+    """
     points = line.points(POINTS)
     radial = line.membrane.lift == 0
     words = (
@@ -90,7 +94,9 @@ def section_data(
             "tyrefem.sizes",
         },
         "parameters": {
-            "outer_diameter": rules["outer_diameter"].text,
+            "outer_diameter": written(
+                more.get("outer_diameter", rules["outer_diameter"].value), rules["outer_diameter"].unit
+            ),
             "nominal_width": written(size.width, rules["outer_diameter"].unit),
             "shoulder_s": length(more["shoulder_s"]),
             "bead_length": length(more["bead_length"]),

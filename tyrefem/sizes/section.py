@@ -83,7 +83,8 @@ def section_of_size(reference: Mapping[str, Any] | str) -> tuple[dict[str, Any],
 
 
 def with_numbers(section: object, data: Mapping[str, Any]) -> dict[str, Any]:
-    """The file of a size, ``data``, with its size and all numbers of its rules among the parameters.
+    """The file of a size, ``data``, with its size and all numbers of its rules among the parameters (these go first:
+    ``outer_diameter`` is that of the rules, of a bias tyre the inflated one).
 
     >>> with_numbers("205/60R15", {"parameters": {}})["parameters"]["rim_width"]
     '6 in'
@@ -92,7 +93,7 @@ def with_numbers(section: object, data: Mapping[str, Any]) -> dict[str, Any]:
     drawn = drawn_of(section)
     numbers = {number.name: number.text for number in drawn.rules}
     beside = {"size": drawn.size.text, "rim_width": numbers["rim_width"]}
-    return {**data, **beside, "parameters": {**numbers, **data["parameters"]}}
+    return {**data, **beside, "parameters": {**data["parameters"], **numbers}}
 
 
 def completed_materials(section: object, materials: Mapping[str, Any]) -> dict[str, Any]:

@@ -9,6 +9,7 @@ from tyrefem.sizes.aircraft import aircraft_numbers
 from tyrefem.sizes.bead import bead_wire_area
 from tyrefem.sizes.designation import TyreSize
 from tyrefem.sizes.drawn import Drawn, length, section_data, table, thickness
+from tyrefem.sizes.growth import before_inflation
 from tyrefem.sizes.meridian import bias_meridian
 from tyrefem.sizes.rules import Rules
 
@@ -17,7 +18,10 @@ ESTIMATE = "estimate: ordinary practice"
 
 
 def draw(size: TyreSize, rule: Rules) -> Drawn:
-    """Nylon bias plies, crown angle that of equilibrium at the data book's width; regions as the NASA sections."""
+    """Nylon bias plies, crown angle that of equilibrium at the data book's width; regions as the NASA sections.
+
+    Diameter and width are those of the inflated tyre, as data books state them; the line is drawn before inflation.
+    """
     rim, pressure = aircraft_numbers(size, rule, 16)
     outer, width = rule["outer_diameter"].value, size.width
     plies = rule(
@@ -34,6 +38,14 @@ def draw(size: TyreSize, rule: Rules) -> Drawn:
         "mm",
         "Clark & Dodge 1980, table H1: 0.2 in of carcass of the 8PR; estimate: five plies",
         3e-4,
+    )
+    stiffness = rule(
+        "ply_modulus",
+        625e6,
+        "MPa",
+        "of the plies along the cords: 4 G_p/sin^2(2 alpha) of the card nasa-carcass",
+        50e6,
+        200e9,
     )
     tread = rule(
         "tread_gauge",
@@ -93,6 +105,16 @@ def draw(size: TyreSize, rule: Rules) -> Drawn:
         "flange_radius and what lies outside of the carcass line at the bead: it bends about the flange's centre",
         3e-3,
     )
+    growth = (0.0, 0.0)
+    if not {"radius_growth", "width_growth"} <= rule.given.keys():
+        inflated, _ = bias_meridian(crown, half, rim, offset, bend, None)
+        mould = before_inflation(inflated, pressure, carcass * stiffness)
+        growth = inflated.crown - mould.crown, 2 * (inflated.half_width - mould.half_width)
+    words = (
+        "solved for: cords that the rated pressure stretches, in equilibrium before and after (tyrefem.sizes.growth)"
+    )
+    crown -= rule("radius_growth", growth[0], "mm", words, 0.0, 0.15 * crown)
+    half -= rule("width_growth", growth[1], "mm", words, -0.1 * half, 0.5 * half) / 2
     line, angle = bias_meridian(crown, half, rim, offset, bend, angle)
     if "cord_angle" not in rule.given:
         rule(
@@ -177,6 +199,7 @@ def draw(size: TyreSize, rule: Rules) -> Drawn:
         "middle plies and bead",
         layers,
         title=title,
+        outer_diameter=outer - 2 * rule["radius_growth"].value,
         shoulder_s=shoulder,
         bead_length=bead_height,
         grooves=cut,
