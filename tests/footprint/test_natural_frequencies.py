@@ -104,11 +104,10 @@ SWEEP = {
 }
 
 
-def test_small_vibrations_meet_the_modulus_of_their_amplitude(folder: Path, modes: NaturalFrequencies) -> None:
+def test_small_vibrations_meet_the_modulus_of_their_amplitude() -> None:
     """At the amplitude of the card's modulus nothing changes; at a smaller one every mode is higher."""
-    changes = {"materials.sidewall": {"base": "rubber-sidewall", "strain_dependence": SWEEP}}
-    study = tf.study(folder / "study.toml", changes)
-    bare = tf.study(folder / "study.toml", {"materials.sidewall": "rubber-sidewall"})
+    bare = tf.study("nasa-22x5.5-8pr", {"mesh.size": "12 mm"})
+    study = bare.replace({"materials.sidewall": {"base": "nasa-sidewall", "strain_dependence": SWEEP}})
     as_given = natural_frequencies(bare, (0, 1), 2).table.frequency_Hz.to_numpy()
     same = natural_frequencies(study, (0, 1), 2, amplitude=0.1)
     assert same.table.frequency_Hz.to_numpy() == pytest.approx(as_given, rel=1e-9)
@@ -117,7 +116,8 @@ def test_small_vibrations_meet_the_modulus_of_their_amplitude(folder: Path, mode
     assert small.amplitude == 1e-3
     assert factor == pytest.approx(float(study.materials["sidewall"].strain_dependence.stiffening(1e-3)))
     ratios = small.table.frequency_Hz.to_numpy() / as_given
-    assert (ratios > 1.01).all()
+    assert (ratios > 1).all()
+    assert ratios.max() > 1.02
     assert (ratios < np.sqrt(factor)).all()
     # The inflated tyre is the same: only the stiffness of small motions changes.
     assert small.tyre.radius_growth == same.tyre.radius_growth

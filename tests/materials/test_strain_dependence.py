@@ -113,7 +113,7 @@ def test_a_card_at_another_amplitude_is_the_same_compound() -> None:
 
 
 def test_a_card_without_the_table_is_unchanged() -> None:
-    rubber = material("rubber-sidewall")
+    rubber = material("nasa-sidewall")
     assert rubber.at_amplitude(1e-3) is rubber
     assert strain_laws({"sidewall": rubber}) == {}
     assert values_read("fem", {"sidewall": rubber}) == values_read("barrel", {"sidewall": rubber})

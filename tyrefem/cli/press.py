@@ -177,6 +177,12 @@ def _words(result: Pressed) -> str:
         f"{tyre.body.rings.n_nodes} nodes",
         f"  motion              {motion_words(footprint.motion, result.linearisation_error)}",
     ]
+    if result.moduli is not None:
+        secant = ", ".join(
+            f"{region} {factor:.2f} at {100 * result.moduli.amplitudes[region]:.1f} %"
+            for region, factor in result.moduli.factors.items()
+        )
+        lines.append(f"  moduli              over those of the cards: {secant or 'no card depends on strain'}")
     lines += [f"  {value.words}" for value in result.published]
     return "\n".join(lines)
 

@@ -130,6 +130,8 @@ class Mechanics(Card):
     ``strain``: ``arcs``, the NASA report's bias tyre; ``barrel``, its deformation by finite elements; ``fem``, the
     footprint by finite elements; or ``given``, the energies of the table ``energy`` (which only this law reads).
     ``motion``: footprint by finite elements in ``large`` motion, or ``linear`` about the inflated tyre: the quick look.
+    ``moduli``: for ``fem``, the cards' moduli, or ``secant``, those at each region's strain amplitude under load
+    (`footprint.secant_moduli`), where cards give ``strain_dependence``.
     ``revolution``: for ``fem``, all harmonics with their frequencies, or one cycle as in the report. ``feedback``:
     feedback of temperature on the strain cycle; none without this table.
     """
@@ -142,6 +144,7 @@ class Mechanics(Card):
     poisson_term: Annotated[float, Unit("1", ge=0, le=1)] = 0.75
     membrane_shear: bool = True
     motion: FootprintMotion = "linear"
+    moduli: Literal["card", "secant"] = "card"
     revolution: Literal["harmonics", "one-cycle"] = "harmonics"
     feedback: Feedback | None = None
 

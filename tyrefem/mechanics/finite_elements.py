@@ -207,10 +207,11 @@ def provider(study: StudyData) -> Callable[[LoadCase], FiniteElements]:
     mechanics = study.card.mechanics
     factor, one_cycle = LOSS_FACTOR[mechanics.loss_convention], mechanics.revolution == "one-cycle"
     tyre = pressed_tyre(study)
-    laws = strain_laws(study.materials)
 
     def cycle(case: LoadCase) -> FiniteElements:
-        footprint = tyre.footprint(case, large=mechanics.motion == "large")
-        return FiniteElements(tyre.inflated(case.pressure), footprint, case, factor, one_cycle, laws)
+        loaded = tyre.under(case)
+        footprint = loaded.footprint(case, large=mechanics.motion == "large")
+        laws = strain_laws(loaded.study.materials)
+        return FiniteElements(loaded.inflated(case.pressure), footprint, case, factor, one_cycle, laws)
 
     return cycle

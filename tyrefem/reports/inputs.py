@@ -326,6 +326,8 @@ def assumptions(study: StudyData, estimates: list[str]) -> list[tuple[str, str]]
     over_strain = list(strain_laws(study.materials))
     if over_strain and mechanics.strain == "fem":
         laws += f"; the loss modulus follows each point's strain amplitude in: {', '.join(over_strain)}"
+        if mechanics.moduli == "secant":
+            laws += "; their storage modulus is that of the region's strain amplitude under load"
     cycle = (
         "The strain energy times tan δ is lost once per revolution (convention "
         f"{mechanics.loss_convention}); higher harmonics are neglected. tan δ {laws}."

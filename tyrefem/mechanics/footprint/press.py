@@ -18,6 +18,7 @@ from tyrefem.inputs.motion import motion_in
 from tyrefem.inputs.study_card import FootprintMotion
 from tyrefem.mechanics.footprint.pressed_tyre import QUICK_LOOK, TOLERANCE, mechanical_mesh
 from tyrefem.mechanics.footprint.road import Road
+from tyrefem.mechanics.footprint.secant_moduli import SecantModuli, under_load
 from tyrefem.requirements import Requirements
 
 if TYPE_CHECKING:
@@ -51,6 +52,7 @@ class Pressed(Brief):
     pressing : tyre and road with the contact solver. footprint : the tyre on the road.
     tolerance : allowed change with the number of harmonics.
     path : (deflection, load), m and N, of the load steps in large motion; empty: linear about the inflated state.
+    moduli : the secant moduli, if the study asks for them; ``study`` then has cards with these.
     """
 
     study: StudyData
@@ -60,6 +62,7 @@ class Pressed(Brief):
     footprint: Footprint
     tolerance: float = TOLERANCE
     path: tuple[tuple[float, float], ...] = ()
+    moduli: SecantModuli | None = None
 
     def _title(self) -> str:
         return f"tyre of {self.study.name}"
@@ -186,6 +189,7 @@ class Pressed(Brief):
             "left_out_by_linear_strains": asdict(self.linearisation_error),
             "tolerance": self.tolerance,
             "unstable_harmonics": list(footprint.unstable),
+            "secant_moduli": None if self.moduli is None else asdict(self.moduli),
             "mesh": {**self.mesh.summary(), "nodes_of_nine_node_elements": self.tyre.body.rings.n_nodes},
             "versions": versions(),
         }
@@ -261,13 +265,16 @@ def press(
         f"the footprint of {nodes:,} nodes",
         lambda: f"; {QUICK_LOOK}" if large else "",
     )
+    moduli = None
+    if study.card.mechanics.moduli == "secant":
+        study, moduli = under_load(study, mesh, pressure, road, load=load, deflection=deflection)
     tyre = inflate(study, pressure, mesh)
     pressing = Pressing(tyre.state, road)
     if not large:
         footprint = pressing.solve(load=load, deflection=deflection, tolerance=tolerance)
-        return Pressed(study, mesh, tyre, pressing, footprint, tolerance)
+        return Pressed(study, mesh, tyre, pressing, footprint, tolerance, moduli=moduli)
     from tyrefem.mechanics.footprint.harmonic_balance import Balance
 
     balance = Balance(pressing)
     footprint = balance.solve(load=load, deflection=deflection, tolerance=tolerance)
-    return Pressed(study, mesh, tyre, pressing, footprint, tolerance, tuple(balance.path))
+    return Pressed(study, mesh, tyre, pressing, footprint, tolerance, tuple(balance.path), moduli)

@@ -114,6 +114,32 @@ class PressedTyre:
         name = "deflection" if case.by_deflection else "load"
         return self._pressed(name, given, case.pressure, case.drum_diameter, large)
 
+    def under(self, case: LoadCase) -> PressedTyre:
+        """This tyre with its moduli at the strain amplitudes of a load case, if the study asks for secant moduli.
+
+        Raises
+        ------
+        InputError : errors of `footprint`.
+        """
+        given = case.deflection if case.by_deflection else case.load
+        if self.study.card.mechanics.moduli == "card" or given <= 0:
+            return self
+        name = "deflection" if case.by_deflection else "load"
+        return self._softened(name, given, case.pressure, case.drum_diameter)
+
+    @functools.cached_property
+    def _softened(self) -> Callable[[str, float, float, float], PressedTyre]:
+        from tyrefem.mechanics.footprint.road import Road
+        from tyrefem.mechanics.footprint.secant_moduli import under_load
+
+        @functools.lru_cache(REMEMBERED)
+        def softened(name: str, given: float, pressure: float, drum: float) -> PressedTyre:
+            wanted: Any = {name: given}
+            mesh = mechanical_mesh(self.study)
+            return PressedTyre(under_load(self.study, mesh, pressure, Road(drum_diameter=drum), **wanted)[0])
+
+        return softened
+
     @functools.cached_property
     def _inflated(self) -> Callable[[float], Inflation]:
         from tyrefem.mechanics.solid.inflation import inflate
@@ -156,7 +182,8 @@ def pressed_tyre(study: StudyData) -> PressedTyre:
 def inputs(study: StudyData) -> Hashable:
     """All inputs of a study's finite elements except load, pressure and road: equal for equal tyres.
 
-    These are the section, the choice of mesh with its file's content, and the card values that `strain.reads` names.
+    These are the section, the choice of mesh with its file's content, the choice of moduli, and the card values that
+    `strain.reads` names.
     """
     choice = study.card.mesh
     content = ""
@@ -164,4 +191,4 @@ def inputs(study: StudyData) -> Hashable:
         path = (study.folder or Path()) / choice.file
         content = hashlib.sha256(path.read_bytes()).hexdigest() if path.is_file() else ""
     read = values_read("fem", study.materials)
-    return study.section, repr(choice), content, repr(read)
+    return study.section, repr(choice), content, study.card.mechanics.moduli, repr(read)
