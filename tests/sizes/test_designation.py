@@ -64,6 +64,7 @@ def test_aircraft_sizes(
         ("205/60X15", "did you mean '205/60R15'"),
         ("205-60-15", "did you mean '205/60R15'"),
         ("22x", "allowed are sizes like"),
+        ("*30x7.7 26PR", "allowed are sizes like"),
         ("205/60-15", "radials are written 205/60R15"),
         ("205/05R15", "series 5; allowed: 20 to 100"),
         ("22x21-12", "do not go together"),

@@ -58,7 +58,16 @@ def deviations(size: str, mesh_size: float) -> tuple[np.ndarray, tuple[float, fl
     return away(growth), (float(growth[0]), float(growth[1]))
 
 
-@pytest.mark.parametrize(("size", "mesh_size"), [("205/60R15", 7e-3), ("255/40R17", 7e-3), ("22x5.5 8PR", 7e-3)])
+@pytest.mark.parametrize(
+    ("size", "mesh_size"),
+    [
+        ("205/60R15", 7e-3),
+        ("255/40R17", 7e-3),
+        ("22x5.5 8PR", 7e-3),
+        ("22x5.5 12PR", 8e-3),
+        ("LT245/75R16", 8e-3),
+    ],
+)
 def test_the_inflated_line_is_one_in_equilibrium(size: str, mesh_size: float) -> None:
     """Beyond growth at the crown and in width it moves by less than 1 mm, from the crown to the flange."""
     away, (crown, width) = deviations(size, mesh_size)

@@ -152,3 +152,22 @@ def test_what_cannot_be_is_one_error(reference: dict[str, object], message: str)
     with pytest.raises(InputError) as error:
         load(reference)
     assert message in str(error.value)
+
+
+@pytest.mark.parametrize(("size", "share"), [("205/60R15", 0.5), ("295/80R22.5", 0.7), ("46x17R20", 0.7)])
+def test_a_bundle_is_the_mixture_of_its_wires_and_rubber(size: str, share: float) -> None:
+    """G = (1 + v)/(1 - v) 10 MPa, rho = (1 - v) 1120 + v 7850 kg/m3; the wires of the card are those of the rule."""
+    drawn = draw_size(size)
+    card, rules = drawn.materials["bead"], drawn.rules
+    area = rules["bead_wire_area"].value
+    assert area / (rules["bead_height"].value * rules["bead_width"].value) == pytest.approx(share, rel=1e-6)
+    assert float(card["shear_modulus"]["value"].split()[0]) == pytest.approx(10 * (1 + share) / (1 - share), rel=1e-3)
+    assert float(card["density"]["value"].split()[0]) == pytest.approx(1120 + share * 6730, rel=1e-3)
+    wires = float(card["cords"]["ends"].split()[0]) * rules["bead_height"].value
+    diameter = 1.6e-3 if "22.5" in size else 1e-3
+    assert wires * np.pi * diameter**2 / 4 == pytest.approx(area, rel=1e-3)
+
+
+def test_more_wire_than_the_bundle_holds_is_refused() -> None:
+    with pytest.raises(InputError, match="bead_height x bead_width; allowed: below 90%"):
+        draw_size("205/60R15", {"bead_width": "3 mm", "bead_height": "4 mm"})

@@ -169,6 +169,8 @@ def _nearest(text: str) -> str:
     if "x" in text.lower():
         attempts.reverse()
     for attempt in attempts:
+        if not any(form.fullmatch(attempt) for form in (_METRIC, _TRUCK, _AIRCRAFT)):
+            continue
         try:
             parse_size(attempt)
         except InputError:

@@ -11,6 +11,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from tyrefem.errors import InputError
+from tyrefem.sizes.cards import bead_card
 from tyrefem.sizes.designation import TyreSize
 from tyrefem.sizes.drawn import Drawn, length, section_data, table, thickness
 from tyrefem.sizes.meridian import radial_meridian
@@ -344,8 +345,13 @@ class Radial:
             r += self.ply_gauge / 2 + sum(self.n(other.gauge) for other in inside) + self.n(belt.gauge) / 2
         return f"{r * 1e3:.2f} mm"
 
-    def bead_ends(self, diameter: float) -> dict[str, Any]:
-        """Bead wires per metre of the bundle's height, as a material card has them."""
-        area = self.rules["bead_wire_area"].value
-        plies = max(1, int(np.ceil(area / (np.pi * diameter / 4) / self.n("bead_height") / 0.9)))
-        return {"ends": f"{area / (np.pi * diameter**2 / 4) / self.n('bead_height'):.5g} 1/m", "plies": plies}
+    def bead_material(self, base: str, diameter: float) -> dict[str, Any]:
+        """Card of the bundle of wires of a diameter, m."""
+        area, height = self.n("bead_wire_area"), self.n("bead_height")
+        plies = max(1, int(np.ceil(area / (np.pi * diameter / 4) / height / 0.9)))
+        ends = {"ends": f"{area / (np.pi * diameter**2 / 4) / height:.5g} 1/m", "plies": plies}
+        return bead_card(base, area / (height * self.n("bead_width")), ends)
+
+    def belt_card(self, belt: Belt, base: str, **cords: Any) -> dict[str, Any]:
+        """Card of a belt: its angle holds at the radius of its middle."""
+        return {"base": base, "cords": {"angle_radius": self.radius(belt), **cords}}

@@ -7,13 +7,14 @@ import numpy as np
 from tyrefem.errors import InputError
 from tyrefem.sizes.aircraft import aircraft_numbers
 from tyrefem.sizes.bead import bead_wire_area
+from tyrefem.sizes.cards import bead_shear
 from tyrefem.sizes.designation import TyreSize
 from tyrefem.sizes.drawn import Drawn, length, section_data, table, thickness
 from tyrefem.sizes.growth import before_inflation
 from tyrefem.sizes.meridian import bias_meridian
 from tyrefem.sizes.rules import Rules
 
-BEAD_FILL = 0.5
+BEAD_FILL = 0.7
 ESTIMATE = "estimate: ordinary practice"
 
 
@@ -179,7 +180,11 @@ def draw(size: TyreSize, rule: Rules) -> Drawn:
         table(
             "rubber",
             rubber,
-            [{"name": "tread", "to": "shoulder"}, {"name": "sidewall"}],
+            [
+                {"name": "tread", "to": "shoulder"},
+                {"name": "sidewall", "to": f"-{length(end - up)}"},
+                {"name": "chafer"},
+            ],
             rule.sources("tread_gauge", "shoulder_gauge", "sidewall_gauge", "chafer_gauge"),
         ),
     ]
@@ -204,10 +209,11 @@ def draw(size: TyreSize, rule: Rules) -> Drawn:
         bead_length=bead_height,
         grooves=cut,
     )
-    return Drawn(
-        size,
-        rule,
-        line,
-        data,
-        {"carcass": "nasa-carcass", "tread": "nasa-tread", "sidewall": "nasa-sidewall", "bead": "nasa-bead"},
-    )
+    materials = {
+        "carcass": "nasa-carcass",
+        "tread": "nasa-tread",
+        "sidewall": "nasa-sidewall",
+        "bead": {"base": "nasa-bead", "shear_modulus": bead_shear(area / (bundle * bead_width))},
+        "chafer": "rubber-chafer",
+    }
+    return Drawn(size, rule, line, data, materials)

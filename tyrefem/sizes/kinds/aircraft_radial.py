@@ -6,12 +6,13 @@ import math
 
 from tyrefem.sizes.aircraft import aircraft_numbers
 from tyrefem.sizes.bead import bead_wire_area
+from tyrefem.sizes.cards import radial_cards
 from tyrefem.sizes.designation import TyreSize
 from tyrefem.sizes.drawn import Drawn
 from tyrefem.sizes.radial import Belt, Radial
 from tyrefem.sizes.rules import Rules
 
-BEAD_FILL = 0.5
+BEAD_FILL = 0.7
 ESTIMATE = "estimate: ordinary practice"
 #: How many times the rated pressure the plies hold, and the strength of their cords over a metre, N/m (estimates).
 SAFETY, PLY_STRENGTH, BELT_STRENGTH = 4.0, 780 * 300.0, 900 * 600.0
@@ -99,24 +100,9 @@ def draw(size: TyreSize, rule: Rules) -> Drawn:
         "base": "aircraft-body-ply",
         "cords": {"angle_radius": radial.radius(), "ends": f"{780 * plies} 1/m", "plies": plies},
     }
-    materials = {
-        "liner": "rubber-liner",
-        "body-plies": ply,
-        "turn-up": ply,
-        "bead-wrap": ply,
-        **{
-            belt.region: {
-                "base": "aircraft-belt",
-                "cords": {"angle_radius": radial.radius(belt), "ends": f"{900 * count} 1/m", "plies": count},
-            }
-            for belt, count in zip(belts, (first, second), strict=True)
-        },
-        "undertread": "rubber-undertread",
-        "tread": "rubber-tread-aircraft",
-        "shoulder-cushion": "rubber-cushion",
-        "sidewall": "rubber-sidewall",
-        "apex": "rubber-apex",
-        "bead": {"base": "aircraft-bead", "cords": radial.bead_ends(1e-3)},
-        "chafer": "rubber-chafer",
+    belt_cards = {
+        belt.region: radial.belt_card(belt, "aircraft-belt", ends=f"{900 * count} 1/m", plies=count)
+        for belt, count in zip(belts, (first, second), strict=True)
     }
-    return radial.drawn(materials)
+    bead_card = radial.bead_material("aircraft-bead", 1e-3)
+    return radial.drawn(radial_cards("body-plies", ply, belt_cards, "rubber-tread-aircraft", bead_card))

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from tyrefem.sizes.bead import bead_wire_area
+from tyrefem.sizes.cards import radial_cards
 from tyrefem.sizes.designation import INCH, TyreSize
 from tyrefem.sizes.drawn import Drawn
 from tyrefem.sizes.radial import Belt, Radial
@@ -11,7 +12,7 @@ from tyrefem.sizes.rules import Rules
 
 #: Series -> measuring rim over nominal width, up to that series.
 RIM_SHARES = ((0.44, 0.90), (0.49, 0.85), (0.59, 0.80), (0.74, 0.75), (1.0, 0.70))
-BEAD_FILL = 0.3
+BEAD_FILL = 0.5
 ESTIMATE = "estimate: ordinary practice"
 
 
@@ -135,20 +136,7 @@ def draw_with(
         "base": "passenger-body-ply",
         "cords": {"angle_radius": radial.radius(), "ends": f"{1100 * count} 1/m", "plies": count},
     }
-    materials = {
-        "liner": "rubber-liner",
-        "body-ply": ply,
-        "turn-up": ply,
-        "bead-wrap": ply,
-        "belt-1": {"base": "passenger-belt", "cords": {"angle_radius": radial.radius(belts[0])}},
-        "belt-2": {"base": "passenger-belt", "cords": {"angle_radius": radial.radius(belts[1])}},
-        "cap-ply": {"base": "passenger-cap-ply", "cords": {"angle_radius": radial.radius(belts[2])}},
-        "undertread": "rubber-undertread",
-        "tread": "rubber-tread-passenger",
-        "shoulder-cushion": "rubber-cushion",
-        "sidewall": "rubber-sidewall",
-        "apex": "rubber-apex",
-        "bead": {"base": "passenger-bead", "cords": radial.bead_ends(1e-3)},
-        "chafer": "rubber-chafer",
-    }
-    return radial.drawn(materials)
+    cards = ("passenger-belt", "passenger-belt", "passenger-cap-ply")
+    belt_cards = {belt.region: radial.belt_card(belt, card) for belt, card in zip(belts, cards, strict=True)}
+    bead_card = radial.bead_material("passenger-bead", 1e-3)
+    return radial.drawn(radial_cards("body-ply", ply, belt_cards, "rubber-tread-passenger", bead_card))

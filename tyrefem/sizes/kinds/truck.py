@@ -3,13 +3,14 @@
 from __future__ import annotations
 
 from tyrefem.sizes.bead import bead_wire_area
+from tyrefem.sizes.cards import radial_cards
 from tyrefem.sizes.designation import INCH, TyreSize
 from tyrefem.sizes.drawn import Drawn
 from tyrefem.sizes.radial import Belt, Radial
 from tyrefem.sizes.road import check_rim_diameter, design_width, measuring_rim, rated, road_rim
 from tyrefem.sizes.rules import Rules
 
-BEAD_FILL = 0.5
+BEAD_FILL = 0.7
 STANDARD = "ETRTO/ISO 4209-1 (from memory)"
 ESTIMATE = "estimate: ordinary practice"
 
@@ -89,7 +90,7 @@ def draw(size: TyreSize, rule: Rules) -> Drawn:
         "apex_height", 0.34 * height, "mm", f"{ESTIMATE}: 0.34 section heights above the wires, half of it hard", 10e-3
     )
     rule("turn_up_height", 0.22 * height, "mm", f"{ESTIMATE}: 0.22 section heights above the wires", 6e-3)
-    rule("toe_gauge", 8e-3, "mm", f"{ESTIMATE}: rubber below the wires", 2e-3)
+    rule("toe_gauge", 5e-3, "mm", f"{ESTIMATE}: rubber below the wires", 2e-3)
     rule("chafer_height", 0.34 * height, "mm", f"{ESTIMATE}: along the line from the seat", 10e-3)
     belts = (Belt("belt-1", 7e-3), Belt("belt-2", 2.4e-3), Belt("belt-3", 1.6e-3), Belt("belt-4", 0.0))
     radial = Radial(
@@ -109,22 +110,7 @@ def draw(size: TyreSize, rule: Rules) -> Drawn:
         "cords": {"angle_radius": radial.radius(), "ends": f"{600 * round(radial.n('plies'))} 1/m"},
     }
     cards = ("truck-transition-belt", "truck-belt", "truck-belt", "truck-protector-belt")
-    materials = {
-        "liner": "rubber-liner",
-        "body-ply": ply,
-        "turn-up": ply,
-        "bead-wrap": ply,
-        **{
-            belt.region: {"base": card, "cords": {"angle_radius": radial.radius(belt)}}
-            for belt, card in zip(belts, cards, strict=True)
-        },
-        "undertread": "rubber-undertread",
-        "tread": "rubber-tread-truck",
-        "shoulder-cushion": "rubber-cushion",
-        "sidewall": "rubber-sidewall",
-        "apex": "rubber-apex",
-        "apex-soft": "rubber-apex-soft",
-        "bead": {"base": "truck-bead", "cords": radial.bead_ends(1.6e-3)},
-        "chafer": "rubber-chafer",
-    }
-    return radial.drawn(materials)
+    belt_cards = {belt.region: radial.belt_card(belt, card) for belt, card in zip(belts, cards, strict=True)}
+    bead_card = radial.bead_material("truck-bead", 1.6e-3)
+    materials = radial_cards("body-ply", ply, belt_cards, "rubber-tread-truck", bead_card)
+    return radial.drawn(materials | {"apex-soft": "rubber-apex-soft"})
