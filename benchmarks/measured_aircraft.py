@@ -60,9 +60,9 @@ UNCERTAIN: dict[str, tuple[str, float]] = {
     "bead height": ("bead_height", 0.15),
     "flange radius": ("flange_radius", 0.20),
     "modulus of the cords": ("materials.carcass.cord.ply_shear_modulus", 0.20),
-    "modulus of the plies' rubber": ("materials.carcass.shear_modulus", 0.20),
-    "modulus of the tread": ("materials.tread.shear_modulus", 0.20),
-    "modulus of the sidewall": ("materials.sidewall.shear_modulus", 0.20),
+    "modulus of the plies' rubber": ("materials.carcass.shear_modulus.value", 0.20),
+    "modulus of the tread": ("materials.tread.shear_modulus.value", 0.20),
+    "modulus of the sidewall": ("materials.sidewall.shear_modulus.value", 0.20),
 }
 #: Tyres whose sensitivities are worked out: the lightest and the heaviest of `used`, and two between.
 SENSITIVE = ("18x4.4 6PR", "22x5.5 10PR", "40x12 20PR", "56x16 38PR")
@@ -290,7 +290,7 @@ def sensitivities(tyre: CatalogueTyre) -> Iterator[dict[str, Any]]:
         if where.startswith("materials."):
             _, region, *path = where.split(".")
             value: Any = study.materials[region]
-            value = value.elasticity.shear_modulus if path == ["shear_modulus"] else value.cord.ply_shear_modulus
+            value = value.cord.ply_shear_modulus if path[0] == "cord" else value.shear_modulus.value
             change = {where: f"{value * (1 + deviation):.9g} Pa"}
         else:
             change = {where: f"{rules[where].value * (1 + deviation):.9g} m"}
@@ -342,8 +342,10 @@ def all_sensitivities() -> None:
     made = {row["size"] for row in rows}
     for tyre in chosen():
         if tyre.name in SENSITIVE and tyre.name not in made:
-            rows += list(sensitivities(tyre))
-            write("sensitivities", rows)
+            for row in sensitivities(tyre):
+                rows.append(row)
+                write("sensitivities", rows)
+                print(row, flush=True)
 
 
 PARTS: dict[str, Callable[[], None]] = {
