@@ -9,7 +9,10 @@ import numpy as np
 from numpy.typing import NDArray
 
 from tyrefem.mechanics.footprint.elements import SectionElements
-from tyrefem.mechanics.solid.body import Prestressed
+from tyrefem.mechanics.solid.body import Body, Prestressed
+from tyrefem.mechanics.solid.compounds import neo_hookean
+from tyrefem.mechanics.solid.cords import CordLayer
+from tyrefem.mechanics.solid.parts import RegionMaterial
 
 Array = NDArray[np.float64]
 
@@ -129,6 +132,26 @@ class PlainTyre:
         return mesh.with_subdomains({k: np.flatnonzero(v) for k, v in regions.items()}).with_boundaries(
             {k: np.flatnonzero(v) for k, v in names.items()}
         )
+
+    def body(self, along: int = 24, through: tuple[int, int, int] = (1, 1, 1)) -> Body:
+        """The tyre before inflation: neo-Hookean rubber, cords whose force is linear in their stretch.
+
+        >>> from tyrefem.mechanics.solid.newton import equilibrium
+        >>> body = PlainTyre().body(along=6)
+        >>> round(1e3 * float(equilibrium(body, 2e5).displacement[0].max()), 1)
+        9.0
+        """
+        mesh = self.mesh(along, through)
+        direction = meridian_direction(SectionElements(mesh))[:2]
+        rubber = neo_hookean(self.shear_modulus, self.bulk_ratio * self.shear_modulus)
+        parts = {name: RegionMaterial(rubber) for name in mesh.subdomains}
+        layers = {"ply": (np.pi / 2, self.ply_stiffness), "belt": (self.belt_angle, self.belt_stiffness)}
+        for name, (angle, stiffness) in layers.items():
+            meridian = direction[:, mesh.subdomains[name]]
+            shape = meridian.shape[1:]
+            parts[name] = RegionMaterial(rubber, (CordLayer(np.full(shape, angle), meridian, np.full(shape, stiffness)),))
+        held = {"rim": "rz"} | ({"symmetry": "z"} if self.half else {})
+        return Body(mesh, parts, held)
 
     def state(self, pressure: float = 2e5, along: int = 24, through: tuple[int, int, int] = (1, 1, 1)) -> Prestressed:
         """The inflated tyre: the given shape with a stress that balances ``pressure``, Pa."""

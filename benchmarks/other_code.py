@@ -1,0 +1,304 @@
+"""One tyre by two codes: inflated and pressed on a flat road by harmonics, and by FElupe in three dimensions.
+
+    python benchmarks/other_code.py [--quick] [--out TABLE.csv]
+
+The plain belted tyre (`PlainTyre.body`): neo-Hookean rubber with cords, a pressure that follows the wall, no friction.
+Each code inflates the same section mesh from rest and presses it by 20 mm from its inflated state. Prints one table for
+each mesh; --quick: only the coarsest mesh. FElupe is under the GPL: only this benchmark and its test use it.
+"""
+
+from __future__ import annotations
+
+import argparse
+import csv
+import math
+import os
+import sys
+import time
+from collections.abc import Iterator
+from dataclasses import dataclass
+from pathlib import Path
+from typing import Any
+
+os.environ.setdefault("OMP_NUM_THREADS", "1")
+os.environ.setdefault("OPENBLAS_NUM_THREADS", "1")
+
+import numpy as np
+from numpy.typing import NDArray
+
+from tyrefem.mechanics.footprint.contact import Pressing
+from tyrefem.mechanics.footprint.elements import SectionElements, WheelAngles
+from tyrefem.mechanics.footprint.example_tyre import PlainTyre
+from tyrefem.mechanics.footprint.harmonic_balance import Balance
+from tyrefem.mechanics.solid.body import Body
+from tyrefem.mechanics.solid.inflation import Inflation
+from tyrefem.mechanics.solid.newton import equilibrium
+from tyrefem.output import atomic_path
+
+try:
+    from felupe_tyre import SolidState, SolidTyre
+except ModuleNotFoundError as error:
+    if error.name != "felupe":
+        raise
+    sys.exit("this benchmark needs FElupe 11.3 or later: pip install felupe")
+
+Array = NDArray[np.float64]
+#: Pa, m.
+PRESSURE, DEFLECTION = 2e5, 0.02
+#: Elements along the half section, and size of hexahedra round the wheel near the footprint, degrees.
+MESHES = ((8, 5.0), (8, 2.5), (14, 2.5))
+#: Largest deviations.
+LOAD, AREA, STRAIN = 0.02, 0.05, 0.05
+#: Tread nearer to the road than this touches it, m: the film of an ink print.
+FILM = 1e-4
+UNIT = np.eye(3).reshape(3, 3, 1, 1, 1)
+RUBBER = ("tread", "sidewall")
+
+
+@dataclass(frozen=True, eq=False)
+class Solution:
+    """What both codes say. Lengths in m, of the whole tyre: load, N; growth of the radius by inflation; of tread nodes
+    at angles (angles, nodes): pressure, Pa, areas of the quarter, m2, gaps, places from the middle (2, ...); Green's
+    strain (3, 3, e, 9, angles) in (r, z, t), pressed and inflated."""
+
+    load: float
+    growth: float
+    pressure: Array
+    areas: Array
+    gaps: Array
+    places: Array
+    pressed: Array
+    inflated: Array
+
+    @property
+    def area(self) -> float:
+        """Area of the tread nearer than `FILM` to the road, m2: the gap is linear between angles."""
+        x, z = self.places
+        ends = np.array([_crossing(gap, at) for gap, at in zip(self.gaps.T, x.T, strict=True)])
+        # Simpson's rule over the nodes of quadratic elements.
+        across = z[0]
+        return float(4 * ((ends[:-2:2] + 4 * ends[1::2] + ends[2::2]) * (across[2::2] - across[:-2:2])).sum() / 6)
+
+    @property
+    def pressed_area(self) -> float:
+        """Area of the tread nodes under pressure, m2."""
+        return float(4 * self.areas[self.pressure > 0].sum())
+
+    @property
+    def effective_area(self) -> float:
+        """(int p dA)^2 / int p^2 dA, m2: it does not jump where a node touches."""
+        forces = self.pressure * self.areas
+        return float(4 * forces.sum() ** 2 / (self.pressure * forces).sum())
+
+    def spread(self, axis: int) -> float:
+        """Root mean square distance of the pressure from the middle, along (0) or across (1) the road, m."""
+        forces = self.pressure * self.areas
+        return float(np.sqrt((forces * self.places[axis] ** 2).sum() / forces.sum()))
+
+
+def _crossing(gap: Array, at: Array) -> float:
+    """The place where a gap first exceeds `FILM`."""
+    beyond = int(np.argmax(gap > FILM))
+    if beyond == 0:
+        return 0.0
+    low, high = gap[beyond - 1], gap[beyond]
+    return float(at[beyond - 1] + (FILM - low) / (high - low) * (at[beyond] - at[beyond - 1]))
+
+
+@dataclass(frozen=True, eq=False)
+class PlacedAngles(WheelAngles):
+    """Angles of the wheel that are given, rad."""
+
+    angles: Array
+
+    def __init__(self, elements: SectionElements, highest: int, angles: Array) -> None:
+        super().__init__(elements, highest)
+        object.__setattr__(self, "angles", angles)
+
+
+def green(deformation: Array) -> Array:
+    """Green's strain of F (3, 3, e, q, angles)."""
+    return np.asarray((np.einsum("ki...,kj...->ij...", deformation, deformation) - UNIT) / 2)
+
+
+def by_harmonics(body: Body, harmonics: int, deflection: float, angles: Array) -> Solution:
+    """Inflation and footprint of this package; strains at the given angles, rad."""
+    inflation = Inflation(body, equilibrium(body, PRESSURE))
+    footprint = Balance(Pressing(inflation.state), harmonics).at_deflection(deflection)
+    elements, grid, shape = footprint.pressing.harmonics.elements, footprint.grid, footprint.pressure.shape
+    gradient = PlacedAngles(elements, footprint.harmonics, angles).gradient(footprint.amplitudes)
+    e, _, q, m = gradient.shape
+    moved = gradient.transpose(1, 0, 2, 3).reshape(3, 3, e, q, m) + UNIT
+    before = inflation.deformation[..., None]
+    return Solution(
+        load=footprint.load,
+        growth=inflation.radius_growth,
+        pressure=footprint.pressure,
+        areas=grid.areas.reshape(shape) * grid.sides[:, None] / 2,
+        gaps=footprint.gaps.reshape(shape),
+        places=grid.places(footprint.displacement, 0.0)[[0, 2]].reshape(2, *shape),
+        pressed=green(np.einsum("ijeqm,jkeqm->ikeqm", moved, np.broadcast_to(before, moved.shape))),
+        inflated=green(before),
+    )
+
+
+def by_felupe(solid: SolidTyre, body: Body, deflection: float) -> tuple[Solution, Array]:
+    """Inflation and footprint of FElupe, strains at the section points of ``body``; angles of the strains, rad."""
+    inflated = solid.inflate(PRESSURE)
+    pressed = solid.press(deflection)
+    strain, angles, r, z = pressed.green()
+    mine = body.rings.points
+    distances = np.hypot(r[:, None] - mine[0][:, :, None], z[:, None] - mine[1][:, :, None])
+    same = distances.argmin(axis=-1)
+    if distances.min(axis=-1).max() > 1e-6 or (same != same[0]).any():
+        raise RuntimeError("the integration points of both codes differ")
+    solution = Solution(
+        load=float(4 * pressed.forces.sum()),
+        growth=pressed.reach - float(solid.flat.p[0].max()),
+        pressure=pressed.forces / pressed.areas,
+        areas=pressed.areas,
+        gaps=pressed.gaps,
+        places=np.moveaxis(pressed.places[..., [0, 2]], -1, 0),
+        pressed=strain[:, :, :, same[0]],
+        inflated=inflated.green()[0][:, :, :, same[0]],
+    )
+    return solution, angles
+
+
+@dataclass(frozen=True)
+class Row:
+    """A quantity by both codes, in a unit; ``goal``: largest deviation, None: for information."""
+
+    quantity: str
+    unit: str
+    harmonics: float
+    felupe: float
+    goal: float | None = None
+
+    @property
+    def deviation(self) -> float:
+        """Of the harmonics from FElupe, relative."""
+        return self.harmonics / self.felupe - 1
+
+    @property
+    def met(self) -> str:
+        """Whether the goal is met."""
+        return "" if self.goal is None else "yes" if abs(self.deviation) <= self.goal else "no"
+
+    @property
+    def cells(self) -> tuple[str, ...]:
+        """Text of the row."""
+        goal = "" if self.goal is None else f"{100 * self.goal:.0f} %"
+        numbers = f"{self.harmonics:.5g}", f"{self.felupe:.5g}", f"{100 * self.deviation:+.2f} %"
+        return (f"{self.quantity}, {self.unit}", *numbers, goal, self.met)
+
+
+def rows(body: Body, ours: Solution, theirs: Solution) -> Iterator[Row]:
+    """The comparison."""
+
+    def row(quantity: str, unit: str, factor: float, value: Any, goal: float | None = None) -> Row:
+        return Row(quantity, unit, factor * value(ours), factor * value(theirs), goal)
+
+    def eigenvalues(strain: Array) -> Array:
+        return np.linalg.eigvalsh(np.moveaxis(strain, (0, 1), (-2, -1)))
+
+    regions = body.mesh.subdomains
+    rubber = np.concatenate([regions[name] for name in RUBBER])
+    belt = regions["belt"]
+    axial = body.rings.points[1][belt].mean(axis=1)
+    edge = belt[axial >= axial.max() - 1e-3]
+
+    def change(solution: Solution, members: Array) -> Array:
+        return solution.pressed[:, :, members] - solution.inflated[:, :, members]
+
+    def stretch(solution: Solution, name: str) -> tuple[Array, Array]:
+        (layer,) = body.parts[name].cords
+        direction = layer.directions[0]
+        squares = (
+            1 + 2 * np.einsum("ieq,ijeqm,jeq->eqm", direction, strain[:, :, regions[name]], direction)
+            for strain in (solution.pressed, solution.inflated)
+        )
+        pressed, inflated = (np.sqrt(square) for square in squares)
+        return pressed - 1, pressed - inflated
+
+    def shear(solution: Solution) -> float:
+        changed = change(solution, edge)
+        return float(max(np.ptp(2 * changed[i, j], axis=-1).max() for i, j in ((0, 1), (0, 2), (1, 2))))
+
+    yield row("growth of the radius by inflation", "mm", 1e3, lambda s: s.growth)
+    yield row("load", "N", 1, lambda s: s.load, LOAD)
+    yield row("contact area", "cm2", 1e4, lambda s: s.area, AREA)
+    yield row("area of nodes under pressure", "cm2", 1e4, lambda s: s.pressed_area)
+    yield row("effective area, F2/int p2 dA", "cm2", 1e4, lambda s: s.effective_area)
+    yield row("length of the pressure, rms", "mm", 1e3, lambda s: s.spread(0))
+    yield row("width of the pressure, rms", "mm", 1e3, lambda s: s.spread(1))
+    yield row("largest principal strain of rubber", "%", 100, lambda s: eigenvalues(s.pressed[:, :, rubber]).max(), STRAIN)
+    for name in RUBBER:
+        members = regions[name]
+        text = f"largest principal change by the load, {name}"
+        yield row(text, "%", 100, lambda s, m=members: np.abs(eigenvalues(change(s, m))).max(), STRAIN)
+    yield row("largest range of shear at the belt's edge", "%", 100, shear, STRAIN)
+    for name in ("ply", "belt"):
+        yield row(f"largest cord strain, {name}", "%", 100, lambda s, n=name: stretch(s, n)[0].max(), STRAIN)
+        text = f"largest change of cord strain by the load, {name}"
+        yield row(text, "%", 100, lambda s, n=name: np.abs(stretch(s, n)[1]).max(), STRAIN)
+
+
+def field_difference(body: Body, ours: Solution, theirs: Solution, angles: Array) -> float:
+    """Root mean square difference of the change of strain by the load over its root mean square."""
+    weights = body.rings.weights[..., None] * np.gradient(angles)
+    first, second = (solution.pressed - solution.inflated for solution in (ours, theirs))
+    squares = [((field**2).sum(axis=(0, 1)) * weights).sum() for field in (first - second, second)]
+    return float(np.sqrt(squares[0] / squares[1]))
+
+
+def compare(along: int, fine: float, deflection: float = DEFLECTION, **settings: Any) -> tuple[list[Row], str]:
+    """The rows of one mesh (``fine`` in degrees) and a line about it; ``settings`` of `SolidTyre`."""
+    tyre = PlainTyre()
+    body = tyre.body(along, settings.get("through", (1, 1, 1)))
+    began = time.process_time()
+    solid = SolidTyre(tyre, along, math.radians(fine), **settings)
+    theirs, angles = by_felupe(solid, body, deflection)
+    middle = time.process_time()
+    harmonics = round(360 / fine)  # As many angles as nodes of the hexahedra near the footprint.
+    ours = by_harmonics(body, harmonics, deflection, angles)
+    ended = time.process_time()
+    text = (
+        f"{body.mesh.t.shape[1]} elements of the section, {len(solid.ends) - 1} round half the wheel, "
+        f"{3 * len(solid.mesh.points)} unknowns, {middle - began:.0f} s; {harmonics} harmonics, {ended - middle:.0f} s; "
+        f"change of strain by the load differs by {100 * field_difference(body, ours, theirs, angles):.1f} % rms"
+    )
+    return list(rows(body, ours, theirs)), text
+
+
+def main() -> None:
+    """Print the tables."""
+    parser = argparse.ArgumentParser(description=__doc__.split("\n")[0])
+    parser.add_argument("--quick", action="store_true", help="only the coarsest mesh")
+    parser.add_argument("--out", type=Path, help="CSV file of all tables")
+    parser.add_argument("--mesh", nargs=2, type=float, metavar=("ALONG", "DEGREES"), help="only this mesh")
+    parser.add_argument("--penalty", type=float, help="contact stiffness of a tread node in FElupe, N/m")
+    parser.add_argument("--full", action="store_true", help="FElupe integrates the dilatation in full: it locks")
+    chosen = parser.parse_args()
+    settings: dict[str, Any] = {"reduced": not chosen.full}
+    if chosen.penalty:
+        settings["penalty"] = chosen.penalty
+    meshes = MESHES[:1] if chosen.quick else MESHES
+    if chosen.mesh:
+        meshes = ((int(chosen.mesh[0]), chosen.mesh[1]),)
+    head = ("quantity", "harmonics", "FElupe", "deviation", "goal", "met")
+    lines = []
+    for along, fine in meshes:
+        made, text = compare(along, fine, **settings)
+        print(f"\n{along} elements along, {fine:g} degrees: {text}\n")
+        print(f"| {' | '.join(head)} |\n|{'---|' * len(head)}", flush=True)
+        for row in made:
+            print(f"| {' | '.join(row.cells)} |", flush=True)
+            lines.append((f"{along} x {fine:g}", *row.cells))
+    if chosen.out:
+        with atomic_path(chosen.out) as path, path.open("w", newline="", encoding="utf-8") as file:
+            csv.writer(file, lineterminator="\n").writerows([("mesh: elements along x degrees round", *head), *lines])
+
+
+if __name__ == "__main__":
+    main()
