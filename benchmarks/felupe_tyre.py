@@ -263,13 +263,10 @@ class SolidTyre:
         surface = self._surface("road")
         field = self._field_on(surface)
         field.link(self.field)
-        f = field.extract()[0]
-        inverse = np.linalg.inv(np.moveaxis(f, (0, 1), (-2, -1)))
-        normals = np.einsum("qcji,jqc->iqc", inverse, surface.normals)
-        spread = np.linalg.norm(normals, axis=0) * np.linalg.det(np.moveaxis(f, (0, 1), (-2, -1))) * surface.dV
+        normals = fem.constitution.AreaChange().function(field.extract(), surface.normals)[0]
+        spread = np.linalg.norm(normals, axis=0) * surface.dV
         areas = np.zeros(len(self.mesh.points))
-        shapes = np.asarray(surface.h).reshape(27, spread.shape[0], -1)
-        np.add.at(areas, surface.mesh.cells, np.einsum("aqc,qc->ca", np.broadcast_to(shapes, (27, *spread.shape)), spread))
+        np.add.at(areas, surface.mesh.cells, np.einsum("aqc,aqc->ca", *np.broadcast_arrays(surface.h, spread)))
         shape = (count, len(tread))
         return SolidState(
             self, np.array(self.field.extract()[0]), reach, self.penalty * np.maximum(-gaps, 0.0).reshape(shape),
@@ -287,7 +284,7 @@ def _solve(matrix: Any, right: Any) -> Array:
 @dataclass(frozen=True, eq=False)
 class SolidState:
     """A balance. ``deformation`` F (3, 3, q, c); ``reach`` of the inflated tyre, m; of tread nodes (angles, nodes) up
-    to `MAY_TOUCH` in the quarter: ``forces``, N, ``gaps``, m, ``areas`` as pressed, m2, ``places`` (..., 3), m."""
+    to `MAY_TOUCH` in the quarter: ``forces``, N, ``gaps``, m, ``areas`` in this state, m2, ``places`` (..., 3), m."""
 
     solid: SolidTyre
     deformation: Array

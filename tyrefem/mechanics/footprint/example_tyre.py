@@ -148,8 +148,8 @@ class PlainTyre:
         layers = {"ply": (np.pi / 2, self.ply_stiffness), "belt": (self.belt_angle, self.belt_stiffness)}
         for name, (angle, stiffness) in layers.items():
             meridian = direction[:, mesh.subdomains[name]]
-            shape = meridian.shape[1:]
-            parts[name] = RegionMaterial(rubber, (CordLayer(np.full(shape, angle), meridian, np.full(shape, stiffness)),))
+            ones = np.ones(meridian.shape[1:])
+            parts[name] = RegionMaterial(rubber, (CordLayer(angle * ones, meridian, stiffness * ones),))
         held = {"rim": "rz"} | ({"symmetry": "z"} if self.half else {})
         return Body(mesh, parts, held)
 
