@@ -29,9 +29,9 @@ def rows() -> dict[str, Any]:
     [
         ("growth of the radius by inflation", 0.01),
         ("load", 0.005),
-        ("largest principal strain of rubber", 0.05),
-        ("largest principal change by the load, tread", 0.05),
-        ("largest principal change by the load, sidewall", 0.02),
+        ("largest principal strain of rubber, at a point", 0.05),
+        ("largest principal change by the load, tread, at a point", 0.05),
+        ("largest principal change by the load, sidewall, at a point", 0.02),
         ("largest cord strain, ply", 0.03),
         ("largest change of cord strain by the load, ply", 0.02),
         ("largest cord strain, belt", 0.03),
