@@ -136,5 +136,5 @@ def test_searched_directions_solve_what_they_span() -> None:
 
 
 def test_out_of_reach_says_how_far_it_got(tyre: Pressing) -> None:
-    with pytest.raises(InputError, match=r"reaches .* mm \(.* N\), not 90 mm"):
+    with pytest.raises(InputError, match=r"reaches .* mm \(.* N\), not 90 mm.*; mechanics.motion = .linear. is"):
         Balance(tyre, 8, steps=1).at_deflection(0.09)

@@ -13,7 +13,8 @@ from tyrefem.estimates import work as estimate
 from tyrefem.estimates.work import Estimate
 from tyrefem.geometry.meshing.expected import QUADRATIC, expected_nodes
 from tyrefem.mechanics.cycle_schedule import ramp_knots
-from tyrefem.mechanics.footprint.pressed_tyre import COARSER, QUICK_LOOK
+from tyrefem.mechanics.footprint.footprint import QUICK_LOOK
+from tyrefem.mechanics.footprint.pressed_tyre import COARSER
 from tyrefem.mechanics.strain_laws import strain_law
 
 if TYPE_CHECKING:

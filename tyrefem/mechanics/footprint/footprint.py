@@ -15,6 +15,8 @@ from tyrefem.mechanics.footprint.grid import ContactGrid
 from tyrefem.mechanics.footprint.tyre_on_road import TyreOnRoad
 
 Array = NDArray[np.float64]
+#: The way out where large motion takes too long or has no balance.
+QUICK_LOOK = 'mechanics.motion = "linear" is the quick look'
 
 
 @dataclass(frozen=True, eq=False)

@@ -7,7 +7,7 @@ from dataclasses import dataclass, field, replace
 
 from tyrefem.errors import InputError
 from tyrefem.mechanics.footprint.contact import Pressing
-from tyrefem.mechanics.footprint.footprint import Footprint
+from tyrefem.mechanics.footprint.footprint import QUICK_LOOK, Footprint
 from tyrefem.mechanics.footprint.large_motion import BEFORE_RIM, STIFFNESS, DeflectedState, LargeMotion
 from tyrefem.mechanics.solid.finite_law import FiniteLaw
 
@@ -148,6 +148,7 @@ class Balance:
     def _no_balance_error(now: DeflectedState, deflection: float | None, load: float | None, how: str) -> InputError:
         target = f"{load:.5g} N" if deflection is None else f"{deflection * 1e3:.4g} mm of deflection"
         return InputError(
-            f"the balance in large motion reaches {now.deflection * 1e3:.4g} mm ({now.load:.5g} N), not {target}{how}",
+            f"the balance in large motion reaches {now.deflection * 1e3:.4g} mm ({now.load:.5g} N), not {target}{how}; "
+            f"{QUICK_LOOK} and needs none",
             field="load" if deflection is None else "deflection",
         )

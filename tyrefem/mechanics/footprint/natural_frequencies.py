@@ -189,7 +189,7 @@ def natural_frequencies(
         raise InputError(f"must be more than 0 Pa, not {pressure:g} Pa", field="pressure")
     if not 0 < amplitude <= 1:
         raise InputError(f"must be more than 0 to 100 %, not {100 * amplitude:g} %", field="amplitude")
-    mesh = mechanical_mesh(study)
+    mesh = mechanical_mesh(study, large=False)
     nodes = QUADRATIC * mesh.n_nodes
     estimate.warn_if_long(estimate.mechanics(nodes, large=False).time, f"the frequencies of {nodes:,} nodes")
     tyre = inflate(study, pressure, mesh)

@@ -16,7 +16,8 @@ from tyrefem.estimates import work as estimate
 from tyrefem.geometry.meshing.expected import QUADRATIC
 from tyrefem.inputs.motion import motion_in
 from tyrefem.inputs.study_card import FootprintMotion
-from tyrefem.mechanics.footprint.pressed_tyre import QUICK_LOOK, TOLERANCE, mechanical_mesh
+from tyrefem.mechanics.footprint.footprint import QUICK_LOOK
+from tyrefem.mechanics.footprint.pressed_tyre import TOLERANCE, mechanical_mesh
 from tyrefem.mechanics.footprint.road import Road
 from tyrefem.mechanics.footprint.secant_moduli import SecantModuli, under_load
 from tyrefem.requirements import Requirements

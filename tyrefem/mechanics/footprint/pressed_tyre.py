@@ -32,8 +32,6 @@ COARSER = 2.0
 REMEMBERED = 10
 #: Number of tyres that a process keeps: the study's tyre, and the last one with another stiffness.
 TYRES = 2
-#: The way out where large motion takes too long or does not converge.
-QUICK_LOOK = 'mechanics.motion = "linear" is the quick look'
 
 
 def mechanical_mesh(study: StudyData, *, large: bool | None = None) -> TyreMesh:
