@@ -1,0 +1,93 @@
+"""Rolling resistance of the measured 205/60R15, cold and warm, over load and pressure: nothing is fitted.
+
+    python benchmarks/rolling_resistance.py [--motion large|linear]
+
+Each row is a run of studies/measured-205-60r15 with its temperatures: ``cold`` is the coefficient at the initial
+temperature, ``warm`` that at the end. With ``moduli`` "constant" the cards' strain dependence is left out. Writes
+docs/evidence/tables/measured-rolling.csv and prints the exponents over load and pressure.
+"""
+
+from __future__ import annotations
+
+import argparse
+import csv
+import os
+from dataclasses import replace
+from pathlib import Path
+from typing import Any
+
+os.environ.setdefault("OMP_NUM_THREADS", "1")
+os.environ.setdefault("OPENBLAS_NUM_THREADS", "1")
+
+import numpy as np
+
+import tyrefem as tf
+from tyrefem.inputs.study import StudyData
+from tyrefem.inputs.study_materials import StudyMaterials
+from tyrefem.output import atomic_path
+
+ROOT = Path(__file__).resolve().parents[1]
+STUDY = ROOT / "studies" / "measured-205-60r15" / "study.toml"
+TABLE = ROOT / "docs" / "evidence" / "tables" / "measured-rolling.csv"
+#: Load, N, and pressure, kPa.
+CASES = ((2000, 220), (3000, 220), (4000, 220), (5000, 220), (6000, 220), (4000, 200), (4000, 240))
+
+
+def constant(study: Any) -> Any:
+    """The study with cards whose moduli do not depend on strain."""
+    materials = study.parts.materials
+    cards = {name: card.model_copy(update={"strain_dependence": None}) for name, card in materials.cards.items()}
+    bare = StudyMaterials(materials.references, materials.folder, cards, materials.written)
+    return type(study)(study.name, study.data, study.file, study.folder, built=replace(study.parts, materials=bare))
+
+
+def row(study: StudyData, moduli: str, load: float, pressure: float) -> dict[str, Any]:
+    """The coefficients of one load and pressure."""
+    result: Any = study.run()  # type: ignore[attr-defined]
+    resistance, hottest = result.rolling_resistance, result.extremes.temperature_degC.iloc[0]
+    return {
+        "moduli": moduli,
+        "motion": study.card.mechanics.motion,
+        "load [N]": load,
+        "pressure [kPa]": pressure,
+        "cold coefficient [1]": resistance.cold_coefficient,
+        "warm coefficient [1]": resistance.coefficient,
+        "hottest [degC]": float(hottest),
+    }
+
+
+def exponent(rows: list[dict[str, Any]], over: str, value: str) -> float:
+    """Slope of the logarithms."""
+    return float(np.polyfit(*(np.log([each[name] for each in rows]) for name in (over, value)), 1)[0])
+
+
+def main() -> None:
+    """Compute all rows."""
+    parser = argparse.ArgumentParser(description=__doc__.split("\n")[0])
+    parser.add_argument("--motion", choices=("large", "linear"), default="large")
+    motion = parser.parse_args().motion
+    rows: list[dict[str, Any]] = []
+    for moduli in ("secant", "constant"):
+        for load, pressure in CASES:
+            changes = {"drive.load": f"{load} N", "drive.pressure": f"{pressure} kPa", "mechanics.motion": motion}
+            study = tf.study(STUDY, {**changes, "mechanics.moduli": "card" if moduli == "constant" else moduli})
+            rows.append(row(constant(study) if moduli == "constant" else study, moduli, load, pressure))
+            print({key: f"{v:.5g}" if isinstance(v, float) else v for key, v in rows[-1].items()}, flush=True)
+            with atomic_path(TABLE) as path, open(path, "w", encoding="utf-8", newline="") as file:
+                writer = csv.DictWriter(file, rows[0], lineterminator="\n")
+                writer.writeheader()
+                writer.writerows(
+                    {key: f"{v:.5g}" if isinstance(v, float) else v for key, v in each.items()} for each in rows
+                )
+        for value in ("cold coefficient [1]", "warm coefficient [1]"):
+            here = [each for each in rows if each["moduli"] == moduli]
+            over_load = [each for each in here if each["pressure [kPa]"] == 220]
+            over_pressure = [each for each in here if each["load [N]"] == 4000]
+            print(
+                f"{moduli}, {value}: exponent over load {exponent(over_load, 'load [N]', value):+.2f}, "
+                f"over pressure {exponent(over_pressure, 'pressure [kPa]', value):+.2f}"
+            )
+
+
+if __name__ == "__main__":
+    main()
