@@ -1,6 +1,6 @@
 """Rolling resistance of the measured 205/60R15, cold and warm, over load and pressure: nothing is fitted.
 
-    python benchmarks/rolling_resistance.py [--motion large|linear]
+    python benchmarks/rolling_resistance.py [--motion large|linear] [--picture]
 
 Each row is a run of studies/measured-205-60r15 with its temperatures: ``cold`` is the coefficient at the initial
 temperature, ``warm`` that at the end. With ``moduli`` "constant" the cards' strain dependence is left out. Writes
@@ -29,6 +29,8 @@ from tyrefem.output import atomic_path
 ROOT = Path(__file__).resolve().parents[1]
 STUDY = ROOT / "studies" / "measured-205-60r15" / "study.toml"
 TABLE = ROOT / "docs" / "evidence" / "tables" / "measured-rolling.csv"
+PICTURE = ROOT / "docs" / "pictures" / "rolling-resistance.png"
+MEASURED = STUDY.parent / "summary.csv"
 #: Load, N, and pressure, kPa.
 CASES = ((2000, 220), (3000, 220), (4000, 220), (5000, 220), (6000, 220), (4000, 200), (4000, 240))
 
@@ -61,11 +63,41 @@ def exponent(rows: list[dict[str, Any]], over: str, value: str) -> float:
     return float(np.polyfit(*(np.log([each[name] for each in rows]) for name in (over, value)), 1)[0])
 
 
+def picture() -> None:
+    """Coefficient over load at 220 kPa, of the table, beside the measured points."""
+    import matplotlib
+
+    matplotlib.use("Agg")
+    import matplotlib.pyplot as plt
+
+    with open(TABLE, encoding="utf-8") as file:
+        rows = [each for each in csv.DictReader(file) if each["pressure [kPa]"] == "220"]
+    with open(MEASURED, encoding="utf-8") as file:
+        points = list(csv.DictReader(line for line in file if not line.startswith("#")))
+    figure, axes = plt.subplots(figsize=(6.4, 3.6), layout="constrained")
+    name = "rolling_resistance_coefficient [1]"
+    axes.plot([float(p["load [N]"]) for p in points], [float(p[name]) for p in points], "ko", label="measured")
+    for moduli, words, style in (("secant", "", "-"), ("constant", ", moduli do not depend on strain", ":")):
+        for value, colour in (("warm", "tab:red"), ("cold", "tab:blue")):
+            of = [(float(r["load [N]"]), float(r[f"{value} coefficient [1]"])) for r in rows if r["moduli"] == moduli]
+            axes.plot(*zip(*of, strict=True), style, color=colour, label=f"computed, {value}{words}")
+    axes.set(xlabel="load, N", ylabel="rolling resistance coefficient", ylim=(0, 0.0105))
+    axes.set_title("205/60R15, 60 km/h, 220 kPa", loc="left", fontsize=10)
+    axes.legend(fontsize=8, frameon=False, ncols=2)
+    with atomic_path(PICTURE) as path:
+        figure.savefig(path, dpi=130, format="png")
+
+
 def main() -> None:
     """Compute all rows."""
     parser = argparse.ArgumentParser(description=__doc__.split("\n")[0])
     parser.add_argument("--motion", choices=("large", "linear"), default="large")
-    motion = parser.parse_args().motion
+    parser.add_argument("--picture", action="store_true", help="only the picture, of the present table")
+    arguments = parser.parse_args()
+    if arguments.picture:
+        picture()
+        return
+    motion = arguments.motion
     rows: list[dict[str, Any]] = []
     for moduli in ("secant", "constant"):
         for load, pressure in CASES:
@@ -87,6 +119,7 @@ def main() -> None:
                 f"{moduli}, {value}: exponent over load {exponent(over_load, 'load [N]', value):+.2f}, "
                 f"over pressure {exponent(over_pressure, 'pressure [kPa]', value):+.2f}"
             )
+    picture()
 
 
 if __name__ == "__main__":

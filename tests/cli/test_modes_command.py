@@ -47,7 +47,22 @@ def test_words_and_pressure(here: Path, capfd: pytest.CaptureFixture[str]) -> No
         (["--pressure", "2.2"], "--pressure: '2.2' has no unit"),
         (["--pressure", "0 bar"], "--pressure: '0 bar' is out of range: must be more than 0 Pa"),
         (["--set", "drive.pressure=0 bar"], "drive.pressure: must be more than 0 Pa"),
+        (["--amplitude", "0 %"], "--amplitude: '0 %' is out of range: must be more than 0"),
+        (["--amplitude", "2 mm"], "--amplitude: 'mm' is not a unit of this quantity"),
     ],
 )
 def test_bad_input_is_one_line(refused: Callable[..., str], arguments: list[str], words: str) -> None:
     assert words in refused("modes", STUDY, *arguments)
+
+
+def test_it_says_how_much_stiffer_small_vibrations_are(here: Path, capfd: pytest.CaptureFixture[str]) -> None:
+    table = (
+        "{base = 'nasa-sidewall', strain_dependence = {small_strain_modulus = '2 MPa', critical_strain = '2 %', "
+        "large_strain_modulus = '0.7 MPa', greatest_loss_modulus = '0.17 MPa', source = 'test'}}"
+    )
+    line = ["modes", STUDY, "--highest", "0", "--no-pictures", "--out", "out", *COARSE]
+    assert main(line) == 0
+    assert "moduli as in the cards: none gives a strain dependence" in capfd.readouterr().out
+    assert main([*line, "--force", "--amplitude", "2 %", "--set", f"materials.sidewall={table}"]) == 0
+    # G'(2 %) = 1.35 MPa, G'(10 %) = 0.7 + 1.3/(1 + 5^1.2) = 0.8646 MPa.
+    assert "moduli at the strain amplitude 2 %, over those of the cards: sidewall 1.56" in capfd.readouterr().out
