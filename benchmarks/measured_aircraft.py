@@ -48,8 +48,10 @@ LBF, PSI, INCH = 4.4482216152605, 6894.757293168361, 0.0254
 FIRST_SIZE, FIRST, EVERY = "22x5.5", 4, 10
 #: Size of the study's mesh over the section width; nine-node elements are twice as large.
 MESH = 0.057
-#: Harmonics and tolerance of a balance at the rated load, and on the way to bottoming.
-HARMONICS, WAY, TOLERANCE = 24, 16, 1e-2
+#: Harmonics and tolerance of a balance at the rated load.
+HARMONICS, TOLERANCE = 24, 1e-2
+#: Harmonics on the way to bottoming, and those with which a way that ends early is tried again.
+WAYS = (16, 12)
 #: Deflection over load, as an exponent; a load so close to the rated one needs no second balance.
 SLOPE, CLOSE = 0.8, 0.05
 #: Number of a section or a card, and its standard deviation (relative): estimates.
@@ -283,21 +285,25 @@ def bottoming(tyre: CatalogueTyre) -> dict[str, Any] | None:
         "reached deflection [mm]": "",
         "computed load [N]": "",
         "crown meets the rim at [mm]": "",
+        "harmonics": "",
         "message": "",
     }
-    balance = None
     try:
         pressing = inflated(tyre)[1]
-        row["crown meets the rim at [mm]"] = pressing.bottoming * 1e3
-        balance = Balance(pressing, WAY, TOLERANCE)
-        footprint = balance.solve(deflection=deflection, tolerance=1.0)
-        reached, load = footprint.deflection, footprint.load
     except InputError as error:
-        row["message"] = str(error)
-        if balance is None or len(balance.path) < 2:
-            return row
-        reached, load = balance.path[-1]
-    return {**row, "reached deflection [mm]": reached * 1e3, "computed load [N]": load}
+        return {**row, "message": str(error)}
+    row["crown meets the rim at [mm]"] = pressing.bottoming * 1e3
+    reached, load = 0.0, 0.0
+    for harmonics in WAYS:
+        balance = Balance(pressing, harmonics, TOLERANCE)
+        try:
+            footprint = balance.solve(deflection=deflection, tolerance=1.0)
+            reached, load, row["message"] = footprint.deflection, footprint.load, ""
+            break
+        except InputError as error:
+            row["message"] = str(error)
+            reached, load = max((reached, load), balance.path[-1])
+    return {**row, "reached deflection [mm]": reached * 1e3, "computed load [N]": load, "harmonics": harmonics}
 
 
 def sensitivities(tyre: CatalogueTyre) -> Iterator[dict[str, Any]]:
@@ -345,8 +351,8 @@ def write(name: str, rows: list[dict[str, Any]]) -> None:
 
 
 def remade(row: Mapping[str, Any]) -> bool:
-    """A row at the rated load without a result is computed again."""
-    return "computed over catalogue" in row and not row["computed over catalogue"]
+    """A row that has a message in place of a result is computed again."""
+    return bool(row["message"])
 
 
 def computed(name: str, row_of: Callable[[CatalogueTyre], dict[str, Any] | None]) -> None:

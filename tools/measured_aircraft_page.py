@@ -125,17 +125,18 @@ def _of_rows() -> list[str]:
 
 def _of_bottoming() -> list[str]:
     pairs = bottoming()
-    if not pairs:
-        return []
     reached = [pair for pair in pairs if pair[2]]
-    median = float(np.median([load / catalogue for catalogue, load, _ in reached])) if reached else math.nan
-    correlation = order(pairs)
+    if len(reached) < 3:
+        return []
+    share = np.array([load / catalogue for catalogue, load, _ in reached])
+    correlation = order(reached)
     rows = [
         ("rows with a bottoming load", str(len(pairs)), ""),
         ("balance reaches the bottoming radius", str(len(reached)), ""),
-        ("load there over bottoming load, median", f"{median:.3f}", ""),
+        ("load there over bottoming load, median", f"{np.median(share):.3f}", ""),
+        ("the same, range", f"{share.min():.3f} to {share.max():.3f}", ""),
         (
-            "rank correlation of computed load (largest reached) and bottoming load",
+            "rank correlation of the load there and the bottoming load",
             f"{correlation:.3f}",
             f"right order: {'yes' if correlation >= ORDER else 'no'}",
         ),
