@@ -9,7 +9,7 @@ from __future__ import annotations
 
 import functools
 import math
-from collections.abc import Iterable, Sequence
+from collections.abc import Callable, Iterable, Sequence
 from dataclasses import dataclass
 from typing import Any
 
@@ -28,6 +28,8 @@ FINE_UP_TO, GROWTH, LARGEST = math.radians(16), 1.35, math.radians(22)
 MAY_TOUCH = math.radians(35)
 #: Shares of the pressure, and of the deflection, at which balances are solved one after the other.
 INFLATION, PRESSING = (0.25, 1.0), (0.075, 0.2, 0.4, 0.7, 1.0)
+#: Smallest step of these shares.
+SMALLEST = 0.01
 #: Contact stiffness of a tread node, N/m, and Newton's tolerance: residual over reactions.
 PENALTY, TOLERANCE = 1e7, 1e-6
 
@@ -215,9 +217,12 @@ class SolidTyre:
 
     def inflate(self, pressure: float) -> SolidState:
         """The balance under a pressure, Pa."""
-        for share in INFLATION:
+
+        def solve(share: float) -> None:
             self.air.update(share * pressure)
             self._balance([*self.bodies, self.air], self._held(0.0))
+
+        self._in_steps(INFLATION, solve)
         return self._state(None, 0.0)
 
     def press(self, deflection: float) -> SolidState:
@@ -226,10 +231,29 @@ class SolidTyre:
         reach = float((self.mesh.points + self.field[0].values)[tread, 1].max())
         near = self._round(tread, int((self.angles <= MAY_TOUCH).sum()))
         contact = fem.ContactRigidPlane(self.field, near, road, normal=[0, -1, 0], multiplier=self.penalty)
-        for share in PRESSING:
-            distance = reach - share * deflection
-            self._balance([*self.bodies, self.air, contact], self._held(distance - self.mesh.points[road, 1]))
-        return self._state(distance, reach)
+
+        def solve(share: float) -> None:
+            place = reach - share * deflection
+            self._balance([*self.bodies, self.air, contact], self._held(place - self.mesh.points[road, 1]))
+
+        self._in_steps(PRESSING, solve)
+        return self._state(reach - deflection, reach)
+
+    def _in_steps(self, shares: Sequence[float], solve: Callable[[float], None]) -> None:
+        """Balances at shares of a load; a step in which Newton's method diverges is halved."""
+        waiting, reached = list(shares), 0.0
+        while waiting:
+            before = self.field[0].values.copy()
+            try:
+                with np.errstate(invalid="ignore", over="ignore", divide="ignore"):
+                    solve(waiting[0])
+            except (fem.tools.NewtonConvergenceError, RuntimeError):
+                if waiting[0] - reached < SMALLEST:
+                    raise
+                self.field[0].values = before
+                waiting.insert(0, (reached + waiting[0]) / 2)
+            else:
+                reached = waiting.pop(0)
 
     def _held(self, road: float) -> dict[str, Any]:
         """Rim, planes of symmetry, and the road moved by ``road`` along y, m."""

@@ -46,7 +46,7 @@ Array = NDArray[np.float64]
 #: Pa, m.
 PRESSURE, DEFLECTION = 2e5, 0.02
 #: Elements along the half section, and size of hexahedra round the wheel near the footprint, degrees.
-MESHES = ((8, 5.0), (14, 2.5), (20, 2.0))
+MESHES = ((8, 5.0), (8, 1.25), (14, 2.5), (20, 2.5))
 #: Largest deviations.
 LOAD, AREA, STRAIN = 0.02, 0.05, 0.05
 #: Tread nearer to the road than this touches it, m: the film of an ink print.

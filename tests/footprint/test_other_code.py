@@ -9,6 +9,8 @@ from typing import Any
 
 import pytest
 
+from tyrefem.mechanics.footprint.example_tyre import PlainTyre
+
 BENCHMARKS = Path(__file__).resolve().parents[2] / "benchmarks"
 
 
@@ -40,6 +42,26 @@ def rows() -> dict[str, Any]:
 def test_another_code_agrees_on_the_same_coarse_mesh(rows: dict[str, Any], quantity: str, close: float) -> None:
     """Contact area and belt edge need a finer mesh: docs/evidence/footprint.md has them."""
     assert rows[quantity].harmonics == pytest.approx(rows[quantity].felupe, rel=close)
+
+
+def test_a_step_that_diverges_is_halved_from_the_last_balance() -> None:
+    pytest.importorskip("felupe")
+    with pytest.MonkeyPatch.context() as patch:
+        patch.syspath_prepend(BENCHMARKS)
+        from felupe_tyre import SolidTyre
+    solid, solved = SolidTyre(PlainTyre(), 2, 0.3), [0.0]
+
+    def solve(share: float) -> None:
+        assert (solid.field[0].values == solved[-1]).all()
+        solid.field[0].values[:] = share
+        if share - solved[-1] > 0.3:
+            raise RuntimeError("diverged")
+        solved.append(share)
+
+    solid._in_steps([0.25, 1.0], solve)
+    assert solved == [0.0, 0.25, 0.4375, 0.625, 0.8125, 1.0]
+    with pytest.raises(RuntimeError, match="diverged"):
+        solid._in_steps([9.0], lambda share: solve(share + 10))
 
 
 def test_without_felupe_one_line_says_how_to_install_it(tmp_path: Path) -> None:
