@@ -17,6 +17,9 @@ from tyrefem.sizes.rim import Rim
 Array = NDArray[np.float64]
 #: Samples of the line between the points that a file gets.
 FINE = 241
+#: Smallest angles at which plies leave the flange, rad. Beyond -90 deg they hang over it, on the narrow rims of C
+#: sizes: only where no other line fits.
+LEAST_ANGLES = (-1.55, -1.9)
 
 
 @dataclass(frozen=True)
@@ -161,7 +164,9 @@ def radial_meridian(
         for leaves in (-0.9, -0.6)
     ]
     solution = _solved(
-        misses, starts, lambda x: rim.diameter / 2 < x[0] < crown and 0 < x[1] < 1.2 and -1.55 < x[2] < rim.taper
+        misses,
+        starts,
+        lambda x, least: rim.diameter / 2 < x[0] < crown and 0 < x[1] < 1.2 and least < x[2] < rim.taper,
     )
     if solution is None:
         raise _impossible(half_width, rim)
@@ -205,9 +210,9 @@ def bias_meridian(
     solution = _solved(
         misses,
         starts,
-        lambda x: (
+        lambda x, least: (
             rim.diameter / 2 < x[0] < crown
-            and -1.55 < x[1] < rim.taper
+            and least < x[1] < rim.taper
             and (unknown < 3 or 0.3 < x[2] < 1.2)
             # Flatter crowns have a hollow in the middle.
             and float(line(x).membrane.curvature(crown)) > 0.3 / crown
@@ -228,12 +233,15 @@ def _flange_misses(drawn: SizedMeridian, start: float) -> list[float]:
 def _solved(misses: Any, starts: list[Array], possible: Any) -> Array | None:
     from scipy.optimize import root
 
+    roots = []
     for start in starts:
         with np.errstate(all="ignore"):
-            answer = root(misses, start, tol=1e-14)
-        if np.abs(misses(answer.x)).max() < 1e-9 and possible(answer.x):
-            return np.asarray(answer.x)
-    return None
+            x = root(misses, start, tol=1e-14).x
+        if np.abs(misses(x)).max() < 1e-9:
+            if possible(x, LEAST_ANGLES[0]):
+                return np.asarray(x)
+            roots.append(x)
+    return next((np.asarray(x) for x in roots if possible(x, LEAST_ANGLES[1])), None)
 
 
 def _impossible(half_width: float, rim: Rim) -> InputError:

@@ -161,7 +161,8 @@ class Radial:
         if widest_belt > places["peak"] - 1e-3:
             raise InputError(
                 f"a belt {2e3 * widest_belt:.4g} mm wide does not fit under a tread "
-                f"{1e3 * self.n('tread_width'):.4g} mm wide",
+                f"{1e3 * self.n('tread_width'):.4g} mm wide; allowed along the plies here: up to "
+                f"{2e3 * (places['peak'] - 1e-3):.4g} mm (narrower belts, or a wider tread_width)",
                 field="parameters.tread_width",
             )
         return places
@@ -195,6 +196,8 @@ class Radial:
         regions = [{"name": belt.region, "to": length(self.n(belt.width) / 2)}]
         if belt.cushion:
             regions.append({"name": "shoulder-cushion", "to": length(p["cushion"])})
+        elif self.n(belt.width) / 2 < p["peak"] - 10e-3:
+            regions.append({"name": "undertread", "to": length(p["peak"])})
         if index > 1:
             return [*regions, *self._wall()]
         below = [{"name": "bead-wrap", "to": self._back(p["bottom"] + self.ply_gauge)}, {"name": "chafer"}]

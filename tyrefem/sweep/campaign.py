@@ -15,12 +15,15 @@ from tyrefem.inputs.study import StudyData
 from tyrefem.measured.cases import Case
 from tyrefem.simulation.estimate import RunEstimate
 from tyrefem.simulation.run import run
+from tyrefem.sizes import drawn_of
 
 if TYPE_CHECKING:
     from tyrefem.simulation.result import ResultData
 
 #: Cases from which the time of all cases is estimated.
 SAMPLED_CASES = 10
+#: Dotted names of a tyre's size and of what stands beside it.
+SECTION, SIZE, PARAMETERS = "section.", "section.size", "section.parameters."
 
 
 @dataclass(frozen=True, eq=False)
@@ -47,10 +50,15 @@ class CampaignData(Brief):
 
         Raises
         ------
-        InputError : the study names no table, or the table or a case is invalid (with file and line).
+        InputError : the study names no table, or the table or a case is invalid (with file and line). A case whose
+            tyre size gives no section is not refused: its row of the answers says why.
         """
         for case in study.cases:
-            study.case_study(case)
+            try:
+                study.case_study(case)
+            except InputError:
+                if not _has_no_section(study, case):
+                    raise
         return cls(study, study.cases)
 
     @classmethod
@@ -100,6 +108,25 @@ class CampaignData(Brief):
             return str(error)
         except Exception as error:  # a defect in a case must not stop the other cases
             return f"defect, please report: {type(error).__name__}: {error}"
+
+
+def _has_no_section(study: StudyData, case: Case) -> bool:
+    """Does a case name a size of which no section can be drawn?"""
+    if SIZE not in case.changes:
+        return False
+    written = study.data.get("section")
+    reference: dict[str, Any] = dict(written) if isinstance(written, Mapping) else {}
+    parameters = dict(reference.get("parameters", {}))
+    for name, value in case.changes.items():
+        if name.startswith(PARAMETERS):
+            parameters[name.removeprefix(PARAMETERS)] = value
+        elif name.startswith(SECTION):
+            reference[name.removeprefix(SECTION)] = value
+    try:
+        drawn_of({**reference, "parameters": parameters})
+    except InputError:
+        return True
+    return False
 
 
 def row(case: Case, outcome: ResultData | str) -> dict[str, Any]:

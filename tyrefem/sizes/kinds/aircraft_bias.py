@@ -16,6 +16,8 @@ from tyrefem.sizes.rules import Rules
 
 BEAD_FILL = 0.7
 ESTIMATE = "estimate: ordinary practice"
+#: A tread is at most as wide as this share of the carcass line's width.
+MOST_TREAD = 0.98
 
 
 def draw(size: TyreSize, rule: Rules) -> Drawn:
@@ -128,6 +130,12 @@ def draw(size: TyreSize, rule: Rules) -> Drawn:
         )
     rule.check_all_used()
     end, wide, flange = line.length, line.widest_s, line.flange_s
+    if tread_width > MOST_TREAD * 2 * line.half_width:
+        raise InputError(
+            f"{tread_width * 1e3:.4g} mm is wider than the carcass line allows here: up to "
+            f"{MOST_TREAD * 2e3 * line.half_width:.4g} mm",
+            field="parameters.tread_width",
+        )
     s = np.linspace(0, wide, 2000)
     shoulder = float(np.interp(tread_width / 2, line.at(s)[1], s))
     up = end - turn_up
