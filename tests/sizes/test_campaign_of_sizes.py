@@ -4,10 +4,12 @@ from __future__ import annotations
 
 from pathlib import Path
 
+import pandas as pd
 import pytest
 
 from tyrefem.errors import InputError
 from tyrefem.inputs.study import StudyData
+from tyrefem.reports.campaign import bars
 from tyrefem.sweep.campaign import CampaignData
 
 STUDY = """
@@ -56,3 +58,19 @@ def test_rows_without_a_section_say_why_and_the_others_run(tmp_path: Path) -> No
 def test_other_mistakes_in_a_row_stop_before_anything_runs(tmp_path: Path) -> None:
     with pytest.raises(InputError, match=r"line 3, case 'low': drive\.pressure"):
         campaign(tmp_path, "good,22x5.5 8PR,4.25,105,135,", "low,22x5.5 8PR,4.25,105,-5,")
+
+
+@pytest.mark.parametrize(("tyres", "legend"), [(8, True), (9, False)])
+def test_the_picture_tells_tyres_apart_while_its_legend_has_room(tyres: int, legend: bool) -> None:
+    done = pd.DataFrame(
+        {
+            "case": [f"case-{i}" for i in range(tyres)],
+            "section": [f"tyre {i}" for i in range(tyres)],
+            "pressure_Pa": 9e5,
+            "hottest_degC": [60.0 + i for i in range(tyres)],
+        }
+    )
+    (axes,) = bars(done, "hottest_degC").axes
+    assert (axes.get_legend() is not None) is legend
+    colors = {line.get_color() for line in axes.lines if line.get_marker() not in ("None", None)}
+    assert (len(colors) > 1) is legend

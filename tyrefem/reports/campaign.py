@@ -22,6 +22,8 @@ if TYPE_CHECKING:
 
 #: Largest number of cases whose names are drawn: more names would be too small to read.
 MOST_NAMES = 60
+#: Tyres that the legend has room for.
+MOST_TYRES = 8
 
 
 def campaign_files(campaign: CampaignData) -> list[str]:
@@ -158,7 +160,7 @@ _AXES = {
 
 
 def bars(done: pd.DataFrame, column: str) -> Figure:
-    """Draw one dot per case on a separate line, coloured by tyre, grouped by inflation pressure.
+    """Draw one dot per case on a separate line, grouped by inflation pressure; tyres have colours if they are few.
 
     Dots, not bars: the axis does not begin at 0, so the lengths of bars would show a wrong ratio.
     """
@@ -172,8 +174,11 @@ def bars(done: pd.DataFrame, column: str) -> Figure:
     low, spread = min(values), max(max(values) - min(values), 1e-3 * abs(max(values)))
     axes.set_xlim(low - 0.08 * spread, max(values) + 0.16 * spread)
     axes.set_ylim(len(done) - 0.4, -0.6)
-    for number, section in enumerate(dict.fromkeys(done["section"])):
+    sections = list(dict.fromkeys(done["section"]))
+    told_apart = len(sections) <= MOST_TYRES
+    for number, section in enumerate(sections):
         chosen = [i for i, of_case in enumerate(done["section"]) if of_case == section]
+        number = number if told_apart else 0
         color: Any = line_style(number)["color"]
         axes.hlines(chosen, *axes.get_xlim(), color=color, lw=0.8, alpha=0.25)
         marker = "os^Dv"[number % 5]
@@ -200,8 +205,9 @@ def bars(done: pd.DataFrame, column: str) -> Figure:
     axes.set_xlabel(label, fontsize=FONT)
     tidy(axes)
     axes.grid(visible=False, axis="y")
-    axes.legend(
-        loc="lower right", bbox_to_anchor=(1.0, 1.0), ncols=4, frameon=False, fontsize=FONT - 0.5, borderaxespad=0.1
-    )
+    if told_apart:
+        axes.legend(
+            loc="lower right", bbox_to_anchor=(1.0, 1.0), ncols=4, frameon=False, fontsize=FONT - 0.5, borderaxespad=0.1
+        )
     title(drawn, f"{name.capitalize()} by case", "sorted by tyre, inflation pressure and load")
     return drawn
