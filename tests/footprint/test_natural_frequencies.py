@@ -43,9 +43,9 @@ def modes(folder: Path) -> NaturalFrequencies:
 
 
 def test_the_measured_belt_in_a_wide_band(modes: NaturalFrequencies) -> None:
-    """Nothing is fitted: static moduli of the shipped cards leave every mode too low, wind-up the most."""
+    """Nothing is fitted: the shipped cards leave every mode too low, wind-up the most, also at a small amplitude."""
     ratios = {name: modes.frequency(name) / measured for name, measured in MEASURED.items()}
-    assert all(0.45 < ratio < 1.1 for ratio in ratios.values()), ratios
+    assert all(0.65 < ratio < 1.1 for ratio in ratios.values()), ratios
     # The order of the sidewall's stiffnesses is the measured one: lateral lowest, vertical highest.
     names = modes.table.sort_values("frequency_Hz").name.tolist()
     assert names[0] == "lateral"
