@@ -52,6 +52,8 @@ MESH = 0.057
 HARMONICS, TOLERANCE = 24, 1e-2
 #: Harmonics on the way to bottoming, and those with which a way that ends early is tried again.
 WAYS = (16, 12)
+#: Largest deflection over that at which the crown meets the rim.
+BEFORE_RIM = 0.99
 #: Deflection over load, as an exponent; a load so close to the rated one needs no second balance.
 SLOPE, CLOSE = 0.8, 0.05
 #: Number of a section or a card, and its standard deviation (relative): estimates.
@@ -274,7 +276,8 @@ def rated(tyre: CatalogueTyre) -> dict[str, Any]:
 
 
 def bottoming(tyre: CatalogueTyre) -> dict[str, Any] | None:
-    """Load at the catalogue's bottoming radius; where no balance reaches it, the last one on the way."""
+    """Load at the catalogue's bottoming radius, or just before the crown meets the rim if that comes first; where no
+    balance reaches it, the last one on the way."""
     deflection = tyre.radius - tyre.bottoming_radius
     if math.isnan(deflection + tyre.bottoming_load):
         return None
@@ -297,12 +300,12 @@ def bottoming(tyre: CatalogueTyre) -> dict[str, Any] | None:
     for harmonics in WAYS:
         balance = Balance(pressing, harmonics, TOLERANCE)
         try:
-            footprint = balance.solve(deflection=deflection, tolerance=1.0)
+            footprint = balance.solve(deflection=min(deflection, BEFORE_RIM * pressing.bottoming), tolerance=1.0)
             reached, load, row["message"] = footprint.deflection, footprint.load, ""
             break
         except InputError as error:
             row["message"] = str(error)
-            reached, load = max((reached, load), balance.path[-1])
+            reached, load = max((reached, load), balance.path[-1] if balance.path else (0.0, 0.0))
     return {**row, "reached deflection [mm]": reached * 1e3, "computed load [N]": load, "harmonics": harmonics}
 
 
