@@ -131,22 +131,32 @@ class TreadCompliance(Brief):
 
         return self._solved.get(n, compute)
 
-    def up_to(self, highest: int) -> Array:
-        """(highest + 1, c, m, c, m) compliance of all harmonics."""
-        known = np.stack([self.solved(n) for n in solved_harmonics(highest)])
-        return np.asarray(np.tensordot(interpolation(highest), known, axes=1))
-
-    def fields(self, loads: Array) -> Array:
-        """(n_harmonics, n_dofs) amplitudes, m, under loads (n_harmonics, c, m), N per radian, at the tread."""
-        everywhere = np.zeros((len(loads), self.harmonics.elements.n_dofs))
-        everywhere[:, self.dofs.ravel()] = loads.reshape(len(loads), -1)
-        return self.responses(everywhere)
-
-    def responses(self, loads: Array) -> Array:
-        """(n_harmonics, n_dofs) amplitudes, m, under loads (n_harmonics, n_dofs), N per radian, on any nodes."""
-        highest = len(loads) - 1
-        weights, displacements = interpolation(highest), np.zeros_like(loads)
+    def up_to(self, highest: int, above: int = -1) -> Array:
+        """(highest - above, c, m, c, m) compliance of all harmonics above ``above``."""
+        weights = interpolation(highest)[above + 1 :]
+        c, m = self.dofs.shape
+        total = np.zeros((len(weights), c, m, c, m))
         for column, n in enumerate(solved_harmonics(highest)):
             served = np.flatnonzero(weights[:, column])
-            displacements[served] += weights[served, column, None] * self.harmonics.solve(n, loads[served].T).T
-        return displacements
+            if len(served):
+                total[served] += np.multiply.outer(weights[served, column], self.solved(n))
+        return total
+
+    def fields(self, loads: Array, above: int = -1) -> Array:
+        """(n - above - 1, n_dofs) amplitudes, m, of the harmonics above ``above`` under loads (n, c, m), N per radian, at
+        the tread."""
+        everywhere = np.zeros((len(loads), self.harmonics.elements.n_dofs))
+        everywhere[:, self.dofs.ravel()] = loads.reshape(len(loads), -1)
+        return self.responses(everywhere, above)
+
+    def responses(self, loads: Array, above: int = -1) -> Array:
+        """(n - above - 1, n_dofs) amplitudes, m, of the harmonics above ``above`` under loads (n, n_dofs), N per radian,
+        on any nodes."""
+        highest = len(loads) - 1
+        weights, displacements = interpolation(highest), np.zeros_like(loads)
+        weights[: above + 1] = 0.0
+        for column, n in enumerate(solved_harmonics(highest)):
+            served = np.flatnonzero(weights[:, column])
+            if len(served):
+                displacements[served] += weights[served, column, None] * self.harmonics.solve(n, loads[served].T).T
+        return displacements[above + 1 :]

@@ -134,7 +134,8 @@ class WheelAngles:
         return shares
 
     @functools.cached_property
-    def _to_amplitudes(self) -> tuple[Array, Array]:
+    def to_amplitudes(self) -> tuple[Array, Array]:
+        """(3, m, highest + 1) weights for the amplitudes of values at the angles, and of their derivatives."""
         value, slope = self.waves
         return value * self.shares, slope * self.shares
 
@@ -144,11 +145,16 @@ class WheelAngles:
         value, slope = (np.ascontiguousarray(u) @ waves.transpose(0, 2, 1) for waves in self.waves)
         return value, slope
 
+    def values(self, amplitudes: Array) -> Array:
+        """(3, n_nodes, m) displacement of amplitudes (highest + 1, n_dofs)."""
+        u = np.asarray(amplitudes).reshape(self.highest + 1, -1, COMPONENTS).transpose(2, 1, 0)
+        return np.asarray(np.ascontiguousarray(u) @ self.waves[0].transpose(0, 2, 1))
+
     def from_nodes(self, value: Array, slope: Array | None = None) -> Array:
         """(highest + 1, n_dofs) forces on the amplitudes from forces on `at_nodes`; its adjoint."""
-        forces = value @ self._to_amplitudes[0]
+        forces = value @ self.to_amplitudes[0]
         if slope is not None:
-            forces += slope @ self._to_amplitudes[1]
+            forces += slope @ self.to_amplitudes[1]
         return np.ascontiguousarray(forces.transpose(2, 1, 0)).reshape(self.highest + 1, -1)
 
     @functools.cached_property
@@ -165,6 +171,15 @@ class WheelAngles:
         nodes = self.elements.element_nodes.ravel()
         place = (nodes, np.arange(len(nodes)))
         return sp.csr_matrix((np.ones(len(nodes)), place), shape=(self.elements.n_nodes, len(nodes)))
+
+    def mean_at_nodes(self, values: Array) -> Array:
+        """(n_nodes, k) mean over the elements at each node of values (e, k)."""
+        import scipy.sparse as sp
+
+        nodes = self.elements.element_nodes
+        place = (nodes.ravel(), np.repeat(np.arange(len(nodes)), nodes.shape[1]))
+        belongs = sp.csr_matrix((np.ones(nodes.size), place), shape=(self.elements.n_nodes, len(nodes)))
+        return np.asarray((belongs @ values) / belongs.sum(axis=1))
 
     def gradient(self, amplitudes: Array) -> Array:
         """(e, 9, q, m) displacement gradient H, component 3 k + i of (r, z, t)."""

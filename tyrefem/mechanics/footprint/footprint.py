@@ -32,7 +32,8 @@ class Footprint(Brief):
     forces : (k,) contact force at each point (angle, node) of the grid, both sides of the wheel together, N.
     direction : (c, k) unit vectors into the road.
     displacement : (c, k) displacement of the tread, m.
-    balanced : (harmonics + 1, n_dofs) displacement amplitudes in large motion, m; None: linear in the forces.
+    balanced : (n + 1, n_dofs) displacement amplitudes of the harmonics in large motion, m; None: all are linear in the
+        forces.
     gaps : (k,) between tread and road, m.
     error : largest relative change of load, deflection, work and a fifth of the area against fewer harmonics; nan if
         they were not compared.
@@ -173,8 +174,12 @@ class Footprint(Brief):
 
     @functools.cached_property
     def amplitudes(self) -> Array:
-        """(harmonics + 1, n_dofs) displacement amplitudes of the whole section, m."""
-        return self.grid.tread.fields(self.load_harmonics) if self.balanced is None else self.balanced
+        """(harmonics + 1, n_dofs) displacement amplitudes of the whole section, m; harmonics above those in large motion
+        are linear in the forces."""
+        if self.balanced is None:
+            return self.grid.tread.fields(self.load_harmonics)
+        linear = self.grid.tread.fields(self.load_harmonics, len(self.balanced) - 1)
+        return np.concatenate([self.balanced, linear])
 
     @property
     def loaded_radius(self) -> float:

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import functools
-from dataclasses import dataclass
+from dataclasses import dataclass, field
 
 import numpy as np
 from numpy.typing import NDArray
@@ -26,6 +26,7 @@ class ContactGrid(Brief):
     tread: TreadCompliance
     harmonics: int
     n_angles: int
+    _blocks: dict[int, Array] = field(default_factory=dict, init=False, repr=False)
 
     @property
     def step(self) -> float:
@@ -59,17 +60,28 @@ class ContactGrid(Brief):
         shares[0] /= 2
         return shares
 
-    @functools.cached_property
+    @property
     def blocks(self) -> Array:
         """(c, k, c, k) displacement along c of point k = (angle, node) per force at another point; both sides."""
-        compliance = self.tread.up_to(self.harmonics)
+        return self.blocks_above(-1)
+
+    def blocks_above(self, lowest: int) -> Array:
+        """`blocks` of the harmonics above ``lowest``, with a cache; zero if there are none."""
+        if lowest not in self._blocks:
+            self._blocks.clear()
+            self._blocks[lowest] = self._sums(lowest)
+        return self._blocks[lowest]
+
+    def _sums(self, lowest: int) -> Array:
+        compliance = self.tread.up_to(self.harmonics, lowest)
         _, c, m, _, _ = compliance.shape
         blocks = np.zeros((c, self.n_angles * m, c, self.n_angles * m))
+        shapes, shares = self.shapes[:, lowest + 1 :], self.shares[lowest + 1 :]
         for to in range(c):
             for of in range(c):
-                loaded = (compliance[:, to, :, of] * self.shares[:, None, None]).reshape(self.harmonics + 1, -1)
-                for j, shape in enumerate(self.shapes[of].T):
-                    sums = (self.shapes[to].T * shape) @ loaded
+                loaded = (compliance[:, to, :, of] * shares[:, None, None]).reshape(len(shares), -1)
+                for j, shape in enumerate(shapes[of].T):
+                    sums = (shapes[to].T * shape) @ loaded
                     blocks[to, :, of, j * m : (j + 1) * m] = sums.reshape(self.n_angles * m, m)
         return blocks
 
@@ -79,9 +91,9 @@ class ContactGrid(Brief):
         return np.asarray(np.einsum("cnj,cjm->ncm", self.shapes, at) * self.shares[:, None, None])
 
     def displacements(self, amplitudes: Array) -> Array:
-        """(c, k) displacements, m, averaged with the hats, of amplitudes (harmonics + 1, n_dofs)."""
+        """(c, k) displacements, m, averaged with the hats, of amplitudes (n, n_dofs) of the first n harmonics."""
         at = np.asarray(amplitudes)[:, self.tread.dofs]
-        return np.einsum("cnj,ncm->cjm", self.shapes, at).reshape(len(self.shapes), -1)
+        return np.einsum("cnj,ncm->cjm", self.shapes[:, : len(at)], at).reshape(len(self.shapes), -1)
 
     def places(self, displacement: Array, shift: float) -> Array:
         """(3, k) points (x, y, z), m, at the angles plus ``shift``, with displacements (c, k) added."""

@@ -12,7 +12,9 @@ from tyrefem.mechanics.footprint.large_motion import BEFORE_RIM, STIFFNESS, Defl
 from tyrefem.mechanics.solid.finite_law import FiniteLaw
 
 #: Numbers of harmonics: the load steps use the first, the others refine the last step.
-LADDER = (16, 24, 36)
+LADDER = (16, 24)
+#: Harmonics of the contact on the way, and at the end: those above the motion's are linear.
+CONTACT = (60, 120)
 #: Tolerance of the load steps, and distance to the target at which they end.
 ON_THE_WAY, NEAR = 1e-2, 1e-2
 #: Smallest load step over the total, and largest number of steps.
@@ -83,7 +85,7 @@ class Balance:
         moment = self._load_steps(deflection, load, ladder[0])
         passed: list[Footprint] = []
         for count in ladder:
-            start = self.motion.refined(moment, count)
+            start = self.motion.refined(moment, count, max(CONTACT[count == ladder[-1]], count))
             accuracy = self.tolerance if count == ladder[-1] else max(self.tolerance, ON_THE_WAY)
             moment = self._balanced(start, accuracy, deflection, load)
             passed.append(self.motion.footprint(moment))
@@ -101,7 +103,6 @@ class Balance:
         """The balance from a nearby one with the same harmonics; raises `InputError` without one."""
         balanced = self.motion.balance(start, start.deflection, tolerance, load)
         if balanced is None:
-            self.motion.forget()
             balanced = self.motion.balance(replace(start, rate=None), start.deflection, tolerance, load)
         if balanced is None:
             raise self._no_balance_error(start, deflection, load, f" with {start.harmonics} harmonics")
@@ -117,7 +118,7 @@ class Balance:
             assert load is not None
             linear = pressing.at_load(load, harmonics)
             total, slope = linear.deflection, load / linear.deflection
-        now, step = motion.free(harmonics, total), total
+        now, step = motion.free(harmonics, CONTACT[0], total), total
         self.path[:] = [(0.0, 0.0)]
         for _ in range(self.steps):
             left = total - now.deflection if load is None else (load - now.load) / slope

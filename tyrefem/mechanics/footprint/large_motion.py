@@ -9,21 +9,27 @@ import numpy as np
 from numpy.typing import NDArray
 
 from tyrefem.mechanics.footprint.contact import Pressing
-from tyrefem.mechanics.footprint.directions import SearchedDirections
 from tyrefem.mechanics.footprint.footprint import Footprint
 from tyrefem.mechanics.footprint.grid import ContactGrid
-from tyrefem.mechanics.footprint.newton import LinearFactors, NewtonStep, SearchEnd, Touching, newton_step
+from tyrefem.mechanics.footprint.newton import NewtonStep, SearchEnd, newton_step
 from tyrefem.mechanics.footprint.nonlinear import NonlinearForces, Tangent
+from tyrefem.mechanics.footprint.rotations import Rotations
+from tyrefem.mechanics.footprint.taut_tyre import TautTyre
+from tyrefem.mechanics.footprint.touching import Touching
 from tyrefem.mechanics.solid.finite_law import FiniteLaw
 
 Array = NDArray[np.float64]
 Flags = NDArray[np.bool_]
-#: Largest change of a displacement gradient: in the first Newton step, in later steps, and at failure.
-AHEAD, CORRECTION, HOPELESS = 0.25, 0.5, 30.0
+#: Largest change of a displacement gradient: aimed at in the first Newton step, in later steps, and before damping.
+AHEAD, CORRECTION, WILD = 0.25, 0.5, 2.0
+#: A first Newton step that is larger than aimed at by more than this factor is made smaller.
+LARGE_STEP = 1.6
+#: Damping after an unstable Newton step, and number of these after which the balance fails.
+DAMPING, UNSTABLE = 0.02, 8
 #: After a smaller change the last stiffness is used again.
 ALIKE = 0.02
-#: Newton steps, and the number of them with negative stiffness after which the balance fails.
-STEPS, UNSTABLE = 12, 2
+#: Newton steps.
+STEPS = 12
 #: After a Newton step the next one is smaller by more than this factor: a loose balance ends one step earlier.
 NEXT = 10.0
 #: Below this last change, changes of the contact set are allowed.
@@ -71,12 +77,12 @@ class LargeMotion:
     law: FiniteLaw | None = None
     before_rim: float = BEFORE_RIM
     _forces: dict[int, NonlinearForces] = field(default_factory=dict, init=False, repr=False)
-    _searched: SearchedDirections = field(default_factory=SearchedDirections, init=False, repr=False)
+    _touching: list[Touching] = field(default_factory=list, init=False, repr=False)
 
     @functools.cached_property
-    def factors(self) -> LinearFactors:
-        """The tyre in small motions."""
-        return LinearFactors(self.pressing)
+    def factors(self) -> TautTyre:
+        """The tyre in small motions that leads the search."""
+        return TautTyre(self.pressing)
 
     @property
     def _sides(self) -> float:
@@ -95,24 +101,20 @@ class LargeMotion:
             self._forces[harmonics] = NonlinearForces(self.pressing.harmonics, harmonics, self.law)
         return self._forces[harmonics]
 
-    def forget(self) -> None:
-        """Forget the searched directions of earlier Newton steps."""
-        self._searched.clear()
+    def _grid(self, contact: int, deflection: float) -> ContactGrid:
+        return self.pressing.grid(contact, min(WIDER * deflection, self.largest_deflection))
 
-    def _grid(self, harmonics: int, deflection: float) -> ContactGrid:
-        return self.pressing.grid(harmonics, min(WIDER * deflection, self.largest_deflection))
-
-    def free(self, harmonics: int, deflection: float) -> DeflectedState:
-        """The tyre without contact, on a grid for deflections up to the given one, m."""
-        grid = self._grid(harmonics, deflection)
+    def free(self, harmonics: int, contact: int, deflection: float) -> DeflectedState:
+        """The tyre without contact, on a grid of ``contact`` harmonics for deflections up to the given one, m."""
+        grid = self._grid(contact, deflection)
         motion = np.zeros((harmonics + 1, self.pressing.harmonics.elements.n_dofs))
         return DeflectedState(0.0, motion, grid, np.zeros(len(grid.areas)))
 
-    def refined(self, moment: DeflectedState, harmonics: int) -> DeflectedState:
-        """The same motion and pressure with another number of harmonics."""
-        if moment.harmonics == harmonics:
+    def refined(self, moment: DeflectedState, harmonics: int, contact: int) -> DeflectedState:
+        """The same motion and pressure with other numbers of harmonics of motion and contact."""
+        old, grid = moment.grid, self._grid(contact, moment.deflection)
+        if moment.harmonics == harmonics and old is grid:
             return moment
-        old, grid = moment.grid, self._grid(harmonics, moment.deflection)
 
         def padded(motion: Array) -> Array:
             fitted = np.zeros((harmonics + 1, motion.shape[1]))
@@ -146,37 +148,47 @@ class LargeMotion:
         closed: Flags | None = None
         rate = start.rate
         tangent: Tangent | None = None
-        unstable, change = 0, np.inf
+        unstable, change, damping = 0, np.inf, 0.0
         for count in range(STEPS):
             tangent = (
                 replace(tangent, forces=outside.forces(u)) if tangent and change <= ALIKE else outside.at(u, np.float32)
             )
-            gaps, normal_components, touching = self._road(replace(start, motion=u, deflection=deflection))
+            gaps, normal_components, touching, _ = self._road(
+                replace(start, motion=u, forces=forces, deflection=deflection)
+            )
+            distance = gaps - touching.tail @ forces
+            rotations = Rotations.of(outside.round, u, self.factors.harmonics.held)
             enough = (ENERGY * tolerance) ** 2 * self.factors.work(tangent.forces, u)
             if closed is None:
                 closed = touching.closed(gaps, forces, forces > 0)
-            step = newton_step(touching, closed, tangent, gaps, SearchEnd(INNER, enough), self._searched)
-            change = self._gradient_change(outside, step)
-            if count == 0 and change > AHEAD:
-                reduced_step = AHEAD / change * (deflection - start.deflection)
-                gaps = gaps + normal_components * (deflection - start.deflection - reduced_step)
-                deflection = start.deflection + reduced_step
-                closed = touching.closed(gaps, forces, forces > 0)
-                step = newton_step(touching, closed, tangent, gaps, SearchEnd(INNER, enough), self._searched)
+            end = SearchEnd(INNER, enough)
+            while True:
+                step = newton_step(touching, closed, tangent, distance, end, rotations, damping=damping)
                 change = self._gradient_change(outside, step)
-            unstable += not step.stable
-            if not change < HOPELESS or unstable > UNSTABLE:
-                return None
+                moved = deflection - start.deflection
+                if count == 0 and change > LARGE_STEP * AHEAD and moved:
+                    back = normal_components * (1 - AHEAD / change) * moved
+                    deflection = start.deflection + AHEAD / change * moved
+                    gaps, distance = gaps + back, distance + back
+                    closed = touching.closed(gaps, forces, forces > 0)
+                elif step.stable and change < WILD:
+                    break
+                else:
+                    unstable, damping = unstable + 1, max(DAMPING, 3 * damping)
+                    if unstable > UNSTABLE:
+                        return None
             share = min(1.0, CORRECTION / max(change, 1e-300))
+            after = gaps - touching.into(step.motion) + touching.tail @ (step.forces - forces)
             u, forces = u + share * step.motion, forces + share * (step.forces - forces)
-            before, closed = closed, touching.closed(gaps - touching.into(step.motion), step.forces, closed)
+            before, closed = closed, touching.closed(after, step.forces, closed)
             now = self._sides * float(normal_components @ forces)
             last = share * float(np.abs(step.motion).max()) / max(float(np.abs(u).max()), 1e-300)
-            done = last <= (tolerance if tolerance <= LOOSE else NEXT * tolerance) and share == 1 and step.stable
+            done = last <= (tolerance if tolerance <= LOOSE else NEXT * tolerance) and share == 1
             done &= tolerance > LOOSE or bool((closed == before).all())
+            damping = damping / 2 if damping > DAMPING else 0.0
             if load is not None:
                 if rate is None:
-                    moved = self._rate(touching, before, tangent, normal_components, BORDER)
+                    moved = self._rate(touching, before, tangent, normal_components, BORDER, rotations)
                     rate = moved.motion, moved.forces, self._sides * float(normal_components @ moved.forces)
                 pushed, slope = np.where(before, rate[1], 0.0), rate[2]
                 if not slope > 0:
@@ -195,12 +207,29 @@ class LargeMotion:
         """Largest change of a displacement gradient."""
         return float(np.abs(outside.round.gradient(step.motion)).max())
 
-    def _road(self, moment: DeflectedState) -> tuple[Array, Array, Touching]:
-        """Gaps, m, their decrease per metre of deflection, and the points of possible contact."""
+    def _road(self, moment: DeflectedState) -> tuple[Array, Array, Touching, Array]:
+        """Gaps, m, their decrease per metre of deflection, the points of possible contact, and the tread's displacement
+        (c, k), m."""
         pressing, grid = self.pressing, moment.grid
+        distance = pressing.reach - moment.deflection
         displacements = grid.displacements(moment.motion)
-        gaps, normals = pressing.gaps(grid, displacements, pressing.reach - moment.deflection)
-        return gaps, pressing.road.normal @ normals, Touching(self.factors, grid, grid.along(normals))
+        gaps, normals = pressing.gaps(grid, displacements, distance)
+        if moment.forces.any():
+            blocks = grid.blocks_above(moment.harmonics)
+            pushed = grid.along(normals) * moment.forces
+            displacements = displacements - np.einsum("akbl,bl->ak", blocks, pushed, optimize=True)
+            gaps, normals = pressing.gaps(grid, displacements, distance)
+        return gaps, pressing.road.normal @ normals, self._points(grid, grid.along(normals), moment), displacements
+
+    def _points(self, grid: ContactGrid, direction: Array, moment: DeflectedState) -> Touching:
+        """Points of possible contact; those of the last call, if they are the same (on a flat road)."""
+        last = self._touching[0] if self._touching else None
+        if last is None or last.grid is not grid or last.highest != moment.harmonics:
+            last = Touching(self.factors, grid, direction, moment.harmonics)
+        elif not np.allclose(last.direction, direction, rtol=0, atol=1e-12):
+            last = Touching(self.factors, grid, direction, moment.harmonics)
+        self._touching[:] = [last]
+        return last
 
     def _rate(
         self,
@@ -209,27 +238,34 @@ class LargeMotion:
         tangent: Tangent,
         normal_components: Array,
         accuracy: float,
-        start: Array | None = None,
+        rotations: Rotations,
+        start: NewtonStep | None = None,
     ) -> NewtonStep:
         """Motion and forces per metre of deflection with a constant contact set; ``accuracy`` of its energy."""
         tangent = replace(tangent, forces=np.zeros_like(tangent.forces))
         return newton_step(
-            touching, closed, tangent, -normal_components, SearchEnd(settled=accuracy), self._searched, start
+            touching, closed, tangent, -normal_components, SearchEnd(settled=accuracy), rotations, start
         )
 
     def footprint(self, moment: DeflectedState) -> Footprint:
         """The footprint of a balance, without its `stiffness`."""
-        gaps, _, touching = self._road(moment)
+        gaps, _, touching, displacements = self._road(moment)
         return Footprint(
             self.pressing, moment.grid, moment.deflection, moment.load, 0.0, moment.forces, touching.direction,
-            moment.grid.displacements(moment.motion), gaps, balanced=moment.motion,
+            displacements, gaps, balanced=moment.motion,
         )  # fmt: skip
 
     def stiffness(self, moment: DeflectedState, accuracy: float = STIFFNESS) -> float:
         """d load / d deflection of a balance, N/m, with a constant contact set: the energy of the rate of motion, to
         ``accuracy``."""
-        _, normal_components, touching = self._road(moment)
-        tangent = self.nonlinear(moment.harmonics).at(moment.motion, np.float32)
-        start = None if moment.rate is None else moment.rate[0]
-        rate = self._rate(touching, moment.forces > 0, tangent, normal_components, accuracy, start).motion
-        return self._sides * float(np.pi * self.factors.work(tangent.product(rate), rate))
+        _, normal_components, touching, _ = self._road(moment)
+        outside = self.nonlinear(moment.harmonics)
+        tangent = outside.at(moment.motion, np.float32)
+        rotations = Rotations.of(outside.round, moment.motion, self.factors.harmonics.held)
+        start = None
+        if moment.rate is not None:
+            start = NewtonStep(moment.rate[0], np.where(moment.forces > 0, moment.rate[1], 0.0), 0, True)
+        closed = moment.forces > 0
+        rate = self._rate(touching, closed, tangent, normal_components, accuracy, rotations, start)
+        energy = np.pi * self.factors.work(tangent.product(rate.motion), rate.motion)
+        return self._sides * float(energy + rate.forces @ touching.tail @ rate.forces)

@@ -3,19 +3,15 @@
 from __future__ import annotations
 
 import functools
-from dataclasses import dataclass, field
+from dataclasses import dataclass
 from typing import Any
 
 import numpy as np
 from numpy.typing import NDArray
 
-from tyrefem.errors import InputError
-from tyrefem.mechanics.footprint.complementarity import contact_forces
-from tyrefem.mechanics.footprint.contact import Pressing
-from tyrefem.mechanics.footprint.directions import SearchedDirections
-from tyrefem.mechanics.footprint.grid import ContactGrid
-from tyrefem.mechanics.footprint.harmonics import SYMMETRIC
 from tyrefem.mechanics.footprint.nonlinear import Tangent
+from tyrefem.mechanics.footprint.rotations import Rotations
+from tyrefem.mechanics.footprint.touching import Touching
 
 Array = NDArray[np.float64]
 Indices = NDArray[np.int64]
@@ -23,132 +19,7 @@ Flags = NDArray[np.bool_]
 #: Largest number of conjugate-gradient iterations in a step.
 ITERATIONS = 400
 #: Iterations over which a rate of motion must have settled.
-DELAY = 8
-
-
-@dataclass(frozen=True, eq=False)
-class LinearFactors:
-    """Factors of K_n for every harmonic, computed once: the tyre in small motions."""
-
-    pressing: Pressing
-    _factors: dict[int, Any] = field(default_factory=dict, init=False, repr=False)
-    _under_tread: dict[int, Array] = field(default_factory=dict, init=False, repr=False)
-
-    @functools.cached_property
-    def free(self) -> Indices:
-        """Degrees of freedom that are not fixed."""
-        return self.pressing.harmonics.free
-
-    @functools.cached_property
-    def tread(self) -> Indices:
-        """(c m,) degrees of freedom on which the road may act."""
-        return self.pressing.tread.dofs.ravel()
-
-    def factor(self, n: int) -> Any:
-        """SuperLU factors of a harmonic's free degrees of freedom, with a cache."""
-        from scipy.sparse.linalg import splu
-
-        if n not in self._factors:
-            matrix = self.pressing.harmonics.stiffness(n)[self.free][:, self.free].tocsc()
-            try:
-                self._factors[n] = splu(matrix, permc_spec="MMD_AT_PLUS_A", **SYMMETRIC)
-            except RuntimeError:
-                raise InputError(f"harmonic {n:g} has no stiffness: nothing holds the body") from None
-        return self._factors[n]
-
-    def under_tread(self, n: int) -> Array:
-        """(n_free, c m) displacements of a harmonic under unit loads on the tread, m per N per radian, with a cache."""
-        if n not in self._under_tread:
-            places = np.searchsorted(self.free, self.tread)
-            loads = np.zeros((len(self.free), len(places)))
-            loads[places, np.arange(len(places))] = 1.0
-            self._under_tread[n] = self.factor(n).solve(loads)
-        return self._under_tread[n]
-
-    def compliance(self, count: int) -> Array:
-        """(count, c m, c m) compliance of the tread in the first harmonics."""
-        places = np.searchsorted(self.free, self.tread)
-        return np.stack([self.under_tread(n)[places] for n in range(count)])
-
-    def solve(self, loads: Array) -> Array:
-        """(n, n_dofs) displacements, m, under loads (n, n_dofs), N per radian, of the first n harmonics."""
-        displacements = np.zeros_like(loads)
-        for n, load in enumerate(loads):
-            displacements[n, self.free] = self.factor(n).solve(load[self.free])
-        return displacements
-
-    @staticmethod
-    def work(forces: Array, motion: Array) -> float:
-        """Work on the whole wheel over pi, J: n = 0 counts twice."""
-        each = np.einsum("nd,nd->n", forces, motion)
-        return float(each.sum() + each[0])
-
-
-@dataclass(frozen=True, eq=False)
-class Touching:
-    """The points of possible contact, along their directions into the road.
-
-    Parameters
-    ----------
-    factors : the tyre in small motions. grid : the points. direction : (c, k) into the road.
-    """
-
-    factors: LinearFactors
-    grid: ContactGrid
-    direction: Array
-
-    @functools.cached_property
-    def rows(self) -> Array:
-        """(k, (highest + 1) c m) displacement of a point into the road per amplitude of the tread."""
-        c, k = self.direction.shape
-        m, highest = len(self.grid.tread.nodes), self.grid.harmonics
-        angle, node, rows = np.arange(k) // m, np.arange(k) % m, np.zeros((k, highest + 1, c, m))
-        for of in range(c):
-            rows[np.arange(k), :, of, node] = (self.direction[of] * self.grid.shapes[of][:, angle]).T
-        return rows.reshape(k, -1)
-
-    @functools.cached_property
-    def compliance(self) -> Array:
-        """(k, k) displacement of a point per force at another, in small motions, m/N."""
-        k, size = len(self.rows), len(self.factors.tread)
-        per_force = self.rows.reshape(k, -1, size) * self.grid.shares[:, None]
-        displacement = per_force.transpose(1, 0, 2) @ self.factors.compliance(per_force.shape[1])
-        return np.asarray(displacement.transpose(1, 0, 2).reshape(k, -1) @ self.rows.T)
-
-    def into(self, motion: Array, points: Any = slice(None)) -> Array:
-        """Displacement of points into the road, m, for amplitudes (highest + 1, n_dofs)."""
-        return np.asarray(self.rows[points] @ motion[:, self.factors.tread].ravel())
-
-    def closed(self, gaps: Array, forces: Array, start: Flags) -> Flags:
-        """(k,) contact set for gaps, m, under forces, N, with the compliance of small motions."""
-        free = gaps - self.compliance @ forces
-        return contact_forces(self.compliance, free, start if start.any() else None)[1]
-
-    def _loads(self, forces: Array, points: Any) -> Array:
-        flat = forces @ self.rows[points]
-        return np.asarray(flat.reshape(-1, len(self.factors.tread)) * self.grid.shares[:, None])
-
-    def all_displacements(self, loads: Array) -> Array:
-        """(k, highest + 1, n_dofs) displacements, m, under loads (k, (highest + 1) c m) on the tread's amplitudes."""
-        highest, size = self.grid.harmonics, len(self.factors.tread)
-        split = loads.reshape(len(loads), highest + 1, size) * self.grid.shares[:, None]
-        displacements = np.zeros((len(loads), highest + 1, self.factors.pressing.harmonics.elements.n_dofs))
-        for n in range(highest + 1):
-            displacements[:, n, self.factors.free] = split[:, n] @ self.factors.under_tread(n).T
-        return displacements
-
-    def loads(self, forces: Array, points: Any = slice(None)) -> Array:
-        """(highest + 1, n_dofs) N per radian of unit forces into the road."""
-        loads = np.zeros((self.grid.harmonics + 1, self.factors.pressing.harmonics.elements.n_dofs))
-        loads[:, self.factors.tread] = self._loads(forces, points)
-        return loads
-
-    def displacements(self, forces: Array, points: Any = slice(None)) -> Array:
-        """(highest + 1, n_dofs) displacements under `loads` in small motions, m."""
-        displacements = np.zeros((self.grid.harmonics + 1, self.factors.pressing.harmonics.elements.n_dofs))
-        for n, load in enumerate(self._loads(forces, points)):
-            displacements[n, self.factors.free] = self.factors.under_tread(n) @ load
-        return displacements
+DELAY = 4
 
 
 @dataclass(frozen=True, eq=False)
@@ -173,92 +44,152 @@ class SearchEnd:
     settled: float = 0.0
 
 
+@dataclass(frozen=True, eq=False)
+class Preconditioner:
+    """The taut tyre turned with the deformed one, P = R K^-1 R', with closed points B x - C f = 0.
+
+    Parameters
+    ----------
+    touching : points of possible contact. closed : numbers of the closed points. rotations : R.
+    """
+
+    touching: Touching
+    closed: Indices
+    rotations: Rotations
+
+    @functools.cached_property
+    def tail(self) -> Array:
+        """C of the closed points."""
+        return self.touching.tail[np.ix_(self.closed, self.closed)]
+
+    @functools.cached_property
+    def _loads(self) -> Array:
+        return self.touching.loads[self.closed]
+
+    @functools.cached_property
+    def _turned(self) -> tuple[Array, Array]:
+        """R' B', and the displacement rows B R."""
+        loads = self.rotations.backward_at(self._loads, self.touching.grid.tread.nodes)
+        return loads, loads / self.touching.grid.shares[: loads.shape[1], None, None]
+
+    @functools.cached_property
+    def _factor(self) -> Any:
+        """Factors of S = B P B' + C."""
+        from scipy.linalg import cho_factor
+
+        loads, rows = self._turned
+        schur = self.touching.tyre.compliance(loads, rows)
+        return cho_factor((schur + schur.T) / 2 + self.tail)
+
+    def forces(self, right: Array) -> Array:
+        """S^-1 b."""
+        from scipy.linalg import cho_solve
+
+        return right if not len(right) else np.asarray(cho_solve(self._factor, right))
+
+    def into(self, motion: Array) -> Array:
+        """B x."""
+        return self.touching.into(motion)[self.closed]
+
+    def loaded(self, field: Array, forces: Array) -> Array:
+        """A field of forces (highest + 1, n_dofs) minus B' f."""
+        field = field.copy()
+        if len(forces):
+            flat = forces @ self._loads.reshape(len(forces), -1)
+            tread = self.touching.tyre.tread
+            field[:, tread] -= flat.reshape(len(field), *tread.shape)
+        field[:, self.rotations.held] = 0.0
+        return field
+
+    def displacements(self, forces: Array) -> Array:
+        """P B' f."""
+        return self.rotations.forward(self._small(forces))
+
+    def _small(self, forces: Array) -> Array:
+        loads = self._turned[0]
+        flat = forces @ loads.reshape(len(forces), -1)
+        return self.touching.tyre.solve_tread(flat.reshape(loads.shape[1:]))
+
+    def __call__(self, residual: Array, pressed: Array) -> tuple[Array, Array]:
+        """Motion z and force change d with B z = C (q + d), for the residual r + B' q, q = ``pressed``.
+
+        z = P (r - B' d), d = S^-1 (B P r - C q).
+        """
+        motion = self.touching.tyre.solve(self.rotations.backward(residual))
+        change = pressed
+        if len(pressed):
+            rows = self._turned[1]
+            moved = rows.reshape(len(rows), -1) @ motion[:, self.touching.tyre.tread].ravel()
+            change = self.forces(moved - self.tail @ pressed)
+            motion -= self._small(change)
+        return self.rotations.forward(motion), change
+
+    def energy(self, forces: Array, others: Array | None = None) -> float:
+        """f C h over pi, J; h = f by default."""
+        return float(forces @ self.tail @ (forces if others is None else others)) / np.pi if len(forces) else 0.0
+
+
 def newton_step(
     touching: Touching,
     touched: Flags,
     tangent: Tangent,
     distance: Array,
     end: SearchEnd,
-    searched: SearchedDirections | None = None,
-    start: Array | None = None,
+    rotations: Rotations,
+    start: NewtonStep | None = None,
+    damping: float = 0.0,
 ) -> NewtonStep:
-    """J x + B' f = -g with B x = w on the closed points: conjugate gradients on the motions with B x = 0.
+    """J x + B' f = -g with B x - C f = w on the closed points, by projected conjugate gradients.
 
-    The preconditioner is the linear tyre with the same points fixed, K^-1 - K^-1 B' (B K^-1 B')^-1 B K^-1, corrected
-    by the directions of earlier steps.
+    C is the compliance of the harmonics that do not belong to x. The search runs in the pairs (x, f) with
+    B x - C f = 0 (constraint preconditioner with regularisation: Dollar, Gould, Schilders and Wathen 2006).
 
     Parameters
     ----------
-    touching : points and linear tyre. touched : (k,) contact set.
-    tangent : g, internal forces, and J, their derivative. distance : w, gaps (k,) to close, m.
-    end : what ends the search.
-    searched : directions of earlier steps; those of this step are added. start : a guess of the step, m.
+    touching : points. touched : (k,) contact set.
+    tangent : g, internal forces, and J, their derivative. distance : w (k,), m.
+    end : what ends the search. rotations : of the deformed tyre. start : a guess of the step.
+    damping : share of the preconditioner's stiffness that is added to J.
     """
-    from scipy.linalg import cho_factor, cho_solve
-
     closed = np.flatnonzero(touched)
-    factors, held = touching.factors, touching.factors.pressing.harmonics.held
-    factor = cho_factor(touching.compliance[np.ix_(closed, closed)]) if len(closed) else None
-    total = np.zeros(len(closed))
-    searched = SearchedDirections() if searched is None else searched
-    rows = touching.rows[closed]
+    preconditioner = Preconditioner(touching, closed, rotations)
+    work = touching.tyre.work
+    x, total = np.zeros(tangent.forces.shape), np.zeros(len(closed))
+    if start is not None:
+        x, total = start.motion.copy(), start.forces[closed]
+    if len(closed):
+        missing = preconditioner.forces(distance[closed] - preconditioner.into(x) + preconditioner.tail @ total)
+        x, total = x + preconditioner.displacements(missing), total - missing
+    residual = preconditioner.loaded(-tangent.forces - tangent.product(x), total)
+    pressed = np.zeros(len(closed))
 
-    def solve(right: Array) -> Array:
-        return right if factor is None else np.asarray(cho_solve(factor, right))
+    def searched() -> tuple[Array, float]:
+        nonlocal residual, pressed, total
+        change, forces = preconditioner(residual, pressed)
+        residual, pressed, total = preconditioner.loaded(residual, forces), pressed + forces, total + forces
+        return change, work(residual, change) + preconditioner.energy(pressed)
 
-    def free(forces: Array) -> Array:
-        forces[:, held] = 0.0
-        return forces
-
-    def into(motion: Array) -> Array:
-        return np.asarray(rows @ motion[:, factors.tread].ravel())
-
-    def projected(motions: Any) -> Any:
-        at_tread = motions[:, :, factors.tread].reshape(len(motions), -1)
-        forces = solve((at_tread @ rows.T).T).T
-        return motions - touching.all_displacements(forces @ rows).astype(motions.dtype)
-
-    def preconditioned(residual: Array) -> tuple[Array, Array]:
-        forces = np.zeros(len(closed))
-
-        def linear(right: Array) -> Array:
-            motion = factors.solve(right)
-            forces[:] = solve(into(motion))
-            return motion - touching.displacements(forces, closed)
-
-        motion = searched.corrected(residual, linear)
-        total[:] += forces
-        return residual - touching.loads(forces, closed), motion
-
-    searched.refine(touching.grid.harmonics)
-    searched.project(projected)
-    x = np.zeros(tangent.forces.shape) if start is None else start
-    x = x + touching.displacements(solve(distance[closed] - into(x)), closed)
-    residual, change = preconditioned(free(-tangent.forces - tangent.product(x)))
-    size = first = factors.work(residual, change)
-    along, stable, count = change, True, 0
-    moved: list[Any] = []
-    forced: list[Any] = []
-    energies: list[float] = []
+    along, size = searched()
+    pushed, first, stable, count = pressed, size, True, 0
+    stiff, stiff_pushed = residual, pressed
     drops: list[float] = []
-    left = factors.work(x, tangent.product(x)) if end.settled else 0.0
+    left = work(x, tangent.product(x)) + preconditioner.energy(total) if end.settled else 0.0
     while stable and count < ITERATIONS and size > max(end.residual**2 * first, end.least):
         if end.settled and count >= DELAY and sum(drops[-DELAY:]) <= end.settled * (left - sum(drops)):
             break
-        bent = free(tangent.product(along))
-        energy = factors.work(along, bent)
+        bent, bent_pushed = tangent.product(along), pushed
+        if damping:
+            bent, bent_pushed = bent + damping * stiff, pushed + damping * stiff_pushed
+        energy = work(along, bent) + preconditioner.energy(pushed, bent_pushed)
         stable, count = energy > 0, count + 1
         if stable:
-            x = x + size / energy * along
-            drops.append(size**2 / energy)
-            scale = 1 / np.sqrt(energy)
-            moved.append((scale * along).astype(np.float32))
-            forced.append((scale * bent).astype(np.float32))
-            energies.append(1.0)
-            residual, change = preconditioned(residual - size / energy * bent)
-            size, before = factors.work(residual, change), size
-            along = change + size / before * along
-    searched.add(moved, forced, energies)
+            step = size / energy
+            x += step * along
+            drops.append(size * step)
+            residual, pressed, before = residual - step * bent, pressed - step * bent_pushed, size
+            change, size = searched()
+            along, pushed = change + size / before * along, pressed + size / before * pushed
+            stiff, stiff_pushed = residual + size / before * stiff, pressed + size / before * stiff_pushed
     forces = np.zeros(len(touching.rows))
     forces[closed] = total
     return NewtonStep(x, forces, count, stable)

@@ -168,6 +168,18 @@ class BodyLaw:
     def _bulk(self) -> Array:
         return np.asarray(self.bulk_modulus[:, None, None] * np.eye(3))
 
+    def slack(self) -> Array:
+        """(6, 6, e, q) by how much more stiff slack cords would be if they were taut, in the pre-stressed
+        configuration, Pa."""
+        missing = np.zeros((6, 6, *self.inflated.shape[2:]))
+        for name, part in self.parts.items():
+            members = self.members[name]
+            f = self.inflated[:, :, members]
+            for layer in part.cords:
+                taut = replace(layer, compression=max(layer.compression, 1.0), limit=np.inf)
+                missing[:, :, members] += (taut.tangent(f) - layer.tangent(f)) / determinant(f)
+        return missing
+
     def response(self, gradient: Array, tangent: type | None = float) -> StressResponse:
         """P and A of every region, in groups of elements."""
         e, _, q, m = gradient.shape
