@@ -79,7 +79,7 @@ class ContactGrid(Brief):
         shapes, shares = self.shapes[:, lowest + 1 :], self.shares[lowest + 1 :]
         for to in range(c):
             for of in range(c):
-                loaded = (compliance[:, to, :, of] * shares[:, None, None]).reshape(len(shares), -1)
+                loaded = (compliance[:, to, :, of] * shares[:, None, None]).reshape(len(shares), m * m)
                 for j, shape in enumerate(shapes[of].T):
                     sums = (shapes[to].T * shape) @ loaded
                     blocks[to, :, of, j * m : (j + 1) * m] = sums.reshape(self.n_angles * m, m)

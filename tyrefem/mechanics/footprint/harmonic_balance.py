@@ -138,7 +138,7 @@ class Balance:
                     break
                 continue
             made = reached.deflection - now.deflection
-            if load is not None and reached.load:
+            if load is not None and reached.load and made:
                 steeper = (reached.load - now.load) / made if now.load else STIFFENS * reached.load / reached.deflection
                 slope = max(steeper, 0.1 * slope)
             now, step = reached, 2 * abs(made)

@@ -25,7 +25,7 @@ AHEAD, CORRECTION, WILD = 0.25, 0.5, 2.0
 #: A first Newton step that is larger than aimed at by more than this factor is made smaller.
 LARGE_STEP = 1.6
 #: Damping after an unstable Newton step, and number of these after which the balance fails.
-DAMPING, UNSTABLE = 0.02, 8
+SOFT, UNSTABLE = 0.1, 8
 #: After a smaller change the last stiffness is used again.
 ALIKE = 0.02
 #: Newton steps.
@@ -148,7 +148,7 @@ class LargeMotion:
         closed: Flags | None = None
         rate = start.rate
         tangent: Tangent | None = None
-        unstable, change, damping = 0, np.inf, 0.0
+        unstable, change, damping = 0, np.inf, SOFT
         for count in range(STEPS):
             tangent = (
                 replace(tangent, forces=outside.forces(u)) if tangent and change <= ALIKE else outside.at(u, np.float32)
@@ -162,21 +162,22 @@ class LargeMotion:
             if closed is None:
                 closed = touching.closed(gaps, forces, forces > 0)
             end = SearchEnd(INNER, enough)
-            while True:
+            step = newton_step(touching, closed, tangent, distance, end, rotations, damping=damping)
+            change = self._gradient_change(outside, step)
+            moved = deflection - start.deflection
+            if count == 0 and change > LARGE_STEP * AHEAD and moved:
+                back = normal_components * (1 - AHEAD / change) * moved
+                deflection = start.deflection + AHEAD / change * moved
+                gaps, distance = gaps + back, distance + back
+                closed = touching.closed(gaps, forces, forces > 0)
                 step = newton_step(touching, closed, tangent, distance, end, rotations, damping=damping)
                 change = self._gradient_change(outside, step)
-                moved = deflection - start.deflection
-                if count == 0 and change > LARGE_STEP * AHEAD and moved:
-                    back = normal_components * (1 - AHEAD / change) * moved
-                    deflection = start.deflection + AHEAD / change * moved
-                    gaps, distance = gaps + back, distance + back
-                    closed = touching.closed(gaps, forces, forces > 0)
-                elif step.stable and change < WILD:
-                    break
-                else:
-                    unstable, damping = unstable + 1, max(DAMPING, 3 * damping)
-                    if unstable > UNSTABLE:
-                        return None
+            while not (step.stable and change < WILD):
+                unstable, damping = unstable + 1, 3 * damping
+                if unstable > UNSTABLE:
+                    return None
+                step = newton_step(touching, closed, tangent, distance, end, rotations, damping=damping)
+                change = self._gradient_change(outside, step)
             share = min(1.0, CORRECTION / max(change, 1e-300))
             after = gaps - touching.into(step.motion) + touching.tail @ (step.forces - forces)
             u, forces = u + share * step.motion, forces + share * (step.forces - forces)
@@ -185,7 +186,7 @@ class LargeMotion:
             last = share * float(np.abs(step.motion).max()) / max(float(np.abs(u).max()), 1e-300)
             done = last <= (tolerance if tolerance <= LOOSE else NEXT * tolerance) and share == 1
             done &= tolerance > LOOSE or bool((closed == before).all())
-            damping = damping / 2 if damping > DAMPING else 0.0
+            damping = max(damping / 2, SOFT)
             if load is not None:
                 if rate is None:
                     moved = self._rate(touching, before, tangent, normal_components, BORDER, rotations)
