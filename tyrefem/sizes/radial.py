@@ -21,6 +21,8 @@ from tyrefem.sizes.rules import Rules
 Array = NDArray[np.float64]
 #: Surface rubber is nowhere thinner, m.
 SKIN = 1.2e-3
+#: Ends of layers are not nearer to each other than this, m.
+TOGETHER = 2e-3
 
 
 @dataclass(frozen=True)
@@ -97,13 +99,19 @@ class Radial:
 
     @cached_property
     def shoulder(self) -> float:
-        """Where the tread ends along the line, m: its surface is half the tread's width from the mid plane there."""
+        """Where the tread ends along the line, m: its surface is half the tread's width from the mid plane there.
+
+        Nearer than `TOGETHER` to a belt's edge it ends with the belt: an element between them would be a sliver.
+        """
         s = np.linspace(0.0, self.line.widest_s * 0.999, 800)
         _, z, phi = self.line.at(s)
         beyond = np.flatnonzero(z + np.cos(phi) * self._to_tread(s) > self.n("tread_width") / 2)
         if not len(beyond):
             raise InputError("is wider than the section", field="parameters.tread_width")
-        return float(s[beyond[0]])
+        end = float(s[beyond[0]])
+        edges = [self.n(belt.width) / 2 for belt in self.belts]
+        nearest = min(edges, key=lambda edge: abs(edge - end))
+        return nearest if abs(nearest - end) < TOGETHER else end
 
     @property
     def rounded_shoulder(self) -> tuple[float, float]:

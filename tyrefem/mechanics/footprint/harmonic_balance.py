@@ -141,7 +141,7 @@ class Balance:
             if load is not None and reached.load and made:
                 steeper = (reached.load - now.load) / made if now.load else STIFFENS * reached.load / reached.deflection
                 slope = max(steeper, 0.1 * slope)
-            now, step = reached, 2 * abs(made)
+            now, step = reached, 1.25 * abs(made)
             self.path.append((now.deflection, now.load))
         raise self._no_balance_error(now, deflection, load, "")
 

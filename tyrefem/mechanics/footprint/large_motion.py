@@ -21,7 +21,7 @@ from tyrefem.mechanics.solid.finite_law import FiniteLaw
 Array = NDArray[np.float64]
 Flags = NDArray[np.bool_]
 #: Largest change of a displacement gradient: aimed at in the first Newton step, in later steps, and before damping.
-AHEAD, CORRECTION, WILD = 0.25, 0.5, 2.0
+AHEAD, CORRECTION, WILD = 0.35, 0.7, 2.0
 #: A first Newton step that is larger than aimed at by more than this factor is made smaller.
 LARGE_STEP = 1.6
 #: Damping after an unstable Newton step, and number of these after which the balance fails.
@@ -32,10 +32,10 @@ ALIKE = 0.02
 STEPS = 12
 #: After a Newton step the next one is smaller by more than this factor: a loose balance ends one step earlier.
 NEXT = 10.0
-#: Below this last change, changes of the contact set are allowed.
-LOOSE = 5e-3
+#: Above this tolerance any change of the contact set is allowed, below it this share of the contacts.
+LOOSE, FLIPPED = 5e-3, 0.02
 #: Accuracy of conjugate gradients: residual of a Newton step; energy for a change of deflection and for the stiffness.
-INNER, BORDER, STIFFNESS = 0.05, 0.02, 3e-3
+INNER, BORDER, STIFFNESS = 0.05, 0.03, 5e-3
 #: Residual that ends conjugate gradients, in the energy's norm, over the tolerance.
 ENERGY = 4.0
 #: The angles of possible contact are those of the deflection times this factor.
@@ -185,7 +185,7 @@ class LargeMotion:
             now = self._sides * float(normal_components @ forces)
             last = share * float(np.abs(step.motion).max()) / max(float(np.abs(u).max()), 1e-300)
             done = last <= (tolerance if tolerance <= LOOSE else NEXT * tolerance) and share == 1
-            done &= tolerance > LOOSE or bool((closed == before).all())
+            done &= tolerance > LOOSE or int((closed != before).sum()) <= FLIPPED * int(closed.sum())
             damping = max(damping / 2, SOFT)
             if load is not None:
                 if rate is None:
