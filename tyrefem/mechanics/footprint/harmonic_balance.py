@@ -5,6 +5,8 @@ from __future__ import annotations
 import functools
 from dataclasses import dataclass, field, replace
 
+import numpy as np
+
 from tyrefem.errors import InputError
 from tyrefem.mechanics.footprint.contact import Pressing
 from tyrefem.mechanics.footprint.footprint import QUICK_LOOK, Footprint
@@ -14,7 +16,7 @@ from tyrefem.mechanics.solid.finite_law import FiniteLaw
 #: Numbers of harmonics: the load steps use the first, the others refine the last step.
 LADDER = (16, 24)
 #: Harmonics of the contact on the way, and at the end: those above the motion's are linear.
-CONTACT = (60, 120)
+CONTACT = (48, 120)
 #: Tolerance of the load steps, and distance to the target at which they end.
 ON_THE_WAY, NEAR = 1e-2, 1e-2
 #: Smallest load step over the total, and largest number of steps.
@@ -116,8 +118,10 @@ class Balance:
             total, slope = deflection, 1.0
         else:
             assert load is not None
-            linear = pressing.at_load(load, harmonics)
-            total, slope = linear.deflection, load / linear.deflection
+            if not load > 0:
+                raise InputError(f"the load must be positive, not {load:g} N", field="load")
+            total = self._guess(load, harmonics)
+            slope = load / total
         now, step = motion.free(harmonics, CONTACT[0], total), total
         self.path[:] = [(0.0, 0.0)]
         for _ in range(self.steps):
@@ -144,6 +148,15 @@ class Balance:
             now, step = reached, 1.25 * abs(made)
             self.path.append((now.deflection, now.load))
         raise self._no_balance_error(now, deflection, load, "")
+
+    def _guess(self, load: float, harmonics: int) -> float:
+        """Deflection, m, whose footprint carries the load by the pressure alone: load = p b L, L^2 = 8 R D."""
+        pressing = self.pressing
+        if not pressing.state.pressure:
+            return pressing.at_load(load, harmonics).deflection
+        width = np.ptp(pressing.tread.places[1]) * (2 if pressing.tread.half else 1)
+        length = load / (pressing.state.pressure * width)
+        return float(min(length**2 / (8 * pressing.reach), 0.5 * pressing.bottoming))
 
     @staticmethod
     def _no_balance_error(now: DeflectedState, deflection: float | None, load: float | None, how: str) -> InputError:

@@ -26,6 +26,8 @@ AHEAD, CORRECTION, WILD = 0.35, 0.7, 2.0
 LARGE_STEP = 1.6
 #: Damping after an unstable Newton step, and number of these after which the balance fails.
 SOFT, UNSTABLE = 0.1, 8
+#: Damping after a Newton step whose change of a displacement gradient is less than `SMOOTH`.
+HARD, SMOOTH = 0.02, 0.1
 #: After a smaller change the last stiffness is used again.
 ALIKE = 0.02
 #: Newton steps.
@@ -186,7 +188,7 @@ class LargeMotion:
             last = share * float(np.abs(step.motion).max()) / max(float(np.abs(u).max()), 1e-300)
             done = last <= (tolerance if tolerance <= LOOSE else NEXT * tolerance) and share == 1
             done &= tolerance > LOOSE or int((closed != before).sum()) <= FLIPPED * int(closed.sum())
-            damping = max(damping / 2, SOFT)
+            damping = max(damping / 3, SOFT if change > SMOOTH else HARD)
             if load is not None:
                 if rate is None:
                     moved = self._rate(touching, before, tangent, normal_components, BORDER, rotations)
