@@ -132,15 +132,15 @@ def test_the_8pr_deflects_under_its_rated_load_as_tr_r_64_says(pressing: Pressin
 def test_contact_in_large_motion_neither_pulls_nor_penetrates(pressed: Footprint) -> None:
     largest = pressed.forces.max()
     assert (pressed.forces >= 0).all()
-    assert pressed.gaps.min() > -1e-9
-    assert np.abs(pressed.gaps[pressed.forces > 1e-6 * largest]).max() < 1e-9
+    assert pressed.gaps.min() > -1e-5  # of a deflection of 31 mm, balanced to 1e-3
+    assert np.abs(pressed.gaps[pressed.forces > 1e-3 * largest]).max() < 1e-5
     assert pressed.pressure_integral == pytest.approx(pressed.load, rel=1e-9)
 
 
 def test_stiffness_is_the_slope_between_two_deflections_and_far_less_than_linear() -> None:
     """A plain tyre of few elements, pressed by an eighth of its radius; the way there only rises."""
     tyre = Pressing(PlainTyre().state(along=8))
-    balance = Balance(tyre, 10, tolerance=1e-5)
+    balance = Balance(tyre, 10, 10, tolerance=1e-5)
     loads = [balance.at_deflection(d).load for d in (0.0396, 0.0404)]
     assert np.diff(balance.path, axis=0).min() > 0
     middle = balance.at_deflection(0.04)

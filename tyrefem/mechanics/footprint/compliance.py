@@ -143,15 +143,15 @@ class TreadCompliance(Brief):
         return total
 
     def fields(self, loads: Array, above: int = -1) -> Array:
-        """(n - above - 1, n_dofs) amplitudes, m, of the harmonics above ``above`` under loads (n, c, m), N per radian, at
-        the tread."""
+        """(n - above - 1, n_dofs) amplitudes, m, of the harmonics above ``above`` under loads (n, c, m), N per radian,
+        at the tread."""
         everywhere = np.zeros((len(loads), self.harmonics.elements.n_dofs))
         everywhere[:, self.dofs.ravel()] = loads.reshape(len(loads), -1)
         return self.responses(everywhere, above)
 
     def responses(self, loads: Array, above: int = -1) -> Array:
-        """(n - above - 1, n_dofs) amplitudes, m, of the harmonics above ``above`` under loads (n, n_dofs), N per radian,
-        on any nodes."""
+        """(n - above - 1, n_dofs) amplitudes, m, of the harmonics above ``above`` under loads (n, n_dofs), N per
+        radian, on any nodes."""
         highest = len(loads) - 1
         weights, displacements = interpolation(highest), np.zeros_like(loads)
         weights[: above + 1] = 0.0

@@ -174,8 +174,8 @@ class Footprint(Brief):
 
     @functools.cached_property
     def amplitudes(self) -> Array:
-        """(harmonics + 1, n_dofs) displacement amplitudes of the whole section, m; harmonics above those in large motion
-        are linear in the forces."""
+        """(harmonics + 1, n_dofs) displacement amplitudes of the whole section, m; harmonics above those in large
+        motion are linear in the forces."""
         if self.balanced is None:
             return self.grid.tread.fields(self.load_harmonics)
         linear = self.grid.tread.fields(self.load_harmonics, len(self.balanced) - 1)

@@ -15,8 +15,8 @@ from tyrefem.mechanics.solid.finite_law import FiniteLaw
 
 #: Numbers of harmonics: the load steps use the first, the others refine the last step.
 LADDER = (16, 24)
-#: Harmonics of the contact on the way, and at the end: those above the motion's are linear.
-CONTACT = (48, 120)
+#: Harmonics of the contact, on the way and at the end: those above the motion's are linear.
+CONTACT_ON_THE_WAY, CONTACT = 48, 120
 #: Tolerance of the load steps, and distance to the target at which they end.
 ON_THE_WAY, NEAR = 1e-2, 1e-2
 #: Smallest load step over the total, and largest number of steps.
@@ -35,7 +35,9 @@ class Balance:
     Parameters
     ----------
     pressing : the tyre and its road.
-    harmonics : highest harmonic.
+    harmonics : highest harmonic in large motion.
+    contact : highest harmonic of the contact; those above ``harmonics`` move linearly about the inflated state. Their
+        step pi R / N is what length and area are resolved to.
     tolerance : last relative change of motion and load.
     law : stress; by default that of the state's compounds and cords, or linear in Green's strain without these.
     steps : largest number of load steps. before_rim : largest deflection over that at which the crown meets the rim.
@@ -48,6 +50,7 @@ class Balance:
 
     pressing: Pressing
     harmonics: int = LADDER[-1]
+    contact: int = CONTACT
     tolerance: float = 1e-3
     law: FiniteLaw | None = None
     steps: int = MOST
@@ -83,11 +86,12 @@ class Balance:
         if (deflection is None) == (load is None):
             raise InputError("give exactly one of 'deflection' and 'load'")
         self.pressing.check_harmonics(self.harmonics)
+        self.pressing.check_harmonics(self.contact)
         ladder = (*(n for n in LADDER if n < self.harmonics), self.harmonics)
         moment = self._load_steps(deflection, load, ladder[0])
         passed: list[Footprint] = []
         for count in ladder:
-            start = self.motion.refined(moment, count, max(CONTACT[count == ladder[-1]], count))
+            start = self.motion.refined(moment, count, self._contact(count))
             accuracy = self.tolerance if count == ladder[-1] else max(self.tolerance, ON_THE_WAY)
             moment = self._balanced(start, accuracy, deflection, load)
             passed.append(self.motion.footprint(moment))
@@ -98,6 +102,11 @@ class Balance:
             passed[-1] = self.motion.footprint(moment)
         footprint = passed[-1].compared(passed[-2]) if len(passed) > 1 else passed[-1]
         return replace(footprint, stiffness=self.motion.stiffness(moment, min(STIFFNESS, 5 * self.tolerance)))
+
+    def _contact(self, harmonics: int) -> int:
+        """Highest harmonic of the contact for one of the motion."""
+        wanted = self.contact if harmonics >= self.harmonics else min(self.contact, CONTACT_ON_THE_WAY)
+        return max(wanted, harmonics)
 
     def _balanced(
         self, start: DeflectedState, tolerance: float, deflection: float | None, load: float | None
@@ -122,7 +131,7 @@ class Balance:
                 raise InputError(f"the load must be positive, not {load:g} N", field="load")
             total = self._guess(load, harmonics)
             slope = load / total
-        now, step = motion.free(harmonics, CONTACT[0], total), total
+        now, step = motion.free(harmonics, self._contact(harmonics), total), total
         self.path[:] = [(0.0, 0.0)]
         for _ in range(self.steps):
             left = total - now.deflection if load is None else (load - now.load) / slope
@@ -150,13 +159,15 @@ class Balance:
         raise self._no_balance_error(now, deflection, load, "")
 
     def _guess(self, load: float, harmonics: int) -> float:
-        """Deflection, m, whose footprint carries the load by the pressure alone: load = p b L, L^2 = 8 R D."""
+        """Deflection, m, whose footprint carries the load by the pressure alone, load = p b L, L^2 = 8 R D; at least
+        one that the harmonics resolve."""
         pressing = self.pressing
         if not pressing.state.pressure:
             return pressing.at_load(load, harmonics).deflection
         width = np.ptp(pressing.tread.places[1]) * (2 if pressing.tread.half else 1)
         length = load / (pressing.state.pressure * width)
-        return float(min(length**2 / (8 * pressing.reach), 0.5 * pressing.bottoming))
+        resolved = 2 * np.pi * pressing.reach / harmonics
+        return float(min(max(length, resolved) ** 2 / (8 * pressing.reach), 0.5 * pressing.bottoming))
 
     @staticmethod
     def _no_balance_error(now: DeflectedState, deflection: float | None, load: float | None, how: str) -> InputError:

@@ -191,8 +191,8 @@ class LargeMotion:
             damping = max(damping / 3, SOFT if change > SMOOTH else HARD)
             if load is not None:
                 if rate is None:
-                    moved = self._rate(touching, before, tangent, normal_components, BORDER, rotations)
-                    rate = moved.motion, moved.forces, self._sides * float(normal_components @ moved.forces)
+                    lowered = self._rate(touching, before, tangent, normal_components, BORDER, rotations)
+                    rate = lowered.motion, lowered.forces, self._sides * float(normal_components @ lowered.forces)
                 pushed, slope = np.where(before, rate[1], 0.0), rate[2]
                 if not slope > 0:
                     return None
@@ -227,9 +227,12 @@ class LargeMotion:
     def _points(self, grid: ContactGrid, direction: Array, moment: DeflectedState) -> Touching:
         """Points of possible contact; those of the last call, if they are the same (on a flat road)."""
         last = self._touching[0] if self._touching else None
-        if last is None or last.grid is not grid or last.highest != moment.harmonics:
-            last = Touching(self.factors, grid, direction, moment.harmonics)
-        elif not np.allclose(last.direction, direction, rtol=0, atol=1e-12):
+        if (
+            last is None
+            or last.grid is not grid
+            or last.highest != moment.harmonics
+            or not np.allclose(last.direction, direction, rtol=0, atol=1e-12)
+        ):
             last = Touching(self.factors, grid, direction, moment.harmonics)
         self._touching[:] = [last]
         return last
@@ -246,9 +249,7 @@ class LargeMotion:
     ) -> NewtonStep:
         """Motion and forces per metre of deflection with a constant contact set; ``accuracy`` of its energy."""
         tangent = replace(tangent, forces=np.zeros_like(tangent.forces))
-        return newton_step(
-            touching, closed, tangent, -normal_components, SearchEnd(settled=accuracy), rotations, start
-        )
+        return newton_step(touching, closed, tangent, -normal_components, SearchEnd(settled=accuracy), rotations, start)
 
     def footprint(self, moment: DeflectedState) -> Footprint:
         """The footprint of a balance, without its `stiffness`."""

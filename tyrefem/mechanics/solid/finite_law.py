@@ -21,9 +21,6 @@ Array = NDArray[np.float64]
 PLACE = np.array([[0, 3, 4], [3, 1, 5], [4, 5, 2]])
 #: The six components.
 PAIRS = ((0, 0), (1, 1), (2, 2), (0, 1), (0, 2), (1, 2))
-#: Where I1 of rubber is above 3 by more than this, its tangent is made stiffer, by this factor: sharp edges of a tread
-#: and thin elements at ends of plies are unstable under load. It alters the way to a balance, not the balance.
-DISTORTED, STABILISED = 0.15, 1.0
 #: Number of points computed together: their tensors stay in the processor's cache.
 TOGETHER = 4000
 
@@ -285,10 +282,6 @@ class _Group:
         diagonal: dict[tuple[int, int], Array] = {}
         if direct is not None:
             diagonal = {(i, j): direct.slope * metric[i, j] for i, j in along}
-            excess = np.maximum(np.cbrt(volume) ** -2 * direct.first - 3 - DISTORTED, 0.0)
-            if excess.any():
-                for i in range(3):
-                    diagonal[i, i] = diagonal[i, i] + STABILISED * excess * direct.slope
         for a, d, pull, stiff in directions:
             dyad = (a[:, None] * d).astype(precision)
             stiffened = (stiff * dyad).astype(precision)
