@@ -30,7 +30,7 @@ def rows() -> dict[str, Any]:
     ("quantity", "close"),
     [
         ("growth of the radius by inflation", 0.01),
-        ("load", 0.005),
+        ("load", 0.01),
         ("largest principal strain of rubber, at a point", 0.05),
         ("largest principal change by the load, tread, at a point", 0.05),
         ("largest principal change by the load, sidewall, at a point", 0.02),
