@@ -1,9 +1,11 @@
 """Measured tyres against computed ones: nothing is fitted, sections come from their sizes.
 
-    python benchmarks/measured.py [PART ...]
+    python benchmarks/measured.py [PART ...] [--resume] [--quick]
 
-Parts: passenger, radius, prints, sensitivities, aircraft; all by default. Each writes a table measured-PART.csv to
-docs/evidence/tables. `python tools/make_measured_page.py` makes docs/measured.md and its figures of the tables.
+Parts: moduli, passenger, radius, prints, pressure, numerics, sensitivities, aircraft; all by default. Each writes a
+table measured-PART.csv to docs/evidence/tables, row by row; --resume keeps the rows that are there. --quick computes
+one row of each data set on a coarse mesh and prints it beside the stored row. `python tools/make_measured_page.py`
+makes docs/measured.md and its figures of the tables.
 """
 
 from __future__ import annotations
@@ -12,24 +14,19 @@ import argparse
 import csv
 import os
 import time
-from collections.abc import Iterable, Iterator, Mapping, Sequence
+from collections.abc import Callable, Iterator, Mapping
+from dataclasses import dataclass, field, replace
+from functools import partial
 from pathlib import Path
 from typing import Any
 
 os.environ.setdefault("OMP_NUM_THREADS", "1")
 os.environ.setdefault("OPENBLAS_NUM_THREADS", "1")
 
-import numpy as np
+from measured_tyres import TEMPERATURES, Tyre, pressure_quarter
 
-import tyrefem as tf
+from tyrefem.errors import InputError
 from tyrefem.inputs.loading import TrR64
-from tyrefem.mechanics.footprint.contact import Pressing
-from tyrefem.mechanics.footprint.footprint import Footprint
-from tyrefem.mechanics.footprint.harmonic_balance import Balance
-from tyrefem.mechanics.footprint.loss import RevolutionLoss
-from tyrefem.mechanics.footprint.pressed_tyre import mechanical_mesh
-from tyrefem.mechanics.footprint.strain_harmonics import StrainHarmonics
-from tyrefem.mechanics.solid.inflation import Inflation, inflate
 from tyrefem.output import atomic_path
 from tyrefem.sizes.data_book import FILE as DATA_BOOK
 from tyrefem.sizes.section import drawn_of
@@ -42,18 +39,22 @@ PASSENGER, SPORTS = (
 LBF, PSI, INCH = 4.4482216152605, 6894.757293168361, 0.0254
 #: The RE-71R: tread as stated, body plies of the size's rule.
 WORN = {"section.parameters": {"tread_gauge": "4.5 mm"}}
-#: Harmonics on the way and at the end, and tolerance of a balance in large motion.
-WAY, LAST, TOLERANCE = 16, 24, 1e-2
-#: Harmonics that resolve a contact's length.
-FINE = 96
-#: Load at which the RE-71R's stiffness is judged, N.
-JUDGED = 3560.0
+#: Mesh of the tables, the finer one of the numerical error, and the coarse one of moduli, sensitivities and --quick.
+MESH, FINE, COARSE = "8 mm", "5 mm", "12 mm"
+#: Highest harmonic in large motion: of --quick and sensitivities, and of numerical error.
+QUICK, FEWER = 12, 16
+#: The same in linear motion, of numerical error and sensitivities.
+FEWER_LINEAR = 64
+#: Motions of the tables, and the motion of contact and its pressure.
+MOTIONS, CONTACT = ("large", "linear"), "linear"
 #: Number of a section or a card, and its standard deviation (relative): those of the cards, gauges 10 % by estimate.
 UNCERTAIN: dict[str, tuple[str, float]] = {
     "tread gauge": ("section.tread_gauge", 0.05),
     "sidewall gauge": ("section.sidewall_gauge", 0.10),
     "ply gauge": ("section.ply_gauge", 0.10),
     "crown radius": ("section.crown_radius", 0.20),
+    "tread radius": ("section.tread_radius", 0.20),
+    "shoulder width": ("section.shoulder_width", 0.30),
     "tread width": ("section.tread_width", 0.03),
     "apex height": ("section.apex_height", 0.15),
     "modulus of the tread": ("rubber:tread", 0.20),
@@ -67,189 +68,161 @@ UNCERTAIN: dict[str, tuple[str, float]] = {
     "modulus of the belts' cords": ("cords:belt-1,belt-2", 0.15),
     "modulus of the cap ply's cords": ("cords:cap-ply", 0.15),
 }
+#: Relative standard deviation of every card's loss tangent; the compounds whose loss tangents vary together.
+LOSS_TANGENT = 0.20
+LOSSES = {
+    "the tread": ("tread",),
+    "sidewall, chafer and apex": ("sidewall", "chafer", "apex"),
+    "the other compounds": (
+        "liner", "body-ply", "turn-up", "bead-wrap", "belt-1", "belt-2", "cap-ply", "undertread", "shoulder-cushion",
+    ),
+}  # fmt: skip
 
 
-def measured_rows(path: Path) -> list[dict[str, str]]:
+def rows_of(path: Path) -> list[dict[str, str]]:
     """Rows of a data file; lines that begin with # are its source."""
     lines = [line for line in path.read_text(encoding="utf-8").splitlines() if not line.startswith("#")]
     return list(csv.DictReader(lines))
 
 
-def write(name: str, rows: Iterable[Mapping[str, Any]]) -> None:
-    """A table of docs/evidence/tables; numbers with five digits."""
-    table = [{key: f"{v:.5g}" if isinstance(v, float) else v for key, v in row.items()} for row in rows]
-    with atomic_path(TABLES / f"measured-{name}.csv") as path, open(path, "w", encoding="utf-8", newline="") as file:
-        writer = csv.DictWriter(file, table[0], lineterminator="\n")
-        writer.writeheader()
-        writer.writerows(table)
+def text_of(row: Mapping[str, Any]) -> dict[str, str]:
+    """Cells of a table; numbers with five digits."""
+    return {key: f"{value:.5g}" if isinstance(value, float) else str(value) for key, value in row.items()}
 
 
-def inflated(study: Any, pressure: float) -> tuple[Inflation, Pressing]:
-    """The tyre under a pressure, Pa, and on a flat road."""
-    tyre = inflate(study, pressure, mechanical_mesh(study))
-    return tyre, Pressing(tyre.state)
+class Table:
+    """A table of docs/evidence/tables, written after every row. A row that is there is not computed again."""
+
+    def __init__(self, name: str, resume: bool) -> None:
+        self.path = TABLES / f"measured-{name}.csv"
+        self.rows = rows_of(self.path) if resume and self.path.is_file() else []
+
+    def add(self, keys: Mapping[str, Any], results: Callable[[], Mapping[str, Any]]) -> None:
+        """Append keys and results as a row, unless a row has these keys; without an equilibrium, print why."""
+        cells = text_of(keys)
+        if any(cells.items() <= row.items() for row in self.rows):
+            return
+        began = time.process_time()
+        try:
+            row = text_of(results())
+        except InputError as error:
+            print(*cells.values(), error, flush=True)
+            return
+        self.rows.append({**cells, **row})
+        self.write()
+        print(*cells.values(), f"{time.process_time() - began:.1f} s", flush=True)
+
+    def write(self) -> None:
+        """Write all rows."""
+        with atomic_path(self.path) as path, open(path, "w", encoding="utf-8", newline="") as file:
+            writer = csv.DictWriter(file, self.rows[0], lineterminator="\n")
+            writer.writeheader()
+            writer.writerows(self.rows)
 
 
-def linear(pressing: Pressing, load: float) -> Footprint:
-    """Linear about the inflated tyre."""
-    return pressing.at_load(load, 36)
+@dataclass(frozen=True)
+class DataSet:
+    """A measured tyre: table, study, changes of the study, and loads, N, by pressure, Pa."""
+
+    table: str
+    tyre: str
+    study_file: str
+    changes: Mapping[str, Any]
+    loads: Mapping[float, tuple[float, ...]]
+    #: Pressure and load of the row of --quick, and of the sensitivities.
+    typical: tuple[float, float]
+    #: Motions that are computed.
+    motions: tuple[str, ...] = MOTIONS
+    _kept: dict[tuple[float, float], Tyre] = field(default_factory=dict, init=False, repr=False)
+
+    def at(self, pressure: float, load: float) -> Tyre:
+        """The tyre under a pressure with its moduli under a load; kept with its footprints."""
+        if (pressure, load) not in self._kept:
+            self._kept[pressure, load] = self.changed(pressure, load, {})
+        return self._kept[pressure, load]
+
+    def changed(self, pressure: float, load: float, changes: Mapping[str, Any]) -> Tyre:
+        """The tyre under a pressure with its moduli under a load, and more changes."""
+        every = {"mesh.size": MESH, **self.changes, **changes}
+        return Tyre(self.study_file, every, pressure, self.amplitudes(load))
+
+    def amplitudes(self, load: float) -> dict[str, float]:
+        """Region -> strain amplitude of the stored table of moduli, at the typical pressure and a load, N."""
+        row = next(
+            (
+                row
+                for row in rows_of(TABLES / "measured-moduli.csv")
+                if row["tyre"] == self.tyre and abs(float(row["load [N]"]) / load - 1) < 1e-3
+            ),
+            None,
+        )
+        if row is None:
+            raise SystemExit(f"no moduli of {self.tyre} at {load:.0f} N: run the part 'moduli' first")
+        marked = "amplitude of "
+        return {key.removeprefix(marked): float(value) for key, value in row.items() if key.startswith(marked)}
 
 
-def large(pressing: Pressing, loads: Sequence[float]) -> Iterator[tuple[Footprint, float]]:
-    """Footprints in large motion at increasing loads, N, each from the last; and the tangent stiffness, N/m."""
-    motion = Balance(pressing, LAST).motion
-    end = linear(pressing, loads[-1])
-    now, slope = motion.free(WAY, end.deflection), 0.7 * end.load / end.deflection
-    step = end.deflection / 3
-    for load in loads:
-        for _ in range(40):
-            if abs(load - now.load) < 0.02 * load:
-                break
-            ahead = min(max((load - now.load) / slope, -step), step)
-            reached = motion.balance(now, now.deflection + ahead, TOLERANCE)
-            if reached is None:
-                step /= 2
+def moduli(resume: bool) -> None:
+    """Strain amplitudes of the regions under every load at the typical pressure, and the moduli there."""
+    table = Table("moduli", resume)
+    for data_set in DATA_SETS.values():
+        pressure = data_set.typical[0]
+        tyre = Tyre(data_set.study_file, {"mesh.size": COARSE, **data_set.changes}, pressure)
+        for load in data_set.loads[pressure]:
+            table.add({"tyre": data_set.tyre, "load [N]": load}, partial(moduli_row, tyre, load))
+
+
+def moduli_row(tyre: Tyre, load: float) -> dict[str, float]:
+    """Amplitude and modulus over that of the card, by region."""
+    secant = tyre.secant_moduli(load)
+    amplitudes = {f"amplitude of {region}": value for region, value in secant.amplitudes.items()}
+    return {**amplitudes, **{f"modulus of {region}": value for region, value in secant.factors.items()}}
+
+
+STEPS = (2000.0, 3000.0, 4000.0, 5000.0, 6000.0)
+RADIUS_LOADS = (1800.0, 3560.0, 5000.0)
+PRINT_LOADS = tuple(n * LBF for n in (500, 800, 1000, 1200, 1400))
+DATA_SETS = {
+    "passenger": DataSet(
+        "passenger", "205/60R15", PASSENGER, {}, {220e3: STEPS, 200e3: (4000.0,), 240e3: (4000.0,)}, (220e3, 4000.0)
+    ),
+    "radius": DataSet(
+        "radius", "255/40R17 RE-71R", SPORTS, WORN,
+        {p * PSI: RADIUS_LOADS for p in (24, 27, 30, 33)}, (27 * PSI, 3560.0),
+    ),
+    "prints": DataSet(
+        "prints", "255/40ZR17 ECF", SPORTS, {}, {p * PSI: PRINT_LOADS for p in (26, 28, 30)}, (28 * PSI, 1000 * LBF),
+        motions=(CONTACT,),
+    ),
+}  # fmt: skip
+
+
+def presses(data_set: DataSet, resume: bool) -> None:
+    """Both motions at every pressure and load of a data set."""
+    table = Table(data_set.table, resume)
+    for motion in data_set.motions:
+        for pressure, loads in data_set.loads.items():
+            for load in loads:
+                keys = {"motion": motion, "pressure [kPa]": pressure / 1e3, "load [N]": load}
+                table.add(keys, partial(data_set.at(pressure, load).pressed, motion, load))
+
+
+def pressure_maps(resume: bool) -> None:
+    """Contact pressure of the ECF, one quarter of the footprint, at three of its loads."""
+    table = Table("pressure", resume)
+    prints = DATA_SETS["prints"]
+    for pressure, loads in prints.loads.items():
+        for load in loads[::2]:
+            keys = text_of({"inflation [kPa]": pressure / 1e3, "load [lbf]": load / LBF})
+            if any(keys.items() <= row.items() for row in table.rows):
                 continue
-            if reached.deflection != now.deflection and now.load:
-                slope = (reached.load - now.load) / (reached.deflection - now.deflection)
-            now = reached
-        start = motion.refined(now, LAST)
-        exact = motion.balance(start, start.deflection, TOLERANCE, load)
-        if exact is None:
-            exact = motion.balance(start, start.deflection, TOLERANCE)
-        if exact is None:
-            print(f"no balance at {load:.0f} N", flush=True)
-            continue
-        yield motion.footprint(exact), motion.stiffness(exact, 0.02)
+            footprint = prints.at(pressure, load).footprint(CONTACT, load)
+            table.rows += [{**keys, **text_of(point)} for point in pressure_quarter(footprint)]
+            table.write()
+            print(*keys.values(), "map", flush=True)
 
 
-def hull_area(footprint: Footprint) -> float:
-    """Area of the convex hull of the contact, m2."""
-    from scipy.spatial import ConvexHull
-
-    z, half = footprint.grid.tread.places[1], footprint.half_lengths
-    axial = footprint.grid.tread.widths[1]
-    points = [
-        (side * (place + end * width / 2), sign * length)
-        for place, width, length in zip(z, axial, half, strict=True)
-        if length > 0
-        for side in (1, -1)
-        for sign in (1, -1)
-        for end in (1, -1)
-    ]
-    return float(ConvexHull(np.array(points)).volume)
-
-
-def values(footprint: Footprint, stiffness: float, growth: float) -> dict[str, float]:
-    """What is compared, in the units of the tables."""
-    return {
-        "deflection [mm]": footprint.deflection * 1e3,
-        "stiffness [N/mm]": stiffness / 1e3,
-        "length [mm]": footprint.length * 1e3,
-        "width [mm]": footprint.width * 1e3,
-        "gross area [cm2]": hull_area(footprint) * 1e4,
-        "net area [cm2]": footprint.area * 1e4,
-        "loaded radius [mm]": footprint.loaded_radius * 1e3,
-        "rolling radius [mm]": footprint.rolling_radius * 1e3,
-        "growth [mm]": growth * 1e3,
-    }
-
-
-def coefficient(study: Any, tyre: Inflation, footprint: Footprint, speed: float, temperature: float) -> float:
-    """Rolling resistance coefficient, every harmonic at its frequency."""
-    laws = {region: study.materials[region].loss_tangent.over_frequency for region in tyre.body.parts}
-    return RevolutionLoss(StrainHarmonics(footprint), laws, speed, temperature).coefficient
-
-
-def mass(study: Any, tyre: Inflation) -> float:
-    """Mass of the tyre as drawn, kg: density times volume of each region's elements."""
-    elements = tyre.body.rings
-    both = 2.0 if study.section.half else 1.0
-    total = 0.0
-    for region in tyre.body.parts:
-        members = elements.mesh.subdomains[region]
-        density = study.materials[region].density.law()
-        volume = 2 * np.pi * float(elements.weights[members].sum())  # the weights contain the radius
-        total += both * volume * (density(20.0) if callable(density) else density)
-    return total
-
-
-def presses(name: str, path: str, changes: Mapping[str, Any], cases: Mapping[float, Sequence[float]]) -> None:
-    """Both motions at pressures, Pa, and loads, N."""
-    rows: list[dict[str, Any]] = []
-    study = tf.study(path, dict(changes))
-    for pressure, loads in cases.items():
-        tyre, pressing = inflated(study, pressure)
-        for motion in ("linear", "large"):
-            began = time.perf_counter()
-            footprints = (
-                large(pressing, loads)
-                if motion == "large"
-                else ((f := linear(pressing, n), f.stiffness) for n in loads)
-            )
-            for footprint, stiffness in footprints:
-                rows.append(
-                    {
-                        "motion": motion,
-                        "pressure [kPa]": pressure / 1e3,
-                        "load [N]": footprint.load,
-                        **values(footprint, stiffness, tyre.radius_growth),
-                        "rolling resistance at 20 degC": coefficient(study, tyre, footprint, 60 / 3.6, 20.0),
-                        "rolling resistance at 50 degC": coefficient(study, tyre, footprint, 60 / 3.6, 50.0),
-                    }
-                )
-                print(
-                    name,
-                    motion,
-                    f"{pressure / 1e3:.0f} kPa {footprint.load:.0f} N {footprint.deflection * 1e3:.2f} mm",
-                    f"{time.perf_counter() - began:.0f} s",
-                    flush=True,
-                )
-            write(name, rows)
-
-
-def passenger() -> None:
-    """205/60R15: five loads at 2.2 bar, and 4000 N at two more pressures."""
-    loads = [2000.0, 3000.0, 4000.0, 5000.0, 6000.0]
-    presses("passenger", PASSENGER, {}, {220e3: loads, 200e3: [4000.0], 240e3: [4000.0]})
-
-
-def radius() -> None:
-    """RE-71R: load against loaded radius at four pressures."""
-    loads = [1800.0, JUDGED, 5000.0]
-    presses("radius", SPORTS, WORN, {p * PSI: loads for p in (24, 33, 30, 27)})
-
-
-def prints() -> None:
-    """Contact of both tyres, linear with many harmonics: 24 in large motion have steps of 41 mm along the road."""
-    rows: list[dict[str, Any]] = []
-    loads = {
-        "205/60R15": [2000.0, 3000.0, 4000.0, 5000.0, 6000.0],
-        "255/40ZR17": [n * LBF for n in (500, 800, 1000, 1200, 1400)],
-    }
-    cases = [("205/60R15", PASSENGER, 220e3)]
-    cases += [("255/40ZR17", SPORTS, psi * PSI) for psi in (28, 26, 30)]
-    for label, path, pressure in cases:
-        study = tf.study(path)
-        tyre, pressing = inflated(study, pressure)
-        for load in loads[label][::-1]:
-            footprint = pressing.at_load(load, FINE)
-            rows.append(
-                {
-                    "tyre": label,
-                    "motion": "linear",
-                    "harmonics": FINE,
-                    "pressure [kPa]": pressure / 1e3,
-                    "load [N]": footprint.load,
-                    **values(footprint, footprint.stiffness, tyre.radius_growth),
-                    "mass [kg]": mass(study, tyre),
-                }
-            )
-            print(label, f"{pressure / 1e3:.0f} kPa {load:.0f} N {footprint.length * 1e3:.1f} mm", flush=True)
-        write("prints", rows)
-
-
-def changed(study: Any, where: str, factor: float) -> dict[str, Any]:
+def scaled(study: Any, where: str, factor: float) -> dict[str, Any]:
     """Changes of a study that scale one uncertain number."""
     kind, _, names = where.partition(":")
     if where.startswith("section."):
@@ -265,36 +238,75 @@ def changed(study: Any, where: str, factor: float) -> dict[str, Any]:
     return changes
 
 
-def sensitivities() -> None:
-    """Relative change of each result by one standard deviation of each number: differences of linear presses."""
-    rows: list[dict[str, Any]] = []
-    for label, path, pressure, load in (
-        ("205/60R15", PASSENGER, 220e3, 4000.0),
-        ("255/40R17", SPORTS, 28 * PSI, 1000 * LBF),
-    ):
-        study = tf.study(path)
-
-        def results(
-            changes: Mapping[str, Any], path: str = path, pressure: float = pressure, load: float = load
-        ) -> dict[str, float]:
-            varied = tf.study(path, dict(changes))
-            tyre, pressing = inflated(varied, pressure)
-            footprint = linear(pressing, load)
-            return {**values(footprint, footprint.stiffness, tyre.radius_growth), "mass [kg]": mass(varied, tyre)}
-
-        nominal = results({})
-        for name, (where, deviation) in UNCERTAIN.items():
-            varied = results(changed(study, where, 1 + deviation))
-            relative = {key.split(" [")[0]: varied[key] / nominal[key] - 1 for key in nominal if key != "growth [mm]"}
-            rows.append({"tyre": label, "number": name, "standard deviation": deviation, **relative})
-            print(label, name, {key: f"{value:+.3f}" for key, value in relative.items()}, flush=True)
-            write("sensitivities", rows)
+def numerics(resume: bool) -> None:
+    """The typical row of two data sets with a finer mesh, and with fewer harmonics."""
+    table = Table("numerics", resume)
+    for data_set in (DATA_SETS["passenger"], DATA_SETS["prints"]):
+        pressure, load = data_set.typical
+        nominal = data_set.at(pressure, load)
+        variants = {
+            f"mesh of {MESH}": nominal,
+            f"mesh of {FINE}": data_set.changed(pressure, load, {"mesh.size": FINE}),
+            f"{FEWER} harmonics (linear: {FEWER_LINEAR})": replace(
+                nominal, harmonics=FEWER, linear_harmonics=FEWER_LINEAR
+            ),
+        }
+        for motion in data_set.motions:
+            for name, tyre in variants.items():
+                keys = {"tyre": data_set.tyre, "motion": motion, "number": name}
+                table.add(keys, partial(tyre.pressed, motion, load))
 
 
-def aircraft() -> None:
+def sensitivities(resume: bool) -> None:
+    """The same rows with each uncertain number one standard deviation higher, on a coarse mesh with few harmonics."""
+    table = Table("sensitivities", resume)
+    for data_set in (DATA_SETS["passenger"], DATA_SETS["prints"]):
+        load = data_set.typical[1]
+
+        def coarse(changes: Mapping[str, Any], data_set: DataSet = data_set) -> Tyre:
+            tyre = data_set.changed(*data_set.typical, {"mesh.size": COARSE, **changes})
+            return replace(tyre, harmonics=QUICK, linear_harmonics=FEWER_LINEAR)
+
+        nominal = coarse({})
+        variants = {"nominal": (0.0, nominal)}
+        for number, (where, deviation) in UNCERTAIN.items():
+            variants[number] = (deviation, coarse(scaled(nominal.cards_study, where, 1 + deviation)))
+        for number, (deviation, tyre) in variants.items():
+            for motion in data_set.motions:
+                keys = {"tyre": data_set.tyre, "motion": motion, "number": number, "standard deviation": deviation}
+                table.add(keys, partial(tyre.pressed, motion, load))
+        for part, regions in LOSSES.items():
+            for motion in data_set.motions:
+                keys = {
+                    "tyre": data_set.tyre,
+                    "motion": motion,
+                    "number": f"loss tangent of {part}",
+                    "standard deviation": LOSS_TANGENT,
+                }
+                table.add(keys, partial(with_more_loss, nominal, motion, load, regions))
+
+
+def with_more_loss(tyre: Tyre, motion: str, load: float, regions: tuple[str, ...]) -> dict[str, float]:
+    """Results with the loss tangent of some regions one standard deviation higher."""
+    footprint = tyre.footprint(motion, load)
+    results = tyre.pressed(motion, load)
+    for temperature in TEMPERATURES:
+        by_region = tyre.loss(footprint, temperature).by_region
+        share = sum(by_region[region] for region in regions) / sum(by_region.values())
+        results[f"rolling resistance at {temperature:.0f} degC"] *= 1 + LOSS_TANGENT * share
+    return results
+
+
+def aircraft(resume: bool) -> None:
     """395 bias aircraft tyres: TR R-64's load law at rated load and pressure, and at the bottoming load."""
-    rows = []
-    for row in measured_rows(DATA_BOOK):
+    table = Table("aircraft", False)
+    table.rows = [text_of(row) for row in aircraft_rows()]
+    table.write()
+
+
+def aircraft_rows() -> Iterator[dict[str, Any]]:
+    """Rows of the data book with the load law."""
+    for row in rows_of(DATA_BOOK):
         number = {
             key.split(" [")[0]: float(value) for key, value in row.items() if "[" in key and value and value.strip()
         }
@@ -309,31 +321,62 @@ def aircraft() -> None:
         if bottom and at_bottom:
             catalogued = bottom
             computed = law.load(diameter / 2 - at_bottom * INCH, rating.pressure, rating) / LBF
-        rows.append(
-            {
-                "size": row["size"].strip(),
-                "ply rating": row["ply_rating"].strip(),
-                "catalogue deflection [mm]": catalogue * 1e3,
-                "computed deflection [mm]": deflection * 1e3,
-                "computed over catalogue": deflection / catalogue,
-                "bottoming load of the catalogue [lbf]": catalogued,
-                "load at the bottoming radius [lbf]": computed,
-            }
-        )
-    write("aircraft", rows)
+        yield {
+            "size": row["size"].strip(),
+            "ply rating": row["ply_rating"].strip(),
+            "catalogue deflection [mm]": catalogue * 1e3,
+            "computed deflection [mm]": deflection * 1e3,
+            "computed over catalogue": deflection / catalogue,
+            "bottoming load of the catalogue [lbf]": catalogued,
+            "load at the bottoming radius [lbf]": computed,
+        }
 
 
+@dataclass(frozen=True)
 class Rating:
     """Width and diameter, m, and rated pressure, Pa, as a load law reads them."""
 
-    def __init__(self, width: float, diameter: float, pressure: float) -> None:
-        self.width, self.diameter, self.pressure = width, diameter, pressure
+    width: float
+    diameter: float
+    pressure: float
 
 
-PARTS = {
-    "passenger": passenger,
-    "radius": radius,
-    "prints": prints,
+def quick_row(name: str) -> dict[str, tuple[float, float]]:
+    """The typical row of a data set on a coarse mesh with few harmonics: quantity -> computed now, and stored."""
+    data_set = DATA_SETS[name]
+    pressure, load = data_set.typical
+    tyre = replace(
+        data_set.changed(pressure, load, {"mesh.size": COARSE}), harmonics=QUICK, linear_harmonics=FEWER_LINEAR
+    )
+    now = tyre.pressed(data_set.motions[0], load)
+    stored = next(
+        row
+        for row in rows_of(TABLES / f"measured-{data_set.table}.csv")
+        if row["motion"] == data_set.motions[0]
+        and abs(float(row["pressure [kPa]"]) / pressure * 1e3 - 1) < 1e-3
+        and abs(float(row["load [N]"]) / load - 1) < 1e-2
+    )
+    return {quantity: (value, float(stored[quantity])) for quantity, value in now.items()}
+
+
+def quick() -> None:
+    """Print one coarse row of each data set beside the stored one."""
+    for name, data_set in DATA_SETS.items():
+        pressure, load = data_set.typical
+        harmonics = QUICK if data_set.motions[0] == "large" else FEWER_LINEAR
+        case = f"{data_set.tyre}, {pressure / 1e3:.0f} kPa, {load:.0f} N, {data_set.motions[0]} motion"
+        print(f"{case}: mesh of {COARSE}, {harmonics} harmonics")
+        for quantity, (now, stored) in quick_row(name).items():
+            print(f"  {quantity:30s} {now:10.5g}   stored, mesh of {MESH}: {stored:10.5g}")
+    ratios = sorted(row["computed over catalogue"] for row in aircraft_rows())
+    print(f"{len(ratios)} aircraft tyres: computed over catalogue deflection, median {ratios[len(ratios) // 2]:.3f}")
+
+
+PARTS: dict[str, Callable[[bool], None]] = {
+    "moduli": moduli,
+    **{name: partial(presses, data_set) for name, data_set in DATA_SETS.items()},
+    "pressure": pressure_maps,
+    "numerics": numerics,
     "sensitivities": sensitivities,
     "aircraft": aircraft,
 }
@@ -343,11 +386,18 @@ def main() -> None:
     """Run the parts that the command names."""
     parser = argparse.ArgumentParser(description=__doc__.split("\n")[0])
     parser.add_argument("parts", nargs="*", metavar="PART", help=", ".join(PARTS))
-    names = parser.parse_args().parts or list(PARTS)
-    for name in names:
+    parser.add_argument("--resume", action="store_true", help="keep the rows that are in the tables")
+    parser.add_argument("--quick", action="store_true", help="one coarse row of each data set, printed only")
+    options = parser.parse_args()
+    for name in options.parts:
         if name not in PARTS:
             parser.error(f"no part '{name}'; allowed: {', '.join(PARTS)}")
-        PARTS[name]()
+    if options.quick:
+        quick()
+        return
+    for name in options.parts or PARTS:
+        PARTS[name](options.resume)
+    print(f"{time.process_time():.0f} s of processor time")
 
 
 if __name__ == "__main__":

@@ -1,0 +1,52 @@
+"""A row of the measured tyres, computed again on a coarse mesh, meets the stored one."""
+
+from __future__ import annotations
+
+import importlib.util
+import sys
+from pathlib import Path
+from types import ModuleType
+
+import pytest
+
+ROOT = Path(__file__).resolve().parents[2]
+#: Largest relative difference of a coarse mesh with few harmonics from the stored row, by data set.
+TOLERANCES = {
+    "passenger": {
+        "deflection [mm]": 0.08,
+        "width [mm]": 0.05,
+        "loaded radius [mm]": 0.01,
+        "rolling radius [mm]": 0.01,
+        "growth [mm]": 0.02,
+        "mass [kg]": 0.005,
+    },
+    "prints": {
+        "deflection [mm]": 0.08,
+        "length [mm]": 0.15,
+        "width [mm]": 0.05,
+        "gross area [cm2]": 0.15,
+        "net area [cm2]": 0.10,
+        "mass [kg]": 0.005,
+    },
+}
+
+
+@pytest.fixture(scope="module")
+def benchmark_module() -> ModuleType:
+    """benchmarks/measured.py."""
+    sys.path.insert(0, str(ROOT / "benchmarks"))
+    spec = importlib.util.spec_from_file_location("measured_benchmark", ROOT / "benchmarks/measured.py")
+    assert spec is not None
+    assert spec.loader is not None
+    module = importlib.util.module_from_spec(spec)
+    sys.modules[spec.name] = module
+    spec.loader.exec_module(module)
+    return module
+
+
+@pytest.mark.parametrize("name", list(TOLERANCES))
+def test_a_coarse_press_meets_the_stored_row(benchmark_module: ModuleType, name: str) -> None:
+    row, tolerances = benchmark_module.quick_row(name), TOLERANCES[name]
+    off = {quantity: now / stored - 1 for quantity, (now, stored) in row.items() if quantity in tolerances}
+    assert set(off) == set(tolerances)
+    assert {quantity for quantity, value in off.items() if abs(value) > tolerances[quantity]} == set(), off
