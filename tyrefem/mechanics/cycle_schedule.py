@@ -19,6 +19,7 @@ from tyrefem.inputs.study import StudyData
 from tyrefem.materials.reads import ARCS, values_read
 from tyrefem.mechanics.arc_geometry import BiasPlies
 from tyrefem.mechanics.arcs import ArcStiffness
+from tyrefem.mechanics.finite_elements import FiniteElements
 from tyrefem.mechanics.strain_cycle import StrainCycle, solved_case
 from tyrefem.mechanics.strain_laws import strain_law
 
@@ -233,8 +234,8 @@ class KnotSolver:
             _ = self._cycle
 
     @functools.cached_property
-    def _cycle(self) -> Callable[[LoadCase], StrainCycle]:
-        provider: Callable[[LoadCase], StrainCycle] = strain_law(self.study).provider(self.study)
+    def _cycle(self) -> Callable[..., StrainCycle]:
+        provider: Callable[..., StrainCycle] = strain_law(self.study).provider(self.study)
         return provider
 
     def case(self, number: int, fraction: float, pressure_ratio: float = 1.0) -> LoadCase:
@@ -249,10 +250,11 @@ class KnotSolver:
         except InputError as error:
             raise self._placed(error, number) from None
 
-    def cycle(self, number: int, case: LoadCase) -> StrainCycle:
-        """The strain cycle of a load case of a phase; raises the same errors as `case`."""
+    def cycle(self, number: int, case: LoadCase, near: StrainCycle | None = None) -> StrainCycle:
+        """The strain cycle of a load case of a phase; raises the same errors as `case`. ``near``: a nearby cycle to
+        start from, if it is a footprint."""
         try:
-            return self._cycle(case)
+            return self._cycle(case, near) if isinstance(near, FiniteElements) else self._cycle(case)
         except InputError as error:
             raise self._placed(error, number) from None
 

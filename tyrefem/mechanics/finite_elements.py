@@ -193,8 +193,9 @@ class FiniteElements:
         return self.energies.spectrum(zone, points)
 
 
-def provider(study: StudyData) -> Callable[[LoadCase], FiniteElements]:
-    """A function from load case to strain cycle, for ``mechanics.strain = "fem"``.
+def provider(study: StudyData) -> Callable[..., FiniteElements]:
+    """A function from load case to strain cycle, for ``mechanics.strain = "fem"``; a nearby cycle in large motion, as
+    its second argument, is what the solution starts from.
 
     The tyre is inflated once for every pressure. Every load, pressure and drum is solved once in a process, also for
     other studies with the same tyre (`pressed_tyre`). The drive prescribes either load or deflection. The study's load
@@ -208,9 +209,9 @@ def provider(study: StudyData) -> Callable[[LoadCase], FiniteElements]:
     factor, one_cycle = LOSS_FACTOR[mechanics.loss_convention], mechanics.revolution == "one-cycle"
     tyre = pressed_tyre(study)
 
-    def cycle(case: LoadCase) -> FiniteElements:
-        loaded = tyre.under(case)
-        footprint = loaded.footprint(case, large=mechanics.motion == "large")
+    def cycle(case: LoadCase, near: FiniteElements | None = None) -> FiniteElements:
+        loaded, start = tyre.under(case), None if near is None else near.footprint
+        footprint = loaded.footprint(case, large=mechanics.motion == "large", near=start)
         laws = strain_laws(loaded.study.materials)
         return FiniteElements(loaded.inflated(case.pressure), footprint, case, factor, one_cycle, laws)
 

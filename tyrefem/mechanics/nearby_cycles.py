@@ -152,10 +152,11 @@ class _Neighbours(dict[str, list[list[Solved]]]):
         solver, schedule = KnotSolver(near._raised(number)), near.schedule
 
         def solved(phase: int, knot: int) -> Solved:
-            case, like = solver.case(phase, schedule.knots[phase][knot]), _energies(schedule.cycles[phase][knot])
+            start = schedule.cycles[phase][knot]
+            case, like = solver.case(phase, schedule.knots[phase][knot]), _energies(start)
 
             def solve() -> Solved:
-                cycle = solver.cycle(phase, case)
+                cycle = solver.cycle(phase, case, start)
                 # Interpolated to the same points, so that the mesh of the other cycle need not be kept.
                 return solved_case(cycle, case), replace(like, densities=_energies(cycle).densities)
 

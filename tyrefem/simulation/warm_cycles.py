@@ -172,7 +172,9 @@ class WarmCycles:
         for other in self._kept.values():
             if (other.case, other.softened) == (case, softened):
                 return _Knot(moment, case, softened, other.cycle)
-        return _Knot(moment, case, softened, self._solver(softened, moment).cycle(number, case))
+        near = self._kept.get(place) or self._kept.get((number, knot - 1))
+        start = None if near is None else near.cycle
+        return _Knot(moment, case, softened, self._solver(softened, moment).cycle(number, case, start))
 
     def _softened(self, moment: TyreTemperatures) -> Softened:
         shares: list[float] = []

@@ -99,8 +99,11 @@ class PressedTyre:
             raise InputError("the strain laws 'fem' and 'barrel' need an inflated tyre", field="pressure")
         return self._inflated(pressure)
 
-    def footprint(self, case: LoadCase, *, large: bool) -> Footprint | None:
+    def footprint(self, case: LoadCase, *, large: bool, near: Footprint | None = None) -> Footprint | None:
         """The tyre on the road of a load case, at its load or its deflection; None: the load is zero.
+
+        ``near``: a nearby footprint in large motion to start from (`nearby_balance`). The new one is not kept: what a
+        tyre keeps must not depend on the order of its cases.
 
         Raises
         ------
@@ -110,6 +113,14 @@ class PressedTyre:
         if given <= 0:
             return None
         name = "deflection" if case.by_deflection else "load"
+        if large and near is not None:
+            from tyrefem.mechanics.footprint.harmonic_balance import Balance
+            from tyrefem.mechanics.footprint.nearby_balance import nearby_balance
+
+            wanted: Any = {name: given}
+            footprint = nearby_balance(Balance(self._pressing(case.pressure, case.drum_diameter)), near, **wanted)
+            if footprint is not None:
+                return footprint
         return self._pressed(name, given, case.pressure, case.drum_diameter, large)
 
     def under(self, case: LoadCase) -> PressedTyre:
@@ -149,18 +160,23 @@ class PressedTyre:
         return inflated
 
     @functools.cached_property
-    def _pressed(self) -> Callable[[str, float, float, float, bool], Footprint]:
+    def _pressing(self) -> Callable[[float, float], Pressing]:
         from tyrefem.mechanics.footprint.contact import Pressing
-        from tyrefem.mechanics.footprint.harmonic_balance import Balance
         from tyrefem.mechanics.footprint.road import Road
 
         @functools.lru_cache(REMEMBERED)
         def pressing(pressure: float, drum: float) -> Pressing:
             return Pressing(self.inflated(pressure).state, Road(drum_diameter=drum))
 
+        return pressing
+
+    @functools.cached_property
+    def _pressed(self) -> Callable[[str, float, float, float, bool], Footprint]:
+        from tyrefem.mechanics.footprint.harmonic_balance import Balance
+
         @functools.lru_cache(REMEMBERED)
         def pressed(name: str, given: float, pressure: float, drum: float, large: bool) -> Footprint:
-            tyre = pressing(pressure, drum)
+            tyre = self._pressing(pressure, drum)
             wanted: Any = {name: given, "tolerance": TOLERANCE}
             return Balance(tyre).solve(**wanted) if large else tyre.solve(**wanted)
 
