@@ -143,7 +143,7 @@ class Mechanics(Card):
     loss_convention: Literal["nasa", "sinusoid"] = "nasa"
     poisson_term: Annotated[float, Unit("1", ge=0, le=1)] = 0.75
     membrane_shear: bool = True
-    motion: FootprintMotion = "linear"
+    motion: FootprintMotion = "large"
     moduli: Literal["card", "secant"] = "card"
     revolution: Literal["harmonics", "one-cycle"] = "harmonics"
     feedback: Feedback | None = None
