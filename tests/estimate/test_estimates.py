@@ -26,8 +26,11 @@ def test_no_shipped_study_is_long_or_large(name: str) -> None:
     study = tyrefem.study(name)
     expected = RunEstimate.of(study).total
     cases = len(study.campaign().cases) if study.is_campaign else 1
-    assert 0.1 < expected.time * cases < estimate.LONG / 10
-    assert 2**24 < expected.memory < 2**29
+    # Footprints in large motion take a minute or two each, and a GiB or two.
+    large = study.card.mechanics.strain == "fem"
+    most_time, most_memory = (estimate.LONG, 2**31) if large else (estimate.LONG / 10, 2**29)
+    assert 0.1 < expected.time * cases < most_time
+    assert 2**24 < expected.memory < most_memory
 
 
 @pytest.mark.parametrize("name", STUDIES)

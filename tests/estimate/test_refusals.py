@@ -82,7 +82,7 @@ def refused(work: Callable[[], Any], field: str, words: str) -> InputError:
         (NASA, {"mesh.size": "0.5 mm", "output.fields": 9999}, "output.fields", r"9,999 fields .*; \d+ or fewer would"),
         (
             RADIAL,
-            {"mesh.size": "0.4 mm"},
+            {"mesh.size": "0.4 mm", "mechanics.motion": "linear"},
             "mesh.size",
             r"GiB of memory, and 2.0 GiB are free; 0.\d+ mm or more would fit",
         ),
