@@ -226,14 +226,14 @@ def under_load(tyre: CatalogueTyre, pressing: Pressing) -> tuple[float, Footprin
     and the one that it lets expect; from a load within 5 % with the exponent 0.8.
     """
     try:
-        footprint = Balance(pressing, HARMONICS, TOLERANCE).solve(load=tyre.load, tolerance=0.02)
+        footprint = Balance(pressing, HARMONICS, tolerance=TOLERANCE).solve(load=tyre.load, tolerance=0.02)
         return footprint.deflection, footprint
     except InputError:
-        first = Balance(pressing, HARMONICS, TOLERANCE).solve(deflection=tyre.deflection, tolerance=0.02)
+        first = Balance(pressing, HARMONICS, tolerance=TOLERANCE).solve(deflection=tyre.deflection, tolerance=0.02)
     expected = tyre.deflection * (tyre.load / first.load) ** SLOPE
     if abs(first.load / tyre.load - 1) < CLOSE:
         return expected, first
-    second = Balance(pressing, HARMONICS, TOLERANCE).solve(deflection=expected, tolerance=0.02)
+    second = Balance(pressing, HARMONICS, tolerance=TOLERANCE).solve(deflection=expected, tolerance=0.02)
     slope = math.log(second.deflection / first.deflection) / math.log(second.load / first.load)
     return second.deflection * (tyre.load / second.load) ** slope, second
 
@@ -298,7 +298,7 @@ def bottoming(tyre: CatalogueTyre) -> dict[str, Any] | None:
     row["crown meets the rim at [mm]"] = pressing.bottoming * 1e3
     reached, load = 0.0, 0.0
     for harmonics in WAYS:
-        balance = Balance(pressing, harmonics, TOLERANCE)
+        balance = Balance(pressing, harmonics, tolerance=TOLERANCE)
         try:
             footprint = balance.solve(deflection=min(deflection, BEFORE_RIM * pressing.bottoming), tolerance=1.0)
             reached, load, row["message"] = footprint.deflection, footprint.load, ""
@@ -313,7 +313,7 @@ def sensitivities(tyre: CatalogueTyre) -> Iterator[dict[str, Any]]:
     """Relative change of the deflection by one standard deviation of each number, in large motion."""
 
     def deflection(changes: Mapping[str, Any]) -> float:
-        balance = Balance(inflated(tyre, changes)[1], HARMONICS, TOLERANCE / 10)
+        balance = Balance(inflated(tyre, changes)[1], HARMONICS, tolerance=TOLERANCE / 10)
         return balance.solve(load=tyre.load, tolerance=0.0).deflection
 
     nominal = deflection({})

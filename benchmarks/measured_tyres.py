@@ -73,7 +73,7 @@ class Tyre:
     @cached_property
     def balance(self) -> Balance:
         """The solver in large motion."""
-        return Balance(self.pressing, self.harmonics, TOLERANCE)
+        return Balance(self.pressing, self.harmonics, tolerance=TOLERANCE)
 
     def footprint(self, motion: str, load: float) -> Footprint:
         """The footprint under a load, N, in ``large`` or ``linear`` motion; kept."""
