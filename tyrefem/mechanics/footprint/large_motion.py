@@ -34,6 +34,8 @@ ALIKE = 0.02
 STEPS = 12
 #: After a Newton step the next one is smaller by more than this factor: a loose balance ends one step earlier.
 NEXT = 10.0
+#: Forces of a loose balance are inexact: its load may differ by this times the tolerance.
+INEXACT = 4.0
 #: Above this tolerance any change of the contact set is allowed, below it this share of the contacts.
 LOOSE, FLIPPED = 5e-3, 0.02
 #: Accuracy of conjugate gradients: residual of a Newton step; energy for a change of deflection and for the stiffness.
@@ -196,7 +198,7 @@ class LargeMotion:
                 pushed, slope = np.where(before, rate[1], 0.0), rate[2]
                 if not slope > 0:
                     return None
-                done &= abs(load - now) <= tolerance * load
+                done &= abs(load - now) <= (tolerance if tolerance <= LOOSE else INEXACT * tolerance) * load
                 more, now = (load - now) / slope, load
                 deflection, u, forces = deflection + more, u + more * rate[0], forces + more * pushed
             if done:
