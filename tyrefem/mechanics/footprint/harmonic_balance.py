@@ -19,6 +19,8 @@ LADDER = (16, 24)
 CONTACT_ON_THE_WAY, CONTACT = 48, 120
 #: Tolerance of the load steps, and distance to the target at which they end.
 ON_THE_WAY, NEAR = 1e-2, 1e-2
+#: Tolerance of the numbers of harmonics before the last.
+BEFORE_LAST = 3e-3
 #: Smallest load step over the total, and largest number of steps.
 SMALLEST, MOST = 1e-3, 60
 #: A tyre in large motion is stiffer than at a small load by about this factor: slope of the second step's guess.
@@ -92,7 +94,7 @@ class Balance:
         passed: list[Footprint] = []
         for count in ladder:
             start = self.motion.refined(moment, count, self._contact(count))
-            accuracy = self.tolerance if count == ladder[-1] else max(self.tolerance, ON_THE_WAY)
+            accuracy = self.tolerance if count == ladder[-1] else max(self.tolerance, BEFORE_LAST)
             moment = self._balanced(start, accuracy, deflection, load)
             passed.append(self.motion.footprint(moment))
             if len(passed) > 1 and passed[-1].compared(passed[-2]).error <= tolerance:
