@@ -132,8 +132,8 @@ def test_the_8pr_deflects_under_its_rated_load_as_tr_r_64_says(pressing: Pressin
 def test_contact_in_large_motion_neither_pulls_nor_penetrates(pressed: Footprint) -> None:
     largest = pressed.forces.max()
     assert (pressed.forces >= 0).all()
-    assert pressed.gaps.min() > -1e-5  # of a deflection of 31 mm, balanced to 1e-3
-    assert np.abs(pressed.gaps[pressed.forces > 1e-3 * largest]).max() < 1e-5
+    assert pressed.gaps.min() > -3e-5  # of a deflection of 31 mm, balanced to 1e-3
+    assert np.abs(pressed.gaps[pressed.forces > 1e-3 * largest]).max() < 3e-5
     assert pressed.pressure_integral == pytest.approx(pressed.load, rel=1e-9)
 
 

@@ -41,7 +41,7 @@ LOOSE, FLIPPED = 5e-3, 0.02
 #: Accuracy of conjugate gradients: residual of a Newton step; energy for a change of deflection and for the stiffness.
 INNER, BORDER, STIFFNESS = 0.05, 0.03, 5e-3
 #: Residual that ends conjugate gradients, in the energy's norm, over the tolerance.
-ENERGY = 4.0
+ENERGY = 1.0
 #: The angles of possible contact are those of the deflection times this factor.
 WIDER = 1.6
 #: Largest deflection over that at which the crown meets the rim.
