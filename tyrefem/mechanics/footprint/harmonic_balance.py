@@ -20,7 +20,7 @@ CONTACT_ON_THE_WAY, CONTACT = 48, 120
 #: Tolerance of the load steps, and distance to the target at which they end.
 ON_THE_WAY, NEAR = 1e-2, 1e-2
 #: Tolerance of the numbers of harmonics before the last.
-BEFORE_LAST = 3e-3
+BEFORE_LAST = 5e-3
 #: Smallest load step over the total, and largest number of steps.
 SMALLEST, MOST = 1e-3, 60
 #: A tyre in large motion is stiffer than at a small load by about this factor: slope of the second step's guess.

@@ -30,12 +30,10 @@ SOFT, UNSTABLE = 0.1, 8
 HARD, SMOOTH = 0.02, 0.1
 #: After a smaller change the last stiffness is used again.
 ALIKE = 0.02
-#: Newton steps.
-STEPS = 12
+#: Newton steps. After the last a change and a missed load of this times the tolerance are allowed.
+STEPS, CYCLE = 12, 3.0
 #: After a Newton step the next one is smaller by more than this factor: a loose balance ends one step earlier.
 NEXT = 10.0
-#: Forces of a loose balance are inexact: its load may differ by this times the tolerance.
-INEXACT = 4.0
 #: Above this tolerance any change of the contact set is allowed, below it this share of the contacts.
 LOOSE, FLIPPED = 5e-3, 0.02
 #: Accuracy of conjugate gradients: residual of a Newton step; energy for a change of deflection and for the stiffness.
@@ -189,7 +187,7 @@ class LargeMotion:
             now = self._sides * float(normal_components @ forces)
             last = share * float(np.abs(step.motion).max()) / max(float(np.abs(u).max()), 1e-300)
             done = last <= (tolerance if tolerance <= LOOSE else NEXT * tolerance) and share == 1
-            done &= tolerance > LOOSE or int((closed != before).sum()) <= FLIPPED * int(closed.sum())
+            done &= tolerance > LOOSE or int((closed != before).sum()) <= max(1.0, FLIPPED * int(closed.sum()))
             damping = max(damping / 3, SOFT if change > SMOOTH else HARD)
             if load is not None:
                 if rate is None:
@@ -198,7 +196,10 @@ class LargeMotion:
                 pushed, slope = np.where(before, rate[1], 0.0), rate[2]
                 if not slope > 0:
                     return None
-                done &= abs(load - now) <= (tolerance if tolerance <= LOOSE else INEXACT * tolerance) * load
+                missed = abs(load - now) / load
+                done &= missed <= tolerance
+                # A contact that opens and closes in turn keeps the load from settling.
+                done |= count == STEPS - 1 and share == 1 and max(last, missed) <= CYCLE * tolerance
                 more, now = (load - now) / slope, load
                 deflection, u, forces = deflection + more, u + more * rate[0], forces + more * pushed
             if done:
