@@ -45,7 +45,7 @@ class Balance:
     steps : largest number of load steps. before_rim : largest deflection over that at which the crown meets the rim.
 
     >>> from tyrefem.mechanics.footprint.example_tyre import PlainTyre
-    >>> footprint = Balance(Pressing(PlainTyre().state(along=6)), 12).at_deflection(0.004)
+    >>> footprint = Balance(Pressing(PlainTyre().state(along=6)), 12, 12).at_deflection(0.004)
     >>> footprint.balanced.shape == footprint.amplitudes.shape, 0 < footprint.load < 400
     (True, True)
     """
