@@ -26,7 +26,7 @@ AHEAD, CORRECTION, WILD = 0.35, 0.7, 2.0
 LARGE_STEP = 1.6
 #: Damping after an unstable Newton step, and number of these after which the balance fails.
 SOFT, UNSTABLE = 0.1, 8
-#: Damping after a Newton step whose change of a displacement gradient is less than `SMOOTH`.
+#: Least damping after a Newton step whose change of a displacement gradient is below `SMOOTH`; else it is `SOFT`.
 HARD, SMOOTH = 0.02, 0.1
 #: After a smaller change the last stiffness is used again.
 ALIKE = 0.02
