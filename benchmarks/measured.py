@@ -41,12 +41,10 @@ LBF, PSI, INCH = 4.4482216152605, 6894.757293168361, 0.0254
 WORN = {"section.parameters": {"tread_gauge": "4.5 mm"}}
 #: Mesh of the tables, the finer one of the numerical error, and the coarse one of moduli, sensitivities and --quick.
 MESH, FINE, COARSE = "8 mm", "5 mm", "12 mm"
-#: Highest harmonic in large motion: of --quick and sensitivities, and of numerical error.
-QUICK, FEWER = 12, 16
-#: The same in linear motion, of numerical error and sensitivities.
-FEWER_LINEAR = 64
-#: Motions of the tables, and the motion of contact and its pressure.
-MOTIONS, CONTACT = ("large", "linear"), "linear"
+#: More harmonics, of numerical error: of large motion, of its contact, of linear motion.
+MORE = {"harmonics": 36, "contact": 180, "linear_harmonics": 144}
+#: Motions of the tables; the first is that of the pressure and of --quick.
+MOTIONS = ("large", "linear")
 #: Number of a section or a card, and its standard deviation (relative): those of the cards, gauges 10 % by estimate.
 UNCERTAIN: dict[str, tuple[str, float]] = {
     "tread gauge": ("section.tread_gauge", 0.05),
@@ -131,8 +129,6 @@ class DataSet:
     loads: Mapping[float, tuple[float, ...]]
     #: Pressure and load of the row of --quick, and of the sensitivities.
     typical: tuple[float, float]
-    #: Motions that are computed.
-    motions: tuple[str, ...] = MOTIONS
     _kept: dict[tuple[float, float], Tyre] = field(default_factory=dict, init=False, repr=False)
 
     def at(self, pressure: float, load: float) -> Tyre:
@@ -192,7 +188,6 @@ DATA_SETS = {
     ),
     "prints": DataSet(
         "prints", "255/40ZR17 ECF", SPORTS, {}, {p * PSI: PRINT_LOADS for p in (26, 28, 30)}, (28 * PSI, 1000 * LBF),
-        motions=(CONTACT,),
     ),
 }  # fmt: skip
 
@@ -200,7 +195,7 @@ DATA_SETS = {
 def presses(data_set: DataSet, resume: bool) -> None:
     """Both motions at every pressure and load of a data set."""
     table = Table(data_set.table, resume)
-    for motion in data_set.motions:
+    for motion in MOTIONS:
         for pressure, loads in data_set.loads.items():
             for load in loads:
                 keys = {"motion": motion, "pressure [kPa]": pressure / 1e3, "load [N]": load}
@@ -216,7 +211,7 @@ def pressure_maps(resume: bool) -> None:
             keys = text_of({"inflation [kPa]": pressure / 1e3, "load [lbf]": load / LBF})
             if any(keys.items() <= row.items() for row in table.rows):
                 continue
-            footprint = prints.at(pressure, load).footprint(CONTACT, load)
+            footprint = prints.at(pressure, load).footprint(MOTIONS[0], load)
             table.rows += [{**keys, **text_of(point)} for point in pressure_quarter(footprint)]
             table.write()
             print(*keys.values(), "map", flush=True)
@@ -239,7 +234,7 @@ def scaled(study: Any, where: str, factor: float) -> dict[str, Any]:
 
 
 def numerics(resume: bool) -> None:
-    """The typical row of two data sets with a finer mesh, and with fewer harmonics."""
+    """The typical row of two data sets with a finer mesh, and with more harmonics."""
     table = Table("numerics", resume)
     for data_set in (DATA_SETS["passenger"], DATA_SETS["prints"]):
         pressure, load = data_set.typical
@@ -247,43 +242,38 @@ def numerics(resume: bool) -> None:
         variants = {
             f"mesh of {MESH}": nominal,
             f"mesh of {FINE}": data_set.changed(pressure, load, {"mesh.size": FINE}),
-            f"{FEWER} harmonics (linear: {FEWER_LINEAR})": replace(
-                nominal, harmonics=FEWER, linear_harmonics=FEWER_LINEAR
+            "{harmonics} harmonics, {contact} of the contact (linear: {linear_harmonics})".format(**MORE): replace(
+                nominal, **MORE
             ),
         }
-        for motion in data_set.motions:
+        for motion in MOTIONS:
             for name, tyre in variants.items():
                 keys = {"tyre": data_set.tyre, "motion": motion, "number": name}
                 table.add(keys, partial(tyre.pressed, motion, load))
 
 
 def sensitivities(resume: bool) -> None:
-    """The same rows with each uncertain number one standard deviation higher, on a coarse mesh with few harmonics."""
+    """The same rows in large motion with each uncertain number one standard deviation higher, on a coarse mesh."""
     table = Table("sensitivities", resume)
     for data_set in (DATA_SETS["passenger"], DATA_SETS["prints"]):
         load = data_set.typical[1]
 
         def coarse(changes: Mapping[str, Any], data_set: DataSet = data_set) -> Tyre:
-            tyre = data_set.changed(*data_set.typical, {"mesh.size": COARSE, **changes})
-            return replace(tyre, harmonics=QUICK, linear_harmonics=FEWER_LINEAR)
+            return data_set.changed(*data_set.typical, {"mesh.size": COARSE, **changes})
 
         nominal = coarse({})
-        variants = {"nominal": (0.0, nominal)}
-        for number, (where, deviation) in UNCERTAIN.items():
-            variants[number] = (deviation, coarse(scaled(nominal.cards_study, where, 1 + deviation)))
-        for number, (deviation, tyre) in variants.items():
-            for motion in data_set.motions:
-                keys = {"tyre": data_set.tyre, "motion": motion, "number": number, "standard deviation": deviation}
-                table.add(keys, partial(tyre.pressed, motion, load))
+        for number, (where, deviation) in {"nominal": ("", 0.0), **UNCERTAIN}.items():
+            keys = {"tyre": data_set.tyre, "motion": "large", "number": number, "standard deviation": deviation}
+            tyre = coarse(scaled(nominal.cards_study, where, 1 + deviation)) if where else nominal
+            table.add(keys, partial(tyre.pressed, "large", load))
         for part, regions in LOSSES.items():
-            for motion in data_set.motions:
-                keys = {
-                    "tyre": data_set.tyre,
-                    "motion": motion,
-                    "number": f"loss tangent of {part}",
-                    "standard deviation": LOSS_TANGENT,
-                }
-                table.add(keys, partial(with_more_loss, nominal, motion, load, regions))
+            keys = {
+                "tyre": data_set.tyre,
+                "motion": "large",
+                "number": f"loss tangent of {part}",
+                "standard deviation": LOSS_TANGENT,
+            }
+            table.add(keys, partial(with_more_loss, nominal, "large", load, regions))
 
 
 def with_more_loss(tyre: Tyre, motion: str, load: float, regions: tuple[str, ...]) -> dict[str, float]:
@@ -342,17 +332,14 @@ class Rating:
 
 
 def quick_row(name: str) -> dict[str, tuple[float, float]]:
-    """The typical row of a data set on a coarse mesh with few harmonics: quantity -> computed now, and stored."""
+    """The typical row of a data set on a coarse mesh: quantity -> computed now, and stored."""
     data_set = DATA_SETS[name]
     pressure, load = data_set.typical
-    tyre = replace(
-        data_set.changed(pressure, load, {"mesh.size": COARSE}), harmonics=QUICK, linear_harmonics=FEWER_LINEAR
-    )
-    now = tyre.pressed(data_set.motions[0], load)
+    now = data_set.changed(pressure, load, {"mesh.size": COARSE}).pressed(MOTIONS[0], load)
     stored = next(
         row
         for row in rows_of(TABLES / f"measured-{data_set.table}.csv")
-        if row["motion"] == data_set.motions[0]
+        if row["motion"] == MOTIONS[0]
         and abs(float(row["pressure [kPa]"]) / pressure * 1e3 - 1) < 1e-3
         and abs(float(row["load [N]"]) / load - 1) < 1e-2
     )
@@ -363,9 +350,8 @@ def quick() -> None:
     """Print one coarse row of each data set beside the stored one."""
     for name, data_set in DATA_SETS.items():
         pressure, load = data_set.typical
-        harmonics = QUICK if data_set.motions[0] == "large" else FEWER_LINEAR
-        case = f"{data_set.tyre}, {pressure / 1e3:.0f} kPa, {load:.0f} N, {data_set.motions[0]} motion"
-        print(f"{case}: mesh of {COARSE}, {harmonics} harmonics")
+        case = f"{data_set.tyre}, {pressure / 1e3:.0f} kPa, {load:.0f} N, {MOTIONS[0]} motion"
+        print(f"{case}: mesh of {COARSE}")
         for quantity, (now, stored) in quick_row(name).items():
             print(f"  {quantity:30s} {now:10.5g}   stored, mesh of {MESH}: {stored:10.5g}")
     ratios = sorted(row["computed over catalogue"] for row in aircraft_rows())

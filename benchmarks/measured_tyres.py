@@ -22,8 +22,8 @@ from tyrefem.mechanics.footprint.tyre_on_road import FLAT
 from tyrefem.mechanics.solid.inflation import Inflation, inflate
 
 Array = NDArray[np.float64]
-#: Highest harmonic in linear motion, the same in large motion, and tolerance of a balance in large motion.
-LINEAR, LARGE, TOLERANCE = 96, 24, 1e-2
+#: Highest harmonic in linear motion, in large motion and of its contact, and tolerance of a balance.
+LINEAR, LARGE, CONTACT, TOLERANCE = 96, 24, 120, 1e-3
 #: Speed, m/s, and rubber temperatures, degC, of the rolling resistance.
 SPEED, TEMPERATURES = 60 / 3.6, (20.0, 50.0)
 
@@ -35,7 +35,7 @@ class Tyre:
     Parameters
     ----------
     amplitudes : region -> shear strain amplitude whose modulus its compound has; without a region: that of the card.
-    harmonics, linear_harmonics : highest in large and in linear motion.
+    harmonics, contact, linear_harmonics : highest in large motion, of its contact, and in linear motion.
     """
 
     study_file: str
@@ -43,6 +43,7 @@ class Tyre:
     pressure: float
     amplitudes: Mapping[str, float] = field(default_factory=dict)
     harmonics: int = LARGE
+    contact: int = CONTACT
     linear_harmonics: int = LINEAR
     _footprints: dict[tuple[str, float], Footprint] = field(default_factory=dict, init=False, repr=False)
 
@@ -73,7 +74,7 @@ class Tyre:
     @cached_property
     def balance(self) -> Balance:
         """The solver in large motion."""
-        return Balance(self.pressing, self.harmonics, tolerance=TOLERANCE)
+        return Balance(self.pressing, self.harmonics, self.contact, TOLERANCE)
 
     def footprint(self, motion: str, load: float) -> Footprint:
         """The footprint under a load, N, in ``large`` or ``linear`` motion; kept."""

@@ -69,6 +69,21 @@ def summary(rows: Sequence[Comparison]) -> list[str]:
     return _lines(f"{head} | goal, % | met", lines)
 
 
+def motions(rows: Sequence[Comparison]) -> list[str]:
+    """Deviations of both motions: range and rms."""
+    lines = []
+    for tyre, quantity in dict.fromkeys((row.tyre, row.quantity) for row in rows if row.quantity != "mass"):
+        part = [row for row in rows if (row.tyre, row.quantity) == (tyre, quantity)]
+        cells = []
+        for computed_values in ([row.linear for row in part], [row.computed for row in part]):
+            pairs = zip(computed_values, part, strict=True)
+            errors = np.array([100 * (value / row.measured - 1) for value, row in pairs])
+            spread = f"{errors[0]:+.0f}" if len(part) == 1 else f"{errors.min():+.0f} to {errors.max():+.0f}"
+            cells += [spread, f"{np.sqrt(np.mean(errors**2)):.1f}"]
+        lines.append((tyre, quantity, len(part), *cells))
+    return _lines("tyre | quantity | rows | linear: E, % | rms, % | large: E, % | rms, %", lines)
+
+
 def every_row(rows: Sequence[Comparison]) -> list[str]:
     """Every row of the 205/60R15 and the RE-71R."""
     head = "tyre | quantity | kPa | N | measured | computed ± u | motion | linear | E, % | u_val, % | verdict"
@@ -152,6 +167,7 @@ def page_tables() -> str:
     rows = comparison()
     sections = {
         "": summary(rows),
+        "Both motions: deviation from the measured values.": motions(rows),
         f"Every row of the {PASSENGER} and the {RE71R}; u: standard uncertainty of the computed value.": every_row(
             rows
         ),

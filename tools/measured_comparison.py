@@ -16,17 +16,17 @@ TABLES = ROOT / "docs/evidence/tables"
 LBF, PSI, INCH = 4.4482216152605, 6.894757293168361, 25.4
 PASSENGER, RE71R, ECF = "205/60R15", "255/40R17 RE-71R", "255/40ZR17 ECF"
 SOURCES = {PASSENGER: "passenger", RE71R: "radius", ECF: "prints"}
-#: Quantities of the contact, and the motion in which they are compared.
-CONTACT, CONTACT_MOTION = ("length", "width", "gross area", "net area"), "linear"
+#: Quantities of the contact.
+CONTACT = ("length", "width", "gross area", "net area")
 #: The tyre whose sensitivities a tyre takes.
 VARIED = {PASSENGER: PASSENGER, RE71R: PASSENGER, ECF: ECF}
 #: Standard uncertainty of a measured value, relative: estimates.
 MEASURED = {"deflection": 0.03, "stiffness": 0.03, "length": 0.03, "width": 0.05, "gross area": 0.04, "net area": 0.05,
             "rolling radius": 0.005, "mass": 0.01, "rise": 0.05, "rolling resistance": 0.10}  # fmt: skip
 #: Tolerance of a balance: a part of the numerical uncertainty, beside mesh and harmonics.
-TOLERANCE, TOLERANCES = 0.01, {"mass": 0.0, "rolling radius": 0.0}
-#: Of a rise with pressure: two stiffnesses known to 1 % at pressures a fifth apart; inputs: estimate.
-RISE = (0.10, 0.05)
+TOLERANCE, TOLERANCES = 0.001, {"mass": 0.0, "rolling radius": 0.0}
+#: Of a rise with pressure: two deflections known to half a per cent at pressures a fifth apart; inputs: estimate.
+RISE = (0.05, 0.05)
 #: Quantities of the page's tables and their units.
 UNITS = {"deflection": "mm", "stiffness": "N/mm", "length": "mm", "width": "mm", "rolling radius": "mm", "mass": "kg",
          "gross area": "cm²", "net area": "cm²"}  # fmt: skip
@@ -84,16 +84,11 @@ def rows_at(tyre: str, pressure: float, motion: str) -> list[dict[str, str]]:
     return [row for row in rows if row["motion"] == motion and abs(float(row["pressure [kPa]"]) - pressure) < 0.5]
 
 
-def motion_of(quantity: str) -> str:
-    """The motion in which a quantity is compared."""
-    return CONTACT_MOTION if quantity in CONTACT else "as drawn" if quantity == "mass" else "large"
-
-
 def computed(tyre: str, quantity: str, pressure: float, load: float, motion: str) -> float:
     """A computed value at a pressure, kPa, and a load, N; nan: none.
 
-    Stiffness in large motion: slope of the parabola through the origin and the loads, because the load of one balance
-    is known to 1 %.
+    Stiffness in large motion: slope of the parabola through the origin and the loads, as the measured one of a Magic
+    Formula.
     """
     rows = rows_at(tyre, pressure, motion)
     if quantity == "stiffness" and motion == "large" and rows:
@@ -107,8 +102,7 @@ def computed(tyre: str, quantity: str, pressure: float, load: float, motion: str
 
 def _relative(name: str, tyre: str, quantity: str) -> dict[str, float]:
     """Relative change of a quantity in each row of a table against the tyre's first."""
-    motion = CONTACT_MOTION if quantity in CONTACT else "large"
-    rows = [row for row in table(name) if row["tyre"] == VARIED[tyre] and row["motion"] == motion]
+    rows = [row for row in table(name) if row["tyre"] == VARIED[tyre] and row["motion"] == "large"]
     nominal = column(rows[0], quantity)
     return {row["number"]: column(row, quantity) / nominal - 1 for row in rows[1:]}
 
@@ -152,7 +146,7 @@ def compared(
     met = "-" if math.isnan(error) else ("yes" if abs(error) <= goal else "no")
     percent = [round(100 * value, 1) for value in (error, *parts, u_val)]
     numbers = [float(f"{value:.5g}") for value in (pressure, load, measured, large, linear)]
-    row = (*numbers[:4], motion_of(quantity), numbers[4], *percent)
+    row = (*numbers[:4], "as drawn" if quantity == "mass" else "large", numbers[4], *percent)
     return Comparison(tyre, quantity, *row, verdict, round(100 * goal, 6), met)
 
 
@@ -162,9 +156,8 @@ def slope(x: Sequence[float], y: Sequence[float]) -> float:
 
 
 def both(tyre: str, quantity: str, pressure: float, load: float) -> tuple[float, float]:
-    """The computed value that is compared, and that of linear motion."""
-    compared_motion = CONTACT_MOTION if quantity in CONTACT else "large"
-    large, linear = (computed(tyre, quantity, pressure, load, motion) for motion in (compared_motion, "linear"))
+    """The computed value in large motion, which is compared, and that in linear motion."""
+    large, linear = (computed(tyre, quantity, pressure, load, motion) for motion in ("large", "linear"))
     return large, linear
 
 

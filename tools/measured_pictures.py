@@ -8,8 +8,6 @@ from typing import Any
 
 import numpy as np
 from measured_comparison import (
-    CONTACT,
-    CONTACT_MOTION,
     ECF,
     INCH,
     LBF,
@@ -40,14 +38,11 @@ def _width(tyre: str, quantity: str) -> float:
 
 
 def _curves(axes: Any, tyre: str, quantity: str, pressure: float, color: str) -> None:
-    judged = CONTACT_MOTION if quantity in CONTACT else "large"
     for motion, style in (("large", "-"), ("linear", ":")):
-        if motion == "large" != judged:
-            continue  # few harmonics do not resolve a contact
         rows = rows_at(tyre, pressure, motion)
         line = np.array(sorted((column(row, "load") / 1e3, column(row, quantity)) for row in rows))
         axes.plot(*line.T, style, color=color, lw=1.4)
-        if motion == judged:
+        if motion == "large":
             wide = _width(tyre, quantity)
             low, high = line[:, 1] * (1 - wide), line[:, 1] * (1 + wide)
             axes.fill_between(line[:, 0], low, high, color=color, alpha=0.13, lw=0)
@@ -113,7 +108,7 @@ def prints() -> Any:
         return draw
 
     return _panels(
-        f"255/40ZR17 ECF, ink prints. Points: measured; lines: {CONTACT_MOTION} motion; bands: 2 u of the computed",
+        "255/40ZR17 ECF, ink prints. Points: measured; solid: large motion; dotted: linear; bands: 2 u of the computed",
         [(f"{quantity}, {names[quantity][2]}", panel(quantity)) for quantity in names],
     )
 
@@ -203,9 +198,7 @@ def pressure() -> Any:
     bar = drawn.colorbar(filled, cax=add_axes(drawn, 8.9, 0.8, 0.14, 5.4), ticks=np.arange(0, 601, 100))
     bar.set_label("computed contact pressure, kPa", fontsize=FONT)
     bar.ax.tick_params(labelsize=FONT)
-    title = (
-        f"255/40ZR17 ECF: computed contact pressure ({CONTACT_MOTION} motion), and outline of the ink print (orange)"
-    )
+    title = "255/40ZR17 ECF: computed contact pressure, large motion, and outline of the ink print (orange)"
     drawn.suptitle(title, fontsize=FONT, y=0.99)
     return drawn
 
