@@ -98,17 +98,22 @@ class Radial:
         return radial_meridian(crown, self.n("crown_radius"), half, self.rim, self.bead_outside, self.n("bend_radius"))
 
     @cached_property
-    def shoulder(self) -> float:
-        """Where the tread ends along the line, m: its surface is half the tread's width from the mid plane there.
-
-        Nearer than `TOGETHER` to a belt's edge it ends with the belt: an element between them would be a sliver.
-        """
+    def tread_edge(self) -> float:
+        """Where the tread's surface is half the tread's width from the mid plane, m along the line."""
         s = np.linspace(0.0, self.line.widest_s * 0.999, 800)
         _, z, phi = self.line.at(s)
         beyond = np.flatnonzero(z + np.cos(phi) * self._to_tread(s) > self.n("tread_width") / 2)
         if not len(beyond):
             raise InputError("is wider than the section", field="parameters.tread_width")
-        end = float(s[beyond[0]])
+        return float(s[beyond[0]])
+
+    @cached_property
+    def shoulder(self) -> float:
+        """Where the tread ends along the line, m: at `tread_edge`.
+
+        Nearer than `TOGETHER` to a belt's edge it ends with the belt: an element between them would be a sliver.
+        """
+        end = self.tread_edge
         edges = [self.n(belt.width) / 2 for belt in self.belts]
         nearest = min(edges, key=lambda edge: abs(edge - end))
         return nearest if abs(nearest - end) < TOGETHER else end

@@ -7,7 +7,7 @@ import math
 from tyrefem.sizes.aircraft import aircraft_numbers
 from tyrefem.sizes.bead import bead_wire_area
 from tyrefem.sizes.cards import radial_cards
-from tyrefem.sizes.designation import TyreSize
+from tyrefem.sizes.designation import INCH, TyreSize
 from tyrefem.sizes.drawn import Drawn
 from tyrefem.sizes.radial import Belt, Radial
 from tyrefem.sizes.rules import Rules
@@ -16,14 +16,16 @@ BEAD_FILL = 0.7
 ESTIMATE = "estimate: ordinary practice"
 #: How many times the rated pressure the plies hold, and the strength of their cords over a metre, N/m (estimates).
 SAFETY, PLY_STRENGTH, BELT_STRENGTH = 4.0, 780 * 300.0, 900 * 600.0
+#: Ply rating per inch of width where the size names none (the data book's bias tyres: half have 1.35 to 1.97).
+RATING = 1.8
 
 
 def draw(size: TyreSize, rule: Rules) -> Drawn:
     """Nylon body plies and textile belts near the circumference, as many as hold four times the rated pressure."""
-    rim, pressure = aircraft_numbers(size, rule, 30)
+    rim, pressure = aircraft_numbers(size, rule, max(4, 2 * round(RATING * size.width / INCH / 2)))
     outer, width = rule["outer_diameter"].value, size.width
     height = (outer - rim.diameter) / 2
-    tread_width = rule("tread_width", 0.78 * width, "mm", f"{ESTIMATE}, 0.78 nominal widths", 0.3 * width)
+    rule("tread_width", 0.78 * width, "mm", f"{ESTIMATE}, 0.78 nominal widths", 0.3 * width)
     rule("crown_radius", 1.5 * width, "mm", f"{ESTIMATE}, 1.5 nominal widths; of the plies' line", 0.05, 20)
     rule("tread_radius", 1.8 * width, "mm", f"{ESTIMATE}, 1.8 nominal widths; of the tread's surface", 0.05, 20)
     rule("cord_angle", math.pi / 2, "deg", "radial body plies", 1.4, 1.5708)
@@ -50,8 +52,6 @@ def draw(size: TyreSize, rule: Rules) -> Drawn:
             30,
         )
     )
-    belt = rule("inner_belts_width", 0.93 * tread_width, "mm", f"{ESTIMATE}, 0.93 tread widths", 0.02)
-    rule("outer_belts_width", 0.90 * belt, "mm", f"{ESTIMATE}, 0.9 of the inner belts'", 0.02)
     one_ply = rule("belt_ply_gauge", 1.0e-3, "mm", f"{ESTIMATE}, cord 0.75 mm in rubber", 5e-4)
     first, second = (belts_needed + 1) // 2, belts_needed // 2
     rule("inner_belts_gauge", first * one_ply, "mm", f"{first} belt plies", 5e-4)
@@ -95,6 +95,8 @@ def draw(size: TyreSize, rule: Rules) -> Drawn:
         BEAD_FILL,
     )
     radial.add_bend()
+    belt = rule("inner_belts_width", 2 * radial.tread_edge, "mm", f"{ESTIMATE}, as wide as the plies under the tread", 0.02)
+    rule("outer_belts_width", 0.90 * belt, "mm", f"{ESTIMATE}, 0.9 of the inner belts'", 0.02)
     rule.check_all_used()
     ply = {
         "base": "aircraft-body-ply",

@@ -36,7 +36,13 @@ def draw(size: TyreSize, rule: Rules) -> Drawn:
     )
     design_width(size, rule, rim_width, 0.75)
     pressure = rated(size, rule, 61.0, 850e3, f"850 kPa ({STANDARD}); mean of three sizes, 4 % either way")
-    rule("tread_width", 0.72 * width, "mm", f"{ESTIMATE}, 0.72 nominal widths", 0.4 * width)
+    rule(
+        "tread_width",
+        0.79 * width,
+        "mm",
+        "estimate: 0.79 nominal widths, mean of five highway ribs, 0.74 to 0.82 (makers' data books, from memory)",
+        0.4 * width,
+    )
     rule("crown_radius", 2.4 * width, "mm", f"{ESTIMATE}, 2.4 nominal widths; of the plies' line", 0.1, 20)
     rule(
         "tread_radius",
