@@ -44,7 +44,7 @@ def test_a_cycle_loses_two_pi_u_tan_delta(study):
 def test_heat_goes_with_the_square_of_the_load(study):
     """A stiffness that does not change: D is proportional to the load; only the rolling radius differs."""
     full, half = cold_power(study), cold_power(study.replace({"drive.load": "2412.5 N"}))
-    radii = [0.316 - load / 200e3 / 3 for load in (4825.0, 2412.5)]
+    radii = [study.section.outer_diameter / 2 - load / 200e3 / 3 for load in (4825.0, 2412.5)]
     for region, power in full.items():
         assert half[region] == pytest.approx(power / 4 * radii[0] / radii[1], rel=1e-6)
     assert set(cold_power(study.replace({"drive.load": "0 N"})).values()) == {0.0}

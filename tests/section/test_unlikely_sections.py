@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from pathlib import Path
 from typing import Any
 
 import numpy as np
@@ -12,7 +13,8 @@ from tyrefem import library
 from tyrefem.errors import InputError
 from tyrefem.geometry import load
 
-RADIAL, BIAS = "passenger-205-55r16", "nasa-22x5.5-8pr"
+STUDY, BIAS = "passenger-205-55r16", "nasa-22x5.5-8pr"
+RADIAL = str(Path(__file__).with_name("hand-drawn-radial.toml"))
 POINTS = np.array(library.load("section", RADIAL)[0]["line"]["points"]["values"], dtype=float)
 
 
@@ -46,7 +48,7 @@ class TestNominalWidth:
         with pytest.raises(InputError, match=r"nominal_width: names the tyre's size only: .* follows from line.points"):
             load(wide)
         with pytest.raises(InputError, match=r"parameters.nominal_width: names the tyre's size only"):
-            tf.study(RADIAL, {"section.nominal_width": "255 mm"})
+            tf.study(STUDY, {"section.nominal_width": "255 mm"})
 
     def test_the_same_in_another_unit_changes_nothing(self) -> None:
         assert warnings_of({"base": RADIAL, "parameters": {"nominal_width": "0.205 m"}}) == []
@@ -129,7 +131,7 @@ class TestMeridian:
 
     def test_the_wall_turns_where_it_is_hollow(self) -> None:
         """By finite elements: inflated to 210 kPa, a hollow sidewall turns three times as far as the smooth one."""
-        turns = [_turn(tf.study(RADIAL).replace({"section": section})) for section in (RADIAL, moved((10, 1, 98.5)))]
+        turns = [_turn(tf.study(STUDY).replace({"section": section})) for section in (RADIAL, moved((10, 1, 98.5)))]
         assert turns[1] > 3 * turns[0]
 
 

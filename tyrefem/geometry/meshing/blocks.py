@@ -51,6 +51,9 @@ def make_blocks(section: Section, size: float, through: int) -> Blocks:
             stops = np.unique([start, *(s for s in kinks if start + 1e-9 < s < end - 1e-9), end])
             runs = [graded(a, b, target_size)[:-1] for a, b in pairwise(stops)]
             along[i, k] = face(section, i, np.concatenate([*runs, stops[-1:]]))
+            if k:
+                # Worked out among other stations a corner may differ in its last digit.
+                along[i, k][0] = along[i, k - 1][-1]
     across = {(i, k): _across(section, i, s, size, through) for i in range(n) for k, s in enumerate(spans)}
     for (i, k), points in across.items():
         for other, end in ((i, 0), (i + 1, -1)):
