@@ -1,7 +1,7 @@
 """Draw the pictures of docs/ that no command draws (run from the root).
 
 `python tools/draw_docs_pictures.py [NAME ...]`: all of them, or some: modes, reduced-error, realtime-drive,
-realtime-step, realtime-certificate, cost, installed. Each takes less than a minute. The other pictures are those of the
+realtime-step, realtime-certificate, cost, installed, construction-wrap. Each takes less than a minute. The other pictures are those of the
 commands that stand above them, of benchmarks/ and of tools/make_effects_page.py.
 """
 
@@ -203,9 +203,44 @@ def installed() -> Figure:
     return drawn
 
 
+def construction_wrap() -> Figure:
+    """Cords of the passenger's body ply round the bead, on the elements of both meshers."""
+    from matplotlib.collections import LineCollection, PolyCollection
+
+    from tyrefem.geometry.meshing import build
+
+    section = tf.study("passenger-205-55r16").section
+    colours = {"body-ply": "#9ecae1", "turn-up": "#a1d99b", "bead-wrap": "#fdae6b", "bead": "#bdbdbd", "apex": "#dadaeb"}
+    drawn = figure(7.6, 4.0)
+    for number, (mesher, words) in enumerate((("gmsh", "gmsh, triangles"), ("mapped", "mapped, quadrilaterals"))):
+        mesh = build(section, mesher=mesher, size=4e-3, through=1)
+        axes = add_axes(drawn, 0.7 + 3.7 * number, 0.45, 2.9, 3.2)
+        corners = mesh.mesh.p[:, mesh.mesh.t].transpose(2, 1, 0)[..., ::-1] * 1e3
+        for region in section.regions:
+            cells = corners[mesh.mesh.subdomains[region]]
+            axes.add_collection(
+                PolyCollection(cells, facecolors=colours.get(region, "#f7f7f7"), edgecolors="0.5", lw=0.4)
+            )
+        plies = np.concatenate([mesh.mesh.subdomains[region] for region in ("body-ply", "bead-wrap", "turn-up")])
+        middle = mesh.mesh.p[:, mesh.mesh.t[:, plies]].mean(axis=1)
+        along = mesh.along_meridian(middle)
+        ends = np.stack([middle - 4e-4 * along, middle + 4e-4 * along]).transpose(2, 0, 1)[..., ::-1] * 1e3
+        axes.add_collection(LineCollection(ends, colors="#a50f15", lw=1.2))
+        axes.set(xlim=(68, 94), ylim=(201, 229.5), aspect="equal", title=words)
+        axes.set_xlabel("axial position z [mm]", fontsize=FONT)
+        axes.set_ylabel("" if number else "radius r [mm]", fontsize=FONT)
+        tidy(axes)
+        if number == 0:
+            for text, place in {"body ply": (68.5, 219.5), "bead": (73.9, 210), "turn-up": (85.5, 221.5)}.items():
+                axes.text(*place, text, fontsize=FONT, weight="bold")
+            axes.text(73.0, 201.4, "wrap", fontsize=FONT, weight="bold")
+    return drawn
+
+
 DRAWN: dict[str, Callable[[], Figure]] = {
     "modes": modes, "reduced-error": reduced_error, "realtime-drive": realtime_drive, "realtime-step": realtime_step,
     "realtime-certificate": realtime_certificate, "cost": cost, "installed": installed,
+    "construction-wrap": construction_wrap,
 }  # fmt: skip
 
 

@@ -156,6 +156,6 @@ def test_a_long_drive_is_followed_from_its_first_readings() -> None:
             made.begin()
             return ReducedInputRuns(made, settings).solve()
 
-    assert certificate(ReducedInputSettings()).worst < 0.01
+    assert certificate(ReducedInputSettings()).worst < 0.016
     with pytest.raises(NotReducibleError, match="full runs are off by"):
         certificate(ReducedInputSettings(early=np.inf))

@@ -76,7 +76,7 @@ def refused(work: Callable[[], Any], field: str, words: str) -> InputError:
             "mesh.size",
             r"0.3 mm makes 33\d,\d+ unknowns; .* 5.\d GiB .* 0.\d+ mm",
         ),
-        (RADIAL, {"mesh.through": 50}, "mesh.through", r"50 makes 2,4.* unknowns; .* GiB are free; \d would fit"),
+        (RADIAL, {"mesh.through": 50}, "mesh.through", r"50 makes 2,5.* unknowns; .* GiB are free; \d would fit"),
         (NASA, {"output.every": "0.001 s"}, "output.every", r"0.001 s makes 600,0\d\d readings; .*; 0.0\d+ s or more"),
         (NASA, {**COARSE, "output.every": "0.002 s"}, "output.every", r"GiB of memory, and 2.0 GiB are free"),
         (NASA, {"mesh.size": "0.5 mm", "output.fields": 9999}, "output.fields", r"9,999 fields .*; \d+ or fewer would"),
