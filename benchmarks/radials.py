@@ -300,7 +300,8 @@ def measure(name: str) -> None:
     study = tf.study(name)
     words = f"{name} (a case)" if study.is_campaign else name
     if study.is_campaign:
-        study = study.campaign().cases[0].study
+        campaign = study.campaign()
+        study = campaign.case_study(campaign.cases[0])
     estimate, total = RunEstimate.of(study), RunEstimate.of(study).total
     unknowns = operators_of(study.mesh().mesh, study.card.mesh.element).size
     peak, began = resource.getrusage(resource.RUSAGE_SELF).ru_maxrss, time.process_time()

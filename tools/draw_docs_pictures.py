@@ -1,8 +1,8 @@
 """Draw the pictures of docs/ that no command draws (run from the root).
 
 `python tools/draw_docs_pictures.py [NAME ...]`: all of them, or some: modes, reduced-error, realtime-drive,
-realtime-step, realtime-certificate, cost, installed, construction-wrap. Each takes less than a minute. The other pictures are those of the
-commands that stand above them, of benchmarks/ and of tools/make_effects_page.py.
+realtime-step, realtime-certificate, cost, installed, construction-wrap. Each takes less than a minute. The other
+pictures are those of the commands that stand above them, of benchmarks/ and of tools/make_effects_page.py.
 """
 
 from __future__ import annotations
@@ -210,7 +210,13 @@ def construction_wrap() -> Figure:
     from tyrefem.geometry.meshing import build
 
     section = tf.study("passenger-205-55r16").section
-    colours = {"body-ply": "#9ecae1", "turn-up": "#a1d99b", "bead-wrap": "#fdae6b", "bead": "#bdbdbd", "apex": "#dadaeb"}
+    colours = {
+        "body-ply": "#9ecae1",
+        "turn-up": "#a1d99b",
+        "bead-wrap": "#fdae6b",
+        "bead": "#bdbdbd",
+        "apex": "#dadaeb",
+    }
     drawn = figure(7.6, 4.0)
     for number, (mesher, words) in enumerate((("gmsh", "gmsh, triangles"), ("mapped", "mapped, quadrilaterals"))):
         mesh = build(section, mesher=mesher, size=4e-3, through=1)

@@ -95,7 +95,9 @@ def draw(size: TyreSize, rule: Rules) -> Drawn:
         BEAD_FILL,
     )
     radial.add_bend()
-    belt = rule("inner_belts_width", 2 * radial.tread_edge, "mm", f"{ESTIMATE}, as wide as the plies under the tread", 0.02)
+    belt = rule(
+        "inner_belts_width", 2 * radial.tread_edge, "mm", f"{ESTIMATE}, as wide as the plies under the tread", 0.02
+    )
     rule("outer_belts_width", 0.90 * belt, "mm", f"{ESTIMATE}, 0.9 of the inner belts'", 0.02)
     rule.check_all_used()
     ply = {
