@@ -44,3 +44,11 @@ def test_nothing_unfolds_under_pressure(name: str) -> None:
     growth = inflate(study).width_growth
     assert 0 < growth < 4e-3
     assert load(name).warnings == ()
+
+
+@pytest.mark.parametrize("size", ["22x5.5R9", "18x5.5R8", "27x7.75R15", "46x17R20", "1400x530R23"])
+def test_belts_of_aircraft_radials_fit_under_their_tread(size: str) -> None:
+    """Without a number given; their plies and pressure follow the width where the size names no ply rating."""
+    rules = draw_size(size).rules
+    assert rules["outer_belts_width"].value < rules["inner_belts_width"].value < rules["tread_width"].value
+    assert 140 < rules["rated_pressure"].value / 6894.757 < 220
