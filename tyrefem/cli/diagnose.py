@@ -106,6 +106,8 @@ def diagnose(
     first, *rest = verdict_words(diagnosis)
     for sentence in (f"{diagnosis.verdict.upper()}: {first}", *rest):
         typer.echo(sentence)
+    for note in dict.fromkeys(note for look in diagnosis.looks for note in look.notes):
+        typer.echo(f"Note: {note}")
     typer.echo(f"results in {folder}; read {page}, run {folder / 'amended.toml'}")
 
 

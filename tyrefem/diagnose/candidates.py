@@ -6,14 +6,15 @@ The catalogue holds the shipped effects and the user's effects.
 from __future__ import annotations
 
 import math
-from collections.abc import Callable, Sequence
+from collections.abc import Callable, Collection, Sequence
 from dataclasses import dataclass
 
 from tyrefem.brief import Brief
 from tyrefem.diagnose.settings import DEFAULT
-from tyrefem.diagnose.unknowns import Choice, Unknown, of_effect
+from tyrefem.diagnose.unknowns import Choice, Unknown, of_effect, with_values
 from tyrefem.effects import catalogue
 from tyrefem.effects.effect import Effect
+from tyrefem.errors import InputError
 from tyrefem.inputs.study import StudyData
 
 
@@ -78,6 +79,26 @@ def catalogue_candidates(study: StudyData) -> tuple[Candidate, ...]:
             if (name, choice) not in present:
                 candidates.append(Candidate(name, choice, of_effect(effect, choice)))
     return tuple(candidates)
+
+
+def possible(study: StudyData, candidates: Sequence[Candidate]) -> tuple[Members, tuple[str, ...]]:
+    """The candidates with which the study can be built, and a note on each of the others."""
+    kept, notes = [], []
+    for candidate in candidates:
+        try:
+            with_values(study, {unknown: unknown.step for unknown in (*candidate.amplitudes, *candidate.presence)})
+        except InputError as error:
+            notes.append(f"{candidate.key} was left out, because the study cannot have it: {error.message}")
+        else:
+            kept.append(candidate)
+    return tuple(kept), tuple(notes)
+
+
+def simulated(candidates: Sequence[Candidate], without: Collection[Unknown]) -> tuple[Members, tuple[str, ...]]:
+    """The candidates whose readings could be computed, and a note on those with an unknown in ``without``."""
+    failed = [candidate for candidate in candidates if not set(candidate.unknowns).isdisjoint(without)]
+    notes = (f"{candidate.key} was left out, because no tyre with it could be simulated" for candidate in failed)
+    return tuple(candidate for candidate in candidates if candidate not in failed), tuple(notes)
 
 
 class SetPrior:

@@ -40,6 +40,7 @@ class DiagnosisData(Brief):
     next_experiment : sensors and drives that separate the credible sets; empty unless the verdict is "confounded".
     predictions : numbers of model evaluations and the certificates of reduced models. seconds : wall time.
     again : diagnosis of the amended study with the same data; None if there was no further look.
+    notes : candidates that were left out, and why.
     """
 
     original: StudyData
@@ -57,6 +58,7 @@ class DiagnosisData(Brief):
     predictions: Mapping[str, Any]
     seconds: float
     again: DiagnosisData | None = None
+    notes: tuple[str, ...] = ()
 
     def _title(self) -> str:
         return f"of {self.original.name}: {self.verdict}"

@@ -141,6 +141,7 @@ class ReadingSensitivities:
     ----------
     again : number of an unknown -> second simulation or measurement with the unknown one step further.
     columns : numbers of the other unknowns. tangents : dT/dx of these unknowns, in this order.
+    failed : numbers of unknowns with which no tyre can be built; their sensitivities are NaN.
     """
 
     base: FixedStepRun
@@ -148,6 +149,7 @@ class ReadingSensitivities:
     again: Mapping[int, FixedStepRun]
     columns: Sequence[int]
     tangents: Tangents | None
+    failed: Sequence[int] = ()
 
     @property
     def of_tangents(self) -> list[Unknown]:
@@ -158,6 +160,8 @@ class ReadingSensitivities:
         """Sensor -> (n_grid, n_unknowns) d(reading)/dx."""
         base = self.base
         slopes = {sensor: np.zeros((len(base.grid), len(self.unknowns))) for sensor in sensors}
+        for sensor in sensors:
+            slopes[sensor][:, list(self.failed)] = np.nan
         for column, other in self.again.items():
             for sensor in sensors:
                 change = other.readings[sensor] - base.readings[sensor]

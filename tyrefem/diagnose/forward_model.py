@@ -15,7 +15,7 @@ from numpy.typing import NDArray
 from tyrefem.boundaries.rim import LumpedRim
 from tyrefem.brief import Brief
 from tyrefem.cache import Cache
-from tyrefem.conduction.sensitivity import Perturbed, tangents
+from tyrefem.conduction.sensitivity import Perturbed, Tangents, tangents
 from tyrefem.diagnose.fixed_step import FixedStepRun, ReadingSensitivities, fixed_step_run
 from tyrefem.diagnose.reduced_forward import Modes, ReducedDrive, modes_of
 from tyrefem.diagnose.sampling import DriveSampling
@@ -268,24 +268,54 @@ class ForwardModel(Brief):
     def _varied(
         self, base: FixedStepRun, origin: StudyData, unknowns: Sequence[Unknown], at: Values
     ) -> ReadingSensitivities:
-        """Sensitivities about a solution: tangents if the unknown keeps the mesh, else a second simulation."""
+        """Sensitivities about a solution: tangents if the unknown keeps the mesh, else a second simulation.
+
+        Those of a further effect with which no tyre can be built are NaN.
+        """
         again: dict[int, FixedStepRun] = {}
+        failed: list[int] = []
         columns: list[int] = []
         perturbed: list[Perturbed] = []
         for column, unknown in enumerate(unknowns):
-            study = self.with_values(origin, {**at, unknown: at.get(unknown, 0.0) + unknown.step}, base.study)
-            if unknown.measures:
-                again[column] = base.as_measured_by(study)
-                continue
-            tyre = RollingTyre(study, base.tyre)
-            # The state of an effect adds unknowns that the base solution does not have.
-            if tyre.mesh is base.tyre.mesh and tyre.states is None and base.tyre.states is None:
-                columns.append(column)
-                perturbed.append(Perturbed(tyre.problem, unknown.step, tyre.drive.initial))
-            else:
-                like = base.tyre if tyre.mesh is base.tyre.mesh else None
-                again[column] = fixed_step_run(study, like, every=base.every)
-        derivatives = (
-            tangents(base.tyre.problem, base.times, base.values, base.reservoirs, perturbed) if perturbed else None
-        )
-        return ReadingSensitivities(base, tuple(unknowns), again, columns, derivatives)
+            try:
+                study = self.with_values(origin, {**at, unknown: at.get(unknown, 0.0) + unknown.step}, base.study)
+                if unknown.measures:
+                    again[column] = base.as_measured_by(study)
+                    continue
+                tyre = RollingTyre(study, base.tyre)
+                # The state of an effect adds unknowns that the base solution does not have.
+                if tyre.mesh is base.tyre.mesh and tyre.states is None and base.tyre.states is None:
+                    perturbed.append(Perturbed(tyre.problem, unknown.step, tyre.drive.initial))
+                    columns.append(column)
+                else:
+                    like = base.tyre if tyre.mesh is base.tyre.mesh else None
+                    again[column] = fixed_step_run(study, like, every=base.every)
+            except InputError:
+                if unknown.effect is None or unknown.origin is not None:
+                    raise
+                failed.append(column)
+        derivatives: Tangents | None = None
+        try:
+            derivatives = _tangents(base, perturbed)
+        except InputError:
+            alone = {column: each for column, each in zip(columns, perturbed, strict=True) if _possible(base, each)}
+            impossible = [column for column in columns if column not in alone]
+            if any(unknowns[column].effect is None or unknowns[column].origin is not None for column in impossible):
+                raise
+            failed += impossible
+            columns = list(alone)
+            derivatives = _tangents(base, list(alone.values()))
+        return ReadingSensitivities(base, tuple(unknowns), again, columns, derivatives, failed)
+
+
+def _tangents(base: FixedStepRun, perturbed: Sequence[Perturbed]) -> Tangents | None:
+    return tangents(base.tyre.problem, base.times, base.values, base.reservoirs, perturbed) if perturbed else None
+
+
+def _possible(base: FixedStepRun, perturbed: Perturbed) -> bool:
+    """Whether the tangents of one changed parameter can be computed."""
+    try:
+        _tangents(base, [perturbed])
+    except InputError:
+        return False
+    return True

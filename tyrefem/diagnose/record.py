@@ -37,6 +37,7 @@ def record(d: DiagnosisData) -> dict[str, Any]:
             for member in named
         ],
         "candidates": candidate_rows(d),
+        "notes": list(d.notes),
         "sets": set_rows(d),
         "gap": {
             "before": _rms(d, after=False),

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Callable, Iterable, Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from functools import cached_property
 
 import numpy as np
@@ -59,6 +59,20 @@ class Sensitivities(Brief):
     def whitened(self) -> tuple[Array, ...]:
         """Whitened jacobian of every drive."""
         return tuple(drive.whitened(J) for drive, J in zip(self.drives, self.jacobians, strict=True))
+
+    @property
+    def failed(self) -> tuple[Unknown, ...]:
+        """Unknowns of effects with which no tyre could be simulated."""
+        bad = np.any([np.isnan(J).any(axis=0) for J in self.jacobians], axis=0)
+        return tuple(unknown for unknown, is_bad in zip(self.unknowns, bad, strict=True) if is_bad)
+
+    def without(self, unknowns: Sequence[Unknown]) -> Sensitivities:
+        """The sensitivities without the columns of some effects' unknowns."""
+        if not unknowns:
+            return self
+        kept = [column for column, unknown in enumerate(self.unknowns) if unknown not in unknowns]
+        jacobians = tuple(J[:, kept] for J in self.jacobians)
+        return replace(self, unknowns=tuple(self.unknowns[column] for column in kept), jacobians=jacobians)
 
     def design(self, numbers: Sequence[int]) -> DesignMatrix:
         """The design matrix of some drives about x = 0."""

@@ -11,7 +11,7 @@ from typing import Any, Unpack
 from tyrefem.brief import Brief
 from tyrefem.compare.experiment import ColumnNames, Table, experiments
 from tyrefem.diagnose.amend import Change, amended, changes
-from tyrefem.diagnose.candidates import Members, SetPrior
+from tyrefem.diagnose.candidates import Members, SetPrior, possible, simulated
 from tyrefem.diagnose.criterion import Criterion
 from tyrefem.diagnose.diagnosis import DiagnosisData
 from tyrefem.diagnose.effort import check_effort
@@ -82,7 +82,8 @@ def _look(
     """One diagnosis, from the measured runs to the amended study."""
     began = time.perf_counter()
     settings = method.settings
-    runs, candidates = _measured_drives(study, table, columns, settings), method.candidates(study)
+    runs = _measured_drives(study, table, columns, settings)
+    candidates, notes = possible(study, method.candidates(study))
     method.strategy.check(study, candidates, settings)
     model = ForwardModel(study, tuple(run.sampling for run in runs), settings=settings)
     if work.known is None:
@@ -93,6 +94,8 @@ def _look(
     with evaluating(model, work.workers, work.store) as evaluations:
         known = tuple(work.known or responses(evaluations, unknowns, work.tick))
         sensitive = sensitivities(model.drives, unknowns, nuisance, known)
+        candidates, further_notes = simulated(candidates, sensitive.failed)
+        sensitive = sensitive.without(sensitive.failed)
         residuals = residuals_of(study, runs, sensitive, settings)
         predictions = Predictions(
             evaluations, [response.modes for response in known] if settings.reduced == "auto" else ()
@@ -125,6 +128,7 @@ def _look(
         next_experiment=further,
         predictions=predictions.to_dict(),
         seconds=time.perf_counter() - began,
+        notes=(*notes, *further_notes),
     )
 
 

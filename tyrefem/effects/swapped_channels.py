@@ -50,12 +50,19 @@ class SwappedChannels(Effect):
                 return f"the study has no sensor '{name}'{nearest(name, study.sensors)}"
         if self.sensor == self.other:
             return f"'{self.sensor}' is swapped with itself; name two sensors"
-        swaps = [swap for swap in study.card.effects if isinstance(swap, SwappedChannels)]
-        taken = [name for swap in swaps for name in (swap.sensor, swap.other)]
+        taken = _swapped(study)
         twice = [name for name in (self.sensor, self.other) if taken.count(name) > 1]
         return f"'{twice[0]}' is swapped twice" if twice else self.refusal(study)
 
     @classmethod
     def variants(cls, study: StudyOfTyre) -> tuple[Mapping[str, str], ...]:
-        """Every pair of sensors."""
-        return tuple({"sensor": sensor, "other": other} for sensor, other in itertools.combinations(study.sensors, 2))
+        """Every pair of the sensors that the study does not swap already."""
+        taken = _swapped(study)
+        free = [sensor for sensor in study.sensors if sensor not in taken]
+        return tuple({"sensor": sensor, "other": other} for sensor, other in itertools.combinations(free, 2))
+
+
+def _swapped(study: StudyOfTyre) -> list[str]:
+    """The sensors of all swaps in a study."""
+    swaps = [swap for swap in study.card.effects if isinstance(swap, SwappedChannels)]
+    return [name for swap in swaps for name in (swap.sensor, swap.other)]

@@ -238,6 +238,7 @@ def _assumed(d: DiagnosisData) -> list[str]:
         f"A correct model deviates by {choice.discrepancy:g} K (standard deviation), correlated over "
         f"{choice.correlation_time:g} s. The noise of readings is independent.",
         *([f"Excluded by the study: {', '.join(choice.exclude)}."] if choice.exclude else []),
+        *(f"{note[0].upper()}{note[1:]}." for note in d.notes),
         "The model is linear within the uncertainty of every fit (Laplace approximation). Parameters have Gaussian "
         "priors, truncated at physical bounds.",
     ]

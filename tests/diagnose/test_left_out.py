@@ -1,0 +1,96 @@
+"""Candidates that the study cannot have are left out with a note; the diagnosis goes on."""
+
+from __future__ import annotations
+
+import json
+from dataclasses import replace
+from pathlib import Path
+
+import pytest
+from hidden import measure, study
+
+import tyrefem as tf
+from tyrefem.diagnose.candidates import Candidate, catalogue_candidates, possible
+from tyrefem.diagnose.forward_model import ForwardModel
+from tyrefem.diagnose.settings import DiagnosisSettings
+from tyrefem.diagnose.unknowns import of_effect
+from tyrefem.effects import catalogue
+from tyrefem.effects.hot_road import HotRoad
+from tyrefem.errors import InputError
+from tyrefem.inputs.study import StudyData
+
+COARSE = DiagnosisSettings(mesh_size="8 mm", largest=1, looks=2)
+SWAP = {"name": "swapped-channels", "sensor": "crown-outer", "other": "sidewall-outer"}
+
+
+def few(looked_at: StudyData) -> tuple[Candidate, ...]:
+    """Swaps and the hot road only."""
+    return tuple(each for each in catalogue_candidates(looked_at) if each.name in ("swapped-channels", "hot-road"))
+
+
+def written(folder: Path) -> tf.Study:
+    """The study with three thermocouples on a coarse mesh, all effects allowed."""
+    return study(folder).replace({"mesh.size": "8 mm", "diagnosis.exclude": []})
+
+
+def test_swapped_channels_are_identified_and_looked_at_again(tmp_path: Path) -> None:
+    owner = written(tmp_path / "study")
+    measure(owner, [SWAP])
+    diagnosis = owner.diagnose(settings=COARSE, candidates=few)
+    assert diagnosis.verdict == "identified"
+    assert [member.key for member in diagnosis.best.members] == ["swapped-channels (crown-outer, sidewall-outer)"]
+    assert diagnosis.again is not None, "the second look at the amended study is finished"
+    assert diagnosis.again.verdict == "no gap"
+    # The third sensor has no partner left: the second look has no swap among its candidates.
+    assert [candidate.name for candidate in diagnosis.again.candidates] == ["hot-road"]
+
+
+def test_a_sensor_is_in_at_most_one_swap(tmp_path: Path) -> None:
+    four = written(tmp_path).replace({"sensors.bead": {"s": "5.6 in", "depth": "0.3 in"}, "effects": [SWAP]})
+    swaps = [each for each in catalogue_candidates(four) if each.name == "swapped-channels"]
+    assert [dict(each.choice) for each in swaps] == [{"sensor": "shoulder-inner", "other": "bead"}]
+
+
+def test_a_candidate_that_the_study_cannot_have_is_left_out_with_a_note(tmp_path: Path) -> None:
+    owner = written(tmp_path).replace({"effects": [SWAP]})
+    choice = (("sensor", "crown-outer"), ("other", "shoulder-inner"))
+    conflicting = Candidate("swapped-channels", choice, of_effect(catalogue()["swapped-channels"], choice))
+    (hot_road,) = (each for each in few(owner) if each.name == "hot-road")
+    kept, notes = possible(owner, (conflicting, hot_road))
+    assert kept == (hot_road,)
+    assert len(notes) == 1
+    assert notes[0].startswith("swapped-channels (crown-outer, shoulder-inner) was left out")
+    assert notes[0].endswith("'crown-outer' is swapped twice")
+
+
+def test_a_candidate_whose_tyre_cannot_be_simulated_does_not_end_the_diagnosis(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    owner = written(tmp_path / "study")
+    measure(owner, [])
+
+    def refused(*_: object) -> float:
+        raise InputError("no such road")
+
+    # As the port of an effect does whose law has no value at this drive.
+    monkeypatch.setattr(HotRoad, "sink_addend", refused)
+    diagnosis = owner.diagnose(settings=replace(COARSE, looks=1), candidates=few, rerun=False)
+    assert diagnosis.verdict == "no gap"
+    assert {candidate.name for candidate in diagnosis.candidates} == {"swapped-channels"}
+    assert diagnosis.notes == ("hot-road was left out, because no tyre with it could be simulated",)
+    diagnosis.save(tmp_path / "out")
+    record = json.loads((tmp_path / "out" / "verdict.json").read_text(encoding="utf-8"))
+    assert record["notes"] == list(diagnosis.notes)
+    assert "Hot-road was left out" in (tmp_path / "out" / "diagnosis.html").read_text(encoding="utf-8")
+
+
+def test_a_base_number_without_a_tyre_is_still_an_error(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    owner = written(tmp_path / "study")
+    measure(owner, [])
+
+    def refused(*_: object) -> None:
+        raise InputError("no such tyre")
+
+    monkeypatch.setattr(ForwardModel, "with_values", refused)
+    with pytest.raises(InputError, match="no such tyre"):
+        owner.diagnose(settings=replace(COARSE, looks=1), candidates=few, rerun=False)
