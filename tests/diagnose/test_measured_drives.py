@@ -6,7 +6,7 @@ import numpy as np
 import pytest
 
 from tyrefem.diagnose.residual_tables import stretches
-from tyrefem.diagnose.runs import MeasuredDrive, MeasuredSensor, _scatter
+from tyrefem.diagnose.runs import MeasuredDrive, MeasuredSensor
 from tyrefem.diagnose.settings import DEFAULT
 
 
@@ -57,19 +57,6 @@ def test_a_trial_takes_its_series_one_after_the_other() -> None:
     blocks = np.arange(30.0 + DEFAULT.blocks)
     expected = np.concatenate([first.whitened(blocks[:30]), second.whitened(blocks[30:])])
     np.testing.assert_array_equal(trial.whitened(blocks), expected)
-
-
-def test_scatter_is_noise_not_signal() -> None:
-    rng = np.random.default_rng(3)
-    times = np.sort(rng.uniform(0.0, 1000.0, 3000))
-    signal = 25.0 + 60.0 * (1 - np.exp(-times / 200.0))
-    noise = 0.8 * rng.normal(size=3000)
-    assert _scatter(times, signal) < 0.05
-    # What it returns is a lower bound of the noise: a third is left for rounding and chance.
-    assert _scatter(times, signal + noise) == pytest.approx(0.8 / 1.33, rel=0.06)
-    noise[::97] += 30.0
-    assert _scatter(times, signal + noise) == pytest.approx(0.8 / 1.33, rel=0.06)
-    assert _scatter(times[:8], signal[:8] + noise[:8]) == 0.0
 
 
 def test_stretches_follow_the_slope() -> None:

@@ -3,7 +3,8 @@
 from __future__ import annotations
 
 import functools
-from collections.abc import Mapping
+import math
+from collections.abc import Callable, Mapping
 from dataclasses import dataclass
 from typing import TYPE_CHECKING, Any
 
@@ -22,6 +23,7 @@ if TYPE_CHECKING:
     from tyrefem.diagnose.fits import FittedSet
     from tyrefem.diagnose.missing_heat import UnknownHeat
     from tyrefem.diagnose.residuals import Residuals
+    from tyrefem.diagnose.runs import MeasuredSensor
     from tyrefem.diagnose.verdict import Judgement
     from tyrefem.inputs.study import StudyData
 
@@ -113,7 +115,29 @@ class DiagnosisData(Brief):
 
     @property
     def noise(self) -> float:
-        """Root mean square of the readings' noise, K."""
+        """Root mean square of the readings' noise as the diagnosis uses it, K."""
+        return self._mean_noise(lambda readings: readings.noise)
+
+    @property
+    def stated_noise(self) -> float:
+        """Root mean square of the stated noise, K."""
+        return self._mean_noise(lambda readings: readings.origin.stated if readings.origin else readings.noise)
+
+    @property
+    def noise_of_data(self) -> float:
+        """Root mean square of the noise that the readings' scatter shows, K; NaN with too few readings."""
+        return self._mean_noise(lambda readings: readings.origin.from_data if readings.origin else math.nan)
+
+    @property
+    def correlated_noise(self) -> bool:
+        """Whether neighbouring readings share noise, so that their scatter shows only a part of it."""
+        origins = [readings.origin for run in self.gap.runs for readings in run.sensors]
+        return any(origin.correlated for origin in origins if origin is not None)
+
+    def _mean_noise(self, noise_of: Callable[[MeasuredSensor], float]) -> float:
+        """Root mean square over all readings, K; series without a number do not count."""
         sensors = [readings for run in self.gap.runs for readings in run.sensors]
+        values = np.array([noise_of(readings) for readings in sensors])
         weights = np.array([len(readings.times) for readings in sensors], dtype=float)
-        return float(np.sqrt(np.average([readings.noise**2 for readings in sensors], weights=weights)))
+        known = np.isfinite(values)
+        return float(np.sqrt(np.average(values[known] ** 2, weights=weights[known]))) if known.any() else math.nan

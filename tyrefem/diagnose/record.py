@@ -44,6 +44,7 @@ def record(d: DiagnosisData) -> dict[str, Any]:
             "after": _rms(d, after=True),
             "noise_K": d.noise,
         },
+        "noise": noise(d),
         "where": where(d),
         "next_experiment": dict(d.next_experiment),
         "amended_study": AMENDED,
@@ -66,6 +67,32 @@ def record(d: DiagnosisData) -> dict[str, Any]:
     }  # fmt: skip
     plain: dict[str, Any] = jsonable(contents)
     return plain
+
+
+def noise(d: DiagnosisData) -> dict[str, Any]:
+    """Noise of a reading, rms over all readings: stated, by the readings' scatter, and as used; then by run and sensor.
+
+    ``resolution_K``: step of rounded readings, 0 if they are not rounded.
+    """
+    return {
+        "stated_K": d.stated_noise,
+        "from_data_K": d.noise_of_data,
+        "used_K": d.noise,
+        "correlated": d.correlated_noise,
+        "series": [
+            {
+                "run": run.name,
+                "sensor": readings.sensor,
+                "stated_K": readings.origin.stated,
+                "from_data_K": readings.origin.from_data,
+                "used_K": readings.origin.used,
+                "resolution_K": readings.origin.resolution,
+            }
+            for run in d.gap.runs
+            for readings in run.sensors
+            if readings.origin is not None
+        ],
+    }
 
 
 def where(d: DiagnosisData) -> dict[str, Any]:

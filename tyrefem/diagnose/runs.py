@@ -2,13 +2,14 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass, field
+from dataclasses import dataclass, field, replace
 from functools import cached_property
 
 import numpy as np
 from numpy.typing import NDArray
 
 from tyrefem.compare.experiment import Experiment
+from tyrefem.diagnose.noise import Noise, noise_of
 from tyrefem.diagnose.sampling import DriveSampling, SensorSampling
 from tyrefem.diagnose.settings import DEFAULT, DiagnosisSettings
 from tyrefem.inputs.study import StudyData
@@ -18,9 +19,13 @@ Array = NDArray[np.float64]
 
 @dataclass(frozen=True, eq=False)
 class MeasuredSensor(SensorSampling):
-    """The readings of one sensor in one run: ``measured`` (n,) degC at ``times``."""
+    """The readings of one sensor in one run: ``measured`` (n,) degC at ``times``.
+
+    ``origin``: the stated noise and that of the readings' scatter; None: ``noise`` is the stated one.
+    """
 
     measured: Array = field(kw_only=True)
+    origin: Noise | None = field(default=None, kw_only=True)
 
     @property
     def sampling(self) -> SensorSampling:
@@ -47,7 +52,7 @@ class MeasuredDrive(DriveSampling):
 
 
 def measured_drive(experiment: Experiment, study: StudyData, settings: DiagnosisSettings = DEFAULT) -> MeasuredDrive:
-    """The measured run of an experiment, with its readings within the simulated drive."""
+    """The measured run of an experiment with the stated noise; only readings within the simulated drive."""
     choice, run = study.card.diagnosis, experiment.run
     driven = study.with_drive(dict(experiment.drive)) if experiment.drive else study
     end = driven.card.drive.end
@@ -59,22 +64,22 @@ def measured_drive(experiment: Experiment, study: StudyData, settings: Diagnosis
             continue
         card = study.sensors.get(sensor)
         stated = experiment.noise or (card.noise if card is not None else 0.5)
-        times, measured = run.times[used], values[used]
-        noise = max(stated, _scatter(times, measured))
         correlated = choice.discrepancy, choice.correlation_time
-        sensors.append(MeasuredSensor(sensor, times, noise, *correlated, settings.blocks, measured=measured))
+        times, measured = run.times[used], values[used]
+        sensors.append(MeasuredSensor(sensor, times, stated, *correlated, settings.blocks, measured=measured))
     return MeasuredDrive(experiment.name, dict(experiment.drive), experiment.hold_out, tuple(sensors))
 
 
-def _scatter(times: Array, values: Array) -> float:
-    """Noise estimated from second differences of the readings, divided by 1.33, K; 0 for fewer than 12 readings.
+def with_noise_of_data(
+    runs: tuple[MeasuredDrive, ...], settings: DiagnosisSettings = DEFAULT
+) -> tuple[MeasuredDrive, ...]:
+    """The runs with the noise that their readings show, where it differs clearly from the stated one: `noise_of`."""
+    sensors = [readings for run in runs for readings in run.sensors]
+    series = [(readings.sensor, readings.times, readings.measured) for readings in sensors]
+    estimates = iter(noise_of(series, [readings.noise for readings in sensors], settings))
 
-    Var(y_i - interpolation of its neighbours) = noise^2 (1 + w^2 + (1 - w)^2). The median makes the estimate robust
-    against jumps and outliers. Because of the division, only a scatter a third above the stated noise replaces it.
-    """
-    if len(times) < 12:
-        return 0.0
-    share = (times[1:-1] - times[:-2]) / (times[2:] - times[:-2])
-    inside = (1 - share) * values[:-2] + share * values[2:]
-    deviation = (values[1:-1] - inside) / np.sqrt(1 + share**2 + (1 - share) ** 2)
-    return float(np.median(np.abs(deviation)) / 0.6745 / 1.33)
+    def judged(readings: MeasuredSensor) -> MeasuredSensor:
+        noise = next(estimates)
+        return replace(readings, noise=noise.used, origin=noise)
+
+    return tuple(replace(run, sensors=tuple(judged(readings) for readings in run.sensors)) for run in runs)

@@ -35,6 +35,13 @@ class DiagnosisSettings:
     outside_share: float = 0.05
 
     # -- readings and forward model
+    #: The noise of the readings' scatter replaces the stated noise if it differs by more than this (relative), and by
+    #: three standard deviations of the estimate. 5 % of noise is 10 % of the misfit.
+    noise_tolerance: float = 0.05
+    #: Largest relative standard deviation of an estimated noise that may replace the stated one (230 readings).
+    noise_sd: float = 0.1
+    #: A sensor has noise of its own if it differs from the noise of all by more than this (relative).
+    noise_own: float = 0.2
     #: Largest number of blocks into which the readings of one sensor in one run are averaged.
     blocks: int = 40
     #: Mesh, elements and time tolerance of the fit. A full run on the study's mesh corrects the readings at x = 0.

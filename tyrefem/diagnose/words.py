@@ -83,14 +83,34 @@ def effect_words(candidate: Candidate, fit: FittedSet) -> str:
 
 def verdict_words(d: DiagnosisData) -> tuple[str, ...]:
     """The verdict in a few sentences, the most important first."""
+    again = again_words(d) if d.verdict == IDENTIFIED else ()
+    return (*_verdict_sentences(d), *noise_words(d), *again)
+
+
+def noise_words(d: DiagnosisData) -> tuple[str, ...]:
+    """What the readings say of their noise, if it is not the stated one; empty otherwise."""
+    stated, scatter, used = d.stated_noise, d.noise_of_data, d.noise
+    if abs(used - stated) > 0.01 * stated:
+        return (
+            f"The readings scatter by {scatter:.2g} K; the stated noise is {stated:.2g} K. "
+            f"The diagnosis uses {used:.2g} K.",
+        )
+    if d.correlated_noise and scatter < stated:
+        return (
+            f"Neighbouring readings share noise: they scatter by {scatter:.2g} K. The stated noise, {stated:.2g} K, "
+            "is kept; if it is too large, misfits go unnoticed.",
+        )
+    return ()
+
+
+def _verdict_sentences(d: DiagnosisData) -> tuple[str, ...]:
     closing = _closing(d)
     if d.verdict == NO_GAP:
         extent = f"rms {_kelvin(d, after=False)}, noise {d.noise:.1f} K"
         return (f"Noise and the uncertainty of base numbers and sensors explain the deviation ({extent}).",)
     clauses = [effect_words(member, d.best) for member in d.best.members]
     if d.verdict == IDENTIFIED:
-        sentences = _joined(clauses, [f"Probability {percent(d.judgement.probability)}."], closing)
-        return (*sentences, *again_words(d))
+        return _joined(clauses, [f"Probability {percent(d.judgement.probability)}."], closing)
     if d.verdict == CONFOUNDED:
         return _confounded(d, closing)
     clearest = f"The largest missing source is {missing_words(d)}."

@@ -24,7 +24,7 @@ from tyrefem.diagnose.multifidelity import Predictions
 from tyrefem.diagnose.next_experiment import next_experiment
 from tyrefem.diagnose.options import DiagnosisOptions, Method, SimulationWork, grouped
 from tyrefem.diagnose.residuals import Residuals, residuals_of
-from tyrefem.diagnose.runs import MeasuredDrive, measured_drive
+from tyrefem.diagnose.runs import MeasuredDrive, measured_drive, with_noise_of_data
 from tyrefem.diagnose.selection import SelectionProblem
 from tyrefem.diagnose.sensitivities import responses, sensitivities, unknowns_of
 from tyrefem.diagnose.settings import DiagnosisSettings
@@ -142,7 +142,7 @@ def _measured_drives(
     if all(run.hold_out for run in runs):
         message = "no fitted run has a reading within the simulated drive"
         raise InputError(message, field="measured", file=study.file)
-    return runs
+    return with_noise_of_data(runs, settings)
 
 
 @dataclass(frozen=True, eq=False)

@@ -107,6 +107,8 @@ def _numbers(d: DiagnosisData) -> list[dict[str, str]]:
             value = f"{before:.2f} → {after:.2f} K"
             numbers.append({"label": f"rms on {name}", "value": value, "note": "original → amended"})
     note = "smallest rms that a model can reach"
+    if abs(d.noise - d.stated_noise) > 0.01 * d.stated_noise:
+        note = f"by the readings' scatter; stated: {d.stated_noise:.2f} K"
     return [*numbers, {"label": "noise of the readings", "value": f"{d.noise:.2f} K", "note": note}]
 
 

@@ -1,0 +1,142 @@
+"""Noise by the scatter of readings: true within 5 %, whatever is stated; what it does to a verdict."""
+
+from __future__ import annotations
+
+import numpy as np
+import pandas as pd
+import pytest
+from hidden import Case
+
+from tyrefem.diagnose.noise import Noise, noise_of
+from tyrefem.diagnose.runs import MeasuredDrive, MeasuredSensor, with_noise_of_data
+from tyrefem.measured import MeasuredRun
+
+SENSORS = ("crown", "shoulder", "sidewall", "bead")
+
+
+def heated(times: np.ndarray, tau: float) -> np.ndarray:
+    return 25.0 + 60.0 * (1 - np.exp(-times / tau))
+
+
+def judged(
+    true: float,
+    *,
+    stated: float = 0.5,
+    every: float = 10.0,
+    tau: float = 200.0,
+    count: int = 200,
+    runs: int = 3,
+    even: bool = False,
+    memory: float = 0.0,
+    step: float = 0.0,
+) -> list[Noise]:
+    """Noise of heating histories with noise of ``true`` K; ``memory``: share that a reading has of the one before."""
+    rng = np.random.default_rng(7)
+    series = []
+    for sensor in SENSORS * runs:
+        times = every * (np.arange(count) if even else np.sort(rng.uniform(0, count, count)))
+        noise = rng.normal(size=count)
+        for i in range(1, count if memory else 0):
+            noise[i] = memory * noise[i - 1] + np.sqrt(1 - memory**2) * noise[i]
+        values = heated(times, tau) + true * noise
+        series.append((sensor, times, np.round(values / step) * step if step else values))
+    return noise_of(series, [stated] * len(series))
+
+
+@pytest.mark.parametrize("even", [True, False], ids=["even clock", "irregular clock"])
+@pytest.mark.parametrize(("every", "tau"), [(1.0, 200.0), (10.0, 60.0), (30.0, 300.0)])
+@pytest.mark.parametrize("true", [0.05, 0.5, 2.0])
+def test_the_scatter_tells_the_true_noise_within_5_percent(true: float, every: float, tau: float, even: bool) -> None:
+    for noise in judged(true, every=every, tau=tau, even=even):
+        assert noise.from_data == pytest.approx(true, rel=0.07 if true < 0.1 and every / tau > 0.1 else 0.05)
+        assert noise.used == (0.5 if true == 0.5 else noise.from_data)
+        assert noise.differs == (true != 0.5)
+        assert not noise.correlated
+
+
+def test_jumps_and_outliers_are_no_noise() -> None:
+    rng = np.random.default_rng(3)
+    times = np.sort(rng.uniform(0.0, 1000.0, 3000))
+    values = heated(times, 200.0) + 0.8 * rng.normal(size=3000) + np.where(times > 500.0, 20.0, 0.0)
+    values[::97] += 30.0
+    (noise,) = noise_of([("crown", times, values)], [0.5])
+    assert noise.used == pytest.approx(0.8, rel=0.05)
+
+
+def test_rounded_readings_have_at_least_the_noise_of_their_steps() -> None:
+    # White noise of 0.1 K, and rounding to 0.1 K: 0.1 K / sqrt(12) more, in squares.
+    assert judged(0.1, step=0.1)[0].used == pytest.approx(np.hypot(0.1, 0.1 / np.sqrt(12)), rel=0.05)
+    for true in (0.0, 0.005):
+        (noise, *_) = judged(true, step=0.1)
+        assert noise.resolution == pytest.approx(0.1)
+        # The readings stick to their steps, off by up to half of one.
+        assert noise.used == pytest.approx(0.05)
+
+
+def test_too_few_readings_keep_the_stated_noise() -> None:
+    assert {noise.used for noise in judged(0.05, count=11)} == {0.5}
+    assert {noise.used for noise in judged(0.05, count=20, runs=1)} == {0.5}
+    # But noise a third above the stated one is seen by few readings too.
+    assert all(noise.used > 1.0 for noise in judged(2.0, count=20, runs=1))
+
+
+def test_noise_that_neighbours_share_does_not_lower_the_stated_one() -> None:
+    (noise, *_) = judged(0.4, memory=0.8, even=True)
+    assert noise.correlated
+    assert noise.from_data < 0.3
+    assert noise.used == 0.5
+    assert judged(0.4, memory=0.8, even=True, stated=0.05)[0].used == pytest.approx(noise.from_data)
+
+
+def test_a_noisier_sensor_has_its_noise_for_itself() -> None:
+    rng = np.random.default_rng(5)
+    times = np.arange(0.0, 2000.0, 5.0)
+    size = {"crown": 0.1, "shoulder": 0.1, "sidewall": 0.1, "bead": 0.6}
+    series = [(name, times, heated(times, 150.0) + size[name] * rng.normal(size=400)) for name in SENSORS * 3]
+    for (name, *_), noise in zip(series, noise_of(series, [0.5] * 12), strict=True):
+        assert noise.used == pytest.approx(size[name], rel=0.1), name
+
+
+def test_the_runs_take_the_noise_of_their_data() -> None:
+    rng, times = np.random.default_rng(2), np.arange(0.0, 1500.0, 5.0)
+    readings = tuple(
+        MeasuredSensor(name, times, 0.5, 0.1, 120.0, measured=heated(times, 90.0) + 0.05 * rng.normal(size=300))
+        for name in SENSORS
+    )
+    (run,) = with_noise_of_data((MeasuredDrive("run", {}, False, readings),))
+    for before, after in zip(readings, run.sensors, strict=True):
+        assert after.noise == pytest.approx(0.05, rel=0.05)
+        assert after.origin is not None
+        assert after.origin.stated == 0.5
+        # The covariance follows: nothing of the stated noise is kept.
+        assert np.diag(after.covariance - 0.01).mean() == pytest.approx(after.noise**2 / after.sizes.mean(), rel=0.1)
+        assert np.diag(before.covariance).mean() > np.diag(after.covariance).mean()
+
+
+def quiet_runs(case: Case, noise: float, wave: float) -> list[MeasuredRun]:
+    """The study's own prediction with a wave in time that no effect has (the same at all sensors), and noise."""
+    d, rng = case.diagnosis, np.random.default_rng(8)
+    runs = []
+    for number, run in enumerate(d.gap.runs):
+        columns = {}
+        times = np.arange(0.0, 160.0, 1.0)
+        for readings in run.sensors:
+            expected = np.interp(times, readings.block_times, d.before[number][run.parts()[readings.sensor]])
+            columns[readings.sensor] = expected + wave * np.sin(times / 9.0) + noise * rng.normal(size=len(times))
+        runs.append(MeasuredRun(run.name, times, pd.DataFrame(columns)))
+    return runs
+
+
+def test_a_stated_noise_above_that_of_the_data_does_not_disarm_the_misfit_test(case: Case) -> None:
+    result = case.study.diagnose(quiet_runs(case, 0.05, 0.5), largest=1, looks=1, known=case.diagnosis.gap.responses)
+    # By the stated 0.5 K the wave would drown: rms 0.35 K.
+    assert result.stated_noise == 0.5
+    assert result.noise == pytest.approx(0.05, rel=0.1)
+    assert result.verdict == "unexplained"
+    words = " ".join(result.to_dict()["summary"])
+    assert "The stated noise is 0.5 K" in words or "the stated noise is 0.5 K" in words
+    noise = result.to_dict()["noise"]
+    assert noise["stated_K"] == 0.5
+    assert noise["from_data_K"] == pytest.approx(0.05, rel=0.1)
+    assert noise["used_K"] == noise["from_data_K"]
+    assert len(noise["series"]) == 9
