@@ -7,7 +7,7 @@ import pandas as pd
 import pytest
 from hidden import Case
 
-from tyrefem.diagnose.noise import Noise, noise_of
+from tyrefem.diagnose.noise import ReadingNoise, noise_of
 from tyrefem.diagnose.runs import MeasuredDrive, MeasuredSensor, with_noise_of_data
 from tyrefem.measured import MeasuredRun
 
@@ -29,7 +29,7 @@ def judged(
     even: bool = False,
     memory: float = 0.0,
     step: float = 0.0,
-) -> list[Noise]:
+) -> list[ReadingNoise]:
     """Noise of heating histories with noise of ``true`` K; ``memory``: share that a reading has of the one before."""
     rng = np.random.default_rng(7)
     series = []

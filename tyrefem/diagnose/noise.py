@@ -25,7 +25,7 @@ SCALE = 0.5
 
 
 @dataclass(frozen=True)
-class Noise:
+class ReadingNoise:
     """Noise of one series of readings, K (standard deviation).
 
     Parameters
@@ -49,7 +49,7 @@ class Noise:
 
 def noise_of(
     series: Sequence[tuple[str, Array, Array]], stated: Sequence[float], settings: DiagnosisSettings = DEFAULT
-) -> list[Noise]:
+) -> list[ReadingNoise]:
     """Noise of every series of readings.
 
     All series are pooled, each in units of its stated noise. A sensor whose scatter differs clearly from the pool has
@@ -86,16 +86,18 @@ def noise_of(
     return result
 
 
-def _judged(stated: float, size: float, sd: float, correlated: bool, step: float, settings: DiagnosisSettings) -> Noise:
+def _judged(
+    stated: float, size: float, sd: float, correlated: bool, step: float, settings: DiagnosisSettings
+) -> ReadingNoise:
     """The noise that the diagnosis uses; ``sd``: relative standard deviation of the estimate ``size``."""
     if not np.isfinite(sd):
-        return Noise(stated, np.nan, stated, False, step)
+        return ReadingNoise(stated, np.nan, stated, False, step)
     if sd > settings.noise_sd:
         # A rough estimate only warns of noise a third above the stated one.
-        return Noise(stated, size, max(stated, size / 1.33), correlated, step)
+        return ReadingNoise(stated, size, max(stated, size / 1.33), correlated, step)
     off = abs(size - stated) > max(settings.noise_tolerance, 3 * sd) * stated
     used = size if off and (size > stated or not correlated) else stated
-    return Noise(stated, size, used, correlated, step)
+    return ReadingNoise(stated, size, used, correlated, step)
 
 
 @dataclass(frozen=True)

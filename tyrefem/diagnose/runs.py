@@ -9,7 +9,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from tyrefem.compare.experiment import Experiment
-from tyrefem.diagnose.noise import Noise, noise_of
+from tyrefem.diagnose.noise import ReadingNoise, noise_of
 from tyrefem.diagnose.sampling import DriveSampling, SensorSampling
 from tyrefem.diagnose.settings import DEFAULT, DiagnosisSettings
 from tyrefem.inputs.study import StudyData
@@ -25,7 +25,7 @@ class MeasuredSensor(SensorSampling):
     """
 
     measured: Array = field(kw_only=True)
-    origin: Noise | None = field(default=None, kw_only=True)
+    origin: ReadingNoise | None = field(default=None, kw_only=True)
 
     @property
     def sampling(self) -> SensorSampling:
