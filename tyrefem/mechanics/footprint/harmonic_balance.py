@@ -13,12 +13,12 @@ from tyrefem.mechanics.footprint.footprint import QUICK_LOOK, Footprint
 from tyrefem.mechanics.footprint.large_motion import BEFORE_RIM, STIFFNESS, DeflectedState, LargeMotion
 from tyrefem.mechanics.solid.finite_law import FiniteLaw
 
-#: Numbers of harmonics: the load steps use the first, the others refine the last step.
-LADDER = (16, 24)
+#: Harmonics of the load steps, and the numbers that then refine the last step.
+COARSE, LADDER = 10, (16, 24)
 #: Harmonics of the contact, on the way and at the end: those above the motion's are linear.
 CONTACT_ON_THE_WAY, CONTACT = 48, 120
 #: Tolerance of the load steps, and distance to the target at which they end.
-ON_THE_WAY, NEAR = 1e-2, 1e-2
+ON_THE_WAY, NEAR = 1e-2, 0.15
 #: Tolerance of the numbers of harmonics before the last.
 BEFORE_LAST = 5e-3
 #: Smallest load step over the total, and largest number of steps.
@@ -90,17 +90,26 @@ class Balance:
         self.pressing.check_harmonics(self.harmonics)
         self.pressing.check_harmonics(self.contact)
         ladder = (*(n for n in LADDER if n < self.harmonics), self.harmonics)
-        moment = self._load_steps(deflection, load, ladder[0])
+        moment = self._load_steps(deflection, load, min(COARSE, ladder[0]))
         passed: list[Footprint] = []
         for count in ladder:
             start = self.motion.refined(moment, count, self._contact(count))
             accuracy = self.tolerance if count == ladder[-1] else max(self.tolerance, BEFORE_LAST)
-            moment = self._balanced(start, accuracy, deflection, load)
+            balanced = self._balanced(start, accuracy, load)
+            if balanced is None:
+                start = self._load_steps(deflection, load, count)
+                balanced = self._balanced(start, accuracy, load)
+            if balanced is None:
+                raise self._no_balance_error(start, deflection, load, f" with {count} harmonics")
+            moment = balanced
             passed.append(self.motion.footprint(moment))
             if len(passed) > 1 and passed[-1].compared(passed[-2]).error <= tolerance:
                 break
         if accuracy > self.tolerance:
-            moment = self._balanced(moment, self.tolerance, deflection, load)
+            balanced = self._balanced(moment, self.tolerance, load)
+            if balanced is None:
+                raise self._no_balance_error(moment, deflection, load, f" within {self.tolerance:g}")
+            moment = balanced
             passed[-1] = self.motion.footprint(moment)
         footprint = passed[-1].compared(passed[-2]) if len(passed) > 1 else passed[-1]
         return replace(footprint, stiffness=self.motion.stiffness(moment, min(STIFFNESS, 5 * self.tolerance)))
@@ -110,15 +119,11 @@ class Balance:
         wanted = self.contact if harmonics >= self.harmonics else min(self.contact, CONTACT_ON_THE_WAY)
         return max(wanted, harmonics)
 
-    def _balanced(
-        self, start: DeflectedState, tolerance: float, deflection: float | None, load: float | None
-    ) -> DeflectedState:
-        """The balance from a nearby one with the same harmonics; raises `InputError` without one."""
+    def _balanced(self, start: DeflectedState, tolerance: float, load: float | None) -> DeflectedState | None:
+        """The balance from a nearby one with the same harmonics; None without one."""
         balanced = self.motion.balance(start, start.deflection, tolerance, load)
-        if balanced is None:
+        if balanced is None and start.rate is not None:
             balanced = self.motion.balance(replace(start, rate=None), start.deflection, tolerance, load)
-        if balanced is None:
-            raise self._no_balance_error(start, deflection, load, f" with {start.harmonics} harmonics")
         return balanced
 
     def _load_steps(self, deflection: float | None, load: float | None, harmonics: int) -> DeflectedState:

@@ -35,11 +35,11 @@ STEPS, CYCLE = 12, 3.0
 #: After a Newton step the next one is smaller by more than this factor: a loose balance ends one step earlier.
 NEXT = 10.0
 #: Above this tolerance any change of the contact set is allowed, below it this share of the contacts.
-LOOSE, FLIPPED = 5e-3, 0.02
+LOOSE, FLIPPED = 5e-3, (0.1, 0.02)
 #: Accuracy of conjugate gradients: residual of a Newton step; energy for a change of deflection and for the stiffness.
 INNER, BORDER, STIFFNESS = 0.05, 0.03, 5e-3
 #: Residual that ends conjugate gradients, in the energy's norm, over the tolerance.
-ENERGY = 1.0
+ENERGY = 0.4
 #: The angles of possible contact are those of the deflection times this factor.
 WIDER = 1.6
 #: Largest deflection over that at which the crown meets the rim.
@@ -187,7 +187,9 @@ class LargeMotion:
             now = self._sides * float(normal_components @ forces)
             last = share * float(np.abs(step.motion).max()) / max(float(np.abs(u).max()), 1e-300)
             done = last <= (tolerance if tolerance <= LOOSE else NEXT * tolerance) and share == 1
-            done &= tolerance > LOOSE or int((closed != before).sum()) <= max(1.0, FLIPPED * int(closed.sum()))
+            done &= damping < 2 * SOFT  # a damped step is short also far from balance
+            flipped = FLIPPED[0] if tolerance > LOOSE else FLIPPED[1]
+            done &= int((closed != before).sum()) <= max(1.0, flipped * int(closed.sum()))
             damping = max(damping / 3, SOFT if change > SMOOTH else HARD)
             if load is not None:
                 if rate is None:
@@ -200,7 +202,9 @@ class LargeMotion:
                 done &= missed <= tolerance
                 # A contact that opens and closes in turn keeps the load from settling.
                 done |= count == STEPS - 1 and share == 1 and max(last, missed) <= CYCLE * tolerance
-                more, now = (load - now) / slope, load
+                # The forces that the search leaves unbalanced do work on the rate: the load without them.
+                settled = now - self._sides * np.pi * self.factors.work(step.residual, rate[0])
+                more, now = (load - settled) / slope, load
                 deflection, u, forces = deflection + more, u + more * rate[0], forces + more * pushed
             if done:
                 return replace(
@@ -230,13 +234,10 @@ class LargeMotion:
     def _points(self, grid: ContactGrid, direction: Array, moment: DeflectedState) -> Touching:
         """Points of possible contact; those of the last call, if they are the same (on a flat road)."""
         last = self._touching[0] if self._touching else None
-        if (
-            last is None
-            or last.grid is not grid
-            or last.highest != moment.harmonics
-            or not np.allclose(last.direction, direction, rtol=0, atol=1e-12)
-        ):
+        if last is None or last.grid is not grid or last.highest != moment.harmonics:
             last = Touching(self.factors, grid, direction, moment.harmonics)
+        elif not np.allclose(last.direction, direction, rtol=0, atol=1e-12):
+            last = last.turned(direction)
         self._touching[:] = [last]
         return last
 

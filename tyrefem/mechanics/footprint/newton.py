@@ -31,6 +31,7 @@ class NewtonStep:
     forces: Array
     iterations: int
     stable: bool
+    residual: Array | None = None
 
 
 @dataclass(frozen=True)
@@ -173,6 +174,7 @@ def newton_step(
     pushed, first, stable, count = pressed, size, True, 0
     stiff, stiff_pushed = residual, pressed
     drops: list[float] = []
+    damped = np.zeros_like(x)
     left = work(x, tangent.product(x)) + preconditioner.energy(total) if end.settled else 0.0
     while stable and count < ITERATIONS and size > max(end.residual**2 * first, end.least):
         if end.settled and count >= DELAY and sum(drops[-DELAY:]) <= end.settled * (left - sum(drops)):
@@ -185,6 +187,8 @@ def newton_step(
         if stable:
             step = size / energy
             x += step * along
+            if damping:
+                damped += step * stiff
             drops.append(size * step)
             residual, pressed, before = residual - step * bent, pressed - step * bent_pushed, size
             change, size = searched()
@@ -192,4 +196,4 @@ def newton_step(
             stiff, stiff_pushed = residual + size / before * stiff, pressed + size / before * stiff_pushed
     forces = np.zeros(len(touching.rows))
     forces[closed] = total
-    return NewtonStep(x, forces, count, stable)
+    return NewtonStep(x, forces, count, stable, residual + damping * damped)

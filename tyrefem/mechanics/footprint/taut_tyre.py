@@ -18,6 +18,8 @@ from tyrefem.mechanics.solid.finite_law import BodyLaw
 
 Array = NDArray[np.float64]
 Indices = NDArray[np.int64]
+#: Right-hand sides that are solved at once: more do not stay in the processor's cache.
+AT_ONCE = 8
 
 
 def tautened(state: Prestressed) -> Prestressed:
@@ -73,12 +75,16 @@ class TautTyre:
             dofs = self.tread.ravel()
             places = np.searchsorted(self.free, dofs)
             loaded = np.flatnonzero(np.isin(dofs, self.free))
-            loads = np.zeros((len(self.free), len(dofs)))
-            loads[places[loaded], loaded] = 1.0
-            moved = self.factor(n).solve(loads)
+            moved = np.zeros((len(self.free), len(dofs)), dtype=np.float32)
             at_tread = np.zeros((len(dofs), len(dofs)))
-            at_tread[loaded] = moved[places[loaded]]
-            self._under_tread[n] = np.ascontiguousarray(moved, dtype=np.float32), at_tread
+            factor = self.factor(n)
+            for columns in np.array_split(loaded, max(1, len(loaded) // AT_ONCE)):
+                loads = np.zeros((len(self.free), len(columns)))
+                loads[places[columns], np.arange(len(columns))] = 1.0
+                solved = factor.solve(loads)
+                moved[:, columns] = solved
+                at_tread[np.ix_(loaded, columns)] = solved[places[loaded]]
+            self._under_tread[n] = moved, at_tread
         return self._under_tread[n]
 
     def compliance(self, loads: Array, rows: Array) -> Array:

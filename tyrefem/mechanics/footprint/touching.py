@@ -26,12 +26,14 @@ class Touching:
     tyre : the tyre that leads the search.
     grid : the points; its harmonics above ``highest`` move linearly (`ContactGrid.blocks_above`).
     direction : (c, k) into the road. highest : highest harmonic of the large motion.
+    alike : the points with nearly these directions (on a drum): their compliance is used.
     """
 
     tyre: TautTyre
     grid: ContactGrid
     direction: Array
     highest: int
+    alike: Touching | None = None
 
     @functools.cached_property
     def rows(self) -> Array:
@@ -61,9 +63,16 @@ class Touching:
                 tail += self.direction[to][:, None] * blocks[to, :, of] * self.direction[of]
         return tail
 
+    def turned(self, direction: Array) -> Touching:
+        """The same points along nearly the same directions."""
+        return Touching(self.tyre, self.grid, direction, self.highest, self.alike or self)
+
     @functools.cached_property
     def compliance(self) -> Array:
-        """(k, k) displacement of a point per force at another in small motions, all harmonics, m/N."""
+        """(k, k) displacement of a point per force at another in small motions, all harmonics, m/N: it predicts the
+        contact set."""
+        if self.alike is not None:
+            return self.alike.compliance
         return self.tyre.compliance(self.loads, self.rows) + self.tail
 
     def into(self, motion: Array) -> Array:
