@@ -25,16 +25,16 @@ AHEAD, CORRECTION, WILD = 0.35, 0.7, 2.0
 #: A first Newton step that is larger than aimed at by more than this factor is made smaller.
 LARGE_STEP = 1.6
 #: Damping after an unstable Newton step, and number of these after which the balance fails.
-SOFT, UNSTABLE = 0.1, 8
-#: Least damping after a Newton step whose change of a displacement gradient is below `SMOOTH`; else it is `SOFT`.
-HARD, SMOOTH = 0.02, 0.1
+DAMPING, UNSTABLE = 0.1, 8
+#: Least damping after a Newton step whose change of a displacement gradient is below `SMOOTH`; else it is `DAMPING`.
+LEAST_DAMPING, SMOOTH = 0.02, 0.1
 #: After a smaller change the last stiffness is used again.
 ALIKE = 0.02
 #: Newton steps. After the last a change and a missed load of this times the tolerance are allowed.
 STEPS, CYCLE = 12, 3.0
 #: After a Newton step the next one is smaller by more than this factor: a loose balance ends one step earlier.
 NEXT = 10.0
-#: Above this tolerance any change of the contact set is allowed, below it this share of the contacts.
+#: Above this tolerance, and below it, this share of the contacts may change in the last step.
 LOOSE, FLIPPED = 5e-3, (0.1, 0.02)
 #: Accuracy of conjugate gradients: residual of a Newton step; energy for a change of deflection and for the stiffness.
 INNER, BORDER, STIFFNESS = 0.05, 0.03, 5e-3
@@ -150,7 +150,7 @@ class LargeMotion:
         closed: Flags | None = None
         rate = start.rate
         tangent: Tangent | None = None
-        unstable, change, damping = 0, np.inf, SOFT
+        unstable, change, damping = 0, np.inf, DAMPING
         for count in range(STEPS):
             tangent = (
                 replace(tangent, forces=outside.forces(u)) if tangent and change <= ALIKE else outside.at(u, np.float32)
@@ -187,10 +187,10 @@ class LargeMotion:
             now = self._sides * float(normal_components @ forces)
             last = share * float(np.abs(step.motion).max()) / max(float(np.abs(u).max()), 1e-300)
             done = last <= (tolerance if tolerance <= LOOSE else NEXT * tolerance) and share == 1
-            done &= damping < 2 * SOFT  # a damped step is short also far from balance
+            done &= damping < 2 * DAMPING  # a damped step is short also far from balance
             flipped = FLIPPED[0] if tolerance > LOOSE else FLIPPED[1]
             done &= int((closed != before).sum()) <= max(1.0, flipped * int(closed.sum()))
-            damping = max(damping / 3, SOFT if change > SMOOTH else HARD)
+            damping = max(damping / 3, DAMPING if change > SMOOTH else LEAST_DAMPING)
             if load is not None:
                 if rate is None:
                     lowered = self._rate(touching, before, tangent, normal_components, BORDER, rotations)
@@ -202,9 +202,9 @@ class LargeMotion:
                 done &= missed <= tolerance
                 # A contact that opens and closes in turn keeps the load from settling.
                 done |= count == STEPS - 1 and share == 1 and max(last, missed) <= CYCLE * tolerance
-                # The forces that the search leaves unbalanced do work on the rate: the load without them.
-                settled = now - self._sides * np.pi * self.factors.work(step.residual, rate[0])
-                more, now = (load - settled) / slope, load
+                if not done:  # forces that the search leaves unbalanced do work on the rate: the load without them
+                    now -= self._sides * np.pi * self.factors.work(step.residual, rate[0])
+                more, now = (load - now) / slope, load
                 deflection, u, forces = deflection + more, u + more * rate[0], forces + more * pushed
             if done:
                 return replace(
@@ -272,7 +272,8 @@ class LargeMotion:
         rotations = Rotations.of(outside.round, moment.motion, self.factors.harmonics.held)
         start = None
         if moment.rate is not None:
-            start = NewtonStep(moment.rate[0], np.where(moment.forces > 0, moment.rate[1], 0.0), 0, True)
+            motion, forces, _ = moment.rate
+            start = NewtonStep(motion, np.where(moment.forces > 0, forces, 0.0), 0, True, np.zeros_like(motion))
         closed = moment.forces > 0
         rate = self._rate(touching, closed, tangent, normal_components, accuracy, rotations, start)
         energy = np.pi * self.factors.work(tangent.product(rate.motion), rate.motion)

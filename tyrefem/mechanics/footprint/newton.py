@@ -25,13 +25,13 @@ DELAY = 4
 @dataclass(frozen=True, eq=False)
 class NewtonStep:
     """A step (highest + 1, n_dofs), m; its contact forces (k,), N; iterations; ``stable``: the stiffness was positive
-    in all search directions."""
+    in all search directions; ``residual`` -g - J x - B' f, N per radian, that the search leaves."""
 
     motion: Array
     forces: Array
     iterations: int
     stable: bool
-    residual: Array | None = None
+    residual: Array
 
 
 @dataclass(frozen=True)
@@ -172,9 +172,8 @@ def newton_step(
 
     along, size = searched()
     pushed, first, stable, count = pressed, size, True, 0
-    stiff, stiff_pushed = residual, pressed
+    stiff, stiff_pushed, damped = residual, pressed, np.zeros_like(x)
     drops: list[float] = []
-    damped = np.zeros_like(x)
     left = work(x, tangent.product(x)) + preconditioner.energy(total) if end.settled else 0.0
     while stable and count < ITERATIONS and size > max(end.residual**2 * first, end.least):
         if end.settled and count >= DELAY and sum(drops[-DELAY:]) <= end.settled * (left - sum(drops)):
@@ -187,8 +186,7 @@ def newton_step(
         if stable:
             step = size / energy
             x += step * along
-            if damping:
-                damped += step * stiff
+            damped += step * stiff
             drops.append(size * step)
             residual, pressed, before = residual - step * bent, pressed - step * bent_pushed, size
             change, size = searched()
