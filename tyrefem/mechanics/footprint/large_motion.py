@@ -165,7 +165,7 @@ class LargeMotion:
                 closed = touching.closed(gaps, forces, forces > 0)
             end = SearchEnd(INNER, enough)
             step = newton_step(touching, closed, tangent, distance, end, rotations, damping=damping)
-            change = self._gradient_change(outside, step)
+            change = self._gradient_change(outside, step.motion)
             moved = deflection - start.deflection
             if count == 0 and change > LARGE_STEP * AHEAD and moved:
                 back = normal_components * (1 - AHEAD / change) * moved
@@ -173,13 +173,13 @@ class LargeMotion:
                 gaps, distance = gaps + back, distance + back
                 closed = touching.closed(gaps, forces, forces > 0)
                 step = newton_step(touching, closed, tangent, distance, end, rotations, damping=damping)
-                change = self._gradient_change(outside, step)
+                change = self._gradient_change(outside, step.motion)
             while not (step.stable and change < WILD):
                 unstable, damping = unstable + 1, 3 * damping
                 if unstable > UNSTABLE:
                     return None
                 step = newton_step(touching, closed, tangent, distance, end, rotations, damping=damping)
-                change = self._gradient_change(outside, step)
+                change = self._gradient_change(outside, step.motion)
             share = min(1.0, CORRECTION / max(change, 1e-300))
             after = gaps - touching.into(step.motion) + touching.tail @ (step.forces - forces)
             u, forces = u + share * step.motion, forces + share * (step.forces - forces)
@@ -204,7 +204,11 @@ class LargeMotion:
                 done |= count == STEPS - 1 and share == 1 and max(last, missed) <= CYCLE * tolerance
                 if not done:  # forces that the search leaves unbalanced do work on the rate: the load without them
                     now -= self._sides * np.pi * self.factors.work(step.residual, rate[0])
-                more, now = (load - now) / slope, load
+                more = (load - now) / slope
+                far = abs(more) * self._gradient_change(outside, rate[0])
+                if far > AHEAD:
+                    done, more = False, more * AHEAD / far
+                now += more * slope
                 deflection, u, forces = deflection + more, u + more * rate[0], forces + more * pushed
             if done:
                 return replace(
@@ -213,9 +217,9 @@ class LargeMotion:
         return None
 
     @staticmethod
-    def _gradient_change(outside: NonlinearForces, step: NewtonStep) -> float:
-        """Largest change of a displacement gradient."""
-        return float(np.abs(outside.round.gradient(step.motion)).max())
+    def _gradient_change(outside: NonlinearForces, motion: Array) -> float:
+        """Largest change of a displacement gradient by a motion."""
+        return float(np.abs(outside.round.gradient(motion)).max())
 
     def _road(self, moment: DeflectedState) -> tuple[Array, Array, Touching, Array]:
         """Gaps, m, their decrease per metre of deflection, the points of possible contact, and the tread's displacement
