@@ -39,6 +39,8 @@ class Formula:
     law: Law
     drives: tuple[Any, ...]
     settings: DiagnosisSettings = DEFAULT
+    #: Law of the second run, which is held out.
+    held_out: Law | None = None
     #: (method, values by key) of every answer.
     questions: list[tuple[str, dict[str, float]]] = field(default_factory=list)
 
@@ -52,9 +54,10 @@ class Formula:
     def _answer(self, method: str, question: tuple[Any, ...]) -> Array:
         values = {unknown.key: x for unknown, x in question[-1].items()}
         self.questions.append((method, values))
+        law = self.held_out if self.held_out is not None and question[0] == 1 else self.law
         if method == "predict":
-            return self.law(values)
-        return slopes(self.law, [unknown.key for unknown in question[1]], values)
+            return law(values)
+        return slopes(law, [unknown.key for unknown in question[1]], values)
 
     def points(self, method: str = "predict") -> list[dict[str, float]]:
         """Where it was asked."""
@@ -82,17 +85,39 @@ class Case:
 
 
 def case(
-    law: Law, measured: Array, candidates: Members, settings: DiagnosisSettings = DEFAULT, expected: float = 0.5
+    law: Law,
+    measured: Array,
+    candidates: Members,
+    settings: DiagnosisSettings = DEFAULT,
+    expected: float = 0.5,
+    held_out: tuple[Law, Array] | None = None,
 ) -> Case:
-    """Measured readings (n,) against a formula of `STATED` and the candidates' amplitudes."""
-    n = len(measured)
-    readings = MeasuredSensor("crown", np.arange(float(n)), 1.0, 0.0, 1.0, n, measured=measured)
-    trial = MeasuredDrive("run", {}, False, (readings,))
+    """Measured readings (n,) against a formula of `STATED` and the candidates' amplitudes.
+
+    ``held_out``: law and readings of a second run that no fit uses.
+    """
+    laws = [(law, measured)] + ([held_out] if held_out else [])
     unknowns = (STATED, *(unknown for candidate in candidates for unknown in candidate.unknowns))
-    here = law({})
-    jacobian = slopes(law, [unknown.key for unknown in unknowns], {})
-    known = Sensitivities((trial.sampling,), unknowns, 1, (here,), (np.zeros(n),), (jacobian,))
+    keys = [unknown.key for unknown in unknowns]
+    trials = tuple(
+        MeasuredDrive(f"run-{number}", {}, number == 1, (_series(readings),))
+        for number, (_, readings) in enumerate(laws)
+    )
+    known = Sensitivities(
+        tuple(trial.sampling for trial in trials),
+        unknowns,
+        1,
+        tuple(each({}) for each, _ in laws),
+        tuple(np.zeros(len(readings)) for _, readings in laws),
+        tuple(slopes(each, keys, {}) for each, _ in laws),
+    )
     card = SimpleNamespace(drive=SimpleNamespace(initial=0.0), diagnosis=SimpleNamespace(effects_expected=expected))
-    study = cast(Any, SimpleNamespace(card=card, file=None))
-    formula = Formula(law, (trial.sampling,), settings)
-    return Case(formula, Residuals(study, (trial,), known, settings), Predictions(cast(Any, formula)))
+    study = cast(Any, SimpleNamespace(card=card, file=None, with_drive=lambda drive: study))
+    formula = Formula(law, known.drives, settings, held_out[0] if held_out else None)
+    return Case(formula, Residuals(study, trials, known, settings), Predictions(cast(Any, formula)))
+
+
+def _series(measured: Array) -> MeasuredSensor:
+    """Readings with unit noise and no discrepancy, each a block."""
+    n = len(measured)
+    return MeasuredSensor("crown", np.arange(float(n)), 1.0, 0.0, 1.0, n, measured=measured)

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import dataclasses
+import math
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass
 from itertools import pairwise
@@ -34,6 +35,7 @@ class UnknownHeat(Brief):
     region, station : of the largest missing heat. watts : (n,) W, mean over the runs, by station.
     kind : "heat" inside (W/m3), or "flux" through the surface (W/m2).
     values, sd : x and standard deviation of all fitted unknowns, and of the patches (mean over the runs).
+    held_out : ln p(held-out data | fitted data, heat) of the full model's fit; NaN without one, or without such runs.
     """
 
     stations: Array
@@ -50,6 +52,7 @@ class UnknownHeat(Brief):
     values: dict[Unknown, float]
     sd: dict[Unknown, float]
     kind: str
+    held_out: float = math.nan
 
 
 def missing_heat(residuals: Residuals, unknown: Sequence[Unknown], about: FittedSet) -> UnknownHeat:
@@ -90,7 +93,7 @@ def missing_heat_fitted(
         shared[:, unknown.index(each)] = J[:, fit.unknowns.index(each)]
     kept = tuple(fit.unknowns[number] for number in other)
     estimate = _estimated(residuals, unknown, _Point(kept, fit.linear.data, J[:, other], shared), chosen[0])
-    return dataclasses.replace(estimate, values=fit.values, sd=fit.sd)
+    return dataclasses.replace(estimate, values=fit.values, sd=fit.sd, held_out=fit.held_out)
 
 
 def pursuit(residuals: Residuals, unknown: Sequence[Unknown]) -> tuple[Unknown, ...]:

@@ -1,6 +1,25 @@
-"""Probabilities of a diagnosis as text."""
+"""Numbers of a diagnosis as text: probabilities, amounts with uncertainty and unit, corrections of unknowns."""
 
 from __future__ import annotations
+
+import math
+
+from tyrefem.diagnose.unknowns import Unknown
+
+#: SI unit of a parameter -> factor and unit in reports.
+READ = {
+    "1": (1.0, ""),
+    "1/delta_degC": (100.0, "%/K"),
+    "J/m**3": (1e-3, "kJ/m³"),
+    "Pa/s": (3.6, "kPa/h"),
+    "W/m**2": (1.0, "W/m²"),
+    "W/m**3": (1e-3, "kW/m³"),
+    "delta_degC": (1.0, "K"),
+    "delta_degC/s": (3600.0, "K/h"),
+    "m": (1e3, "mm"),
+    "m**2*K/W": (1.0, "m²K/W"),
+    "rad": (180 / math.pi, "°"),
+}
 
 
 def percent(probability: float) -> str:
@@ -15,3 +34,63 @@ def percent(probability: float) -> str:
         if probability > above:
             return "more than 99.99 %" if decimals is None else f"{100 * probability:.{decimals}f} %"
     return f"{100 * probability:.0f} %" if probability >= 0.1 else f"{100 * probability:.1f} %"
+
+
+def amount(value: float, sd: float, unit: str) -> str:
+    """A value with sign, standard deviation and unit, rounded to the digits of the standard deviation.
+
+    >>> amount(4.3766, 0.8586, "delta_degC"), amount(0.0002056, 0.00013, "m"), amount(-0.054, 0.098, "1")
+    ('+4.4 ± 0.9 K', '+0.21 ± 0.13 mm', '-0.05 ± 0.10')
+    """
+    factor, shown = READ.get(unit, (1.0, unit.replace("**2", "²").replace("**3", "³")))
+    value, sd = value * factor, sd * factor
+    decimals = _decimals(sd if sd > 0 and math.isfinite(sd) else abs(value) / 100)
+    scale = 10.0 ** min(decimals, 0)
+    first, second = (round(number * scale) / scale for number in (value, sd)) if decimals < 0 else (value, sd)
+    places = max(decimals, 0)
+    return f"{first:+z.{places}f} ± {second:.{places}f} {shown}".rstrip()
+
+
+def _decimals(sd: float) -> int:
+    """Decimals for two digits of a standard deviation with a mantissa below 3.55, else one (Particle Data Group)."""
+    if sd <= 0 or not math.isfinite(sd):
+        return 2
+    size = math.floor(math.log10(sd))
+    return 1 - size if sd / 10.0**size < 3.55 else -size
+
+
+def parameter_name(unknown: Unknown) -> str:
+    """Meaning of an effect's parameter, or the name of another unknown."""
+    return unknown.parameter.prior.meaning if unknown.parameter else base_name(unknown)
+
+
+def base_name(unknown: Unknown) -> str:
+    """A base number in words, with all regions that share it.
+
+    >>> keys = ("materials.belt-1.conductivity.along", "materials.belt-2.conductivity.along")
+    >>> base_name(Unknown(keys[0], 0.1, keys=keys)), base_name(Unknown("drive.load", 0.02))
+    ('conductivity along of belt-1, belt-2', 'load')
+    """
+    table, *rest = unknown.key.split(".")
+    if table == "drive":
+        return " ".join(rest).replace("_", " ")
+    if table != "materials" or len(rest) < 2:
+        return unknown.label
+    regions = dict.fromkeys(key.split(".")[1] for key in (unknown.key, *unknown.keys))
+    named = " ".join(part for part in rest[1:] if part not in ("value", "elasticity"))
+    return f"{named.replace('_', ' ')} of {', '.join(regions)}"
+
+
+def correction_words(unknown: Unknown, x: float, sd: float) -> str:
+    """A correction of a base number, film or sensor: its name and its change with unit.
+
+    >>> correction_words(Unknown("drive.load", 0.02), 0.0583, 0.004)
+    'load +6.0 ± 0.4 %'
+    """
+    if unknown.effect is None or unknown.effect == "film-scale":
+        film = dict(unknown.choice).get("film", "").replace("_", " ")
+        name = f"film coefficient of {film}" if film else base_name(unknown)
+        return f"{name} {amount(100 * math.expm1(x), 100 * sd * math.exp(x), '%')}"
+    place = ", ".join(value for _, value in unknown.choice)
+    shown = amount(unknown.value(x), sd, unknown.unit)
+    return f"{place}: {parameter_name(unknown)} {shown}" if place else f"{parameter_name(unknown)} {shown}"

@@ -136,6 +136,7 @@ def change_rows(d: DiagnosisData) -> list[dict[str, Any]]:
             "value": change.unknown.value(change.x),
             "sd": change.sd * (change.unknown.value(change.x) if change.unknown.parameter is None else 1.0),
             "unit": change.unknown.unit,
+            "pull": change.x / change.unknown.sd,
             "source": change.source,
         }
         for change in d.changes

@@ -12,6 +12,7 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 
 from tyrefem.diagnose.candidates import Candidate
+from tyrefem.diagnose.pulls import pulls, pulls_p
 from tyrefem.diagnose.residual_tables import rms
 from tyrefem.diagnose.unknowns import Unknown
 from tyrefem.diagnose.verdict import CONFOUNDED, RankedSet
@@ -51,6 +52,8 @@ def fitness(d: DiagnosisData, fit: FittedSet | None) -> dict[str, Any]:
         "p_value": fit.p_value,
         "held_out_log_probability": fit.held_out,
         "held_out_p": fit.held_out_p,
+        "largest_pull": max((abs(pull.pull) for pull in pulls(fit)), default=0.0),
+        "pulls_p": pulls_p(fit),
         "at_bound": list(fit.at_bound),
         "converged": fit.converged,
     }

@@ -148,6 +148,11 @@ class DiagnosisSettings:
     alone_probability: float = 0.5
     #: A set is rejected if a correct model would give its misfit with a smaller probability than this.
     rejected_p: float = 1e-4
+    #: A set is rejected if it corrects a base number, film or sensor by more than this, prior sd (6e-5 for each).
+    largest_pull: float = 4.0
+    #: A set is not named if another fitted set predicts the held-out runs better by more than this, nats. A right set
+    #: falls behind a given other one by m nats with probability at most exp(-m): 0.7 %.
+    held_out_margin: float = 5.0
     #: A correction of a base number or a sensor is left out if it changes every block mean by less than this, K.
     negligible: float = 0.2
 

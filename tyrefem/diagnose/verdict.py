@@ -9,6 +9,7 @@ from dataclasses import dataclass
 from tyrefem.brief import Brief
 from tyrefem.diagnose.candidates import Members
 from tyrefem.diagnose.fits import FittedSet
+from tyrefem.diagnose.pulls import improbable_pulls
 from tyrefem.diagnose.selection import ScoredSet
 from tyrefem.diagnose.settings import DEFAULT, DiagnosisSettings
 
@@ -19,16 +20,32 @@ SHOWN = 8
 
 @dataclass(frozen=True)
 class RankedSet(Brief):
-    """A set of effects with its ``score`` = ln(prior x evidence), its ``probability`` and its fit, if there is one."""
+    """A set of effects with its ``score`` = ln(prior x evidence), its ``probability`` and its fit, if there is one.
+
+    ``outside``: a cause outside the catalogue; ``outside_held_out``: how it predicts the held-out runs, see `held_out`.
+    """
 
     members: Members
     score: float
     probability: float
     fit: FittedSet | None
     outside: bool = False
+    outside_held_out: float = math.nan
 
     def _title(self) -> str:
         return f"{self.key}: {self.probability:.3g}"
+
+    @property
+    def held_out(self) -> float:
+        """ln p(held-out data | fitted data, set); NaN if the set was not fitted, or no run is held out."""
+        return self.outside_held_out if self.outside else math.nan if self.fit is None else self.fit.held_out
+
+    @property
+    def words(self) -> str:
+        """The set as a subject of "predict": "hot-road predicts", "heat of unknown origin predicts"."""
+        if self.outside:
+            return "heat of unknown origin predicts"
+        return f"{self.key if self.members else 'the study without any effect'} predicts"
 
     @property
     def key(self) -> str:
@@ -42,7 +59,8 @@ class RankedSet(Brief):
 class Judgement(Brief):
     """The verdict, the sets in order of probability, and the reasons as sentences.
 
-    ``named``: candidate key -> probability that it acts. ``credible``: the sets with 99 % joint probability.
+    ``named``: candidate key -> probability that it acts. ``credible``: the sets with 99 % joint probability, and a set
+    that predicts the held-out runs clearly better. ``doubts``: reasons against the best set, as whole sentences.
     """
 
     verdict: str
@@ -50,6 +68,7 @@ class Judgement(Brief):
     named: dict[str, float]
     credible: tuple[RankedSet, ...]
     reasons: tuple[str, ...]
+    doubts: tuple[str, ...] = ()
 
     @property
     def best(self) -> RankedSet:
@@ -62,15 +81,22 @@ class Judgement(Brief):
         return probability(self.ranking)
 
 
-def ranked(scored: Sequence[ScoredSet], outside: float | None = None) -> tuple[RankedSet, ...]:
-    """Sets with their probabilities, best first; ``outside``: score of a cause outside the catalogue."""
+def ranked(
+    scored: Sequence[ScoredSet], outside: float | None = None, outside_held_out: float = math.nan
+) -> tuple[RankedSet, ...]:
+    """Sets with their probabilities, best first.
+
+    ``outside``: score of a cause outside the catalogue. ``outside_held_out``: ln p(held-out data | fitted data) of it.
+    """
     rows = [(entry.score, entry.members, entry.fit, False) for entry in scored]
     if outside is not None:
         rows.append((outside, (), None, True))
     top = max(score for score, *_ in rows)
     total = sum(math.exp(score - top) for score, *_ in rows)
     sets = [
-        RankedSet(members, score, math.exp(score - top) / total, fit, is_outside)
+        RankedSet(
+            members, score, math.exp(score - top) / total, fit, is_outside, outside_held_out if is_outside else math.nan
+        )
         for score, members, fit, is_outside in rows
     ]
     return tuple(sorted(sets, key=lambda entry: -entry.score))
@@ -94,6 +120,28 @@ def probability(ranking: Sequence[RankedSet]) -> float:
     return sum(entry.probability for entry in ranking if keys <= {member.key for member in entry.members})
 
 
+def rejection(key: str, fit: FittedSet, settings: DiagnosisSettings) -> str:
+    """The reason why a fitted set is no explanation of the data; empty if there is none. ``key``: name of the set."""
+    if fit.p_value < settings.rejected_p:
+        left = f"leaves a misfit that noise gives with probability {fit.p_value:.1g}"
+        return f"the best set ({key}) {left}: another effect is missing"
+    if improbable := improbable_pulls(key, fit, settings):
+        return improbable
+    if fit.held_out_p < settings.rejected_p:
+        return f"the held-out runs reject {key} (probability {fit.held_out_p:.1g})"
+    return ""
+
+
+def better_on_held_out(ranking: Sequence[RankedSet], fit: FittedSet, margin: float) -> tuple[RankedSet, float] | None:
+    """The set that predicts the held-out runs best, and its lead over ``fit`` in nats, if that exceeds ``margin``."""
+    others = [
+        (entry, entry.held_out - fit.held_out)
+        for entry in ranking
+        if math.isfinite(entry.held_out - fit.held_out) and entry.held_out - fit.held_out > margin
+    ]
+    return max(others, key=lambda pair: pair[1]) if others else None
+
+
 def judge(
     ranking: Sequence[RankedSet],
     fit_of: Callable[[Members], FittedSet | None],
@@ -101,11 +149,12 @@ def judge(
 ) -> Judgement:
     """The verdict on sets ranked by probability.
 
-    - *unexplained*: heat of unknown origin is most probable, or the best set leaves a misfit that noise cannot explain,
-      or the held-out runs reject the best set.
+    - *unexplained*: heat of unknown origin is most probable; or the best set leaves a misfit that noise cannot explain,
+      needs improbable corrections, or is rejected by the held-out runs; or these are predicted clearly better without
+      any effect, or by heat of unknown origin.
     - *no gap*: the empty set is most probable.
     - *identified*: the best set acts with at least 90 % probability, and alone with at least 50 %; no best value of an
-      amplitude lies beyond a bound.
+      amplitude lies beyond a bound; no other set predicts the held-out runs clearly better.
     - *confounded*: all other cases.
     """
     best = ranking[0]
@@ -119,24 +168,27 @@ def judge(
     fit = best.fit or fit_of(best.members)
     reasons: list[str] = []
 
-    def verdict(name: str) -> Judgement:
-        return Judgement(name, tuple(ranking), named, tuple(credible), tuple(reasons))
+    def verdict(name: str, doubt: str = "") -> Judgement:
+        doubts = (f"{doubt[0].upper()}{doubt[1:]}.",) if doubt else ()
+        reasons.extend([doubt] if doubt else [])
+        return Judgement(name, tuple(ranking), named, tuple(credible), tuple(reasons), doubts)
 
     if best.outside:
         reasons.append("heat of unknown origin explains the data better than any set of effects in the catalogue")
         return verdict(UNEXPLAINED)
-    if fit is not None and fit.p_value < settings.rejected_p:
-        reasons.append(
-            f"the best set ({best.key}) leaves a misfit that noise gives with probability {fit.p_value:.1g}: "
-            "another effect is missing"
-        )
-        return verdict(UNEXPLAINED)
+    if fit is not None:
+        if doubt := rejection(best.key, fit, settings):
+            return verdict(UNEXPLAINED, doubt)
+        if better := better_on_held_out(ranking, fit, settings.held_out_margin):
+            other, lead = better
+            doubt = f"{other.words} the held-out runs better than {best.key}, by {lead:.0f} nats"
+            if other.outside or not other.members:
+                return verdict(UNEXPLAINED, doubt)
+            credible += [] if other in credible else [other]
+            return verdict(CONFOUNDED, doubt)
     if not best.members:
         reasons.append("noise and the uncertainty of base numbers and sensors explain the deviation")
         return verdict(NO_GAP)
-    if fit is not None and fit.held_out_p < settings.rejected_p:
-        reasons.append(f"the held-out runs reject {best.key} (probability {fit.held_out_p:.1g})")
-        return verdict(UNEXPLAINED)
     if fit is not None and fit.at_bound:
         reasons.append("the best value lies beyond a physical bound: " + ", ".join(fit.at_bound))
         return verdict(CONFOUNDED)

@@ -9,9 +9,9 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from tyrefem.diagnose.candidates import Candidate
-from tyrefem.diagnose.numbers import percent
+from tyrefem.diagnose.numbers import amount, correction_words, parameter_name, percent
+from tyrefem.diagnose.pulls import pulls
 from tyrefem.diagnose.result_tables import competing_sets, inclusion_probability
-from tyrefem.diagnose.unknowns import Unknown
 from tyrefem.diagnose.verdict import CONFOUNDED, IDENTIFIED, NO_GAP
 from tyrefem.geometry.place_names import place
 
@@ -19,50 +19,8 @@ if TYPE_CHECKING:
     from tyrefem.diagnose.diagnosis import DiagnosisData
     from tyrefem.diagnose.fits import FittedSet
 
-#: SI unit of a parameter -> factor and unit in reports.
-READ = {
-    "1": (1.0, ""),
-    "1/delta_degC": (100.0, "%/K"),
-    "J/m**3": (1e-3, "kJ/m³"),
-    "Pa/s": (3.6, "kPa/h"),
-    "W/m**2": (1.0, "W/m²"),
-    "W/m**3": (1e-3, "kW/m³"),
-    "delta_degC": (1.0, "K"),
-    "delta_degC/s": (3600.0, "K/h"),
-    "m": (1e3, "mm"),
-    "m**2*K/W": (1.0, "m²K/W"),
-    "rad": (180 / math.pi, "°"),
-}
 #: Folder of a further look, within the folder of the look before it.
 AGAIN = "again"
-
-
-def amount(value: float, sd: float, unit: str) -> str:
-    """A value with sign, standard deviation and unit, rounded to the digits of the standard deviation.
-
-    >>> amount(4.3766, 0.8586, "delta_degC"), amount(0.0002056, 0.00013, "m"), amount(-0.054, 0.098, "1")
-    ('+4.4 ± 0.9 K', '+0.21 ± 0.13 mm', '-0.05 ± 0.10')
-    """
-    factor, shown = READ.get(unit, (1.0, unit.replace("**2", "²").replace("**3", "³")))
-    value, sd = value * factor, sd * factor
-    decimals = _decimals(sd if sd > 0 and math.isfinite(sd) else abs(value) / 100)
-    scale = 10.0 ** min(decimals, 0)
-    first, second = (round(number * scale) / scale for number in (value, sd)) if decimals < 0 else (value, sd)
-    places = max(decimals, 0)
-    return f"{first:+z.{places}f} ± {second:.{places}f} {shown}".rstrip()
-
-
-def _decimals(sd: float) -> int:
-    """Decimals for two digits of a standard deviation with a mantissa below 3.55, else one (Particle Data Group)."""
-    if sd <= 0 or not math.isfinite(sd):
-        return 2
-    size = math.floor(math.log10(sd))
-    return 1 - size if sd / 10.0**size < 3.55 else -size
-
-
-def parameter_name(unknown: Unknown) -> str:
-    """Meaning of an effect's parameter, or the label of another unknown."""
-    return unknown.parameter.prior.meaning if unknown.parameter else unknown.label
 
 
 def effect_amounts(candidate: Candidate, fit: FittedSet) -> list[str]:
@@ -107,7 +65,8 @@ def _verdict_sentences(d: DiagnosisData) -> tuple[str, ...]:
     closing = _closing(d)
     if d.verdict == NO_GAP:
         extent = f"rms {_kelvin(d, after=False)}, noise {d.noise:.1f} K"
-        return (f"Noise and the uncertainty of base numbers and sensors explain the deviation ({extent}).",)
+        first = f"Noise and the uncertainty of base numbers and sensors explain the deviation ({extent})."
+        return (first, *_corrected(d))
     clauses = [effect_words(member, d.best) for member in d.best.members]
     if d.verdict == IDENTIFIED:
         return _joined(clauses, [f"Probability {percent(d.judgement.probability)}."], closing)
@@ -118,10 +77,22 @@ def _verdict_sentences(d: DiagnosisData) -> tuple[str, ...]:
     partly = [f"These effects explain part of the deviation: {named}."]
     return (
         "No effect in the catalogue explains the deviation.",
+        *d.judgement.doubts,
         clearest,
         *(partly if clauses else []),
         closing,
     )
+
+
+def _corrected(d: DiagnosisData, most: int = 6) -> tuple[str, ...]:
+    """The corrections that move a reading, and by how many prior standard deviations, largest first."""
+    kept = {change.unknown for change in d.changes}
+    shown = [pull for pull in pulls(d.best) if pull.unknown in kept]
+    if not shown:
+        return ()
+    items = [f"{correction_words(each.unknown, each.x, each.sd)} ({each.pull:+z.1f} sd)" for each in shown[:most]]
+    more = f"; and {len(shown) - most} more" if len(shown) > most else ""
+    return (f"Corrected for it, in standard deviations of what was stated: {'; '.join(items)}{more}.",)
 
 
 def missing_words(d: DiagnosisData) -> str:
@@ -164,7 +135,7 @@ def _confounded(d: DiagnosisData, closing: str) -> tuple[str, ...]:
     if d.best.at_bound:
         first += " Its best value lies beyond a physical bound, so it is not certain."
     decides = next_words(d)
-    return (first, *([decides] if decides else []), closing)
+    return (first, *d.judgement.doubts, *([decides] if decides else []), closing)
 
 
 def next_words(d: DiagnosisData) -> str:

@@ -29,7 +29,7 @@ from tyrefem.diagnose.selection import SelectionProblem
 from tyrefem.diagnose.sensitivities import responses, sensitivities, unknowns_of
 from tyrefem.diagnose.settings import DiagnosisSettings
 from tyrefem.diagnose.unknowns import Unknown
-from tyrefem.diagnose.verdict import CONFOUNDED, IDENTIFIED, UNEXPLAINED, Judgement, judge, ranked
+from tyrefem.diagnose.verdict import CONFOUNDED, IDENTIFIED, UNEXPLAINED, Judgement, judge, ranked, rejection
 from tyrefem.errors import InputError
 from tyrefem.inputs.study import StudyData
 from tyrefem.requirements import Requirements
@@ -192,7 +192,7 @@ def rank(
         return fits[members]
 
     missing, best = origin.of(null), scored[0]
-    doubtful = best.fit is None or min(best.fit.p_value, best.fit.held_out_p) < settings.rejected_p
+    doubtful = best.fit is None or bool(rejection("", best.fit, settings))
     if doubtful or origin.score(null, missing) > best.score - settings.missing_near:
         missing = missing_heat_fitted(
             residuals,
@@ -201,7 +201,8 @@ def rank(
             null,
             lambda: tick("fitting heat of unknown origin") if tick else None,
         )
-    judgement = judge(ranked(scored, origin.score(null, missing)), fit_of, settings)
+    ranking = ranked(scored, origin.score(null, missing), missing.held_out)
+    judgement = judge(ranking, fit_of, settings)
     ahead = judgement.best
     return Ranking(judgement, ahead.fit or (null if ahead.outside else fit_of(ahead.members)), null, missing, fit_of)
 

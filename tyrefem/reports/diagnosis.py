@@ -11,7 +11,7 @@ from typing import TYPE_CHECKING, Any
 import tyrefem
 from tyrefem.diagnose import words
 from tyrefem.diagnose.amend import Change, difference
-from tyrefem.diagnose.numbers import percent
+from tyrefem.diagnose.numbers import amount, base_name, parameter_name, percent
 from tyrefem.diagnose.record import AMENDED, record, where
 from tyrefem.diagnose.result_tables import candidate_rows, finite, history_table, set_rows, where_table
 from tyrefem.diagnose.unknowns import Unknown
@@ -135,7 +135,7 @@ def _candidate(row: Mapping[str, Any]) -> dict[str, str]:
         "probability": percent(row["probability"]),
         "gain": f"{row['log_evidence_gain']:+z,.{1 if abs(row['log_evidence_gain']) < 1000 else 0}f}",
         "parameters": "; ".join(
-            words.amount(entry["value"], entry["sd"], entry["unit"]) for entry in row["parameters"].values()
+            amount(entry["value"], entry["sd"], entry["unit"]) for entry in row["parameters"].values()
         ),
         "confounded": words.shortened("; ".join(row["confounded_with"])),
         **_fitness(row),
@@ -177,7 +177,7 @@ def _correction(d: DiagnosisData, change: Change) -> dict[str, str]:
         new = value_at(d.study.data, unknown.key, d.study.folder)
         relative = unknown.value(change.x) - 1
         return {
-            "what": unknown.label,
+            "what": base_name(unknown),
             "original": str(value_at(d.original.data, unknown.key, d.original.folder)),
             "amended": str(new),
             "change": f"{100 * relative:+z.1f} ± {100 * change.sd:.1f} %",
@@ -194,16 +194,16 @@ def _correction(d: DiagnosisData, change: Change) -> dict[str, str]:
             "prior": f"± {100 * unknown.sd:.0f} %",
         }
     return {
-        "what": f"{', '.join(value for _, value in unknown.choice)}: {words.parameter_name(unknown)}",
+        "what": f"{', '.join(value for _, value in unknown.choice)}: {parameter_name(unknown)}",
         "original": "as stated",
         "amended": "",
-        "change": words.amount(unknown.value(change.x), change.sd, unknown.unit),
+        "change": amount(unknown.value(change.x), change.sd, unknown.unit),
         "prior": _prior(unknown),
     }
 
 
 def _prior(unknown: Unknown) -> str:
-    return "± " + words.amount(0.0, unknown.sd, unknown.unit).split("± ")[1]
+    return "± " + amount(0.0, unknown.sd, unknown.unit).split("± ")[1]
 
 
 def _offers(d: DiagnosisData, kind: str, what: str, at: str) -> list[dict[str, Any]]:
