@@ -76,6 +76,11 @@ class FittedSet(Brief):
         """Whether the fit has converged with all shape parameters fitted."""
         return self.converged and not self.state.shapes
 
+    @property
+    def settled(self) -> bool:
+        """Whether the fit has finished with sensitivities taken at its point, on which its evidence rests."""
+        return self.finished and not self.state.jacobian_outdated
+
     @cached_property
     def values(self) -> dict[Unknown, float]:
         """Unknown -> x; 1 for effects without amplitude."""

@@ -121,6 +121,10 @@ class DiagnosisSettings:
     far_score: float = 12.0
     #: The same for a score that is estimated about the fit of a subset, nats.
     near_score: float = 3.0
+    #: Fits within this of the best are compared with sensitivities at their points, nats; most continuations of each.
+    #: Sets beyond it have less than 1 % even if the evidences are 1.4 nats off.
+    leading_score: float = 6.0
+    most_settlings: int = 3
     #: Largest number of sets of the exhaustive search.
     most_exhaustive: int = 300
 

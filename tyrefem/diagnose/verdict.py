@@ -154,7 +154,7 @@ def judge(
       any effect, or by heat of unknown origin.
     - *no gap*: the empty set is most probable.
     - *identified*: the best set acts with at least 90 % probability, and alone with at least 50 %; no best value of an
-      amplitude lies beyond a bound; no other set predicts the held-out runs clearly better.
+      amplitude lies beyond a bound; no other set predicts the held-out runs clearly better; its fit has converged.
     - *confounded*: all other cases.
     """
     best = ranking[0]
@@ -192,6 +192,8 @@ def judge(
     if fit is not None and fit.at_bound:
         reasons.append("the best value lies beyond a physical bound: " + ", ".join(fit.at_bound))
         return verdict(CONFOUNDED)
+    if fit is not None and not fit.settled:
+        return verdict(CONFOUNDED, f"the fit of {best.key} has not converged, so its probability is not certain")
     sure = probability(ranking)
     if sure >= settings.named_probability and best.probability >= settings.alone_probability:
         reasons.append(f"{best.key} is missing with {100 * sure:.1f} % probability, summed over all sets of effects")

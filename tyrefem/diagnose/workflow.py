@@ -19,6 +19,7 @@ from tyrefem.diagnose.evaluations import Evaluations, evaluating
 from tyrefem.diagnose.fits import FittedSet, first_fits
 from tyrefem.diagnose.forward_model import ForwardModel
 from tyrefem.diagnose.heat_patches import patches
+from tyrefem.diagnose.leading import settled
 from tyrefem.diagnose.missing_heat import UnknownHeat, missing_heat, missing_heat_fitted
 from tyrefem.diagnose.multifidelity import Predictions
 from tyrefem.diagnose.next_experiment import next_experiment
@@ -182,7 +183,7 @@ def rank(
         lambda null: origin.score(null, origin.of(null)),
         tick,
     )
-    scored = method.strategy.search(problem)
+    scored = settled(problem, method.strategy.search(problem))
     fits = {problem.ordered(entry.fit.members): entry.fit for entry in scored if entry.fit is not None}
     null = fits[()]
 

@@ -1,0 +1,107 @@
+"""Leading fits are compared with sensitivities at their points; without these nothing is named. By formulas."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from dataclasses import replace
+
+import numpy as np
+import pytest
+from formula import STATED, Array, Case, case, effect, slopes
+
+from tyrefem.diagnose.candidates import Members, SetPrior
+from tyrefem.diagnose.criterion import LogEvidence
+from tyrefem.diagnose.fits import FittedSet
+from tyrefem.diagnose.forward_selection import ForwardSelection
+from tyrefem.diagnose.leading import settled
+from tyrefem.diagnose.selection import ScoredSet, SelectionProblem
+from tyrefem.diagnose.settings import DEFAULT, DiagnosisSettings
+from tyrefem.diagnose.verdict import CONFOUNDED, IDENTIFIED, judge, ranked
+
+N = 80
+T = np.linspace(0.05, 1.0, N)
+#: Four effects that saturate, all of nearly the same course.
+EXPONENTS = {"first": 1.0, "second": 1.05, "third": 1.1, "fourth": 1.15}
+
+
+def saturating(values: Mapping[str, float]) -> Array:
+    heat = 10.0 * values.get(STATED.key, 0.0) * np.sqrt(T)
+    each = (40.0 * np.tanh(values.get(name, 0.0) / 3.0) * T**power for name, power in EXPONENTS.items())
+    return np.asarray(heat + sum(each))
+
+
+def problem_of(settings: DiagnosisSettings) -> tuple[Case, SelectionProblem]:
+    candidates: Members = tuple(effect(name) for name in EXPONENTS)
+    noise = np.random.default_rng(2).normal(size=N)
+    made = case(saturating, saturating({"second": 4.0, STATED.key: 0.2}) + noise, candidates, settings)
+    return made, SelectionProblem(
+        made.residuals, made.predictions, candidates, SetPrior(candidates, 0.5), LogEvidence()
+    )
+
+
+def tangents_off(fit: FittedSet) -> float:
+    """Largest difference of a fit's sensitivities from those at its point, relative to the largest of them."""
+    at = {unknown.key: float(x) for unknown, x in zip(fit.unknowns, fit.posterior.mean, strict=True)}
+    exact = slopes(saturating, [unknown.key for unknown in fit.unknowns], at)
+    return float(np.abs(fit.linear.jacobian - exact).max() / np.abs(exact).max())
+
+
+def leading(scored: list[ScoredSet]) -> list[FittedSet]:
+    within = scored[0].score - DEFAULT.leading_score
+    return [entry.fit for entry in scored if entry.fit is not None and entry.score > within]
+
+
+def test_leading_fits_have_sensitivities_of_their_points() -> None:
+    made, problem = problem_of(DiagnosisSettings(largest=1))
+    before = ForwardSelection().search(problem)
+    after = settled(problem, before)
+    assert len(leading(before)) >= 3
+    assert max(tangents_off(fit) for fit in leading(before)) > 0.02
+    assert max(tangents_off(fit) for fit in leading(after)) < 1e-5
+    assert all(fit.settled for fit in leading(after))
+    # The evidences of the first fits rest on secants from x = 0.
+    known = {entry.members: entry.score for entry in before}
+    assert max(abs(entry.score - known[entry.members]) for entry in after if entry.fit) > 0.05
+    assert [entry.score for entry in after] == sorted((entry.score for entry in after), reverse=True)
+    assert {entry.members for entry in after} == {entry.members for entry in before}
+    # Settled once, nothing is simulated again.
+    count = len(made.formula.questions)
+    assert settled(problem, after) == after
+    assert len(made.formula.questions) == count
+
+
+def test_a_fit_that_has_not_converged_is_not_named() -> None:
+    candidates = (effect("step"),)
+    step = np.where(T > 0.5, 4.0, 0.0)
+
+    def law(values: Mapping[str, float]) -> Array:
+        return np.asarray(10.0 * values.get(STATED.key, 0.0) * T + values.get("step", 0.0) * step)
+
+    made = case(law, law({"step": 2.0}) + np.random.default_rng(5).normal(size=N), candidates)
+    prior = SetPrior(candidates, 0.5)
+    problem = SelectionProblem(made.residuals, made.predictions, candidates, prior, LogEvidence())
+    scored = settled(problem, ForwardSelection().search(problem))
+    assert judge(ranked(scored), lambda members: None).verdict == IDENTIFIED
+    best = scored[0].fit
+    assert best is not None
+    for state in (replace(best.state, converged=False), replace(best.state, jacobian_outdated=True)):
+        doubtful = [scored[0]._replace(fit=replace(best, state=state)), *scored[1:]]
+        judged = judge(ranked(doubtful), lambda members: None)
+        assert judged.verdict == CONFOUNDED
+        assert judged.doubts == ("The fit of step has not converged, so its probability is not certain.",)
+
+
+def test_hopeless_fits_are_not_continued() -> None:
+    candidates = (effect("step"),)
+    made = case(lambda values: 0.0 * T, 30.0 * np.sin(20.0 * T), candidates)
+    prior = SetPrior(candidates, 0.5)
+    problem = SelectionProblem(made.residuals, made.predictions, candidates, prior, LogEvidence())
+    scored = problem.fitted([(), candidates], {})
+    entries = [ScoredSet(problem.score(fit), fit.members, replace(fit, state=replace(fit.state, converged=False)))
+               for fit in scored]  # fmt: skip
+    count = len(made.formula.questions)
+    assert settled(problem, entries) == entries
+    assert len(made.formula.questions) == count
+    assert entries[0].fit is not None
+    assert entries[0].fit.misfit > DEFAULT.slow_misfit * N
+    assert pytest.approx(0.0) == entries[0].fit.p_value
