@@ -5,7 +5,7 @@ from __future__ import annotations
 import functools
 import math
 from collections.abc import Callable, Mapping
-from dataclasses import dataclass
+from dataclasses import dataclass, field
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
@@ -21,6 +21,7 @@ if TYPE_CHECKING:
     from tyrefem.diagnose.amend import Change
     from tyrefem.diagnose.candidates import Candidate
     from tyrefem.diagnose.fits import FittedSet
+    from tyrefem.diagnose.materiality import Movement
     from tyrefem.diagnose.missing_heat import UnknownHeat
     from tyrefem.diagnose.residuals import Residuals
     from tyrefem.diagnose.runs import MeasuredSensor
@@ -42,6 +43,7 @@ class DiagnosisData(Brief):
     next_experiment : sensors and drives that separate the credible sets; empty unless the verdict is "confounded".
     predictions : numbers of model evaluations and the certificates of reduced models. seconds : wall time.
     again : diagnosis of the amended study with the same data; None if there was no further look.
+    movements : effect of the best set -> largest change of a reading by it.
     notes : candidates that were left out, and why.
     """
 
@@ -61,6 +63,7 @@ class DiagnosisData(Brief):
     seconds: float
     again: DiagnosisData | None = None
     notes: tuple[str, ...] = ()
+    movements: Mapping[Candidate, Movement] = field(default_factory=dict)
 
     def _title(self) -> str:
         return f"of {self.original.name}: {self.verdict}"

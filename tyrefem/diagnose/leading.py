@@ -40,5 +40,14 @@ def settled(problem: SelectionProblem, scored: Sequence[ScoredSet]) -> list[Scor
     return sorted(capped, key=lambda entry: -entry.score)
 
 
+def settled_fit(problem: SelectionProblem, fit: FittedSet) -> FittedSet:
+    """A fit continued until it has converged with sensitivities taken at its point, if it gets there."""
+    for _ in range(problem.settings.most_settlings):
+        if not _worth_settling(fit):
+            break
+        (fit,) = problem.continued([fit])
+    return fit
+
+
 def _worth_settling(fit: FittedSet) -> bool:
     return not fit.settled and fit.misfit < fit.state.settings.slow_misfit * fit.readings

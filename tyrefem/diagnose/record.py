@@ -10,6 +10,7 @@ from tyrefem.diagnose.words import look_folder, verdict_words
 from tyrefem.output import jsonable, versions
 
 if TYPE_CHECKING:
+    from tyrefem.diagnose.candidates import Candidate
     from tyrefem.diagnose.diagnosis import DiagnosisData
 
 #: File of the amended study, beside the record.
@@ -32,6 +33,7 @@ def record(d: DiagnosisData) -> dict[str, Any]:
                 "variant": dict(member.choice),
                 "probability": d.judgement.named.get(member.key, 0.0),
                 "parameters": parameters(member.unknowns, d.best),
+                "moves": _moves(d, member),
                 "source": member.effect.source,
             }
             for member in named
@@ -67,6 +69,12 @@ def record(d: DiagnosisData) -> dict[str, Any]:
     }  # fmt: skip
     plain: dict[str, Any] = jsonable(contents)
     return plain
+
+
+def _moves(d: DiagnosisData, member: Candidate) -> dict[str, Any] | None:
+    """The largest change of a reading by an effect, with sign, its sensor and run; null if it was not computed."""
+    move = d.movements.get(member)
+    return None if move is None else {"largest_K": move.kelvin, "sensor": move.sensor, "run": move.run}
 
 
 def noise(d: DiagnosisData) -> dict[str, Any]:

@@ -18,6 +18,7 @@ from tyrefem.geometry.place_names import place
 if TYPE_CHECKING:
     from tyrefem.diagnose.diagnosis import DiagnosisData
     from tyrefem.diagnose.fits import FittedSet
+    from tyrefem.diagnose.materiality import Movement
 
 #: Folder of a further look, within the folder of the look before it.
 AGAIN = "again"
@@ -32,10 +33,11 @@ def effect_amounts(candidate: Candidate, fit: FittedSet) -> list[str]:
     ]
 
 
-def effect_words(candidate: Candidate, fit: FittedSet) -> str:
-    """An effect in one clause: its sentence, its variant, and its amounts."""
+def effect_words(candidate: Candidate, fit: FittedSet, move: Movement | None = None) -> str:
+    """An effect in one clause: its sentence, its variant, its amounts, and what it moves at the sensors."""
     sentence = candidate.effect.sentence.rstrip(".")
     parts = [value for _, value in candidate.choice] + effect_amounts(candidate, fit)
+    parts += [move.words] if move is not None else []
     return f"{sentence} ({'; '.join(parts)})"
 
 
@@ -67,7 +69,7 @@ def _verdict_sentences(d: DiagnosisData) -> tuple[str, ...]:
         extent = f"rms {_kelvin(d, after=False)}, noise {d.noise:.1f} K"
         first = f"Noise and the uncertainty of base numbers and sensors explain the deviation ({extent})."
         return (first, *_corrected(d))
-    clauses = [effect_words(member, d.best) for member in d.best.members]
+    clauses = [effect_words(member, d.best, d.movements.get(member)) for member in d.best.members]
     if d.verdict == IDENTIFIED:
         return _joined(clauses, [f"Probability {percent(d.judgement.probability)}."], closing)
     if d.verdict == CONFOUNDED:
@@ -118,7 +120,7 @@ def _confounded(d: DiagnosisData, closing: str) -> tuple[str, ...]:
     sets, best = competing_sets(d), d.judgement.best
     joint, clauses = (
         inclusion_probability(d, best),
-        " And: ".join(effect_words(member, d.best) for member in best.members),
+        " And: ".join(effect_words(member, d.best, d.movements.get(member)) for member in best.members),
     )
     if best.members and joint >= d.gap.settings.named_probability:
         first = f"{clauses}: {percent(joint)} probable."

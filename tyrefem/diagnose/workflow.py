@@ -19,7 +19,8 @@ from tyrefem.diagnose.evaluations import Evaluations, evaluating
 from tyrefem.diagnose.fits import FittedSet, first_fits
 from tyrefem.diagnose.forward_model import ForwardModel
 from tyrefem.diagnose.heat_patches import patches
-from tyrefem.diagnose.leading import settled
+from tyrefem.diagnose.leading import settled, settled_fit
+from tyrefem.diagnose.materiality import Movements, movements, without_immaterial
 from tyrefem.diagnose.missing_heat import UnknownHeat, missing_heat, missing_heat_fitted
 from tyrefem.diagnose.multifidelity import Predictions
 from tyrefem.diagnose.next_experiment import next_experiment
@@ -130,6 +131,7 @@ def _look(
         predictions=predictions.to_dict(),
         seconds=time.perf_counter() - began,
         notes=(*notes, *further_notes),
+        movements=ranking.movements,
     )
 
 
@@ -154,6 +156,7 @@ class Ranking(Brief):
     ----------
     judgement : verdict, and sets with their probabilities. best, null : fits of the most probable and of the empty set.
     missing : heat of unknown origin. fit_of : set -> its fit, made if there is none.
+    movements : what each effect of the best set moves at the sensors.
     """
 
     judgement: Judgement
@@ -161,6 +164,7 @@ class Ranking(Brief):
     null: FittedSet
     missing: UnknownHeat
     fit_of: Callable[[Members], FittedSet]
+    movements: Movements
 
 
 def rank(
@@ -189,7 +193,8 @@ def rank(
 
     def fit_of(members: Members) -> FittedSet:
         if members not in fits:
-            (fits[members],) = first_fits(residuals, predictions, [members])
+            (first,) = first_fits(residuals, predictions, [members])
+            fits[members] = settled_fit(problem, first)
         return fits[members]
 
     missing, best = origin.of(null), scored[0]
@@ -202,10 +207,30 @@ def rank(
             null,
             lambda: tick("fitting heat of unknown origin") if tick else None,
         )
-    ranking = ranked(scored, origin.score(null, missing), missing.held_out)
+    sizes: dict[Members, Movements] = {}
+
+    def movements_of(fit: FittedSet) -> Movements:
+        if fit.members not in sizes:
+            sizes[fit.members] = movements(residuals, predictions, fit)
+        return sizes[fit.members]
+
+    floor = residuals.study.card.diagnosis.discrepancy
+    ranking, left_out = without_immaterial(
+        ranked(scored, origin.score(null, missing), missing.held_out), movements_of, floor
+    )
+    if left_out and not ranking[0].outside:
+        # The set without them was no leading one, so its fit may be a rough one.
+        fit = settled_fit(problem, ranking[0].fit or fit_of(ranking[0].members))
+        ranking = (replace(ranking[0], fit=fit), *ranking[1:])
     judgement = judge(ranking, fit_of, settings)
+    small = tuple(
+        f"{member.key} is not named: it {move.words}; the discrepancy is {floor:g} K"
+        for member, move in left_out.items()
+    )
+    judgement = replace(judgement, reasons=(*judgement.reasons, *small))
     ahead = judgement.best
-    return Ranking(judgement, ahead.fit or (null if ahead.outside else fit_of(ahead.members)), null, missing, fit_of)
+    best_fit = ahead.fit or (null if ahead.outside else fit_of(ahead.members))
+    return Ranking(judgement, best_fit, null, missing, fit_of, movements_of(best_fit))
 
 
 class _UnknownOrigin:

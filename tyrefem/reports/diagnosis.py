@@ -122,7 +122,10 @@ def _named(d: DiagnosisData) -> list[dict[str, Any]]:
             "probability": percent(d.judgement.named.get(member.key, 0.0)),
             "sentence": member.effect.sentence,
             "source": member.effect.source,
-            "amounts": words.effect_amounts(member, d.best),
+            "amounts": [
+                *words.effect_amounts(member, d.best),
+                *([d.movements[member].words] if member in d.movements else []),
+            ],
         }
         for member in d.best.members
     ]

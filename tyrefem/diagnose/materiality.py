@@ -1,0 +1,104 @@
+"""What an effect moves at the sensors; effects that move no reading beyond the discrepancy are not named."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Callable, Mapping, Sequence
+from dataclasses import dataclass, replace
+
+import numpy as np
+
+from tyrefem.brief import Brief
+from tyrefem.diagnose.candidates import Candidate
+from tyrefem.diagnose.fits import FittedSet
+from tyrefem.diagnose.multifidelity import Predictions
+from tyrefem.diagnose.residuals import Residuals
+from tyrefem.diagnose.verdict import RankedSet
+
+#: Sets below this probability are not examined.
+LEAST = 0.01
+
+
+@dataclass(frozen=True)
+class Movement(Brief):
+    """The largest change of a reading (mean of a block) by an effect, K, with its sign; its sensor and run."""
+
+    kelvin: float
+    sensor: str
+    run: str
+
+    def _title(self) -> str:
+        return self.words
+
+    @property
+    def words(self) -> str:
+        """The change with sensor and run."""
+        decimals = 1 if abs(self.kelvin) >= 1 else 2
+        return f"moves readings by up to {self.kelvin:+z.{decimals}f} K ({self.sensor}, {self.run})"
+
+
+Movements = Mapping[Candidate, Movement]
+
+
+def movements(residuals: Residuals, predictions: Predictions, fit: FittedSet) -> dict[Candidate, Movement]:
+    """What every member of a fitted set moves in all runs: the fit, minus the fit without the member."""
+    numbers = list(range(len(residuals.runs)))
+    questions = []
+    for member in fit.members:
+        others = tuple(each for each in fit.members if each != member)
+        left = {unknown: x for unknown, x in fit.values.items() if unknown not in member.unknowns}
+        questions.append((others, left))
+    result = {}
+    for member, answers in zip(fit.members, predictions.predict(questions, numbers), strict=True):
+        changes = [fit.computed[i] - residuals.corrected(i, answer) for i, answer in zip(numbers, answers, strict=True)]
+        result[member] = _largest(residuals, changes)
+    return result
+
+
+def _largest(residuals: Residuals, changes: Sequence[np.ndarray]) -> Movement:
+    """The largest of the changes by run (n_blocks,); infinite if the tyre is impossible without the effect."""
+    best = Movement(0.0, "", "")
+    for run, change in zip(residuals.runs, changes, strict=True):
+        for sensor, place in run.parts().items():
+            part = change[place]
+            if not np.isfinite(part).all():
+                return Movement(math.inf, sensor, run.name)
+            most = float(part[np.abs(part).argmax()])
+            if abs(most) > abs(best.kelvin) or not best.sensor:
+                best = Movement(most, sensor, run.name)
+    return best
+
+
+def without_immaterial(
+    ranking: Sequence[RankedSet], movements_of: Callable[[FittedSet], Movements], floor: float
+) -> tuple[tuple[RankedSet, ...], dict[Candidate, Movement]]:
+    """Sets ranked again, and the effects left out: those that move no reading by more than ``floor`` (K).
+
+    The probability of a set with such an effect goes to the set without it: as far as readings can tell, the two say
+    the same.
+    """
+    rows, left_out = list(ranking), dict[Candidate, Movement]()
+    examined: set[int] = set()
+    while True:
+        entry = next(
+            (row for row in rows
+             if row.fit is not None and row.members and row.probability > LEAST and id(row.fit) not in examined),
+            None,
+        )  # fmt: skip
+        if entry is None or entry.fit is None:
+            return tuple(rows), left_out
+        examined.add(id(entry.fit))
+        small = {member: move for member, move in movements_of(entry.fit).items() if abs(move.kelvin) <= floor}
+        if not small:
+            continue
+        left_out |= small
+        part = tuple(member for member in entry.members if member not in small)
+        rows.remove(entry)
+        known = next((row for row in rows if not row.outside and set(row.members) == set(part)), None)
+        if known is None:
+            rows.append(replace(entry, members=part, fit=None))
+        else:
+            score = float(np.logaddexp(known.score, entry.score))
+            rows[rows.index(known)] = replace(known, score=score, probability=known.probability + entry.probability)
+        rows.append(replace(entry, score=-math.inf, probability=0.0))
+        rows.sort(key=lambda row: -row.score)
