@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Callable, Sequence
 from dataclasses import dataclass
 from itertools import pairwise
 from typing import TYPE_CHECKING, Any
@@ -113,29 +113,73 @@ def tangents(
         if column.problem.operators is not ops:
             raise InputError("a perturbed problem must be on the base problem's own mesh", field="perturbed")
     with one_thread():
-        return _integrate(base, times, values, reservoirs, perturbed)
+        direct = _direct(base, times, values, reservoirs, perturbed)
+        s = np.zeros((ops.size + reservoirs.shape[1], len(perturbed)))
+        for column, perturbation in enumerate(perturbed):
+            if perturbation.initial is not None:
+                s[:, column] = (perturbation.initial - values[0, 0]) / perturbation.step
+        return _integrate(base, times, values, reservoirs, direct, direct.rate, s)
 
 
-def _integrate(
-    base: Conduction, times: Array, values: Array, reservoirs: Array, perturbed: Sequence[Perturbed]
+def tangents_over_time(
+    base: Conduction, times: Array, values: Array, reservoirs: Array, sources: Sequence[Perturbed], knots: Array
 ) -> Tangents:
-    ops, n, m, count = base.operators, base.operators.size, reservoirs.shape[1], len(perturbed)
-    balance = base._balance()
-    if balance.fixed.dofs.size:
+    """Sensitivities to sources whose strength follows a hat function of time, 1 at one knot and 0 at the others.
+
+    M ds/dt = -(dF/du) s + h_k(t) [F(y; p + step) - F(y; p)]/step with the hat h_k of knot k. Before the first and after
+    the last knot the strength stays constant, so the hats of a source add up to a constant source.
+
+    Parameters
+    ----------
+    times, values, reservoirs : see `tangents`; a time step must be shorter than the distance of two knots.
+    sources : problems with a source of strength ``step`` at all times. knots : (n_knots,) s, increasing.
+
+    Returns
+    -------
+    Tangents with the parameters (source 1 at knot 1, source 1 at knot 2, ...).
+    """
+    with one_thread():
+        direct = _direct(base, times, values, reservoirs, sources)
+        hats = np.eye(len(knots))
+
+        def heat(t: float, y: State) -> Array:
+            now = np.array([np.interp(t, knots, hat) for hat in hats])
+            return np.asarray((direct(t, y)[:, :, None] * now).reshape(len(values[0]) + y.g.size, -1))
+
+        start = np.zeros((base.operators.size + reservoirs.shape[1], len(sources) * len(knots)))
+        return _integrate(base, times, values, reservoirs, heat, direct.rate, start)
+
+
+def _direct(
+    base: Conduction, times: Array, values: Array, reservoirs: Array, perturbed: Sequence[Perturbed]
+) -> DirectHeat:
+    """Direct effect of the parameters on the heat balance."""
+    if base._balance().fixed.dofs.size:
         raise InputError("tangents need a problem without Fixed boundaries", field="boundaries")
-    direct = DirectHeat(
+    return DirectHeat(
         base._balance(),
         [perturbation.problem._balance() for perturbation in perturbed],
         [perturbation.step for perturbation in perturbed],
         float(times[0]),
         State(values[0], reservoirs[0]),
     )
+
+
+def _integrate(
+    base: Conduction,
+    times: Array,
+    values: Array,
+    reservoirs: Array,
+    direct: Callable[[float, State], Array],
+    rate: Callable[[float, State], Array],
+    s: Array,
+) -> Tangents:
+    """Integrate the sensitivities from ``s`` (n + m, count) at the start; ``direct``: right side, ``rate``: du/dt."""
+    ops, n, count = base.operators, base.operators.size, s.shape[1]
+    m = len(s) - n
+    balance = base._balance()
     heat = balance.reservoir_capacity(reservoirs[0])
     ordering = ops.ordering(np.arange(n))
-    s = np.zeros((n + m, count))
-    for column, perturbation in enumerate(perturbed):
-        if perturbation.initial is not None:
-            s[:, column] = (perturbation.initial - values[0, 0]) / perturbation.step
     derivatives = np.zeros((len(times), n + m, count))
     derivatives[0] = s
     for first in range(0, len(times) - 1, 2):
@@ -148,7 +192,7 @@ def _integrate(
             if stage == 0:
                 balance.freeze(t, y)
                 solve = StageSolver(ordering, balance, GAMMA * h, heat)
-            slope = _slope(balance, t, y, direct.rate(t, y) if balance.variable_capacity else None)
+            slope = _slope(balance, t, y, rate(t, y) if balance.variable_capacity else None)
             start = s + (1 - GAMMA) * h * slopes[0] if stage else s
             right = direct(t, y) - _linear(balance, start)
             guess = slopes[0] if stage else solve(right)

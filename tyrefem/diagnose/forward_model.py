@@ -20,6 +20,7 @@ from tyrefem.diagnose.fixed_step import FixedStepRun, ReadingSensitivities, fixe
 from tyrefem.diagnose.reduced_forward import Modes, ReducedDrive, modes_of
 from tyrefem.diagnose.sampling import DriveSampling
 from tyrefem.diagnose.settings import DEFAULT, DiagnosisSettings
+from tyrefem.diagnose.source_responses import source_responses
 from tyrefem.diagnose.unknowns import Unknown, with_values
 from tyrefem.errors import InputError
 from tyrefem.inputs.study import StudyData
@@ -188,6 +189,10 @@ class ForwardModel(Brief):
         samplings = self.drives[number].sensors
         slopes = self._varied(here, base.study, unknowns, at).slopes([each.sensor for each in samplings])
         return np.concatenate([each.sampled(here.grid, slopes[each.sensor]) for each in samplings])
+
+    def source_responses(self, number: int, sources: tuple[Unknown, ...], knots: tuple[float, ...]) -> Array:
+        """See `tyrefem.diagnose.source_responses`."""
+        return source_responses(self, number, sources, np.array(knots))
 
     def predict(self, number: int, values: Values) -> Array:
         """Block means at a drive with unknowns at ``values``, by fixed-step simulation; NaN for an impossible tyre."""

@@ -15,6 +15,7 @@ from tyrefem.brief import Brief
 from tyrefem.diagnose.candidates import Candidate
 from tyrefem.diagnose.evidence import posterior
 from tyrefem.diagnose.fits import FittedSet, continued, first_fits
+from tyrefem.diagnose.heat_over_time import HeatOverTime
 from tyrefem.diagnose.multifidelity import Predictions
 from tyrefem.diagnose.residuals import Residuals
 from tyrefem.diagnose.unknowns import Unknown
@@ -36,6 +37,7 @@ class UnknownHeat(Brief):
     kind : "heat" inside (W/m3), or "flux" through the surface (W/m2).
     values, sd : x and standard deviation of all fitted unknowns, and of the patches (mean over the runs).
     held_out : ln p(held-out data | fitted data, heat) of the full model's fit; NaN without one, or without such runs.
+    over_time : the sources by place, sign and course in time; None if they were not estimated.
     """
 
     stations: Array
@@ -53,6 +55,7 @@ class UnknownHeat(Brief):
     sd: dict[Unknown, float]
     kind: str
     held_out: float = math.nan
+    over_time: HeatOverTime | None = None
 
 
 def missing_heat(residuals: Residuals, unknown: Sequence[Unknown], about: FittedSet) -> UnknownHeat:
@@ -96,39 +99,52 @@ def missing_heat_fitted(
     return dataclasses.replace(estimate, values=fit.values, sd=fit.sd, held_out=fit.held_out)
 
 
+def with_course(missing: UnknownHeat, over_time: HeatOverTime) -> UnknownHeat:
+    """The missing heat with its sources over time; the larger of both evidences counts.
+
+    Where the course in time counts, the prediction of the held-out runs by constant heat is dropped.
+    """
+    if over_time.log_evidence <= missing.log_evidence:
+        return dataclasses.replace(missing, over_time=over_time)
+    return dataclasses.replace(missing, over_time=over_time, log_evidence=over_time.log_evidence, held_out=math.nan)
+
+
 def pursuit(residuals: Residuals, unknown: Sequence[Unknown]) -> tuple[Unknown, ...]:
     """The patches that explain the data best, added one at a time while the evidence rises; at least one.
 
-    The evidence is that of the linear model about x = 0, with one heat per patch and run. The heat is not negative, so
-    that a single source is not split into neighbouring sources and sinks.
+    The evidence is that of the linear model about x = 0, with one heat per patch and run. A patch is a source or a sink
+    in all runs, so that a single source is not split into neighbouring sources and sinks.
     """
     linear = residuals.linear(residuals.fitted)
     n = residuals.nuisance
     low, high = (np.array([getattr(patch, which) for patch in linear.design.unknowns[:n]]) for which in ("low", "high"))
     ends = np.cumsum([0, *(len(residuals.whitened[i]) for i in residuals.fitted)])
 
-    def evidence(patches: Sequence[Unknown]) -> float:
+    def evidence(patches: Sequence[tuple[Unknown, int]]) -> float:
         columns, sd = [linear.jacobian[:, :n]], [linear.design.sd[:n]]
-        for patch in patches:
+        for patch, sign in patches:
             of_runs = np.zeros((len(linear.data), len(ends) - 1))
             for run, (start, end) in enumerate(pairwise(ends)):
-                of_runs[start:end, run] = linear.jacobian[start:end, linear.design.place[patch]]
+                of_runs[start:end, run] = sign * linear.jacobian[start:end, linear.design.place[patch]]
             columns.append(of_runs)
             sd.append(np.full(of_runs.shape[1], residuals.settings.source_spread * patch.sd))
         J, more = np.hstack(columns), len(patches) * (len(ends) - 1)
         limits = np.concatenate([low, np.zeros(more)]), np.concatenate([high, np.full(more, np.inf)])
         return posterior(J.T @ J, J.T @ linear.data, np.concatenate(sd), *limits).log_evidence
 
-    chosen: list[Unknown] = []
+    chosen: list[tuple[Unknown, int]] = []
     best = -np.inf
     while len(chosen) < residuals.settings.most_sources:
-        gains = [(evidence([*chosen, patch]), number) for number, patch in enumerate(unknown) if patch not in chosen]
-        value, number = max(gains)
+        left = [patch for patch in unknown if all(patch != other for other, _ in chosen)]
+        gains = [
+            (evidence([*chosen, (patch, sign)]), number, sign) for number, patch in enumerate(left) for sign in (1, -1)
+        ]
+        value, number, sign = max(gains)
         if chosen and value < best + residuals.settings.source_gain:
             break
         best = value
-        chosen.append(unknown[number])
-    return tuple(chosen)
+        chosen.append((left[number], sign))
+    return tuple(patch for patch, _ in chosen)
 
 
 @dataclass(frozen=True, eq=False)

@@ -143,6 +143,10 @@ class DiagnosisSettings:
     #: Heat of unknown origin is fitted with the full model if its score is at most this far below the best set, nats.
     missing_near: float = 10.0
 
+    #: Knots in time of a run: while places are tried, and for the course of a chosen source.
+    coarse_knots: int = 7
+    fine_knots: int = 25
+
     # -- verdict and amended study
     #: A set is named if its members act with at least this probability.
     named_probability: float = 0.9

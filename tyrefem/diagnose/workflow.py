@@ -18,10 +18,11 @@ from tyrefem.diagnose.effort import check_effort
 from tyrefem.diagnose.evaluations import Evaluations, evaluating
 from tyrefem.diagnose.fits import FittedSet, first_fits
 from tyrefem.diagnose.forward_model import ForwardModel
+from tyrefem.diagnose.heat_over_time import heat_over_time
 from tyrefem.diagnose.heat_patches import patches
 from tyrefem.diagnose.leading import settled, settled_fit
 from tyrefem.diagnose.materiality import Movements, movements, without_immaterial
-from tyrefem.diagnose.missing_heat import UnknownHeat, missing_heat, missing_heat_fitted
+from tyrefem.diagnose.missing_heat import UnknownHeat, missing_heat, missing_heat_fitted, with_course
 from tyrefem.diagnose.multifidelity import Predictions
 from tyrefem.diagnose.next_experiment import next_experiment
 from tyrefem.diagnose.options import DiagnosisOptions, Method, SimulationWork, grouped
@@ -199,14 +200,17 @@ def rank(
 
     missing, best = origin.of(null), scored[0]
     doubtful = best.fit is None or bool(rejection("", best.fit, settings))
-    if doubtful or origin.score(null, missing) > best.score - settings.missing_near:
-        missing = missing_heat_fitted(
-            residuals,
-            predictions,
-            origin.patches,
-            null,
-            lambda: tick("fitting heat of unknown origin") if tick else None,
-        )
+    doubtful = doubtful or origin.score(null, missing) > best.score - settings.missing_near
+
+    def fitting() -> None:
+        if tick:
+            tick("fitting heat of unknown origin")
+
+    if doubtful:
+        missing = missing_heat_fitted(residuals, predictions, origin.patches, null, fitting)
+    # Several effects may imitate heat that acts during a part of a run only.
+    if doubtful or len(best.members) > 1:
+        missing = with_course(missing, heat_over_time(residuals, predictions.evaluations, null, fitting))
     sizes: dict[Members, Movements] = {}
 
     def movements_of(fit: FittedSet) -> Movements:

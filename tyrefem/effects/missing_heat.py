@@ -16,7 +16,10 @@ Array = NDArray[np.float64]
 
 
 class MissingHeat(Effect):
-    """q -> q + heat exp(-((|s| - station)/width)^2 / 2) through the whole thickness, while the tyre rolls."""
+    """q -> q + heat exp(-((|s| - station)/width)^2 / 2) through the whole thickness, while the tyre rolls.
+
+    With a ``region`` the heat is in this region only. ``begins`` and ``ends`` limit it to a part of the drive.
+    """
 
     name: ClassVar[str] = "missing-heat"
     family: ClassVar[str] = "calibration"
@@ -30,16 +33,29 @@ class MissingHeat(Effect):
     width: Annotated[
         float, Unit("m", gt=0), Field(description="standard deviation about the station", examples=["10 mm"])
     ]
+    region: Annotated[str | None, Field(description="the only region that is heated; default: all", examples=["ply"])] = (
+        None
+    )
+    begins: Annotated[
+        float | None, Unit("s", ge=0), Field(description="begins at this time of the drive", examples=["300 s"])
+    ] = None
+    ends: Annotated[
+        float | None, Unit("s", ge=0), Field(description="ends at this time of the drive", examples=["600 s"])
+    ] = None
     heat: Annotated[float, Prior("W/m**3", "heat at the station", 5e4, -1e7, 1e7)] = 0.0
 
     @property
     def choice(self) -> dict[str, str]:
         """Where."""
-        return {"station": f"{self.station!r} m", "width": f"{self.width!r} m"}
+        where = {"station": f"{self.station!r} m", "width": f"{self.width!r} m"}
+        when = {"begins": self.begins, "ends": self.ends}
+        region = {} if self.region is None else {"region": self.region}
+        return where | region | {key: f"{time!r} s" for key, time in when.items() if time is not None}
 
     def heat_addend(self, tyre: Tyre, zone: str, x: Array, t: float, T: Array) -> Factor:
         """W/m3 at points x (2, n)."""
-        if tyre.speed(t) == 0:
+        outside = (self.begins is not None and t < self.begins) or (self.ends is not None and t > self.ends)
+        if outside or tyre.speed(t) == 0 or self.region not in (None, tyre.region(zone)):
             return 0.0
         s, _ = tyre.places(x)
         return np.asarray(self.heat * np.exp(-(((s - self.station) / self.width) ** 2) / 2))

@@ -1,0 +1,166 @@
+"""Heat of unknown origin over time: its sources by place, sign and course, estimated from the fitted runs."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Callable, Sequence
+from dataclasses import dataclass, replace
+
+import numpy as np
+from numpy.typing import NDArray
+
+from tyrefem.brief import Brief
+from tyrefem.diagnose.evaluations import Evaluations
+from tyrefem.diagnose.fits import FittedSet
+from tyrefem.diagnose.heat_courses import CourseGrid, courses
+from tyrefem.diagnose.heat_evidence import ProjectedData
+from tyrefem.diagnose.heat_patches import is_inside, layer_patches, patches, place_of, surface_patches
+from tyrefem.diagnose.heat_sources import HeatSource, Place, evidence, misfit, place_shares, pursuit, timed
+from tyrefem.diagnose.residuals import Residuals
+from tyrefem.diagnose.unknowns import Unknown
+from tyrefem.inputs.motion import motion_at
+
+Array = NDArray[np.float64]
+
+
+@dataclass(frozen=True, eq=False)
+class HeatOverTime(Brief):
+    """Sources of heat of unknown origin, the most significant first.
+
+    Parameters
+    ----------
+    sources : see `HeatSource`. knots : by fitted run (n_knots,) s. runs : names of the fitted runs.
+    rolling : by run (n_knots,) whether the tyre rolls. cools : whether a fitted run has readings at rest after rolling.
+    log_evidence : ln evidence of the data, comparable with the sets of effects; places and courses share the prior.
+    """
+
+    sources: tuple[HeatSource, ...]
+    knots: tuple[Array, ...]
+    runs: tuple[str, ...]
+    rolling: tuple[NDArray[np.bool_], ...]
+    cools: bool
+    log_evidence: float
+
+    @property
+    def clear(self) -> tuple[HeatSource, ...]:
+        """The sources whose amount differs from zero by more than two standard deviations."""
+        return tuple(source for source in self.sources if source.clear)
+
+
+def heat_over_time(
+    residuals: Residuals, evaluations: Evaluations, null: FittedSet, tick: Callable[[], None] | None = None
+) -> HeatOverTime:
+    """Estimate the sources in the linear model about x = 0 or about the fit of no effect, whichever explains more.
+
+    1. Every place of a few coarse knots in time is tried: heat in all layers, and flux through the outer surface, the
+       inner surface and from the rim. The best are added one by one.
+    2. At the station of each source, single layers compete too.
+    3. Each source gets fine knots; the courses of `heat_courses` compete by evidence.
+    """
+    origin = residuals.linear(residuals.fitted)
+    n = residuals.nuisance
+    of_null = np.array([unknown.sd for unknown in null.unknowns])
+    points = (
+        ProjectedData(origin.data, origin.jacobian[:, :n], origin.design.sd[:n]),
+        ProjectedData(null.linear.data, null.linear.jacobian, of_null),
+    )
+    responses = _Responses(residuals, evaluations, tick)
+    estimates = [_estimated(residuals, responses, data) for data in points]
+    return max(estimates, key=lambda heat: heat.log_evidence)
+
+
+def _estimated(residuals: Residuals, responses: _Responses, data: ProjectedData) -> HeatOverTime:
+    study, settings = residuals.study, residuals.settings
+    coarse, fine = (_grid(residuals, count) for count in (settings.coarse_knots, settings.fine_knots))
+    tried = (*patches(study, settings), *surface_patches(study, settings))
+    places = responses.places(coarse, tried)
+    chosen = pursuit(data, places, coarse, settings.most_sources, settings.source_gain)
+    # What even the free courses leave is an error of the linear model: with less weight it makes no further sources.
+    exact, data = data, replace(data, weight=min(1.0, len(data.data) / misfit(data, chosen)))
+    chosen = pursuit(data, places, coarse, settings.most_sources, settings.source_gain)
+    shares, refined = [], []
+    for number, (place, _) in enumerate(chosen):
+        others = [entry for other, entry in enumerate(chosen) if other != number]
+        layers = responses.places(coarse, layer_patches(study, settings, place.station))
+        options = [option for option in (*places, *layers) if all(option is not other for other, _ in others)]
+        share = place_shares(data, place, options, others, coarse)
+        shares.append(share)
+        refined.append(next(o for o in options if (o.station, o.where) == next(iter(share))))
+    unknown_of = {place_of(unknown): unknown for unknown in tried}
+    for place in refined:
+        for unknown in layer_patches(study, settings, place.station):
+            unknown_of[place_of(unknown)] = unknown
+    resolved = responses.places(fine, [unknown_of[place.station, place.where] for place in refined])
+    free = pursuit(data, resolved, fine, len(resolved), -math.inf)
+    kinds = {id(place): course for place, course in free}
+    current = [(place, kinds[id(place)]) for place in resolved]
+    sources: list[HeatSource] = []
+    for number, place in enumerate(resolved):
+        others = [entry for other, entry in enumerate(current) if other != number]
+        source, course = timed(data, place, others, fine, shares[number])
+        current[number] = place, course
+        sources.append(source)
+    # Every place and every course has a share of the prior; a course with a switch shares it further.
+    shared = len(current) * (math.log(len(tried)) + math.log(sum(1 for _ in courses(fine))))
+    log_evidence = exact.log_evidence + evidence(exact, current) - shared
+    rolling = tuple(
+        np.array([fine.speed(number, float(t)) > 0 for t in knots]) for number, knots in enumerate(fine.knots)
+    )
+    cools = any(flags.any() and not flags[int(np.argmax(flags)) :].all() for flags in rolling)
+    sources.sort(key=lambda source: -abs(source.amount) / source.sd)
+    return HeatOverTime(tuple(sources), fine.knots, fine.names, rolling, cools, log_evidence)
+
+
+def _grid(residuals: Residuals, count: int) -> CourseGrid:
+    """The fitted runs with even knots up to the last reading or the end of the drive."""
+    names, knots, phases, drives = [], [], [], []
+    for number in residuals.fitted:
+        run, drive = residuals.runs[number], residuals.driven(number).card.drive
+        last = min(max(float(readings.times[-1]) for readings in run.sensors), drive.end)
+        names.append(run.name)
+        knots.append(np.linspace(0.0, last, count))
+        drives.append(drive)
+        phases.append(
+            tuple(
+                (phase.name, start, start + phase.duration)
+                for start, phase in zip(drive.starts, drive.phases, strict=True)
+                if start < last
+            )
+        )
+    return CourseGrid(
+        tuple(names), tuple(knots), tuple(phases), lambda number, t: float(motion_at(drives[number], t).speed)
+    )
+
+
+class _Responses:
+    """Whitened responses of the fitted runs to sources over time; each is computed once."""
+
+    def __init__(self, residuals: Residuals, evaluations: Evaluations, tick: Callable[[], None] | None) -> None:
+        self.residuals, self.evaluations, self.tick = residuals, evaluations, tick
+        self._known: dict[tuple[Unknown, int], Array] = {}
+
+    def places(self, grid: CourseGrid, unknowns: Sequence[Unknown]) -> list[Place]:
+        """The places of some unknowns with their responses."""
+        left = tuple(unknown for unknown in unknowns if (unknown, grid.size) not in self._known)
+        if left:
+            self._known |= zip([(unknown, grid.size) for unknown in left], self._computed(grid, left), strict=True)
+        spread = self.residuals.settings.source_spread
+        return [
+            Place(*place_of(unknown), spread * unknown.sd, inside, self._known[unknown, grid.size])
+            for unknown, inside in zip(unknowns, is_inside(unknowns), strict=True)
+        ]
+
+    def _computed(self, grid: CourseGrid, unknowns: tuple[Unknown, ...]) -> list[Array]:
+        """By unknown (n, n_all_knots)."""
+        fitted = self.residuals.fitted
+        questions = [
+            (number, unknowns, tuple(map(float, knots))) for number, knots in zip(fitted, grid.knots, strict=True)
+        ]
+        answers = self.evaluations.of("source_responses", questions, self.tick)
+        ends = np.cumsum([0, *(len(answer) for answer in answers)])
+        columns = np.zeros((len(unknowns), ends[-1], grid.size))
+        for order, (number, answer, part) in enumerate(zip(fitted, answers, grid.parts(), strict=True)):
+            for column in range(len(unknowns)):
+                whitened = self.residuals.runs[number].whitened(np.ascontiguousarray(answer[:, column]))
+                columns[column, ends[order] : ends[order + 1], part] = whitened
+        return list(columns)
