@@ -11,6 +11,7 @@ import pytest
 from hidden import Case
 
 from tyrefem.diagnose import DiagnosisData
+from tyrefem.diagnose.heat_words import NOT_CLEAR
 from tyrefem.diagnose.result_tables import competing_sets, inclusion_probability
 from tyrefem.diagnose.verdict import CONFOUNDED, IDENTIFIED, NO_GAP, UNEXPLAINED, RankedSet
 from tyrefem.diagnose.words import verdict_words
@@ -85,8 +86,14 @@ def test_unexplained_draws_the_missing_heat_and_names_nothing(case: Case, tmp_pa
     assert record["missing_heat"]["runs"][0]["heat_W_m3"] == [2e4] * len(missing.stations)
     words = verdict_words(d)
     assert words[0] == "No effect in the catalogue explains the deviation."
-    assert "heat inside the tread while the tyre rolls, in the crown" in words[1]
-    assert "+20.0 ± 1.0 kW/m³" in words[1]
+    # The patch fills the thickness, so no layer is named.
+    assert words[1].startswith("Heat is missing in the crown (s = ")
+    assert "all layers: +20.0 ± 1.0 kW/m³, while the tyre rolls" in words[1]
+    assert "tread" not in words[1]
+    sink = replace(d, missing=replace(missing, heat=-missing.heat))
+    assert verdict_words(sink)[1].startswith("The model has too much heat, cooling is missing, in the crown")
+    weak = replace(d, missing=replace(missing, heat=missing.heat_sd * 1.9))
+    assert verdict_words(weak)[1] == f"{NOT_CLEAR}."
     for name in ("missing-heat.png", "missing-heat-stations.png"):
         assert (tmp_path / name).stat().st_size > 10_000
 

@@ -191,8 +191,8 @@ class ForwardModel(Brief):
         return np.concatenate([each.sampled(here.grid, slopes[each.sensor]) for each in samplings])
 
     def source_responses(self, number: int, sources: tuple[Unknown, ...], knots: tuple[float, ...]) -> Array:
-        """See `tyrefem.diagnose.source_responses`."""
-        return source_responses(self, number, sources, np.array(knots))
+        """Block means at a drive by source and knot; see `tyrefem.diagnose.source_responses`."""
+        return source_responses(self.base(number), self.drives[number], sources, np.array(knots))
 
     def predict(self, number: int, values: Values) -> Array:
         """Block means at a drive with unknowns at ``values``, by fixed-step simulation; NaN for an impossible tyre."""

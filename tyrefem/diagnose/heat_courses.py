@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Callable, Iterator, Sequence
 from dataclasses import dataclass, field
+from itertools import pairwise
 
 import numpy as np
 from numpy.typing import NDArray
@@ -62,7 +63,7 @@ class CourseGrid(Brief):
     def parts(self) -> list[slice]:
         """By run, the place of its knots among all."""
         edges = np.cumsum([0, *(len(knots) for knots in self.knots)])
-        return [slice(int(start), int(end)) for start, end in zip(edges[:-1], edges[1:], strict=True)]
+        return [slice(int(start), int(end)) for start, end in pairwise(edges)]
 
 
 @dataclass(frozen=True, eq=False)
@@ -138,9 +139,7 @@ def _shaped(
     only: int | None = None,
 ) -> Course:
     """A course of given shape, with a strength that all runs share and a smaller part of every run."""
-    parts = [
-        strength * (only in (None, number)) for number, strength in enumerate(grid.sampled(course))
-    ]
+    parts = [strength * (only in (None, number)) for number, strength in enumerate(grid.sampled(course))]
     strength = np.concatenate(parts)
     columns = [strength]
     if only is None and len(parts) > 1:

@@ -39,9 +39,7 @@ class ProjectedData(Brief):
 
     @cached_property
     def _factor(self) -> tuple[Array, bool]:
-        factor: tuple[Array, bool] = cho_factor(
-            np.eye(len(self.sd)) + self._scaled.T @ self._scaled, lower=True
-        )
+        factor: tuple[Array, bool] = cho_factor(np.eye(len(self.sd)) + self._scaled.T @ self._scaled, lower=True)
         return factor
 
     def times(self, columns: Array) -> Array:

@@ -83,7 +83,7 @@ def _estimated(residuals: Residuals, responses: _Responses, data: ProjectedData)
         others = [entry for other, entry in enumerate(chosen) if other != number]
         layers = responses.places(coarse, layer_patches(study, settings, place.station))
         options = [option for option in (*places, *layers) if all(option is not other for other, _ in others)]
-        share = place_shares(data, place, options, others, coarse)
+        share = place_shares(data, options, others, coarse)
         shares.append(share)
         refined.append(next(o for o in options if (o.station, o.where) == next(iter(share))))
     unknown_of = {place_of(unknown): unknown for unknown in tried}

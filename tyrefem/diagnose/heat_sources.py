@@ -112,7 +112,10 @@ def _joint(data: ProjectedData, sources: Sequence[tuple[Place, Course]]) -> Heat
 
 
 def place_shares(
-    data: ProjectedData, source: Place, options: Sequence[Place], others: Sequence[tuple[Place, Course]], grid: CourseGrid
+    data: ProjectedData,
+    options: Sequence[Place],
+    others: Sequence[tuple[Place, Course]],
+    grid: CourseGrid,
 ) -> dict[tuple[float, str], float]:
     """(station, where) -> probability of a source's place, averaged over a constant and free courses.
 

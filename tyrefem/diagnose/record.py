@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from typing import TYPE_CHECKING, Any
 
+from tyrefem.diagnose.heat_words import is_told, source_place, source_words
 from tyrefem.diagnose.result_tables import candidate_rows, parameters, set_rows
 from tyrefem.diagnose.verdict import CONFOUNDED, IDENTIFIED, NO_GAP, UNEXPLAINED
 from tyrefem.diagnose.words import look_folder, verdict_words
@@ -12,6 +13,8 @@ from tyrefem.output import jsonable, versions
 if TYPE_CHECKING:
     from tyrefem.diagnose.candidates import Candidate
     from tyrefem.diagnose.diagnosis import DiagnosisData
+    from tyrefem.diagnose.heat_over_time import HeatOverTime
+    from tyrefem.diagnose.heat_sources import HeatSource
 
 #: File of the amended study, beside the record.
 AMENDED = "amended.toml"
@@ -152,9 +155,15 @@ def change_rows(d: DiagnosisData) -> list[dict[str, Any]]:
 
 
 def missing_heat(d: DiagnosisData) -> dict[str, Any]:
-    """Heat of unknown origin by station: W/m3 inside while the tyre rolls, W/m2 through the outer surface."""
+    """Heat of unknown origin by station: W/m3 inside while the tyre rolls, W/m2 through the outer surface.
+
+    ``sources``: what the data tell of each place, sign, amount and course in time; see `source_row`.
+    """
     heat = d.missing
+    over_time = heat.over_time
     return {
+        "sources": [] if over_time is None else [source_row(d, source, over_time) for source in over_time.sources],
+        "cooling_run": None if over_time is None else over_time.cools,
         "kind": heat.kind,
         "region": heat.region,
         "station_m": heat.station,
@@ -170,6 +179,40 @@ def missing_heat(d: DiagnosisData) -> dict[str, Any]:
                 "flux_sd_W_m2": heat.flux_sd[number],
             }
             for number, run in enumerate(heat.runs)
+        ],
+    }
+
+
+def source_row(d: DiagnosisData, source: HeatSource, over_time: HeatOverTime) -> dict[str, Any]:
+    """A source of missing heat (positive) or of too much heat (negative): W/m3 inside, W/m2 through a surface.
+
+    ``stated``: the amount differs from zero by more than two standard deviations. ``depth``: probability of each layer
+    and surface at the station. ``course_probabilities``: of each course in time. ``runs``: the amount over time.
+    """
+    unit = "W_m3" if source.inside else "W_m2"
+    return {
+        "sentence": source_words(d, source, over_time),
+        "stated": source.clear,
+        "sign": "heat is missing" if source.amount > 0 else "cooling is missing",
+        "station_m": source.station,
+        "place": source_place(d, source),
+        "where": source.where,
+        "inside_told_from_surface": is_told(source),
+        "kind": "heat" if source.inside else "flux",
+        f"amount_{unit}": source.amount,
+        f"amount_sd_{unit}": source.sd,
+        "station_probabilities": [{"station_m": s, "probability": share} for s, share in source.stations.items()],
+        "depth": dict(source.depths),
+        "course": source.kind,
+        "course_probabilities": dict(source.kinds),
+        "time_s": source.time,
+        "time_sd_s": source.time_sd,
+        "log_evidence_gain": source.gain,
+        "runs": [
+            {"run": run, "times_s": knots, f"amount_{unit}": strength, f"amount_sd_{unit}": sd}
+            for run, knots, strength, sd in zip(
+                over_time.runs, over_time.knots, source.strength, source.strength_sd, strict=True
+            )
         ],
     }
 

@@ -6,14 +6,12 @@ import math
 from collections.abc import Sequence
 from typing import TYPE_CHECKING
 
-import numpy as np
-
 from tyrefem.diagnose.candidates import Candidate
+from tyrefem.diagnose.heat_words import heat_words
 from tyrefem.diagnose.numbers import amount, correction_words, parameter_name, percent
 from tyrefem.diagnose.pulls import pulls
 from tyrefem.diagnose.result_tables import competing_sets, inclusion_probability
 from tyrefem.diagnose.verdict import CONFOUNDED, IDENTIFIED, NO_GAP
-from tyrefem.geometry.place_names import place
 
 if TYPE_CHECKING:
     from tyrefem.diagnose.diagnosis import DiagnosisData
@@ -74,7 +72,7 @@ def _verdict_sentences(d: DiagnosisData) -> tuple[str, ...]:
         return _joined(clauses, [f"Probability {percent(d.judgement.probability)}."], closing)
     if d.verdict == CONFOUNDED:
         return _confounded(d, closing)
-    clearest = f"The largest missing source is {missing_words(d)}."
+    clearest = f"{heat_words(d)}."
     named = " and ".join(member.key for member in d.best.members)
     partly = [f"These effects explain part of the deviation: {named}."]
     return (
@@ -95,25 +93,6 @@ def _corrected(d: DiagnosisData, most: int = 6) -> tuple[str, ...]:
     items = [f"{correction_words(each.unknown, each.x, each.sd)} ({each.pull:+z.1f} sd)" for each in shown[:most]]
     more = f"; and {len(shown) - most} more" if len(shown) > most else ""
     return (f"Corrected for it, in standard deviations of what was stated: {'; '.join(items)}{more}.",)
-
-
-def missing_words(d: DiagnosisData) -> str:
-    """Heat of unknown origin in one clause: kind, place, amount."""
-    missing, section = d.missing, d.original.section
-    total = float(section.total_thickness([missing.station])[0])
-    inside = missing.kind == "heat"
-    mean, spread, unit = (
-        (missing.heat, missing.heat_sd, "W/m**3") if inside else (missing.flux, missing.flux_sd, "W/m**2")
-    )
-    at = int(np.abs(missing.stations - missing.station).argmin())
-    size = amount(float(mean[:, at].mean()), float(spread[:, at].mean()), unit)
-    where = place(section, missing.station, total / 2 if inside else total).split(",")[0]
-    kind = (
-        f"heat inside the {missing.region} while the tyre rolls"
-        if inside
-        else "a heat flux into the outer surface, also at rest"
-    )
-    return f"{kind}, {where} (s = {missing.station * 1e3:.0f} mm along the meridian): {size}"
 
 
 def _confounded(d: DiagnosisData, closing: str) -> tuple[str, ...]:

@@ -33,9 +33,9 @@ class MissingHeat(Effect):
     width: Annotated[
         float, Unit("m", gt=0), Field(description="standard deviation about the station", examples=["10 mm"])
     ]
-    region: Annotated[str | None, Field(description="the only region that is heated; default: all", examples=["ply"])] = (
-        None
-    )
+    region: Annotated[
+        str | None, Field(description="the only region that is heated; default: all", examples=["ply"])
+    ] = None
     begins: Annotated[
         float | None, Unit("s", ge=0), Field(description="begins at this time of the drive", examples=["300 s"])
     ] = None

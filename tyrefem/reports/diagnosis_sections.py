@@ -8,6 +8,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from tyrefem.diagnose.result_tables import rms_table
+from tyrefem.reports.diagnosis_heat import heat_course_figure
 from tyrefem.reports.figures.canvas import Canvas, canvas, draw_outlines
 from tyrefem.reports.figures.style import (  # fmt: skip
     FILLS,
@@ -118,8 +119,11 @@ def _ground(drawn: Canvas) -> None:
 
 
 def missing_figures(d: DiagnosisData) -> dict[str, Figure]:
-    """Pictures of the missing heat: on the section, and by station and run with its uncertainty."""
-    return {"missing-heat.png": _missing_map(d), "missing-heat-stations.png": _missing_stations(d)}
+    """Pictures of the missing heat: on the section, by station and run with its uncertainty, and over time."""
+    drawn = {"missing-heat.png": _missing_map(d), "missing-heat-stations.png": _missing_stations(d)}
+    if d.missing.over_time is not None:
+        drawn["missing-heat-course.png"] = heat_course_figure(d, d.missing.over_time)
+    return drawn
 
 
 def _missing_map(d: DiagnosisData) -> Figure:

@@ -1,0 +1,50 @@
+"""A sink on one sidewall, and heat that begins late: hidden in data, and told by a diagnosis."""
+
+from __future__ import annotations
+
+import json
+from pathlib import Path
+
+import pytest
+from hidden import measure, study
+
+from tyrefem.diagnose.heat_words import inside_share
+from tyrefem.diagnose.verdict import UNEXPLAINED
+from tyrefem.diagnose.words import verdict_words
+
+PLACE = {"station": "100 mm", "width": "13 mm"}
+
+
+def test_a_sidewall_that_is_cooled_from_outside_is_a_sink(tmp_path: Path) -> None:
+    owner = study(tmp_path / "study")
+    measure(owner, [{"name": "missing-flux", **PLACE, "into": "-1500 W/m**2"}])
+    d = owner.diagnose(largest=1, looks=1)
+    assert d.verdict == UNEXPLAINED
+    assert d.missing.over_time is not None
+    largest = d.missing.over_time.clear[0]
+    assert largest.amount < 0
+    assert abs(largest.station - 0.1) < 0.02
+    assert "The model has too much heat, cooling is missing," in verdict_words(d)[1]
+    # These runs do not cool at rest.
+    assert not d.missing.over_time.cools
+
+
+def test_heat_that_begins_late_is_dated(tmp_path: Path) -> None:
+    owner = study(tmp_path / "study")
+    measure(owner, [{"name": "missing-heat", **PLACE, "heat": "400 kW/m**3", "begins": "70 s"}])
+    d = owner.diagnose(largest=1, looks=1)
+    d.save(tmp_path / "out")
+    missing = json.loads((tmp_path / "out" / "verdict.json").read_text(encoding="utf-8"))["missing_heat"]
+    first = missing["sources"][0]
+    assert first["stated"]
+    assert first["sign"] == "heat is missing"
+    assert abs(first["station_m"] - 0.1) < 0.02
+    assert first["course"] == "begins"
+    assert first["time_s"] == pytest.approx(70.0, abs=max(3 * first["time_sd_s"], 8.0))
+    assert {"kind", "region", "station_m", "stations_m", "watts", "runs"} <= set(missing)
+    assert first["sentence"] in verdict_words(d)[1]
+    assert (tmp_path / "out" / "missing-heat-course.png").stat().st_size > 10_000
+    assert d.missing.over_time is not None
+    assert inside_share(d.missing.over_time.sources[0]) == pytest.approx(
+        sum(share for where, share in first["depth"].items() if "surface" not in where and where != "rim")
+    )
