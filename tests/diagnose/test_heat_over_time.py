@@ -106,7 +106,10 @@ def test_a_source_in_one_run_only_is_said_to_be_that() -> None:
     shown = source(readings([0.0 * after(0.0), 6.0 * after(0.0)], 0.02, ALL_LAYERS, 2), grid())
     assert shown.kind == "run fast"
     assert shown.kinds["run fast"] > 0.85
-    assert course_words(shown) in ("It acts in fast only", f"Probably it acts in fast only ({percent(shown.kinds[shown.kind])})")
+    assert course_words(shown) in (
+        "It acts in fast only",
+        f"Probably it acts in fast only ({percent(shown.kinds[shown.kind])})",
+    )
 
 
 def test_a_source_in_proportion_to_the_speed() -> None:

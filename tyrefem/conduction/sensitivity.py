@@ -115,9 +115,9 @@ def tangents(
     with one_thread():
         direct = _direct(base, times, values, reservoirs, perturbed)
         s = np.zeros((ops.size + reservoirs.shape[1], len(perturbed)))
-        for column, perturbation in enumerate(perturbed):
+        for number, perturbation in enumerate(perturbed):
             if perturbation.initial is not None:
-                s[:, column] = (perturbation.initial - values[0, 0]) / perturbation.step
+                s[:, number] = (perturbation.initial - values[0, 0]) / perturbation.step
         return _integrate(base, times, values, reservoirs, direct, direct.rate, s)
 
 

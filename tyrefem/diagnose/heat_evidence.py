@@ -2,8 +2,10 @@
 
 from __future__ import annotations
 
+from collections.abc import Mapping
 from dataclasses import dataclass
 from functools import cached_property
+from typing import TypeVar
 
 import numpy as np
 from numpy.typing import NDArray
@@ -12,6 +14,7 @@ from scipy.linalg import cho_factor, cho_solve
 from tyrefem.brief import Brief
 
 Array = NDArray[np.float64]
+Key = TypeVar("Key")
 
 
 @dataclass(frozen=True, eq=False)
@@ -101,7 +104,7 @@ def log_mean_exp(values: list[float] | Array) -> float:
     return top + float(np.log(np.exp(array - top).mean()))
 
 
-def shares(logs: dict[str, float]) -> dict[str, float]:
+def shares(logs: Mapping[Key, float]) -> dict[Key, float]:
     """exp(values), scaled to the sum 1, largest first."""
     top = max(logs.values())
     weights = {key: float(np.exp(value - top)) for key, value in logs.items()}

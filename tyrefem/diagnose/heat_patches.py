@@ -7,7 +7,7 @@ from collections.abc import Sequence
 import numpy as np
 
 from tyrefem.diagnose.settings import DiagnosisSettings
-from tyrefem.diagnose.unknowns import Unknown, of_effect
+from tyrefem.diagnose.unknowns import Choice, Unknown, of_effect
 from tyrefem.effects import catalogue
 from tyrefem.inputs.study import StudyData
 
@@ -46,7 +46,7 @@ def stations(study: StudyData, settings: DiagnosisSettings) -> list[float]:
 def patch(study: StudyData, settings: DiagnosisSettings, station: float, where: str) -> Unknown:
     """The unknown heat or flux about a station."""
     spacing = study.section.line.length / settings.stations
-    choice = (("station", f"{station!r} m"), ("width", f"{round(spacing * 0.6, 6)!r} m"))
+    choice: Choice = (("station", f"{station!r} m"), ("width", f"{round(spacing * 0.6, 6)!r} m"))
     if where in SURFACES:
         choice += () if where == OUTER else (("surface", SURFACES[where]),)
         return of_effect(catalogue()["missing-flux"], choice, settings.missing_flux)[0]
