@@ -34,7 +34,6 @@ os.environ.setdefault("OPENBLAS_NUM_THREADS", "1")
 from tyrefem.errors import InputError
 from tyrefem.inputs.study import StudyData
 from tyrefem.mechanics.footprint.contact import Pressing
-from tyrefem.mechanics.footprint.footprint import Footprint
 from tyrefem.mechanics.footprint.harmonic_balance import Balance
 from tyrefem.mechanics.footprint.pressed_tyre import mechanical_mesh
 from tyrefem.mechanics.solid.inflation import Inflation, inflate
@@ -48,14 +47,12 @@ LBF, PSI, INCH = 4.4482216152605, 6894.757293168361, 0.0254
 FIRST_SIZE, FIRST, EVERY = "22x5.5", 4, 10
 #: Size of the study's mesh over the section width; nine-node elements are twice as large.
 MESH = 0.057
-#: Harmonics and tolerance of a balance at the rated load.
-HARMONICS, TOLERANCE = 24, 1e-2
-#: Harmonics on the way to bottoming, and those with which a way that ends early is tried again.
-WAYS = (16, 12)
+#: Harmonics and tolerance of a balance.
+HARMONICS, TOLERANCE = 24, 1e-3
+#: Harmonics at the bottoming radius: fewer where a way to it ends early.
+WAYS = (24, 16, 12)
 #: Largest deflection over that at which the crown meets the rim.
 BEFORE_RIM = 0.99
-#: Deflection over load, as an exponent; a load so close to the rated one needs no second balance.
-SLOPE, CLOSE = 0.8, 0.05
 #: Number of a section or a card, and its standard deviation (relative): estimates.
 UNCERTAIN: dict[str, tuple[str, float]] = {
     "outer diameter": ("outer_diameter", 0.008),
@@ -219,25 +216,6 @@ def label(tyre: CatalogueTyre) -> dict[str, Any]:
     }
 
 
-def under_load(tyre: CatalogueTyre, pressing: Pressing) -> tuple[float, Footprint]:
-    """Deflection at the rated load, m, and a footprint there or near it.
-
-    Where the balance does not find the load: the power law through the balances at two deflections, the catalogue's
-    and the one that it lets expect; from a load within 5 % with the exponent 0.8.
-    """
-    try:
-        footprint = Balance(pressing, HARMONICS, tolerance=TOLERANCE).solve(load=tyre.load, tolerance=0.02)
-        return footprint.deflection, footprint
-    except InputError:
-        first = Balance(pressing, HARMONICS, tolerance=TOLERANCE).solve(deflection=tyre.deflection, tolerance=0.02)
-    expected = tyre.deflection * (tyre.load / first.load) ** SLOPE
-    if abs(first.load / tyre.load - 1) < CLOSE:
-        return expected, first
-    second = Balance(pressing, HARMONICS, tolerance=TOLERANCE).solve(deflection=expected, tolerance=0.02)
-    slope = math.log(second.deflection / first.deflection) / math.log(second.load / first.load)
-    return second.deflection * (tyre.load / second.load) ** slope, second
-
-
 def rated(tyre: CatalogueTyre) -> dict[str, Any]:
     """Deflection at the rated load in large motion and linear, and the inflated size beside the data book's."""
     row = {
@@ -263,13 +241,13 @@ def rated(tyre: CatalogueTyre) -> dict[str, Any]:
             "mean stretch of the cords": state.cord_tensions["carcass"].strain[1],
             "nodes": state.body.rings.n_nodes,
         }
-        deflection, footprint = under_load(tyre, pressing)
+        footprint = Balance(pressing, HARMONICS, tolerance=TOLERANCE).at_load(tyre.load)
     except InputError as error:
         return {**row, "message": str(error)}
     return {
         **row,
-        "computed deflection [mm]": deflection * 1e3,
-        "computed over catalogue": deflection / tyre.deflection,
+        "computed deflection [mm]": footprint.deflection * 1e3,
+        "computed over catalogue": footprint.deflection / tyre.deflection,
         "contact length [mm]": footprint.length * 1e3,
         "contact width [mm]": footprint.width * 1e3,
     }
@@ -300,7 +278,7 @@ def bottoming(tyre: CatalogueTyre) -> dict[str, Any] | None:
     for harmonics in WAYS:
         balance = Balance(pressing, harmonics, tolerance=TOLERANCE)
         try:
-            footprint = balance.solve(deflection=min(deflection, BEFORE_RIM * pressing.bottoming), tolerance=1.0)
+            footprint = balance.at_deflection(min(deflection, BEFORE_RIM * pressing.bottoming))
             reached, load, row["message"] = footprint.deflection, footprint.load, ""
             break
         except InputError as error:
@@ -313,8 +291,7 @@ def sensitivities(tyre: CatalogueTyre) -> Iterator[dict[str, Any]]:
     """Relative change of the deflection by one standard deviation of each number, in large motion."""
 
     def deflection(changes: Mapping[str, Any]) -> float:
-        balance = Balance(inflated(tyre, changes)[1], HARMONICS, tolerance=TOLERANCE / 10)
-        return balance.solve(load=tyre.load, tolerance=0.0).deflection
+        return Balance(inflated(tyre, changes)[1], HARMONICS, tolerance=TOLERANCE).at_load(tyre.load).deflection
 
     nominal = deflection({})
     rules = draw_size(tyre.name, tyre.numbers).rules
