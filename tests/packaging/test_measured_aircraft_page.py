@@ -64,7 +64,7 @@ def test_a_stored_row_is_that_of_the_data_book(page: ModuleType, benchmark: Modu
 def test_verdicts_follow_the_uncertainty(page: ModuleType) -> None:
     row = {"u of the catalogue, %": "5"}
     u = page.u_val(row)
-    assert u == pytest.approx((0.05**2 + 0.02**2 + page.input_uncertainty() ** 2) ** 0.5)
+    assert u == pytest.approx((0.05**2 + page.NUMERICAL**2 + page.input_uncertainty() ** 2) ** 0.5)
     verdicts = [page.verdict({**row, page.RATIO: str(1 + k * u)}) for k in (0.5, -1.5, 2.5)]
     assert verdicts == ["within u_val", "within 2 u_val", "model error"]
 
