@@ -49,6 +49,26 @@ the [table](evidence/tables/effect-parameters.csv). A *shape* does nothing while
 judgement, not a measurement. Pictures show what one sd changes in the readings of `example-validation` (22x5.5 8PR,
 2700 lbf, 83 psi, 20 mph for 600 s, then at rest; noise of a thermocouple 0.5 K).
 
+## An effect in some runs only
+
+Road, sun, water and air change from one day to the next. `runs` names the measured runs in which an effect acts:
+
+```toml
+[[effects]]
+name = "hot-road"
+runs = ["run-2"]                         # default: every run
+warmer_by = "25 delta_degC"
+```
+
+- `tyrefem compare` and `tyrefem diagnose` let it act in these runs alone. An entry for all runs may stand beside it:
+  the two add up. Two entries of one effect in the same run are refused.
+- A run has the name that its table gives, or else the name of the file without `.csv`. A name that the study's tables
+  do not have is an error.
+- `tyrefem run` follows no measured run: it leaves the effect out, and the report says so. With the run's name it acts:
+  `tyrefem run STUDY --set run=run-2`. So it is with sweeps, campaigns and real-time models.
+- A diagnosis tries `hot-road`, `sun`, `wet-road` and `ambient-drift` also in each fitted run alone, as
+  `hot-road in run-2`. An effect of your own takes part with `of_the_day: ClassVar[bool] = True`.
+
 ## An effect of your own
 
 A Python file in a folder that `TYREFEM_EFFECTS` names (several as in `PATH`):

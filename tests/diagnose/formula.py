@@ -112,7 +112,7 @@ def case(
         tuple(slopes(each, keys, {}) for each, _ in laws),
     )
     card = SimpleNamespace(drive=SimpleNamespace(initial=0.0), diagnosis=SimpleNamespace(effects_expected=expected))
-    study = cast(Any, SimpleNamespace(card=card, file=None, with_drive=lambda drive: study))
+    study = cast(Any, SimpleNamespace(card=card, file=None, at_run=lambda run, drive: study))
     formula = Formula(law, known.drives, settings, held_out[0] if held_out else None)
     return Case(formula, Residuals(study, trials, known, settings), Predictions(cast(Any, formula)))
 

@@ -20,6 +20,7 @@ OWN, ADDED = np.array([3.0, 20.0, 30.0]), np.array([1.4, -0.2, 0.3])
 @pytest.fixture
 def residuals() -> Residuals:
     study = cast(Any, SimpleNamespace(card=SimpleNamespace(drive=SimpleNamespace(initial=START))))
+    study.at_run = lambda run, drive: study
     known = Sensitivities((), (), 0, (START + OWN,), (ADDED,), (np.zeros((3, 0)),))
     return Residuals(study, (MeasuredDrive("run", {}, False, ()),), known)
 

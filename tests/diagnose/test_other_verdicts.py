@@ -30,7 +30,7 @@ NEXT = {
 
 def confounded(d: DiagnosisData) -> DiagnosisData:
     """As if hot road and sun were 60 : 25, and an idle effect beside the hot road took the rest."""
-    by_name = {candidate.name: candidate for candidate in d.candidates}
+    by_name = {candidate.name: candidate for candidate in d.candidates if not candidate.runs}
     hot, sun, idle = by_name["hot-road"], by_name["sun"], by_name["sensor-offset"]
     fits = {candidate.members: candidate.fit for candidate in d.judgement.ranking}
     sets = [((hot,), 0.6), ((sun,), 0.25), ((hot, idle), 0.14), ((), 0.01)]
@@ -51,7 +51,7 @@ def test_confounded_names_the_rivals_and_what_would_decide(case: Case, tmp_path:
     assert inclusion_probability(d, competing_sets(d)[0]) == pytest.approx(0.74)
     d.save(tmp_path)
     record = json.loads((tmp_path / "verdict.json").read_text(encoding="utf-8"))
-    rivals = {row["name"]: row["confounded_with"] for row in record["candidates"]}
+    rivals = {row["name"]: row["confounded_with"] for row in record["candidates"] if row["runs"] is None}
     assert rivals["hot-road"] == ["sun"]
     assert rivals["sun"] == ["hot-road"]
     assert rivals["sensor-offset"] == []

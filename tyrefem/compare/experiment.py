@@ -5,10 +5,12 @@ from __future__ import annotations
 from collections.abc import Iterable, Mapping, Sequence
 from dataclasses import dataclass, field, replace
 from pathlib import Path
-from typing import Any
+from typing import Any, cast
 
 from tyrefem.compare.interface import MeasuredEntryLike, StudyLike
 from tyrefem.errors import InputError, nearest, quoted
+from tyrefem.inputs.study import StudyData
+from tyrefem.inputs.study_effects import check_runs
 from tyrefem.measured import MeasuredRun
 from tyrefem.measured.columns import parts
 from tyrefem.measured.frame import frame_table, is_frame
@@ -61,8 +63,8 @@ def experiments(
 
     Raises
     ------
-    InputError : no run; an entry names a run that is not in the table; a column is no sensor of the study; no table
-        has a column that is to be renamed or ignored.
+    InputError : no run; an effect is in a run that the study's tables do not have; an entry names a run that is not in
+        the table; a column is no sensor of the study; no table has a column that is to be renamed or ignored.
     """
     given = ColumnNames(dict(rename or {}), tuple(ignore))
     entries = list(study.measured) if table is None else []
@@ -90,7 +92,23 @@ def experiments(
         raise InputError("there is no measured run to compare with")
     planned = [_without_columns(experiment, given.ignore) for experiment in planned]
     _check_sensors([experiment.run for experiment in planned], study)
-    return _with_distinct_names(planned)
+    distinct = _with_distinct_names(planned)
+    if table is None and isinstance(study, StudyData):
+        check_runs(study, [experiment.name for experiment in distinct])
+    return distinct
+
+
+def driven(study: StudyLike, experiment: Experiment) -> StudyLike:
+    """The study at the drive of an experiment, with the effects that act in its run."""
+    if acting_in(study, experiment):
+        return cast(StudyData, study).at_run(experiment.name, experiment.drive)
+    return study.with_drive(dict(experiment.drive)) if experiment.drive else study
+
+
+def acting_in(study: StudyLike, experiment: Experiment) -> tuple[int, ...]:
+    """Numbers of the study's effects that act in some runs only, and in that of the experiment."""
+    effects = study.card.effects if isinstance(study, StudyData) else ()
+    return tuple(i for i, effect in enumerate(effects) if effect.runs and effect.acts_in(experiment.name))
 
 
 def _listed(table: Table | None) -> Sequence[Any]:

@@ -10,7 +10,7 @@ from typing import Any, TypedDict, Unpack
 import numpy as np
 
 from tyrefem.compare.comparison import ComparisonData, comparison_of
-from tyrefem.compare.experiment import ColumnNames, Experiment, Table, experiments
+from tyrefem.compare.experiment import ColumnNames, Experiment, Table, acting_in, driven, experiments
 from tyrefem.compare.history import histories
 from tyrefem.compare.interface import ResultLike, StudyLike, computed_of
 from tyrefem.compare.reduced_inputs import (
@@ -96,7 +96,7 @@ def compare(
     solved, certificate, model_notes = _solved(study, planned, result, keys, work)
     all_histories, curves, notes = [], {}, []
     for experiment in planned:
-        computed, perturbed = solved[_drive(experiment)]
+        computed, perturbed = solved[_drive(study, experiment)]
         of_experiment, outside = histories(experiment, study, computed, perturbed)
         all_histories += of_experiment
         curves[experiment.name] = computed.readings
@@ -112,9 +112,10 @@ def compare(
     )  # fmt: skip
 
 
-def _drive(experiment: Experiment) -> str:
-    """Experiments at the same drive share their simulations."""
-    return repr(sorted(experiment.drive.items()))
+def _drive(study: StudyLike, experiment: Experiment) -> str:
+    """Experiments at the same drive, with the same effects, share their simulations."""
+    acting = acting_in(study, experiment)
+    return repr(sorted(experiment.drive.items())) + (f" effects {acting}" if acting else "")
 
 
 #: Drive and changed input; None: as the study has it.
@@ -175,16 +176,16 @@ def _solved(
     known: dict[str, ResultLike] = {}
     studies: dict[Key, StudyLike] = {}
     for experiment in planned:
-        drive = _drive(experiment)
+        drive = _drive(study, experiment)
         if (drive, None) in studies:
             continue
-        driven = study.with_drive(dict(experiment.drive)) if experiment.drive else study
+        at_drive = driven(study, experiment)
         amended = result is not None and len(planned) == 1 and result.study is not study
-        if result is not None and (not experiment.drive or amended):
+        if result is not None and (at_drive is study or amended):
             known[drive] = result
-            driven = result.study
-        studies[drive, None] = driven
-        studies |= {(drive, key): driven.scaled(key, 1.0 + sd) for key, sd in keys.items()}
+            at_drive = result.study
+        studies[drive, None] = at_drive
+        studies |= {(drive, key): at_drive.scaled(key, 1.0 + sd) for key, sd in keys.items()}
     as_data = {key: driven for key, driven in studies.items() if isinstance(driven, StudyData)}
     at_hand = {drive: given for drive, given in known.items() if isinstance(given, ResultData)}
     if len(as_data) == len(studies) and len(at_hand) == len(known):
@@ -258,8 +259,8 @@ def _check_times(study: StudyData, planned: Sequence[Experiment]) -> None:
     """Raises InputError before the simulations if all readings are outside the drives of their runs."""
     notes: list[str] = []
     for experiment in planned:
-        driven = study.with_drive(dict(experiment.drive)) if experiment.drive else study
-        times, end = experiment.run.times, driven.card.drive.end
+        at_drive = study.with_drive(dict(experiment.drive)) if experiment.drive else study
+        times, end = experiment.run.times, at_drive.card.drive.end
         outside = int(np.sum((times < 0.0) | (times > end * (1 + 1e-9))))
         if outside < len(times):
             return

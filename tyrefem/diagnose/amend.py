@@ -80,9 +80,8 @@ def amended(study: StudyData, change: Sequence[Change]) -> StudyData:
     for each in change:
         if each.unknown.effect is None:
             continue
-        wanted = {"name": each.unknown.effect, **dict(each.unknown.choice)}
         for entry in entries:
-            if all(entry.get(key) == value for key, value in wanted.items()):
+            if each.unknown.belongs_to(entry):
                 entry["from"] = each.source
                 if each.unknown.parameter is None:
                     continue

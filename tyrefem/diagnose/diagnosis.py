@@ -109,7 +109,8 @@ class DiagnosisData(Brief):
     @functools.cached_property
     def prior(self) -> SetPrior:
         """ln of the prior probability of a set."""
-        return SetPrior(self.candidates, self.original.card.diagnosis.effects_expected, self.gap.settings.size_shares)
+        expected, settings = self.original.card.diagnosis.effects_expected, self.gap.settings
+        return SetPrior(self.candidates, expected, settings.size_shares, settings.odd_run_share)
 
     def rms(self, *, after: bool, held_out: bool) -> float:
         """Root mean square of measured - computed, K."""

@@ -113,13 +113,12 @@ class ForwardModel(Brief):
         return Cache(512)
 
     def with_values(self, study: StudyData, values: Values, like: StudyData | None = None) -> StudyData:
-        """See `tyrefem.diagnose.unknowns.with_values`."""
-        return with_values(study, values, like, self._numbers)
+        """See `tyrefem.diagnose.unknowns.with_values`; effects in other runs than the study's are left out."""
+        return with_values(study, _acting(study, values), like, self._numbers)
 
     def driven(self, study: StudyData, number: int) -> StudyData:
-        """The study at a drive."""
-        drive = self.drives[number].drive
-        return study.with_drive(drive) if drive else study
+        """The study at the drive of a run."""
+        return study.at_run(self.drives[number].name, self.drives[number].drive)
 
     def base(self, number: int) -> FixedStepRun:
         """The coarse study simulated at a drive."""
@@ -199,7 +198,7 @@ class ForwardModel(Brief):
         base = self.base(number)
         try:
             study = self.with_values(base.study, values)
-            same = all(unknown.measures or x == 0.0 for unknown, x in values.items())
+            same = all(unknown.measures or x == 0.0 for unknown, x in _acting(base.study, values).items())
             simulated = base.as_measured_by(study) if same else fixed_step_run(study, base.tyre, every=base.every)
         except InputError:
             # For example a load that the tyre cannot carry: the fit will try a shorter step.
@@ -253,7 +252,7 @@ class ForwardModel(Brief):
         there = [
             (
                 self.with_values(base.study, {**at, unknown: at.get(unknown, 0.0) + unknown.step}, base.study),
-                unknown.measures,
+                unknown.measures or not unknown.acts_in(base.study.card.run),
             )
             for unknown in unknowns
         ]
@@ -275,13 +274,15 @@ class ForwardModel(Brief):
     ) -> ReadingSensitivities:
         """Sensitivities about a solution: tangents if the unknown keeps the mesh, else a second simulation.
 
-        Those of a further effect with which no tyre can be built are NaN.
+        Those of a further effect with which no tyre can be built are NaN, those of an effect in other runs 0.
         """
         again: dict[int, FixedStepRun] = {}
         failed: list[int] = []
         columns: list[int] = []
         perturbed: list[Perturbed] = []
         for column, unknown in enumerate(unknowns):
+            if not unknown.acts_in(origin.card.run):
+                continue
             try:
                 study = self.with_values(origin, {**at, unknown: at.get(unknown, 0.0) + unknown.step}, base.study)
                 if unknown.measures:
@@ -311,6 +312,11 @@ class ForwardModel(Brief):
             columns = list(alone)
             derivatives = _tangents(base, list(alone.values()))
         return ReadingSensitivities(base, tuple(unknowns), again, columns, derivatives, failed)
+
+
+def _acting(study: StudyData, values: Values) -> Values:
+    """The values of the unknowns that act in the study's run."""
+    return {unknown: x for unknown, x in values.items() if unknown.acts_in(study.card.run)}
 
 
 def _tangents(base: FixedStepRun, perturbed: Sequence[Perturbed]) -> Tangents | None:

@@ -9,7 +9,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from tyrefem.diagnose.candidates import Members
+from tyrefem.diagnose.candidates import Members, separate
 from tyrefem.diagnose.fits import FittedSet
 from tyrefem.diagnose.linear_model import LinearModel
 from tyrefem.diagnose.selection import ScoredSet, SelectionProblem, sets_of
@@ -150,8 +150,7 @@ class _Progress:
     def _extend(self, members: Members) -> None:
         """Estimate every set with one more effect in the linear model about the fit."""
         problem, criterion = self.problem, self.problem.criterion
-        taken = {member.name for member in members}
-        others = [candidate for candidate in problem.candidates if candidate.name not in taken]
+        others = [candidate for candidate in problem.candidates if separate(candidate, members)]
         about = problem.linear_about(self.fits[members], others)
         of_part = criterion.of_linear(about, ())
         for candidate in others:

@@ -91,6 +91,6 @@ def correction_words(unknown: Unknown, x: float, sd: float) -> str:
         film = dict(unknown.choice).get("film", "").replace("_", " ")
         name = f"film coefficient of {film}" if film else base_name(unknown)
         return f"{name} {amount(100 * math.expm1(x), 100 * sd * math.exp(x), '%')}"
-    place = ", ".join(value for _, value in unknown.choice)
+    place = ", ".join([*dict(unknown.choice).values(), *unknown.runs])
     shown = amount(unknown.value(x), sd, unknown.unit)
     return f"{place}: {parameter_name(unknown)} {shown}" if place else f"{parameter_name(unknown)} {shown}"

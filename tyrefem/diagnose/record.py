@@ -23,6 +23,7 @@ AMENDED = "amended.toml"
 def record(d: DiagnosisData) -> dict[str, Any]:
     """The diagnosis as numbers in SI units and degC, with the unit in the key; NaN becomes null.
 
+    ``runs`` of an effect: the runs in which it acts, null for all.
     ``effects``: members of the most probable set if the verdict is "identified" or "confounded", else empty.
     """
     named = d.best.members if d.verdict in (IDENTIFIED, CONFOUNDED) else ()
@@ -34,6 +35,7 @@ def record(d: DiagnosisData) -> dict[str, Any]:
             {
                 "name": member.name,
                 "variant": dict(member.choice),
+                "runs": list(member.runs) or None,
                 "probability": d.judgement.named.get(member.key, 0.0),
                 "parameters": parameters(member.unknowns, d.best),
                 "moves": _moves(d, member),
@@ -142,6 +144,7 @@ def change_rows(d: DiagnosisData) -> list[dict[str, Any]]:
             "keys": list(change.unknown.keys),
             "effect": change.unknown.effect,
             "variant": dict(change.unknown.choice),
+            "runs": list(change.unknown.runs) or None,
             "missing": change.missing,
             "original": change.unknown.value(0.0),
             "value": change.unknown.value(change.x),

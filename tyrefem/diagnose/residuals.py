@@ -71,9 +71,8 @@ class Residuals(Brief):
         return self.sensitivities.held_out
 
     def driven(self, number: int) -> StudyData:
-        """The study at the drive of a run."""
-        drive = self.runs[number].drive
-        return self.study.with_drive(drive) if drive else self.study
+        """The study at the drive of a run, with the effects that act in it."""
+        return self.study.at_run(self.runs[number].name, self.runs[number].drive)
 
     @cached_property
     def _start(self) -> tuple[float, ...]:

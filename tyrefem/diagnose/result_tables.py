@@ -76,6 +76,7 @@ def candidate_rows(d: DiagnosisData) -> list[dict[str, Any]]:
             {
                 "name": candidate.name,
                 "variant": dict(candidate.choice),
+                "runs": list(candidate.runs) or None,
                 "probability": d.judgement.named.get(candidate.key, 0.0),
                 "log_evidence": evidence,
                 "log_evidence_gain": evidence - _log_evidence(d, none),

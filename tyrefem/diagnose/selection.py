@@ -9,7 +9,7 @@ from functools import cached_property
 from typing import NamedTuple, Protocol
 
 from tyrefem.brief import Brief
-from tyrefem.diagnose.candidates import Candidate, Members, SetPrior
+from tyrefem.diagnose.candidates import Candidate, Members, SetPrior, separate
 from tyrefem.diagnose.criterion import Criterion
 from tyrefem.diagnose.fits import FittedSet, continued, first_fits, linear_about
 from tyrefem.diagnose.linear_model import LinearModel
@@ -30,9 +30,9 @@ class ScoredSet(NamedTuple):
 
 
 def sets_of(candidates: Members, size: int) -> Iterator[Members]:
-    """All sets of ``size`` different effects."""
+    """All sets of ``size`` different effects, or of one effect in different runs."""
     combined = itertools.combinations(candidates, size)
-    return (members for members in combined if len({member.name for member in members}) == size)
+    return (members for members in combined if all(separate(member, members[:i]) for i, member in enumerate(members)))
 
 
 @dataclass(frozen=True, eq=False)

@@ -66,6 +66,15 @@ class Sensitivities(Brief):
         bad = np.any([np.isnan(J).any(axis=0) for J in self.jacobians], axis=0)
         return tuple(unknown for unknown, is_bad in zip(self.unknowns, bad, strict=True) if is_bad)
 
+    def in_single_runs(self, unknowns: Sequence[Unknown]) -> Sensitivities:
+        """With columns of effects in some runs: those of the same effect in all runs, 0 at the drives of other runs."""
+        columns = [self.unknowns.index(unknown.everywhere) for unknown in unknowns]
+        jacobians = []
+        for drive, J in zip(self.drives, self.jacobians, strict=True):
+            acts = np.array([unknown.acts_in(drive.name) for unknown in unknowns], dtype=bool)
+            jacobians.append(np.hstack([J, np.where(acts, J[:, columns], 0.0)]))
+        return replace(self, unknowns=(*self.unknowns, *unknowns), jacobians=tuple(jacobians))
+
     def without(self, unknowns: Sequence[Unknown]) -> Sensitivities:
         """The sensitivities without the columns of some effects' unknowns."""
         if not unknowns:

@@ -17,7 +17,8 @@ class DiagnosisSettings:
 
     Raises
     ------
-    InputError : ``reduced`` is neither "auto" nor "never"; ``largest`` or ``looks`` is out of range.
+    InputError : ``reduced`` is neither "auto" nor "never"; ``largest``, ``looks`` or ``odd_run_share`` is out of
+        range.
     """
 
     # -- extent of the search
@@ -33,6 +34,9 @@ class DiagnosisSettings:
     size_shares: tuple[float, ...] = (0.75, 0.22, 0.03)
     #: Probability that the cause is outside the catalogue, if there is a cause (estimate).
     outside_share: float = 0.05
+    #: Probability that an effect of the day (road, sun, water, ambient) acts in one of the runs only, if it acts
+    #: (estimate); 0: effects act in all runs.
+    odd_run_share: float = 0.1
 
     # -- readings and forward model
     #: The noise of the readings' scatter replaces the stated noise if it differs by more than this (relative), and by
@@ -178,6 +182,8 @@ class DiagnosisSettings:
             raise InputError(
                 f"largest must be a number of effects from 1 to {len(self.size_shares)}, not {self.largest!r}"
             )
+        if not 0 <= self.odd_run_share < 1:
+            raise InputError(f"odd_run_share must be at least 0 and less than 1, not {self.odd_run_share!r}")
         if self.looks < 1:
             raise InputError(f"looks must be at least 1, not {self.looks!r}")
 

@@ -3,8 +3,8 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Mapping
-from dataclasses import dataclass
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass, replace
 from typing import Any
 
 from tyrefem.cache import Cache
@@ -30,6 +30,7 @@ class Unknown:
     keys : all dotted names of a base number: a number of a card belongs to every region with this card.
     effect, choice, parameter : for an effect's parameter: name, variant, and the parameter.
     origin : the parameter's value at x = 0 if the study has the effect.
+    runs : the measured runs in which the effect acts; empty: all.
     """
 
     key: str
@@ -41,6 +42,7 @@ class Unknown:
     parameter: Parameter | None = None
     origin: float | None = None
     keys: tuple[str, ...] = ()
+    runs: tuple[str, ...] = ()
 
     @property
     def step(self) -> float:
@@ -64,6 +66,34 @@ class Unknown:
     def fixed(self) -> bool:
         """Whether the effect has no amplitude: it is present (x = 1) or absent (x = 0)."""
         return self.effect is not None and self.parameter is None
+
+    def acts_in(self, run: str | None) -> bool:
+        """Whether the unknown changes the readings of a measured run; None: of a drive that is no measured run."""
+        return not self.runs or run in self.runs
+
+    def in_runs(self, runs: Sequence[str]) -> Unknown:
+        """The same parameter of the effect in some measured runs only.
+
+        >>> Unknown("effects.hot-road.warmer_by", 10.0, effect="hot-road").in_runs(["run-2"]).key
+        'effects.hot-road.warmer_by in run-2'
+        """
+        return replace(self, key=f"{self.key} in {', '.join(runs)}", runs=tuple(runs))
+
+    @property
+    def everywhere(self) -> Unknown:
+        """The same parameter of the effect in all runs."""
+        return replace(self, key=self.key.removesuffix(f" in {', '.join(self.runs)}"), runs=()) if self.runs else self
+
+    @property
+    def entry(self) -> dict[str, Any]:
+        """The effect's entry of ``[[effects]]``, without values."""
+        runs = {"runs": list(self.runs)} if self.runs else {}
+        return {"name": self.effect, **dict(self.choice), **runs}
+
+    def belongs_to(self, entry: Mapping[str, Any]) -> bool:
+        """Whether an entry of ``[[effects]]`` is this unknown's effect, with its choices and runs."""
+        same_runs = tuple(entry.get("runs", ())) == self.runs
+        return same_runs and all(entry.get(key) == value for key, value in self.entry.items() if key != "runs")
 
     @property
     def measures(self) -> bool:
@@ -99,7 +129,8 @@ def of_effect(
         zero = prior.origin if origin is None else origin
         limits = prior.low - zero, prior.high - zero
         unknowns.append(Unknown(f"effects.{tag}.{name}", spread, *limits, effect.name, choice, parameter, origin))
-    return tuple(unknowns)
+    runs = None if stated is None else stated.runs
+    return tuple(unknown.in_runs(runs) for unknown in unknowns) if runs else tuple(unknowns)
 
 
 def base_unknowns(study: StudyData) -> tuple[Unknown, ...]:
@@ -116,7 +147,7 @@ def base_unknowns(study: StudyData) -> tuple[Unknown, ...]:
     fitted = [
         unknown
         for effect in study.card.effects
-        if effect.name != "film-scale" and effect.name not in OF_SENSORS
+        if effect.runs or (effect.name != "film-scale" and effect.name not in OF_SENSORS)
         for unknown in of_effect(type(effect), tuple(effect.choice.items()), stated=effect)
         if unknown.parameter is not None and unknown.parameter.name in effect.sd
     ]
@@ -124,8 +155,8 @@ def base_unknowns(study: StudyData) -> tuple[Unknown, ...]:
 
 
 def _stated(study: StudyData, name: str, choice: Choice) -> Effect | None:
-    """The effect in the study; None if the study does not have it."""
-    effects = study.card.effects
+    """The effect in all runs of the study; None if the study does not have it."""
+    effects = (effect for effect in study.card.effects if not effect.runs)
     return next((each for each in effects if each.name == name and tuple(each.choice.items()) == choice), None)
 
 
@@ -188,9 +219,8 @@ def _written(study: StudyData, key: str, known: Cache[Any] | None) -> Any:
 
 
 def _entry(entries: list[dict[str, Any]], unknown: Unknown) -> dict[str, Any]:
-    wanted = {"name": unknown.effect, **dict(unknown.choice)}
     for entry in entries:
-        if all(entry.get(key) == value for key, value in wanted.items()):
+        if unknown.belongs_to(entry):
             return entry
-    entries.append(wanted)
+    entries.append(unknown.entry)
     return entries[-1]

@@ -31,9 +31,15 @@ def effect_amounts(candidate: Candidate, fit: FittedSet) -> list[str]:
     ]
 
 
+def effect_sentence(candidate: Candidate) -> str:
+    """The effect's sentence, after the runs in which it acts if these are not all."""
+    sentence = candidate.effect.sentence
+    return f"In {' and '.join(candidate.runs)} only: {sentence}" if candidate.runs else sentence
+
+
 def effect_words(candidate: Candidate, fit: FittedSet, move: Movement | None = None) -> str:
     """An effect in one clause: its sentence, its variant, its amounts, and what it moves at the sensors."""
-    sentence = candidate.effect.sentence.rstrip(".")
+    sentence = effect_sentence(candidate).rstrip(".")
     parts = [value for _, value in candidate.choice] + effect_amounts(candidate, fit)
     parts += [move.words] if move is not None else []
     return f"{sentence} ({'; '.join(parts)})"

@@ -4,14 +4,14 @@ from __future__ import annotations
 
 import math
 import time
-from collections.abc import Callable, Mapping
+from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass, replace
 from typing import Any, Unpack
 
 from tyrefem.brief import Brief
 from tyrefem.compare.experiment import ColumnNames, Table, experiments
 from tyrefem.diagnose.amend import Change, amended, changes
-from tyrefem.diagnose.candidates import Members, SetPrior, possible, simulated
+from tyrefem.diagnose.candidates import Members, SetPrior, in_single_runs, possible, simulated
 from tyrefem.diagnose.criterion import Criterion
 from tyrefem.diagnose.diagnosis import DiagnosisData
 from tyrefem.diagnose.effort import check_effort
@@ -86,17 +86,20 @@ def _look(
     began = time.perf_counter()
     settings = method.settings
     runs = _measured_drives(study, table, columns, settings)
-    candidates, notes = possible(study, method.candidates(study))
+    in_all_runs, notes = possible(study, method.candidates(study))
+    in_one_run = _in_single_runs(study, in_all_runs, runs, settings)
+    candidates = (*in_all_runs, *in_one_run)
     method.strategy.check(study, candidates, settings)
     model = ForwardModel(study, tuple(run.sampling for run in runs), settings=settings)
     if work.known is None:
         check_effort(model, f"the diagnosis of {study.name}", 1.0, work.workers)
     if work.store is not None and work.store.open(model):
         work.tick(f"resuming with {work.store.resumed} finished simulations")
-    unknowns, nuisance = unknowns_of(study, {name for run in runs for name in run.parts()}, candidates, settings)
+    unknowns, nuisance = unknowns_of(study, {name for run in runs for name in run.parts()}, in_all_runs, settings)
     with evaluating(model, work.workers, work.store) as evaluations:
         known = tuple(work.known or responses(evaluations, unknowns, work.tick))
-        sensitive = sensitivities(model.drives, unknowns, nuisance, known)
+        of_single_runs = [unknown for each in in_one_run for unknown in (*each.amplitudes, *each.presence)]
+        sensitive = sensitivities(model.drives, unknowns, nuisance, known).in_single_runs(of_single_runs)
         candidates, further_notes = simulated(candidates, sensitive.failed)
         sensitive = sensitive.without(sensitive.failed)
         residuals = residuals_of(study, runs, sensitive, settings)
@@ -149,6 +152,15 @@ def _measured_drives(
     return with_noise_of_data(runs, settings)
 
 
+def _in_single_runs(
+    study: StudyData, candidates: Members, runs: Sequence[MeasuredDrive], settings: DiagnosisSettings
+) -> Members:
+    """The candidates that depend on the day, each in one of the fitted runs."""
+    if not settings.odd_run_share:
+        return ()
+    return in_single_runs(study, candidates, [run.name for run in runs if not run.hold_out])
+
+
 @dataclass(frozen=True, eq=False)
 class Ranking(Brief):
     """Result of the search of one look.
@@ -177,7 +189,7 @@ def rank(
 ) -> Ranking:
     """Search for sets that explain the residuals, and rank them with heat of unknown origin."""
     settings, expected = residuals.settings, residuals.study.card.diagnosis.effects_expected
-    prior = SetPrior(candidates, expected, settings.size_shares)
+    prior = SetPrior(candidates, expected, settings.size_shares, settings.odd_run_share)
     origin = _UnknownOrigin(residuals, predictions, method.criterion, math.log(expected * settings.outside_share))
     problem = SelectionProblem(
         residuals,

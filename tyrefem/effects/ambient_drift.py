@@ -14,6 +14,7 @@ class AmbientDrift(Effect):
 
     name: ClassVar[str] = "ambient-drift"
     family: ClassVar[str] = "boundary"
+    of_the_day: ClassVar[bool] = True
     sentence: ClassVar[str] = "The ambient temperature drifts during the run."
     source: ClassVar[str] = "estimate: a test hall or a summer morning drifts by some kelvins per hour"
     signature: ClassVar[Signature] = Signature(signs={"sidewall-outer": 1, "shoulder-outer": 1, "contained-air": 1})

@@ -132,7 +132,7 @@ class Acting:
         for effect in self.effects:
             if surface not in effect.surfaces:
                 continue
-            label = " ".join([effect.name, *effect.choice.values(), "on the", surface.replace("_", " ")])
+            label = " ".join([*effect.label, "on the", surface.replace("_", " ")])
             if effect.overrides("flux"):
                 conditions.append((label, Flux(_flux_of(effect, self.tyre, surface))))
             if effect.overrides("radiation"):

@@ -5,11 +5,11 @@ from __future__ import annotations
 import functools
 from collections.abc import Mapping
 from dataclasses import dataclass
-from typing import TYPE_CHECKING, Any, ClassVar
+from typing import TYPE_CHECKING, Annotated, Any, ClassVar
 
 import numpy as np
 from numpy.typing import NDArray
-from pydantic import Field, GetCoreSchemaHandler
+from pydantic import BeforeValidator, Field, GetCoreSchemaHandler
 from pydantic_core import CoreSchema, core_schema
 
 from tyrefem.cards import Card, Text
@@ -33,6 +33,12 @@ FILMS = ("road", "outside_air", "tread_air", "contained_air", "rim")
 SINKS = ("road", "outside_air", "rim")
 #: Surfaces for a flux.
 SURFACES = ("road", "outside_air", "contained_air", "rim")
+
+
+def _run_names(value: Any) -> Any:
+    if not isinstance(value, list | tuple) or not value:
+        raise InputError(f"must be a list of names of measured runs, such as ['run-2'], not {value!r:.40}")
+    return tuple(value)
 
 
 @dataclass(frozen=True)
@@ -117,6 +123,9 @@ class Effect(Card):
     free_rolling: ClassVar[bool] = True
     #: True for a correction of a base number: a diagnosis fits it, but never names it as missing.
     calibration: ClassVar[bool] = False
+    #: True if it may differ from one measured run to another, as road and weather do: a diagnosis also tries it in
+    #: single runs.
+    of_the_day: ClassVar[bool] = False
     #: True if its action on films, sinks and rim depends on time only through the drive.
     of_drive: ClassVar[bool] = False
     #: States of the effect during a run, by name; its ports read them by ``tyre.state(self, name, t)``.
@@ -127,6 +136,8 @@ class Effect(Card):
     #: Origin of the values, and their standard deviations, stated by the study; no computation uses them.
     provenance: Text | None = Field(default=None, alias="from")
     sd: dict[str, Any] = Field(default_factory=dict)
+    #: Names of the measured runs in which the effect acts; None: in every run, and in a drive that is no measured run.
+    runs: Annotated[tuple[Text, ...], BeforeValidator(_run_names)] | None = None
 
     # -- parameters --------------------------------------------------------------------------------------------------
 
@@ -148,6 +159,15 @@ class Effect(Card):
     def choice(self) -> dict[str, str]:
         """The choices of this variant of the effect, such as the sensor's name."""
         return {}
+
+    @property
+    def label(self) -> tuple[str, ...]:
+        """Name and choices of the effect, and the runs in which it acts if these are not all."""
+        return (self.name, *self.choice.values(), *(("in", ", ".join(self.runs)) if self.runs else ()))
+
+    def acts_in(self, run: str | None) -> bool:
+        """Whether the effect acts in a measured run; None: in a drive that is no measured run."""
+        return self.runs is None or run in self.runs
 
     @property
     def is_null(self) -> bool:

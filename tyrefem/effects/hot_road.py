@@ -14,6 +14,7 @@ class HotRoad(Effect):
 
     name: ClassVar[str] = "hot-road"
     family: ClassVar[str] = "boundary"
+    of_the_day: ClassVar[bool] = True
     of_drive: ClassVar[bool] = True
     sentence: ClassVar[str] = "The road is warmer than stated, as asphalt in the sun is."
     source: ClassVar[str] = "estimate: summer asphalt is 20 to 30 K above the air (handbook range)"

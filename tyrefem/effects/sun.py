@@ -14,6 +14,7 @@ class Sun(Effect):
 
     name: ClassVar[str] = "sun"
     family: ClassVar[str] = "boundary"
+    of_the_day: ClassVar[bool] = True
     sentence: ClassVar[str] = "The sun shines on the tyre."
     source: ClassVar[str] = (
         "estimate: up to 1000 W/m2 at the ground, 0.93 absorbed by black rubber, a sixth of the outer surface in "

@@ -14,6 +14,7 @@ class WetRoad(Effect):
 
     name: ClassVar[str] = "wet-road"
     family: ClassVar[str] = "boundary"
+    of_the_day: ClassVar[bool] = True
     of_drive: ClassVar[bool] = True
     sentence: ClassVar[str] = (
         "Water improves the contact with the road and wets the tread, which evaporation then cools."

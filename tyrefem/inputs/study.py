@@ -106,6 +106,10 @@ class StudyData(StudyContents):
         """A new study with other values in its ``[drive]`` table."""
         return self.replace({f"drive.{key}": value for key, value in changes.items()})
 
+    def at_run(self, run: str, drive: Mapping[str, Any] | None = None) -> Self:
+        """This study at a measured run: with values of the run's ``[drive]``, and with the effects that act in it."""
+        return self.replace({"run": run, **{f"drive.{key}": value for key, value in (drive or {}).items()}})
+
     def save(self, path: str | Path) -> Path:
         """Write the study as a TOML file that can be run.
 

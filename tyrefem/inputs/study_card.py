@@ -243,6 +243,7 @@ class MeasuredEntry(Card):
 class StudyCard(Card):
     """A study.toml, before its references to other cards are read.
 
+    ``run``: the measured run that the study is at; effects with ``runs`` act in these only.
     ``made_for``: section of the load law, footprint, given energies and published ranges; the study warns with another
     section.
     """
@@ -250,6 +251,7 @@ class StudyCard(Card):
     kind: ClassVar[str] = "study"
     title: Text
     section: Any
+    run: Text | None = None
     made_for: Text | None = None
     materials: dict[str, Any]
     drive: Drive
@@ -265,6 +267,11 @@ class StudyCard(Card):
     effects: tuple[Annotated[Effect, EffectOf()], ...] = ()
     diagnosis: DiagnosisChoice = DiagnosisChoice()
     published: Published = Published()
+
+    @property
+    def acting_effects(self) -> tuple[Effect, ...]:
+        """The effects of non-zero amplitude that act in ``run``."""
+        return tuple(effect for effect in self.effects if not effect.is_null and effect.acts_in(self.run))
 
     @property
     def of_one_tyre(self) -> tuple[str, ...]:

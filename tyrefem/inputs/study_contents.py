@@ -104,8 +104,8 @@ class StudyContents(Brief):
 
     @functools.cached_property
     def effects(self) -> tuple[Effect, ...]:
-        """The study's effects of non-zero amplitude."""
-        return tuple(effect for effect in self.card.effects if not effect.is_null)
+        """The study's effects of non-zero amplitude that act in its run."""
+        return self.card.acting_effects
 
     @property
     def materials(self) -> dict[str, MaterialCard]:

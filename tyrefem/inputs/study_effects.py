@@ -2,12 +2,13 @@
 
 from __future__ import annotations
 
+from collections.abc import Collection
 from pathlib import Path
 from typing import TYPE_CHECKING, Protocol
 
 from tyrefem.effects import catalogue
 from tyrefem.effects.tyre import StudyOfTyre
-from tyrefem.errors import InputError, quoted
+from tyrefem.errors import InputError, nearest, quoted
 from tyrefem.inputs.study_card import StudyCard
 
 if TYPE_CHECKING:
@@ -48,4 +49,23 @@ def check_effects(study: CheckedStudy) -> None:
 
 
 def _same(effect: Effect, other: Effect) -> bool:
-    return effect.name == other.name and effect.choice == other.choice
+    """Whether two effects are the same, in all runs or in the same run."""
+    if effect.name != other.name or effect.choice != other.choice:
+        return False
+    if effect.runs is None or other.runs is None:
+        return effect.runs is other.runs
+    return not set(effect.runs).isdisjoint(other.runs)
+
+
+def check_runs(study: CheckedStudy, names: Collection[str]) -> None:
+    """Refuse an effect in a run that is none of the measured runs ``names``.
+
+    Raises
+    ------
+    InputError : names the effect, the run, and the nearest measured run.
+    """
+    for effect in study.card.effects:
+        for run in effect.runs or ():
+            if run not in names:
+                message = f"there is no measured run '{run}'{nearest(run, names)}"
+                raise InputError(message, field=f"effects.{effect.name}.runs", file=study.file)

@@ -124,7 +124,7 @@ def _section(reference: object, card: StudyCard, folder: Path | None, file: Path
 
 def _worn(section: Section, card: StudyCard) -> Section:
     """The section, worn by the study's effects."""
-    wear = [effect for effect in card.effects if not effect.is_null and effect.overrides("worn")]
+    wear = [effect for effect in card.acting_effects if effect.overrides("worn")]
     if not wear:
         return section
 

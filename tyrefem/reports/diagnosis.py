@@ -11,6 +11,7 @@ from typing import TYPE_CHECKING, Any
 import tyrefem
 from tyrefem.diagnose import words
 from tyrefem.diagnose.amend import Change, difference
+from tyrefem.diagnose.candidates import key_of
 from tyrefem.diagnose.numbers import amount, base_name, parameter_name, percent
 from tyrefem.diagnose.record import AMENDED, record, where
 from tyrefem.diagnose.result_tables import candidate_rows, finite, history_table, set_rows, where_table
@@ -120,7 +121,7 @@ def _named(d: DiagnosisData) -> list[dict[str, Any]]:
         {
             "key": member.key,
             "probability": percent(d.judgement.named.get(member.key, 0.0)),
-            "sentence": member.effect.sentence,
+            "sentence": words.effect_sentence(member),
             "source": member.effect.source,
             "amounts": [
                 *words.effect_amounts(member, d.best),
@@ -132,9 +133,8 @@ def _named(d: DiagnosisData) -> list[dict[str, Any]]:
 
 
 def _candidate(row: Mapping[str, Any]) -> dict[str, str]:
-    shown = ", ".join(row["variant"].values())
     return {
-        "name": f"{row['name']} ({shown})" if shown else row["name"],
+        "name": key_of(row["name"], row["variant"], row["runs"]),
         "probability": percent(row["probability"]),
         "gain": f"{row['log_evidence_gain']:+z,.{1 if abs(row['log_evidence_gain']) < 1000 else 0}f}",
         "parameters": "; ".join(
@@ -197,7 +197,7 @@ def _correction(d: DiagnosisData, change: Change) -> dict[str, str]:
             "prior": f"± {100 * unknown.sd:.0f} %",
         }
     return {
-        "what": f"{', '.join(value for _, value in unknown.choice)}: {parameter_name(unknown)}",
+        "what": f"{', '.join([*dict(unknown.choice).values(), *unknown.runs])}: {parameter_name(unknown)}",
         "original": "as stated",
         "amended": "",
         "change": amount(unknown.value(change.x), change.sd, unknown.unit),

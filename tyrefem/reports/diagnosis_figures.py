@@ -8,6 +8,7 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
+from tyrefem.diagnose.candidates import key_of
 from tyrefem.diagnose.numbers import percent
 from tyrefem.diagnose.result_tables import candidate_rows, rms_table, set_rows
 from tyrefem.diagnose.runs import MeasuredDrive, MeasuredSensor
@@ -221,7 +222,9 @@ def _history(d: DiagnosisData, number: int, series: MeasuredSensor, upper: Axes,
 def probabilities_figure(d: DiagnosisData, most: int = 8) -> Figure:
     """Draw the probability that each effect is present, and the probability of each set of effects."""
     members = {member.key for member in d.best.members}
-    effects = [(_key(row), row["probability"]) for row in candidate_rows(d)[:most]]
+    effects = [
+        (key_of(row["name"], row["variant"], row["runs"]), row["probability"]) for row in candidate_rows(d)[:most]
+    ]
     sets = [(" + ".join(row["effects"]) or "no effect", row["probability"]) for row in set_rows(d, most)]
     heights = [0.27 * len(rows) + 0.1 for rows in (effects, sets)]
     drawn = figure(9.4, sum(heights) + 2 * 0.62 + 0.25 + TITLE - 0.3)
@@ -245,8 +248,3 @@ def probabilities_figure(d: DiagnosisData, most: int = 8) -> Figure:
     lower.set_xlabel("probability", fontsize=FONT)
     title(drawn, "Probabilities of effects and of sets", "")
     return drawn
-
-
-def _key(row: dict[str, Any]) -> str:
-    shown = ", ".join(row["variant"].values())
-    return f"{row['name']} ({shown})" if shown else str(row["name"])

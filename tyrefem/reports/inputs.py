@@ -199,6 +199,7 @@ def effect_rows(study: StudyData) -> list[list[str]]:
     rows = []
     for effect in study.effects:
         values = [f"{name} {text}" for name, text in effect.choice.items()]
+        values += [f"only in {', '.join(effect.runs)}"] if effect.runs else []
         for parameter in effect.parameters():
             sd = f" ± {effect.sd[parameter.name]}" if parameter.name in effect.sd else ""
             values.append(
@@ -341,6 +342,11 @@ def assumptions(study: StudyData, estimates: list[str]) -> list[tuple[str, str]]
             dict.fromkeys(f"{added_effect.name}: {added_effect.sentence.rstrip('.')}" for added_effect in study.effects)
         )
         stated.append(("Effects beside the base model", f"{added}. The study states the source of their values."))
+    elsewhere = [effect for effect in study.card.effects if not effect.acts_in(study.card.run)]
+    if elsewhere:
+        left_out = "; ".join(" ".join(effect.label) for effect in elsewhere)
+        at = f"This drive is of the run '{study.card.run}'." if study.card.run else "This drive is of no measured run."
+        stated.append(("Effects of measured runs that do not act here", f"{left_out}. {at}"))
     presses = strain_law(study).presses
     if mechanics.load_law.law == "tr-r-64" and not presses:
         memory = "The load-deflection formula of NASA TR R-64 is quoted from memory; a measured stiffness is better."

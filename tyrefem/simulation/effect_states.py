@@ -42,7 +42,7 @@ class _Place:
 
 
 def _key(effect: Effect) -> Key:
-    return effect.name, *effect.choice.values()
+    return effect.label
 
 
 class EffectStates:
