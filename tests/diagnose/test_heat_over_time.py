@@ -6,12 +6,14 @@ import numpy as np
 import pytest
 from numpy.typing import NDArray
 
-from tyrefem.diagnose.heat_courses import CourseGrid
+from tyrefem.diagnose.heat_courses import CourseGrid, courses
 from tyrefem.diagnose.heat_evidence import ProjectedData
 from tyrefem.diagnose.heat_patches import ALL_LAYERS, INNER, OUTER
 from tyrefem.diagnose.heat_sources import HeatSource, Place, place_shares, pursuit, timed
+from tyrefem.diagnose.heat_values import values_with_sources
 from tyrefem.diagnose.heat_words import course_words, inside_share, is_told
 from tyrefem.diagnose.numbers import percent
+from tyrefem.diagnose.unknowns import Unknown
 
 Array = NDArray[np.float64]
 TIMES = np.linspace(15.0, 900.0, 60)
@@ -169,3 +171,18 @@ def test_the_evidence_is_that_of_the_dense_gaussian() -> None:
         assert projected.log_evidence == pytest.approx(dense(none))
         gain = projected.with_sources(L).gain(np.eye(2))
         assert gain == pytest.approx(dense(none + L @ L.T) - dense(none))
+
+
+def test_values_with_a_source_are_those_of_least_squares() -> None:
+    runs = grid()
+    data = readings([4.0 * after(300.0)] * 2, 0.06, ALL_LAYERS, 3)
+    here = place(0.06, ALL_LAYERS, runs)
+    begins = next(course for course in courses(runs) if course.time == 300.0 and course.kind == "begins")
+    nuisance = tuple(Unknown(f"offset-{number}", 0.5) for number in range(4))
+    heat = Unknown("heat", SD)
+    values, sd = values_with_sources(data, nuisance, [(heat, here, begins)])
+    J = np.column_stack([data.jacobian, here.columns @ begins.strength])
+    prior = np.diag([0.5**-2] * 4 + [SD**-2])
+    exact = np.linalg.solve(J.T @ J + prior, J.T @ data.data)
+    assert list(values.values()) == pytest.approx(list(exact))
+    assert values[heat] == pytest.approx(4.0, abs=4 * sd[heat])

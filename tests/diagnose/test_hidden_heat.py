@@ -43,6 +43,10 @@ def test_heat_that_begins_late_is_dated(tmp_path: Path) -> None:
     assert first["time_s"] == pytest.approx(70.0, abs=max(3 * first["time_sd_s"], 8.0))
     assert {"kind", "region", "station_m", "stations_m", "watts", "runs"} <= set(missing)
     assert first["sentence"] in verdict_words(d)[1]
+    # The amended study has the source with its time, and its run explains the readings.
+    (effect,) = (entry for entry in d.study.data["effects"] if entry["name"].startswith("missing-"))
+    assert float(effect["begins"].split()[0]) == pytest.approx(70.0, abs=8.0)
+    assert d.rms(after=True, held_out=False) < 0.5 * d.rms(after=False, held_out=False)
     assert (tmp_path / "out" / "missing-heat-course.png").stat().st_size > 10_000
     assert d.missing.over_time is not None
     assert inside_share(d.missing.over_time.sources[0]) == pytest.approx(

@@ -16,6 +16,7 @@ from tyrefem.diagnose.heat_courses import CourseGrid, courses
 from tyrefem.diagnose.heat_evidence import ProjectedData
 from tyrefem.diagnose.heat_patches import is_inside, layer_patches, patches, place_of, surface_patches
 from tyrefem.diagnose.heat_sources import HeatSource, Place, evidence, misfit, place_shares, pursuit, timed
+from tyrefem.diagnose.heat_values import WRITTEN, source_unknown, values_with_sources
 from tyrefem.diagnose.residuals import Residuals
 from tyrefem.diagnose.unknowns import Unknown
 from tyrefem.inputs.motion import motion_at
@@ -32,6 +33,8 @@ class HeatOverTime(Brief):
     sources : see `HeatSource`. knots : by fitted run (n_knots,) s. runs : names of the fitted runs.
     rolling : by run (n_knots,) whether the tyre rolls. cools : whether a fitted run has readings at rest after rolling.
     log_evidence : ln evidence of the data, comparable with the sets of effects; places and courses share the prior.
+    values, sd : x and standard deviation of base numbers, sensors and clear sources; empty if a study file cannot state
+        the course of a clear source. unknowns : of the clear sources.
     """
 
     sources: tuple[HeatSource, ...]
@@ -40,6 +43,9 @@ class HeatOverTime(Brief):
     rolling: tuple[NDArray[np.bool_], ...]
     cools: bool
     log_evidence: float
+    values: dict[Unknown, float]
+    sd: dict[Unknown, float]
+    unknowns: tuple[Unknown, ...]
 
     @property
     def clear(self) -> tuple[HeatSource, ...]:
@@ -65,11 +71,16 @@ def heat_over_time(
         ProjectedData(null.linear.data, null.linear.jacobian, of_null),
     )
     responses = _Responses(residuals, evaluations, tick)
-    estimates = [_estimated(residuals, responses, data) for data in points]
+    nuisance = residuals.unknowns[:n], null.unknowns
+    estimates = [
+        _estimated(residuals, responses, data, unknowns) for data, unknowns in zip(points, nuisance, strict=True)
+    ]
     return max(estimates, key=lambda heat: heat.log_evidence)
 
 
-def _estimated(residuals: Residuals, responses: _Responses, data: ProjectedData) -> HeatOverTime:
+def _estimated(
+    residuals: Residuals, responses: _Responses, data: ProjectedData, nuisance: Sequence[Unknown]
+) -> HeatOverTime:
     study, settings = residuals.study, residuals.settings
     coarse, fine = (_grid(residuals, count) for count in (settings.coarse_knots, settings.fine_knots))
     tried = (*patches(study, settings), *surface_patches(study, settings))
@@ -107,8 +118,16 @@ def _estimated(residuals: Residuals, responses: _Responses, data: ProjectedData)
         np.array([fine.speed(number, float(t)) > 0 for t in knots]) for number, knots in enumerate(fine.knots)
     )
     cools = any(flags.any() and not flags[int(np.argmax(flags)) :].all() for flags in rolling)
+    named = [
+        (source_unknown(study, settings, *entry), *entry)
+        for source, entry in zip(sources, current, strict=True)
+        if source.clear
+    ]
+    written = bool(named) and all(course.kind in WRITTEN for _, _, course in named)
+    values, sd = values_with_sources(data, nuisance, named) if written else ({}, {})
+    unknowns = tuple(unknown for unknown, _, _ in named) if written else ()
     sources.sort(key=lambda source: -abs(source.amount) / source.sd)
-    return HeatOverTime(tuple(sources), fine.knots, fine.names, rolling, cools, log_evidence)
+    return HeatOverTime(tuple(sources), fine.knots, fine.names, rolling, cools, log_evidence, values, sd, unknowns)
 
 
 def _grid(residuals: Residuals, count: int) -> CourseGrid:

@@ -283,6 +283,8 @@ def _missing_unknowns(
     best, missing = ranking.best, ranking.missing
     if ranking.judgement.verdict != UNEXPLAINED:
         return best.values, best.sd, [unknown for member in best.members for unknown in member.unknowns]
+    if missing.over_time is not None and missing.over_time.values:
+        return missing.over_time.values, missing.over_time.sd, list(missing.over_time.unknowns)
     # No effect is named: the amended study gets the patches of heat that differ from 0 by more than two sd.
     heat = patches(residuals.study, residuals.settings)
     missing_unknowns = [patch for patch in heat if abs(missing.values.get(patch, 0.0)) > 2 * missing.sd.get(patch, 1.0)]
