@@ -2,11 +2,13 @@
 
 from __future__ import annotations
 
+from dataclasses import replace
+
 import numpy as np
 import pytest
 from hidden import RIVALS, Case
 
-from tyrefem.diagnose.candidates import SetPrior
+from tyrefem.diagnose.candidates import Candidate, SetPrior
 from tyrefem.diagnose.evaluations import Evaluations
 from tyrefem.diagnose.forward_model import ForwardModel
 from tyrefem.diagnose.isolability import (
@@ -20,6 +22,8 @@ from tyrefem.diagnose.isolability import (
 )
 from tyrefem.diagnose.linear_model import LinearModel
 from tyrefem.diagnose.sensitivities import Sensitivities
+from tyrefem.diagnose.unknowns import of_effect
+from tyrefem.effects import catalogue
 
 
 @pytest.fixture(scope="module")
@@ -75,3 +79,17 @@ def test_twice_the_noise_needs_a_stronger_effect(
     again = layout_sensitivities(Evaluations(model), case.diagnosis.gap.responses)
     assert (isolability(louder, known=again).seen >= isolability_result.seen).all()
     assert (isolability(louder, known=again).seen > isolability_result.seen).any()
+
+
+def test_the_printed_table_has_the_units_of_study_files(isolability_result: Isolability) -> None:
+    candidate = Candidate("pressure-loss", (), of_effect(catalogue()["pressure-loss"], ()))
+    same = (np.array([30.0]), np.array([20.0]), np.array([15.0]))
+    result = replace(
+        isolability_result, candidates=(candidate,), smallest=same[0], seen=same[1], scale=same[2],
+        competitors=("",), separation=np.zeros((1, 1)),
+    )  # fmt: skip
+    # 30 Pa/s are 1.8 kPa/min; the table for programs stays in SI.
+    header, row, *_ = result.words()[0].splitlines()
+    assert row.split()[:5] == ["pressure-loss", "kPa/min", "0.9", "1.2", "1.8"]
+    assert header.split()[-2] == "told_from"
+    assert result.table.loc[0, ["unit", "told_from"]].tolist() == ["Pa/s", 30.0]

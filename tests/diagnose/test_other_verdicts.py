@@ -5,16 +5,32 @@ from __future__ import annotations
 import json
 from dataclasses import replace
 from pathlib import Path
+from typing import Any
 
 import numpy as np
 import pytest
+from formula import case as formula_case
+from formula import effect
 from hidden import Case
 
 from tyrefem.diagnose import DiagnosisData
+from tyrefem.diagnose.amend import Change
+from tyrefem.diagnose.candidates import SetPrior
+from tyrefem.diagnose.criterion import LogEvidence
 from tyrefem.diagnose.heat_words import NOT_CLEAR
 from tyrefem.diagnose.result_tables import competing_sets, inclusion_probability
-from tyrefem.diagnose.verdict import CONFOUNDED, IDENTIFIED, NO_GAP, UNEXPLAINED, RankedSet
-from tyrefem.diagnose.words import verdict_words
+from tyrefem.diagnose.selection import ScoredSet, SelectionProblem
+from tyrefem.diagnose.verdict import (
+    CONFOUNDED,
+    IDENTIFIED,
+    NO_GAP,
+    UNEXPLAINED,
+    RankedSet,
+    inclusion,
+    judge,
+    ranked,
+)
+from tyrefem.diagnose.words import effect_words, verdict_words
 
 NEXT = {
     "between": ["hot-road", "sun"],
@@ -102,3 +118,80 @@ def test_unexplained_draws_the_missing_heat_and_names_nothing(case: Case, tmp_pa
 def test_what_stands_behind_the_verdict_does_not_begin_with_it_again(verdict: str, case: Case) -> None:
     d = replace(case.diagnosis, judgement=replace(case.diagnosis.judgement, verdict=verdict))
     assert not verdict_words(d)[0].lower().startswith(verdict)
+
+
+def judged(d: DiagnosisData, verdict: str, sets: dict[tuple[str, ...], float], **further: Any) -> DiagnosisData:
+    """As if these sets had these probabilities; ``further``: other fields of the judgement."""
+    by_name = {candidate.name: candidate for candidate in d.candidates}
+    fits = {row.members: row.fit for row in d.judgement.ranking}
+    rows = []
+    for names, share in sets.items():
+        members = tuple(by_name[name] for name in names)
+        rows.append(RankedSet(members, float(np.log(share)), share, fits.get(members)))
+    judgement = replace(
+        d.judgement, verdict=verdict, ranking=tuple(rows), credible=tuple(rows), named=inclusion(rows), **further
+    )
+    return replace(d, judgement=judgement)
+
+
+def test_the_certain_member_of_a_set_is_stated_first(case: Case) -> None:
+    sets = {("hot-road", "sun"): 0.54, ("hot-road",): 0.45, ("sun",): 0.01}
+    first = verdict_words(judged(case.diagnosis, CONFOUNDED, sets))[0]
+    assert first.startswith("The road is warmer than stated")
+    assert "99.0 % probable" in first
+    assert first.endswith("cannot show whether it acts alone (probability 45 %) or with sun (55 %).")
+    assert "cannot show which" not in first
+
+
+def test_a_doubt_stands_beside_what_the_fitted_runs_say(case: Case) -> None:
+    doubt = "Sun predicts the held-out runs better than hot-road, by 45 nats."
+    d = judged(case.diagnosis, CONFOUNDED, {("hot-road",): 0.999, ("sun",): 0.001}, doubts=(doubt,))
+    first, second, *_ = verdict_words(d)
+    assert first.startswith("The fitted runs alone speak for hot-road (99.9 %), but this is not certain")
+    assert second == doubt
+
+
+def test_a_colder_road_is_said_to_be_colder(case: Case) -> None:
+    d = case.diagnosis
+    (member,) = d.best.members
+    assert effect_words(member, d.best).startswith("The road is warmer than stated")
+    mean = d.best.posterior.mean.copy()
+    mean[d.best.unknowns.index(member.amplitudes[0])] *= -1
+    colder = replace(d.best, posterior=replace(d.best.posterior, mean=mean))
+    assert effect_words(member, colder).startswith("The road is colder than stated (")
+
+
+def unexplained(d: DiagnosisData, spread: float) -> DiagnosisData:
+    """As if heat were missing at every station: 20 kW/m3, with this standard deviation."""
+    outside = RankedSet((), 0.0, 0.97, None, outside=True)
+    judgement = replace(
+        d.judgement, verdict=UNEXPLAINED, ranking=(outside, *d.judgement.ranking), credible=(outside,), named={}
+    )
+    heat = np.full_like(d.missing.heat, 2e4)
+    missing = replace(d.missing, kind="heat", heat=heat, heat_sd=np.full_like(heat, spread))
+    patch = next(unknown for unknown in d.gap.unknowns if unknown.effect == "missing-heat")
+    return replace(
+        d, judgement=judgement, missing=missing, best=d.null, changes=(Change(patch, 2e4, spread, True, "test"),)
+    )
+
+
+def test_unexplained_says_what_the_amended_study_has_and_what_to_do_next(case: Case) -> None:
+    words = verdict_words(unexplained(case.diagnosis, 1e3))
+    assert "The amended study has an entry of missing heat, which describe" in " ".join(words)
+    assert any(sentence.startswith("In the amended study the rms") for sentence in words)
+    worst = case.diagnosis.where.sort_values("sigma", ascending=False).iloc[0]
+    assert words[-2].startswith(f"Next: check {worst['sensor']} in {worst['run']}")
+    assert "docs/effects.md" in words[-1]
+
+
+def test_a_bound_is_named_by_effect_and_parameter() -> None:
+    """Not by the raw key effects.radiation.emissivity."""
+    T = np.linspace(0.0, 1.0, 60)
+    bounded = effect("radiation", sd=0.5, low=0.0)
+    made = formula_case(lambda values: 5.0 * T * values.get("radiation", 0.0), -0.7 * T, (bounded,))
+    prior = SetPrior((bounded,), 0.5)
+    problem = SelectionProblem(made.residuals, made.predictions, (bounded,), prior, LogEvidence())
+    fits = problem.continued(problem.fitted([(bounded,)], {}))
+    judgement = judge(ranked([ScoredSet(0.0, (bounded,), fits[0])]), lambda members: None)
+    assert judgement.verdict == CONFOUNDED
+    assert judgement.reasons == ("the best value lies beyond a physical bound: radiation (size)",)

@@ -22,6 +22,7 @@ from tyrefem.diagnose.sampling import DriveSampling, SensorSampling
 from tyrefem.diagnose.sensitivities import Sensitivities, responses, sensitivities, unknowns_of
 from tyrefem.errors import InputError
 from tyrefem.inputs.study import StudyData
+from tyrefem.quantity import convert
 from tyrefem.requirements import Requirements
 
 if TYPE_CHECKING:
@@ -123,6 +124,20 @@ class Isolability:
             }
         )
 
+    def _as_written(self) -> pd.DataFrame:
+        """The table with amplitudes in the units of study files: mm, kPa/min, delta_degC/hour."""
+        table = self.table.copy()
+        for row, candidate in enumerate(self.candidates):
+            parameter = candidate.unknowns[0].parameter
+            unit = parameter.prior.written if parameter else None
+            if parameter is None or unit is None:
+                continue
+            table.loc[row, "unit"] = unit
+            for column in ("usual", "seen_from", "told_from"):
+                value = float(self.table[column].iloc[row])
+                table.loc[row, column] = convert(value, parameter.prior.unit, unit) if math.isfinite(value) else value
+        return table
+
     @cached_property
     def groups(self) -> tuple[tuple[str, ...], ...]:
         """Groups of effects that are not distinguished at their usual amplitude, connected by pairs."""
@@ -156,7 +171,7 @@ class Isolability:
     def words(self) -> list[str]:
         """The results as lines of text: table, effects that are not seen, groups, fewest runs, notes."""
         table = self.table
-        shown = table[["effect", "unit", "usual", "seen_from", "told_from", "last_rival"]]
+        shown = self._as_written()[["effect", "unit", "usual", "seen_from", "told_from", "last_rival"]]
         can = table["identifiable_at_usual"]
         lines = [shown.to_string(index=False, float_format="%.3g")]
         lines.append(f"{int(can.sum())} of {len(table)} effects are identifiable at their usual amplitude.")

@@ -9,6 +9,7 @@ from dataclasses import dataclass
 from tyrefem.brief import Brief
 from tyrefem.diagnose.candidates import Members
 from tyrefem.diagnose.fits import FittedSet
+from tyrefem.diagnose.numbers import parameter_name
 from tyrefem.diagnose.pulls import improbable_pulls
 from tyrefem.diagnose.selection import ScoredSet
 from tyrefem.diagnose.settings import DEFAULT, DiagnosisSettings
@@ -142,6 +143,13 @@ def better_on_held_out(ranking: Sequence[RankedSet], fit: FittedSet, margin: flo
     return max(others, key=lambda pair: pair[1]) if others else None
 
 
+def _bounded(fit: FittedSet) -> list[str]:
+    """Effect and parameter of every amplitude on a bound."""
+    amplitudes = [(member, unknown) for member in fit.members for unknown in member.amplitudes]
+    bounded = [(member, unknown) for member, unknown in amplitudes if unknown.key in fit.at_bound]
+    return [f"{member.key} ({parameter_name(unknown)})" for member, unknown in bounded]
+
+
 def judge(
     ranking: Sequence[RankedSet],
     fit_of: Callable[[Members], FittedSet | None],
@@ -190,7 +198,7 @@ def judge(
         reasons.append("noise and the uncertainty of base numbers and sensors explain the deviation")
         return verdict(NO_GAP)
     if fit is not None and fit.at_bound:
-        reasons.append("the best value lies beyond a physical bound: " + ", ".join(fit.at_bound))
+        reasons.append("the best value lies beyond a physical bound: " + ", ".join(_bounded(fit)))
         return verdict(CONFOUNDED)
     if fit is not None and not fit.settled:
         return verdict(CONFOUNDED, f"the fit of {best.key} has not converged, so its probability is not certain")

@@ -18,6 +18,8 @@ if TYPE_CHECKING:
     from tyrefem.diagnose.fits import FittedSet
     from tyrefem.diagnose.materiality import Movement
 
+#: Companions of a certain effect are shown from this probability on, and so many of them.
+LEAST_SHOWN, MOST_SHOWN = 0.05, 3
 #: Folder of a further look, within the folder of the look before it.
 AGAIN = "again"
 
@@ -31,15 +33,17 @@ def effect_amounts(candidate: Candidate, fit: FittedSet) -> list[str]:
     ]
 
 
-def effect_sentence(candidate: Candidate) -> str:
-    """The effect's sentence, after the runs in which it acts if these are not all."""
-    sentence = candidate.effect.sentence
+def effect_sentence(candidate: Candidate, fit: FittedSet) -> str:
+    """The effect's sentence, that of its opposite for a negative amplitude; after the runs in which it acts, if few."""
+    first = next(iter(candidate.amplitudes), None)
+    negative = first is not None and first.value(fit.values.get(first, 0.0)) < 0
+    sentence = candidate.effect.opposite if negative and candidate.effect.opposite else candidate.effect.sentence
     return f"In {' and '.join(candidate.runs)} only: {sentence}" if candidate.runs else sentence
 
 
 def effect_words(candidate: Candidate, fit: FittedSet, move: Movement | None = None) -> str:
     """An effect in one clause: its sentence, its variant, its amounts, and what it moves at the sensors."""
-    sentence = effect_sentence(candidate).rstrip(".")
+    sentence = effect_sentence(candidate, fit).rstrip(".")
     parts = [value for _, value in candidate.choice] + effect_amounts(candidate, fit)
     parts += [move.words] if move is not None else []
     return f"{sentence} ({'; '.join(parts)})"
@@ -78,15 +82,33 @@ def _verdict_sentences(d: DiagnosisData) -> tuple[str, ...]:
         return _joined(clauses, [f"Probability {percent(d.judgement.probability)}."], closing)
     if d.verdict == CONFOUNDED:
         return _confounded(d, closing)
-    clearest = f"{heat_words(d)}."
+    return _unexplained(d, closing)
+
+
+def _unexplained(d: DiagnosisData, closing: str) -> tuple[str, ...]:
     named = " and ".join(member.key for member in d.best.members)
-    partly = [f"These effects explain part of the deviation: {named}."]
+    partly = (f"These effects explain part of the deviation: {named}.",) if named else ()
+    entries = {change.unknown.key for change in d.changes if change.missing}
+    many = f"{len(entries)} entries" if len(entries) > 1 else "an entry"
+    described = f"The amended study has {many} of missing heat, which describe the deviation and name no cause."
     return (
         "No effect in the catalogue explains the deviation.",
         *d.judgement.doubts,
-        clearest,
-        *(partly if clauses else []),
+        f"{heat_words(d)}.",
+        *partly,
+        *([described] if entries else []),
         closing,
+        *_next_step(d),
+    )
+
+
+def _next_step(d: DiagnosisData) -> tuple[str, ...]:
+    """What to do if no effect explains the deviation: where it is clearest, and how to go on."""
+    row = d.where.sort_values("sigma", ascending=False, kind="stable").iloc[0]
+    return (
+        f"Next: check {row['sensor']} in {row['run']}, where the deviation is clearest ({row['mean_K']:+z.1f} K on "
+        f"average while {row['phase']}): its place and channel, the run's drive, and the stated uncertainties.",
+        "A cause outside the catalogue can be written as an effect (docs/effects.md) and diagnosed again.",
     )
 
 
@@ -102,17 +124,19 @@ def _corrected(d: DiagnosisData, most: int = 6) -> tuple[str, ...]:
 
 
 def _confounded(d: DiagnosisData, closing: str) -> tuple[str, ...]:
-    sets, best = competing_sets(d), d.judgement.best
-    joint, clauses = (
-        inclusion_probability(d, best),
-        " And: ".join(effect_words(member, d.best, d.movements.get(member)) for member in best.members),
+    best, least = d.judgement.best, d.gap.settings.named_probability
+    certain = [member for member in best.members if d.judgement.named.get(member.key, 0.0) >= least]
+    clauses = " And: ".join(
+        effect_words(member, d.best, d.movements.get(member)) for member in (certain or best.members)
     )
-    if best.members and joint >= d.gap.settings.named_probability:
-        first = f"{clauses}: {percent(joint)} probable."
-        if not d.best.at_bound:
-            alone = percent(best.probability)
-            first += f" These sensors and runs cannot show whether it acts alone (probability {alone})."
+    if d.judgement.doubts and best.members:
+        chance = percent(inclusion_probability(d, best))
+        first = f"The fitted runs alone speak for {best.key} ({chance}), but this is not certain: {clauses}."
+    elif certain:
+        first = f"{clauses}: {percent(min(d.judgement.named[member.key] for member in certain))} probable."
+        first += "" if d.best.at_bound else _besides(d, certain)
     else:
+        sets = competing_sets(d)
         shown = [f"{entry.key} ({percent(inclusion_probability(d, entry))})" for entry in sets[:4]]
         more = len(sets) - len(shown)
         shown += [f"one of {more} less probable sets"] if more else []
@@ -123,6 +147,22 @@ def _confounded(d: DiagnosisData, closing: str) -> tuple[str, ...]:
         first += " Its best value lies beyond a physical bound, so it is not certain."
     decides = next_words(d)
     return (first, *d.judgement.doubts, *([decides] if decides else []), closing)
+
+
+def _besides(d: DiagnosisData, certain: Sequence[Candidate]) -> str:
+    """What may act besides the certain effects, each with its probability."""
+    keys = [member.key for member in certain]
+    alone = sum(
+        entry.probability for entry in d.judgement.ranking if {member.key for member in entry.members} == set(keys)
+    )
+    others = [
+        f"{key} ({percent(chance)})"
+        for key, chance in d.judgement.named.items()
+        if key not in keys and chance > LEAST_SHOWN
+    ]
+    it = "it acts" if len(keys) == 1 else "they act"
+    first = f" These sensors and runs cannot show whether {it} alone (probability {percent(alone)})"
+    return f"{first} or with {', or '.join(others[:MOST_SHOWN])}." if others else f"{first}."
 
 
 def next_words(d: DiagnosisData) -> str:
@@ -152,7 +192,8 @@ def _closing(d: DiagnosisData) -> str:
         before, after = d.rms(after=False, held_out=held_out), d.rms(after=True, held_out=held_out)
         if math.isfinite(before):
             parts.append(f"from {before:.1f} to {after:.1f} K on the {name} runs")
-    study = "In the amended study" if d.best.members else "With corrections of base numbers and sensors alone"
+    amended = d.best.members or any(change.missing for change in d.changes)
+    study = "In the amended study" if amended else "With corrections of base numbers and sensors alone"
     changes = " and ".join(parts)
     unchecked = "" if d.gap.held_out else " No run is held out, so no run checks the fit independently."
     return f"{study} the rms of measured - computed changes {changes}; the noise is {d.noise:.1f} K.{unchecked}"

@@ -117,6 +117,8 @@ class Effect(Card):
     sentence: ClassVar[str] = ""
     source: ClassVar[str] = ""
     family: ClassVar[str] = ""
+    #: The sentence if the amplitude is negative; empty: ``sentence`` holds for both signs.
+    opposite: ClassVar[str] = ""
     #: Study and sensors that show the effect, for its picture and its tests.
     signature: ClassVar[Signature] = Signature()
     #: True if the tyre still rolls freely and straight, without wear; else a report states the effect as an addition.

@@ -17,6 +17,7 @@ class HotRoad(Effect):
     of_the_day: ClassVar[bool] = True
     of_drive: ClassVar[bool] = True
     sentence: ClassVar[str] = "The road is warmer than stated, as asphalt in the sun is."
+    opposite: ClassVar[str] = "The road is colder than stated."
     source: ClassVar[str] = "estimate: summer asphalt is 20 to 30 K above the air (handbook range)"
     signature: ClassVar[Signature] = Signature(signs={"shoulder-outer": 1, "crown-middle": 1})
 

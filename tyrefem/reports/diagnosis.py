@@ -121,7 +121,7 @@ def _named(d: DiagnosisData) -> list[dict[str, Any]]:
         {
             "key": member.key,
             "probability": percent(d.judgement.named.get(member.key, 0.0)),
-            "sentence": words.effect_sentence(member),
+            "sentence": words.effect_sentence(member, d.best),
             "source": member.effect.source,
             "amounts": [
                 *words.effect_amounts(member, d.best),
