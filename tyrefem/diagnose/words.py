@@ -105,9 +105,11 @@ def _unexplained(d: DiagnosisData, closing: str) -> tuple[str, ...]:
 def _next_step(d: DiagnosisData) -> tuple[str, ...]:
     """What to do if no effect explains the deviation: where it is clearest, and how to go on."""
     row = d.where.sort_values("sigma", ascending=False, kind="stable").iloc[0]
+    when = {"heating": "while it heats", "plateau": "on the plateau", "cooling": "while it cools"}[row["phase"]]
     return (
-        f"Next: check {row['sensor']} in {row['run']}, where the deviation is clearest ({row['mean_K']:+z.1f} K on "
-        f"average while {row['phase']}): its place and channel, the run's drive, and the stated uncertainties.",
+        f"Next: check {row['sensor']} in {row['run']}, where the deviation is clearest "
+        f"({row['mean_K']:+z.1f} K on average {when}): its place and channel, the run's drive, "
+        "and the stated uncertainties.",
         "A cause outside the catalogue can be written as an effect (docs/effects.md) and diagnosed again.",
     )
 
