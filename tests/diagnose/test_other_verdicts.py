@@ -122,7 +122,7 @@ def test_what_stands_behind_the_verdict_does_not_begin_with_it_again(verdict: st
 
 def judged(d: DiagnosisData, verdict: str, sets: dict[tuple[str, ...], float], **further: Any) -> DiagnosisData:
     """As if these sets had these probabilities; ``further``: other fields of the judgement."""
-    by_name = {candidate.name: candidate for candidate in d.candidates}
+    by_name = {candidate.key: candidate for candidate in d.candidates}
     fits = {row.members: row.fit for row in d.judgement.ranking}
     rows = []
     for names, share in sets.items():
