@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+from dataclasses import replace
+
 import numpy as np
 import pytest
 from numpy.typing import NDArray
@@ -9,7 +11,7 @@ from numpy.typing import NDArray
 from tyrefem.diagnose.heat_courses import CourseGrid, courses
 from tyrefem.diagnose.heat_evidence import ProjectedData
 from tyrefem.diagnose.heat_patches import ALL_LAYERS, INNER, OUTER
-from tyrefem.diagnose.heat_sources import HeatSource, Place, place_shares, pursuit, timed
+from tyrefem.diagnose.heat_sources import HeatSource, Place, place_shares, pursuit, timed, told_courses
 from tyrefem.diagnose.heat_values import values_with_sources
 from tyrefem.diagnose.heat_words import course_words, inside_share, is_told
 from tyrefem.diagnose.numbers import percent
@@ -186,3 +188,19 @@ def test_values_with_a_source_are_those_of_least_squares() -> None:
     exact = np.linalg.solve(J.T @ J + prior, J.T @ data.data)
     assert list(values.values()) == pytest.approx(list(exact))
     assert values[heat] == pytest.approx(4.0, abs=4 * sd[heat])
+
+
+def test_courses_that_the_rolling_makes_equal_are_one() -> None:
+    # Heat acts while the tyre rolls, up to 600 s: what ends later is constant heat, and so is heat in that phase.
+    runs = CourseGrid(
+        ("slow",), (np.linspace(0.0, 900.0, 19),), ((("rolling", 0.0, 600.0), ("rest", 600.0, 900.0)),),
+        lambda _, t: 8.0 if t < 600 else 0.0,
+    )  # fmt: skip
+    whole = place(0.06, ALL_LAYERS, runs)
+    rolling = replace(whole, columns=whole.columns * (runs.knots[0] < 600.0))
+    kinds = [(course.kind, course.time) for course in told_courses(rolling, runs)]
+    assert ("constant", None) in kinds
+    assert "phase rolling" not in {kind for kind, _ in kinds}
+    assert "phase rest" not in {kind for kind, _ in kinds}
+    assert max(time for kind, time in kinds if kind == "ends" and time is not None) < 600.0
+    assert {kind for kind, _ in kinds} >= {"begins", "ends", "grows", "free"}

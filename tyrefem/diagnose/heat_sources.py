@@ -3,14 +3,14 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Mapping, Sequence
+from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import dataclass
 
 import numpy as np
 from numpy.typing import NDArray
 
 from tyrefem.brief import Brief
-from tyrefem.diagnose.heat_courses import CORRELATED, FREE, Course, CourseGrid, constant, courses, free
+from tyrefem.diagnose.heat_courses import CONSTANT, CORRELATED, FREE, Course, CourseGrid, constant, courses, free
 from tyrefem.diagnose.heat_evidence import HeatData, ProjectedData, log_mean_exp, shares
 from tyrefem.diagnose.heat_patches import ALL_LAYERS
 
@@ -19,6 +19,8 @@ Array = NDArray[np.float64]
 STATED = 0.9
 #: An amount is stated if it differs from zero by more than this many standard deviations.
 CLEAR = 2.0
+#: A course whose response differs by less than this share from that of a constant source is no course of its kind.
+SAME = 0.02
 
 
 @dataclass(frozen=True, eq=False)
@@ -146,7 +148,7 @@ def timed(
     """A source with its course in time, beside other sources; ``places``: see `place_shares`."""
     base = evidence(data, others) if others else 0.0
     by_kind: dict[str, list[tuple[float, Course]]] = {}
-    for course in courses(grid):
+    for course in told_courses(place, grid):
         by_kind.setdefault(course.kind, []).append((evidence(data, [*others, (place, course)]) - base, course))
     kinds = shares({kind: log_mean_exp([gain for gain, _ in tried]) for kind, tried in by_kind.items()})
     kind = next(iter(kinds))
@@ -166,6 +168,20 @@ def timed(
         strength, strength_sd, gain,
     )  # fmt: skip
     return source, best
+
+
+def told_courses(place: Place, grid: CourseGrid) -> Iterator[Course]:
+    """The courses that readings can tell from a constant source at a place, and the constant one.
+
+    Heat while the tyre rolls that ends after the last rolling, say, is constant heat.
+    """
+    plain = place.columns @ constant(grid).strength
+    for course in courses(grid):
+        if course.strength.size and course.kind != CONSTANT:
+            response = place.columns @ course.strength
+            if min(np.linalg.norm(response), np.linalg.norm(response - plain)) < SAME * np.linalg.norm(plain):
+                continue
+        yield course
 
 
 def _switch(tried: Sequence[tuple[float, Course]]) -> tuple[float, float]:
