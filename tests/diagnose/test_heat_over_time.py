@@ -204,3 +204,6 @@ def test_courses_that_the_rolling_makes_equal_are_one() -> None:
     assert "phase rest" not in {kind for kind, _ in kinds}
     assert max(time for kind, time in kinds if kind == "ends" and time is not None) < 600.0
     assert {kind for kind, _ in kinds} >= {"begins", "ends", "grows", "free"}
+    # A flux through a surface acts at rest too, so its phases differ.
+    flux = [course.kind for course in told_courses(place(0.06, OUTER, runs), runs)]
+    assert {"phase rolling", "phase rest"} <= set(flux)

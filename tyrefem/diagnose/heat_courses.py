@@ -48,6 +48,17 @@ class CourseGrid(Brief):
         """(n_runs,) s: last knot of every run."""
         return np.array([knots[-1] for knots in self.knots])
 
+    @property
+    def rolling_phases(self) -> tuple[str, ...]:
+        """Names of the phases in the middle of which a tyre rolls."""
+        names = [
+            name
+            for number, phases in enumerate(self.phases)
+            for name, start, end in phases
+            if self.speed(number, (start + end) / 2) > 0
+        ]
+        return tuple(dict.fromkeys(names))
+
     def sampled(self, course: Callable[[int, Array], Array]) -> list[Array]:
         """By run (n_knots,): mean of a course over the hat of every knot. A switch between two knots keeps its time.
 

@@ -10,7 +10,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from tyrefem.brief import Brief
-from tyrefem.diagnose.heat_courses import CONSTANT, CORRELATED, FREE, Course, CourseGrid, constant, courses, free
+from tyrefem.diagnose.heat_courses import CONSTANT, CORRELATED, FREE, PHASE, Course, CourseGrid, constant, courses, free
 from tyrefem.diagnose.heat_evidence import HeatData, ProjectedData, log_mean_exp, shares
 from tyrefem.diagnose.heat_patches import ALL_LAYERS
 
@@ -176,7 +176,12 @@ def told_courses(place: Place, grid: CourseGrid) -> Iterator[Course]:
     Heat while the tyre rolls that ends after the last rolling, say, is constant heat.
     """
     plain = place.columns @ constant(grid).strength
+    rolling = grid.rolling_phases if place.inside else ()
     for course in courses(grid):
+        # Heat in the only phase that rolls is constant heat.
+        phase = place.inside and course.kind.startswith(PHASE)
+        if phase and (len(rolling) < 2 or course.kind.removeprefix(PHASE) not in rolling):
+            continue
         if course.strength.size and course.kind != CONSTANT:
             response = place.columns @ course.strength
             if min(np.linalg.norm(response), np.linalg.norm(response - plain)) < SAME * np.linalg.norm(plain):
