@@ -13,7 +13,6 @@ from scipy.stats import kstest
 from tyrefem.diagnose.candidates import Members, SetPrior
 from tyrefem.diagnose.criterion import LogEvidence
 from tyrefem.diagnose.exhaustive import Exhaustive
-from tyrefem.diagnose.leading import settled
 from tyrefem.diagnose.pulls import pulls, pulls_p
 from tyrefem.diagnose.selection import SelectionProblem
 from tyrefem.diagnose.settings import DEFAULT
@@ -52,7 +51,7 @@ def verdict_on(
     """``outside``: lead of heat of unknown origin over the best set on the held-out run, nats."""
     made, candidates = made_of(measured, held_out, slow)
     problem = SelectionProblem(made.residuals, made.predictions, candidates, SetPrior(candidates, 0.5), LogEvidence())
-    scored = settled(problem, Exhaustive().search(problem))
+    scored = problem.settled(Exhaustive().search(problem))
     assert scored[0].fit is not None
     ranking = ranked(scored, scored[0].score - 20.0, scored[0].fit.held_out + outside)
     return judge(ranking, lambda members: None)

@@ -13,7 +13,6 @@ from tyrefem.diagnose.candidates import Members, SetPrior
 from tyrefem.diagnose.criterion import LogEvidence
 from tyrefem.diagnose.fits import FittedSet
 from tyrefem.diagnose.forward_selection import ForwardSelection
-from tyrefem.diagnose.leading import settled
 from tyrefem.diagnose.selection import ScoredSet, SelectionProblem
 from tyrefem.diagnose.settings import DEFAULT, DiagnosisSettings
 from tyrefem.diagnose.verdict import CONFOUNDED, IDENTIFIED, judge, ranked
@@ -54,7 +53,7 @@ def leading(scored: list[ScoredSet]) -> list[FittedSet]:
 def test_leading_fits_have_sensitivities_of_their_points() -> None:
     made, problem = problem_of(DiagnosisSettings(largest=1))
     before = ForwardSelection().search(problem)
-    after = settled(problem, before)
+    after = problem.settled(before)
     assert len(leading(before)) >= 3
     assert max(tangents_off(fit) for fit in leading(before)) > 0.02
     assert max(tangents_off(fit) for fit in leading(after)) < 1e-5
@@ -66,7 +65,7 @@ def test_leading_fits_have_sensitivities_of_their_points() -> None:
     assert {entry.members for entry in after} == {entry.members for entry in before}
     # Settled once, nothing is simulated again.
     count = len(made.formula.questions)
-    assert settled(problem, after) == after
+    assert problem.settled(after) == after
     assert len(made.formula.questions) == count
 
 
@@ -80,7 +79,7 @@ def test_a_fit_that_has_not_converged_is_not_named() -> None:
     made = case(law, law({"step": 2.0}) + np.random.default_rng(5).normal(size=N), candidates)
     prior = SetPrior(candidates, 0.5)
     problem = SelectionProblem(made.residuals, made.predictions, candidates, prior, LogEvidence())
-    scored = settled(problem, ForwardSelection().search(problem))
+    scored = problem.settled(ForwardSelection().search(problem))
     assert judge(ranked(scored), lambda members: None).verdict == IDENTIFIED
     best = scored[0].fit
     assert best is not None
@@ -100,7 +99,7 @@ def test_hopeless_fits_are_not_continued() -> None:
     entries = [ScoredSet(problem.score(fit), fit.members, replace(fit, state=replace(fit.state, converged=False)))
                for fit in scored]  # fmt: skip
     count = len(made.formula.questions)
-    assert settled(problem, entries) == entries
+    assert problem.settled(entries) == entries
     assert len(made.formula.questions) == count
     assert entries[0].fit is not None
     assert entries[0].fit.misfit > DEFAULT.slow_misfit * N

@@ -15,10 +15,9 @@ from hidden import Case as HiddenCase
 from tyrefem.diagnose.candidates import SetPrior
 from tyrefem.diagnose.criterion import LogEvidence
 from tyrefem.diagnose.exhaustive import Exhaustive
-from tyrefem.diagnose.leading import settled, settled_fit
-from tyrefem.diagnose.materiality import movements, without_immaterial
+from tyrefem.diagnose.materiality import movements
 from tyrefem.diagnose.selection import SelectionProblem
-from tyrefem.diagnose.verdict import IDENTIFIED, NO_GAP, Judgement, judge, ranked
+from tyrefem.diagnose.verdict import IDENTIFIED, NO_GAP, Judgement, judge, ranked, without_immaterial
 from tyrefem.diagnose.words import verdict_words
 
 N = 400
@@ -37,12 +36,12 @@ def judged(hidden: Mapping[str, float], floor: float) -> tuple[Judgement, list[s
     made = case(law, law(hidden) + np.random.default_rng(4).normal(size=N), candidates)
     prior = SetPrior(candidates, 0.5)
     problem = SelectionProblem(made.residuals, made.predictions, candidates, prior, LogEvidence())
-    ranking = ranked(settled(problem, Exhaustive().search(problem)))
+    ranking = ranked(problem.settled(Exhaustive().search(problem)))
     after, left_out = without_immaterial(ranking, lambda fit: movements(made.residuals, made.predictions, fit), floor)
     assert sum(row.probability for row in after) == pytest.approx(1.0)
     assert {row.members for row in after} == {row.members for row in ranking}
     assert after[0].fit is not None
-    after = (replace(after[0], fit=settled_fit(problem, after[0].fit)), *after[1:])
+    after = (replace(after[0], fit=problem.settled_fit(after[0].fit)), *after[1:])
     return judge(after, lambda members: None), [member.key for member in left_out]
 
 

@@ -81,6 +81,11 @@ class FittedSet(Brief):
         """Whether the fit has finished with sensitivities taken at its point, on which its evidence rests."""
         return self.finished and not self.state.jacobian_outdated
 
+    @property
+    def worth_settling(self) -> bool:
+        """Whether the fit is not settled, and explains the data well enough to be continued."""
+        return not self.settled and self.misfit < self.state.settings.slow_misfit * self.readings
+
     @cached_property
     def values(self) -> dict[Unknown, float]:
         """Unknown -> x; 1 for effects without amplitude."""

@@ -1,10 +1,10 @@
-"""What an effect moves at the sensors; effects that move no reading beyond the discrepancy are not named."""
+"""What an effect moves at the sensors, in kelvins."""
 
 from __future__ import annotations
 
 import math
-from collections.abc import Callable, Mapping, Sequence
-from dataclasses import dataclass, replace
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass
 
 import numpy as np
 
@@ -13,10 +13,6 @@ from tyrefem.diagnose.candidates import Candidate
 from tyrefem.diagnose.fits import FittedSet
 from tyrefem.diagnose.multifidelity import Predictions
 from tyrefem.diagnose.residuals import Residuals
-from tyrefem.diagnose.verdict import RankedSet
-
-#: Sets below this probability are not examined.
-LEAST = 0.01
 
 
 @dataclass(frozen=True)
@@ -67,38 +63,3 @@ def _largest(residuals: Residuals, changes: Sequence[np.ndarray]) -> Movement:
             if abs(most) > abs(best.kelvin) or not best.sensor:
                 best = Movement(most, sensor, run.name)
     return best
-
-
-def without_immaterial(
-    ranking: Sequence[RankedSet], movements_of: Callable[[FittedSet], Movements], floor: float
-) -> tuple[tuple[RankedSet, ...], dict[Candidate, Movement]]:
-    """Sets ranked again, and the effects left out: those that move no reading by more than ``floor`` (K).
-
-    The probability of a set with such an effect goes to the set without it: as far as readings can tell, the two say
-    the same.
-    """
-    rows, left_out = list(ranking), dict[Candidate, Movement]()
-    examined: set[int] = set()
-    while True:
-        entry = next(
-            (row for row in rows
-             if row.fit is not None and row.members and row.probability > LEAST and id(row.fit) not in examined),
-            None,
-        )  # fmt: skip
-        if entry is None or entry.fit is None:
-            return tuple(rows), left_out
-        examined.add(id(entry.fit))
-        small = {member: move for member, move in movements_of(entry.fit).items() if abs(move.kelvin) <= floor}
-        if not small:
-            continue
-        left_out |= small
-        part = tuple(member for member in entry.members if member not in small)
-        rows.remove(entry)
-        known = next((row for row in rows if not row.outside and set(row.members) == set(part)), None)
-        if known is None:
-            rows.append(replace(entry, members=part, fit=None))
-        else:
-            score = float(np.logaddexp(known.score, entry.score))
-            rows[rows.index(known)] = replace(known, score=score, probability=known.probability + entry.probability)
-        rows.append(replace(entry, score=-math.inf, probability=0.0))
-        rows.sort(key=lambda row: -row.score)

@@ -59,7 +59,7 @@ def noise_of(
 
     Parameters
     ----------
-    series : (sensor, times (n,) s, readings (n,) degC) of every series. stated : its stated noise, K.
+    series : (sensor, times (n,) s, readings (n,) K above any level) of every series. stated : its stated noise, K.
     """
     scales = [value if value > 0 else SCALE for value in stated]
     pieces = [differences(times, values) / scale for (_, times, values), scale in zip(series, scales, strict=True)]

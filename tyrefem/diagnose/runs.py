@@ -75,7 +75,8 @@ def with_noise_of_data(
 ) -> tuple[MeasuredDrive, ...]:
     """The runs with the noise that their readings show, where it differs clearly from the stated one: `noise_of`."""
     sensors = [readings for run in runs for readings in run.sensors]
-    series = [(readings.sensor, readings.times, readings.measured) for readings in sensors]
+    # Noise is a matter of differences: the level of the readings stays here.
+    series = [(readings.sensor, readings.times, readings.measured - readings.measured[0]) for readings in sensors]
     estimates = iter(noise_of(series, [readings.noise for readings in sensors], settings))
 
     def judged(readings: MeasuredSensor) -> MeasuredSensor:

@@ -4,11 +4,14 @@ from __future__ import annotations
 
 import math
 from collections.abc import Callable, Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
+
+import numpy as np
 
 from tyrefem.brief import Brief
-from tyrefem.diagnose.candidates import Members
+from tyrefem.diagnose.candidates import Candidate, Members
 from tyrefem.diagnose.fits import FittedSet
+from tyrefem.diagnose.materiality import Movement, Movements
 from tyrefem.diagnose.numbers import parameter_name
 from tyrefem.diagnose.pulls import improbable_pulls
 from tyrefem.diagnose.selection import ScoredSet
@@ -17,6 +20,8 @@ from tyrefem.diagnose.settings import DEFAULT, DiagnosisSettings
 IDENTIFIED, CONFOUNDED, UNEXPLAINED, NO_GAP = "identified", "confounded", "unexplained", "no gap"
 #: Largest number of sets in a reason.
 SHOWN = 8
+#: Sets below this probability are not examined for effects that move no reading.
+LEAST = 0.01
 
 
 @dataclass(frozen=True)
@@ -141,6 +146,41 @@ def better_on_held_out(ranking: Sequence[RankedSet], fit: FittedSet, margin: flo
         if math.isfinite(entry.held_out - fit.held_out) and entry.held_out - fit.held_out > margin
     ]
     return max(others, key=lambda pair: pair[1]) if others else None
+
+
+def without_immaterial(
+    ranking: Sequence[RankedSet], movements_of: Callable[[FittedSet], Movements], floor: float
+) -> tuple[tuple[RankedSet, ...], dict[Candidate, Movement]]:
+    """Sets ranked again, and the effects left out: those that move no reading by more than ``floor`` (K).
+
+    The probability of a set with such an effect goes to the set without it: as far as readings can tell, the two say
+    the same.
+    """
+    rows, left_out = list(ranking), dict[Candidate, Movement]()
+    examined: set[int] = set()
+    while True:
+        entry = next(
+            (row for row in rows
+             if row.fit is not None and row.members and row.probability > LEAST and id(row.fit) not in examined),
+            None,
+        )  # fmt: skip
+        if entry is None or entry.fit is None:
+            return tuple(rows), left_out
+        examined.add(id(entry.fit))
+        small = {member: move for member, move in movements_of(entry.fit).items() if abs(move.kelvin) <= floor}
+        if not small:
+            continue
+        left_out |= small
+        part = tuple(member for member in entry.members if member not in small)
+        rows.remove(entry)
+        known = next((row for row in rows if not row.outside and set(row.members) == set(part)), None)
+        if known is None:
+            rows.append(replace(entry, members=part, fit=None))
+        else:
+            score = float(np.logaddexp(known.score, entry.score))
+            rows[rows.index(known)] = replace(known, score=score, probability=known.probability + entry.probability)
+        rows.append(replace(entry, score=-math.inf, probability=0.0))
+        rows.sort(key=lambda row: -row.score)
 
 
 def _bounded(fit: FittedSet) -> list[str]:

@@ -20,8 +20,7 @@ from tyrefem.diagnose.fits import FittedSet, first_fits
 from tyrefem.diagnose.forward_model import ForwardModel
 from tyrefem.diagnose.heat_over_time import heat_over_time
 from tyrefem.diagnose.heat_patches import patches
-from tyrefem.diagnose.leading import settled, settled_fit
-from tyrefem.diagnose.materiality import Movements, movements, without_immaterial
+from tyrefem.diagnose.materiality import Movements, movements
 from tyrefem.diagnose.missing_heat import UnknownHeat, missing_heat, missing_heat_fitted, with_course
 from tyrefem.diagnose.multifidelity import Predictions
 from tyrefem.diagnose.next_experiment import next_experiment
@@ -32,7 +31,16 @@ from tyrefem.diagnose.selection import SelectionProblem
 from tyrefem.diagnose.sensitivities import responses, sensitivities, unknowns_of
 from tyrefem.diagnose.settings import DiagnosisSettings
 from tyrefem.diagnose.unknowns import Unknown
-from tyrefem.diagnose.verdict import CONFOUNDED, IDENTIFIED, UNEXPLAINED, Judgement, judge, ranked, rejection
+from tyrefem.diagnose.verdict import (
+    CONFOUNDED,
+    IDENTIFIED,
+    UNEXPLAINED,
+    Judgement,
+    judge,
+    ranked,
+    rejection,
+    without_immaterial,
+)
 from tyrefem.errors import InputError
 from tyrefem.inputs.study import StudyData
 from tyrefem.requirements import Requirements
@@ -200,14 +208,14 @@ def rank(
         lambda null: origin.score(null, origin.of(null)),
         tick,
     )
-    scored = settled(problem, method.strategy.search(problem))
+    scored = problem.settled(method.strategy.search(problem))
     fits = {problem.ordered(entry.fit.members): entry.fit for entry in scored if entry.fit is not None}
     null = fits[()]
 
     def fit_of(members: Members) -> FittedSet:
         if members not in fits:
             (first,) = first_fits(residuals, predictions, [members])
-            fits[members] = settled_fit(problem, first)
+            fits[members] = problem.settled_fit(first)
         return fits[members]
 
     missing, best = origin.of(null), scored[0]
@@ -236,7 +244,7 @@ def rank(
     )
     if left_out and not ranking[0].outside:
         # The set without them was no leading one, so its fit may be a rough one.
-        fit = settled_fit(problem, ranking[0].fit or fit_of(ranking[0].members))
+        fit = problem.settled_fit(ranking[0].fit or fit_of(ranking[0].members))
         ranking = (replace(ranking[0], fit=fit), *ranking[1:])
     judgement = judge(ranking, fit_of, settings)
     small = tuple(
