@@ -11,7 +11,7 @@ from numpy.typing import NDArray
 from tyrefem.diagnose.heat_courses import CourseGrid, courses
 from tyrefem.diagnose.heat_evidence import ProjectedData
 from tyrefem.diagnose.heat_patches import ALL_LAYERS, INNER, OUTER
-from tyrefem.diagnose.heat_sources import HeatSource, Place, place_shares, pursuit, timed, told_courses
+from tyrefem.diagnose.heat_sources import Place, UnknownSource, place_shares, pursuit, timed, told_courses
 from tyrefem.diagnose.heat_values import values_with_sources
 from tyrefem.diagnose.heat_words import course_words, inside_share, is_told
 from tyrefem.diagnose.numbers import percent
@@ -64,7 +64,9 @@ def readings(strengths: list[Array], station: float, where: str, seed: int) -> P
     return ProjectedData(clean / 0.3 + noise, offsets / 0.3, np.full(4, 0.5))
 
 
-def source(data: ProjectedData, runs: CourseGrid, wheres: tuple[str, ...] = (ALL_LAYERS, OUTER, INNER)) -> HeatSource:
+def source(
+    data: ProjectedData, runs: CourseGrid, wheres: tuple[str, ...] = (ALL_LAYERS, OUTER, INNER)
+) -> UnknownSource:
     """The first source that the data show, with its course."""
     places = [place(station, where, runs) for station in STATIONS for where in wheres]
     shares = place_shares(data, places, [], runs)

@@ -15,7 +15,7 @@ from tyrefem.diagnose.fits import FittedSet
 from tyrefem.diagnose.heat_courses import CourseGrid, courses
 from tyrefem.diagnose.heat_evidence import ProjectedData
 from tyrefem.diagnose.heat_patches import is_inside, layer_patches, patches, place_of, surface_patches
-from tyrefem.diagnose.heat_sources import HeatSource, Place, evidence, misfit, place_shares, pursuit, timed
+from tyrefem.diagnose.heat_sources import Place, UnknownSource, evidence, misfit, place_shares, pursuit, timed
 from tyrefem.diagnose.heat_values import WRITTEN, source_unknown, values_with_sources
 from tyrefem.diagnose.residuals import Residuals
 from tyrefem.diagnose.unknowns import Unknown
@@ -30,14 +30,14 @@ class HeatOverTime(Brief):
 
     Parameters
     ----------
-    sources : see `HeatSource`. knots : by fitted run (n_knots,) s. runs : names of the fitted runs.
+    sources : see `UnknownSource`. knots : by fitted run (n_knots,) s. runs : names of the fitted runs.
     rolling : by run (n_knots,) whether the tyre rolls. cools : whether a fitted run has readings at rest after rolling.
     log_evidence : ln evidence of the data, comparable with the sets of effects; places and courses share the prior.
     values, sd : x and standard deviation of base numbers, sensors and clear sources; empty if a study file cannot state
         the course of a clear source. unknowns : of the clear sources.
     """
 
-    sources: tuple[HeatSource, ...]
+    sources: tuple[UnknownSource, ...]
     knots: tuple[Array, ...]
     runs: tuple[str, ...]
     rolling: tuple[NDArray[np.bool_], ...]
@@ -48,7 +48,7 @@ class HeatOverTime(Brief):
     unknowns: tuple[Unknown, ...]
 
     @property
-    def clear(self) -> tuple[HeatSource, ...]:
+    def clear(self) -> tuple[UnknownSource, ...]:
         """The sources whose amount differs from zero by more than two standard deviations."""
         return tuple(source for source in self.sources if source.clear)
 
@@ -103,9 +103,8 @@ def _estimated(
             unknown_of[place_of(unknown)] = unknown
     resolved = responses.places(fine, [unknown_of[place.station, place.where] for place in refined])
     free = pursuit(data, resolved, fine, len(resolved), -math.inf)
-    kinds = {id(place): course for place, course in free}
-    current = [(place, kinds[id(place)]) for place in resolved]
-    sources: list[HeatSource] = []
+    current = [(place, next(course for other, course in free if other is place)) for place in resolved]
+    sources: list[UnknownSource] = []
     for number, place in enumerate(resolved):
         others = [entry for other, entry in enumerate(current) if other != number]
         source, course = timed(data, place, others, fine, shares[number])

@@ -39,7 +39,7 @@ class Place(Brief):
 
 
 @dataclass(frozen=True, eq=False)
-class HeatSource(Brief):
+class UnknownSource(Brief):
     """A source of missing heat (positive), or a place where cooling is missing (negative).
 
     Parameters
@@ -144,7 +144,7 @@ def timed(
     others: Sequence[tuple[Place, Course]],
     grid: CourseGrid,
     places: Mapping[tuple[float, str], float],
-) -> tuple[HeatSource, Course]:
+) -> tuple[UnknownSource, Course]:
     """A source with its course in time, beside other sources; ``places``: see `place_shares`."""
     base = evidence(data, others) if others else 0.0
     by_kind: dict[str, list[tuple[float, Course]]] = {}
@@ -163,7 +163,7 @@ def timed(
     here = sum(share for (station, _), share in places.items() if station == place.station)
     depths = {where: share / here for (station, where), share in places.items() if station == place.station}
     gain = log_mean_exp([log_mean_exp([gain for gain, _ in tried]) for tried in by_kind.values()])
-    source = HeatSource(
+    source = UnknownSource(
         place.station, place.where, place.inside, amount, sd, stations, depths, kind, kinds, time, time_sd,
         strength, strength_sd, gain,
     )  # fmt: skip

@@ -9,7 +9,7 @@ import numpy as np
 
 from tyrefem.diagnose.heat_courses import BEGINS, CONSTANT, ENDS, FREE, GROWS, PHASE, RUN, SPEED
 from tyrefem.diagnose.heat_patches import ALL_LAYERS, OUTER, SURFACES
-from tyrefem.diagnose.heat_sources import CLEAR, STATED, HeatSource
+from tyrefem.diagnose.heat_sources import CLEAR, STATED, UnknownSource
 from tyrefem.diagnose.numbers import amount, percent
 from tyrefem.geometry.place_names import place
 
@@ -31,7 +31,7 @@ def heat_words(d: DiagnosisData) -> str:
     return ". ".join(source_words(d, source, over_time) for source in over_time.clear)
 
 
-def source_words(d: DiagnosisData, source: HeatSource, over_time: HeatOverTime) -> str:
+def source_words(d: DiagnosisData, source: UnknownSource, over_time: HeatOverTime) -> str:
     """A source in one to three sentences: sign, place and amount; then what the data do not tell; then the course."""
     size = amount(source.amount, source.sd, "W/m**3" if source.inside else "W/m**2")
     when = "while the tyre rolls" if source.inside else "also at rest"
@@ -39,7 +39,7 @@ def source_words(d: DiagnosisData, source: HeatSource, over_time: HeatOverTime) 
     return ". ".join([first, *_depth_doubt(source, over_time), course_words(source)])
 
 
-def source_place(d: DiagnosisData, source: HeatSource) -> str:
+def source_place(d: DiagnosisData, source: UnknownSource) -> str:
     """The place of a source; a layer or a surface only where the data tell it from the others."""
     station = station_words(d, source.station)
     if not is_told(source):
@@ -58,17 +58,17 @@ def station_words(d: DiagnosisData, station: float) -> str:
     return f"{place(section, station, total / 2).split(',')[0]} (s = {station * 1e3:.0f} mm along the meridian)"
 
 
-def is_told(source: HeatSource) -> bool:
+def is_told(source: UnknownSource) -> bool:
     """Whether the data tell heat inside from a flux through one of the surfaces."""
     return inside_share(source) >= STATED or any(source.depths.get(name, 0.0) >= STATED for name in SURFACES)
 
 
-def inside_share(source: HeatSource) -> float:
+def inside_share(source: UnknownSource) -> float:
     """Probability that the heat is inside the rubber, in any layers."""
     return sum(share for where, share in source.depths.items() if where not in SURFACES)
 
 
-def course_words(source: HeatSource) -> str:
+def course_words(source: UnknownSource) -> str:
     """The course in time, if the data tell it; else the courses that remain."""
     likely = [kind for kind, share in source.kinds.items() if share >= 1 - STATED]
     if source.kinds[source.kind] >= STATED:
@@ -85,7 +85,7 @@ def _sign(value: float) -> str:
     return "Heat is missing" if value > 0 else "The model has too much heat, cooling is missing,"
 
 
-def _course(source: HeatSource, kind: str, *, timed: bool = True) -> str:
+def _course(source: UnknownSource, kind: str, *, timed: bool = True) -> str:
     size = 10.0 ** math.floor(math.log10(source.time_sd)) if timed and source.time_sd > 0 else 1.0
     size = min(size, 10.0)
     switch = f" at {round(source.time / size) * size:.0f} ± {math.ceil(source.time_sd / size) * size:.0f} s" if (
@@ -106,7 +106,7 @@ def _course(source: HeatSource, kind: str, *, timed: bool = True) -> str:
     }[kind]
 
 
-def _depth_doubt(source: HeatSource, over_time: HeatOverTime) -> list[str]:
+def _depth_doubt(source: UnknownSource, over_time: HeatOverTime) -> list[str]:
     if is_told(source):
         return []
     options = {"inside": inside_share(source)} | {name: source.depths.get(name, 0.0) for name in SURFACES}

@@ -14,7 +14,7 @@ if TYPE_CHECKING:
     from tyrefem.diagnose.candidates import Candidate
     from tyrefem.diagnose.diagnosis import DiagnosisData
     from tyrefem.diagnose.heat_over_time import HeatOverTime
-    from tyrefem.diagnose.heat_sources import HeatSource
+    from tyrefem.diagnose.heat_sources import UnknownSource
 
 #: File of the amended study, beside the record.
 AMENDED = "amended.toml"
@@ -186,7 +186,7 @@ def missing_heat(d: DiagnosisData) -> dict[str, Any]:
     }
 
 
-def source_row(d: DiagnosisData, source: HeatSource, over_time: HeatOverTime) -> dict[str, Any]:
+def source_row(d: DiagnosisData, source: UnknownSource, over_time: HeatOverTime) -> dict[str, Any]:
     """A source of missing heat (positive) or of too much heat (negative): W/m3 inside, W/m2 through a surface.
 
     ``stated``: the amount differs from zero by more than two standard deviations. ``depth``: probability of each layer
