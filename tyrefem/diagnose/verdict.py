@@ -157,16 +157,17 @@ def without_immaterial(
     the same.
     """
     rows, left_out = list(ranking), dict[Candidate, Movement]()
-    examined: set[int] = set()
+    examined: list[FittedSet] = []
+
+    def is_left(row: RankedSet) -> bool:
+        probable = row.fit is not None and bool(row.members) and row.probability > LEAST
+        return probable and all(row.fit is not fit for fit in examined)
+
     while True:
-        entry = next(
-            (row for row in rows
-             if row.fit is not None and row.members and row.probability > LEAST and id(row.fit) not in examined),
-            None,
-        )  # fmt: skip
+        entry = next((row for row in rows if is_left(row)), None)
         if entry is None or entry.fit is None:
             return tuple(rows), left_out
-        examined.add(id(entry.fit))
+        examined.append(entry.fit)
         small = {member: move for member, move in movements_of(entry.fit).items() if abs(move.kelvin) <= floor}
         if not small:
             continue

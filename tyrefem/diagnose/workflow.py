@@ -36,6 +36,7 @@ from tyrefem.diagnose.verdict import (
     IDENTIFIED,
     UNEXPLAINED,
     Judgement,
+    inclusion,
     judge,
     ranked,
     rejection,
@@ -239,17 +240,18 @@ def rank(
         return sizes[fit.members]
 
     floor = residuals.study.card.diagnosis.discrepancy
-    ranking, left_out = without_immaterial(
-        ranked(scored, origin.score(null, missing), missing.held_out), movements_of, floor
-    )
+    ranked_sets = ranked(scored, origin.score(null, missing), missing.held_out)
+    ranking, left_out = without_immaterial(ranked_sets, movements_of, floor)
     if left_out and not ranking[0].outside:
         # The set without them was no leading one, so its fit may be a rough one.
         fit = problem.settled_fit(ranking[0].fit or fit_of(ranking[0].members))
         ranking = (replace(ranking[0], fit=fit), *ranking[1:])
     judgement = judge(ranking, fit_of, settings)
+    probable = inclusion(ranked_sets)
     small = tuple(
         f"{member.key} is not named: it {move.words}; the discrepancy is {floor:g} K"
         for member, move in left_out.items()
+        if probable[member.key] >= settings.alone_probability
     )
     judgement = replace(judgement, reasons=(*judgement.reasons, *small))
     ahead = judgement.best
