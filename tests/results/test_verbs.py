@@ -48,9 +48,9 @@ def test_verbs_take_the_data_as_they_are() -> None:
 
 
 def test_every_further_look_of_a_diagnosis_has_verbs() -> None:
-    others: Any = [None] * (len(dataclasses.fields(diagnosis_data.DiagnosisData)) - 1)
-    second = diagnosis_data.DiagnosisData(*others)
-    first = diagnosis_data.DiagnosisData(*others, again=second)
+    others: dict[str, Any] = {field.name: None for field in dataclasses.fields(diagnosis_data.DiagnosisData)}
+    second = diagnosis_data.DiagnosisData(**others)
+    first = diagnosis_data.DiagnosisData(**others | {"again": second})
     looks = Diagnosis.of(first).looks
     assert [type(look) for look in looks] == [Diagnosis, Diagnosis]
     assert first.again is second
