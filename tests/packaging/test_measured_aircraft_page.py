@@ -2,37 +2,22 @@
 
 from __future__ import annotations
 
-import importlib.util
-import sys
-from pathlib import Path
 from types import ModuleType
 
 import pytest
+from script_module import ROOT, script_module
 
 pytestmark = pytest.mark.fast
-
-ROOT = Path(__file__).resolve().parents[2]
-
-
-def loaded(path: str) -> ModuleType:
-    """A script as a module."""
-    spec = importlib.util.spec_from_file_location(Path(path).stem, ROOT / path)
-    assert spec is not None
-    assert spec.loader is not None
-    module = importlib.util.module_from_spec(spec)
-    sys.modules[spec.name] = module
-    spec.loader.exec_module(module)
-    return module
 
 
 @pytest.fixture(scope="module")
 def page() -> ModuleType:
-    return loaded("tools/measured_aircraft_page.py")
+    return script_module("tools/measured_aircraft_page.py")
 
 
 @pytest.fixture(scope="module")
 def benchmark() -> ModuleType:
-    return loaded("benchmarks/measured_aircraft.py")
+    return script_module("benchmarks/measured_aircraft.py")
 
 
 def test_the_page_has_the_tables_of_the_stored_results(page: ModuleType) -> None:

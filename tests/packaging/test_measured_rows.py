@@ -2,14 +2,11 @@
 
 from __future__ import annotations
 
-import importlib.util
-import sys
-from pathlib import Path
 from types import ModuleType
 
 import pytest
+from script_module import script_module
 
-ROOT = Path(__file__).resolve().parents[2]
 #: Largest relative difference of a coarse mesh from the stored row.
 TOLERANCES = {
     "deflection [mm]": 0.01,
@@ -28,14 +25,7 @@ TOLERANCES = {
 @pytest.fixture(scope="module")
 def benchmark_module() -> ModuleType:
     """benchmarks/measured.py."""
-    sys.path.insert(0, str(ROOT / "benchmarks"))
-    spec = importlib.util.spec_from_file_location("measured_benchmark", ROOT / "benchmarks/measured.py")
-    assert spec is not None
-    assert spec.loader is not None
-    module = importlib.util.module_from_spec(spec)
-    sys.modules[spec.name] = module
-    spec.loader.exec_module(module)
-    return module
+    return script_module("benchmarks/measured.py")
 
 
 @pytest.mark.parametrize("name", ["passenger", "prints"])

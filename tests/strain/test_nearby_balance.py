@@ -3,35 +3,21 @@
 from __future__ import annotations
 
 import pytest
+from bias_tyre import bias
 
-import tyrefem as tf
 from tyrefem.inputs.loading import LoadCase
-from tyrefem.mechanics.cycle_schedule import KnotSolver
 from tyrefem.mechanics.finite_elements import FiniteElements
 from tyrefem.mechanics.footprint.harmonic_balance import Balance
 from tyrefem.mechanics.footprint.nearby_balance import nearby_balance
 from tyrefem.mechanics.footprint.pressed_tyre import PressedTyre
 
-COARSE = {"mesh.size": "14 mm", "mesh.element": "P1", "drive.duration": "60 s", "drive.load": "1000 lbf"}
-
-
-def bias(**changes: object) -> tf.Study:
-    return tf.study("nasa-22x5.5-8pr", {**COARSE, "mechanics.strain": "fem", "mechanics.motion": "large", **changes})
-
-
-@pytest.fixture(scope="module")
-def cycle() -> FiniteElements:
-    """The strain cycle at 1000 lbf."""
-    solver = KnotSolver(bias())
-    solved = solver.cycle(0, solver.case(0, 0.0))
-    assert isinstance(solved, FiniteElements)
-    return solved
-
 
 @pytest.mark.parametrize(("load", "pressure"), [(1.03, 1.0), (1.0, 1.03), (0.97, 0.98)])
-def test_a_nearby_footprint_is_the_one_from_the_free_tyre(cycle: FiniteElements, load: float, pressure: float) -> None:
+def test_a_nearby_footprint_is_the_one_from_the_free_tyre(
+    bias_cycle: FiniteElements, load: float, pressure: float
+) -> None:
     """Wherever the solution starts, it is the same within the balance's tolerance."""
-    tyre, case, start = PressedTyre(bias()), cycle.case, cycle.footprint
+    tyre, case, start = PressedTyre(bias()), bias_cycle.case, bias_cycle.footprint
     assert start is not None
     moved = LoadCase(load * case.load, 0.0, pressure * case.pressure, case.outer_radius, case.drum_diameter)
     near = tyre.footprint(moved, large=True, near=start)
@@ -45,13 +31,13 @@ def test_a_nearby_footprint_is_the_one_from_the_free_tyre(cycle: FiniteElements,
     assert near.load == pytest.approx(moved.load, rel=1e-3)
 
 
-def test_too_far_a_start_or_another_mesh_is_none(cycle: FiniteElements) -> None:
-    assert cycle.footprint is not None
-    balance = Balance(cycle.footprint.pressing)
-    assert nearby_balance(balance, cycle.footprint, load=2.5 * cycle.case.load) is None
+def test_too_far_a_start_or_another_mesh_is_none(bias_cycle: FiniteElements) -> None:
+    assert bias_cycle.footprint is not None
+    balance = Balance(bias_cycle.footprint.pressing)
+    assert nearby_balance(balance, bias_cycle.footprint, load=2.5 * bias_cycle.case.load) is None
     other = bias(**{"mesh.size": "18 mm"})
-    finer = PressedTyre(other).footprint(cycle.case, large=True, near=cycle.footprint)
+    finer = PressedTyre(other).footprint(bias_cycle.case, large=True, near=bias_cycle.footprint)
     assert finer is not None
     assert finer.motion == "large"
-    linear = bias(**{"mechanics.motion": "linear"}).press(load=cycle.case.load).footprint
-    assert nearby_balance(balance, linear, load=cycle.case.load) is None
+    linear = bias(**{"mechanics.motion": "linear"}).press(load=bias_cycle.case.load).footprint
+    assert nearby_balance(balance, linear, load=bias_cycle.case.load) is None
