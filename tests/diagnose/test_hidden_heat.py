@@ -49,6 +49,9 @@ def test_heat_that_begins_late_is_dated(tmp_path: Path) -> None:
     assert d.rms(after=True, held_out=False) < 0.5 * d.rms(after=False, held_out=False)
     assert (tmp_path / "out" / "missing-heat-course.png").stat().st_size > 10_000
     assert d.missing.over_time is not None
+    # The heat is large beside its prior; the flux would be smaller beside its own. That tells no surface.
+    assert first["place"].startswith("in mid sidewall")
+    assert first["depth"]["outer surface"] < 0.5
     assert inside_share(d.missing.over_time.sources[0]) == pytest.approx(
         sum(share for where, share in first["depth"].items() if "surface" not in where and where != "rim")
     )

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import math
 from collections.abc import Iterator, Mapping, Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 import numpy as np
 from numpy.typing import NDArray
@@ -19,6 +19,8 @@ Array = NDArray[np.float64]
 STATED = 0.9
 #: An amount is stated if it differs from zero by more than this many standard deviations.
 CLEAR = 2.0
+#: Sizes of a source, over its prior sd, that are equally probable where places are compared.
+SIZES = (1.0, 3.0, 10.0)
 #: A course whose response differs by less than this share from that of a constant source is no course of its kind.
 SAME = 0.02
 
@@ -119,7 +121,9 @@ def place_shares(
     others: Sequence[tuple[Place, Course]],
     grid: CourseGrid,
 ) -> dict[tuple[float, str], float]:
-    """(station, where) -> probability of a source's place, averaged over a constant and free courses.
+    """(station, where) -> probability of a source's place, averaged over a constant and free courses and over `SIZES`.
+
+    Otherwise the prior's sizes of heat and flux, which have different units, would decide between inside and surface.
 
     At every station, half of the prior is for heat inside and half for the surfaces. Of the heat inside, half is for
     all layers together, and half is for single layers.
@@ -133,7 +137,7 @@ def place_shares(
         if place.inside and layers > 0:
             prior = 0.25 if place.where == ALL_LAYERS else 0.25 / layers
         logs[place.station, place.where] = math.log(prior) + log_mean_exp(
-            [evidence(data, [*others, (place, kind)]) for kind in kinds]
+            [evidence(data, [*others, (replace(place, sd=size * place.sd), kind)]) for kind in kinds for size in SIZES]
         )
     return shares(logs)
 
