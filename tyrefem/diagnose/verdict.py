@@ -18,6 +18,8 @@ from tyrefem.diagnose.selection import ScoredSet
 from tyrefem.diagnose.settings import DEFAULT, DiagnosisSettings
 
 IDENTIFIED, CONFOUNDED, UNEXPLAINED, NO_GAP = "identified", "confounded", "unexplained", "no gap"
+#: More is wrong than effects explain, but some effects act whatever else is wrong.
+PARTLY = "partly identified"
 #: Largest number of sets in a reason.
 SHOWN = 8
 #: Sets below this probability are not examined for effects that move no reading.
