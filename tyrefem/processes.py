@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import os
 import signal
+import sys
 import threading
 from collections.abc import Callable, Iterator
 from concurrent.futures import ProcessPoolExecutor
@@ -16,6 +17,9 @@ from threadpoolctl import threadpool_limits
 
 from tyrefem.interruption import interruption_delayed
 
+#: Python's option that hides the tracker's warning.
+LEFT_BEHIND = "ignore:resource_tracker:UserWarning"
+
 
 class _ProcessWithoutCtrlC(SpawnProcess):
     """A process that never receives Ctrl-C, not even during its start: only the parent does."""
@@ -23,7 +27,7 @@ class _ProcessWithoutCtrlC(SpawnProcess):
     def start(self) -> None:
         """Start it with the signal blocked; the process inherits this."""
         # A tracker process started here would unblock the signal, so it is started before.
-        resource_tracker.ensure_running()
+        _start_tracker()
         with _blocked():
             super().start()
 
@@ -44,6 +48,7 @@ def processes(count: int, begin: Callable[..., None] | None = None, *given: Any)
     3
     """
     before = set(active_children())
+    _start_tracker()
     pool = ProcessPoolExecutor(count, _Context(), _begin, (begin, given))
     try:
         yield pool
@@ -56,6 +61,21 @@ def processes(count: int, begin: Callable[..., None] | None = None, *given: Any)
             for worker in set(active_children()) - before:
                 worker.terminate()
         raise
+
+
+def _start_tracker() -> None:
+    """Start the process that removes what this one leaves behind, without its warning.
+
+    An interrupted process that ends at once leaves the semaphores of its queues. They are removed, so the user need not
+    know.
+    """
+    if os.name != "posix":
+        return
+    sys.warnoptions.append(LEFT_BEHIND)
+    try:
+        resource_tracker.ensure_running()
+    finally:
+        sys.warnoptions.remove(LEFT_BEHIND)
 
 
 def _begin(begin: Callable[..., None] | None, given: tuple[Any, ...]) -> None:

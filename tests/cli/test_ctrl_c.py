@@ -205,6 +205,21 @@ def test_workers_of_an_interrupted_command_are_gone_and_silent(here: Path) -> No
     assert not [process for process in psutil.process_iter() if _of(process, done.group)]
 
 
+def test_a_command_that_ends_at_once_leaves_no_warning(here: Path) -> None:
+    # As when workers do not end in time: the semaphores of their queues are left to Python's tracker.
+    code = (
+        "import os\n"
+        "from tyrefem.processes import processes\n"
+        "if __name__ == '__main__':\n"
+        "    with processes(1) as pool:\n"
+        "        assert pool.submit(abs, -3).result() == 3\n"
+        "        os._exit(130)\n"
+    )
+    (here / "program.py").write_text(code, encoding="utf-8")
+    done = subprocess.run([sys.executable, "program.py"], capture_output=True, text=True, check=False)
+    assert (done.returncode, done.stderr) == (130, "")
+
+
 def _of(process: psutil.Process, group: int) -> bool:
     try:
         return os.getsid(process.pid) == group and process.status() != psutil.STATUS_ZOMBIE
