@@ -49,6 +49,16 @@ def test_heat_that_begins_late_is_dated(tmp_path: Path) -> None:
     assert d.rms(after=True, held_out=False) < 0.5 * d.rms(after=False, held_out=False)
     assert (tmp_path / "out" / "missing-heat-course.png").stat().st_size > 10_000
     assert d.missing.over_time is not None
+    # The law: begins, and is the same at every load; the two speeds of the fitted runs are equal.
+    law = missing["law"]
+    assert law["holds"]
+    assert law["switch"] == "begins"
+    assert law["time_s"] == pytest.approx(70.0, abs=max(4 * law["time_sd_s"], 8.0))
+    assert "speed" in law["hardly_vary"]
+    assert ["load", "pressure"] in law["vary_together"]
+    assert not any(entry["in_law"] for entry in law["exponents"])
+    assert law["amplitude_W_m3"] == pytest.approx(4e5, rel=0.25)
+    assert all(sentence in verdict_words(d) for sentence in law["sentences"])
     # The heat is large beside its prior; the flux would be smaller beside its own. That tells no surface.
     assert first["place"].startswith("in mid sidewall")
     assert first["depth"]["outer surface"] < 0.5

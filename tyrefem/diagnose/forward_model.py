@@ -33,6 +33,8 @@ from tyrefem.simulation.surroundings import GAS, RIM
 
 Array = NDArray[np.float64]
 Values = Mapping[Unknown, float]
+#: Places, each by points (s, depth), m.
+Places = tuple[tuple[tuple[float, float], ...], ...]
 #: Status of a reduced model at a point: its readings hold; it cannot represent these effects; it has no answer at this
 #: point (an impossible tyre, for example).
 FOLLOWED, NOT_FOLLOWED, NO_ANSWER = 0, 1, 2
@@ -192,6 +194,29 @@ class ForwardModel(Brief):
     def source_responses(self, number: int, sources: tuple[Unknown, ...], knots: tuple[float, ...]) -> Array:
         """Block means at a drive by source and knot; see `tyrefem.diagnose.source_responses`."""
         return source_responses(self.base(number), self.drives[number], sources, np.array(knots))
+
+    def drive_variables(self, number: int, times: tuple[float, ...], places: Places) -> Array:
+        """(5 + n_places, n_times) at a drive: speed, load, pressure, deflection, ambient; then temperatures, degC.
+
+        ``places``: for each, the (s, depth) in m whose mean temperature is asked for. SI units.
+        """
+        base = self.base(number)
+        tyre, schedule = base.tyre, base.tyre.schedule
+        at = np.array(times)
+        rows = [
+            np.array([law(float(t)) for t in at])
+            for law in (
+                tyre.speed,
+                lambda t: schedule.mean(lambda case: case.load, t),
+                lambda t: schedule.mean(lambda case: case.pressure, t),
+                lambda t: schedule.mean(lambda case: case.deflection, t),
+                tyre.ambient,
+            )
+        ]
+        for points in places:
+            s, depth = np.array(points).T
+            rows.append(np.interp(at, base.grid, base.at(s, depth).mean(axis=1)))
+        return np.array(rows)
 
     def predict(self, number: int, values: Values) -> Array:
         """Block means at a drive with unknowns at ``values``, by fixed-step simulation; NaN for an impossible tyre."""

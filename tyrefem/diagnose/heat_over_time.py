@@ -12,7 +12,7 @@ from numpy.typing import NDArray
 from tyrefem.brief import Brief
 from tyrefem.diagnose.evaluations import Evaluations
 from tyrefem.diagnose.fits import FittedSet
-from tyrefem.diagnose.heat_courses import CourseGrid, courses
+from tyrefem.diagnose.heat_courses import Course, CourseGrid, courses
 from tyrefem.diagnose.heat_evidence import ProjectedData
 from tyrefem.diagnose.heat_patches import is_inside, layer_patches, patches, place_of, surface_patches
 from tyrefem.diagnose.heat_sources import Place, UnknownSource, evidence, misfit, place_shares, pursuit, timed
@@ -25,6 +25,24 @@ Array = NDArray[np.float64]
 
 
 @dataclass(frozen=True, eq=False)
+class SourceBasis(Brief):
+    """What the sources of `HeatOverTime` were estimated from, for their law: see `heat_law`.
+
+    Parameters
+    ----------
+    data : the data, base numbers and sensors integrated out. entries : places with their courses, on ``grid``.
+    unknowns : of the places. grid, coarse : the fitted runs with fine and with few knots. tried : all places, coarse.
+    """
+
+    data: ProjectedData
+    entries: tuple[tuple[Place, Course], ...]
+    unknowns: tuple[Unknown, ...]
+    grid: CourseGrid
+    coarse: CourseGrid
+    tried: tuple[Place, ...]
+
+
+@dataclass(frozen=True, eq=False)
 class HeatOverTime(Brief):
     """Sources of heat of unknown origin, the most significant first.
 
@@ -34,7 +52,7 @@ class HeatOverTime(Brief):
     rolling : by run (n_knots,) whether the tyre rolls. cools : whether a fitted run has readings at rest after rolling.
     log_evidence : ln evidence of the data, comparable with the sets of effects; places and courses share the prior.
     values, sd : x and standard deviation of base numbers, sensors and clear sources; empty if a study file cannot state
-        the course of a clear source. unknowns : of the clear sources.
+        the course of a clear source. unknowns : of the clear sources. basis : what they were estimated from.
     """
 
     sources: tuple[UnknownSource, ...]
@@ -46,6 +64,7 @@ class HeatOverTime(Brief):
     values: dict[Unknown, float]
     sd: dict[Unknown, float]
     unknowns: tuple[Unknown, ...]
+    basis: SourceBasis | None = None
 
     @property
     def clear(self) -> tuple[UnknownSource, ...]:
@@ -126,7 +145,11 @@ def _estimated(
     values, sd = values_with_sources(data, nuisance, named) if written else ({}, {})
     unknowns = tuple(unknown for unknown, _, _ in named) if written else ()
     sources.sort(key=lambda source: -abs(source.amount) / source.sd)
-    return HeatOverTime(tuple(sources), fine.knots, fine.names, rolling, cools, log_evidence, values, sd, unknowns)
+    of_places = tuple(unknown_of[place.station, place.where] for place in resolved)
+    basis = SourceBasis(data, tuple(current), of_places, fine, coarse, tuple(places))
+    return HeatOverTime(
+        tuple(sources), fine.knots, fine.names, rolling, cools, log_evidence, values, sd, unknowns, basis
+    )
 
 
 def _grid(residuals: Residuals, count: int) -> CourseGrid:
@@ -182,3 +205,14 @@ class _Responses:
                 whitened = self.residuals.runs[number].whitened(np.ascontiguousarray(answer[:, column]))
                 columns[column, ends[order] : ends[order + 1], part] = whitened
         return list(columns)
+
+
+def source_columns(
+    residuals: Residuals,
+    evaluations: Evaluations,
+    grid: CourseGrid,
+    unknowns: Sequence[Unknown],
+    tick: Callable[[], None] | None = None,
+) -> list[Array]:
+    """By unknown (n, n_all_knots): whitened responses of the fitted runs to a source of unit strength at every knot."""
+    return _Responses(residuals, evaluations, tick)._computed(grid, tuple(unknowns))

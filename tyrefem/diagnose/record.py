@@ -5,6 +5,7 @@ from __future__ import annotations
 from typing import TYPE_CHECKING, Any
 
 from tyrefem.diagnose.heat_words import is_told, source_place, source_words
+from tyrefem.diagnose.law_record import law_record
 from tyrefem.diagnose.result_tables import candidate_rows, parameters, set_rows
 from tyrefem.diagnose.verdict import CONFOUNDED, IDENTIFIED, NO_GAP, UNEXPLAINED
 from tyrefem.diagnose.words import look_folder, verdict_words
@@ -161,11 +162,13 @@ def missing_heat(d: DiagnosisData) -> dict[str, Any]:
     """Heat of unknown origin by station: W/m3 inside while the tyre rolls, W/m2 through the outer surface.
 
     ``sources``: what the data tell of each place, sign, amount and course in time; see `source_row`.
+    ``law``: how the largest of them scales over the runs; see `law_record`.
     """
     heat = d.missing
     over_time = heat.over_time
     return {
         "sources": [] if over_time is None else [source_row(d, source, over_time) for source in over_time.sources],
+        "law": law_record(d),
         "cooling_run": None if over_time is None else over_time.cools,
         "kind": heat.kind,
         "region": heat.region,

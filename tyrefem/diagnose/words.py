@@ -8,6 +8,7 @@ from typing import TYPE_CHECKING
 
 from tyrefem.diagnose.candidates import Candidate
 from tyrefem.diagnose.heat_words import heat_words
+from tyrefem.diagnose.law_words import law_words
 from tyrefem.diagnose.numbers import amount, correction_words, parameter_name, percent
 from tyrefem.diagnose.pulls import pulls
 from tyrefem.diagnose.result_tables import competing_sets, inclusion_probability
@@ -95,6 +96,7 @@ def _unexplained(d: DiagnosisData, closing: str) -> tuple[str, ...]:
         "No effect in the catalogue explains the deviation.",
         *d.judgement.doubts,
         f"{heat_words(d)}.",
+        *(f"{sentence}." for sentence in law_words(d)),
         *partly,
         *([described] if entries else []),
         closing,

@@ -20,6 +20,7 @@ from tyrefem.diagnose.fits import FittedSet, first_fits
 from tyrefem.diagnose.forward_model import ForwardModel
 from tyrefem.diagnose.heat_over_time import heat_over_time
 from tyrefem.diagnose.heat_patches import patches
+from tyrefem.diagnose.law_search import HeatLaw, heat_law
 from tyrefem.diagnose.materiality import Movements, movements
 from tyrefem.diagnose.missing_heat import UnknownHeat, missing_heat, missing_heat_fitted, with_course
 from tyrefem.diagnose.multifidelity import Predictions
@@ -34,6 +35,7 @@ from tyrefem.diagnose.unknowns import Unknown
 from tyrefem.diagnose.verdict import (
     CONFOUNDED,
     IDENTIFIED,
+    PARTLY,
     UNEXPLAINED,
     Judgement,
     inclusion,
@@ -124,6 +126,7 @@ def _look(
         change = changes(residuals, values, sd, missing_unknowns)
         work.tick("running the amended study")
         after = _after(residuals, evaluations, change if work.rerun else None, values)
+        law = _law(residuals, evaluations, ranking, work)
         further: Mapping[str, Any] = {}
         if ranking.judgement.verdict == CONFOUNDED:
             work.tick("ranking next experiments")
@@ -145,6 +148,7 @@ def _look(
         seconds=time.perf_counter() - began,
         notes=(*notes, *further_notes),
         movements=ranking.movements,
+        law=law,
     )
 
 
@@ -300,6 +304,14 @@ def _missing_unknowns(
     missing_unknowns = [patch for patch in heat if abs(missing.values.get(patch, 0.0)) > 2 * missing.sd.get(patch, 1.0)]
     values = {unknown: x for unknown, x in missing.values.items() if unknown in missing_unknowns or unknown not in heat}
     return values, missing.sd, missing_unknowns
+
+
+def _law(residuals: Residuals, evaluations: Evaluations, ranking: Ranking, work: SimulationWork) -> HeatLaw | None:
+    """The law of the missing heat, if the verdict leaves some."""
+    if ranking.judgement.verdict not in (UNEXPLAINED, PARTLY):
+        return None
+    work.tick("inferring the law of the missing heat")
+    return heat_law(residuals, evaluations, ranking.missing.over_time)
 
 
 def _after(

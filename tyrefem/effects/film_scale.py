@@ -22,8 +22,11 @@ class FilmScale(Effect):
     source: ClassVar[str] = "estimate: correlations of forced convection scatter by 20 to 30 % (handbook values)"
 
     film: Annotated[
-        Literal["road", "outside_air", "contained_air", "rim"],
-        Field(description="which film: road, outside_air, contained_air or rim", examples=["outside_air"]),
+        Literal["road", "outside_air", "tread_air", "contained_air", "rim"],
+        Field(
+            description="which film: road, outside_air, contained_air, rim, or tread_air (tread between two contacts)",
+            examples=["outside_air"],
+        ),
     ]
     log_factor: Annotated[float, Prior("1", "natural logarithm of the factor", 0.2, -2.0, 2.0)] = 0.0
 

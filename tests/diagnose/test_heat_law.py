@@ -1,0 +1,187 @@
+"""Laws of missing heat: exponents, switches and what the runs cannot tell, on linear problems made here."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+
+import numpy as np
+import pytest
+from numpy.typing import NDArray
+
+from tyrefem.diagnose.heat_courses import CourseGrid
+from tyrefem.diagnose.heat_evidence import ProjectedData
+from tyrefem.diagnose.heat_law import PlaceLaw, place_law
+from tyrefem.diagnose.law_evidence import LawData, fitted_law, law_data, plain_switch
+from tyrefem.diagnose.law_terms import DriveVariables, drive_variables, fine_times, law_terms
+
+Array = NDArray[np.float64]
+#: Run -> speed m/s, load N, pressure Pa.
+APART = {"a": (8.0, 12e3, 5e5), "b": (16.0, 12e3, 6e5), "c": (12.0, 18e3, 5e5), "d": (9.0, 15e3, 7e5)}
+CONFOUNDED = {"a": (8.0, 8e3, 5e5), "b": (12.0, 12e3, 5e5), "c": (16.0, 16e3, 5e5)}
+KNOTS, SENSORS, END, DELAY, SD = 19, 4, 900.0, 200.0, 3.0
+READ = np.linspace(15.0, END, 60)
+
+
+def problem(runs: dict[str, tuple[float, float, float]], rest: float = END) -> tuple[DriveVariables, Array]:
+    """The runs, at rest from a time on, and (n_data, m) responses of four sensors to hats."""
+    values = list(runs.values())
+    grid = CourseGrid(
+        tuple(runs), (np.linspace(0.0, END, KNOTS),) * len(runs),
+        ((("rolling", 0.0, rest), ("rest", rest, END + 1e-9)) if rest < END else (("rolling", 0.0, END),),) * len(runs),
+        lambda run, t: values[run][0] if t < rest else 0.0,
+    )  # fmt: skip
+    rows = []
+    for (speed, load, pressure), t in zip(values, fine_times(grid), strict=True):
+        deflection = 0.03 * (load / 12e3) * (5e5 / pressure) ** 0.8
+        ones = np.ones_like(t)
+        moving = np.where((t < rest) | (rest >= END), speed, 0.0)
+        rows.append(np.array([moving, load * ones, pressure * ones, deflection * ones, 25.0 * ones]))
+    shares = np.array([1.0, 0.4, 0.1, 0.6])
+    columns = np.zeros((len(runs) * SENSORS * len(READ), grid.size))
+    fine = np.linspace(0.0, END, 901)
+    for number, (part, knots) in enumerate(zip(grid.parts(), grid.knots, strict=True)):
+        rises = []
+        for hat in np.eye(KNOTS):
+            rise, q = np.zeros(len(fine)), np.interp(fine, knots, hat)
+            for i in range(1, len(fine)):
+                rise[i] = rise[i - 1] + (q[i] - rise[i - 1]) / DELAY
+            rises.append(np.kron(shares, np.interp(READ, fine, rise)))
+        size = SENSORS * len(READ)
+        columns[number * size : (number + 1) * size, part] = np.column_stack(rises) / 0.3
+    return drive_variables(grid, rows), columns
+
+
+def measured(
+    variables: DriveVariables, columns: Array, strength: Callable[[DriveVariables], Array], seed: int
+) -> LawData:
+    """Whitened data of a source, with unknown offsets of sensors; noise 0.3 K."""
+    q = variables.hats @ strength(variables)
+    runs = len(variables.grid.names)
+    offsets = np.vstack([np.kron(np.eye(SENSORS), np.ones((len(READ), 1)))] * runs) / 0.3
+    noise = np.random.default_rng(seed).normal(size=len(columns))
+    projected = ProjectedData(columns @ q + noise, offsets, np.full(SENSORS, 0.5))
+    return law_data(projected, columns, SD, variables.hats)
+
+
+def law(
+    strength: Callable[[DriveVariables], Array],
+    runs: dict[str, tuple[float, float, float]] = APART,
+    seed: int = 0,
+    rest: float = END,
+    inside: bool = True,
+    temperature: Callable[[DriveVariables], Array] | None = None,
+) -> PlaceLaw:
+    """The law that the readings of a source show."""
+    variables, columns = problem(runs, rest)
+    if inside:
+        columns = columns * (variables.hats @ variables.rolling > 0.5)
+    data = measured(variables, columns, strength, seed)
+    terms = law_terms(variables, None if temperature is None else temperature(variables))
+    return place_law(data, variables, terms, inside=inside)
+
+
+@pytest.mark.parametrize("seed", range(4))
+def test_exponents_of_speed_and_load_are_found_within_their_intervals(seed: int) -> None:
+    shown = law(lambda v: 4.0 * (v.speed / 11.0) ** 1.5 * (v.load / 14e3) ** -0.8, seed=seed)
+    assert shown.fit.terms == ("speed", "load")
+    assert shown.fit.switch.kind == "no switch"
+    speed, load = shown.exponent["speed"], shown.exponent["load"]
+    assert abs(speed.mean - 1.5) < 3.5 * speed.sd
+    assert abs(load.mean + 0.8) < 3.5 * load.sd
+    assert speed.sd < 0.15
+    assert load.sd < 0.3
+    assert speed.told
+    assert load.told
+    amplitude = 4.0 * (speed.reference / 11.0) ** 1.5 * (load.reference / 14e3) ** -0.8
+    assert shown.amplitude == pytest.approx(amplitude, abs=4 * shown.sd)
+
+
+@pytest.mark.parametrize("seed", range(3))
+def test_a_power_of_the_deflection_is_told_from_load_and_pressure_alone(seed: int) -> None:
+    shown = law(lambda v: 4.0 * (v.speed / 11.0) * (v.deflection / 0.03) ** 2, seed=seed)
+    assert shown.fit.terms == ("speed", "deflection")
+    assert shown.exponent["deflection"].mean == pytest.approx(2.0, abs=4 * shown.exponent["deflection"].sd)
+
+
+def test_constant_heat_has_no_terms() -> None:
+    shown = law(lambda v: np.full(len(v.times), 4.0))
+    assert shown.fit.terms == ()
+    assert all(entry.probability < 0.5 for entry in shown.exponents)
+    assert shown.switch_probabilities["no switch"] > 0.9
+
+
+def test_variables_that_vary_together_are_named() -> None:
+    shown = law(lambda v: 4.0 * (v.speed / 11.0) ** 1.5, CONFOUNDED)
+    assert ("speed", "load") in shown.together
+    assert "pressure" in shown.hardly
+    assert "pressure" not in {entry.name for entry in shown.exponents}
+    # The load explains as much as the speed: both laws are reported.
+    laws = {shown.fit.terms, *(fit.terms for fit, _ in shown.alternatives)}
+    assert len({terms for terms in laws if len(terms) == 1}) > 1
+
+
+def test_two_terms_that_vary_together_keep_their_prior_along_the_difference() -> None:
+    variables, columns = problem(CONFOUNDED)
+    data = measured(variables, columns, lambda v: 4.0 * (v.speed / 11.0) ** 1.5, 1)
+    terms = law_terms(variables)
+    names = ["speed", "load"]
+    fit = fitted_law(data, names, [terms.features[name] for name in names], plain_switch(len(variables.times)))
+    difference = np.array([1.0, -1.0]) / np.sqrt(2)
+    assert np.sqrt(difference @ fit.covariance @ difference) == pytest.approx(2.0, rel=0.05)
+    assert fit.mean.sum() == pytest.approx(1.5, abs=0.3)
+
+
+def test_a_beginning_is_dated_beside_a_power_of_speed() -> None:
+    shown = law(lambda v: 5.0 * (v.speed / 11.0) ** 1.0 * (v.times >= 300.0))
+    assert shown.fit.switch.kind == "begins"
+    assert shown.switch_probabilities["begins"] > 0.9
+    assert shown.time == pytest.approx(300.0, abs=max(3.5 * shown.time_sd, 8.0))
+    assert shown.time_sd < 25.0
+    assert shown.exponent["speed"].mean == pytest.approx(1.0, abs=4 * shown.exponent["speed"].sd)
+
+
+def test_one_run_only() -> None:
+    shown = law(lambda v: 5.0 * (v.run == 2))
+    assert shown.fit.switch.kind == "run c"
+    assert shown.switch_probabilities["run c"] > 0.9
+
+
+@pytest.mark.parametrize(("kind", "on"), [("while rolling", True), ("at rest", False)])
+def test_a_flux_while_rolling_or_at_rest(kind: str, on: bool) -> None:
+    shown = law(lambda v: 6.0 * (v.rolling == on), rest=600.0, inside=False)
+    assert max(shown.switch_probabilities, key=lambda name: shown.switch_probabilities[name]) in (
+        kind, "phase rolling" if on else "phase rest",
+    )  # fmt: skip
+    assert shown.switch_probabilities.get("no switch", 0.0) < 0.01
+
+
+def test_a_rate_of_temperature() -> None:
+    def temperature(v: DriveVariables) -> Array:
+        return np.asarray(25.0 + 60.0 * (1 - np.exp(-v.times / 250.0)) * (v.speed / 12.0))
+
+    shown = law(
+        lambda v: 8.0 * np.exp(-0.02 * (temperature(v) - 60.0)) * (v.speed / 11.0), temperature=temperature, seed=3
+    )
+    assert "temperature" in shown.fit.terms
+    rate = shown.exponent["temperature"]
+    assert rate.mean == pytest.approx(-0.02, abs=4 * rate.sd)
+    assert rate.told
+
+
+def test_the_evidence_is_the_integral_over_amplitude_and_exponent() -> None:
+    variables, columns = problem(APART)
+    data = measured(variables, columns, lambda v: 3.0 * (v.speed / 11.0), 5)
+    terms = law_terms(variables)
+    switch = plain_switch(len(variables.times))
+    fit = fitted_law(data, ["speed"], [terms.features["speed"]], switch)
+    exponents = np.linspace(-4.0, 4.0, 1601)
+    gains = np.array([data.gain(np.exp(x * terms.features["speed"])) for x in exponents])
+    density = np.exp(gains - gains.max() - exponents**2 / 8) / (2 * np.sqrt(2 * np.pi))
+    exact = gains.max() + np.log(density.sum() * (exponents[1] - exponents[0]))
+    assert fit.log_evidence == pytest.approx(exact, abs=0.05)
+
+
+def test_noise_alone_shows_no_clear_law() -> None:
+    shown = [law(lambda v: np.zeros(len(v.times)), seed=seed) for seed in range(3)]
+    assert not any(abs(each.amplitude) > 3 * each.sd for each in shown)
+    assert all(each.fit.terms == () for each in shown)
