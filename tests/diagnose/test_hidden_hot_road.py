@@ -132,11 +132,11 @@ def test_the_page_needs_nothing_else_and_begins_with_the_verdict(case: Case) -> 
         assert outside not in text
     pictures = sorted(file.name for file in case.folder.glob("*.png"))
     assert pictures == sorted(
-        ["rms.png", "residual-map.png", "probabilities.png", *(f"histories-{run}.png" for run in RUNS)]
+        ["gap.png", "rms.png", "residual-map.png", "probabilities.png", *(f"histories-{run}.png" for run in RUNS)]
     )
     assert text.count('src="data:image/png;base64,') == len(pictures)
     first = text.index("The road is warmer than stated")
-    assert first < text.index("Deviations")
+    assert first < text.index("<img") < text.index("<h2>Where</h2>")
     assert all(run in text for run in RUNS)
 
 

@@ -5,16 +5,14 @@ from __future__ import annotations
 import json
 from dataclasses import replace
 from pathlib import Path
-from typing import Any
 
 import numpy as np
 import pytest
 from formula import case as formula_case
 from formula import effect
 from hidden import Case
+from made_up import confounded, judged, unexplained
 
-from tyrefem.diagnose import DiagnosisData
-from tyrefem.diagnose.amend import Change
 from tyrefem.diagnose.candidates import SetPrior
 from tyrefem.diagnose.criterion import LogEvidence
 from tyrefem.diagnose.heat_words import NOT_CLEAR
@@ -26,38 +24,10 @@ from tyrefem.diagnose.verdict import (
     NO_GAP,
     UNEXPLAINED,
     RankedSet,
-    inclusion,
     judge,
     ranked,
 )
 from tyrefem.diagnose.words import effect_words, verdict_words
-
-NEXT = {
-    "between": ["hot-road", "sun"],
-    "sensors": [{"place": "s = 0 mm, outside", "gain": 4.0, "largest_K": 2.5, "run": "slow"}],
-    "drives": [
-        {
-            "drive": "twice the speed", "changes": {"speed": "40 mph"}, "gain": 0.01, "largest_K": 0.1,
-            "sensor": "crown-outer",
-        },
-    ],
-}  # fmt: skip
-
-
-def confounded(d: DiagnosisData) -> DiagnosisData:
-    """As if hot road and sun were 60 : 25, and an idle effect beside the hot road took the rest."""
-    by_name = {candidate.name: candidate for candidate in d.candidates if not candidate.runs}
-    hot, sun, idle = by_name["hot-road"], by_name["sun"], by_name["sensor-offset"]
-    fits = {candidate.members: candidate.fit for candidate in d.judgement.ranking}
-    sets = [((hot,), 0.6), ((sun,), 0.25), ((hot, idle), 0.14), ((), 0.01)]
-    alone = [((candidate,), 0.0) for candidate in d.candidates if candidate not in (hot, sun)]
-    result = tuple(
-        RankedSet(members, float(np.log(probability + 1e-30)), probability, fits.get(members))
-        for members, probability in [*sets, *alone]
-    )
-    named = {"hot-road": 0.74, "sun": 0.25}
-    judged = replace(d.judgement, verdict=CONFOUNDED, ranking=result, credible=result[:3], named=named)
-    return replace(d, judgement=judged, next_experiment=NEXT)
 
 
 def test_confounded_names_the_rivals_and_what_would_decide(case: Case, tmp_path: Path) -> None:
@@ -120,20 +90,6 @@ def test_what_stands_behind_the_verdict_does_not_begin_with_it_again(verdict: st
     assert not verdict_words(d)[0].lower().startswith(verdict)
 
 
-def judged(d: DiagnosisData, verdict: str, sets: dict[tuple[str, ...], float], **further: Any) -> DiagnosisData:
-    """As if these sets had these probabilities; ``further``: other fields of the judgement."""
-    by_name = {candidate.key: candidate for candidate in d.candidates}
-    fits = {row.members: row.fit for row in d.judgement.ranking}
-    rows = []
-    for names, share in sets.items():
-        members = tuple(by_name[name] for name in names)
-        rows.append(RankedSet(members, float(np.log(share)), share, fits.get(members)))
-    judgement = replace(
-        d.judgement, verdict=verdict, ranking=tuple(rows), credible=tuple(rows), named=inclusion(rows), **further
-    )
-    return replace(d, judgement=judgement)
-
-
 def test_the_certain_member_of_a_set_is_stated_first(case: Case) -> None:
     sets = {("hot-road", "sun"): 0.54, ("hot-road",): 0.45, ("sun",): 0.01}
     first = verdict_words(judged(case.diagnosis, CONFOUNDED, sets))[0]
@@ -159,20 +115,6 @@ def test_a_colder_road_is_said_to_be_colder(case: Case) -> None:
     mean[d.best.unknowns.index(member.amplitudes[0])] *= -1
     colder = replace(d.best, posterior=replace(d.best.posterior, mean=mean))
     assert effect_words(member, colder).startswith("The road is colder than stated (")
-
-
-def unexplained(d: DiagnosisData, spread: float) -> DiagnosisData:
-    """As if heat were missing at every station: 20 kW/m3, with this standard deviation."""
-    outside = RankedSet((), 0.0, 0.97, None, outside=True)
-    judgement = replace(
-        d.judgement, verdict=UNEXPLAINED, ranking=(outside, *d.judgement.ranking), credible=(outside,), named={}
-    )
-    heat = np.full_like(d.missing.heat, 2e4)
-    missing = replace(d.missing, kind="heat", heat=heat, heat_sd=np.full_like(heat, spread))
-    patch = next(unknown for unknown in d.gap.unknowns if unknown.effect == "missing-heat")
-    return replace(
-        d, judgement=judgement, missing=missing, best=d.null, changes=(Change(patch, 2e4, spread, True, "test"),)
-    )
 
 
 def test_unexplained_says_what_the_amended_study_has_and_what_to_do_next(case: Case) -> None:

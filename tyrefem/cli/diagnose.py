@@ -99,12 +99,17 @@ def diagnose(
     if as_json:
         print_json(diagnosis.to_dict())
         return
-    from tyrefem.diagnose.words import verdict_words
+    from tyrefem.diagnose.headline import QUESTIONS, headline, label
+    from tyrefem.diagnose.heat_words import heat_words
+    from tyrefem.diagnose.verdict import UNEXPLAINED
+    from tyrefem.diagnose.words import noise_words
 
     if store.resumed:
         typer.echo(f"{store.resumed} simulations of an interrupted diagnosis were reused")
-    first, *rest = verdict_words(diagnosis)
-    for sentence in (f"{diagnosis.verdict.upper()}: {first}", *rest):
+    for question, sentence in zip((label(diagnosis).upper(), *QUESTIONS[1:]), headline(diagnosis), strict=True):
+        typer.echo(f"{question}: {sentence}")
+    heat = (f"{heat_words(diagnosis)}.",) if diagnosis.verdict == UNEXPLAINED else ()
+    for sentence in (*heat, *noise_words(diagnosis)):
         typer.echo(sentence)
     for note in dict.fromkeys(note for look in diagnosis.looks for note in look.notes):
         typer.echo(f"Note: {note}")

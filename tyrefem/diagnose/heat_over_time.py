@@ -17,6 +17,7 @@ from tyrefem.diagnose.heat_evidence import ProjectedData
 from tyrefem.diagnose.heat_patches import is_inside, layer_patches, patches, place_of, surface_patches
 from tyrefem.diagnose.heat_sources import Place, UnknownSource, evidence, misfit, place_shares, pursuit, timed
 from tyrefem.diagnose.heat_values import WRITTEN, source_unknown, values_with_sources
+from tyrefem.diagnose.materiality import Movement, largest_change
 from tyrefem.diagnose.residuals import Residuals
 from tyrefem.diagnose.unknowns import Unknown
 from tyrefem.inputs.motion import motion_at
@@ -120,7 +121,8 @@ def _estimated(
     for place in refined:
         for unknown in layer_patches(study, settings, place.station):
             unknown_of[place_of(unknown)] = unknown
-    resolved = responses.places(fine, [unknown_of[place.station, place.where] for place in refined])
+    of_places = [unknown_of[place.station, place.where] for place in refined]
+    resolved = responses.places(fine, of_places)
     free = pursuit(data, resolved, fine, len(resolved), -math.inf)
     current = [(place, next(course for other, course in free if other is place)) for place in resolved]
     sources: list[UnknownSource] = []
@@ -128,7 +130,8 @@ def _estimated(
         others = [entry for other, entry in enumerate(current) if other != number]
         source, course = timed(data, place, others, fine, shares[number])
         current[number] = place, course
-        sources.append(source)
+        strength = source.amount * course.strength if course.strength.size else np.concatenate(source.strength)
+        sources.append(replace(source, move=responses.movement(fine, of_places[number], strength)))
     # Every place and every course has a share of the prior; a course with a switch shares it further.
     shared = len(current) * (math.log(len(tried)) + math.log(sum(1 for _ in courses(fine))))
     log_evidence = exact.log_evidence + evidence(exact, current) - shared
@@ -179,6 +182,7 @@ class _Responses:
     def __init__(self, residuals: Residuals, evaluations: Evaluations, tick: Callable[[], None] | None) -> None:
         self.residuals, self.evaluations, self.tick = residuals, evaluations, tick
         self._known: dict[tuple[Unknown, int], Array] = {}
+        self._readings: dict[tuple[Unknown, int], list[Array]] = {}
 
     def places(self, grid: CourseGrid, unknowns: Sequence[Unknown]) -> list[Place]:
         """The places of some unknowns with their responses."""
@@ -191,6 +195,14 @@ class _Responses:
             for unknown, inside in zip(unknowns, is_inside(unknowns), strict=True)
         ]
 
+    def movement(self, grid: CourseGrid, unknown: Unknown, strength: Array) -> Movement:
+        """The largest change of a reading by a source with this strength at the knots of all runs (n_all_knots,)."""
+        drives = [self.residuals.sensitivities.drives[number] for number in self.residuals.fitted]
+        answers = self._readings[unknown, grid.size]
+        return largest_change(
+            drives, [answer @ strength[part] for answer, part in zip(answers, grid.parts(), strict=True)]
+        )
+
     def _computed(self, grid: CourseGrid, unknowns: tuple[Unknown, ...]) -> list[Array]:
         """By unknown (n, n_all_knots)."""
         fitted = self.residuals.fitted
@@ -198,6 +210,8 @@ class _Responses:
             (number, unknowns, tuple(map(float, knots))) for number, knots in zip(fitted, grid.knots, strict=True)
         ]
         answers = self.evaluations.of("source_responses", questions, self.tick)
+        for column, unknown in enumerate(unknowns):
+            self._readings[unknown, grid.size] = [answer[:, column] for answer in answers]
         ends = np.cumsum([0, *(len(answer) for answer in answers)])
         columns = np.zeros((len(unknowns), ends[-1], grid.size))
         for order, (number, answer, part) in enumerate(zip(fitted, answers, grid.parts(), strict=True)):

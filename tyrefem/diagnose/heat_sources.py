@@ -13,6 +13,7 @@ from tyrefem.brief import Brief
 from tyrefem.diagnose.heat_courses import CONSTANT, CORRELATED, FREE, PHASE, Course, CourseGrid, constant, courses, free
 from tyrefem.diagnose.heat_evidence import HeatData, ProjectedData, log_mean_exp, shares
 from tyrefem.diagnose.heat_patches import ALL_LAYERS
+from tyrefem.diagnose.materiality import Movement
 
 Array = NDArray[np.float64]
 #: A place or a course is stated if its probability is at least this.
@@ -52,6 +53,7 @@ class UnknownSource(Brief):
     time, time_sd : of the switch or of the ramp's begin, s; NaN for another course.
     strength, strength_sd : by run (n_knots,) W/m3 or W/m2 over time, for a free course.
     gain : ln evidence over the other sources alone, averaged over courses.
+    move : largest change of a reading of the fitted runs by the source.
     """
 
     station: float
@@ -68,6 +70,7 @@ class UnknownSource(Brief):
     strength: tuple[Array, ...]
     strength_sd: tuple[Array, ...]
     gain: float
+    move: Movement | None = None
 
     @property
     def clear(self) -> bool:

@@ -36,7 +36,8 @@ def source_words(d: DiagnosisData, source: UnknownSource, over_time: HeatOverTim
     size = amount(source.amount, source.sd, "W/m**3" if source.inside else "W/m**2")
     when = "while the tyre rolls" if source.inside else "also at rest"
     first = f"{_sign(source.amount)} {source_place(d, source)}: {size}, {when}"
-    return ". ".join([first, *_depth_doubt(source, over_time), course_words(source)])
+    moved = [f"It {source.move.words}"] if source.move is not None else []
+    return ". ".join([first, *moved, *_depth_doubt(source, over_time), course_words(source)])
 
 
 def source_place(d: DiagnosisData, source: UnknownSource) -> str:

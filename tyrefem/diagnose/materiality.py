@@ -13,6 +13,7 @@ from tyrefem.diagnose.candidates import Candidate
 from tyrefem.diagnose.fits import FittedSet
 from tyrefem.diagnose.multifidelity import Predictions
 from tyrefem.diagnose.residuals import Residuals
+from tyrefem.diagnose.sampling import DriveSampling
 
 
 @dataclass(frozen=True)
@@ -47,19 +48,19 @@ def movements(residuals: Residuals, predictions: Predictions, fit: FittedSet) ->
     result = {}
     for member, answers in zip(fit.members, predictions.predict(questions, numbers), strict=True):
         changes = [fit.computed[i] - residuals.corrected(i, answer) for i, answer in zip(numbers, answers, strict=True)]
-        result[member] = _largest(residuals, changes)
+        result[member] = largest_change(residuals.runs, changes)
     return result
 
 
-def _largest(residuals: Residuals, changes: Sequence[np.ndarray]) -> Movement:
-    """The largest of the changes by run (n_blocks,); infinite if the tyre is impossible without the effect."""
+def largest_change(drives: Sequence[DriveSampling], changes: Sequence[np.ndarray]) -> Movement:
+    """The largest of the changes by run (n_blocks,), K; infinite if the tyre is impossible without the effect."""
     best = Movement(0.0, "", "")
-    for run, change in zip(residuals.runs, changes, strict=True):
-        for sensor, place in run.parts().items():
+    for drive, change in zip(drives, changes, strict=True):
+        for sensor, place in drive.parts().items():
             part = change[place]
             if not np.isfinite(part).all():
-                return Movement(math.inf, sensor, run.name)
+                return Movement(math.inf, sensor, drive.name)
             most = float(part[np.abs(part).argmax()])
             if abs(most) > abs(best.kelvin) or not best.sensor:
-                best = Movement(most, sensor, run.name)
+                best = Movement(most, sensor, drive.name)
     return best

@@ -81,16 +81,43 @@ def base_name(unknown: Unknown) -> str:
     return f"{named.replace('_', ' ')} of {', '.join(regions)}"
 
 
+def correction_subject(unknown: Unknown) -> str:
+    """What a correction changes: a base number, a film, or a sensor with what is wrong at it.
+
+    >>> correction_subject(Unknown("drive.load", 0.02))
+    'load'
+    """
+    if unknown.effect is None or unknown.effect == "film-scale":
+        film = dict(unknown.choice).get("film", "").replace("_", " ")
+        return f"film coefficient of {film}" if film else base_name(unknown)
+    place = ", ".join([*dict(unknown.choice).values(), *unknown.runs])
+    return f"{place}: {parameter_name(unknown)}" if place else parameter_name(unknown)
+
+
 def correction_words(unknown: Unknown, x: float, sd: float) -> str:
     """A correction of a base number, film or sensor: its name and its change with unit.
 
     >>> correction_words(Unknown("drive.load", 0.02), 0.0583, 0.004)
     'load +6.0 ± 0.4 %'
     """
+    return f"{correction_subject(unknown)} {correction_amount(unknown, x, sd)}"
+
+
+def correction_amount(unknown: Unknown, x: float, sd: float) -> str:
+    """The change of a base number or film in per cent, or of a sensor in its unit.
+
+    >>> correction_amount(Unknown("drive.load", 0.02), 0.0583, 0.004)
+    '+6.0 ± 0.4 %'
+    """
     if unknown.effect is None or unknown.effect == "film-scale":
-        film = dict(unknown.choice).get("film", "").replace("_", " ")
-        name = f"film coefficient of {film}" if film else base_name(unknown)
-        return f"{name} {amount(100 * math.expm1(x), 100 * sd * math.exp(x), '%')}"
-    place = ", ".join([*dict(unknown.choice).values(), *unknown.runs])
-    shown = amount(unknown.value(x), sd, unknown.unit)
-    return f"{place}: {parameter_name(unknown)} {shown}" if place else f"{parameter_name(unknown)} {shown}"
+        return amount(100 * math.expm1(x), 100 * sd * math.exp(x), "%")
+    return amount(unknown.value(x), sd, unknown.unit)
+
+
+def run_words(name: str) -> str:
+    """The name of a run in a sentence.
+
+    >>> run_words("slow"), run_words("run-2")
+    ('run slow', 'run-2')
+    """
+    return name if name.lower().startswith("run") else f"run {name}"

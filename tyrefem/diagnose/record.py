@@ -4,9 +4,10 @@ from __future__ import annotations
 
 from typing import TYPE_CHECKING, Any
 
+from tyrefem.diagnose.headline import headline
 from tyrefem.diagnose.heat_words import is_told, source_place, source_words
 from tyrefem.diagnose.law_record import law_record
-from tyrefem.diagnose.result_tables import candidate_rows, parameters, set_rows
+from tyrefem.diagnose.result_tables import candidate_rows, clearest, parameters, set_rows
 from tyrefem.diagnose.verdict import CONFOUNDED, IDENTIFIED, NO_GAP, UNEXPLAINED
 from tyrefem.diagnose.words import look_folder, verdict_words
 from tyrefem.output import jsonable, versions
@@ -16,6 +17,7 @@ if TYPE_CHECKING:
     from tyrefem.diagnose.diagnosis import DiagnosisData
     from tyrefem.diagnose.heat_over_time import HeatOverTime
     from tyrefem.diagnose.heat_sources import UnknownSource
+    from tyrefem.diagnose.materiality import Movement
 
 #: File of the amended study, beside the record.
 AMENDED = "amended.toml"
@@ -24,12 +26,14 @@ AMENDED = "amended.toml"
 def record(d: DiagnosisData) -> dict[str, Any]:
     """The diagnosis as numbers in SI units and degC, with the unit in the key; NaN becomes null.
 
+    ``headline``: what is wrong, how sure, what to do next. ``summary``: the verdict in more sentences.
     ``runs`` of an effect: the runs in which it acts, null for all.
     ``effects``: members of the most probable set if the verdict is "identified" or "confounded", else empty.
     """
     named = d.best.members if d.verdict in (IDENTIFIED, CONFOUNDED) else ()
     contents = {
         "verdict": d.verdict,
+        "headline": list(headline(d)),
         "summary": list(verdict_words(d)),
         "reasons": list(d.judgement.reasons),
         "effects": [
@@ -79,7 +83,10 @@ def record(d: DiagnosisData) -> dict[str, Any]:
 
 def _moves(d: DiagnosisData, member: Candidate) -> dict[str, Any] | None:
     """The largest change of a reading by an effect, with sign, its sensor and run; null if it was not computed."""
-    move = d.movements.get(member)
+    return _movement(d.movements.get(member))
+
+
+def _movement(move: Movement | None) -> dict[str, Any] | None:
     return None if move is None else {"largest_K": move.kelvin, "sensor": move.sensor, "run": move.run}
 
 
@@ -111,9 +118,7 @@ def noise(d: DiagnosisData) -> dict[str, Any]:
 
 def where(d: DiagnosisData) -> dict[str, Any]:
     """The most significant residual of the original study among those larger than noise."""
-    table = d.where
-    large = table[table["mean_K"].abs() >= d.noise]
-    row = (table if large.empty else large).sort_values("sigma", ascending=False, kind="stable").iloc[0]
+    row = clearest(d)
     return {
         "sensor": row["sensor"],
         "region": region_of(d, str(row["sensor"])),
@@ -207,6 +212,7 @@ def source_row(d: DiagnosisData, source: UnknownSource, over_time: HeatOverTime)
         "kind": "heat" if source.inside else "flux",
         f"amount_{unit}": source.amount,
         f"amount_sd_{unit}": source.sd,
+        "moves": _movement(source.move),
         "station_probabilities": [{"station_m": s, "probability": share} for s, share in source.stations.items()],
         "depth": dict(source.depths),
         "course": source.kind,

@@ -147,6 +147,12 @@ def finite(row: Mapping[str, Any], key: str) -> float | None:
     return None if value is None or not math.isfinite(value) else float(value)
 
 
+def clearest(d: DiagnosisData) -> pd.Series:
+    """The row of `DiagnosisData.where` with the most significant mean among those larger than noise."""
+    large = d.where[d.where["mean_K"].abs() >= d.noise]
+    return (d.where if large.empty else large).sort_values("sigma", ascending=False, kind="stable").iloc[0]
+
+
 def where_table(d: DiagnosisData) -> pd.DataFrame:
     """One row per run, sensor and stretch: the columns of `residual_table`, and the residuals of the amended study."""
     keys = ["run", "hold_out", "sensor", "phase"]

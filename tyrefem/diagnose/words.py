@@ -11,7 +11,7 @@ from tyrefem.diagnose.heat_words import heat_words
 from tyrefem.diagnose.law_words import law_words
 from tyrefem.diagnose.numbers import amount, correction_words, parameter_name, percent
 from tyrefem.diagnose.pulls import pulls
-from tyrefem.diagnose.result_tables import competing_sets, inclusion_probability
+from tyrefem.diagnose.result_tables import clearest, competing_sets, inclusion_probability
 from tyrefem.diagnose.verdict import CONFOUNDED, IDENTIFIED, NO_GAP
 
 if TYPE_CHECKING:
@@ -26,12 +26,18 @@ AGAIN = "again"
 
 
 def effect_amounts(candidate: Candidate, fit: FittedSet) -> list[str]:
-    """Meaning and amount of each fitted parameter of an effect."""
+    """Meaning and amount of each fitted parameter of an effect.
+
+    The sentence of an effect with an opposite tells the sign of its amplitude: "the road is colder than stated", "by
+    24.0 ± 2.0 K".
+    """
     known = [unknown for unknown in candidate.unknowns if unknown in fit.values]
-    return [
-        f"{parameter_name(unknown)}: {amount(unknown.value(fit.values[unknown]), fit.sd[unknown], unknown.unit)}"
-        for unknown in known
-    ]
+    signed = set(candidate.amplitudes[:1]) if candidate.effect.opposite else set()
+    clauses = []
+    for unknown in known:
+        size = amount(unknown.value(fit.values[unknown]), fit.sd[unknown], unknown.unit)
+        clauses.append(f"by {size.lstrip('+-')}" if unknown in signed else f"{parameter_name(unknown)}: {size}")
+    return clauses
 
 
 def effect_sentence(candidate: Candidate, fit: FittedSet) -> str:
@@ -91,7 +97,8 @@ def _unexplained(d: DiagnosisData, closing: str) -> tuple[str, ...]:
     partly = (f"These effects explain part of the deviation: {named}.",) if named else ()
     entries = {change.unknown.key for change in d.changes if change.missing}
     many = f"{len(entries)} entries" if len(entries) > 1 else "an entry"
-    described = f"The amended study has {many} of missing heat, which describe the deviation and name no cause."
+    describe = "describe" if len(entries) > 1 else "describes"
+    described = f"The amended study has {many} of missing heat, which {describe} the deviation without a cause."
     return (
         "No effect in the catalogue explains the deviation.",
         *d.judgement.doubts,
@@ -106,14 +113,22 @@ def _unexplained(d: DiagnosisData, closing: str) -> tuple[str, ...]:
 
 def _next_step(d: DiagnosisData) -> tuple[str, ...]:
     """What to do if no effect explains the deviation: where it is clearest, and how to go on."""
-    row = d.where.sort_values("sigma", ascending=False, kind="stable").iloc[0]
-    when = {"heating": "while it heats", "plateau": "on the plateau", "cooling": "while it cools"}[row["phase"]]
+    row = clearest(d)
     return (
         f"Next: check {row['sensor']} in {row['run']}, where the deviation is clearest "
-        f"({row['mean_K']:+z.1f} K on average {when}): its place and channel, the run's drive, "
-        "and the stated uncertainties.",
+        f"({row['mean_K']:+z.1f} K on average {phase_words(str(row['phase']))}): its place and channel, the run's "
+        "drive, and the stated uncertainties.",
         "A cause outside the catalogue can be written as an effect (docs/effects.md) and diagnosed again.",
     )
+
+
+def phase_words(phase: str) -> str:
+    """A stretch of time of a history in words.
+
+    >>> phase_words("plateau")
+    'on the plateau'
+    """
+    return {"heating": "while it heats", "plateau": "on the plateau", "cooling": "while it cools"}[phase]
 
 
 def _corrected(d: DiagnosisData, most: int = 6) -> tuple[str, ...]:
@@ -138,7 +153,7 @@ def _confounded(d: DiagnosisData, closing: str) -> tuple[str, ...]:
         first = f"The fitted runs alone speak for {best.key} ({chance}), but this is not certain: {clauses}."
     elif certain:
         first = f"{clauses}: {percent(min(d.judgement.named[member.key] for member in certain))} probable."
-        first += "" if d.best.at_bound else _besides(d, certain)
+        first += "" if d.best.at_bound else besides(d, certain)
     else:
         sets = competing_sets(d)
         shown = [f"{entry.key} ({percent(inclusion_probability(d, entry))})" for entry in sets[:4]]
@@ -153,7 +168,7 @@ def _confounded(d: DiagnosisData, closing: str) -> tuple[str, ...]:
     return (first, *d.judgement.doubts, *([decides] if decides else []), closing)
 
 
-def _besides(d: DiagnosisData, certain: Sequence[Candidate]) -> str:
+def besides(d: DiagnosisData, certain: Sequence[Candidate]) -> str:
     """What may act besides the certain effects, each with its probability."""
     keys = [member.key for member in certain]
     alone = sum(

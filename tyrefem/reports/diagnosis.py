@@ -12,6 +12,7 @@ import tyrefem
 from tyrefem.diagnose import words
 from tyrefem.diagnose.amend import Change, difference
 from tyrefem.diagnose.candidates import key_of
+from tyrefem.diagnose.headline import QUESTIONS, headline, label
 from tyrefem.diagnose.numbers import amount, base_name, parameter_name, percent
 from tyrefem.diagnose.record import AMENDED, record, where
 from tyrefem.diagnose.result_tables import candidate_rows, finite, history_table, set_rows, where_table
@@ -23,13 +24,14 @@ from tyrefem.mechanics.nearby_cycles import NearbyCycles
 from tyrefem.mechanics.strain_laws import strain_law
 from tyrefem.output import atomic_folder, write_json
 from tyrefem.reports.diagnosis_figures import pictures
+from tyrefem.reports.diagnosis_summary import SUMMARY, summary
 
 if TYPE_CHECKING:
     from tyrefem.diagnose.diagnosis import DiagnosisData
 
 PAGE = "diagnosis.html"
 _FILES = ("verdict.json", AMENDED, "difference.txt", "where.csv", "histories.csv", PAGE, "rms.png", "residual-map*.png",
-          "probabilities.png", "histories-*.png", "missing-heat*.png")  # fmt: skip
+          "probabilities.png", "histories-*.png", "missing-heat*.png", "gap.png", SUMMARY)  # fmt: skip
 #: Largest number of looks at the same data.
 MOST_LOOKS = 9
 #: Files that `save` may write.
@@ -43,8 +45,9 @@ TELLS = 0.1
 def save(d: DiagnosisData, folder: str | Path) -> Path:
     """Write all files of a diagnosis into a folder, each completely or not at all; return the page's path.
 
-    ``verdict.json``, ``amended.toml``, ``difference.txt``, ``where.csv``, ``histories.csv``, the pictures, and
-    ``diagnosis.html``. A further look at the data has a folder ``again``, unless there is no gap left.
+    ``verdict.json``, ``amended.toml``, ``difference.txt``, ``where.csv``, ``histories.csv``, the pictures,
+    ``diagnosis.html`` and its `summary` on one page. A further look at the data has a folder ``again``, unless there is
+    no gap left.
 
     Raises
     ------
@@ -60,6 +63,7 @@ def save(d: DiagnosisData, folder: str | Path) -> Path:
         history_table(d).to_csv(temporary / "histories.csv", index=False, lineterminator="\n")
         for name, picture in drawn.items():
             (temporary / name).write_bytes(picture)
+        (temporary / SUMMARY).write_text(summary(d, version=tyrefem.__version__), encoding="utf-8")
         (temporary / PAGE).write_text(page(d, drawn, version=tyrefem.__version__), encoding="utf-8")
     if d.again is not None and d.again.verdict != NO_GAP:
         save(d.again, folder / words.AGAIN)
@@ -78,6 +82,8 @@ def page(d: DiagnosisData, images: Mapping[str, bytes], *, version: str) -> str:
     return environment.get_template("diagnosis.html").render(
         d=d,
         version=version,
+        label=label(d),
+        headline=list(zip(QUESTIONS, headline(d), strict=True)),
         sentences=words.verdict_words(d),
         place=where(d),
         numbers=_numbers(d),

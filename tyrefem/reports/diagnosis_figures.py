@@ -13,12 +13,13 @@ from tyrefem.diagnose.numbers import percent
 from tyrefem.diagnose.result_tables import candidate_rows, rms_table, set_rows
 from tyrefem.diagnose.runs import MeasuredDrive, MeasuredSensor
 from tyrefem.diagnose.verdict import UNEXPLAINED
-from tyrefem.reports.diagnosis_sections import missing_figures, residual_figures
+from tyrefem.reports.diagnosis_gap import AFTER, BEFORE, HELD_OUT, gap_figure
+from tyrefem.reports.diagnosis_missing import missing_figures
+from tyrefem.reports.diagnosis_sections import residual_figures
 from tyrefem.reports.figures.phases import Phase, draw_phases, make_room
 from tyrefem.reports.figures.style import (
     FONT,
     INK,
-    PALETTE,
     QUIET,
     TITLE,
     add_axes,
@@ -37,14 +38,17 @@ if TYPE_CHECKING:
 
     from tyrefem.diagnose.diagnosis import DiagnosisData
 
-BEFORE, AFTER = PALETTE[1], PALETTE[0]
-#: Background of held-out runs.
-HELD_OUT = "#f6f3e4"
-
 
 def pictures(d: DiagnosisData) -> dict[str, bytes]:
-    """File name -> PNG: ``rms``, ``residual-map``, ``probabilities``, ``missing-heat`` if unexplained, histories."""
-    drawn = {"rms.png": rms_figure(d), **residual_figures(d), "probabilities.png": probabilities_figure(d)}
+    """File name -> PNG: ``gap``, ``rms``, ``residual-map``, ``probabilities``, histories; ``missing-heat`` if
+    unexplained.
+    """
+    drawn = {
+        "gap.png": gap_figure(d),
+        "rms.png": rms_figure(d),
+        **residual_figures(d),
+        "probabilities.png": probabilities_figure(d),
+    }
     if d.verdict == UNEXPLAINED:
         drawn |= missing_figures(d)
     for number, run in enumerate(d.gap.runs):

@@ -1,0 +1,266 @@
+"""Three sentences for every verdict, at the head of the page, in the record, and on one printed page."""
+
+from __future__ import annotations
+
+import json
+import re
+import shutil
+import subprocess
+from collections.abc import Callable
+from dataclasses import replace
+from pathlib import Path
+
+import numpy as np
+import pytest
+from hidden import RUNS, Case
+from made_up import confounded, judged, unexplained
+
+from tyrefem.diagnose import DiagnosisData
+from tyrefem.diagnose.amend import Change
+from tyrefem.diagnose.headline import QUESTIONS, corrections, headline, label
+from tyrefem.diagnose.unknowns import Unknown
+from tyrefem.diagnose.verdict import CONFOUNDED, IDENTIFIED, NO_GAP, UNEXPLAINED
+from tyrefem.reports.diagnosis import page
+from tyrefem.reports.diagnosis_figures import pictures
+from tyrefem.reports.diagnosis_summary import (
+    CHARACTERS,
+    HEIGHT,
+    LEAST_PICTURE,
+    MOST_PICTURE,
+    SummaryTable,
+    clipped,
+    picture_height,
+    summary,
+    summary_tables,
+)
+
+
+def no_gap(d: DiagnosisData, gap: bool) -> DiagnosisData:
+    """As if no effect were missing; ``gap``: with the gap of the original, else with the readings after the fit."""
+    judgement = replace(judged(d, NO_GAP, {(): 0.93, ("sun",): 0.07}).judgement)
+    load = next(unknown for unknown in d.null.unknowns if unknown.effect is None)
+    changes = (Change(load, d.null.values[load], d.null.sd[load], False, "test"),)
+    return replace(d, judgement=judgement, best=d.null, changes=changes, before=d.before if gap else d.after)
+
+
+def doubted(d: DiagnosisData) -> DiagnosisData:
+    doubt = "Sun predicts the held-out runs better than hot-road, by 45 nats."
+    return judged(d, CONFOUNDED, {("hot-road",): 0.999, ("sun",): 0.001}, doubts=(doubt,))
+
+
+def certain(d: DiagnosisData) -> DiagnosisData:
+    return judged(d, CONFOUNDED, {("hot-road", "sun"): 0.54, ("hot-road",): 0.45, ("sun",): 0.01})
+
+
+def rejected(d: DiagnosisData) -> DiagnosisData:
+    doubt = "Hot-road explains the data only with improbable corrections: load +12 ± 1 %."
+    d = unexplained(d, 1e3)
+    return replace(d, judgement=replace(d.judgement, doubts=(doubt,)))
+
+
+VERDICTS: dict[str, Callable[[DiagnosisData], DiagnosisData]] = {
+    IDENTIFIED: lambda d: d,
+    CONFOUNDED: confounded,
+    "confounded, one certain": certain,
+    "confounded, doubted": doubted,
+    UNEXPLAINED: lambda d: unexplained(d, 1e3),
+    "unexplained, rejected": rejected,
+    NO_GAP: lambda d: no_gap(d, gap=False),
+    "no gap after corrections": lambda d: no_gap(d, gap=True),
+}
+
+
+@pytest.mark.parametrize("kind", VERDICTS)
+def test_every_verdict_says_what_is_wrong_how_sure_and_what_to_do(kind: str, case: Case) -> None:
+    d = VERDICTS[kind](case.diagnosis)
+    wrong, sure, step = headline(d)
+    for sentence in (wrong, sure, step):
+        assert sentence[0].isupper()
+        assert sentence.endswith(".")
+        assert "nan" not in sentence
+        assert ".." not in sentence
+    # How sure: a probability or a doubt, and kelvins; what to do next: something to do.
+    assert "%" in sure or "nats" in sure
+    assert step.split()[0] in {"Check", "A", "Measure", "Nothing", "Exclude", "State"}
+    assert d.to_dict()["headline"] == [wrong, sure, step]
+
+
+def test_identified_gives_the_effect_its_value_what_it_moves_and_the_held_out_runs(case: Case) -> None:
+    d = case.diagnosis
+    wrong, sure, step = headline(d)
+    (member,) = d.best.members
+    value, sd = d.best.values[member.amplitudes[0]], d.best.sd[member.amplitudes[0]]
+    stated = re.search(r"by ([\d.]+) ± ([\d.]+) K", wrong)
+    assert stated is not None
+    assert float(stated[1]) == pytest.approx(value, abs=0.6)
+    assert float(stated[2]) == pytest.approx(sd, rel=0.1)
+    assert f"moves crown-outer by up to {d.movements[member].kelvin:+.1f} K" in wrong
+    before, after = (d.rms(after=after, held_out=True) for after in (False, True))
+    assert f"held-out runs from {before:.1f} to {after:.1f} K" in sure
+    assert "no gap is left" in step
+
+
+def test_a_colder_road_is_colder_without_a_minus(case: Case) -> None:
+    d = case.diagnosis
+    (member,) = d.best.members
+    mean = d.best.posterior.mean.copy()
+    mean[d.best.unknowns.index(member.amplitudes[0])] *= -1
+    colder = replace(d, best=replace(d.best, posterior=replace(d.best.posterior, mean=mean)))
+    wrong = headline(colder)[0]
+    assert wrong.startswith("The road is colder than stated, by ")
+    assert "warmer" not in wrong
+    assert "-" not in wrong.split(" K")[0]
+
+
+def test_no_gap_at_a_large_rms_names_its_corrections_and_is_not_green(case: Case) -> None:
+    quiet, loud = (no_gap(case.diagnosis, gap=gap) for gap in (False, True))
+    assert label(quiet) == NO_GAP
+    assert headline(quiet)[0].startswith("Nothing is wrong")
+    assert label(loud) == "no gap after corrections"
+    wrong, _, step = headline(loud)
+    (correction,) = corrections(loud)
+    assert f"{loud.rms(after=False, held_out=False):.1f} K in the fitted runs" in wrong
+    assert f"({correction.pull.pull:+.1f} sd of what was stated" in wrong
+    assert "Measure what was corrected most" in step
+    text = page(loud, {}, version="1")
+    assert 'class="verdict no-gap-after-corrections"' in text
+    assert 'class="verdict no-gap"' not in text
+
+
+def test_what_a_correction_moves_is_its_sensitivity_times_its_value(case: Case) -> None:
+    d = no_gap(case.diagnosis, gap=True)
+    (correction,) = corrections(d)
+    column = d.gap.unknowns.index(correction.pull.unknown)
+    largest = max(float(np.abs(J[:, column]).max()) for J in d.gap.sensitivities.jacobians)
+    assert abs(correction.move.kelvin) == pytest.approx(largest * abs(correction.pull.x))
+
+
+def test_confounded_says_the_sets_in_words_and_what_would_decide(case: Case) -> None:
+    wrong, sure, step = headline(confounded(case.diagnosis))
+    assert "the road is warmer than stated" in wrong
+    assert "the sun shines on the tyre" in wrong
+    assert "hot-road 74 %, sun 25 %" in sure
+    assert step.startswith("A thermocouple at s = 0 mm, outside")
+    _, sure, _ = headline(doubted(case.diagnosis))
+    assert sure.startswith("Sun predicts the held-out runs better than hot-road, by 45 nats (")
+    wrong, sure, _ = headline(certain(case.diagnosis))
+    assert wrong.startswith("The road is warmer than stated")
+    assert "99.0 % probable" in sure
+
+
+def test_unexplained_says_where_heat_is_missing_and_which_sensor_to_check(case: Case) -> None:
+    d = unexplained(case.diagnosis, 1e3)
+    wrong, sure, step = headline(d)
+    assert wrong.startswith("No effect in the catalogue explains the deviation; ")
+    assert "97 % probable" in sure
+    place = d.to_dict()["where"]
+    assert f"Check {place['sensor']} in run {place['run']} first" in step
+    assert f"{place['mean_K']:+.1f} K" in step
+    assert headline(rejected(case.diagnosis))[1].startswith("Hot-road explains the data only with improbable")
+
+
+@pytest.mark.parametrize("kind", VERDICTS)
+def test_the_page_begins_with_the_sentences_then_the_gap_then_where(kind: str, case: Case) -> None:
+    d = VERDICTS[kind](case.diagnosis)
+    text = page(d, dict.fromkeys(pictures(d), b"png"), version="1")
+    body = text[text.index("<body>") :]
+    order = [f">{question}<" for question in QUESTIONS]
+    order += ["measured - computed by sensor and run", "<h2>Where</h2>"]
+    order += ["<h2>The verdict in more words</h2>", "<h2>Histories</h2>", "<h2>Candidates ranked</h2>"]
+    order += ["<h2>Assumptions</h2>"]
+    places = [body.index(part) for part in order]
+    assert places == sorted(places)
+    # The gap is the first picture.
+    assert body.index("<img") < places[4]
+    assert body.index("<img") > places[2]
+
+
+@pytest.mark.parametrize("kind", VERDICTS)
+def test_no_raw_keys_stand_in_the_words(kind: str, case: Case) -> None:
+    d = VERDICTS[kind](case.diagnosis)
+    words = " ".join([*headline(d), *(cell for table in summary_tables(d) for row in table.rows for cell in row)])
+    shown = page(d, {}, version="1").split("<h2>The amended study</h2>")[0]
+    keys = [unknown.key for unknown in d.gap.unknowns if "." in unknown.key]
+    assert keys
+    assert not [key for key in keys if key in words or key in shown]
+
+
+def test_the_record_and_the_page_hold_the_same_three_sentences(case: Case) -> None:
+    record = json.loads((case.folder / "verdict.json").read_text(encoding="utf-8"))
+    text = (case.folder / "diagnosis.html").read_text(encoding="utf-8")
+    short = (case.folder / "summary.html").read_text(encoding="utf-8")
+    assert len(record["headline"]) == len(QUESTIONS)
+    for sentence in record["headline"]:
+        assert sentence in text
+        assert sentence in short
+    assert (case.folder / "gap.png").stat().st_size > 10_000
+
+
+# -- the summary -------------------------------------------------------------------------------------------------------
+
+
+@pytest.mark.parametrize("kind", VERDICTS)
+def test_the_summary_has_the_numbers_of_its_verdict(kind: str, case: Case) -> None:
+    d = VERDICTS[kind](case.diagnosis)
+    text = summary(d, version="0.9.9")
+    for outside in ("http://", "https://", "<script", "<link"):
+        assert outside not in re.sub(r'src="data:[^"]*"', "", text)
+    assert "tyrefem 0.9.9" in text
+    assert f"{d.rms(after=False, held_out=True):.2f} K" in text
+    assert f"{d.noise:.2f} K" in text
+    assert all(run in text for run in RUNS)
+    # Names of tables, without the folders of this machine.
+    assert "slow.csv" in text
+    assert str(case.study.folder) not in text
+
+
+def test_the_picture_gets_the_height_that_lines_leave() -> None:
+    empty = picture_height((), ["word"] * 3, [])
+    assert empty == MOST_PICTURE
+    row = ("some words", "+1.0", "+2.0 K")
+    table = SummaryTable("Numbers", ("what", "value", "moves"), (row,) * 6)
+    heights = [picture_height((table,) * n, ["x" * 4 * CHARACTERS] * 3, ["word"]) for n in range(6)]
+    assert heights == sorted(heights, reverse=True)
+    assert heights[-1] >= LEAST_PICTURE
+    assert heights[0] < HEIGHT
+
+
+def crowded(d: DiagnosisData) -> DiagnosisData:
+    """All that a summary may hold: long sentences, and many corrections."""
+    doubt = "Hot-road explains the data only with improbable corrections: " + "load +12 ± 1 %; " * 60
+    d = rejected(d)
+    many = tuple(Change(unknown, 1.0, 0.1, False, "test") for unknown in d.null.unknowns)
+    return replace(d, changes=(*d.changes, *many), judgement=replace(d.judgement, doubts=(f"{doubt}.",)))
+
+
+@pytest.mark.skipif(shutil.which("chromium") is None, reason="needs chromium, which prints the page")
+@pytest.mark.parametrize("make", [lambda d: d, confounded, crowded], ids=["identified", "confounded", "crowded"])
+def test_the_summary_prints_on_one_page(
+    make: Callable[[DiagnosisData], DiagnosisData], case: Case, tmp_path: Path
+) -> None:
+    (tmp_path / "summary.html").write_text(summary(make(case.diagnosis), version="1"), encoding="utf-8")
+    printed = tmp_path / "summary.pdf"
+    command = ["chromium", "--headless", "--no-sandbox", "--disable-gpu", "--no-pdf-header-footer"]
+    command += [f"--user-data-dir={tmp_path / 'profile'}", f"--print-to-pdf={printed}"]
+    subprocess.run([*command, (tmp_path / "summary.html").as_uri()], check=True, capture_output=True, timeout=120)
+    assert len(re.findall(rb"/Type\s*/Page[^s]", printed.read_bytes())) == 1
+
+
+def test_a_crowded_summary_is_cut_to_its_page(case: Case) -> None:
+    d = crowded(case.diagnosis)
+    assert all(len(table.rows) <= 6 for table in summary_tables(d))
+    sentences = [clipped(sentence) for sentence in headline(d)]
+    assert len(sentences[1]) < len(headline(d)[1])
+    assert max(len(sentence) for sentence in sentences) <= 4 * CHARACTERS
+    assert picture_height(summary_tables(d), sentences, []) >= LEAST_PICTURE
+
+
+def test_sensors_and_films_have_names_in_corrections(case: Case) -> None:
+    d = case.diagnosis
+    many = tuple(Change(unknown, 1.0, 0.1, False, "test") for unknown in d.null.unknowns)
+    shown = corrections(replace(d, best=d.null, changes=many))
+    assert len(shown) == len(d.null.unknowns)
+    kelvins = [abs(each.move.kelvin) for each in shown]
+    assert kelvins == sorted(kelvins, reverse=True)
+    unknowns: list[Unknown] = [each.pull.unknown for each in shown]
+    assert not [each.words for each, unknown in zip(shown, unknowns, strict=True) if unknown.key in each.words]

@@ -1,0 +1,229 @@
+"""The diagnosis in three sentences: what is wrong, how sure, what to do next."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Sequence
+from dataclasses import dataclass
+from typing import TYPE_CHECKING
+
+from tyrefem.brief import Brief
+from tyrefem.diagnose.candidates import Candidate
+from tyrefem.diagnose.heat_sources import STATED, UnknownSource
+from tyrefem.diagnose.heat_words import course_words, source_place
+from tyrefem.diagnose.materiality import Movement, largest_change
+from tyrefem.diagnose.numbers import amount, correction_subject, correction_words, percent, run_words
+from tyrefem.diagnose.pulls import Pull, pulls
+from tyrefem.diagnose.result_tables import clearest, competing_sets, inclusion_probability
+from tyrefem.diagnose.verdict import CONFOUNDED, IDENTIFIED, NO_GAP, RankedSet
+from tyrefem.diagnose.words import besides, effect_amounts, effect_sentence, look_folder, next_words, phase_words
+
+if TYPE_CHECKING:
+    from tyrefem.diagnose.diagnosis import DiagnosisData
+
+#: What each sentence answers.
+QUESTIONS = ("What is wrong", "How sure", "What to do next")
+#: A gap is more than noise if its rms is so many times that of noise and discrepancy.
+CLEAR_GAP = 1.5
+#: Largest number of corrections and of sets of effects in a sentence.
+CORRECTIONS, SETS = 3, 3
+
+
+def headline(d: DiagnosisData) -> tuple[str, str, str]:
+    """What is wrong, how sure that is, and what to do next: a sentence each, for every verdict."""
+    wrong, sure, next_step = {
+        IDENTIFIED: _identified,
+        CONFOUNDED: _confounded,
+        NO_GAP: _no_gap,
+    }.get(d.verdict, _unexplained)(d)
+    return wrong, sure, next_step
+
+
+def label(d: DiagnosisData) -> str:
+    """The verdict as people read it: "no gap after corrections" if the original study deviates clearly."""
+    return f"{NO_GAP} after corrections" if d.verdict == NO_GAP and deviates(d) else d.verdict
+
+
+def deviates(d: DiagnosisData) -> bool:
+    """Whether the original study deviates by more than noise and discrepancy, in the fitted or the held-out runs."""
+    level = CLEAR_GAP * math.hypot(d.noise, d.original.card.diagnosis.discrepancy)
+    return any(d.rms(after=False, held_out=held_out) > level for held_out in (False, True))
+
+
+@dataclass(frozen=True)
+class CorrectionMove(Brief):
+    """A correction of a base number, film or sensor, and the largest change of a reading by it."""
+
+    pull: Pull
+    move: Movement
+
+    def _title(self) -> str:
+        return self.words
+
+    @property
+    def words(self) -> str:
+        """The correction, its standard deviations of what was stated, and what it moves."""
+        name = correction_words(self.pull.unknown, self.pull.x, self.pull.sd)
+        return f"{name} ({self.pull.pull:+z.1f} sd of what was stated, {self.move.kelvin:+z.1f} K at the most)"
+
+
+def corrections(d: DiagnosisData) -> tuple[CorrectionMove, ...]:
+    """The corrections of the amended study, those that move a reading most first."""
+    kept = {change.unknown for change in d.changes if not change.missing}
+    made = [CorrectionMove(pull, _moved(d, pull)) for pull in pulls(d.best) if pull.unknown in kept]
+    return tuple(sorted(made, key=lambda each: -abs(each.move.kelvin)))
+
+
+def _moved(d: DiagnosisData, pull: Pull) -> Movement:
+    """The largest change of a reading by a correction, by the sensitivities about x = 0."""
+    column = d.gap.unknowns.index(pull.unknown)
+    return largest_change(d.gap.sensitivities.drives, [J[:, column] * pull.x for J in d.gap.sensitivities.jacobians])
+
+
+def _identified(d: DiagnosisData) -> tuple[str, str, str]:
+    wrong = _joined([effect_clause(d, member) for member in d.best.members])
+    chance = f"{_it_is(d.best.members)} {percent(d.judgement.probability)} probable"
+    sure = f"{chance} among all that was tried; {_closed(d)}."
+    values = "values" if len(d.best.members) > 1 else "value"
+    step = f"Check that you believe the {values}, then go on with amended.toml"
+    if d.again is not None and d.again.verdict != NO_GAP:
+        return wrong, sure, f"{step}; a second look at it says: {d.again.verdict} (folder {look_folder(2)})."
+    return wrong, sure, f"{step}{'' if d.again is None else ', in which no gap is left'}."
+
+
+def _confounded(d: DiagnosisData) -> tuple[str, str, str]:
+    best, least = d.judgement.best, d.gap.settings.named_probability
+    certain = [member for member in best.members if d.judgement.named.get(member.key, 0.0) >= least]
+    step = next_words(d) or "Measure at more places or in other runs, or state what you know of these effects."
+    if not d.next_experiment or step.startswith("No tested"):
+        step = f"{step} Exclude what you know to be absent (exclude in [diagnosis]), then diagnose again."
+    if d.judgement.doubts or d.best.at_bound:
+        doubt = d.judgement.doubts[0] if d.judgement.doubts else "Its best value lies beyond a physical bound."
+        clause = _joined([effect_clause(d, member) for member in best.members])
+        chance = percent(inclusion_probability(d, best))
+        return f"Something is missing, perhaps this: {clause}", f"{_opened(doubt)} (fitted runs alone: {chance}).", step
+    if certain:
+        chance = percent(min(d.judgement.named[member.key] for member in certain))
+        sure = f"{_it_is(certain)} {chance} probable; {_closed(d)}."
+        return _joined([effect_clause(d, member) for member in certain]), f"{sure}{besides(d, certain)}", step
+    sets = competing_sets(d)
+    described = ", or ".join(_set_words(entry) for entry in sets[:SETS])
+    more = f", or one of {len(sets) - SETS} less probable sets" if len(sets) > SETS else ""
+    shares = ", ".join(f"{entry.key} {percent(inclusion_probability(d, entry))}" for entry in sets[:SETS])
+    wrong = f"An effect is missing, but these sensors and runs cannot show which: {described}{more}."
+    return wrong, f"The probabilities are {shares}; {_closed(d)}.", step
+
+
+def _unexplained(d: DiagnosisData) -> tuple[str, str, str]:
+    sources = () if d.missing.over_time is None else d.missing.over_time.clear
+    wrong = f"No effect in the catalogue explains the deviation; {heat_clause(d, sources)}."
+    if d.judgement.doubts:
+        sure = f"{_opened(d.judgement.doubts[0])}; {_gap(d)}."
+    else:
+        chance = percent(d.judgement.best.probability)
+        sure = f"A cause outside the catalogue is {chance} probable against every set of effects tried; {_gap(d)}."
+    row = clearest(d)
+    place = f"{row['sensor']} in {run_words(str(row['run']))}"
+    step = (
+        f"Check {place} first, where measured - computed is {row['mean_K']:+z.1f} K {phase_words(str(row['phase']))}: "
+        "its place, its channel and the drive; if they are right, write the cause as an effect (docs/effects.md) and "
+        "diagnose again."
+    )
+    return wrong, sure, step
+
+
+def _no_gap(d: DiagnosisData) -> tuple[str, str, str]:
+    chance = percent(d.judgement.best.probability)
+    other = next((entry for entry in d.judgement.ranking[1:] if not entry.outside), None)
+    against = "" if other is None else f" (next: {other.key}, {percent(other.probability)})"
+    sure = f"That no effect is missing is {chance} probable{against}"
+    if not deviates(d):
+        wrong = f"Nothing is wrong beyond noise and what the study states as uncertain: {_gap(d)}."
+        step = "Nothing needs to be done; smaller effects need better measurements (tyrefem isolability)."
+        return wrong, f"{sure}.", step
+    sure = f"{sure}; {_closed(d)}."
+    shown = corrections(d)
+    wrong = f"The study deviates ({_gap(d)}), but no effect is missing: corrections of stated numbers explain it"
+    if not shown:
+        return f"{wrong}.", sure, "Measure the uncertain numbers of the study more exactly, then diagnose again."
+    items = "; ".join(each.words for each in shown[:CORRECTIONS])
+    more = f"; and {len(shown) - CORRECTIONS} more" if len(shown) > CORRECTIONS else ""
+    first = correction_subject(shown[0].pull.unknown)
+    step = f"Measure what was corrected most ({first}), or go on with amended.toml, which has the corrections."
+    return f"{wrong}. {items[0].upper()}{items[1:]}{more}.", sure, step
+
+
+# -- clauses -----------------------------------------------------------------------------------------------------------
+
+
+def effect_clause(d: DiagnosisData, member: Candidate) -> str:
+    """An effect with its amounts, and what it moves at which sensor; without the last full stop."""
+    sentence = effect_sentence(member, d.best).rstrip(".")
+    variant = ", ".join(value for _, value in member.choice)
+    amounts = "; ".join(effect_amounts(member, d.best))
+    amounts = "" if not amounts else f", {amounts}" if amounts.startswith("by ") else f": {amounts}"
+    return f"{sentence}{f' ({variant})' if variant else ''}{amounts}{_moves(d.movements.get(member))}"
+
+
+def heat_clause(d: DiagnosisData, sources: Sequence[UnknownSource]) -> str:
+    """The largest clear source of missing heat, and how many more there are."""
+    if not sources:
+        return "no place of missing heat is clear"
+    first = sources[0]
+    sign = "heat is missing" if first.amount > 0 else "the model has too much heat, cooling is missing,"
+    size = amount(first.amount, first.sd, "W/m**3" if first.inside else "W/m**2")
+    course = course_words(first)
+    course = f"; {course[0].lower()}{course[1:]}" if first.kinds[first.kind] >= STATED else ""
+    more = f"; and {len(sources) - 1} more places" if len(sources) > 1 else ""
+    return f"{sign} {source_place(d, first)}: {size}{_moves(first.move)}{course}{more}"
+
+
+def _moves(move: Movement | None) -> str:
+    if move is None or not math.isfinite(move.kelvin):
+        return ""
+    return f", which moves {move.sensor} by up to {move.kelvin:+z.1f} K ({run_words(move.run)})"
+
+
+def _it_is(members: Sequence[Candidate]) -> str:
+    return "They are together" if len(members) > 1 else "It is"
+
+
+def _joined(clauses: Sequence[str]) -> str:
+    return f"{'. And: '.join(clauses)}."
+
+
+def _opened(sentence: str) -> str:
+    return sentence.rstrip(".")
+
+
+def _set_words(entry: RankedSet) -> str:
+    """A set of effects in words: "the sun shines on the tyre (sun)"."""
+    if entry.outside or not entry.members:
+        return "a cause outside the catalogue" if entry.outside else "no effect at all"
+    sentences = []
+    for member in entry.members:
+        sentence = member.effect.sentence.rstrip(".")
+        sentences.append(f"{sentence[0].lower()}{sentence[1:]} ({member.key})")
+    return " and ".join(sentences)
+
+
+def _gap(d: DiagnosisData) -> str:
+    """Rms of the original study's deviation, and the noise."""
+    parts = []
+    for held_out, name in ((False, "fitted"), (True, "held-out")):
+        value = d.rms(after=False, held_out=held_out)
+        if math.isfinite(value):
+            parts.append(f"{value:.1f} K in the {name} runs")
+    return f"rms {' and '.join(parts)}, noise {d.noise:.1f} K"
+
+
+def _closed(d: DiagnosisData) -> str:
+    """What the amended study makes of the deviation: of the held-out runs if there are any."""
+    held_out = bool(d.gap.held_out)
+    name = "held-out" if held_out else "fitted"
+    before, after = (d.rms(after=after, held_out=held_out) for after in (False, True))
+    checked = "" if held_out else "; no run is held out, so nothing checks it independently"
+    if not d.changes:
+        return f"measured - computed is {before:.1f} K rms in the {name} runs, noise {d.noise:.1f} K{checked}"
+    by = "the amended study brings" if any(change.missing for change in d.changes) else "corrections bring"
+    return f"{by} the {name} runs from {before:.1f} to {after:.1f} K rms, noise {d.noise:.1f} K{checked}"

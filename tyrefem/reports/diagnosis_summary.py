@@ -1,0 +1,214 @@
+"""One page that prints well: the numbers of a diagnosis that a colleague needs."""
+
+from __future__ import annotations
+
+import base64
+import math
+from dataclasses import dataclass
+from pathlib import Path
+from typing import TYPE_CHECKING
+
+from tyrefem.diagnose.headline import QUESTIONS, corrections, headline, label
+from tyrefem.diagnose.heat_words import course_words, source_place
+from tyrefem.diagnose.numbers import amount, correction_amount, correction_subject, percent
+from tyrefem.diagnose.result_tables import set_rows
+from tyrefem.diagnose.verdict import NO_GAP, UNEXPLAINED
+from tyrefem.diagnose.words import effect_amounts, effect_sentence, next_words
+from tyrefem.output import versions
+from tyrefem.reports.diagnosis_gap import gap_figure
+from tyrefem.reports.figures.style import picture
+
+if TYPE_CHECKING:
+    from tyrefem.diagnose.diagnosis import DiagnosisData
+    from tyrefem.diagnose.materiality import Movement
+
+SUMMARY = "summary.html"
+#: A4 between its margins, mm; height of a line of text and the space above a heading, mm.
+WIDTH, HEIGHT, MARGIN, LINE, GAP = 186.0, 273.0, 12.0, 4.1, 1.8
+#: Characters that surely fit a line of text, and a line of small text.
+CHARACTERS, SMALL_CHARACTERS = 112, 124
+#: Least and largest height of the picture, mm.
+LEAST_PICTURE, MOST_PICTURE = 55.0, 125.0
+#: Rows of each table, panels and sensors of the picture.
+ROWS, RUNS, SENSORS = 6, 8, 10
+
+
+@dataclass(frozen=True)
+class SummaryTable:
+    """A small table: ``words`` are the numbers of the columns that are text."""
+
+    title: str
+    head: tuple[str, ...]
+    rows: tuple[tuple[str, ...], ...]
+    words: tuple[int, ...] = (0,)
+
+
+def summary(d: DiagnosisData, *, version: str) -> str:
+    """The summary as a self-contained HTML page that fills at most one page of A4.
+
+    The lines of text are counted, and the picture gets the height that they leave; a table shows at most `ROWS` rows.
+    """
+    from jinja2 import Environment, PackageLoader, StrictUndefined
+
+    environment = Environment(
+        loader=PackageLoader("tyrefem.reports", "."), autoescape=True, undefined=StrictUndefined, trim_blocks=True,
+        lstrip_blocks=True,
+    )  # fmt: skip
+    tables, sentences = summary_tables(d), [clipped(sentence) for sentence in headline(d)]
+    made = [clipped(sentence) for sentence in _made(d)]
+    origin = clipped(_origin(d, version), SMALL_CHARACTERS)
+    drawn = gap_figure(d, 7.6, RUNS, SENSORS if len(d.gap.runs) <= RUNS / 2 else SENSORS // 2)
+    return environment.get_template("diagnosis_summary.html").render(
+        d=d,
+        label=label(d),
+        headline=list(zip(QUESTIONS, sentences, strict=True)),
+        origin=origin,
+        picture=base64.b64encode(picture(drawn, ".svg")).decode("ascii"),
+        picture_mm=f"{picture_height(tables, sentences, made):.0f}",
+        tables=tables,
+        made=made,
+        margin=f"{MARGIN:g}",
+        width=f"{WIDTH:g}",
+        line=f"{LINE:g}",
+        gap=f"{GAP:g}",
+    )
+
+
+def clipped(sentence: str, most: int = 4 * CHARACTERS) -> str:
+    """A sentence with at most ``most`` characters, cut between words.
+
+    >>> clipped("a thermocouple at the crown", 16)
+    'a thermocouple …'
+    """
+    return sentence if len(sentence) <= most else f"{sentence[: most - 1].rpartition(' ')[0]} …"
+
+
+def picture_height(tables: tuple[SummaryTable, ...], sentences: list[str], made: list[str]) -> float:
+    """Height that text and tables leave to the picture, mm."""
+    longest = max(len(question) for question in QUESTIONS) + 2
+    lines = 1 + sum(math.ceil((len(sentence) + longest) / CHARACTERS) for sentence in sentences)
+    lines += 1 + sum(math.ceil(len(sentence) / SMALL_CHARACTERS) for sentence in made)
+    headings = len(tables) + 1
+    lines += headings + sum(1 + sum(_height(row, table) for row in table.rows) for table in tables)
+    text = 6.0 + LINE * (1 + lines) + GAP * (2 + headings) + 0.4 * headings
+    return min(max(HEIGHT - text - 3.0, LEAST_PICTURE), MOST_PICTURE)
+
+
+def _height(row: tuple[str, ...], table: SummaryTable) -> int:
+    """Lines of a table's row: columns of text share the width that the numbers leave."""
+    numbers = sum(len(cell) + 2 for number, cell in enumerate(row) if number not in table.words)
+    words = [row[number] for number in table.words]
+    longest = max(len(cell) for cell in words)
+    share = max((SMALL_CHARACTERS - numbers) * longest / max(sum(len(cell) + 2 for cell in words), 1), 10)
+    return math.ceil(longest / share)
+
+
+def summary_tables(d: DiagnosisData) -> tuple[SummaryTable, ...]:
+    """The tables of the summary; those without rows are left out."""
+    tables = (_missing(d), _effects(d), _rms(d), _corrections(d), _sets(d))
+    return tuple(table for table in tables if table.rows)
+
+
+def _effects(d: DiagnosisData) -> SummaryTable:
+    members = d.best.members if d.verdict not in (NO_GAP, UNEXPLAINED) else ()
+    rows = [
+        (
+            f"{member.key}: {effect_sentence(member, d.best)}",
+            "; ".join(effect_amounts(member, d.best)),
+            _moves(d.movements.get(member)),
+            percent(d.judgement.named.get(member.key, 0.0)),
+        )
+        for member in members
+    ]
+    head = ("effect", "value ± sd", "moves at most", "probability")
+    return SummaryTable("What the amended study has beside the original", head, tuple(rows[:ROWS]), (0, 1))
+
+
+def _missing(d: DiagnosisData) -> SummaryTable:
+    """The stated sources of missing heat, if no effect explains the deviation."""
+    sources = d.missing.over_time.clear if d.missing.over_time and d.verdict not in _NAMED else ()
+    rows = [
+        (
+            source_place(d, source),
+            amount(source.amount, source.sd, "W/m**3" if source.inside else "W/m**2"),
+            _moves(source.move),
+            course_words(source),
+        )
+        for source in sources
+    ]
+    head = ("missing heat (+) or missing cooling (-)", "amount ± sd", "moves at most", "course in time")
+    return SummaryTable("Heat of unknown origin", head, tuple(rows[:ROWS]), (0, 3))
+
+
+#: Verdicts that name every cause.
+_NAMED = ("identified", "confounded", NO_GAP)
+
+
+def _rms(d: DiagnosisData) -> SummaryTable:
+    rows = []
+    for held_out, name in ((False, "fitted"), (True, "held out, used in no fit")):
+        before, after = (d.rms(after=after, held_out=held_out) for after in (False, True))
+        if math.isfinite(before):
+            numbers = d.gap.held_out if held_out else d.gap.fitted
+            names = clipped(", ".join(d.gap.runs[number].name for number in numbers), 60)
+            rows.append((f"{name}: {names}", f"{before:.2f} K", f"{after:.2f} K", f"{d.noise:.2f} K"))
+    head = ("runs", "rms, original", "rms, amended", "noise")
+    return SummaryTable("Measured - computed", head, tuple(rows))
+
+
+def _corrections(d: DiagnosisData) -> SummaryTable:
+    shown = corrections(d)
+    rows = [
+        (
+            correction_subject(each.pull.unknown),
+            correction_amount(each.pull.unknown, each.pull.x, each.pull.sd),
+            f"{each.pull.pull:+z.1f}",
+            _moves(each.move),
+        )
+        for each in shown[:ROWS]
+    ]
+    more = f"; the {ROWS} that move most of {len(shown)}" if len(shown) > ROWS else ""
+    head = ("number or sensor", "change ± sd", "in sd of what was stated", "moves at most")
+    return SummaryTable(f"Corrections fitted together with it{more}", head, tuple(rows))
+
+
+def _sets(d: DiagnosisData, most: int = 3) -> SummaryTable:
+    rows: list[tuple[str, ...]] = []
+    for row in set_rows(d, most):
+        rms = row.get("held_out_rms_K") if d.gap.held_out else row.get("rms_K")
+        known = rms is not None and math.isfinite(rms)
+        rows.append(
+            (" + ".join(row["effects"]) or "no effect", percent(row["probability"]), f"{rms:.2f} K" if known else "")
+        )
+    held = "held-out" if d.gap.held_out else "fitted"
+    return SummaryTable("The most probable sets of effects", ("set", "probability", f"rms, {held} runs"), tuple(rows))
+
+
+def _moves(move: Movement | None) -> str:
+    if move is None or not math.isfinite(move.kelvin):
+        return ""
+    return f"{move.kelvin:+z.1f} K ({move.sensor}, {move.run})"
+
+
+def _origin(d: DiagnosisData, version: str) -> str:
+    tables = dict.fromkeys(Path(str(entry.table)).name for entry in d.original.measured)
+    read = f", tables {', '.join(tables)}" if tables else ""
+    return f"Diagnosis of study {d.original.name}{read}, by tyrefem {version}; all of it: diagnosis.html"
+
+
+def _made(d: DiagnosisData) -> list[str]:
+    """Runs, candidates, mesh, versions, and the best next experiment."""
+    readings = sum(len(series.times) for run in d.gap.runs for series in run.sensors)
+    sensors = len({series.sensor for run in d.gap.runs for series in run.sensors})
+    mesh, choice = d.original.mesh().summary(), d.original.card.diagnosis
+    lines = [
+        f"{readings} readings of {sensors} sensors in {len(d.gap.runs)} runs; {len(d.candidates)} effects tried; "
+        f"prior probability that any is missing {percent(choice.effects_expected)}; discrepancy of a right model "
+        f"{choice.discrepancy:g} K over {choice.correlation_time:g} s; films uncertain by "
+        f"{100 * choice.film_sd:.0f} %.",
+        f"Mesh: {mesh['elements']} elements of {mesh['size_m'] * 1e3:.3g} mm. "
+        + ", ".join(f"{name} {number}" for name, number in versions().items())
+        + ".",
+    ]
+    following = next_words(d)
+    return [f"Next experiment: {following}", *lines] if following else lines
