@@ -101,6 +101,7 @@ def diagnose(
         return
     from tyrefem.diagnose.headline import QUESTIONS, headline, label
     from tyrefem.diagnose.heat_words import heat_words
+    from tyrefem.diagnose.law_words import law_words
     from tyrefem.diagnose.verdict import UNEXPLAINED
     from tyrefem.diagnose.words import noise_words
 
@@ -108,8 +109,8 @@ def diagnose(
         typer.echo(f"{store.resumed} simulations of an interrupted diagnosis were reused")
     for question, sentence in zip((label(diagnosis).upper(), *QUESTIONS[1:]), headline(diagnosis), strict=True):
         typer.echo(f"{question}: {sentence}")
-    heat = (f"{heat_words(diagnosis)}.",) if diagnosis.verdict == UNEXPLAINED else ()
-    for sentence in (*heat, *noise_words(diagnosis)):
+    heat = (heat_words(diagnosis), *law_words(diagnosis)) if diagnosis.verdict == UNEXPLAINED else ()
+    for sentence in (*(f"{each}." for each in heat), *noise_words(diagnosis)):
         typer.echo(sentence)
     for note in dict.fromkeys(note for look in diagnosis.looks for note in look.notes):
         typer.echo(f"Note: {note}")

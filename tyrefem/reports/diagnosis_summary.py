@@ -10,6 +10,7 @@ from typing import TYPE_CHECKING
 
 from tyrefem.diagnose.headline import QUESTIONS, corrections, headline, label
 from tyrefem.diagnose.heat_words import course_words, source_place
+from tyrefem.diagnose.law_words import law_words
 from tyrefem.diagnose.numbers import amount, correction_amount, correction_subject, percent
 from tyrefem.diagnose.result_tables import set_rows
 from tyrefem.diagnose.verdict import NO_GAP, UNEXPLAINED
@@ -211,4 +212,7 @@ def _made(d: DiagnosisData) -> list[str]:
         + ".",
     ]
     following = next_words(d)
-    return [f"Next experiment: {following}", *lines] if following else lines
+    first = [f"Next experiment: {following}"] if following else []
+    if d.verdict not in _NAMED:
+        first += [f"{sentence}." for sentence in law_words(d)[:1]]
+    return [*first, *lines]
