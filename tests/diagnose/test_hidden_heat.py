@@ -3,14 +3,17 @@
 from __future__ import annotations
 
 import json
+import pickle
 from pathlib import Path
 
+import numpy as np
 import pytest
 from hidden import measure, study
 
 from tyrefem.diagnose.heat_words import inside_share
 from tyrefem.diagnose.verdict import UNEXPLAINED
 from tyrefem.diagnose.words import verdict_words
+from tyrefem.reports.diagnosis_missing import by_run, drawn_sources
 
 PLACE = {"station": "100 mm", "width": "13 mm"}
 
@@ -34,6 +37,7 @@ def test_heat_that_begins_late_is_dated(tmp_path: Path) -> None:
     measure(owner, [{"name": "missing-heat", **PLACE, "heat": "400 kW/m**3", "begins": "70 s"}])
     d = owner.diagnose(largest=1, looks=1)
     d.save(tmp_path / "out")
+    assert pickle.loads(pickle.dumps(d)).to_dict() == d.to_dict()
     missing = json.loads((tmp_path / "out" / "verdict.json").read_text(encoding="utf-8"))["missing_heat"]
     first = missing["sources"][0]
     assert first["stated"]
@@ -43,6 +47,15 @@ def test_heat_that_begins_late_is_dated(tmp_path: Path) -> None:
     assert first["time_s"] == pytest.approx(70.0, abs=max(3 * first["time_sd_s"], 8.0))
     assert {"kind", "region", "station_m", "stations_m", "watts", "runs"} <= set(missing)
     assert first["sentence"] in verdict_words(d)[1]
+    # What the source moves is the gap at the sensor: there all of the amended study's change is the source's.
+    moves = first["moves"]
+    assert moves["sensor"] == "sidewall-outer"
+    largest = max(float(np.abs(d.after[run] - d.before[run]).max()) for run in d.before)
+    assert moves["largest_K"] == pytest.approx(largest, rel=0.1)
+    stated = drawn_sources(d)
+    assert [source.amount for source in stated] == [source.amount for source in d.missing.over_time.clear]
+    strength, spread = by_run(stated[0], d.missing.over_time)
+    assert np.all(np.abs(strength - stated[0].amount) < 3 * spread)
     # The amended study has the source with its time, and its run explains the readings.
     (effect,) = (entry for entry in d.study.data["effects"] if entry["name"].startswith("missing-"))
     assert float(effect["begins"].split()[0]) == pytest.approx(70.0, abs=8.0)

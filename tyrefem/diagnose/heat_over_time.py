@@ -20,6 +20,7 @@ from tyrefem.diagnose.heat_values import WRITTEN, source_unknown, values_with_so
 from tyrefem.diagnose.materiality import Movement, largest_change
 from tyrefem.diagnose.residuals import Residuals
 from tyrefem.diagnose.unknowns import Unknown
+from tyrefem.inputs.drive import Drive
 from tyrefem.inputs.motion import motion_at
 
 Array = NDArray[np.float64]
@@ -121,7 +122,7 @@ def _estimated(
     for place in refined:
         for unknown in layer_patches(study, settings, place.station):
             unknown_of[place_of(unknown)] = unknown
-    of_places = [unknown_of[place.station, place.where] for place in refined]
+    of_places = tuple(unknown_of[place.station, place.where] for place in refined)
     resolved = responses.places(fine, of_places)
     free = pursuit(data, resolved, fine, len(resolved), -math.inf)
     current = [(place, next(course for other, course in free if other is place)) for place in resolved]
@@ -148,7 +149,6 @@ def _estimated(
     values, sd = values_with_sources(data, nuisance, named) if written else ({}, {})
     unknowns = tuple(unknown for unknown, _, _ in named) if written else ()
     sources.sort(key=lambda source: -abs(source.amount) / source.sd)
-    of_places = tuple(unknown_of[place.station, place.where] for place in resolved)
     basis = SourceBasis(data, tuple(current), of_places, fine, coarse, tuple(places))
     return HeatOverTime(
         tuple(sources), fine.knots, fine.names, rolling, cools, log_evidence, values, sd, unknowns, basis
@@ -171,9 +171,18 @@ def _grid(residuals: Residuals, count: int) -> CourseGrid:
                 if start < last
             )
         )
-    return CourseGrid(
-        tuple(names), tuple(knots), tuple(phases), lambda number, t: float(motion_at(drives[number], t).speed)
-    )
+    return CourseGrid(tuple(names), tuple(knots), tuple(phases), DriveSpeeds(tuple(drives)))
+
+
+@dataclass(frozen=True, eq=False)
+class DriveSpeeds:
+    """The speed of every fitted run's drive, m/s; a function that can be stored."""
+
+    drives: tuple[Drive, ...]
+
+    def __call__(self, number: int, t: float) -> float:
+        """Speed of a run at a time, s."""
+        return float(motion_at(self.drives[number], t).speed)
 
 
 class _Responses:

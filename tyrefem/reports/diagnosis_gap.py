@@ -54,7 +54,7 @@ def gap_figure(d: DiagnosisData, width: float = 9.4, most_runs: int = 99, most_s
     for place, (number, run) in enumerate(runs):
         row, column = divmod(place, columns)
         axes = add_axes(drawn, left + column * step_x, 0.46 + (rows - 1 - row) * step_y, step_x - 0.16, high)
-        _panel(axes, d, number, sensors, limits, (step_x - 0.16) / (step_x - 0.16 - WRITTEN))
+        _panel(axes, d, number, sensors, limits, step_x - 0.16)
         held = " (held out)" if run.hold_out else ""
         axes.set_title(f"{short(run.name, 16)}{held}", fontsize=FONT, loc="left", pad=3)
         if column:
@@ -111,9 +111,9 @@ def _sd(readings: MeasuredSensor) -> float:
 
 
 def _panel(
-    axes: Axes, d: DiagnosisData, number: int, sensors: list[str], limits: tuple[float, float], wider: float
+    axes: Axes, d: DiagnosisData, number: int, sensors: list[str], limits: tuple[float, float], width: float
 ) -> None:
-    """Draw one run; ``wider``: width of the axes over that of the limits, for the numbers at the right."""
+    """Draw one run on axes of this width, inches; the numbers stand at the right of the limits."""
     from matplotlib.ticker import MaxNLocator
 
     run = d.gap.runs[number]
@@ -137,9 +137,11 @@ def _panel(
     axes.set_yticks(range(len(sensors)), [short(sensor, 20) for sensor in sensors])
     axes.set_ylim(len(sensors) - 0.45, -0.55)
     low, high = limits
-    ticks = [tick for tick in MaxNLocator(4, steps=[1, 2, 5, 10]).tick_values(low, high) if low <= tick <= high]
+    # About an inch for three ticks.
+    many = max(round(3 * (width - WRITTEN)), 2)
+    ticks = [tick for tick in MaxNLocator(many, steps=[1, 2, 5, 10]).tick_values(low, high) if low <= tick <= high]
     axes.set_xticks(ticks)
-    axes.set_xlim(low, low + wider * (high - low))
+    axes.set_xlim(low, low + width / (width - WRITTEN) * (high - low))
     tidy(axes)
     axes.grid(axis="y", visible=False)
 
