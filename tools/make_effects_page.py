@@ -94,10 +94,15 @@ class Lamp(Effect):
         return self.shine
 ```
 
+A [diagnosis](diagnosis.md#its-law-over-the-runs) that finds heat of unknown origin writes such a file: a draft with
+the law of the heat, its amplitude and standard deviation, and the source "inferred from ...".
+`tyrefem diagnose --effects FOLDER` judges it as any other effect.
+
 `Prior` takes unit, meaning, sd, lower and upper bound. The method is one of the ports of `tyrefem.effects.Effect`;
 `tyrefem/effects/tyre.py` lists what a port may ask of its `tyre`. A choice (a sensor, a side) is a field with
 `Field(description=..., examples=[...])`. `of_drive: ClassVar[bool] = True` says that films, surroundings and rim
-depend on time through the drive alone: reduced models then evaluate the effect once per phase.
+depend on time through the drive alone: reduced models then evaluate the effect once per phase. A port that jumps within
+a phase states when: `jumps: ClassVar[tuple[float, ...]] = (300.0,)`, in seconds.
 
 ## An effect with a state of its own
 

@@ -11,7 +11,7 @@ import pytest
 from hidden import measure, study
 
 from tyrefem.diagnose.heat_words import inside_share
-from tyrefem.diagnose.verdict import UNEXPLAINED
+from tyrefem.diagnose.verdict import IDENTIFIED, UNEXPLAINED
 from tyrefem.diagnose.words import verdict_words
 from tyrefem.reports.diagnosis_missing import by_run, drawn_sources
 
@@ -32,7 +32,9 @@ def test_a_sidewall_that_is_cooled_from_outside_is_a_sink(tmp_path: Path) -> Non
     assert not d.missing.over_time.cools
 
 
-def test_heat_that_begins_late_is_dated(tmp_path: Path) -> None:
+def test_heat_that_begins_late_is_dated_and_its_draft_effect_is_identified(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
     owner = study(tmp_path / "study")
     measure(owner, [{"name": "missing-heat", **PLACE, "heat": "400 kW/m**3", "begins": "70 s"}])
     d = owner.diagnose(largest=1, looks=1)
@@ -72,9 +74,25 @@ def test_heat_that_begins_late_is_dated(tmp_path: Path) -> None:
     assert not any(entry["in_law"] for entry in law["exponents"])
     assert law["amplitude_W_m3"] == pytest.approx(4e5, rel=0.25)
     assert all(sentence in verdict_words(d) for sentence in law["sentences"])
+    rows = {row["name"]: row for row in law["signatures"]}
+    assert rows["sun"]["kind"] == "effect"
+    assert rows["sun"]["likeness"] < 0.9
+    assert "The law of the missing heat" in (tmp_path / "out" / "diagnosis.html").read_text(encoding="utf-8")
     # The heat is large beside its prior; the flux would be smaller beside its own. That tells no surface.
     assert first["place"].startswith("in mid sidewall")
     assert first["depth"]["outer surface"] < 0.5
     assert inside_share(d.missing.over_time.sources[0]) == pytest.approx(
         sum(share for where, share in first["depth"].items() if "surface" not in where and where != "rim")
     )
+    # The draft effect runs as any other: it is named, and closes the gap in the held-out run, too.
+    monkeypatch.setenv("TYREFEM_EFFECTS", "")
+    (draft,) = (tmp_path / "out" / "effects").glob("*.py")
+    assert law["draft_effect"] == f"effects/{draft.name}"
+    assert "inferred from" in draft.read_text(encoding="utf-8")
+    second = owner.diagnose(largest=1, looks=1, effects=draft.parent)
+    assert second.verdict == IDENTIFIED
+    (member,) = second.best.members
+    assert member.name == draft.stem.replace("_", "-")
+    fitted = second.best.values[member.amplitudes[0]]
+    assert fitted == pytest.approx(4e5, abs=4 * second.best.sd[member.amplitudes[0]])
+    assert second.rms(after=True, held_out=True) < 0.3 * second.rms(after=False, held_out=True)

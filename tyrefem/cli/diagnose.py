@@ -55,6 +55,9 @@ def diagnose(
     strategy: Annotated[
         str, typer.Option(help="forward: sets grow effect by effect; exhaustive: all sets, for few effects.")
     ] = "forward",
+    effects: Annotated[
+        Path | None, typer.Option("--effects", help="Folder with effects of your own, such as drafts of a diagnosis.")
+    ] = None,
     force: ForceOption = False,
     quiet: QuietOption = False,
     as_json: JsonOption = False,
@@ -67,9 +70,12 @@ def diagnose(
     from tyrefem.diagnose.evaluations import ProgressStore
     from tyrefem.diagnose.options import STRATEGIES
     from tyrefem.diagnose.workflow import NEEDS
+    from tyrefem.effects import use_effects
     from tyrefem.reports.diagnosis import FILES
     from tyrefem.variants.answer_store import PROGRESS
 
+    if effects is not None:
+        use_effects(effects)
     loaded = load(study, settings(changes), case)
     NEEDS.check(loaded, table)
     if strategy not in STRATEGIES:

@@ -22,6 +22,7 @@ if TYPE_CHECKING:
     from tyrefem.diagnose.candidates import Candidate
     from tyrefem.diagnose.fits import FittedSet
     from tyrefem.diagnose.law_search import HeatLaw
+    from tyrefem.diagnose.law_signatures import LawSignature
     from tyrefem.diagnose.materiality import Movement
     from tyrefem.diagnose.missing_heat import UnknownHeat
     from tyrefem.diagnose.residuals import Residuals
@@ -45,7 +46,8 @@ class DiagnosisData(Brief):
     predictions : numbers of model evaluations and the certificates of reduced models. seconds : wall time.
     again : diagnosis of the amended study with the same data; None if there was no further look.
     movements : effect of the best set -> largest change of a reading by it.
-    law : law of the missing heat over the runs; None if heat was not missing, or at no clear place.
+    law : law of the missing heat over the runs; None if heat was not missing, or at no clear place. signatures : what
+        effects and mechanisms would do beside it.
     notes : candidates that were left out, and why.
     """
 
@@ -67,6 +69,7 @@ class DiagnosisData(Brief):
     notes: tuple[str, ...] = ()
     movements: Mapping[Candidate, Movement] = field(default_factory=dict)
     law: HeatLaw | None = None
+    signatures: tuple[LawSignature, ...] = ()
 
     def _title(self) -> str:
         return f"of {self.original.name}: {self.verdict}"

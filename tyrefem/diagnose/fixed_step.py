@@ -19,6 +19,7 @@ from tyrefem.conduction.fixed_steps import fixed_step_solution
 from tyrefem.conduction.points import located
 from tyrefem.conduction.sensitivity import Tangents, stage_times
 from tyrefem.diagnose.unknowns import Unknown
+from tyrefem.effects import catalogue
 from tyrefem.geometry.wall import inside_mesh
 from tyrefem.inputs.study import StudyData
 from tyrefem.mechanics.nearby_cycles import NearbyCycles
@@ -27,6 +28,9 @@ from tyrefem.simulation.sensors import recorded, recorded_change, true_places
 from tyrefem.simulation.surroundings import GAS, RIM
 
 Array = NDArray[np.float64]
+
+#: A jump nearer than this to another is at the same time, s.
+LEAST_STEP = 1.0
 
 
 @dataclass(frozen=True, eq=False)
@@ -110,8 +114,22 @@ def fixed_step_run(
 ) -> FixedStepRun:
     """Simulate a study's drive with fixed steps and a reading ``every`` s; ``like``, ``near``: see `RollingTyre`."""
     tyre = RollingTyre(study, like, near=near)
-    times = stage_times([*tyre.drive.starts, tyre.drive.end])
+    times = stage_times(breaks(study))
     return FixedStepRun(study, tyre, times, *fixed_step_solution(tyre.problem, times, tyre.drive.initial), every)
+
+
+def breaks(study: StudyData) -> list[float]:
+    """Times at which data of a drive jump, s: start and end of every phase, and jumps of effects.
+
+    Jumps of the catalogue's classes count for every study, so that all simulations of a diagnosis share their times.
+    """
+    drive = study.card.drive
+    times = [*drive.starts, drive.end]
+    of_classes = [effect.jumps for effect in catalogue().values() if isinstance(effect.jumps, tuple)]
+    for jump in sorted(jump for jumps in (*of_classes, *(effect.jumps for effect in study.effects)) for jump in jumps):
+        if 0 < jump < drive.end and min(abs(jump - time) for time in times) > LEAST_STEP:
+            times.append(jump)
+    return sorted(times)
 
 
 def time_grid(times: Array, every: float) -> Array:

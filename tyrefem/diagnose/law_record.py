@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from typing import TYPE_CHECKING, Any
 
+from tyrefem.diagnose.draft_effect import EFFECTS, draft_effects
 from tyrefem.diagnose.law_places import UNITS
 from tyrefem.diagnose.law_words import law_formula, law_place_words, law_words
 
@@ -17,7 +18,8 @@ def law_record(d: DiagnosisData) -> dict[str, Any] | None:
 
     ``holds``: whether one law describes the heat in all fitted runs. ``lead_nats``: ln evidence over sources with a
     free strength in every run. ``exponents``: of every variable that varies, those of the law first; ``told`` is false
-    where the runs leave the prior almost as it was. ``places``: the places that competed.
+    where the runs leave the prior almost as it was. ``places``: the places that competed. ``signatures``: effects and
+    mechanisms, most alike first. ``draft_effect``: file of the draft effect.
     """
     heat = d.law
     if heat is None:
@@ -51,6 +53,19 @@ def law_record(d: DiagnosisData) -> dict[str, Any] | None:
         ],
         "hardly_vary": list(law.hardly),
         "vary_together": [list(pair) for pair in law.together],
+        "signatures": [
+            {
+                "name": row.name,
+                "kind": "effect" if row.effect else "mechanism",
+                "likeness": row.likeness,
+                "log_evidence_below_best": row.below,
+                "station_m": row.station,
+                "where": row.where,
+                "exponents": dict(row.exponents),
+            }
+            for row in d.signatures
+        ],
+        "draft_effect": next((f"{EFFECTS}/{name}" for name in draft_effects(d)), None),
         "places": [_place(d, entry) | {"law": law_formula(entry.law)} for entry in heat.ranking],
     }  # fmt: skip
 

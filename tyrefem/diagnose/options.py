@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Iterable, Mapping, Sequence
 from dataclasses import dataclass, field, replace
+from pathlib import Path
 from typing import Any, TypedDict
 
 from tyrefem.compare.experiment import ColumnNames
@@ -16,6 +17,7 @@ from tyrefem.diagnose.forward_selection import ForwardSelection
 from tyrefem.diagnose.selection import Strategy
 from tyrefem.diagnose.sensitivities import Tick
 from tyrefem.diagnose.settings import DEFAULT, DiagnosisSettings
+from tyrefem.effects import use_effects
 
 #: Name on the command line -> strategy.
 STRATEGIES: Mapping[str, Strategy] = {"forward": ForwardSelection(), "exhaustive": Exhaustive()}
@@ -83,11 +85,14 @@ class DiagnosisOptions(TypedDict, total=False):
     known: Sequence[DriveResponse] | None
     rerun: bool
     store: ProgressStore | None
+    effects: str | Path | None
 
 
 def grouped(options: Mapping[str, Any]) -> tuple[ColumnNames, Method, SimulationWork]:
     """The keywords of `diagnose` in groups."""
     given = dict(options)
+    if (folder := given.pop("effects", None)) is not None:
+        use_effects(folder)
     columns = ColumnNames(dict(given.pop("rename", None) or {}), tuple(given.pop("ignore", ())))
     settings = given.pop("settings", DiagnosisSettings())
     settings = replace(settings, **{name: given.pop(name) for name in ("largest", "looks", "reduced") if name in given})

@@ -21,6 +21,7 @@ from tyrefem.diagnose.forward_model import ForwardModel
 from tyrefem.diagnose.heat_over_time import heat_over_time
 from tyrefem.diagnose.heat_patches import patches
 from tyrefem.diagnose.law_search import HeatLaw, heat_law
+from tyrefem.diagnose.law_signatures import law_signatures
 from tyrefem.diagnose.materiality import Movements, movements
 from tyrefem.diagnose.missing_heat import UnknownHeat, missing_heat, missing_heat_fitted, with_course
 from tyrefem.diagnose.multifidelity import Predictions
@@ -71,6 +72,7 @@ def diagnose(study: StudyData, table: Table | None = None, **options: Unpack[Dia
     workers : number of processes. progress : called with (description, number of the step, number of steps).
     known : responses of the runs' drives (see `responses`), for many diagnoses of one layout.
     rerun : run the amended study on its mesh at the end; otherwise ``after`` is the prediction of the fit.
+    effects : folder with further effects, as ``TYREFEM_EFFECTS`` names them; they stay in the catalogue afterwards.
     store : store of finished simulations, from which an interrupted diagnosis continues.
 
     Raises
@@ -127,6 +129,7 @@ def _look(
         work.tick("running the amended study")
         after = _after(residuals, evaluations, change if work.rerun else None, values)
         law = _law(residuals, evaluations, ranking, work)
+        signatures = () if law is None else law_signatures(residuals, law, candidates)
         further: Mapping[str, Any] = {}
         if ranking.judgement.verdict == CONFOUNDED:
             work.tick("ranking next experiments")
@@ -149,6 +152,7 @@ def _look(
         notes=(*notes, *further_notes),
         movements=ranking.movements,
         law=law,
+        signatures=signatures,
     )
 
 

@@ -26,7 +26,7 @@ from tyrefem.effects.state import EffectState
 from tyrefem.errors import InputError, nearest
 from tyrefem.output import note_input
 
-__all__ = ["Effect", "EffectOf", "EffectState", "Parameter", "Prior", "catalogue"]
+__all__ = ["Effect", "EffectOf", "EffectState", "Parameter", "Prior", "catalogue", "use_effects"]
 
 
 @functools.cache
@@ -57,6 +57,37 @@ def _loaded(file: Path) -> str:
         reason = error.message if isinstance(error, InputError) else f"{type(error).__name__}: {error}"
         raise InputError(f"cannot be loaded as effects: {reason}", file=file) from error
     return name
+
+
+def use_effects(folder: str | Path) -> tuple[str, ...]:
+    """Add a folder of a user's effects to the catalogue for the rest of this process and its workers; their names.
+
+    The same as naming the folder in ``TYREFEM_EFFECTS``.
+
+    Raises
+    ------
+    InputError : there is no such folder, it has no effect, or a file of it cannot be loaded.
+    """
+    place = Path(folder).resolve()
+    if not place.is_dir():
+        raise InputError(f"effects: '{folder}' is not a folder")
+    before = os.environ.get("TYREFEM_EFFECTS", "")
+    folders = [each for each in before.split(os.pathsep) if each]
+    if str(place) not in [str(Path(each).resolve()) for each in folders]:
+        os.environ["TYREFEM_EFFECTS"] = os.pathsep.join([*folders, str(place)])
+    try:
+        names = [
+            name
+            for name, effect in catalogue().items()
+            if Path(str(sys.modules[effect.__module__].__file__)).parent == place
+        ]
+        if not names:
+            files = "no Python file" if not list(place.glob("*.py")) else "Python files, but none with an effect"
+            raise InputError(f"effects: '{folder}' has {files}; docs/effects.md, \"An effect of your own\"")
+    except InputError:
+        os.environ["TYREFEM_EFFECTS"] = before
+        raise
+    return tuple(names)
 
 
 def catalogue() -> dict[str, type[Effect]]:

@@ -55,6 +55,11 @@ class MissingFlux(Effect):
         return where | surface | {key: f"{time!r} s" for key, time in when.items() if time is not None}
 
     @property
+    def jumps(self) -> tuple[float, ...]:  # type: ignore[override]
+        """Begin and end."""
+        return tuple(time for time in (self.begins, self.ends) if time is not None)
+
+    @property
     def surfaces(self) -> tuple[str, ...]:  # type: ignore[override]
         """The boundaries of the surface."""
         return BOUNDARIES[self.surface]

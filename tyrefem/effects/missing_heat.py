@@ -52,6 +52,11 @@ class MissingHeat(Effect):
         region = {} if self.region is None else {"region": self.region}
         return where | region | {key: f"{time!r} s" for key, time in when.items() if time is not None}
 
+    @property
+    def jumps(self) -> tuple[float, ...]:  # type: ignore[override]
+        """Begin and end."""
+        return tuple(time for time in (self.begins, self.ends) if time is not None)
+
     def heat_addend(self, tyre: Tyre, zone: str, x: Array, t: float, T: Array) -> Factor:
         """W/m3 at points x (2, n)."""
         outside = (self.begins is not None and t < self.begins) or (self.ends is not None and t > self.ends)

@@ -137,6 +137,10 @@ class PhaseOfDrive(Protocol):
     """A phase of the drive."""
 
     @property
+    def name(self) -> str:
+        """Its name in the study file."""
+
+    @property
     def load(self) -> object | None:
         """None if the drive gives the deflection instead of the load."""
 

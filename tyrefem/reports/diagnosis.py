@@ -12,6 +12,7 @@ import tyrefem
 from tyrefem.diagnose import words
 from tyrefem.diagnose.amend import Change, difference
 from tyrefem.diagnose.candidates import key_of
+from tyrefem.diagnose.draft_effect import EFFECTS, draft_effects
 from tyrefem.diagnose.headline import QUESTIONS, headline, label
 from tyrefem.diagnose.numbers import amount, base_name, parameter_name, percent
 from tyrefem.diagnose.record import AMENDED, record, where
@@ -24,6 +25,7 @@ from tyrefem.mechanics.nearby_cycles import NearbyCycles
 from tyrefem.mechanics.strain_laws import strain_law
 from tyrefem.output import atomic_folder, write_json
 from tyrefem.reports.diagnosis_figures import pictures
+from tyrefem.reports.diagnosis_law import law_block
 from tyrefem.reports.diagnosis_summary import SUMMARY, summary
 
 if TYPE_CHECKING:
@@ -31,7 +33,8 @@ if TYPE_CHECKING:
 
 PAGE = "diagnosis.html"
 _FILES = ("verdict.json", AMENDED, "difference.txt", "where.csv", "histories.csv", PAGE, "rms.png", "residual-map*.png",
-          "probabilities.png", "histories-*.png", "missing-heat*.png", "gap.png", SUMMARY)  # fmt: skip
+          "probabilities.png", "histories-*.png", "missing-heat*.png", "gap.png", SUMMARY,
+          f"{EFFECTS}/inferred_*.py")  # fmt: skip
 #: Largest number of looks at the same data.
 MOST_LOOKS = 9
 #: Files that `save` may write.
@@ -46,8 +49,8 @@ def save(d: DiagnosisData, folder: str | Path) -> Path:
     """Write all files of a diagnosis into a folder, each completely or not at all; return the page's path.
 
     ``verdict.json``, ``amended.toml``, ``difference.txt``, ``where.csv``, ``histories.csv``, the pictures,
-    ``diagnosis.html`` and its `summary` on one page. A further look at the data has a folder ``again``, unless there is
-    no gap left.
+    ``diagnosis.html``, its `summary` on one page, and the draft effect in ``effects``, if a law of missing heat holds.
+    A further look at the data has a folder ``again``, unless there is no gap left.
 
     Raises
     ------
@@ -64,6 +67,9 @@ def save(d: DiagnosisData, folder: str | Path) -> Path:
         for name, picture in drawn.items():
             (temporary / name).write_bytes(picture)
         (temporary / SUMMARY).write_text(summary(d, version=tyrefem.__version__), encoding="utf-8")
+        for name, text in draft_effects(d).items():
+            (temporary / EFFECTS).mkdir(exist_ok=True)
+            (temporary / EFFECTS / name).write_text(text, encoding="utf-8")
         (temporary / PAGE).write_text(page(d, drawn, version=tyrefem.__version__), encoding="utf-8")
     if d.again is not None and d.again.verdict != NO_GAP:
         save(d.again, folder / words.AGAIN)
@@ -100,6 +106,7 @@ def page(d: DiagnosisData, images: Mapping[str, bytes], *, version: str) -> str:
         assumed=_assumed(d),
         pictures=embedded,
         shown=SHOWN,
+        law=law_block(d),
         unexplained=d.verdict == UNEXPLAINED,
         confounded=d.verdict == CONFOUNDED,
     )

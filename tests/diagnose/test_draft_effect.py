@@ -1,0 +1,170 @@
+"""Draft effects: their source runs and has the law's numbers; folders of effects that cannot be used are refused."""
+
+from __future__ import annotations
+
+import os
+from dataclasses import replace
+from pathlib import Path
+from types import SimpleNamespace
+from typing import Any
+
+import numpy as np
+import pytest
+from numpy.typing import NDArray
+
+from tyrefem.cli import main
+from tyrefem.diagnose.draft_effect import draft_effects
+from tyrefem.diagnose.heat_law import Exponent, PlaceLaw
+from tyrefem.diagnose.law_evidence import LawFit
+from tyrefem.diagnose.law_places import FILM, FLUX, HEAT, LOSS, LawPlace
+from tyrefem.diagnose.law_terms import LawTerms, Switch
+from tyrefem.diagnose.unknowns import Unknown
+from tyrefem.effects import catalogue, use_effects
+from tyrefem.errors import InputError
+from tyrefem.inputs.study import study
+
+Array = NDArray[np.float64]
+REFERENCES = {"speed": 10.0, "load": 12e3, "temperature": 60.0}
+STATION = (("station", "0.06 m"), ("width", "0.01 m"))
+
+
+@pytest.fixture(autouse=True)
+def _own_catalogue(monkeypatch: pytest.MonkeyPatch) -> None:
+    """`use_effects` changes the environment: it is restored after each test."""
+    monkeypatch.setenv("TYREFEM_EFFECTS", "")
+
+
+def law(terms: dict[str, float], kind: str = "no switch", time: float = np.nan, amplitude: float = 2e4) -> PlaceLaw:
+    """A law with given exponents."""
+    covariance = np.diag([0.01] * len(terms))
+    fit = LawFit(tuple(terms), Switch(kind, np.ones(3)), np.array(list(terms.values())), covariance, 10.0)
+    entries = tuple(Exponent(name, mean, 0.1, 1.0, True, REFERENCES[name]) for name, mean in terms.items())
+    known = LawTerms({name: np.zeros(3) for name in terms}, REFERENCES, (), ())
+    return PlaceLaw(fit, amplitude, 0.1 * abs(amplitude), entries, {kind: 1.0}, time, 2.0, (), 0.0, known)
+
+
+def diagnosis(place: LawPlace, of_place: PlaceLaw) -> Any:
+    """What a draft needs of a diagnosis."""
+    grid = SimpleNamespace(names=("run-1",))
+    heat = SimpleNamespace(place=place, law=of_place, holds=True, basis=SimpleNamespace(grid=grid))
+    return SimpleNamespace(law=heat, original=study("example-validation"))
+
+
+def loaded(tmp_path: Path, place: LawPlace, of_place: PlaceLaw) -> Any:
+    """The draft effect's class, from its file."""
+    ((name, text),) = draft_effects(diagnosis(place, of_place)).items()
+    (tmp_path / name).write_text(text, encoding="utf-8")
+    (effect,) = use_effects(tmp_path)
+    return catalogue()[effect]
+
+
+class TyreStub:
+    """A tyre at 20 m/s and 24 kN."""
+
+    schedule = SimpleNamespace(mean=lambda quantity, t: quantity(SimpleNamespace(load=24e3)))
+
+    def __init__(self, speed: float = 20.0) -> None:
+        self._speed = speed
+
+    def speed(self, t: float) -> float:
+        """m/s."""
+        return self._speed
+
+    def ambient(self, t: float) -> float:
+        """The air, degC."""
+        return 25.0
+
+    def places(self, x: Array) -> tuple[Array, Array]:
+        """Stations, m."""
+        return x[0], x[1]
+
+    def region(self, zone: str) -> str:
+        """The zone is the region."""
+        return zone
+
+
+def test_heat_at_a_station(tmp_path: Path) -> None:
+    place = LawPlace(HEAT, 0.06, "all layers", Unknown("heat", 1.0, choice=STATION), 1.0)
+    effect = loaded(tmp_path, place, law({"speed": 1.5, "load": 0.5, "temperature": -0.02}, "begins", 300.0))
+    assert "2e+04 +- 2e+03 W/m**3" in effect.source
+    assert "speed 1.5 +- 0.1" in effect.source
+    assert effect.jumps == (300.0,)
+    assert [parameter.name for parameter in effect.parameters()] == [
+        "heat", "speed_exponent", "load_exponent", "temperature_rate",
+    ]  # fmt: skip
+    hot = effect(heat="2e4 W/m**3")
+    x, T = np.array([[0.06, 0.07], [0.0, 0.0]]), np.array([60.0, 110.0])
+    expected = 2e4 * 2**1.5 * 2**0.5 * np.exp([0.0, -1.0]) * np.exp([0.0, -0.5])
+    assert hot.heat_addend(TyreStub(), "tread", x, 400.0, T) == pytest.approx(expected)
+    assert not np.any(hot.heat_addend(TyreStub(), "tread", x, 299.0, T))
+    assert not np.any(hot.heat_addend(TyreStub(0.0), "tread", x, 400.0, T))
+
+
+def test_a_flux_and_a_share_of_the_loss(tmp_path: Path) -> None:
+    (tmp_path / "flux").mkdir()
+    (tmp_path / "loss").mkdir()
+    place = LawPlace(FLUX, 0.06, "inner surface", Unknown("flux", 1.0, choice=STATION), 1.0)
+    flux = loaded(tmp_path / "flux", place, law({}, "at rest", amplitude=-300.0))(into="-300 W/m**2")
+    assert flux.surfaces == ("contained_air",)
+    assert flux.flux(TyreStub(0.0), "contained_air", np.array([[0.06], [0.0]]), 5.0) == pytest.approx(
+        np.array([-300.0])
+    )
+    assert not np.any(flux.flux(TyreStub(), "contained_air", np.array([[0.06], [0.0]]), 5.0))
+    place = LawPlace(LOSS, np.nan, "tread", Unknown("loss", 1.0), 1.0)
+    loss = loaded(tmp_path / "loss", place, law({"load": -1.0}, amplitude=0.4))(gain=0.4)
+    x, T = np.array([[0.06], [0.0]]), np.array([60.0])
+    assert float(loss.heat_factor(TyreStub(), "tread", x, 1.0, T)) == pytest.approx(1.2)
+    assert loss.heat_factor(TyreStub(), "carcass", x, 1.0, T) == 1.0
+
+
+def test_a_film_of_the_drive(tmp_path: Path) -> None:
+    place = LawPlace(FILM, np.nan, "tread_air", Unknown("film", 1.0), 1.0)
+    effect = loaded(tmp_path, place, law({"speed": 0.5}, "while rolling", amplitude=2.0))
+    assert effect.of_drive
+    assert effect(gain=2.0).film_factor(TyreStub(), "tread_air", 1.0) == pytest.approx(1 + 2 * 2**0.5)
+    assert effect(gain=2.0).film_factor(TyreStub(), "road", 1.0) == 1.0
+    assert effect(gain=2.0).film_factor(TyreStub(0.0), "tread_air", 1.0) == 1.0
+
+
+def test_a_law_of_one_run_becomes_an_effect_of_the_day(tmp_path: Path) -> None:
+    place = LawPlace(HEAT, 0.06, "all layers", Unknown("heat", 1.0, choice=STATION), 1.0)
+    assert loaded(tmp_path, place, law({}, "run run-1")).of_the_day
+
+
+def test_a_second_draft_at_the_same_place_has_another_name(tmp_path: Path) -> None:
+    place = LawPlace(HEAT, 0.06, "all layers", Unknown("heat", 1.0, choice=STATION), 1.0)
+    assert loaded(tmp_path, place, law({})).name == "inferred-heat-60-mm"
+    assert list(draft_effects(diagnosis(place, law({})))) == ["inferred_heat_60_mm_2.py"]
+
+
+def test_no_draft_without_a_law_that_holds() -> None:
+    place = LawPlace(HEAT, 0.06, "all layers", Unknown("heat", 1.0, choice=STATION), 1.0)
+    d = diagnosis(place, replace(law({})))
+    d.law.holds = False
+    assert draft_effects(d) == {}
+
+
+@pytest.mark.parametrize(
+    ("files", "complaint"),
+    [
+        (None, "is not a folder"),
+        ({}, "no Python file"),
+        ({"notes.py": "x = 1\n"}, "none with an effect"),
+        ({"broken.py": "class Broken(\n"}, "cannot be loaded as effects"),
+    ],
+)
+def test_a_folder_that_cannot_be_used_is_one_error(
+    tmp_path: Path, files: dict[str, str] | None, complaint: str, capsys: pytest.CaptureFixture[str]
+) -> None:
+    folder = tmp_path / "mine"
+    if files is not None:
+        folder.mkdir()
+    for name, text in (files or {}).items():
+        (folder / name).write_text(text, encoding="utf-8")
+    with pytest.raises(InputError, match=complaint):
+        use_effects(folder)
+    assert os.environ["TYREFEM_EFFECTS"] == ""
+    assert main(["diagnose", "hidden-effect", "--effects", str(folder)]) == 2
+    message = " ".join(capsys.readouterr().err.split())
+    assert complaint in message
+    assert "Traceback" not in message
