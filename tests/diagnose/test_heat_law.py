@@ -90,8 +90,8 @@ def test_exponents_of_speed_and_load_are_found_within_their_intervals(seed: int)
     assert abs(load.mean + 0.8) < 3.5 * load.sd
     assert speed.sd < 0.15
     assert load.sd < 0.3
-    assert speed.told
-    assert load.told
+    assert speed.narrowed
+    assert load.narrowed
     amplitude = 4.0 * (speed.reference / 11.0) ** 1.5 * (load.reference / 14e3) ** -0.8
     assert shown.amplitude == pytest.approx(amplitude, abs=4 * shown.sd)
 
@@ -165,7 +165,7 @@ def test_a_rate_of_temperature() -> None:
     assert "temperature" in shown.fit.terms
     rate = shown.exponent["temperature"]
     assert rate.mean == pytest.approx(-0.02, abs=4 * rate.sd)
-    assert rate.told
+    assert rate.narrowed
 
 
 def test_the_evidence_is_the_integral_over_amplitude_and_exponent() -> None:

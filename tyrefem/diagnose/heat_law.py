@@ -36,22 +36,22 @@ FAR = 8.0
 #: Laws within this of the best are reported as alternatives, nats.
 NEAR = 2.3
 #: The runs tell an exponent if its posterior sd is below this share of the prior sd.
-TOLD = 0.5
+NARROWED = 0.5
 
 
 @dataclass(frozen=True)
 class Exponent:
     """An exponent of a law, or a rate of temperature (1/K).
 
-    ``mean``, ``sd``: if it takes part, in the best law with it. ``probability``: that it takes part. ``told``: whether
-    the runs narrow its prior. ``reference``: value of the variable at which the law has its amplitude, SI.
+    ``mean``, ``sd``: if it takes part, in the best law with it. ``probability``: that it takes part. ``narrowed``:
+    whether the runs narrow its prior. ``reference``: value of the variable at which the law has its amplitude, SI.
     """
 
     name: str
     mean: float
     sd: float
     probability: float
-    told: bool
+    narrowed: bool
     reference: float
 
 
@@ -247,6 +247,6 @@ def _exponents(
         at = fit.terms.index(name)
         sd = float(fit.sd[at])
         chance = sum(chances[n] for n in holding)
-        told = sd < TOLD * PRIOR_SD[name]
-        result.append(Exponent(name, float(fit.mean[at]), sd, chance, told, terms.references[name]))
+        narrowed = sd < NARROWED * PRIOR_SD[name]
+        result.append(Exponent(name, float(fit.mean[at]), sd, chance, narrowed, terms.references[name]))
     return tuple(sorted(result, key=lambda entry: (entry.name not in chosen.terms, -entry.probability)))

@@ -17,9 +17,9 @@ def law_record(d: DiagnosisData) -> dict[str, Any] | None:
     """The law of the missing heat; null without a clear source.
 
     ``holds``: whether one law describes the heat in all fitted runs. ``lead_nats``: ln evidence over sources with a
-    free strength in every run. ``exponents``: of every variable that varies, those of the law first; ``told`` is false
-    where the runs leave the prior almost as it was. ``places``: the places that competed. ``signatures``: effects and
-    mechanisms, most alike first. ``draft_effect``: file of the draft effect.
+    free strength in every run. ``exponents``: of every variable that varies, those of the law first; ``told_by_runs``
+    is false where the runs leave the prior almost as it was. ``places``: the places that competed. ``signatures``:
+    effects and mechanisms, most alike first. ``draft_effect``: file of the draft effect.
     """
     heat = d.law
     if heat is None:
@@ -37,7 +37,7 @@ def law_record(d: DiagnosisData) -> dict[str, Any] | None:
                 "mean": entry.mean,
                 "sd": entry.sd,
                 "probability": entry.probability,
-                "told": entry.told,
+                "told_by_runs": entry.narrowed,
                 "reference": entry.reference,
             }
             for entry in law.exponents
