@@ -3,6 +3,7 @@
 It has 8 histories, three runs and one that is held out.
 
     python benchmarks/blind.py --cases 200 --seed 1 --out results/blind
+    python benchmarks/blind.py --cases 200 --seed 1 --truth structural --out results/blind-structural
 
 Prints a table for people and, as its last line, one JSON object with the rates. Interrupted, it goes on where it was.
 """
@@ -28,21 +29,28 @@ def main() -> None:
     parser.add_argument("--seed", type=int, default=1)
     parser.add_argument("--out", type=Path, default=Path("results/blind"))
     parser.add_argument("--workers", type=int, default=os.cpu_count() or 1)
+    parser.add_argument("--truth", choices=("ordinary", "structural"), default="ordinary")
     parser.add_argument("--reduced", choices=("auto", "never"), default="auto")
     given = parser.parse_args()
     began = time.perf_counter()
-    found = run_blind(tf.study(given.study), given.cases, given.seed, given.out, given.workers, reduced=given.reduced)
-    save(found, given.out)
-    for line in found.words():
+    result = run_blind(
+        tf.study(given.study), given.cases, given.seed, given.out, given.workers, reduced=given.reduced,
+        truth=given.truth,
+    )  # fmt: skip
+    save(result, given.out)
+    for line in result.words():
         print(line)
     print()
-    for row in found.by_effect:
+    for row in result.by_effect:
         print(f"{row['effect']:30s} {row['cases']:3d} cases, {row['identifiable']:3d} identifiable, "
               f"{row['named']:3d} named  {'; '.join(row['else'])}")  # fmt: skip
-    for row in found.reliability:
+    for entry in result.failures:
+        print(f"case {entry['number']} ({entry['kind']}; {', '.join(entry['hidden']) or 'nothing'}): {entry['fault']}; "
+              f"{entry['verdict']} {', '.join(entry['named'])}; {entry['why']}")  # fmt: skip
+    for row in result.reliability:
         print(f"stated {row['stated']:.3f}: {row['right']} of {row['of']} right")
-    rates = {name: rate.to_dict() for name, rate in found.rates.items()}
-    print(json.dumps({"cases": len(found.rows), "seconds": time.perf_counter() - began, "rates": rates}))
+    rates = {name: rate.to_dict() for name, rate in result.rates.items()}
+    print(json.dumps({"cases": len(result.rows), "seconds": time.perf_counter() - began, "rates": rates}))
 
 
 if __name__ == "__main__":

@@ -163,6 +163,26 @@ def test_belt_edge_shear_sits_between_tread_and_carcass_at_the_shoulder() -> Non
     assert extra[best].max() == pytest.approx(2e4 * rate * ratio**2, rel=0.05)
 
 
+def test_belt_edge_shear_of_a_worn_tread_is_not_that_of_a_new_one() -> None:
+    """Extents are kept by section and points: another section must not get them."""
+    shear = {"name": "belt-edge-shear", "loss": "2e4 J/m**3"}
+    new, worn = tyre([shear]), tyre([shear, {"name": "worn-tread", "fraction": 0.5}])
+    zone = next(zone for zone in new.sources if new.region(zone) == "tread")
+    x = worn.problem.operators.nodes(zone)
+    T = np.full(x.shape[1], 40.0)
+    effects = [
+        next(effect for effect in each.acting.effects if effect.name == "belt-edge-shear") for each in (new, worn)
+    ]
+    heats = [effect.heat_addend(each, zone, x, 1.0, T) for effect, each in zip(effects, (new, worn), strict=True)]
+    assert np.array_equal(heats[0], effects[0].heat_addend(new, zone, x, 1.0, T))
+    section = worn.study.section
+    s, depth = worn.places(x)
+    across = (section.midline_offset(s, depth) - section.thickness("carcass", s) / 2) / 2.5e-3
+    along = (s - 0.95 * section.line.shoulder_s) / 8e-3
+    shape = np.exp(-(along**2 + across**2) / 2)
+    assert heats[1] == pytest.approx(heats[1].max() / shape.max() * shape, rel=1e-9)
+
+
 def test_loss_exponent_and_rate() -> None:
     x, T = np.zeros((2, 3)), np.array([25.0, 65.0, 105.0])
     fast = tyre([{"name": "loss-speed-exponent", "exponent": 0.2}], drive__phases__rolling__speed="20 m/s")

@@ -24,6 +24,12 @@ from tyrefem.cli.progress import progress
 from tyrefem.output.folder import results_folder
 
 
+def _truth(name: str) -> str:
+    from tyrefem.diagnose.blind_rates import checked_truth
+
+    return checked_truth(name, "--truth")
+
+
 def blind(
     study: StudyArgument,
     cases: Annotated[int, typer.Option(min=1, max=10_000, help="Number of cases.")] = 20,
@@ -33,12 +39,14 @@ def blind(
     out: Annotated[Path | None, typer.Option("--out", help="Folder; default: results/STUDY-blind.")] = None,
     workers: Annotated[int | None, typer.Option(min=1, help="Processes; default: one per core.")] = None,
     reduced: ReducedOption = "auto",
+    truth: Annotated[str, typer.Option(callback=_truth, help="Model of the data: ordinary, structural.")] = "ordinary",
     force: ForceOption = False,
     quiet: QuietOption = False,
     as_json: JsonOption = False,
 ) -> None:
     """Hide effects in synthetic data for this study's sensors and runs; report how often the diagnosis is right.
 
+    Structural data come from a model with another strain energy, other gauges, films, mesh and time integration.
     Finished cases are kept: the same command continues an interrupted one.
     """
     from tyrefem.api import study as load
@@ -55,7 +63,7 @@ def blind(
         progress(f"{loaded.name}: {cases} cases", 1.0, quiet=quiet or as_json) as step,
     ):
         cores, tick = workers or os.cpu_count() or 1, lambda done: step(done / cases)
-        result = run_blind(loaded, cases, seed, folder, cores, tick, reduced=reduced)
+        result = run_blind(loaded, cases, seed, folder, cores, tick, reduced=reduced, truth=truth)
         save(result, folder)
     if as_json:
         print_json(result.to_dict())

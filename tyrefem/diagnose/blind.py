@@ -17,8 +17,10 @@ from tyrefem.diagnose.evaluations import Evaluations, evaluating
 from tyrefem.diagnose.forward_model import DriveResponse, ForwardModel
 from tyrefem.diagnose.isolability import MARGIN, competitors_of, layout_sensitivities, margins, planned
 from tyrefem.diagnose.linear_model import LinearModel
-from tyrefem.diagnose.synthetic import HotRing, Lamp, Logger, record, synthetic_mesh
+from tyrefem.diagnose.other_model import STRUCTURAL_MESH, STRUCTURAL_STEP, OtherModel, drawn_model
+from tyrefem.diagnose.synthetic import HotRing, Lamp, Logger, record, synthetic_mesh, theta_steps
 from tyrefem.diagnose.unknowns import Unknown, base_unknowns, sensor_unknowns, with_values
+from tyrefem.diagnose.verdict import IDENTIFIED, PARTLY
 from tyrefem.diagnose.workflow import diagnose
 from tyrefem.effects import Effect
 from tyrefem.inputs.study import StudyData
@@ -27,6 +29,13 @@ from tyrefem.measured import MeasuredRun
 Array = NDArray[np.float64]
 #: Kinds of cases and their shares.
 KINDS = {"one": 0.55, "two": 0.15, "none": 0.15, "outside": 0.15}
+#: Models of the synthetic data: the study's with hidden causes; one that differs in structure, too.
+ORDINARY, STRUCTURAL = "ordinary", "structural"
+TRUTHS = (ORDINARY, STRUCTURAL)
+#: Number of leading sets in a row of ``blind.json``.
+LEADING = 4
+#: Stream of random numbers of the structural differences: the hidden causes are those of the ordinary case.
+_STRUCTURE = 17
 
 
 @dataclass(frozen=True, eq=False)
@@ -149,32 +158,55 @@ def _uncatalogued(study: StudyData, rng: np.random.Generator) -> tuple[Effect, f
     return lamp, start + width / 2
 
 
+def mesh_of(truth: str) -> dict[str, str]:
+    """The mesh of synthetic data, as changes of a study by dotted names."""
+    return dict(STRUCTURAL_MESH) if truth == STRUCTURAL else synthetic_mesh()
+
+
+def other_model(study: StudyData, case: BlindCase) -> OtherModel:
+    """The structural differences of a case, from its seed and number."""
+    rng = np.random.default_rng([case.seed, case.number + 1, 0, _STRUCTURE])
+    return drawn_model(study, rng, tuple(member.name for member in case.hidden))
+
+
 def measured(
-    study: StudyData, case: BlindCase, logger: Logger | None = None, mesh: Mapping[str, Any] | None = None
+    study: StudyData,
+    case: BlindCase,
+    logger: Logger | None = None,
+    mesh: Mapping[str, Any] | None = None,
+    model: OtherModel | None = None,
 ) -> list[MeasuredRun]:
     """The synthetic data of a case: every run simulated with the hidden cause and recorded.
 
-    ``mesh``: changes of the study's mesh by dotted names; default: `synthetic_mesh`.
+    ``mesh``: changes of the study's mesh by dotted names; default: `mesh_of`. ``model``: structural differences.
     """
-    logger, mesh = logger or Logger(), synthetic_mesh() if mesh is None else mesh
+    logger = logger or Logger()
+    mesh = mesh_of(ORDINARY if model is None else STRUCTURAL) if mesh is None else mesh
     extra = () if case.uncatalogued is None else (case.uncatalogued,)
     runs = []
     for number, drive in enumerate(planned(study)):
         rng = np.random.default_rng([case.seed, case.number + 1, number + 1])
         driven = study.at_run(drive.name, drive.drive)
         # The values are factors, so a load error of 2 % acts on the load of every run.
-        hidden = with_values(driven, case.values).replace(mesh)
-        runs.append(record(hidden, drive.name, logger, rng, extra))
+        hidden = with_values(driven, case.values)
+        if model is None:
+            runs.append(record(hidden.replace(mesh), drive.name, logger, rng, extra))
+            continue
+        hidden = model.changed(hidden, mesh)
+        cycles, further = model.schedule(driven, hidden), (*extra, *model.effects)
+        step = STRUCTURAL_STEP
+        runs.append(record(hidden, drive.name, logger, rng, further, cycles=cycles, integrate=theta_steps, step=step))
     return runs
 
 
 @dataclass(frozen=True, eq=False)
 class BlindOutcome:
-    """A blind case and the row of its diagnosis."""
+    """A blind case and the row of its diagnosis; ``other_model``: the recorded structural differences."""
 
     case: BlindCase
     identifiable: bool
     diagnosis: dict[str, Any] = field(default_factory=dict)
+    other_model: dict[str, Any] | None = None
 
     def to_dict(self) -> dict[str, Any]:
         """A row of ``blind.json``."""
@@ -188,6 +220,7 @@ class BlindOutcome:
                 for unknown in member.amplitudes
             },
             "identifiable": self.identifiable,
+            **({} if self.other_model is None else {"other_model": self.other_model}),
             **self.diagnosis,
         }
 
@@ -221,23 +254,27 @@ def run_case(
     known: Sequence[DriveResponse],
     reduced: str = "auto",
     mesh: Mapping[str, Any] | None = None,
+    truth: str = ORDINARY,
 ) -> BlindOutcome:
     """Make the synthetic data of a case and diagnose them.
 
-    ``known``: responses of the planned runs; ``reduced`` as of `diagnose`; ``mesh`` of the data, see `measured`.
+    ``known``: responses of the planned runs; ``reduced`` as of `diagnose`; ``mesh`` of the data, see `measured`;
+    ``truth``: model of the data, of `TRUTHS`.
     """
     with evaluating(ForwardModel(study, planned(study))) as evaluations:
         is_identifiable = identifiable(evaluations, known, case)
-    data = measured(study, case, mesh=mesh)
+    model = other_model(study, case) if truth == STRUCTURAL else None
+    data = measured(study, case, mesh=mesh, model=model)
     diagnosis = diagnose(study, data, largest=2, known=known, rerun=False, looks=1, reduced=reduced)
-    return BlindOutcome(case, is_identifiable, outcome_row(diagnosis))
+    parts = None if model is None else model.to_dict(mesh_of(truth) if mesh is None else mesh)
+    return BlindOutcome(case, is_identifiable, outcome_row(diagnosis), parts)
 
 
 def outcome_row(diagnosis: DiagnosisData) -> dict[str, Any]:
     """The results of a diagnosis for a row of ``blind.json``."""
     judgement = diagnosis.judgement
     best = judgement.best
-    named = [member.key for member in best.members] if diagnosis.verdict == "identified" else []
+    named = [member.key for member in diagnosis.best.members] if diagnosis.verdict in (IDENTIFIED, PARTLY) else []
     chosen: set[str] = set()
     for ranked in judgement.credible:
         chosen |= (
@@ -249,6 +286,9 @@ def outcome_row(diagnosis: DiagnosisData) -> dict[str, Any]:
         "set": sorted(chosen),
         "best": best.key,
         "probability": judgement.probability,
+        "leading": [[entry.key, entry.probability] for entry in judgement.ranking[:LEADING]],
+        "reasons": list(judgement.reasons),
+        "doubts": list(judgement.doubts),
         "inclusion": {key: value for key, value in judgement.named.items() if value > 0.01},
         "p_value": diagnosis.best.p_value,
         "held_out_p": diagnosis.best.held_out_p,

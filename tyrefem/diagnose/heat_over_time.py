@@ -156,11 +156,14 @@ def _estimated(
 
 
 def _grid(residuals: Residuals, count: int) -> CourseGrid:
-    """The fitted runs with even knots up to the last reading or the end of the drive."""
+    """The fitted runs with even knots up to the last reading, or the end of the drive."""
     names, knots, phases, drives = [], [], [], []
     for number in residuals.fitted:
         run, drive = residuals.runs[number], residuals.driven(number).card.drive
-        last = min(max(float(readings.times[-1]) for readings in run.sensors), drive.end)
+        # In whole hundredths of the drive: diagnoses of one layout then have the same knots and share responses.
+        hundredth = drive.end / 100
+        read = max(float(readings.times[-1]) for readings in run.sensors)
+        last = min(math.ceil(read / hundredth - 1e-9) * hundredth, drive.end)
         names.append(run.name)
         knots.append(np.linspace(0.0, last, count))
         drives.append(drive)

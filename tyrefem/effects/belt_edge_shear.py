@@ -6,10 +6,14 @@ from typing import Annotated, ClassVar
 
 import numpy as np
 
+from tyrefem.cache import Cache, Content
 from tyrefem.effects._shared import deflection_ratio, no_carcass
 from tyrefem.effects.effect import Array, Effect, Factor, Prior
 from tyrefem.effects.signature import Signature
 from tyrefem.effects.tyre import StudyOfTyre, Tyre
+
+#: Extents by section and points: a simulation asks for the same few at every step.
+_EXTENTS: Cache[Array] = Cache(size=64)
 
 
 class BeltEdgeShear(Effect):
@@ -48,12 +52,16 @@ class BeltEdgeShear(Effect):
         """Loss per revolution times revolutions per second, around the end of the tread-carcass border."""
         if tyre.region(zone) == "bead":
             return 0.0
+        here = _EXTENTS.get((tyre.study.section, Content.of(x)), lambda: self._extent(tyre, x))
+        lost = self.loss * tyre.motion(t).revolutions_per_second
+        return np.asarray(lost * deflection_ratio(tyre, t) ** 2 * here)
+
+    def _extent(self, tyre: Tyre, x: Array) -> Array:
+        """(n,) share of the loss at points x (2, n): a Gaussian about the end of the tread-carcass border."""
         section, (s, depth) = tyre.study.section, tyre.places(x)
         along = (s - self.CENTRE * section.line.shoulder_s) / self.ALONG
         across = (section.midline_offset(s, depth) - section.thickness("carcass", s) / 2) / self.ACROSS
-        here = np.exp(-(along**2 + across**2) / 2)
-        lost = self.loss * tyre.motion(t).revolutions_per_second
-        return np.asarray(lost * deflection_ratio(tyre, t) ** 2 * here)
+        return np.asarray(np.exp(-(along**2 + across**2) / 2))
 
     @classmethod
     def refusal(cls, study: StudyOfTyre) -> str | None:

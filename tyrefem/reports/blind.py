@@ -48,7 +48,9 @@ def picture(blind: Blind) -> Figure:
     _reliability(add_axes(drawn, 7.6, below + 1.4 + max(left - 2.6, 0.0), 2.6, min(left, 2.6)), blind)
     if effects:
         _effects(add_axes(drawn, 3.9, 0.55, 6.3, below), effects)
-    title(drawn, f"Blind test of {blind.study}", f"{len(blind.rows)} cases, seed {blind.seed}; intervals of 95 %")
+    data = "data of another model, " if blind.truth == "structural" else ""
+    facts = f"{len(blind.rows)} cases, {data}seed {blind.seed}; intervals of 95 %"
+    title(drawn, f"Blind test of {blind.study}", facts)
     return drawn
 
 
@@ -58,13 +60,16 @@ def _rates(axes: Any, rates: Any) -> None:
         low, high = rate.interval
         axes.plot([low, high], [place, place], color=PALETTE[0], lw=2.2, solid_capstyle="butt", alpha=0.5)
         axes.plot([rate.value], [place], "o", ms=4.5, color=PALETTE[0])
+        if rate.goal is not None:
+            axes.plot([rate.goal], [place], "<" if rate.at_most else ">", ms=4.5, mfc="none", color=QUIET)
         axes.annotate(
             f"{rate.right} of {rate.of}", (1.02, place), xycoords=("axes fraction", "data"), fontsize=FONT - 1.5,
             va="center", color=QUIET,
         )  # fmt: skip
     axes.set_yticks(places, [plain(name) for name, _ in rates], fontsize=FONT - 1)
     axes.set_xlim(-0.02, 1.02)
-    axes.set_xlabel("share of the cases [-]", fontsize=FONT)
+    goals = any(rate.goal is not None for _, rate in rates)
+    axes.set_xlabel("share of the cases [-]" + ("; triangle: goal" if goals else ""), fontsize=FONT)
     tidy(axes)
 
 
