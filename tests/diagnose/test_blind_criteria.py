@@ -51,7 +51,7 @@ ROWS = (
 
 
 def test_structural_rates_count_what_they_say() -> None:
-    rates = Blind("s", 1, ROWS, truth=STRUCTURAL).rates
+    rates = Blind("s", 1, ROWS, data_model=STRUCTURAL).rates
     counts = {name: (rate.right, rate.of) for name, rate in rates.items()}
     # Of six identifiable cases: unexplained has nothing in its set, and the pair lacks one member.
     assert counts["identifiable: all hidden effects in the reported set"] == (4, 6)
@@ -102,7 +102,7 @@ def test_a_diagnosis_that_failed_is_listed_with_its_reason() -> None:
 
 
 def test_goals_stand_beside_the_rates() -> None:
-    result = Blind("s", 1, ROWS, truth=STRUCTURAL)
+    result = Blind("s", 1, ROWS, data_model=STRUCTURAL)
     first = result.words()[0]
     assert first.startswith("identifiable: all hidden effects in the reported set")
     assert first.endswith("wanted: at least 95 %")
@@ -118,6 +118,8 @@ def test_a_wrong_name_of_the_model_is_one_error() -> None:
     assert "did you mean 'structural'?" in str(answer.exception)
     with pytest.raises(InputError, match="ordinary, structural"):
         run_blind(tf.study("hidden-effect"), 1, 1, Path("unused"), truth="odd")
+    with pytest.raises(TypeError, match="did you mean 'truth'"):
+        run_blind(tf.study("hidden-effect"), 1, 1, Path("unused"), trut="structural")  # type: ignore[call-arg]
 
 
 def test_structural_cases_from_data_to_record(tmp_path: Path) -> None:

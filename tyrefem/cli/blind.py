@@ -24,10 +24,10 @@ from tyrefem.cli.progress import progress
 from tyrefem.output.folder import results_folder
 
 
-def _truth(name: str) -> str:
-    from tyrefem.diagnose.blind_rates import checked_truth
+def _data_model(name: str) -> str:
+    from tyrefem.diagnose.blind_rates import checked_model
 
-    return checked_truth(name, "--truth")
+    return checked_model(name, "--truth")
 
 
 def blind(
@@ -39,7 +39,9 @@ def blind(
     out: Annotated[Path | None, typer.Option("--out", help="Folder; default: results/STUDY-blind.")] = None,
     workers: Annotated[int | None, typer.Option(min=1, help="Processes; default: one per core.")] = None,
     reduced: ReducedOption = "auto",
-    truth: Annotated[str, typer.Option(callback=_truth, help="Model of the data: ordinary, structural.")] = "ordinary",
+    data_model: Annotated[
+        str, typer.Option("--truth", callback=_data_model, help="Model of the data: ordinary, structural.")
+    ] = "ordinary",
     force: ForceOption = False,
     quiet: QuietOption = False,
     as_json: JsonOption = False,
@@ -63,7 +65,7 @@ def blind(
         progress(f"{loaded.name}: {cases} cases", 1.0, quiet=quiet or as_json) as step,
     ):
         cores, tick = workers or os.cpu_count() or 1, lambda done: step(done / cases)
-        result = run_blind(loaded, cases, seed, folder, cores, tick, reduced=reduced, truth=truth)
+        result = run_blind(loaded, cases, seed, folder, cores, tick, reduced=reduced, truth=data_model)
         save(result, folder)
     if as_json:
         print_json(result.to_dict())

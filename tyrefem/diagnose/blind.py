@@ -31,7 +31,7 @@ Array = NDArray[np.float64]
 KINDS = {"one": 0.55, "two": 0.15, "none": 0.15, "outside": 0.15}
 #: Models of the synthetic data: the study's with hidden causes; one that differs in structure, too.
 ORDINARY, STRUCTURAL = "ordinary", "structural"
-TRUTHS = (ORDINARY, STRUCTURAL)
+DATA_MODELS = (ORDINARY, STRUCTURAL)
 #: Number of leading sets in a row of ``blind.json``.
 LEADING = 4
 #: Stream of random numbers of the structural differences: the hidden causes are those of the ordinary case.
@@ -158,9 +158,9 @@ def _uncatalogued(study: StudyData, rng: np.random.Generator) -> tuple[Effect, f
     return lamp, start + width / 2
 
 
-def mesh_of(truth: str) -> dict[str, str]:
+def mesh_of(data_model: str) -> dict[str, str]:
     """The mesh of synthetic data, as changes of a study by dotted names."""
-    return dict(STRUCTURAL_MESH) if truth == STRUCTURAL else synthetic_mesh()
+    return dict(STRUCTURAL_MESH) if data_model == STRUCTURAL else synthetic_mesh()
 
 
 def other_model(study: StudyData, case: BlindCase) -> OtherModel:
@@ -254,19 +254,19 @@ def run_case(
     known: Sequence[DriveResponse],
     reduced: str = "auto",
     mesh: Mapping[str, Any] | None = None,
-    truth: str = ORDINARY,
+    data_model: str = ORDINARY,
 ) -> BlindOutcome:
     """Make the synthetic data of a case and diagnose them.
 
     ``known``: responses of the planned runs; ``reduced`` as of `diagnose`; ``mesh`` of the data, see `measured`;
-    ``truth``: model of the data, of `TRUTHS`.
+    ``data_model``: one of `DATA_MODELS`.
     """
     with evaluating(ForwardModel(study, planned(study))) as evaluations:
         is_identifiable = identifiable(evaluations, known, case)
-    model = other_model(study, case) if truth == STRUCTURAL else None
+    model = other_model(study, case) if data_model == STRUCTURAL else None
     data = measured(study, case, mesh=mesh, model=model)
     diagnosis = diagnose(study, data, largest=2, known=known, rerun=False, looks=1, reduced=reduced)
-    parts = None if model is None else model.to_dict(mesh_of(truth) if mesh is None else mesh)
+    parts = None if model is None else model.to_dict(mesh_of(data_model) if mesh is None else mesh)
     return BlindOutcome(case, is_identifiable, outcome_row(diagnosis), parts)
 
 

@@ -11,13 +11,13 @@ from dataclasses import dataclass, field
 from functools import cached_property
 from itertools import pairwise
 from pathlib import Path
-from typing import Any
+from typing import Any, TypedDict, Unpack
 
 import tyrefem
 from tyrefem.diagnose.blind import (
+    DATA_MODELS,
     ORDINARY,
     STRUCTURAL,
-    TRUTHS,
     BlindOutcome,
     cases,
     mesh_of,
@@ -59,8 +59,8 @@ BINS = (0.5, 0.7, 0.8, 0.9, 0.95, 0.99, 1.0)
 class Blind:
     """Finished cases of a blind test and their rates.
 
-    ``notes``: sentences on sensors and runs that the study lacks. ``mesh``: mesh of the synthetic data; ``truth``:
-    their model, of `tyrefem.diagnose.blind.TRUTHS`.
+    ``notes``: sentences on sensors and runs that the study lacks. ``mesh``: mesh of the synthetic data; ``data_model``:
+    their model, of `tyrefem.diagnose.blind.DATA_MODELS`.
     """
 
     study: str
@@ -68,12 +68,12 @@ class Blind:
     rows: tuple[Row, ...]
     notes: tuple[str, ...] = ()
     mesh: Mapping[str, Any] = field(default_factory=dict)
-    truth: str = ORDINARY
+    data_model: str = ORDINARY
 
     @cached_property
     def rates(self) -> dict[str, Rate]:
         """Criterion -> rate of the cases that fulfil it."""
-        return structural_rates(self.rows) if self.truth == STRUCTURAL else ordinary_rates(self.rows)
+        return structural_rates(self.rows) if self.data_model == STRUCTURAL else ordinary_rates(self.rows)
 
     @property
     def failures(self) -> list[Row]:
@@ -106,8 +106,8 @@ class Blind:
         return {
             "study": self.study,
             "seed": self.seed,
-            "truth": self.truth,
-            "mesh_of_the_truth": dict(self.mesh) or mesh_of(self.truth),
+            "truth": self.data_model,
+            "mesh_of_the_truth": dict(self.mesh) or mesh_of(self.data_model),
             "cases": list(self.rows),
             "rates": {name: rate.to_dict() for name, rate in self.rates.items()},
             "reliability": self.reliability,
@@ -121,16 +121,22 @@ class Blind:
         return [*lines(self.rates), *self.notes]
 
 
-def checked_truth(truth: str, field: str = "truth") -> str:
-    """The model of the data as named; ``field``: where it was named.
+def checked_model(name: str, field: str = "truth") -> str:
+    """The name of the data's model; ``field``: where it stands.
 
     Raises
     ------
-    InputError : it is none of `TRUTHS`; with the nearest.
+    InputError : it is none of `DATA_MODELS`; with the nearest.
     """
-    if truth not in TRUTHS:
-        raise InputError(f"'{truth}' is no model of synthetic data{nearest(truth, TRUTHS)}", field=field)
-    return truth
+    if name not in DATA_MODELS:
+        raise InputError(f"'{name}' is no model of synthetic data{nearest(name, DATA_MODELS)}", field=field)
+    return name
+
+
+#: Keywords of `run_blind`.
+BlindOptions = TypedDict(  # noqa: UP013
+    "BlindOptions", {"reduced": str, "mesh": Mapping[str, Any] | None, "truth": str}, total=False
+)
 
 
 #: The row of a case whose diagnosis fails.
@@ -150,7 +156,7 @@ class BlindTest:
     known: tuple[DriveResponse, ...]
     reduced: str
     mesh: Mapping[str, Any]
-    truth: str = ORDINARY
+    data_model: str = ORDINARY
 
 
 #: The blind test of a worker process.
@@ -169,10 +175,10 @@ def _case(test: BlindTest, number: int) -> Row:
     study = test.study
     case = cases(study, test.count, test.seed)[number]
     try:
-        row = run_case(study, case, test.known, test.reduced, test.mesh, test.truth).to_dict()
+        row = run_case(study, case, test.known, test.reduced, test.mesh, test.data_model).to_dict()
     except InputError as error:
         # A diagnosis that fails counts as wrong.
-        parts = other_model(study, case).to_dict(test.mesh) if test.truth == STRUCTURAL else None
+        parts = other_model(study, case).to_dict(test.mesh) if test.data_model == STRUCTURAL else None
         outcome = BlindOutcome(case, identifiable=True, other_model=parts)
         row = {**outcome.to_dict(), **FAILED, "reason": str(error)}
     plain: Row = jsonable({**row, "station_m": case.station, "length_m": study.section.line.length})
@@ -186,34 +192,35 @@ def run_blind(
     folder: Path,
     workers: int = 1,
     tick: Callable[[int], None] | None = None,
-    *,
-    reduced: str = "auto",
-    mesh: Mapping[str, Any] | None = None,
-    truth: str = ORDINARY,
+    **options: Unpack[BlindOptions],
 ) -> Blind:
     """Run blind cases in parallel; finished cases are kept in ``folder``/cases.
 
-    Cases in the folder with the same study, count, seed, ``reduced``, ``mesh``, ``truth`` and version are not run
-    again.
+    Cases in the folder with the same study, count, seed, options and version are not run again.
 
     Parameters
     ----------
     reduced : see `tyrefem.diagnose.diagnose`; all cases share the modes of the reduced models.
     mesh : mesh of the synthetic data, as changes of a study by dotted names; default: `mesh_of`.
-    truth : model of the data. "ordinary": the study's, with hidden causes, another mesh and time integration.
-        "structural": also another strain energy, other gauges and speed laws of films (`OtherModel`).
+    truth : model of the data. "ordinary" (default): the study's, with hidden causes, another mesh and time
+        integration. "structural": also another strain energy, other gauges and speed laws of films (`OtherModel`).
 
     Raises
     ------
     InputError : as `isolability`; or ``truth`` is none of these.
+    TypeError : a keyword that is none of these.
     """
-    checked_truth(truth)
+    unknown = sorted(set(options) - set(BlindOptions.__annotations__))
+    if unknown:
+        raise TypeError(f"run_blind takes no keyword {unknown[0]!r}{nearest(unknown[0], BlindOptions.__annotations__)}")
+    data_model, reduced = checked_model(options.get("truth", ORDINARY)), options.get("reduced", "auto")
     NEEDS.check(study)
     candidates = candidates_of(study)
     drives = planned(study)
-    mesh = mesh_of(truth) if mesh is None else mesh
+    stated = options.get("mesh")
+    mesh = mesh_of(data_model) if stated is None else stated
     decisive = [jsonable(dict(study.data)), count, seed, reduced, dict(mesh), tyrefem.__version__]
-    decisive += [] if truth == ORDINARY else [truth]
+    decisive += [] if data_model == ORDINARY else [data_model]
     text = json.dumps(decisive, sort_keys=True, default=str)
     tag = hashlib.sha256(text.encode()).hexdigest()[:12]
     store = folder / "cases"
@@ -236,7 +243,7 @@ def run_blind(
             with evaluating(model, workers, progress) as evaluations:
                 unknowns, _ = unknowns_of(study, [*study.sensors, GAS], candidates)
                 known = responses(evaluations, unknowns)
-            test = BlindTest(study, count, seed, known, reduced, mesh, truth)
+            test = BlindTest(study, count, seed, known, reduced, mesh, data_model)
             for number, row in _answers(test, left, workers):
                 rows[number] = row
                 with interruption_delayed(), atomic_path(store / f"{tag}-{number:05d}.json") as temporary:
@@ -247,7 +254,7 @@ def run_blind(
         if not any(drive.hold_out for drive in drives):
             notes += ("No run is held out, so the rates do not cover runs that were not fitted.",)
     progress.clear()
-    return Blind(study.name, seed, tuple(rows[number] for number in sorted(rows)), notes, mesh, truth)
+    return Blind(study.name, seed, tuple(rows[number] for number in sorted(rows)), notes, mesh, data_model)
 
 
 def _answers(test: BlindTest, numbers: Sequence[int], workers: int) -> Iterable[tuple[int, Row]]:

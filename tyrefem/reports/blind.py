@@ -48,7 +48,7 @@ def picture(blind: Blind) -> Figure:
     _reliability(add_axes(drawn, 7.6, below + 1.4 + max(left - 2.6, 0.0), 2.6, min(left, 2.6)), blind)
     if effects:
         _effects(add_axes(drawn, 3.9, 0.55, 6.3, below), effects)
-    data = "data of another model, " if blind.truth == "structural" else ""
+    data = "data of another model, " if blind.data_model == "structural" else ""
     facts = f"{len(blind.rows)} cases, {data}seed {blind.seed}; intervals of 95 %"
     title(drawn, f"Blind test of {blind.study}", facts)
     return drawn
