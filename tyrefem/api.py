@@ -18,6 +18,7 @@ from tyrefem.inputs import study as studies
 from tyrefem.mechanics.footprint import natural_frequencies as vibrations
 from tyrefem.mechanics.footprint import press as presses
 from tyrefem.mechanics.strain_laws import strain_law
+from tyrefem.plan import steps as test_plan
 from tyrefem.simulation import result
 from tyrefem.sweep import campaign, design
 
@@ -117,6 +118,34 @@ class Diagnosis(diagnosis.DiagnosisData):
         InputError : the folder cannot be written.
         """
         from tyrefem.reports.diagnosis import save
+
+        return save(self, folder)
+
+
+class ExperimentPlan(test_plan.PlanData):
+    """A plan of the next runs and sensors, with `words` and `save`."""
+
+    @cached_property
+    def words(self) -> tuple[str, ...]:
+        """The remaining sets, and each step with what it is expected to tell, as sentences."""
+        from tyrefem.plan.words import plan_words
+
+        return tuple(plan_words(self))
+
+    def to_dict(self) -> dict[str, Any]:
+        """Contents of `plan.json`."""
+        from tyrefem.plan.record import record
+
+        return record(self)
+
+    def save(self, folder: str | Path) -> Path:
+        """Write plan.csv, plan-candidates.csv, plan.json, plan.png and plan.html; return the page's path.
+
+        Raises
+        ------
+        InputError : the folder cannot be written.
+        """
+        from tyrefem.reports.plan import save
 
         return save(self, folder)
 
@@ -238,6 +267,16 @@ class Study(studies.StudyData):
         from tyrefem.diagnose import diagnose
 
         return Diagnosis.of(diagnose(self, table, **options))
+
+    def plan(self, after: Any = None, **options: Any) -> ExperimentPlan:
+        """The next runs and sensors that are expected to tell the remaining effects apart, by gain per cost.
+
+        ``after``: None before a test; else a `Diagnosis`, the folder of one, or measured tables. Options: see
+        `tyrefem.plan.workflow.plan`.
+        """
+        from tyrefem.plan.workflow import plan
+
+        return with_verbs(ExperimentPlan, plan(self, after, **options))
 
     def sweep(self, vary: Mapping[str, Any] | None = None, **options: Any) -> Design:
         """Compute many variants: response, Pareto front, tornado, Sobol indices, optimum, envelope.

@@ -22,6 +22,7 @@ MORE = {
     "sweep": ["--vary", "drive.speed=10 mph:20 mph:2"],
     "diagnose": ["--looks", "1", "--largest", "1"],
     "blind": ["--cases", "1"],
+    "plan": ["--set", "plan.drives=2", "--set", "plan.sensors_most=0"],
     "export": ["--tolerance", "50 K"],
     "rig layers": ["--most", "1"],
 }

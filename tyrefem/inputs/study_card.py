@@ -19,6 +19,7 @@ from tyrefem.errors import InputError, InputWarning, nearest
 from tyrefem.estimates.work import check_readings, smallest_tolerance
 from tyrefem.inputs.drive import Drive
 from tyrefem.inputs.loading import TR_R_64, FootprintLaw, TrR64, VerticalStiffness
+from tyrefem.inputs.plan_choice import PlanChoice
 from tyrefem.inputs.published import Published
 from tyrefem.quantity import Unit
 
@@ -266,6 +267,7 @@ class StudyCard(Card):
     cases: Text | None = None
     effects: tuple[Annotated[Effect, EffectOf()], ...] = ()
     diagnosis: DiagnosisChoice = DiagnosisChoice()
+    plan: PlanChoice = Field(default_factory=PlanChoice)
     published: Published = Published()
 
     @property

@@ -17,6 +17,7 @@ from tyrefem.diagnose.headline import QUESTIONS, headline, label
 from tyrefem.diagnose.numbers import amount, base_name, parameter_name, percent
 from tyrefem.diagnose.record import AMENDED, record, where
 from tyrefem.diagnose.result_tables import candidate_rows, finite, history_table, set_rows, where_table
+from tyrefem.diagnose.set_posteriors import POSTERIOR, posterior_record
 from tyrefem.diagnose.unknowns import Unknown
 from tyrefem.diagnose.verdict import CONFOUNDED, IDENTIFIED, NO_GAP, UNEXPLAINED
 from tyrefem.inputs.changes import value_at
@@ -32,8 +33,8 @@ if TYPE_CHECKING:
     from tyrefem.diagnose.diagnosis import DiagnosisData
 
 PAGE = "diagnosis.html"
-_FILES = ("verdict.json", AMENDED, "difference.txt", "where.csv", "histories.csv", PAGE, "rms.png", "residual-map*.png",
-          "probabilities.png", "histories-*.png", "missing-heat*.png", "gap.png", SUMMARY,
+_FILES = ("verdict.json", POSTERIOR, AMENDED, "difference.txt", "where.csv", "histories.csv", PAGE, "rms.png",
+          "residual-map*.png", "probabilities.png", "histories-*.png", "missing-heat*.png", "gap.png", SUMMARY,
           f"{EFFECTS}/inferred_*.py")  # fmt: skip
 #: Largest number of looks at the same data.
 MOST_LOOKS = 9
@@ -48,9 +49,9 @@ TELLS = 0.1
 def save(d: DiagnosisData, folder: str | Path) -> Path:
     """Write all files of a diagnosis into a folder, each completely or not at all; return the page's path.
 
-    ``verdict.json``, ``amended.toml``, ``difference.txt``, ``where.csv``, ``histories.csv``, the pictures,
-    ``diagnosis.html``, its `summary` on one page, and the draft effect in ``effects``, if a law of missing heat holds.
-    A further look at the data has a folder ``again``, unless there is no gap left.
+    ``verdict.json``, ``posterior.json``, ``amended.toml``, ``difference.txt``, ``where.csv``, ``histories.csv``, the
+    pictures, ``diagnosis.html``, its `summary` on one page, and the draft effect in ``effects``, if a law of missing
+    heat holds. A further look at the data has a folder ``again``, unless there is no gap left.
 
     Raises
     ------
@@ -59,6 +60,7 @@ def save(d: DiagnosisData, folder: str | Path) -> Path:
     folder, drawn = Path(folder), pictures(d)
     with atomic_folder(folder) as temporary:
         write_json(record(d), temporary / "verdict.json")
+        write_json(posterior_record(d), temporary / POSTERIOR)
         d.study.save(temporary / AMENDED)
         lines = difference(d.original, d.study)
         (temporary / "difference.txt").write_text("\n".join([*lines, ""]) if lines else "", encoding="utf-8")

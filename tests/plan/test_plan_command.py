@@ -1,0 +1,157 @@
+"""`tyrefem plan` and `study.plan`, before a test and after a diagnosis, on a small study."""
+
+from __future__ import annotations
+
+import json
+from pathlib import Path
+
+import numpy as np
+import pandas as pd
+import pytest
+import tomli_w
+
+import tyrefem as tf
+from tyrefem.cli import main
+from tyrefem.effects import catalogue
+from tyrefem.reports.plan import FILES
+
+RIVALS = ("hot-road", "sun", "tread-slip")
+SPEEDS = {"limits": {"drive.speed": ["10 mph", "30 mph"]}, "drives": 3, "runs_most": 2, "sensors_most": 1}
+
+
+def write(folder: Path, **changes: object) -> Path:
+    """A coarse study of 60 s with two sensors, three effects to choose from, and a table with a hot road."""
+    data: dict[str, object] = {
+        "title": "Small",
+        "section": "nasa-22x5.5-8pr",
+        "materials": {name: f"nasa-{name}" for name in ("carcass", "tread", "sidewall", "bead")},
+        "drive": {
+            "speed": "20 mph", "load": "2700 lbf", "pressure": "83 psi", "ambient": "25 degC", "duration": "60 s",
+        },
+        "mesh": {"size": "12 mm", "element": "P1"},
+        "numerics": {"tolerance": "0.5 delta_degC"},
+        "output": {"fields": 2},
+        "diagnosis": {"exclude": sorted(name for name in catalogue() if name not in RIVALS)},
+        "sensors": {
+            "crown-outer": {"s": "0.33 in", "depth": "0.63 in"},
+            "shoulder-inner": {"s": "2.00 in", "depth": "0.07 in"},
+        },
+        "plan": SPEEDS,
+    } | changes  # fmt: skip
+    folder.mkdir(parents=True, exist_ok=True)
+    (folder / "study.toml").write_text(tomli_w.dumps(data), encoding="utf-8")
+    return folder
+
+
+@pytest.fixture(scope="module")
+def owner(tmp_path_factory: pytest.TempPathFactory) -> Path:
+    """The study, and a table in which the road is 6 K warmer."""
+    folder = write(tmp_path_factory.mktemp("plan") / "small")
+    study = tf.study(folder)
+    readings = study.replace({"effects": [{"name": "hot-road", "warmer_by": "6 delta_degC"}]}).run().readings
+    times = np.arange(0.0, 60.1, 3.0)
+    rng = np.random.default_rng(4)
+    columns = {"time [s]": times}
+    for name in study.sensors:
+        columns[f"{name} [degC]"] = np.interp(times, readings["time_s"], readings[name]) + 0.5 * rng.normal(size=21)
+    pd.DataFrame(columns).to_csv(folder / "table.csv", index=False)
+    return folder
+
+
+@pytest.fixture(scope="module")
+def diagnosed(owner: Path) -> Path:
+    """The folder of a diagnosis of the table."""
+    tf.study(owner).diagnose(owner / "table.csv", largest=1, looks=1).save(owner / "out")
+    return owner / "out"
+
+
+def test_the_command_writes_its_files(owner: Path, tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
+    out = tmp_path / "plan"
+    assert main(["plan", str(owner), "--out", str(out), "--workers", "1", "--quiet"]) == 0
+    assert {path.name for path in out.iterdir()} == {*FILES, "summary.json"}
+    words = capsys.readouterr().out
+    assert words.startswith("Before any data: no effect, or one of 3 single effects")
+    assert "Run 1: speed" in words
+    record = json.loads((out / "plan.json").read_text(encoding="utf-8"))
+    assert record["after"] is None
+    assert sum(entry["probability"] for entry in record["sets"]) == pytest.approx(1.0)
+    table = pd.read_csv(out / "plan.csv")
+    assert table["step"].tolist() == [step["step"] for step in record["steps"]]
+    assert table["drive.speed"].dropna().isin(["10 mph", "20 mph", "30 mph"]).all()
+    assert (table["total_gain_nats"].diff().dropna() > 0).all()
+    assert table["total_cost"].iloc[-1] == pytest.approx(table["cost"].sum())
+    assert "data:image/png" in (out / "plan.html").read_text(encoding="utf-8")
+
+
+def test_after_a_diagnosis_its_folder_and_its_object_give_the_same_plan(owner: Path, diagnosed: Path) -> None:
+    study = tf.study(owner)
+    of_folder = study.plan(diagnosed)
+    diagnosis = study.diagnose(owner / "table.csv", largest=1, looks=1)
+    of_object = study.plan(diagnosis)
+    assert of_folder.beliefs.verdict == diagnosis.verdict
+    assert [entry.key for entry in of_folder.beliefs.sets] == [entry.key for entry in of_object.beliefs.sets]
+    assert of_folder.beliefs.probabilities == pytest.approx(of_object.beliefs.probabilities)
+    assert [step.kind for step in of_folder.steps] == [step.kind for step in of_object.steps]
+    gains = [[step.total_gain for step in plan.steps] for plan in (of_folder, of_object)]
+    assert gains[0] == pytest.approx(gains[1], rel=1e-3)
+    assert of_folder.beliefs.noise.keys() == study.sensors.keys()
+    assert "After the verdict" in of_folder.words[0]
+
+
+def test_a_table_is_diagnosed_first(owner: Path, tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
+    line = ["plan", str(owner), str(owner / "table.csv"), "--out", str(tmp_path / "plan"), "--workers", "1", "--json"]
+    assert main(line) == 0
+    record = json.loads(capsys.readouterr().out)
+    assert record["after"] in ("identified", "confounded", "unexplained", "no gap", "partly identified")
+    assert (tmp_path / "plan/plan.csv").is_file()
+
+
+def test_where_nothing_moves_nothing_is_proposed(tmp_path: Path) -> None:
+    # A tyre that stands at ambient temperature: slip of its tread cannot be seen at any load.
+    exclude = sorted(name for name in catalogue() if name != "tread-slip")
+    folder = write(
+        tmp_path / "standing",
+        drive={"speed": "0 mph", "load": "2700 lbf", "pressure": "83 psi", "ambient": "25 degC", "duration": "60 s"},
+        diagnosis={"exclude": exclude},
+        plan={"limits": {"drive.load": ["2000 lbf", "3000 lbf"]}, "drives": 3, "sensors_most": 0},
+    )
+    plan = tf.study(folder).plan()
+    assert plan.steps == ()
+    assert plan.candidates["gain_nats"].tolist() == pytest.approx([0.0] * 3, abs=1e-9)
+    assert "Widen the limits" in " ".join(plan.words)
+
+
+def test_a_drive_that_cannot_run_is_one_error(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
+    folder = write(tmp_path / "heavy", plan={"limits": {"drive.load": ["2000 lbf", "200000 lbf"]}, "drives": 3})
+    assert main(["plan", str(folder), "--out", str(tmp_path / "plan"), "--workers", "1"]) == 2
+    words = capsys.readouterr().err
+    assert words.count("\n") == 1
+    assert "heavy/study.toml: plan.limits: the drive with load" in words
+    assert "state narrower limits" in words
+    assert not (tmp_path / "plan").exists()
+
+
+def test_a_folder_without_a_diagnosis_is_one_error(
+    owner: Path, tmp_path: Path, capsys: pytest.CaptureFixture[str]
+) -> None:
+    empty = tmp_path / "empty"
+    empty.mkdir()
+    assert main(["plan", str(owner), str(empty), "--out", str(tmp_path / "plan")]) == 2
+    assert "holds no posterior.json: name the output folder of 'tyrefem diagnose'" in capsys.readouterr().err
+    (empty / "posterior.json").write_text('{"sets": 3}', encoding="utf-8")
+    assert main(["plan", str(owner), str(empty), "--out", str(tmp_path / "plan")]) == 2
+    assert "posterior.json: is damaged: diagnose again" in capsys.readouterr().err
+
+
+def test_a_diagnosis_of_another_study_is_refused(
+    owner: Path, diagnosed: Path, capsys: pytest.CaptureFixture[str]
+) -> None:
+    for changes in (["nasa-22x5.5-8pr"], [str(owner), "--set", "boundaries.road.coefficient=900 W/m**2/K"]):
+        assert main(["plan", *changes, str(diagnosed), "--out", str(diagnosed.parent / "plan")]) == 2
+        assert "posterior.json: belongs to another study" in capsys.readouterr().err
+
+
+def test_options_of_tables_need_a_table(owner: Path, diagnosed: Path, capsys: pytest.CaptureFixture[str]) -> None:
+    for arguments in ([], [str(diagnosed)]):
+        assert main(["plan", str(owner), *arguments, "--ignore", "speed"]) == 2
+        assert "--ignore: is for a table of readings" in capsys.readouterr().err

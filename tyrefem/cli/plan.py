@@ -1,0 +1,96 @@
+"""`tyrefem plan`: the next runs and sensors that are expected to tell the remaining effects apart, at what cost."""
+
+from __future__ import annotations
+
+import os
+from pathlib import Path
+from typing import Annotated
+
+import typer
+
+from tyrefem.cli.common import (
+    CaseOption,
+    ForceOption,
+    IgnoreOption,
+    JsonOption,
+    QuietOption,
+    RenameOption,
+    SetOption,
+    StudyArgument,
+    print_json,
+    renamed,
+    settings,
+    warn,
+)
+from tyrefem.cli.progress import stages
+from tyrefem.errors import InputError
+from tyrefem.interruption import keeping
+from tyrefem.output.folder import results_folder
+
+#: More processes gain little.
+MOST_WORKERS = 4
+
+
+def plan(
+    study: StudyArgument,
+    after: Annotated[
+        Path | None,
+        typer.Argument(
+            metavar="[TABLE|FOLDER]",
+            help="CSV of thermocouple histories, or the folder of an earlier diagnosis; default: before any data.",
+        ),
+    ] = None,
+    changes: SetOption = None,
+    case: CaseOption = None,
+    out: Annotated[Path | None, typer.Option("--out", help="Folder; default: results/STUDY-plan.")] = None,
+    ignore: IgnoreOption = None,
+    rename: RenameOption = None,
+    workers: Annotated[int | None, typer.Option(min=1, help="Processes; default: one per core, at most 4.")] = None,
+    force: ForceOption = False,
+    quiet: QuietOption = False,
+    as_json: JsonOption = False,
+) -> None:
+    """Propose the next runs and sensors that tell the remaining effects apart best, before a test or after a verdict.
+
+    Limits and costs stand in the study's [plan] table. The same command continues an interrupted one.
+    """
+    from tyrefem.api import study as load
+    from tyrefem.diagnose.evaluations import ProgressStore
+    from tyrefem.diagnose.set_posteriors import POSTERIOR
+    from tyrefem.plan.workflow import NEEDS
+    from tyrefem.reports.plan import FILES
+    from tyrefem.variants.answer_store import PROGRESS
+
+    loaded = load(study, settings(changes), case)
+    NEEDS.check(loaded)
+    is_folder = after is not None and after.is_dir()
+    if (ignore or rename) and (after is None or is_folder):
+        raise InputError("is for a table of readings; none is given", field="--ignore" if ignore else "--rename")
+    warn(loaded.warnings)
+    place = out or Path("results") / f"{loaded.name}-plan"
+    read = [] if after is None else [after / POSTERIOR] if is_folder else [after]
+    with results_folder(place, "plan", FILES, inputs=read, force=force, keeps=[f"{PROGRESS}*/*/*.npz"]) as folder:
+        store = ProgressStore(folder / PROGRESS)
+        with keeping(lambda: store.kept), stages(quiet=quiet or as_json) as tick:
+            columns = {} if after is None or is_folder else {"ignore": tuple(ignore or ()), "rename": renamed(rename)}
+            result = loaded.plan(
+                after, workers=workers or min(os.cpu_count() or 1, MOST_WORKERS), progress=tick, store=store, **columns
+            )
+            tick("drawing", 0, 0)
+            page = result.save(folder)
+        store.clear()
+    if as_json:
+        print_json(result.to_dict())
+        return
+    for line in result.words:
+        typer.echo(line)
+    typer.echo(f"results in {folder}; read {page}")
+
+
+#: Place among the commands.
+ORDER = 26.5
+
+
+def register(app: typer.Typer) -> None:
+    """Add the command."""
+    app.command()(plan)

@@ -1,0 +1,134 @@
+"""From a study, alone or after a diagnosis, to a plan of the next runs and sensors."""
+
+from __future__ import annotations
+
+import os
+import time
+from collections.abc import Callable
+from dataclasses import replace
+from pathlib import Path
+from typing import Any
+
+from tyrefem.diagnose.diagnosis import DiagnosisData
+from tyrefem.diagnose.evaluations import ProgressStore
+from tyrefem.diagnose.isolability import layout_notes
+from tyrefem.diagnose.settings import DiagnosisSettings
+from tyrefem.diagnose.workflow import diagnose
+from tyrefem.inputs.study import StudyData
+from tyrefem.plan.batch import Search, greedy_batch
+from tyrefem.plan.beliefs import Beliefs, diagnosed_beliefs, prior_beliefs, stored_beliefs
+from tyrefem.plan.drives import CandidateDrive, candidate_drives
+from tyrefem.plan.places import CandidatePlace, with_candidate_sensors
+from tyrefem.plan.readings import PlannedReadings, planned_readings
+from tyrefem.plan.steps import PlanData, PlanStep
+from tyrefem.requirements import Requirements
+
+#: What a study must have for a plan.
+NEEDS = Requirements("a plan")
+
+
+def plan(
+    study: StudyData,
+    after: Any = None,
+    *,
+    workers: int = 1,
+    progress: Callable[[str, int, int], None] | None = None,
+    store: ProgressStore | None = None,
+    settings: DiagnosisSettings | None = None,
+    **options: Any,
+) -> PlanData:
+    """The next runs and sensors that are expected to tell the remaining sets of effects apart best, per cost.
+
+    The study's ``[plan]`` table has the limits of its drive, places of further sensors, and costs.
+
+    Parameters
+    ----------
+    after : None before a test: no effect or any single effect of the catalogue, by their prior probabilities. Else what
+        is known: a diagnosis, the folder of one, or tables of readings, which are diagnosed first.
+    workers : number of processes. progress : called with (description, number of the step, number of steps).
+    store : store of finished simulations. settings : numerical parameters of diagnosis and plan.
+    options : further options of `tyrefem.diagnose.diagnose`, for tables.
+
+    Raises
+    ------
+    InputError : limits that are none; a drive that cannot run; a folder without a diagnosis; as `diagnose`.
+    """
+    began = time.perf_counter()
+    NEEDS.check(study)
+    settings = settings or DiagnosisSettings()
+    drives = candidate_drives(study)
+    with_candidate_sensors(study, study.sensors)
+    beliefs = _beliefs(study, after, workers, progress, store, settings, options)
+    study = beliefs.study
+    extended, places = with_candidate_sensors(study, beliefs.noise)
+    # The folder of a diagnosis's simulations keeps those of one layout only.
+    further = None if store is None else replace(store, folder=store.folder.with_name(f"{store.folder.name}-plan"))
+    readings = planned_readings(
+        beliefs,
+        extended,
+        drives,
+        places,
+        settings=settings,
+        workers=workers,
+        progress=progress,
+        store=store if after is None else further,
+    )
+    search = greedy_batch(readings, drives, places, study.card.plan, progress)
+    notes = layout_notes(study)[:1] if not beliefs.verdict else ()
+    steps = _steps(readings, search, drives, places)
+    seconds = time.perf_counter() - began
+    return PlanData(study.name, readings.beliefs, steps, drives, places, search.compared, notes, seconds)
+
+
+def _beliefs(
+    study: StudyData,
+    after: Any,
+    workers: int,
+    progress: Callable[[str, int, int], None] | None,
+    store: ProgressStore | None,
+    settings: DiagnosisSettings,
+    options: dict[str, Any],
+) -> Beliefs:
+    if after is None:
+        return prior_beliefs(study)
+    if isinstance(after, DiagnosisData):
+        return diagnosed_beliefs(after)
+    if isinstance(after, str | os.PathLike) and Path(after).is_dir():
+        return stored_beliefs(study, Path(after))
+    work = {"workers": workers, "progress": progress, "store": store, "settings": settings}
+    diagnosis = diagnose(study, after, **work | options)
+    return diagnosed_beliefs(diagnosis)
+
+
+def _steps(
+    readings: PlannedReadings,
+    search: Search,
+    drives: tuple[CandidateDrive, ...],
+    places: tuple[CandidatePlace, ...],
+) -> tuple[PlanStep, ...]:
+    by_name = {place.name: place for place in places}
+    sets = readings.beliefs.sets
+    steps: list[PlanStep] = []
+    total = before = 0.0
+    for number, entry in enumerate(search.chosen, start=1):
+        total += entry.cost
+        after = entry.information
+        steps.append(
+            PlanStep(
+                number=number,
+                drive=None if entry.drive is None else drives[entry.drive],
+                place=None if entry.sensor is None else by_name[entry.sensor],
+                run=None if entry.drive is None else len(entry.batch.drives),
+                cost=entry.cost,
+                total_cost=total,
+                gain=after.gain - before,
+                total_gain=after.gain,
+                sd=after.sd,
+                right=after.right,
+                named=after.named,
+                between=(sets[0].key, sets[1].key),
+                pair_probability=after.between(0, 1),
+            )
+        )
+        before = after.gain
+    return tuple(steps)
