@@ -91,13 +91,14 @@ def case(
     settings: DiagnosisSettings = DEFAULT,
     expected: float = 0.5,
     held_out: tuple[Law, Array] | None = None,
+    further: tuple[Unknown, ...] = (),
 ) -> Case:
     """Measured readings (n,) against a formula of `STATED` and the candidates' amplitudes.
 
-    ``held_out``: law and readings of a second run that no fit uses.
+    ``held_out``: law and readings of a second run that no fit uses. ``further``: unknowns of no candidate.
     """
     laws = [(law, measured)] + ([held_out] if held_out else [])
-    unknowns = (STATED, *(unknown for candidate in candidates for unknown in candidate.unknowns))
+    unknowns = (STATED, *(unknown for candidate in candidates for unknown in candidate.unknowns), *further)
     keys = [unknown.key for unknown in unknowns]
     trials = tuple(
         MeasuredDrive(f"run-{number}", {}, number == 1, (_series(readings),))

@@ -26,6 +26,7 @@ if TYPE_CHECKING:
     from tyrefem.diagnose.materiality import Movement
     from tyrefem.diagnose.missing_heat import UnknownHeat
     from tyrefem.diagnose.residuals import Residuals
+    from tyrefem.diagnose.robustness import Robustness
     from tyrefem.diagnose.runs import MeasuredSensor
     from tyrefem.diagnose.verdict import Judgement
     from tyrefem.inputs.study import StudyData
@@ -48,6 +49,7 @@ class DiagnosisData(Brief):
     movements : effect of the best set -> largest change of a reading by it.
     law : law of the missing heat over the runs; None if heat was not missing, or at no clear place. signatures : what
         effects and mechanisms would do beside it.
+    robustness : effects beside discrepancy models; None if there is no gap.
     notes : candidates that were left out, and why.
     """
 
@@ -70,6 +72,7 @@ class DiagnosisData(Brief):
     movements: Mapping[Candidate, Movement] = field(default_factory=dict)
     law: HeatLaw | None = None
     signatures: tuple[LawSignature, ...] = ()
+    robustness: Robustness | None = None
 
     def _title(self) -> str:
         return f"of {self.original.name}: {self.verdict}"
@@ -99,7 +102,7 @@ class DiagnosisData(Brief):
 
     @property
     def verdict(self) -> str:
-        """identified, confounded, unexplained or no gap."""
+        """identified, partly identified, confounded, unexplained or no gap."""
         return self.judgement.verdict
 
     @functools.cached_property

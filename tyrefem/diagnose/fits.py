@@ -18,6 +18,7 @@ from tyrefem.diagnose.gauss_newton import FitState, initial_state
 from tyrefem.diagnose.linear_model import DesignMatrix, LinearModel
 from tyrefem.diagnose.multifidelity import Predictions
 from tyrefem.diagnose.residuals import Residuals
+from tyrefem.diagnose.shared_error import SharedError
 from tyrefem.diagnose.unknowns import Unknown
 
 Array = NDArray[np.float64]
@@ -37,6 +38,7 @@ class FittedSet(Brief):
     held_out, held_out_p : ln p(held-out data | fitted data, set) and its chi-squared probability; NaN if no run is
         held out.
     linear : linear model of the fitted runs about the fit, d = J x + e. state : state from which the fit can continue.
+    shared_error : error that readings share, beside which the set was fitted; None: none.
     """
 
     members: Members
@@ -50,6 +52,7 @@ class FittedSet(Brief):
     held_out_p: float
     linear: LinearModel
     state: FitState
+    shared_error: SharedError | None = None
 
     @property
     def steps(self) -> int:
@@ -133,32 +136,53 @@ def first_fits(
     linear = residuals.linear(residuals.fitted)
     computed = {number: residuals.computed[number] for number in residuals.fitted}
     states = [initial_state(linear, computed, members, residuals.settings, parts.get(members)) for members in sets]
-    return _fitted(residuals, predictions, states, tick)
+    return _fitted([(residuals, state) for state in states], predictions, tick)
 
 
 def continued(
     residuals: Residuals, predictions: Predictions, fits: Sequence[FittedSet], tick: Tick = None
 ) -> list[FittedSet]:
     """First fits continued to convergence, with new sensitivities at their points and with their shape parameters."""
-    return _fitted(residuals, predictions, [fit.state.continued() for fit in fits], tick)
+    return _fitted([(residuals, fit.state.continued()) for fit in fits], predictions, tick)
 
 
-def _fitted(residuals: Residuals, predictions: Predictions, states: Sequence[FitState], tick: Tick) -> list[FittedSet]:
-    """The finished fits; each step is made for all sets in parallel."""
-    current, numbers = list(states), residuals.fitted
+def fitted_beside(
+    predictions: Predictions, fits: Sequence[tuple[FittedSet, Residuals]], tick: Tick = None
+) -> list[FittedSet]:
+    """Fits continued beside other discrepancies: pairs of a fit and of the residuals with a shared error.
+
+    Unknowns that belong to every model of those residuals join the fit. The steps take no new sensitivities.
+    """
+    return _fitted([(residuals, state_beside(residuals, fit)) for fit, residuals in fits], predictions, tick)
+
+
+def state_beside(residuals: Residuals, fit: FittedSet) -> FitState:
+    """The state of a fit beside a discrepancy, before its first step."""
+    known = set(fit.unknowns)
+    new = tuple(unknown for unknown in residuals.unknowns[: residuals.nuisance] if unknown not in known)
+    linear = linear_about(residuals, fit, new)
+    r = linear.data - linear.jacobian[:, : len(fit.unknowns)] @ fit.posterior.mean
+    return fit.state.beside(new, r, linear.jacobian)
+
+
+def _fitted(pairs: Sequence[tuple[Residuals, FitState]], predictions: Predictions, tick: Tick) -> list[FittedSet]:
+    """The finished fits; each step is made for all sets in parallel. All residuals are of the same runs."""
+    residuals, current = [pair[0] for pair in pairs], [pair[1] for pair in pairs]
     while active := [place for place, state in enumerate(current) if not state.done]:
+        numbers = residuals[active[0]].fitted
         points = [place for place in active if not current[place].needs_tangents]
         questions = [(current[place].members, current[place].next_values) for place in points]
         for place, answers in zip(points, predictions.predict(questions, numbers, tick), strict=True):
-            current[place] = _advanced(residuals, current[place], answers)
+            current[place] = _advanced(residuals[place], current[place], answers)
         tangents = [place for place in active if current[place].needs_tangents]
         places = [
             (current[place].members, current[place].unknowns, current[place].current_values) for place in tangents
         ]
         for place, answers in zip(tangents, predictions.jacobians(places, numbers, tick), strict=True):
-            whitened = [residuals.runs[i].whitened(J) for i, J in zip(numbers, answers, strict=True)]
-            current[place] = current[place].with_jacobian(np.vstack(whitened))
-    return [_concluded(residuals, predictions, state) for state in current]
+            runs = residuals[place].runs
+            whitened = [runs[i].whitened(J) for i, J in zip(numbers, answers, strict=True)]
+            current[place] = current[place].with_jacobian(residuals[place].joined(whitened))
+    return [_concluded(each, predictions, state) for each, state in zip(residuals, current, strict=True)]
 
 
 def _advanced(residuals: Residuals, state: FitState, answers: Sequence[Array]) -> FitState:
@@ -167,7 +191,7 @@ def _advanced(residuals: Residuals, state: FitState, answers: Sequence[Array]) -
         # No tyre is possible with these values.
         return state.rejected()
     computed = dict(zip(residuals.fitted, answers, strict=True))
-    return state.accepted(computed, np.concatenate([residuals.residual(i, blocks) for i, blocks in computed.items()]))
+    return state.accepted(computed, residuals.joined([residuals.residual(i, blocks) for i, blocks in computed.items()]))
 
 
 def _concluded(residuals: Residuals, predictions: Predictions, state: FitState) -> FittedSet:
@@ -187,7 +211,12 @@ def _concluded(residuals: Residuals, predictions: Predictions, state: FitState) 
             # The held-out drive is impossible with these values, so it rejects the set.
             r = [np.full(len(part), 1e3) for part in r]
         covariance = state.posterior.covariance[np.ix_(known, known)]
-        log_held, p_held = _predictive(np.concatenate(r), np.vstack(J), covariance)
+        rest, slopes, spread = np.concatenate(r), np.vstack(J), np.eye(sum(map(len, r)))
+        if shared := residuals.shared_error:
+            rest = shared.held_out_from(state.r, rest)
+            slopes = shared.held_out_from(state.J[:, known], slopes)
+            spread = shared.held_out_covariance
+        log_held, p_held = _predictive(rest, spread + slopes @ covariance @ slopes.T)
     data = state.r + state.J @ state.x
     # A first fit gets credit for the predicted reduction, because it may be continued; a continued fit does not.
     penalty = state.predicted_reduction / 2 if state.continuation else 0.0
@@ -198,7 +227,7 @@ def _concluded(residuals: Residuals, predictions: Predictions, state: FitState) 
         posterior=Posterior(
             state.x, of_linear.covariance, of_linear.log_evidence, of_linear.at_bound, of_linear.beyond
         ),
-        log_evidence=of_linear.log_evidence - float(data @ data) / 2 - penalty,
+        log_evidence=of_linear.log_evidence - float(data @ data) / 2 - penalty - residuals.log_det,
         computed=computed,
         misfit=state.misfit(state.r, state.x),
         readings=len(state.r),
@@ -206,21 +235,30 @@ def _concluded(residuals: Residuals, predictions: Predictions, state: FitState) 
         held_out_p=p_held,
         linear=LinearModel(DesignMatrix(state.unknowns, len(state.unknowns), state.J), data),
         state=state,
+        shared_error=residuals.shared_error,
     )
 
 
-def _predictive(r: Array, J: Array, covariance: Array) -> tuple[float, float]:
-    """ln N(r; 0, 1 + J C J^T) up to a constant, and the chi-squared probability of r."""
-    spread = np.eye(len(r)) + J @ covariance @ J.T
-    root = np.linalg.cholesky(spread)
+def _predictive(r: Array, covariance: Array) -> tuple[float, float]:
+    """ln N(r; 0, covariance) up to a constant, and the chi-squared probability of r."""
+    root = np.linalg.cholesky(covariance)
     z = np.linalg.solve(root, r)
     square = float(z @ z)
     return float(-square / 2 - np.log(np.diag(root)).sum()), float(chi2.sf(square, len(r)))
 
 
 def linear_about(residuals: Residuals, fit: FittedSet, unknowns: Sequence[Unknown]) -> LinearModel:
-    """The linear model about a fit; the columns of further unknowns are those at x = 0."""
+    """The linear model about a fit; the columns of further unknowns are those at x = 0.
+
+    A shared error of the residuals that the fit was made without is whitened.
+    """
     columns = [residuals.unknowns.index(unknown) for unknown in unknowns]
     further = np.vstack([residuals.whitened[i][:, columns] for i in residuals.fitted])
-    jacobian = np.hstack([fit.linear.jacobian, further])
-    return LinearModel(DesignMatrix((*fit.unknowns, *unknowns), len(fit.unknowns), jacobian), fit.linear.data)
+    jacobian, data = fit.linear.jacobian, fit.linear.data
+    if (shared := residuals.shared_error) is not None:
+        further = shared.whitened(further)
+        if fit.shared_error is None:
+            jacobian, data = shared.whitened(jacobian), shared.whitened(data)
+    return LinearModel(
+        DesignMatrix((*fit.unknowns, *unknowns), len(fit.unknowns), np.hstack([jacobian, further])), data
+    )

@@ -200,6 +200,26 @@ class FitState(Brief):
         )
         return further._requesting_tangents(further.shapes)
 
+    def beside(self, unknowns: Sequence[Unknown], r: Array, J: Array) -> FitState:
+        """The state at the same point with further unknowns at 0, beside another covariance of the readings.
+
+        ``r`` (n,), ``J`` (n, k + number of further unknowns): whitened by it. No new tangents are taken.
+        """
+        further = replace(
+            self,
+            unknowns=(*self.unknowns, *unknowns),
+            x=np.concatenate([self.x, np.zeros(len(unknowns))]),
+            r=r,
+            J=J,
+            done=False,
+            converged=False,
+            continuation=False,
+            tangents=0,
+            limit=self.steps + self.settings.beside_steps,
+            radius=self.settings.trust,
+        )
+        return further.proposed()
+
     def with_jacobian(self, J: Array) -> FitState:
         """The state after the tangents at x; ``J``: whitened (n, k)."""
         return replace(self, J=J, needs_tangents=False).proposed()

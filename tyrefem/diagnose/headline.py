@@ -13,10 +13,19 @@ from tyrefem.diagnose.heat_sources import STATED, UnknownSource
 from tyrefem.diagnose.heat_words import course_words, source_place
 from tyrefem.diagnose.materiality import Movement, largest_change
 from tyrefem.diagnose.numbers import amount, correction_subject, correction_words, percent, run_words
+from tyrefem.diagnose.partly_words import besides_words, least_words, tried_words
 from tyrefem.diagnose.pulls import Pull, pulls
 from tyrefem.diagnose.result_tables import clearest, competing_sets, inclusion_probability
-from tyrefem.diagnose.verdict import CONFOUNDED, IDENTIFIED, NO_GAP, RankedSet
-from tyrefem.diagnose.words import besides, effect_amounts, effect_sentence, look_folder, next_words, phase_words
+from tyrefem.diagnose.verdict import CONFOUNDED, IDENTIFIED, NO_GAP, PARTLY, RankedSet
+from tyrefem.diagnose.words import (
+    besides,
+    effect_amounts,
+    effect_sentence,
+    look_folder,
+    next_words,
+    part_words,
+    phase_words,
+)
 
 if TYPE_CHECKING:
     from tyrefem.diagnose.diagnosis import DiagnosisData
@@ -35,6 +44,7 @@ def headline(d: DiagnosisData) -> tuple[str, str, str]:
         IDENTIFIED: _identified,
         CONFOUNDED: _confounded,
         NO_GAP: _no_gap,
+        PARTLY: _partly,
     }.get(d.verdict, _unexplained)(d)
     return wrong, sure, next_step
 
@@ -112,6 +122,20 @@ def _confounded(d: DiagnosisData) -> tuple[str, str, str]:
     shares = ", ".join(f"{entry.key} {percent(inclusion_probability(d, entry))}" for entry in sets[:SETS])
     wrong = f"An effect is missing, but these sensors and runs cannot show which: {described}{more}."
     return wrong, f"The probabilities are {shares}; {_closed(d)}.", step
+
+
+def _partly(d: DiagnosisData) -> tuple[str, str, str]:
+    clauses = _joined([part_words(d, member) for member in d.best.members])
+    wrong = f"{clauses.rstrip('.')}; {besides_words(d)}."
+    sure = (
+        f"{_it_is(d.best.members)} part of the cause with at least {least_words(d)} probability, whatever else is "
+        f"wrong ({tried_words(d)}); {_closed(d)}."
+    )
+    step = (
+        "Check that you believe the value, then look for the rest: the strain energy, tan delta and the drive where "
+        "the page shows what is left."
+    )
+    return wrong, sure, step
 
 
 def _unexplained(d: DiagnosisData) -> tuple[str, str, str]:

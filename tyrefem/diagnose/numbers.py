@@ -51,6 +51,18 @@ def amount(value: float, sd: float, unit: str) -> str:
     return f"{first:+z.{places}f} ± {second:.{places}f} {shown}".rstrip()
 
 
+def extent(low: float, high: float, unit: str) -> str:
+    """A range with unit, rounded to the digits of half its width.
+
+    >>> extent(18.73, 27.02, "delta_degC"), extent(0.0001, 0.0004, "m")
+    ('+19 to +27 K', '+0.10 to +0.40 mm')
+    """
+    factor, shown = READ.get(unit, (1.0, unit.replace("**2", "²").replace("**3", "³")))
+    low, high = low * factor, high * factor
+    places = max(_decimals((high - low) / 2), 0)
+    return f"{low:+z.{places}f} to {high:+z.{places}f} {shown}".rstrip()
+
+
 def _decimals(sd: float) -> int:
     """Decimals for two digits of a standard deviation with a mantissa below 3.55, else one (Particle Data Group)."""
     if sd <= 0 or not math.isfinite(sd):

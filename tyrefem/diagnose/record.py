@@ -4,11 +4,12 @@ from __future__ import annotations
 
 from typing import TYPE_CHECKING, Any
 
+from tyrefem.diagnose.discrepancy_record import discrepancy_rows, effect_probability
 from tyrefem.diagnose.headline import headline
 from tyrefem.diagnose.heat_words import is_told, source_place, source_words
 from tyrefem.diagnose.law_record import law_record
 from tyrefem.diagnose.result_tables import candidate_rows, clearest, parameters, set_rows
-from tyrefem.diagnose.verdict import CONFOUNDED, IDENTIFIED, NO_GAP, UNEXPLAINED
+from tyrefem.diagnose.verdict import CONFOUNDED, IDENTIFIED, NO_GAP, PARTLY, UNEXPLAINED
 from tyrefem.diagnose.words import look_folder, verdict_words
 from tyrefem.output import jsonable, versions
 
@@ -28,9 +29,10 @@ def record(d: DiagnosisData) -> dict[str, Any]:
 
     ``headline``: what is wrong, how sure, what to do next. ``summary``: the verdict in more sentences.
     ``runs`` of an effect: the runs in which it acts, null for all.
-    ``effects``: members of the most probable set if the verdict is "identified" or "confounded", else empty.
+    ``effects``: members of the most probable set if the verdict is "identified" or "confounded", the effects that act
+    whatever else is wrong if it is "partly identified", else empty.
     """
-    named = d.best.members if d.verdict in (IDENTIFIED, CONFOUNDED) else ()
+    named = d.best.members if d.verdict in (IDENTIFIED, CONFOUNDED, PARTLY) else ()
     contents = {
         "verdict": d.verdict,
         "headline": list(headline(d)),
@@ -41,7 +43,7 @@ def record(d: DiagnosisData) -> dict[str, Any]:
                 "name": member.name,
                 "variant": dict(member.choice),
                 "runs": list(member.runs) or None,
-                "probability": d.judgement.named.get(member.key, 0.0),
+                "probability": effect_probability(d, member),
                 "parameters": parameters(member.unknowns, d.best),
                 "moves": _moves(d, member),
                 "source": member.effect.source,
@@ -57,11 +59,12 @@ def record(d: DiagnosisData) -> dict[str, Any]:
             "noise_K": d.noise,
         },
         "noise": noise(d),
+        "discrepancies": discrepancy_rows(d),
         "where": where(d),
         "next_experiment": dict(d.next_experiment),
         "amended_study": AMENDED,
         "changes": change_rows(d),
-        "missing_heat": missing_heat(d) if d.verdict == UNEXPLAINED else None,
+        "missing_heat": missing_heat(d) if d.verdict in (UNEXPLAINED, PARTLY) else None,
         "again": [_look(look, number) for number, look in enumerate(d.looks[1:], start=2)],
         "study": d.original.name,
         "title": d.original.title,
@@ -233,7 +236,7 @@ def _look(d: DiagnosisData, number: int) -> dict[str, Any]:
     """A further look at the same data in short; ``folder``: its full results, null if the verdict is "no gap"."""
     return {
         "verdict": d.verdict,
-        "effects": [member.key for member in d.best.members] if d.verdict in (IDENTIFIED, CONFOUNDED) else [],
+        "effects": [member.key for member in d.best.members] if d.verdict in (IDENTIFIED, CONFOUNDED, PARTLY) else [],
         "reasons": list(d.judgement.reasons),
         "folder": None if d.verdict == NO_GAP else look_folder(number),
     }

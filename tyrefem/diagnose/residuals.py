@@ -10,10 +10,11 @@ import numpy as np
 from numpy.typing import NDArray
 
 from tyrefem.brief import Brief
-from tyrefem.diagnose.linear_model import LinearModel
+from tyrefem.diagnose.linear_model import DesignMatrix, LinearModel
 from tyrefem.diagnose.runs import MeasuredDrive
 from tyrefem.diagnose.sensitivities import DriveResponse, Sensitivities
 from tyrefem.diagnose.settings import DEFAULT, DiagnosisSettings
+from tyrefem.diagnose.shared_error import SharedError
 from tyrefem.diagnose.unknowns import Unknown
 from tyrefem.errors import InputError
 from tyrefem.inputs.study import StudyData
@@ -28,12 +29,14 @@ class Residuals(Brief):
     Parameters
     ----------
     study : the study. runs : the measured runs. sensitivities : computed block means and their derivatives.
+    shared_error : error of the model that the readings share; None: none beyond each sensor's own.
     """
 
     study: StudyData
     runs: tuple[MeasuredDrive, ...]
     sensitivities: Sensitivities
     settings: DiagnosisSettings = DEFAULT
+    shared_error: SharedError | None = None
 
     @property
     def unknowns(self) -> tuple[Unknown, ...]:
@@ -95,10 +98,27 @@ class Residuals(Brief):
         run = self.runs[number]
         return run.whitened(run.measured - self.corrected(number, computed))
 
+    def joined(self, parts: Sequence[Array]) -> Array:
+        """Whitened rows of the fitted runs, one run after the other; a shared error is whitened too."""
+        rows = np.concatenate(parts)
+        return rows if self.shared_error is None else self.shared_error.whitened(rows)
+
+    @property
+    def log_det(self) -> float:
+        """ln of the volume that a shared error adds to the readings' scatter; 0 without one."""
+        return 0.0 if self.shared_error is None else self.shared_error.log_det
+
+    @cached_property
+    def design(self) -> DesignMatrix:
+        """The design matrix of the fitted runs about x = 0."""
+        return DesignMatrix(self.unknowns, self.nuisance, self.joined([self.whitened[i] for i in self.fitted]))
+
     def linear(self, runs: Sequence[int]) -> LinearModel:
-        """The linear model of some runs about x = 0."""
-        data = np.concatenate([self.residual(number, self.computed[number]) for number in runs])
-        return LinearModel(self.sensitivities.design(runs), data)
+        """The linear model of some runs about x = 0; a shared error counts for the fitted runs only."""
+        parts = [self.residual(number, self.computed[number]) for number in runs]
+        if self.shared_error is None or list(runs) != self.fitted:
+            return LinearModel(self.sensitivities.design(runs), np.concatenate(parts))
+        return LinearModel(self.design, self.joined(parts))
 
 
 def residuals_of(

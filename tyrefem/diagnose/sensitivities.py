@@ -11,6 +11,7 @@ from numpy.typing import NDArray
 
 from tyrefem.brief import Brief
 from tyrefem.diagnose.candidates import Members
+from tyrefem.diagnose.energy_shapes import energy_shapes
 from tyrefem.diagnose.evaluations import Evaluations
 from tyrefem.diagnose.forward_model import DriveResponse
 from tyrefem.diagnose.heat_patches import patches
@@ -75,6 +76,20 @@ class Sensitivities(Brief):
             jacobians.append(np.hstack([J, np.where(acts, J[:, columns], 0.0)]))
         return replace(self, unknowns=(*self.unknowns, *unknowns), jacobians=tuple(jacobians))
 
+    def with_nuisance(self, unknowns: Sequence[Unknown]) -> Sensitivities:
+        """With these unknowns, which it has, among those that belong to every model."""
+        known = set(unknowns)
+        first = [column for column, unknown in enumerate(self.unknowns[: self.nuisance]) if unknown not in known]
+        moved = [column for column, unknown in enumerate(self.unknowns) if unknown in known]
+        rest = [column for column in range(self.nuisance, len(self.unknowns)) if self.unknowns[column] not in known]
+        order = [*first, *moved, *rest]
+        return replace(
+            self,
+            unknowns=tuple(self.unknowns[column] for column in order),
+            nuisance=len(first) + len(moved),
+            jacobians=tuple(J[:, order] for J in self.jacobians),
+        )
+
     def without(self, unknowns: Sequence[Unknown]) -> Sensitivities:
         """The sensitivities without the columns of some effects' unknowns."""
         if not unknowns:
@@ -95,7 +110,7 @@ def unknowns_of(
     """All unknowns that a diagnosis with these sensors may fit, and the number of nuisance unknowns (the first)."""
     nuisance = (*base_unknowns(study), *sensor_unknowns(study, set(measured)))
     effects = [unknown for each in candidates for unknown in (*each.amplitudes, *each.presence)]
-    return (*nuisance, *effects, *patches(study, settings)), len(nuisance)
+    return (*nuisance, *effects, *patches(study, settings), *energy_shapes(study, settings)), len(nuisance)
 
 
 def responses(

@@ -151,6 +151,23 @@ class DiagnosisSettings:
     coarse_knots: int = 7
     fine_knots: int = 25
 
+    # -- structural discrepancy
+    #: Prior sd of ln(strain energy) at a place (laws of strain differ by 20 to 30 %), and the distance over which it is
+    #: alike, share of the meridian's length; number of half waves along the meridian.
+    energy_sd: float = 0.25
+    energy_length: float = 0.25
+    energy_modes: int = 7
+    #: Prior sd of each run's own strain energy over that of all runs.
+    energy_of_run: float = 0.3
+    #: Sizes of a correlated discrepancy of the readings that are tried, K; it is alike over this share of a run.
+    discrepancy_sizes: tuple[float, ...] = (0.5, 1.0, 2.0, 4.0)
+    discrepancy_time: float = 0.3
+    #: Steps of a fit beside a discrepancy; number of sets that are fitted beside it, at first and later.
+    beside_steps: int = 6
+    beside_sets: int = 4
+    #: Probability, before any data, that the model is right but for the effects of the catalogue (estimate).
+    right_model: float = 0.5
+
     # -- verdict and amended study
     #: A set is named if its members act with at least this probability.
     named_probability: float = 0.9

@@ -10,9 +10,10 @@ from tyrefem.diagnose.candidates import Candidate
 from tyrefem.diagnose.heat_words import heat_words
 from tyrefem.diagnose.law_words import law_words
 from tyrefem.diagnose.numbers import amount, correction_words, parameter_name, percent
+from tyrefem.diagnose.partly_words import besides_words, least_words, ranges, tried_words
 from tyrefem.diagnose.pulls import pulls
 from tyrefem.diagnose.result_tables import clearest, competing_sets, inclusion_probability
-from tyrefem.diagnose.verdict import CONFOUNDED, IDENTIFIED, NO_GAP
+from tyrefem.diagnose.verdict import CONFOUNDED, IDENTIFIED, NO_GAP, PARTLY
 
 if TYPE_CHECKING:
     from tyrefem.diagnose.diagnosis import DiagnosisData
@@ -89,6 +90,8 @@ def _verdict_sentences(d: DiagnosisData) -> tuple[str, ...]:
         return _joined(clauses, [f"Probability {percent(d.judgement.probability)}."], closing)
     if d.verdict == CONFOUNDED:
         return _confounded(d, closing)
+    if d.verdict == PARTLY:
+        return _partly(d, closing)
     return _unexplained(d, closing)
 
 
@@ -108,6 +111,27 @@ def _unexplained(d: DiagnosisData, closing: str) -> tuple[str, ...]:
         *([described] if entries else []),
         closing,
         *_next_step(d),
+    )
+
+
+def part_words(d: DiagnosisData, member: Candidate) -> str:
+    """An effect with its range whatever else is wrong, and what it moves; without the last full stop."""
+    sentence = effect_sentence(member, d.best).rstrip(".")
+    parts = [value for _, value in member.choice] + ranges(d, member)
+    parts += [d.movements[member].words] if member in d.movements else []
+    return f"{sentence} ({'; '.join(parts)})"
+
+
+def _partly(d: DiagnosisData, closing: str) -> tuple[str, ...]:
+    """The effects that act whatever else is wrong, with the range of their amounts, and what else is wrong."""
+    besides = besides_words(d)
+    return (
+        f"{'. And: '.join(part_words(d, member) for member in d.best.members)}: this is part of the cause, "
+        f"whatever else is wrong (at least {least_words(d)} probable).",
+        f"{besides[0].upper()}{besides[1:]}.",
+        f"Tried beside it: {tried_words(d)}.",
+        *d.judgement.doubts,
+        closing,
     )
 
 

@@ -15,6 +15,7 @@ from tyrefem.diagnose.candidates import Members, SetPrior, in_single_runs, possi
 from tyrefem.diagnose.criterion import Criterion
 from tyrefem.diagnose.diagnosis import DiagnosisData
 from tyrefem.diagnose.effort import check_effort
+from tyrefem.diagnose.energy_shapes import SHAPE
 from tyrefem.diagnose.evaluations import Evaluations, evaluating
 from tyrefem.diagnose.fits import FittedSet, first_fits
 from tyrefem.diagnose.forward_model import ForwardModel
@@ -27,7 +28,10 @@ from tyrefem.diagnose.missing_heat import UnknownHeat, missing_heat, missing_hea
 from tyrefem.diagnose.multifidelity import Predictions
 from tyrefem.diagnose.next_experiment import next_experiment
 from tyrefem.diagnose.options import DiagnosisOptions, Method, SimulationWork, grouped
+from tyrefem.diagnose.partly import beside_discrepancies
+from tyrefem.diagnose.ranked_beside import fit_beside, robustness
 from tyrefem.diagnose.residuals import Residuals, residuals_of
+from tyrefem.diagnose.robustness import Robustness
 from tyrefem.diagnose.runs import MeasuredDrive, measured_drive, with_noise_of_data
 from tyrefem.diagnose.selection import SelectionProblem
 from tyrefem.diagnose.sensitivities import responses, sensitivities, unknowns_of
@@ -36,6 +40,7 @@ from tyrefem.diagnose.unknowns import Unknown
 from tyrefem.diagnose.verdict import (
     CONFOUNDED,
     IDENTIFIED,
+    NO_GAP,
     PARTLY,
     UNEXPLAINED,
     Judgement,
@@ -153,6 +158,7 @@ def _look(
         movements=ranking.movements,
         law=law,
         signatures=signatures,
+        robustness=ranking.robustness,
     )
 
 
@@ -187,6 +193,8 @@ class Ranking(Brief):
     judgement : verdict, and sets with their probabilities. best, null : fits of the most probable and of the empty set.
     missing : heat of unknown origin. fit_of : set -> its fit, made if there is none.
     movements : what each effect of the best set moves at the sensors.
+    robustness : effects beside discrepancy models; None if there is no gap. If the verdict is "partly identified",
+        ``best`` is the fit of the effects that act whatever else is wrong, and ``missing`` is the heat beside them.
     """
 
     judgement: Judgement
@@ -195,6 +203,7 @@ class Ranking(Brief):
     missing: UnknownHeat
     fit_of: Callable[[Members], FittedSet]
     movements: Movements
+    robustness: Robustness | None = None
 
 
 def rank(
@@ -264,7 +273,18 @@ def rank(
     judgement = replace(judgement, reasons=(*judgement.reasons, *small))
     ahead = judgement.best
     best_fit = ahead.fit or (null if ahead.outside else fit_of(ahead.members))
-    return Ranking(judgement, best_fit, null, missing, fit_of, movements_of(best_fit))
+    if judgement.verdict == NO_GAP:
+        return Ranking(judgement, best_fit, null, missing, fit_of, movements_of(best_fit))
+    robust = robustness(problem, scored, certain=judgement.verdict == IDENTIFIED)
+    judgement, partly = beside_discrepancies(judgement, robust, settings)
+    if not partly:
+        return Ranking(judgement, best_fit, null, missing, fit_of, movements_of(best_fit), robust)
+    alone = fit_of(problem.ordered(partly))
+    best_fit = fit_beside(problem, robust.models[0], alone)
+    over_time = heat_over_time(residuals, predictions.evaluations, alone, fitting)
+    missing = with_course(missing_heat(residuals, origin.patches, alone), over_time)
+    moved = movements(residuals, predictions, best_fit)
+    return Ranking(judgement, best_fit, null, missing, fit_of, moved, robust)
 
 
 class _UnknownOrigin:
@@ -299,6 +319,9 @@ def _missing_unknowns(
 ) -> tuple[Mapping[Unknown, float], Mapping[Unknown, float], list[Unknown]]:
     """Values and sd of the unknowns, and the unknowns that the study lacks."""
     best, missing = ranking.best, ranking.missing
+    if ranking.judgement.verdict == PARTLY:
+        shapes = [unknown for unknown in best.unknowns if unknown.effect == SHAPE and unknown.origin is None]
+        return best.values, best.sd, [*(unknown for member in best.members for unknown in member.unknowns), *shapes]
     if ranking.judgement.verdict != UNEXPLAINED:
         return best.values, best.sd, [unknown for member in best.members for unknown in member.unknowns]
     if missing.over_time is not None and missing.over_time.values:

@@ -12,6 +12,7 @@ import tyrefem
 from tyrefem.diagnose import words
 from tyrefem.diagnose.amend import Change, difference
 from tyrefem.diagnose.candidates import key_of
+from tyrefem.diagnose.discrepancy_record import effect_probability
 from tyrefem.diagnose.draft_effect import EFFECTS, draft_effects
 from tyrefem.diagnose.headline import QUESTIONS, headline, label
 from tyrefem.diagnose.numbers import amount, base_name, parameter_name, percent
@@ -19,7 +20,7 @@ from tyrefem.diagnose.record import AMENDED, record, where
 from tyrefem.diagnose.result_tables import candidate_rows, finite, history_table, set_rows, where_table
 from tyrefem.diagnose.set_posteriors import POSTERIOR, posterior_record
 from tyrefem.diagnose.unknowns import Unknown
-from tyrefem.diagnose.verdict import CONFOUNDED, IDENTIFIED, NO_GAP, UNEXPLAINED
+from tyrefem.diagnose.verdict import CONFOUNDED, IDENTIFIED, NO_GAP, PARTLY, UNEXPLAINED
 from tyrefem.inputs.changes import value_at
 from tyrefem.inputs.uncertain_numbers import left_out
 from tyrefem.mechanics.nearby_cycles import NearbyCycles
@@ -110,6 +111,7 @@ def page(d: DiagnosisData, images: Mapping[str, bytes], *, version: str) -> str:
         shown=SHOWN,
         law=law_block(d),
         unexplained=d.verdict == UNEXPLAINED,
+        discrepancies=_discrepancies(d),
         confounded=d.verdict == CONFOUNDED,
     )
 
@@ -130,12 +132,12 @@ def _numbers(d: DiagnosisData) -> list[dict[str, str]]:
 
 def _named(d: DiagnosisData) -> list[dict[str, Any]]:
     """Text on the effects that the amended study adds to the original."""
-    if d.verdict not in (IDENTIFIED, CONFOUNDED, UNEXPLAINED):
+    if d.verdict not in (IDENTIFIED, CONFOUNDED, PARTLY, UNEXPLAINED):
         return []
     return [
         {
             "key": member.key,
-            "probability": percent(d.judgement.named.get(member.key, 0.0)),
+            "probability": percent(effect_probability(d, member)),
             "sentence": words.effect_sentence(member, d.best),
             "source": member.effect.source,
             "amounts": [
@@ -144,6 +146,21 @@ def _named(d: DiagnosisData) -> list[dict[str, Any]]:
             ],
         }
         for member in d.best.members
+    ]
+
+
+def _discrepancies(d: DiagnosisData) -> list[dict[str, str]]:
+    """The leading effects beside every discrepancy model."""
+    return [
+        {
+            "words": model.words,
+            "probability": percent(model.probability),
+            "effects": "; ".join(
+                f"{key} {percent(share)}" for key, share in list(model.named.items())[:4] if share > 0.05
+            )
+            or "none",
+        }
+        for model in (d.robustness.models if d.robustness else ())
     ]
 
 

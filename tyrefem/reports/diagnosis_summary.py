@@ -8,6 +8,7 @@ from dataclasses import dataclass
 from pathlib import Path
 from typing import TYPE_CHECKING
 
+from tyrefem.diagnose.discrepancy_record import effect_probability
 from tyrefem.diagnose.headline import QUESTIONS, corrections, headline, label
 from tyrefem.diagnose.heat_words import course_words, source_place
 from tyrefem.diagnose.law_words import law_words
@@ -117,7 +118,7 @@ def _effects(d: DiagnosisData) -> SummaryTable:
             f"{member.key}: {effect_sentence(member, d.best)}",
             "; ".join(effect_amounts(member, d.best)),
             _moves(d.movements.get(member)),
-            percent(d.judgement.named.get(member.key, 0.0)),
+            percent(effect_probability(d, member)),
         )
         for member in members
     ]

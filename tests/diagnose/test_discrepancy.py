@@ -1,0 +1,141 @@
+"""Effects beside a wrong model: what stays named whatever else is wrong, and what does not."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from dataclasses import replace
+from typing import Any, cast
+
+import numpy as np
+import pytest
+from formula import Case, case, effect
+
+from tyrefem.diagnose.candidates import SetPrior
+from tyrefem.diagnose.criterion import LogEvidence
+from tyrefem.diagnose.discrepancy import ENERGY, NONE, Discrepancy, discrepancies
+from tyrefem.diagnose.energy_shapes import courses, energy_shapes
+from tyrefem.diagnose.fits import first_fits
+from tyrefem.diagnose.forward_selection import ForwardSelection
+from tyrefem.diagnose.partly import beside_discrepancies
+from tyrefem.diagnose.ranked_beside import robustness
+from tyrefem.diagnose.robustness import Robustness
+from tyrefem.diagnose.selection import SelectionProblem
+from tyrefem.diagnose.settings import DEFAULT
+from tyrefem.diagnose.shared_error import SharedError
+from tyrefem.diagnose.verdict import IDENTIFIED, PARTLY, UNEXPLAINED, Judgement, judge, ranked
+
+NO_EFFECTS = cast(Any, type("Study", (), {"card": type("Card", (), {"effects": ()})}))
+SHAPES = energy_shapes(NO_EFFECTS, DEFAULT)
+#: Places of the readings from crown to bead; the readings heat up to 40 K.
+S = np.linspace(0.0, 1.0, 120)
+HOT, COLD = effect("hot", 10.0), effect("cold", 10.0)
+SETTINGS = replace(DEFAULT, largest=2)
+
+
+def law(values: Mapping[str, float]) -> np.ndarray:
+    """40 K of heat with a factor along the meridian; two effects heat the crown and the bead."""
+    log_factor = courses(S, SHAPES) @ [values.get(unknown.key, 0.0) for unknown in SHAPES]
+    heat = 40.0 * (1 + S) * np.exp(log_factor + 0.1 * values.get("materials.tread.loss_tangent.value", 0.0))
+    hot, cold = (np.exp(-(((S - at) / 0.06) ** 2) / 2) for at in (0.2, 0.85))
+    return np.asarray(heat + values.get("hot", 0.0) * hot + values.get("cold", 0.0) * cold)
+
+
+def measured(hot: float = 0.0, off: float = 0.0) -> Case:
+    """Readings with unit noise; the heat's truth is steeper along the meridian than any half wave, by ``off``."""
+    rng = np.random.default_rng(4)
+    truth = law({"hot": hot}) + 40.0 * (1 + S) * off * np.tanh((0.45 - S) / 0.2) + rng.normal(size=len(S))
+    return case(law, truth, (HOT, COLD), SETTINGS, further=SHAPES)
+
+
+def diagnosed(data: Case) -> tuple[Judgement, tuple[Any, ...], Robustness]:
+    problem = SelectionProblem(
+        data.residuals, data.predictions, (HOT, COLD), SetPrior((HOT, COLD), 0.5, SETTINGS.size_shares), LogEvidence()
+    )
+    scored = problem.settled(ForwardSelection().search(problem))
+    judgement = judge(ranked(scored), lambda members: None, SETTINGS)
+    robust = robustness(problem, scored, certain=judgement.verdict == IDENTIFIED)
+    return (*beside_discrepancies(judgement, robust, SETTINGS), robust)
+
+
+def test_an_effect_in_a_right_model_stays_identified() -> None:
+    judgement, members, robust = diagnosed(measured(hot=15.0))
+    assert judgement.verdict == IDENTIFIED
+    assert judgement.best.members == (HOT,)
+    assert members == ()
+    assert robust.models[0].name == NONE
+    assert sum(model.probability for model in robust.models) == pytest.approx(1.0)
+    x, sd = next(model for model in robust.models if model.name == ENERGY).values["hot"]
+    assert abs(x - 15.0) < 4 * sd < 8.0
+
+
+def test_a_strain_energy_25_per_cent_off_names_no_effect() -> None:
+    judgement, members, robust = diagnosed(measured(off=0.25))
+    assert judgement.verdict == UNEXPLAINED
+    assert members == ()
+    assert robust.models[0].name == ENERGY
+    assert robust.mean("hot") < 0.5
+    assert robust.mean("cold") < 0.5
+
+
+def test_an_effect_beside_a_wrong_strain_energy_is_partly_identified() -> None:
+    judgement, members, robust = diagnosed(measured(hot=25.0, off=0.25))
+    assert judgement.verdict == PARTLY
+    assert members == (HOT,)
+    assert robust.least("hot") >= SETTINGS.named_probability
+    low, high = robust.interval(HOT.amplitudes[0])
+    assert low < 25.0 < high
+    assert high - low < 12.0
+
+
+def test_a_misfit_that_no_discrepancy_explains_names_nothing() -> None:
+    data = measured(hot=25.0)
+    rng = np.random.default_rng(0)
+    data = case(law, data.measured + rng.normal(0.0, 8.0, len(S)), (HOT, COLD), SETTINGS, further=SHAPES)
+    _, _, robust = diagnosed(data)
+    assert robust.models[0].p_value < 1e-4
+    assert robust.robust((HOT, COLD), 0.0) == ()
+
+
+def test_the_shared_error_is_that_of_its_covariance() -> None:
+    rng = np.random.default_rng(1)
+    C, H, y, z = rng.normal(size=(6, 3)), rng.normal(size=(4, 3)), rng.normal(size=6), rng.normal(size=4)
+    error = SharedError(C, H)
+    covariance = np.eye(6) + C @ C.T
+    whitened = error.whitened(y)
+    assert whitened @ whitened == pytest.approx(y @ np.linalg.solve(covariance, y))
+    assert error.log_det == pytest.approx(np.linalg.slogdet(covariance)[1] / 2)
+    gain = H @ C.T @ np.linalg.inv(covariance)
+    np.testing.assert_allclose(error.held_out_from(whitened, z), z - gain @ y, atol=1e-12)
+    np.testing.assert_allclose(error.held_out_covariance, np.eye(4) + H @ H.T - gain @ C @ H.T, atol=1e-12)
+
+
+def test_a_fit_beside_a_discrepancy_has_the_evidence_of_the_joint_model() -> None:
+    # Linear: the shapes are columns with N(0, 1) coefficients, so the evidence is a Gaussian density of the data.
+    data = measured(hot=15.0)
+    columns = courses(S, SHAPES) * 3.0
+    beside = replace(data.residuals, shared_error=SharedError(columns, np.zeros((0, columns.shape[1]))))
+    (fit,) = first_fits(beside, data.predictions, [(HOT,)])
+    linear = data.residuals.linear([0])
+    d = fit.linear.data
+    J = fit.linear.jacobian
+    sd = np.array([unknown.sd for unknown in fit.unknowns])
+    within = np.eye(len(S)) + (J * sd**2) @ J.T
+    expected = -float(d @ np.linalg.solve(within, d)) / 2 - np.linalg.slogdet(within)[1] / 2 - beside.log_det
+    # The amplitude is far within its bounds.
+    assert fit.log_evidence == pytest.approx(expected, abs=0.3)
+    assert linear.jacobian.shape[0] == len(d)
+
+
+def test_the_models_are_those_that_the_unknowns_allow() -> None:
+    names = [each.name for each in discrepancies(measured().residuals)]
+    assert names.count(ENERGY) == 3
+    assert all(isinstance(each, Discrepancy) for each in discrepancies(measured().residuals))
+    without = case(law, law({}), (HOT, COLD), SETTINGS)
+    assert ENERGY not in [each.name for each in discrepancies(without.residuals)]
+
+
+def test_the_half_waves_have_the_stated_scatter() -> None:
+    waves = courses(np.linspace(0.0, 1.0, 2001), SHAPES)
+    variance = (waves**2) @ np.array([unknown.sd for unknown in SHAPES]) ** 2
+    assert np.trapezoid(variance, dx=1 / 2000) == pytest.approx(DEFAULT.energy_sd**2, rel=1e-6)
+    assert SHAPES[0].key == "effects.heat-shape.0.log_factor"

@@ -1,0 +1,132 @@
+"""Discrepancy models: what a tyre model may have wrong besides the effects of the catalogue."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator, Sequence
+from dataclasses import dataclass, replace
+
+import numpy as np
+from numpy.typing import NDArray
+from scipy.linalg import block_diag
+
+from tyrefem.brief import Brief
+from tyrefem.diagnose.energy_shapes import SHAPE
+from tyrefem.diagnose.residuals import Residuals
+from tyrefem.diagnose.sampling import SensorSampling
+from tyrefem.diagnose.shared_error import SharedError
+from tyrefem.diagnose.unknowns import Unknown
+
+Array = NDArray[np.float64]
+NONE, ENERGY, HEAT, READINGS = "none", "strain energy", "missing heat", "correlated readings"
+#: Components of a correlated discrepancy with less than this share of the largest one's variance are left out.
+SMALLEST = 1e-3
+
+
+@dataclass(frozen=True, eq=False)
+class Discrepancy(Brief):
+    """A discrepancy model: ``residuals`` beside it.
+
+    Parameters
+    ----------
+    name : of the model. size : K, of a correlated discrepancy of the readings; 0: none.
+    residuals : with the model's unknowns among those of every set, and with the error that readings share.
+    """
+
+    name: str
+    size: float
+    residuals: Residuals
+
+    def _title(self) -> str:
+        return f"{self.name}, {self.size:g} K"
+
+    @property
+    def words(self) -> str:
+        """What the model allows for, as the object of "with"."""
+        words = {
+            NONE: "the model as it is",
+            ENERGY: "another strain energy along the meridian",
+            HEAT: "heat of unknown origin",
+            READINGS: "errors of the readings",
+        }[self.name]
+        return f"{words} that neighbours in time share ({self.size:g} K)" if self.size else words
+
+
+def discrepancies(residuals: Residuals) -> Iterator[Discrepancy]:
+    """The discrepancy models beside which sets of effects are ranked again.
+
+    - strain energy: half waves along the meridian, the same in all runs, fitted with the full model; and a smaller
+      part for each run, linear;
+    - missing heat: patches of heat and flux, a part that all runs share and a part for each run, linear;
+    - correlated readings: a course over time for each sensor and run.
+    """
+    further = residuals.unknowns[residuals.nuisance :]
+    energy = [unknown for unknown in further if unknown.effect == SHAPE]
+    if energy:
+        of_runs = _of_runs(residuals, energy, residuals.settings.energy_of_run)
+        shaped = replace(residuals, sensitivities=residuals.sensitivities.with_nuisance(energy))
+        for size in (0.0, *residuals.settings.discrepancy_sizes[:2]):
+            yield Discrepancy(ENERGY, size, _beside(shaped, [of_runs, *_courses(residuals, size)]))
+    heat = [unknown for unknown in further if unknown.effect in ("missing-heat", "missing-flux")]
+    if heat:
+        both = [_of_all(residuals, heat, 1.0), _of_runs(residuals, heat, 0.5)]
+        yield Discrepancy(HEAT, 0.0, _beside(residuals, both))
+    for size in residuals.settings.discrepancy_sizes:
+        yield Discrepancy(READINGS, size, _beside(residuals, _courses(residuals, size)))
+
+
+#: Columns of the readings by run.
+Columns = dict[int, Array]
+
+
+def _beside(residuals: Residuals, parts: Sequence[Columns]) -> Residuals:
+    def stacked(runs: Sequence[int]) -> Array:
+        return np.hstack([np.vstack([part[number] for number in runs]) for part in parts])
+
+    held_out = residuals.held_out
+    width = sum(next(iter(part.values())).shape[1] for part in parts)
+    error = SharedError(stacked(residuals.fitted), stacked(held_out) if held_out else np.zeros((0, width)))
+    return replace(residuals, shared_error=error)
+
+
+def _of_all(residuals: Residuals, unknowns: Sequence[Unknown], share: float) -> Columns:
+    """Changes of the readings by one (prior sd x share) of every unknown, which all runs have in common."""
+    places = [residuals.unknowns.index(unknown) for unknown in unknowns]
+    sd = share * np.array([unknown.sd for unknown in unknowns])
+    return {number: J[:, places] * sd for number, J in enumerate(residuals.whitened)}
+
+
+def _of_runs(residuals: Residuals, unknowns: Sequence[Unknown], share: float) -> Columns:
+    """The same, of every run alone."""
+    return _diagonal(_of_all(residuals, unknowns, share))
+
+
+def _diagonal(parts: Columns) -> Columns:
+    """Columns of each run that are zero in the other runs."""
+    whole = block_diag(*parts.values())
+    ends = np.cumsum([len(part) for part in parts.values()])[:-1]
+    return dict(zip(parts, np.split(whole, ends), strict=True))
+
+
+def _courses(residuals: Residuals, size: float) -> list[Columns]:
+    """Smooth courses over time with the standard deviation ``size`` (K), for each sensor and run; none for 0 K."""
+    if not size:
+        return []
+    share = residuals.settings.discrepancy_time
+    return [
+        _diagonal(
+            {
+                number: size
+                * np.asarray(block_diag(*(readings.whitened(_course(readings, share)) for readings in run.sensors)))
+                for number, run in enumerate(residuals.runs)
+            }
+        )
+    ]
+
+
+def _course(readings: SensorSampling, share: float) -> Array:
+    """(n_blocks, k) principal components of a Gaussian process over time, alike over ``share`` of the run."""
+    t = readings.block_times
+    alike = max(share * float(np.ptp(t)), 1e-9)
+    values, vectors = np.linalg.eigh(np.exp(-(((t[:, None] - t[None, :]) / alike) ** 2) / 2))
+    kept = values > SMALLEST * values.max()
+    return np.asarray(vectors[:, kept] * np.sqrt(values[kept]))

@@ -1,0 +1,81 @@
+"""The verdict beside discrepancy models: effects that act whatever else is wrong, though more is."""
+
+from __future__ import annotations
+
+import math
+from dataclasses import replace
+
+from tyrefem.diagnose.candidates import Candidate, Members
+from tyrefem.diagnose.discrepancy import NONE
+from tyrefem.diagnose.robustness import Robustness, UnderDiscrepancy
+from tyrefem.diagnose.settings import DiagnosisSettings
+from tyrefem.diagnose.verdict import CONFOUNDED, IDENTIFIED, NO_GAP, PARTLY, UNEXPLAINED, Judgement
+
+
+def beside_discrepancies(
+    judgement: Judgement, robustness: Robustness, settings: DiagnosisSettings
+) -> tuple[Judgement, Members]:
+    """The verdict with what else may be wrong, and the effects that are part of the cause.
+
+    - *identified* stays if every member acts with at least 90 % probability, averaged over the discrepancy models by
+      their probabilities. *confounded* stays if the model as it is is the most probable one.
+    - *partly identified*: more is wrong than effects, and some act with at least 90 % probability beside every
+      discrepancy model, with amounts that agree; beside the most probable model noise explains the misfit, and they
+      predict the held-out runs no worse than no effect.
+    - *unexplained*: more is wrong, and there is no such effect.
+    """
+    if judgement.verdict == NO_GAP:
+        return judgement, ()
+    if judgement.verdict == IDENTIFIED:
+        doubtful = [each for each in judgement.best.members if robustness.mean(each.key) < settings.named_probability]
+        if not doubtful:
+            return judgement, ()
+        judgement = _doubted(judgement, robustness, doubtful[0])
+    elif judgement.verdict == CONFOUNDED:
+        if robustness.models[0].name == NONE:
+            return judgement, ()
+        doubt = f"the data ask for {robustness.models[0].words} ({_percent(robustness.models[0].probability)})"
+        judgement = _unexplained(judgement, doubt)
+    leading = robustness.models[0]
+    by_key = {member.key: member for fits in leading.fits for member in fits}
+    members = robustness.robust(by_key.values(), settings.named_probability)
+    if not members or len(members) > settings.largest or not _predicts_held_out(leading, members):
+        return judgement, ()
+    least = min(robustness.least(member.key) for member in members)
+    reason = (
+        f"{' + '.join(member.key for member in members)} acts with at least {_percent(least)} whatever else is wrong"
+    )
+    return replace(judgement, verdict=PARTLY, reasons=(*judgement.reasons, reason)), members
+
+
+def _doubted(judgement: Judgement, robustness: Robustness, member: Candidate) -> Judgement:
+    """An identified set of which a member is not needed beside a probable discrepancy."""
+    against = min(robustness.models, key=lambda model: (model.named.get(member.key, 0.0) - 1) * model.probability)
+    doubt = (
+        f"with {against.words}, for which the data speak ({_percent(against.probability)}), "
+        f"{member.key} acts with {_percent(against.named.get(member.key, 0.0))} only"
+    )
+    return _unexplained(judgement, doubt)
+
+
+def _unexplained(judgement: Judgement, doubt: str) -> Judgement:
+    return replace(
+        judgement,
+        verdict=UNEXPLAINED,
+        reasons=(*judgement.reasons, doubt),
+        doubts=(*judgement.doubts, f"{doubt[0].upper()}{doubt[1:]}."),
+    )
+
+
+def _predicts_held_out(model: UnderDiscrepancy, members: Members) -> bool:
+    """Whether the best fitted set with these effects predicts the held-out runs no worse than any set without one."""
+    if all(math.isnan(fit.held_out) for fit in model.fits.values()):
+        return True
+    wanted = set(members)
+    with_them = max((fit.held_out for part, fit in model.fits.items() if wanted <= set(part)), default=-math.inf)
+    without = max((fit.held_out for part, fit in model.fits.items() if not wanted <= set(part)), default=-math.inf)
+    return with_them >= without
+
+
+def _percent(share: float) -> str:
+    return f"{100 * share:.0f} %"

@@ -1,0 +1,96 @@
+"""Partly identified effects in words: their amounts whatever else is wrong, and what else is."""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING
+
+import numpy as np
+from numpy.typing import NDArray
+
+from tyrefem.diagnose.discrepancy import ENERGY, HEAT, NONE
+from tyrefem.diagnose.energy_shapes import SHAPE, courses
+from tyrefem.diagnose.heat_words import NOT_CLEAR, heat_words, station_words
+from tyrefem.diagnose.numbers import amount, extent, parameter_name, percent
+
+if TYPE_CHECKING:
+    from tyrefem.diagnose.candidates import Candidate
+    from tyrefem.diagnose.diagnosis import DiagnosisData
+
+Array = NDArray[np.float64]
+#: A share of the heat is stated if it differs from zero by more than this many standard deviations.
+CLEAR = 2.0
+
+
+def ranges(d: DiagnosisData, member: Candidate) -> list[str]:
+    """The range of each parameter of an effect over the discrepancy models."""
+    robust = d.robustness
+    if robust is None:
+        return []
+    clauses = []
+    for unknown in member.unknowns:
+        if any(unknown.key in model.values for model in robust.models):
+            low, high = (unknown.value(x) for x in robust.interval(unknown))
+            shown = extent(low, high, unknown.unit)
+            first = unknown in member.amplitudes[:1] and bool(member.effect.opposite)
+            clauses.append(f"by {shown}" if first else f"{parameter_name(unknown)}: {shown}")
+    return clauses
+
+
+def least_words(d: DiagnosisData) -> str:
+    """The smallest probability of the effects over the discrepancy models."""
+    robust = d.robustness
+    assert robust is not None
+    return percent(min(robust.least(member.key) for member in d.best.members))
+
+
+def tried_words(d: DiagnosisData) -> str:
+    """What else may be wrong, as it was tried."""
+    robust = d.robustness
+    assert robust is not None
+    return "; ".join(model.words for model in robust.models if model.name != NONE)
+
+
+def besides_words(d: DiagnosisData) -> str:
+    """What else is wrong, by the most probable discrepancy model; without the last full stop."""
+    robust = d.robustness
+    assert robust is not None
+    leading = robust.models[0]
+    if leading.name == ENERGY and (shares := energy_words(d)):
+        return f"besides it {shares}"
+    if leading.name != HEAT:
+        return f"besides it the data speak for {leading.words}"
+    words = heat_words(d)
+    return "besides it heat is missing at no clear place" if words == NOT_CLEAR else f"besides it: {words}"
+
+
+def energy_words(d: DiagnosisData) -> str:
+    """Where the model has too little and too much heat, as shares of its own heat; empty if no place is clear."""
+    share, sd, s = energy_shares(d)
+    ratio = share / np.maximum(sd, 1e-12)
+    clauses = []
+    for sign, words in ((1.0, "is missing"), (-1.0, "is too much")):
+        at = int(np.argmax(sign * ratio))
+        if sign * ratio[at] > CLEAR:
+            size = amount(100 * abs(float(share[at])), 100 * float(sd[at]), "%").lstrip("+")
+            clauses.append(
+                (abs(float(ratio[at])), f"{size} of the heat {words} in the {station_words(d, float(s[at]))}")
+            )
+    clauses.sort(key=lambda clause: -clause[0])
+    return ", and ".join(text for _, text in clauses)
+
+
+def energy_shares(d: DiagnosisData) -> tuple[Array, Array, Array]:
+    """Missing share of the heat along the meridian (n,), its standard deviation, and the stations (m).
+
+    The share is that of the model's own heat: exp(sum of the half waves) - 1.
+    """
+    length = d.original.section.line.length
+    s = np.linspace(0.0, length, 41)
+    fit = d.best
+    kept = [unknown for unknown in fit.unknowns if unknown.effect == SHAPE]
+    at = [fit.unknowns.index(unknown) for unknown in kept]
+    waves = courses(s / length, kept)
+    log_factor = waves @ fit.posterior.mean[at]
+    sd = np.sqrt(np.maximum(np.einsum("ij,jk,ik->i", waves, fit.posterior.covariance[np.ix_(at, at)], waves), 0.0))
+    factor = np.exp(log_factor)
+    return np.asarray(factor - 1), np.asarray(sd * factor), s

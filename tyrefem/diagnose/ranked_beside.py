@@ -1,0 +1,262 @@
+"""Sets of effects ranked again beside a discrepancy model: the leading ones are fitted with its unknowns."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass, field, replace
+
+import numpy as np
+
+from tyrefem.brief import Brief
+from tyrefem.diagnose.candidates import Candidate, Members, separate
+from tyrefem.diagnose.discrepancy import NONE, READINGS, Discrepancy, discrepancies
+from tyrefem.diagnose.fits import FittedSet, first_fits, fitted_beside, linear_about, state_beside
+from tyrefem.diagnose.gauss_newton import FitState, initial_state
+from tyrefem.diagnose.robustness import Robustness, UnderDiscrepancy, weighed
+from tyrefem.diagnose.selection import ScoredSet, SelectionProblem
+
+#: A set whose linear estimate is this far below the best is not fitted beside a discrepancy, nats.
+FAR = 60.0
+#: A model is probable enough for further fits from this probability on.
+PROBABLE = 1e-3
+#: Beside a discrepancy of this size noise explains the misfit, so that no larger one is tried.
+USUAL_P = 0.01
+
+
+@dataclass(eq=False)
+class RankedBeside(Brief):
+    """Sets beside one discrepancy model: those fitted beside it, and estimates ln(prior) + ln evidence of others."""
+
+    problem: SelectionProblem
+    discrepancy: Discrepancy
+    fits: dict[Members, FittedSet] = field(default_factory=dict)
+    estimates: dict[Members, float] = field(default_factory=dict)
+
+    def _title(self) -> str:
+        return f"{self.discrepancy.name}, {len(self.fits)} fits"
+
+    def score(self, members: Members) -> float:
+        """ln(prior) + ln evidence of a fitted set."""
+        return self.problem.prior(members) + self.fits[members].log_evidence
+
+    @property
+    def p_value(self) -> float:
+        """Largest probability of the misfit of a fitted set."""
+        return max((fit.p_value for fit in self.fits.values()), default=0.0)
+
+    def begin(self, fits: Mapping[Members, FittedSet]) -> None:
+        """Fit the leading sets beside the discrepancy, from their fits without it; no effect first."""
+        residuals, problem = self.discrepancy.residuals, self.problem
+        estimates = {
+            members: problem.prior(members) + evidence(state_beside(residuals, fit), residuals.log_det)
+            for members, fit in fits.items()
+        }
+        # Without the discrepancy, the fit of no effect may have distorted base numbers.
+        linear = residuals.linear(residuals.fitted)
+        computed = {number: residuals.computed[number] for number in residuals.fitted}
+        origin = initial_state(linear, computed, (), residuals.settings)
+        of_origin = problem.prior(()) + evidence(origin, residuals.log_det)
+        from_origin = of_origin > estimates[()]
+        estimates[()] = max(of_origin, estimates[()])
+        ahead = sorted(estimates, key=lambda members: -estimates[members])
+        near = [members for members in ahead if estimates[members] > estimates[ahead[0]] - FAR]
+        chosen = near[: residuals.settings.beside_sets]
+        if () in near and () not in chosen:
+            chosen.append(())
+        restarted = [()] if from_origin and () in chosen else []
+        self._take(
+            fitted_beside(
+                problem.predictions,
+                [(fits[members], residuals) for members in chosen if members not in restarted],
+                problem._count,
+            )
+        )
+        self._take(first_fits(residuals, problem.predictions, restarted, None, problem._count))
+        self.estimates |= {members: value for members, value in estimates.items() if members not in self.fits}
+        self._estimate()
+
+    def further(self) -> None:
+        """Fit the best estimated sets, twice, and estimate from them."""
+        settings = self.problem.settings
+        for _ in range(2):
+            top = max(map(self.score, self.fits))
+            near = [
+                members
+                for members, value in sorted(self.estimates.items(), key=lambda item: -item[1])
+                if value > top - settings.near_score and self._start(members) is not None
+            ][: settings.beside_sets]
+            if not near:
+                return
+            starts = {members: start for members in near if (start := self._start(members)) is not None}
+            residuals = self.discrepancy.residuals
+            self._take(first_fits(residuals, self.problem.predictions, near, starts, self.problem._count))
+            self._estimate()
+
+    def _take(self, fits: Sequence[FittedSet]) -> None:
+        for fit in fits:
+            members = self.problem.ordered(fit.members)
+            self.fits[members] = fit
+            self.estimates.pop(members, None)
+
+    def _start(self, members: Members) -> FittedSet | None:
+        """The best fit of a part of a set."""
+        parts = [part for part in self.fits if set(part) < set(members)]
+        return self.fits[max(parts, key=self.score)] if parts else None
+
+    def _estimate(self) -> None:
+        """Estimate sets with one effect more or less than a good fit, in the linear model about it."""
+        top, settings = max(map(self.score, self.fits)), self.problem.settings
+        for members, fit in self.fits.items():
+            if self.score(members) < top - settings.far_score:
+                continue
+            for member in members:
+                part = tuple(each for each in members if each != member)
+                value = self.problem.prior(part) + _without(fit, member, self.discrepancy)
+                self._better(part, value)
+            if len(members) < settings.largest:
+                self._extend(members, fit)
+
+    def _extend(self, members: Members, fit: FittedSet) -> None:
+        problem = self.problem
+        others = [each for each in problem.candidates if separate(each, members)]
+        unknowns = [unknown for each in others for unknown in (*each.amplitudes, *each.presence)]
+        about = linear_about(self.discrepancy.residuals, fit, unknowns)
+        of_part = about.log_evidence(())
+        for candidate in others:
+            more = problem.ordered((*members, candidate))
+            gain = about.log_evidence((candidate,)) - of_part + problem.prior(more) - problem.prior(members)
+            self._better(more, self.score(members) + gain)
+
+    def _better(self, members: Members, value: float) -> None:
+        members = self.problem.ordered(members)
+        if members not in self.fits:
+            self.estimates[members] = max(value, self.estimates.get(members, -math.inf))
+
+    def scored(self) -> list[ScoredSet]:
+        """All sets, best first; estimates stay below the best fit."""
+        rows = [ScoredSet(self.score(members), members, fit) for members, fit in self.fits.items()]
+        highest = max(row.score for row in rows)
+        rows += [ScoredSet(min(value, highest), members, None) for members, value in self.estimates.items()]
+        return sorted(rows, key=lambda row: -row.score)
+
+
+def evidence(state: FitState, log_det: float) -> float:
+    """ln evidence of the linear model of a state."""
+    data = state.r + state.J @ state.x
+    return state.posterior.log_evidence - float(data @ data) / 2 - log_det
+
+
+def _without(fit: FittedSet, member: Candidate, discrepancy: Discrepancy) -> float:
+    """ln evidence of a fitted set without a member, in the linear model about the fit."""
+    kept = [place for place, unknown in enumerate(fit.unknowns) if unknown not in member.unknowns]
+    if member.presence or len(kept) == len(fit.unknowns):
+        return -math.inf
+    state = fit.state
+    x = np.where(np.isin(np.arange(len(fit.unknowns)), kept), 0.0, state.x)
+    part = replace(
+        state,
+        unknowns=tuple(state.unknowns[place] for place in kept),
+        x=state.x[kept],
+        r=state.r + state.J @ x,
+        J=state.J[:, kept],
+    )
+    part = replace(part, posterior=part.fitted())
+    return evidence(part, discrepancy.residuals.log_det)
+
+
+def robustness(problem: SelectionProblem, scored: Sequence[ScoredSet], *, certain: bool) -> Robustness:
+    """Sets of effects beside every discrepancy model.
+
+    The leading sets, and no effect, are fitted together with the model's unknowns; others are judged in the linear
+    model about these fits. Of the sizes of a discrepancy of the readings the most probable one counts.
+
+    Parameters
+    ----------
+    scored : the sets without a discrepancy. certain : True: improbable models get no further fits.
+    """
+    settings = problem.settings
+    fits = {problem.ordered(entry.members): entry.fit for entry in scored if entry.fit is not None}
+    # Every model is judged by evidence, whatever the criterion of the search.
+    alone = sorted(
+        (
+            entry if entry.fit is None else entry._replace(score=problem.prior(entry.members) + entry.fit.log_evidence)
+            for entry in scored
+        ),
+        key=lambda entry: -entry.score,
+    )
+    ranked: dict[str, RankedBeside] = {}
+    for discrepancy in _sizes_in_order(problem, fits):
+        known = ranked.get(discrepancy.name)
+        if known is not None and known.p_value > USUAL_P:
+            continue
+        beside = RankedBeside(problem, discrepancy)
+        beside.begin(fits)
+        if known is None or _total(beside.scored()) > _total(known.scored()):
+            ranked[discrepancy.name] = beside
+    share = (1 - settings.right_model) / max(len(ranked), 1)
+
+    def result() -> Robustness:
+        models = [(_under(Discrepancy(NONE, 0.0, problem.residuals), alone), settings.right_model, _total(alone))]
+        for beside in ranked.values():
+            rows = beside.scored()
+            models.append((_under(beside.discrepancy, rows), share, _total(rows)))
+        return weighed(models)
+
+    first = result()
+    probable = {model.name for model in first.models if model.probability > PROBABLE}
+    left = [beside for name, beside in ranked.items() if name in probable or not certain]
+    for beside in left:
+        beside.further()
+    return result() if left else first
+
+
+def fit_beside(problem: SelectionProblem, model: UnderDiscrepancy, fit: FittedSet) -> FittedSet:
+    """The fit of a set beside a model; ``fit``: its fit without a discrepancy."""
+    known = model.fits.get(problem.ordered(fit.members))
+    if known is not None or model.residuals is None:
+        return known or fit
+    (beside,) = fitted_beside(problem.predictions, [(fit, model.residuals)], problem._count)
+    return beside
+
+
+def _sizes_in_order(problem: SelectionProblem, fits: Mapping[Members, FittedSet]) -> list[Discrepancy]:
+    """The models; of correlated readings only the size that explains the fits best."""
+    every = list(discrepancies(problem.residuals))
+    sizes = [each for each in every if each.name == READINGS]
+
+    def best(discrepancy: Discrepancy) -> float:
+        residuals = discrepancy.residuals
+        return max(
+            problem.prior(members) + evidence(state_beside(residuals, fit), residuals.log_det)
+            for members, fit in fits.items()
+        )
+
+    chosen = max(sizes, key=best) if sizes else None
+    return [each for each in every if each.name != READINGS or each is chosen]
+
+
+def _total(scored: Sequence[ScoredSet]) -> float:
+    """ln of the sum over the sets."""
+    return float(np.logaddexp.reduce([entry.score for entry in scored]))
+
+
+def _under(model: Discrepancy, scored: Sequence[ScoredSet]) -> UnderDiscrepancy:
+    """The sets beside a model, still without the model's probability."""
+    total = _total(scored)
+    named: dict[str, float] = {}
+    values: dict[str, tuple[float, float]] = {}
+    for entry in scored:
+        for member in entry.members:
+            named[member.key] = named.get(member.key, 0.0) + math.exp(entry.score - total)
+            if entry.fit is not None:
+                values |= {
+                    unknown.key: (entry.fit.values[unknown], entry.fit.sd[unknown])
+                    for unknown in member.unknowns
+                    if unknown in entry.fit.values and unknown.key not in values
+                }
+    named = dict(sorted(named.items(), key=lambda item: -item[1]))
+    fits = {entry.members: entry.fit for entry in scored if entry.fit is not None}
+    return UnderDiscrepancy(
+        model.name, model.size, model.words, 0.0, named, scored[0].members, values, fits, model.residuals
+    )

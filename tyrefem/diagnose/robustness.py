@@ -1,0 +1,117 @@
+"""Which effects stay named whatever else is wrong: sets of effects ranked again beside every discrepancy model."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Iterable, Mapping, Sequence
+from dataclasses import dataclass, replace
+
+from tyrefem.brief import Brief
+from tyrefem.diagnose.candidates import Candidate, Members
+from tyrefem.diagnose.discrepancy import NONE
+from tyrefem.diagnose.fits import FittedSet
+from tyrefem.diagnose.residuals import Residuals
+from tyrefem.diagnose.unknowns import Unknown
+
+#: Amounts of an effect beside two discrepancy models agree within this many standard deviations of their difference.
+APART = 3.0
+#: Smallest probability of the misfit beside the most probable discrepancy model.
+LEAST_P = 1e-4
+
+
+@dataclass(frozen=True, eq=False)
+class UnderDiscrepancy(Brief):
+    """Sets of effects beside one discrepancy model.
+
+    Parameters
+    ----------
+    name, size, words : of the model, see `tyrefem.diagnose.discrepancy.Discrepancy`. probability : given the data.
+    named : candidate key -> probability that it acts. best : the most probable set.
+    values : key of an effect's unknown -> (x, sd) in the best fitted set that contains the effect.
+    fits : set -> its fit beside the model. residuals : beside the model.
+    """
+
+    name: str
+    size: float
+    words: str
+    probability: float
+    named: Mapping[str, float]
+    best: Members
+    values: Mapping[str, tuple[float, float]]
+    fits: Mapping[Members, FittedSet]
+    residuals: Residuals | None = None
+
+    def _title(self) -> str:
+        return f"{self.name}: {self.probability:.3g}"
+
+    @property
+    def p_value(self) -> float:
+        """Largest probability, among the fitted sets, of a misfit at least as large if set and model are right."""
+        return max((fit.p_value for fit in self.fits.values()), default=0.0)
+
+
+@dataclass(frozen=True, eq=False)
+class Robustness(Brief):
+    """Probabilities of effects beside every discrepancy model; ``models``: the models, the most probable first."""
+
+    models: tuple[UnderDiscrepancy, ...]
+
+    def _title(self) -> str:
+        return f"{len(self.models)} models, {self.models[0].name} first"
+
+    @property
+    def as_it_is(self) -> float:
+        """Probability that the model is right but for the effects."""
+        return sum(model.probability for model in self.models if model.name == NONE)
+
+    def least(self, key: str) -> float:
+        """Smallest probability of an effect over the models, also over improbable ones."""
+        return min(model.named.get(key, 0.0) for model in self.models)
+
+    def mean(self, key: str) -> float:
+        """Probability of an effect, averaged over the models by their probabilities."""
+        return sum(model.probability * model.named.get(key, 0.0) for model in self.models)
+
+    def interval(self, unknown: Unknown) -> tuple[float, float]:
+        """Lowest x - 2 sd and highest x + 2 sd of an effect's unknown over the models that are not improbable."""
+        known = [
+            model.values[unknown.key]
+            for model in self.models
+            if unknown.key in model.values and (model is self.models[0] or model.probability > 0.01)
+        ]
+        return min(x - 2 * sd for x, sd in known), max(x + 2 * sd for x, sd in known)
+
+    def agrees(self, candidate: Candidate) -> bool:
+        """Whether an effect has the same sign beside every model, and beside probable models like amounts (`APART`)."""
+        for unknown in candidate.amplitudes:
+            known = [(model.probability, model.values.get(unknown.key)) for model in self.models]
+            first = known[0][1]
+            if first is None:
+                return False
+            for probability, other in known[1:]:
+                if other is None or other[0] * first[0] <= 0:
+                    return False
+                if probability > 0.01 and abs(other[0] - first[0]) > APART * math.hypot(other[1], first[1]):
+                    return False
+        return True
+
+    def robust(self, candidates: Iterable[Candidate], probability: float) -> Members:
+        """Effects that act with at least this probability beside every model, with amounts that agree.
+
+        None if noise cannot explain the misfit beside the most probable model: more is wrong than the models allow for.
+        """
+        if self.models[0].p_value < LEAST_P:
+            return ()
+        return tuple(each for each in candidates if self.least(each.key) >= probability and self.agrees(each))
+
+
+def weighed(models: Sequence[tuple[UnderDiscrepancy, float, float]]) -> Robustness:
+    """Models with their probabilities, from triples (model, prior probability, ln evidence)."""
+    scores = [math.log(prior) + evidence for _, prior, evidence in models]
+    top = max(scores)
+    total = math.fsum(math.exp(score - top) for score in scores)
+    results = [
+        replace(model, probability=math.exp(score - top) / total)
+        for (model, _, _), score in zip(models, scores, strict=True)
+    ]
+    return Robustness(tuple(sorted(results, key=lambda model: -model.probability)))

@@ -1,0 +1,58 @@
+"""An error of the model that readings share: columns whose coefficients are integrated out."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from functools import cached_property
+
+import numpy as np
+from numpy.typing import NDArray
+from scipy.linalg import cholesky, solve_triangular
+
+from tyrefem.brief import Brief
+
+Array = NDArray[np.float64]
+
+
+@dataclass(frozen=True, eq=False)
+class SharedError(Brief):
+    """Whitened readings y = J x + C c + e with c, e ~ N(0, 1): e and C c together have the covariance 1 + C C^T.
+
+    Parameters
+    ----------
+    fitted : (n, k) columns C of the fitted runs. held_out : (m, k) columns of the held-out runs.
+    """
+
+    fitted: Array
+    held_out: Array
+
+    def _title(self) -> str:
+        return f"{self.fitted.shape[1]} columns"
+
+    @cached_property
+    def _root(self) -> Array:
+        C = self.fitted
+        return np.asarray(cholesky(np.eye(len(C)) + C @ C.T, lower=True))
+
+    @cached_property
+    def log_det(self) -> float:
+        """ln det(1 + C C^T) / 2."""
+        return float(np.log(np.diag(self._root)).sum())
+
+    def whitened(self, rows: Array) -> Array:
+        """L^-1 times rows (n, ...) of the fitted runs, with 1 + C C^T = L L^T."""
+        return np.asarray(solve_triangular(self._root, rows, lower=True))
+
+    @cached_property
+    def _columns(self) -> Array:
+        return self.whitened(self.fitted)
+
+    def held_out_from(self, rows: Array, held_out: Array) -> Array:
+        """Rows (m, ...) of the held-out runs minus what those of the fitted runs, whitened (n, ...), say of them."""
+        return np.asarray(held_out - self.held_out @ (self._columns.T @ rows))
+
+    @cached_property
+    def held_out_covariance(self) -> Array:
+        """(m, m) covariance of the held-out readings about their prediction: 1 + C' (1 + C^T C)^-1 C'^T."""
+        A, C = self._columns, self.held_out
+        return np.asarray(np.eye(len(C)) + C @ (np.eye(A.shape[1]) - A.T @ A) @ C.T)
