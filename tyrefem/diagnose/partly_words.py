@@ -11,10 +11,12 @@ from tyrefem.diagnose.discrepancy import ENERGY, HEAT, NONE
 from tyrefem.diagnose.energy_shapes import SHAPE, courses
 from tyrefem.diagnose.heat_words import NOT_CLEAR, heat_words, station_words
 from tyrefem.diagnose.numbers import amount, extent, parameter_name, percent
+from tyrefem.diagnose.robustness import LEAST_P
 
 if TYPE_CHECKING:
     from tyrefem.diagnose.candidates import Candidate
     from tyrefem.diagnose.diagnosis import DiagnosisData
+    from tyrefem.diagnose.fits import FittedSet
 
 Array = NDArray[np.float64]
 #: A share of the heat is stated if it differs from zero by more than this many standard deviations.
@@ -55,7 +57,7 @@ def besides_words(d: DiagnosisData) -> str:
     robust = d.robustness
     assert robust is not None
     leading = robust.models[0]
-    if leading.name == ENERGY and (shares := energy_words(d)):
+    if leading.name == ENERGY and (shares := energy_words(d, d.best)):
         return f"besides it {shares}"
     if leading.name != HEAT:
         return f"besides it the data speak for {leading.words}"
@@ -63,9 +65,23 @@ def besides_words(d: DiagnosisData) -> str:
     return "besides it heat is missing at no clear place" if words == NOT_CLEAR else f"besides it: {words}"
 
 
-def energy_words(d: DiagnosisData) -> str:
-    """Where the model has too little and too much heat, as shares of its own heat; empty if no place is clear."""
-    share, sd, s = energy_shares(d)
+def explaining_words(d: DiagnosisData) -> str:
+    """The discrepancy that explains the deviation without a named effect, as a sentence; empty if none does."""
+    leading = d.robustness.models[0] if d.robustness else None
+    if leading is None or leading.name == NONE or leading.p_value < LEAST_P:
+        return ""
+    fit = leading.fits.get(())
+    shares = energy_words(d, fit) if leading.name == ENERGY and fit is not None else ""
+    words = f"{leading.words[0].upper()}{leading.words[1:]}"
+    return f"{words} would explain it{f': {shares}' if shares else ''}."
+
+
+def energy_words(d: DiagnosisData, fit: FittedSet) -> str:
+    """Where the model has too little and too much heat, as shares of its own heat; empty if no place is clear.
+
+    ``fit``: beside another strain energy.
+    """
+    share, sd, s = energy_shares(d, fit)
     ratio = share / np.maximum(sd, 1e-12)
     clauses = []
     for sign, words in ((1.0, "is missing"), (-1.0, "is too much")):
@@ -79,14 +95,13 @@ def energy_words(d: DiagnosisData) -> str:
     return ", and ".join(text for _, text in clauses)
 
 
-def energy_shares(d: DiagnosisData) -> tuple[Array, Array, Array]:
+def energy_shares(d: DiagnosisData, fit: FittedSet) -> tuple[Array, Array, Array]:
     """Missing share of the heat along the meridian (n,), its standard deviation, and the stations (m).
 
     The share is that of the model's own heat: exp(sum of the half waves) - 1.
     """
     length = d.original.section.line.length
     s = np.linspace(0.0, length, 41)
-    fit = d.best
     kept = [unknown for unknown in fit.unknowns if unknown.effect == SHAPE]
     at = [fit.unknowns.index(unknown) for unknown in kept]
     waves = courses(s / length, kept)
