@@ -223,7 +223,7 @@ class ForwardModel(Brief):
         base = self.base(number)
         try:
             study = self.with_values(base.study, values)
-            same = all(unknown.measures or x == 0.0 for unknown, x in _acting(base.study, values).items())
+            same = all(x == 0.0 or unknown.measures for unknown, x in _acting(base.study, values).items())
             simulated = base.as_measured_by(study) if same else fixed_step_run(study, base.tyre, every=base.every)
         except InputError:
             # For example a load that the tyre cannot carry: the fit will try a shorter step.

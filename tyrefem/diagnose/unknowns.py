@@ -184,7 +184,7 @@ def with_values(
     like : a similar study that shares its contents; see `StudyData.replace`.
     written : cache of the numbers as they are written in study and cards.
     """
-    entries = [dict(entry) for entry in study.data.get("effects", [])]
+    entries = _Entries([dict(entry) for entry in study.data.get("effects", [])])
     changes: dict[str, Any] = {}
     totals: dict[str, tuple[Unknown, float]] = {}
     for unknown, x in values.items():
@@ -198,15 +198,15 @@ def with_values(
     for unknown, x in totals.values():
         if unknown.parameter is None:
             if x:
-                _entry(entries, unknown)
+                entries.of(unknown)
             continue
         prior = unknown.parameter.prior
         # A fit may end on a bound to within rounding.
         value = min(max(unknown.value(x), prior.low), prior.high)
         text = value if prior.unit == "1" else f"{value!r} {prior.unit}"
-        _entry(entries, unknown)[unknown.parameter.name] = text
+        entries.of(unknown)[unknown.parameter.name] = text
     if totals:
-        changes["effects"] = entries
+        changes["effects"] = entries.entries
     return study.replace(changes, like) if changes else study
 
 
@@ -218,9 +218,22 @@ def _written(study: StudyData, key: str, known: Cache[Any] | None) -> Any:
     return known.get((key, table, study.folder), lambda: value_at(study.data, key, study.folder))
 
 
-def _entry(entries: list[dict[str, Any]], unknown: Unknown) -> dict[str, Any]:
-    for entry in entries:
-        if unknown.belongs_to(entry):
-            return entry
-    entries.append(unknown.entry)
-    return entries[-1]
+class _Entries:
+    """Entries of ``[[effects]]``, which gain those of unknowns that they lack."""
+
+    def __init__(self, entries: list[dict[str, Any]]) -> None:
+        self.entries = entries
+        self._by_name: dict[Any, list[dict[str, Any]]] = {}
+        for entry in entries:
+            self._by_name.setdefault(entry.get("name"), []).append(entry)
+
+    def of(self, unknown: Unknown) -> dict[str, Any]:
+        """The entry of an unknown's effect; a new one if there is none."""
+        of_name = self._by_name.setdefault(unknown.effect, [])
+        for entry in of_name:
+            if unknown.belongs_to(entry):
+                return entry
+        entry = unknown.entry
+        of_name.append(entry)
+        self.entries.append(entry)
+        return entry
