@@ -17,9 +17,11 @@ from made_up import confounded, judged, unexplained
 
 from tyrefem.diagnose import DiagnosisData
 from tyrefem.diagnose.amend import Change
+from tyrefem.diagnose.discrepancy import ENERGY, NONE
 from tyrefem.diagnose.headline import QUESTIONS, corrections, headline, label
+from tyrefem.diagnose.robustness import Robustness, UnderDiscrepancy
 from tyrefem.diagnose.unknowns import Unknown
-from tyrefem.diagnose.verdict import CONFOUNDED, IDENTIFIED, NO_GAP, UNEXPLAINED
+from tyrefem.diagnose.verdict import CONFOUNDED, IDENTIFIED, NO_GAP, PARTLY, UNEXPLAINED
 from tyrefem.reports.diagnosis import page
 from tyrefem.reports.diagnosis_figures import pictures
 from tyrefem.reports.diagnosis_summary import (
@@ -58,8 +60,24 @@ def rejected(d: DiagnosisData) -> DiagnosisData:
     return replace(d, judgement=replace(d.judgement, doubts=(doubt,)))
 
 
+def partly(d: DiagnosisData) -> DiagnosisData:
+    """As if another strain energy were probable, and the hot road a part of the cause with it and without."""
+    (member,) = d.best.members
+    unknown = member.amplitudes[0]
+    models = [
+        UnderDiscrepancy(name, 0.2, words, share, {member.key: named}, d.best.members, {unknown.key: (x, 1.5)}, {})
+        for name, words, share, named, x in (
+            (ENERGY, "another strain energy along the meridian", 0.9, 0.99, 24.0),
+            (NONE, "the model as it is", 0.1, 0.97, 26.0),
+        )
+    ]
+    judgement = replace(d.judgement, verdict=PARTLY)
+    return replace(d, judgement=judgement, robustness=Robustness(tuple(models)))
+
+
 VERDICTS: dict[str, Callable[[DiagnosisData], DiagnosisData]] = {
     IDENTIFIED: lambda d: d,
+    PARTLY: partly,
     CONFOUNDED: confounded,
     "confounded, one certain": certain,
     "confounded, doubted": doubted,
@@ -110,6 +128,17 @@ def test_a_colder_road_is_colder_without_a_minus(case: Case) -> None:
     assert wrong.startswith("The road is colder than stated, by ")
     assert "warmer" not in wrong
     assert "-" not in wrong.split(" K")[0]
+
+
+def test_a_part_of_the_cause_has_its_range_and_what_is_beside_it(case: Case) -> None:
+    wrong, sure, step = headline(partly(case.diagnosis))
+    # Two standard deviations about 24 K and 26 K, without signs: the sentence says warmer.
+    assert wrong.startswith("This is a part of it: The road is warmer than stated, as asphalt in the sun is, by 21")
+    assert " to 29" in wrong
+    assert "moves crown-outer by up to +" in wrong
+    assert "besides it the data speak for another strain energy along the meridian" in wrong
+    assert "at least 97 % probable, whatever else is wrong" in sure
+    assert "Check that you believe the range" in step
 
 
 def test_no_gap_at_a_large_rms_names_its_corrections_and_is_not_green(case: Case) -> None:

@@ -9,11 +9,12 @@ from typing import TYPE_CHECKING
 
 from tyrefem.brief import Brief
 from tyrefem.diagnose.candidates import Candidate
+from tyrefem.diagnose.draft_effect import EFFECTS, draft_effects
 from tyrefem.diagnose.heat_sources import STATED, UnknownSource
 from tyrefem.diagnose.heat_words import course_words, source_place
 from tyrefem.diagnose.materiality import Movement, largest_change
 from tyrefem.diagnose.numbers import amount, correction_subject, correction_words, percent, run_words
-from tyrefem.diagnose.partly_words import besides_words, least_words, tried_words
+from tyrefem.diagnose.partly_words import besides_words, least_words, ranges
 from tyrefem.diagnose.pulls import Pull, pulls
 from tyrefem.diagnose.result_tables import clearest, competing_sets, inclusion_probability
 from tyrefem.diagnose.verdict import CONFOUNDED, IDENTIFIED, NO_GAP, PARTLY, RankedSet
@@ -23,7 +24,6 @@ from tyrefem.diagnose.words import (
     effect_sentence,
     look_folder,
     next_words,
-    part_words,
     phase_words,
 )
 
@@ -125,17 +125,17 @@ def _confounded(d: DiagnosisData) -> tuple[str, str, str]:
 
 
 def _partly(d: DiagnosisData) -> tuple[str, str, str]:
-    clauses = _joined([part_words(d, member) for member in d.best.members])
-    wrong = f"{clauses.rstrip('.')}; {besides_words(d)}."
-    sure = (
-        f"{_it_is(d.best.members)} part of the cause with at least {least_words(d)} probability, whatever else is "
-        f"wrong ({tried_words(d)}); {_closed(d)}."
-    )
-    step = (
-        "Check that you believe the value, then look for the rest: the strain energy, tan delta and the drive where "
-        "the page shows what is left."
-    )
-    return wrong, sure, step
+    clauses = _joined([part_clause(d, member) for member in d.best.members])
+    wrong = f"This is a part of it: {clauses.rstrip('.')}; {besides_words(d)}."
+    sure = f"{_it_is(d.best.members)} {least_words(d)} probable, whatever else is wrong; {_closed(d)}."
+    rest = _draft_step(d) or "look for the rest where the page shows what is left: strain energy, tan delta, drive"
+    return wrong, sure, f"Check that you believe the range, then {rest}."
+
+
+def _draft_step(d: DiagnosisData) -> str:
+    """How to judge the draft effect, if there is one."""
+    files = list(draft_effects(d))
+    return f"judge the draft {EFFECTS}/{files[0]} (tyrefem diagnose STUDY --effects {EFFECTS})" if files else ""
 
 
 def _unexplained(d: DiagnosisData) -> tuple[str, str, str]:
@@ -147,11 +147,11 @@ def _unexplained(d: DiagnosisData) -> tuple[str, str, str]:
         chance = percent(d.judgement.best.probability)
         sure = f"A cause outside the catalogue is {chance} probable against every set of effects tried; {_gap(d)}."
     row = clearest(d)
+    rest = _draft_step(d) or "write the cause as an effect (docs/effects.md) and diagnose again"
     place = f"{row['sensor']} in {run_words(str(row['run']))}"
     step = (
         f"Check {place} first, where measured - computed is {row['mean_K']:+z.1f} K {phase_words(str(row['phase']))}: "
-        "its place, its channel and the drive; if they are right, write the cause as an effect (docs/effects.md) and "
-        "diagnose again."
+        f"its place, its channel and the drive; if they are right, {rest}."
     )
     return wrong, sure, step
 
@@ -183,10 +183,21 @@ def _no_gap(d: DiagnosisData) -> tuple[str, str, str]:
 def effect_clause(d: DiagnosisData, member: Candidate) -> str:
     """An effect with its amounts, and what it moves at which sensor; without the last full stop."""
     sentence = effect_sentence(member, d.best).rstrip(".")
+    return f"{sentence}{_with_amounts(member, effect_amounts(member, d.best))}{_moves(d.movements.get(member))}"
+
+
+def part_clause(d: DiagnosisData, member: Candidate) -> str:
+    """An effect with the range of its amounts whatever else is wrong, and what it moves; without the last full stop."""
+    sentence = effect_sentence(member, d.best).rstrip(".")
+    return f"{sentence}{_with_amounts(member, ranges(d, member))}{_moves(d.movements.get(member))}"
+
+
+def _with_amounts(member: Candidate, clauses: Sequence[str]) -> str:
+    """The variant of an effect and its amounts, as they follow its sentence."""
     variant = ", ".join(value for _, value in member.choice)
-    amounts = "; ".join(effect_amounts(member, d.best))
+    amounts = "; ".join(clauses)
     amounts = "" if not amounts else f", {amounts}" if amounts.startswith("by ") else f": {amounts}"
-    return f"{sentence}{f' ({variant})' if variant else ''}{amounts}{_moves(d.movements.get(member))}"
+    return f"{f' ({variant})' if variant else ''}{amounts}"
 
 
 def heat_clause(d: DiagnosisData, sources: Sequence[UnknownSource]) -> str:

@@ -32,17 +32,21 @@ def ranges(d: DiagnosisData, member: Candidate) -> list[str]:
     for unknown in member.unknowns:
         if any(unknown.key in model.values for model in robust.models):
             low, high = (unknown.value(x) for x in robust.interval(unknown))
-            shown = extent(low, high, unknown.unit)
-            first = unknown in member.amplitudes[:1] and bool(member.effect.opposite)
-            clauses.append(f"by {shown}" if first else f"{parameter_name(unknown)}: {shown}")
+            # The sentence of an effect with an opposite tells the sign.
+            if unknown in member.amplitudes[:1] and member.effect.opposite and low * high > 0:
+                least, most = sorted((abs(low), abs(high)))
+                clauses.append(f"by {extent(least, most, unknown.unit).replace('+', '')}")
+            else:
+                clauses.append(f"{parameter_name(unknown)}: {extent(low, high, unknown.unit)}")
     return clauses
 
 
 def least_words(d: DiagnosisData) -> str:
-    """The smallest probability of the effects over the discrepancy models."""
+    """The smallest probability of the effects over the discrepancy models: "at least 97 %"."""
     robust = d.robustness
     assert robust is not None
-    return percent(min(robust.least(member.key) for member in d.best.members))
+    least = percent(min(robust.least(member.key) for member in d.best.members))
+    return least if least.startswith(("more", "less")) else f"at least {least}"
 
 
 def tried_words(d: DiagnosisData) -> str:
@@ -77,22 +81,22 @@ def explaining_words(d: DiagnosisData) -> str:
 
 
 def energy_words(d: DiagnosisData, fit: FittedSet) -> str:
-    """Where the model has too little and too much heat, as shares of its own heat; empty if no place is clear.
+    """Where the tyre makes more and less heat than the model, as shares of the model's heat; empty if none is clear.
 
     ``fit``: beside another strain energy.
     """
     share, sd, s = energy_shares(d, fit)
     ratio = share / np.maximum(sd, 1e-12)
     clauses = []
-    for sign, words in ((1.0, "is missing"), (-1.0, "is too much")):
+    for sign, words in ((1.0, "more"), (-1.0, "less")):
         at = int(np.argmax(sign * ratio))
         if sign * ratio[at] > CLEAR:
             size = amount(100 * abs(float(share[at])), 100 * float(sd[at]), "%").lstrip("+")
-            clauses.append(
-                (abs(float(ratio[at])), f"{size} of the heat {words} in the {station_words(d, float(s[at]))}")
-            )
+            clauses.append((abs(float(ratio[at])), f"{size} {words} heat {station_words(d, float(s[at]))}"))
     clauses.sort(key=lambda clause: -clause[0])
-    return ", and ".join(text for _, text in clauses)
+    if not clauses:
+        return ""
+    return f"the tyre makes {' and '.join(text for _, text in clauses)} than the model"
 
 
 def energy_shares(d: DiagnosisData, fit: FittedSet) -> tuple[Array, Array, Array]:

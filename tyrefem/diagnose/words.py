@@ -128,7 +128,7 @@ def _partly(d: DiagnosisData, closing: str) -> tuple[str, ...]:
     besides = besides_words(d)
     return (
         f"{'. And: '.join(part_words(d, member) for member in d.best.members)}: this is part of the cause, "
-        f"whatever else is wrong (at least {least_words(d)} probable).",
+        f"whatever else is wrong ({least_words(d)} probable).",
         f"{besides[0].upper()}{besides[1:]}.",
         f"Tried beside it: {tried_words(d)}.",
         *d.judgement.doubts,
