@@ -12,7 +12,13 @@ import tomli_w
 
 import tyrefem as tf
 from tyrefem.cli import main
+from tyrefem.diagnose.candidates import catalogue_candidates
+from tyrefem.diagnose.evaluations import Evaluations
+from tyrefem.diagnose.forward_model import ForwardModel
+from tyrefem.diagnose.sampling import DriveSampling
+from tyrefem.diagnose.sensitivities import responses, unknowns_of
 from tyrefem.effects import catalogue
+from tyrefem.plan.drives import candidate_drives
 from tyrefem.reports.plan import FILES
 
 RIVALS = ("hot-road", "sun", "tread-slip")
@@ -96,6 +102,21 @@ def test_after_a_diagnosis_its_folder_and_its_object_give_the_same_plan(owner: P
     assert gains[0] == pytest.approx(gains[1], rel=1e-3)
     assert of_folder.beliefs.noise.keys() == study.sensors.keys()
     assert "After the verdict" in of_folder.words[0]
+
+
+def test_responses_at_hand_give_the_same_plan(owner: Path) -> None:
+    study = tf.study(owner).replace({"plan.sensors_most": 0})
+    names = {*study.sensors, "contained-air"}
+    unknowns, _ = unknowns_of(study, names, catalogue_candidates(study))
+    drives = candidate_drives(study)
+    samplings = tuple(DriveSampling(drive.name, dict(drive.changes), False, ()) for drive in drives)
+    known = responses(Evaluations(ForwardModel(study, samplings)), unknowns)
+    at_hand, simulated = study.plan(known=known), study.plan()
+    assert [step.drive for step in at_hand.steps] == [step.drive for step in simulated.steps]
+    gains = [[step.total_gain for step in plan.steps] for plan in (at_hand, simulated)]
+    assert gains[0] == pytest.approx(gains[1], rel=1e-6)
+    with pytest.raises(tf.InputError, match=r"belong to another study or to other sensors: .* is not there"):
+        study.plan(known=[response.of(unknowns[:3]) for response in known])
 
 
 def test_a_table_is_diagnosed_first(owner: Path, tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:

@@ -5,7 +5,7 @@ from __future__ import annotations
 import contextlib
 import functools
 from collections.abc import Mapping, Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from pathlib import Path
 from typing import Any
 
@@ -58,6 +58,22 @@ class DriveResponse(Brief):
     correction: dict[str, Array]
     slopes: dict[str, Array]
     modes: Modes
+
+    def of(self, unknowns: tuple[Unknown, ...]) -> DriveResponse:
+        """The response to some of its unknowns, in their order.
+
+        Raises
+        ------
+        InputError : the response lacks one of them.
+        """
+        place = {unknown: column for column, unknown in enumerate(self.unknowns)}
+        absent = [unknown.key for unknown in unknowns if unknown not in place]
+        if absent:
+            raise InputError(
+                f"the given responses belong to another study or to other sensors: {absent[0]} is not there"
+            )
+        columns = [place[unknown] for unknown in unknowns]
+        return replace(self, unknowns=unknowns, slopes={name: each[:, columns] for name, each in self.slopes.items()})
 
     def blocks(self, drive: DriveSampling) -> tuple[Array, Array, Array]:
         """Block means of a drive's sensors: fixed-step readings, correction, slopes (n_blocks, n_unknowns)."""

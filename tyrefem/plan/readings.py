@@ -12,7 +12,7 @@ from numpy.typing import NDArray
 from tyrefem.brief import Brief
 from tyrefem.diagnose.effort import SENSITIVITIES, check_effort
 from tyrefem.diagnose.evaluations import Evaluations, ProgressStore, evaluating
-from tyrefem.diagnose.forward_model import ForwardModel
+from tyrefem.diagnose.forward_model import DriveResponse, ForwardModel
 from tyrefem.diagnose.isolability import READING_INTERVAL
 from tyrefem.diagnose.multifidelity import Predictions
 from tyrefem.diagnose.sampling import DriveSampling, SensorSampling
@@ -93,6 +93,7 @@ def planned_readings(
     workers: int = 1,
     progress: Tick | None = None,
     store: ProgressStore | None = None,
+    known: Sequence[DriveResponse] | None = None,
 ) -> PlannedReadings:
     """Simulate every drive with its sensitivities, and predict its readings for every set.
 
@@ -102,15 +103,17 @@ def planned_readings(
     Parameters
     ----------
     study : with the sensors of ``places``.
+    known : responses of the drives to these unknowns or to more, if they are available.
 
     Raises
     ------
-    InputError : a drive cannot run.
+    InputError : a drive cannot run; the given responses belong to another study.
     """
     samplings = tuple(_sampling(beliefs, study, drive, places) for drive in drives)
     model = ForwardModel(study, samplings, settings=settings)
-    _check_drives(model, drives)
-    check_effort(model, f"the plan of {study.name}", SENSITIVITIES, workers)
+    if known is None:
+        _check_drives(model, drives)
+        check_effort(model, f"the plan of {study.name}", SENSITIVITIES, workers)
     if store is not None:
         store.open(model)
     unknowns, presence = _columns(beliefs)
@@ -125,10 +128,10 @@ def planned_readings(
     everything = (*columns, *presence)
     with evaluating(model, workers, store) as evaluations:
         try:
-            known = responses(evaluations, everything, progress)
+            at_hand = known or responses(evaluations, everything, progress)
         except InputError as error:
             raise InputError(f"a drive of the plan cannot run: {error}", field="plan.limits", file=study.file) from None
-        sensitive = sensitivities(samplings, everything, 0, known)
+        sensitive = sensitivities(samplings, everything, 0, [response.of(everything) for response in at_hand])
         beliefs = beliefs.without(sensitive.failed)
         changes = _changes(beliefs, sensitive, evaluations, progress)
     grams: dict[tuple[int, str], Array] = {}
@@ -168,9 +171,14 @@ def _check_drives(model: ForwardModel, drives: Sequence[CandidateDrive]) -> None
 
 
 def _columns(beliefs: Beliefs) -> tuple[tuple[Unknown, ...], tuple[Unknown, ...]]:
-    """Unknowns of all sets that act in every run, and those of effects without amplitude."""
-    unknowns = dict.fromkeys(unknown for entry in beliefs.sets for unknown in entry.unknowns if not unknown.runs)
+    """Unknowns of all sets that act in every run, and those of effects without amplitude.
+
+    Shape parameters are left out: without the effect's amplitude, at x = 0, they change nothing.
+    """
     members = [member for entry in beliefs.sets for member in entry.members if not member.runs]
+    shapes = {unknown for member in members for unknown in member.shapes}
+    every = (unknown for entry in beliefs.sets for unknown in entry.unknowns)
+    unknowns = dict.fromkeys(unknown for unknown in every if not unknown.runs and unknown not in shapes)
     return tuple(unknowns), tuple(dict.fromkeys(unknown for member in members for unknown in member.presence))
 
 

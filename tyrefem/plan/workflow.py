@@ -4,13 +4,14 @@ from __future__ import annotations
 
 import os
 import time
-from collections.abc import Callable
+from collections.abc import Callable, Sequence
 from dataclasses import replace
 from pathlib import Path
 from typing import Any
 
 from tyrefem.diagnose.diagnosis import DiagnosisData
 from tyrefem.diagnose.evaluations import ProgressStore
+from tyrefem.diagnose.forward_model import DriveResponse
 from tyrefem.diagnose.isolability import layout_notes
 from tyrefem.diagnose.settings import DiagnosisSettings
 from tyrefem.diagnose.workflow import diagnose
@@ -35,6 +36,7 @@ def plan(
     progress: Callable[[str, int, int], None] | None = None,
     store: ProgressStore | None = None,
     settings: DiagnosisSettings | None = None,
+    known: Sequence[DriveResponse] | None = None,
     **options: Any,
 ) -> PlanData:
     """The next runs and sensors that are expected to tell the remaining sets of effects apart best, per cost.
@@ -47,6 +49,7 @@ def plan(
         is known: a diagnosis, the folder of one, or tables of readings, which are diagnosed first.
     workers : number of processes. progress : called with (description, number of the step, number of steps).
     store : store of finished simulations. settings : numerical parameters of diagnosis and plan.
+    known : responses of the drives of `tyrefem.plan.drives.candidate_drives`, for many plans of one study.
     options : further options of `tyrefem.diagnose.diagnose`, for tables.
 
     Raises
@@ -72,6 +75,7 @@ def plan(
         workers=workers,
         progress=progress,
         store=store if after is None else further,
+        known=known,
     )
     search = greedy_batch(readings, drives, places, study.card.plan, progress)
     notes = layout_notes(study)[:1] if not beliefs.verdict else ()

@@ -1,0 +1,328 @@
+"""Does a test plan lead to the right name? Blind cases whose first run is confounded, continued by plan and at random.
+
+    python benchmarks/plan.py --cases 40 --seed 1 --out results/plan
+
+The layout: 22x5.5 8PR, four thermocouples and the contained air, one run of 15 minutes. Eleven effects compete. A case
+hides one of them, wrong base numbers and displaced sensors in synthetic data, from another mesh and time integration.
+If the first verdict is "confounded", the case counts. The next run is chosen by `tyrefem plan` and simulated with the
+hidden cause; all runs are diagnosed again; both up to twice. Then the same cases get runs at random from the same
+drives, up to three. Every finished case is written at once, and the same command goes on.
+"""
+
+from __future__ import annotations
+
+import argparse
+import json
+import math
+import time
+from dataclasses import dataclass
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+
+import tyrefem as tf
+from tyrefem.diagnose.blind import BlindCase
+from tyrefem.diagnose.candidates import SetPrior, catalogue_candidates
+from tyrefem.diagnose.diagnosis import DiagnosisData
+from tyrefem.diagnose.evaluations import Evaluations
+from tyrefem.diagnose.forward_model import DriveResponse, ForwardModel
+from tyrefem.diagnose.isolability import MARGIN, competitors_of, margins
+from tyrefem.diagnose.linear_model import LinearModel
+from tyrefem.diagnose.sampling import DriveSampling, SensorSampling
+from tyrefem.diagnose.sensitivities import Sensitivities, responses, sensitivities, unknowns_of
+from tyrefem.diagnose.settings import DiagnosisSettings
+from tyrefem.diagnose.synthetic import Logger, record
+from tyrefem.diagnose.unknowns import base_unknowns, sensor_unknowns, with_values
+from tyrefem.diagnose.workflow import diagnose
+from tyrefem.effects import catalogue
+from tyrefem.measured import MeasuredRun
+from tyrefem.plan.drives import CandidateDrive, candidate_drives
+from tyrefem.plan.workflow import plan
+from tyrefem.simulation.surroundings import GAS
+
+EFFECTS = (
+    "hot-road", "tread-slip", "brake-heat", "sun", "radiation", "loss-speed-exponent", "loss-temperature-law",
+    "outside-film-speed", "pressure-rise", "under-inflation-flexing", "cord-conduction",
+)  # fmt: skip
+SENSORS = ("crown-middle", "tread-outer", "shoulder-outer", "sidewall-outer")
+#: Most further runs: by plan, and at random.
+PLANNED, RANDOM = 2, 3
+#: Amplitudes, prior standard deviations (log-uniform).
+AMPLITUDES = (0.7, 3.0)
+#: A case is tried if the linear model sees the effect by this lead, nats, and another effect is closer than `CLOSE`.
+SEEN, CLOSE = 6.0, 2.5
+#: Share of the time for planned runs; the rest is for random ones.
+PLANNED_SHARE = 0.68
+SETTINGS = DiagnosisSettings(mesh_size="5 mm", largest=2, looks=1)
+
+
+@dataclass(frozen=True, eq=False)
+class Layout:
+    """The study, the drives of a plan, and the response of each, computed once."""
+
+    study: tf.Study
+    drives: tuple[CandidateDrive, ...]
+    known: tuple[DriveResponse, ...]
+    sensitive: Sensitivities
+    evaluations: Evaluations
+    data_mesh: dict[str, str]
+
+
+def study_of(drives: int) -> tf.Study:
+    """The study with its limits; a measured entry for every drive and its repetitions."""
+    shipped = tf.study("hidden-effect")
+    changes: dict[str, Any] = {
+        "title": "Four thermocouples",
+        "drive": {
+            "speed": "20 mph", "load": "3000 lbf", "pressure": "83 psi", "ambient": "25 degC", "duration": "900 s",
+        },
+        "sensors": {name: shipped.data["sensors"][name] for name in SENSORS},
+        "diagnosis": {"exclude": sorted(name for name in catalogue() if name not in EFFECTS)},
+        "plan": {
+            "limits": {
+                "drive.speed": ["10 mph", "30 mph"], "drive.load": ["2000 lbf", "4000 lbf"],
+                "drive.pressure": ["66 psi", "100 psi"],
+            },
+            "drives": drives, "runs_most": 1, "sensors_most": 0,
+        },
+        "measured": [],
+    }  # fmt: skip
+    study = shipped.replace(changes)
+    entries = [
+        {"table": "none.csv", "run": run_name(number, again), "drive": drive.changes}
+        for number, drive in enumerate(candidate_drives(study))
+        for again in range(RANDOM + 1)
+    ]
+    return study.replace({"measured": entries})
+
+
+def run_name(drive: int, again: int) -> str:
+    """Name of a run: number of its drive, and how often that was run before."""
+    return f"drive {drive}, {again}"
+
+
+def layout_of(drives: int, data_mesh: dict[str, str]) -> Layout:
+    """Responses of all drives to all unknowns."""
+    study = study_of(drives)
+    tried = candidate_drives(study)
+    names = [*study.sensors, GAS]
+    unknowns, nuisance = unknowns_of(study, set(names), catalogue_candidates(study), SETTINGS)
+    times = np.arange(0.0, study.card.drive.end + 5.0, 10.0)
+    samplings = tuple(
+        DriveSampling(
+            run_name(number, 0),
+            dict(drive.changes),
+            False,
+            tuple(SensorSampling(name, times, 0.5, 0.1, 120.0) for name in names),
+        )
+        for number, drive in enumerate(tried)
+    )  # fmt: skip
+    evaluations = Evaluations(ForwardModel(study, samplings, settings=SETTINGS))
+    known = responses(evaluations, unknowns)
+    return Layout(study, tried, known, sensitivities(samplings, unknowns, nuisance, known), evaluations, data_mesh)
+
+
+def drawn_case(layout: Layout, number: int, seed: int) -> BlindCase:
+    """A case: one hidden effect, base numbers and sensors from their priors."""
+    rng = np.random.default_rng([seed, number])
+    candidates = catalogue_candidates(layout.study)
+    member = candidates[int(rng.integers(len(candidates)))]
+    values = {
+        unknown: float(np.clip(rng.normal(0.0, unknown.sd), 0.95 * unknown.low, 0.95 * unknown.high))
+        for unknown in (*base_unknowns(layout.study), *sensor_unknowns(layout.study, set(layout.study.sensors)))
+    }
+    for unknown in member.amplitudes:
+        size = unknown.sd * math.exp(rng.uniform(*np.log(AMPLITUDES)))
+        side = rng.choice([-1.0, 1.0]) if unknown.low < 0 < unknown.high else 1.0
+        values[unknown] = float(np.clip(side * size, 0.95 * unknown.low, 0.95 * unknown.high))
+    return BlindCase(number, seed, "one", (member,), values)
+
+
+def leads(layout: Layout, case: BlindCase, numbers: list[int]) -> tuple[float, float]:
+    """Lead of the hidden effect over no effect, and over the closest other effect, without noise, nats."""
+    hidden = {unknown: case.values[unknown] for unknown in case.hidden[0].amplitudes}
+    model, sensitive = layout.evaluations.model, layout.sensitive
+    signal = np.concatenate(
+        [sensitive.drives[i].whitened(model.predict(i, hidden) - model.predict(i, {})) for i in numbers]
+    )
+    candidates = catalogue_candidates(layout.study)
+    prior = SetPrior(candidates, layout.study.card.diagnosis.effects_expected)
+    linear = LinearModel(sensitive.design(numbers), signal)
+    none, *others = margins(linear, signal, case.hidden, competitors_of(case.hidden, candidates), prior)
+    return none, min(others)
+
+
+def measured(layout: Layout, case: BlindCase, name: str, drive: int) -> MeasuredRun:
+    """A run as a logger records it, with the hidden cause."""
+    rng = np.random.default_rng([case.seed, case.number, *name.encode()])
+    driven = layout.study.at_run(name, layout.drives[drive].changes)
+    return record(with_values(driven, case.values).replace(layout.data_mesh), name, Logger(), rng)
+
+
+class Course:
+    """The runs of a case so far, and their diagnosis."""
+
+    def __init__(self, layout: Layout, case: BlindCase) -> None:
+        self.layout, self.case = layout, case
+        self.drives: list[int] = []
+        self.runs: list[MeasuredRun] = []
+        self.rows: list[dict[str, Any]] = []
+
+    def add(self, drive: int) -> DiagnosisData:
+        """Make a run, and diagnose all runs."""
+        name = run_name(drive, self.drives.count(drive))
+        self.drives.append(drive)
+        self.runs.append(measured(self.layout, self.case, name, drive))
+        known = [self.layout.known[number] for number in self.drives]
+        diagnosis = diagnose(self.layout.study, self.runs, known=known, settings=SETTINGS, rerun=False)
+        judgement = diagnosis.judgement
+        right = {member.key for member in judgement.best.members} == set(self.case.names)
+        self.rows.append(
+            {
+                "drive": self.layout.drives[drive].name,
+                "verdict": diagnosis.verdict,
+                "best": judgement.best.key,
+                "probability": judgement.probability,
+                "right": bool(right and diagnosis.verdict == "identified"),
+                "hidden_probability": judgement.named.get(self.case.names[0], 0.0),
+            }
+        )
+        return diagnosis
+
+    @property
+    def ended(self) -> bool:
+        """Whether an effect is named."""
+        return self.rows[-1]["verdict"] == "identified"
+
+
+def followed(layout: Layout, first: Course, diagnosis: Any) -> tuple[list[Any], list[float]]:
+    """The verdicts along the plan, one run at a time, and the expected probability that each plan stated."""
+    course, expected = first, list[float]()
+    while not course.ended and len(course.drives) <= PLANNED:
+        proposal = plan(layout.study, diagnosis, settings=SETTINGS, known=layout.known)
+        if proposal.steps and proposal.steps[0].drive is not None:
+            drive = layout.drives.index(proposal.steps[0].drive)
+            expected.append(proposal.steps[0].right)
+        else:
+            drive = int(np.argmax(proposal.candidates["gain_nats"])) if len(proposal.candidates) else 0
+            expected.append(math.nan)
+        diagnosis = course.add(drive)
+    return course.rows[1:], expected
+
+
+def at_random(layout: Layout, case: BlindCase) -> list[Any]:
+    """The verdicts along random drives after the same first run."""
+    course, rng = Course(layout, case), np.random.default_rng([case.seed, case.number, 7])
+    course.drives, course.runs = [0], [measured(layout, case, run_name(0, 0), 0)]
+    while len(course.drives) <= RANDOM and not (course.rows and course.ended):
+        course.add(int(rng.integers(len(layout.drives))))
+    return course.rows
+
+
+def summary(rows: list[dict[str, Any]], tried: int) -> dict[str, Any]:
+    """Rates and numbers of runs over the finished cases; random plans over the cases that have one."""
+    both = [row for row in rows if "random" in row]
+    rates: dict[str, Any] = {
+        "cases_tried": tried,
+        "confounded": len(rows),
+        "identifiable_by_all_drives": sum(row["identifiable"] for row in rows),
+        "with_random_plan": len(both),
+    }
+    for name, part in (("", rows), ("_of_identifiable", [row for row in rows if row["identifiable"]])):
+        for runs in range(1, PLANNED + 1):
+            rates[f"plan_right_after_{runs}{name}"] = sum(needed(row["plan"]) <= runs for row in part)
+    for course in ("plan", "random"):
+        for runs in range(1, PLANNED + 1):
+            rates[f"both: {course}_right_after_{runs}"] = sum(needed(row[course]) <= runs for row in both)
+        most = PLANNED + 1
+        rates[f"both: {course}_mean_runs_to_the_name (none after {PLANNED}: {most})"] = (
+            float(np.mean([min(needed(row[course]), most) for row in both])) if both else math.nan
+        )
+    rates["random_right_after_3"] = sum(needed(row["random"]) <= 3 for row in both)
+    for course in ("plan", "random"):
+        steps = [step for row in rows for step in row.get(course, [])]
+        rates[f"{course}_wrong_name"] = sum(s["verdict"] == "identified" and not s["right"] for s in steps)
+    return rates
+
+
+def needed(steps: list[dict[str, Any]]) -> int:
+    """Further runs until the right name; 99 without it."""
+    return next((i for i, step in enumerate(steps, start=1) if step["right"]), 99)
+
+
+def written(file: Path) -> list[dict[str, Any]]:
+    """The rows of an earlier attempt."""
+    return [json.loads(line) for line in file.read_text(encoding="utf-8").splitlines()] if file.is_file() else []
+
+
+def write_row(file: Path, row: dict[str, Any]) -> None:
+    """Add a row, and print it."""
+    with file.open("a", encoding="utf-8") as stream:
+        stream.write(json.dumps(row) + "\n")
+    courses = [[step["best"] for step in row[name]] for name in ("plan", "random") if name in row]
+    print(row["number"], row["hidden"], row.get("verdict", ""), courses, f"{row['processor_s']:.0f} s", flush=True)
+
+
+def planned_case(layout: Layout, case: BlindCase, lead: float) -> dict[str, Any]:
+    """The first verdict of a case, and the verdicts along the plan if it is "confounded"."""
+    start, first = time.process_time(), Course(layout, case)
+    diagnosis = first.add(0)
+    row: dict[str, Any] = {
+        "number": case.number,
+        "hidden": case.names,
+        "amplitude": [case.values[unknown] / unknown.sd for unknown in case.hidden[0].amplitudes],
+        "lead": lead,
+        "verdict": diagnosis.verdict,
+        "sets": {entry.key: entry.probability for entry in diagnosis.judgement.ranking[:4]},
+    }
+    if diagnosis.verdict == "confounded":
+        row["identifiable"] = bool(min(leads(layout, case, list(range(len(layout.drives))))) >= MARGIN)
+        row["plan"], row["expected"] = followed(layout, first, diagnosis)
+    return row | {"processor_s": time.process_time() - start}
+
+
+def main() -> None:
+    """Run, write every finished case, and print the rates."""
+    parser = argparse.ArgumentParser(description=__doc__)
+    parser.add_argument("--cases", type=int, default=40)
+    parser.add_argument("--seed", type=int, default=1)
+    parser.add_argument("--drives", type=int, default=9)
+    parser.add_argument("--data-mesh", default="4 mm", help="Mesh of the synthetic data: triangles, quadratic.")
+    parser.add_argument("--minutes", type=float, default=600.0, help="No case begins after this time.")
+    parser.add_argument("--out", type=Path, default=Path("results/plan"))
+    given = parser.parse_args()
+    given.out.mkdir(parents=True, exist_ok=True)
+    began = time.monotonic()
+
+    def is_left(share: float) -> bool:
+        return time.monotonic() - began < 60 * given.minutes * share
+
+    mesh = {"mesh.mesher": "mapped", "mesh.cell": "tri", "mesh.element": "P2", "mesh.size": given.data_mesh}
+    layout = layout_of(given.drives, mesh)
+    print(f"{len(layout.drives)} drives, {time.process_time():.0f} processor seconds", flush=True)
+    files = [given.out / f"{name}-{given.seed}.jsonl" for name in ("cases", "random")]
+    rows = written(files[0])
+    number = max((row["number"] for row in rows), default=-1)
+    while sum(row["verdict"] == "confounded" for row in rows) < given.cases and is_left(PLANNED_SHARE):
+        number += 1
+        case = drawn_case(layout, number, given.seed)
+        none, other = leads(layout, case, [0])
+        if none >= SEEN and other <= CLOSE:
+            rows.append(planned_case(layout, case, other))
+            write_row(files[0], rows[-1])
+    kept = {row["number"]: row for row in rows if row["verdict"] == "confounded"}
+    for row in written(files[1]):
+        kept[row["number"]]["random"] = row["random"]
+    for number in [number for number, row in kept.items() if "random" not in row]:
+        if not is_left(1.0):
+            break
+        start, case = time.process_time(), drawn_case(layout, number, given.seed)
+        kept[number]["random"] = at_random(layout, case)
+        done = {"number": number, "hidden": case.names, "random": kept[number]["random"]}
+        write_row(files[1], done | {"processor_s": time.process_time() - start})
+    print(json.dumps(summary(list(kept.values()), len(rows)), indent=1))
+
+
+if __name__ == "__main__":
+    main()
