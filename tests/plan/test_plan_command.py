@@ -102,6 +102,9 @@ def test_after_a_diagnosis_its_folder_and_its_object_give_the_same_plan(owner: P
     assert gains[0] == pytest.approx(gains[1], rel=1e-3)
     assert of_folder.beliefs.noise.keys() == study.sensors.keys()
     assert "After the verdict" in of_folder.words[0]
+    # Limits and costs are those of the study at hand.
+    short = study.replace({"plan.runs_most": 1, "plan.sensors_most": 0, "plan.run_cost": 7.0}).plan(diagnosis)
+    assert [(step.kind, step.cost) for step in short.steps] == [("run", 7.0)]
 
 
 def test_responses_at_hand_give_the_same_plan(owner: Path) -> None:

@@ -59,10 +59,13 @@ def plan(
     began = time.perf_counter()
     NEEDS.check(study)
     settings = settings or DiagnosisSettings()
-    drives = candidate_drives(study)
+    # Errors of the limits and places come before the work of a diagnosis.
+    candidate_drives(study)
     with_candidate_sensors(study, study.sensors)
     beliefs = _beliefs(study, after, workers, progress, store, settings, options)
-    study = beliefs.study
+    # The diagnosed study may be an amended one, or have other limits.
+    study = beliefs.study.replace({"plan": study.data.get("plan", {})})
+    drives = candidate_drives(study)
     extended, places = with_candidate_sensors(study, beliefs.noise)
     # The folder of a diagnosis's simulations keeps those of one layout only.
     further = None if store is None else replace(store, folder=store.folder.with_name(f"{store.folder.name}-plan"))
