@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Callable, Mapping, Sequence
-from dataclasses import dataclass, field
+from dataclasses import dataclass, field, replace
 from types import SimpleNamespace
 from typing import Any, cast
 
@@ -92,16 +92,18 @@ def case(
     expected: float = 0.5,
     held_out: tuple[Law, Array] | None = None,
     further: tuple[Unknown, ...] = (),
+    sensors: int = 1,
 ) -> Case:
     """Measured readings (n,) against a formula of `STATED` and the candidates' amplitudes.
 
     ``held_out``: law and readings of a second run that no fit uses. ``further``: unknowns of no candidate.
+    ``sensors``: number of sensors that share the readings of a run evenly, if there is more than one.
     """
     laws = [(law, measured)] + ([held_out] if held_out else [])
     unknowns = (STATED, *(unknown for candidate in candidates for unknown in candidate.unknowns), *further)
     keys = [unknown.key for unknown in unknowns]
     trials = tuple(
-        MeasuredDrive(f"run-{number}", {}, number == 1, (_series(readings),))
+        MeasuredDrive(f"run-{number}", {}, number == 1, _shared(readings, sensors))
         for number, (_, readings) in enumerate(laws)
     )
     known = Sensitivities(
@@ -116,6 +118,14 @@ def case(
     study = cast(Any, SimpleNamespace(card=card, file=None, at_run=lambda run, drive: study))
     formula = Formula(law, known.drives, settings, held_out[0] if held_out else None)
     return Case(formula, Residuals(study, trials, known, settings), Predictions(cast(Any, formula)))
+
+
+def _shared(measured: Array, sensors: int) -> tuple[MeasuredSensor, ...]:
+    """The readings of a run by sensor."""
+    if sensors == 1:
+        return (_series(measured),)
+    parts = np.split(measured, sensors)
+    return tuple(replace(_series(part), sensor=f"sensor-{number}") for number, part in enumerate(parts))
 
 
 def _series(measured: Array) -> MeasuredSensor:

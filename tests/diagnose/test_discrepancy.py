@@ -22,6 +22,7 @@ from tyrefem.diagnose.robustness import Robustness
 from tyrefem.diagnose.selection import SelectionProblem
 from tyrefem.diagnose.settings import DEFAULT
 from tyrefem.diagnose.shared_error import SharedError
+from tyrefem.diagnose.support import ALONE, SENSOR, supports
 from tyrefem.diagnose.verdict import IDENTIFIED, PARTLY, UNEXPLAINED, Judgement, judge, ranked
 
 NO_EFFECTS = cast(Any, type("Study", (), {"card": type("Card", (), {"effects": ()})}))
@@ -139,3 +140,44 @@ def test_the_half_waves_have_the_stated_scatter() -> None:
     variance = (waves**2) @ np.array([unknown.sd for unknown in SHAPES]) ** 2
     assert np.trapezoid(variance, dx=1 / 2000) == pytest.approx(DEFAULT.energy_sd**2, rel=1e-6)
     assert SHAPES[0].key == "effects.heat-shape.0.log_factor"
+
+
+def supported(data: Case, members: tuple[Any, ...], others: tuple[Any, ...]) -> dict[str, Any]:
+    prior = SetPrior((*members, *others), 0.5, SETTINGS.size_shares)
+    fits = {}
+    for part in ((), *((each,) for each in members), members):
+        (fits[part],) = first_fits(data.residuals, data.predictions, [part])
+    found = supports(data.residuals, fits[members], fits, (*members, *others), prior)
+    return {member.key: support for member, support in found.items()}
+
+
+def test_an_effect_that_one_sensor_asks_for_is_told() -> None:
+    # The bump "hot" is at the first 40 readings only, the slope at all of them.
+    rng = np.random.default_rng(2)
+    bump, slope = effect("bump", 5.0), effect("slope", 5.0)
+
+    def of(values: Mapping[str, float]) -> np.ndarray:
+        x = np.arange(120.0)
+        return np.asarray(values.get("bump", 0.0) * np.exp(-(((x - 20) / 5) ** 2)) + values.get("slope", 0.0) * x / 60)
+
+    data = case(of, of({"bump": 8.0, "slope": 6.0}) + rng.normal(size=120), (bump, slope), SETTINGS, sensors=3)
+    of_effects = supported(data, (bump, slope), ())
+    assert of_effects["bump"].only == "sensor-0"
+    assert of_effects["bump"].weakest.probability < ALONE
+    assert of_effects["slope"].only == ""
+    assert of_effects["slope"].weakest.probability > 0.99
+    assert {entry.kind for entry in of_effects["slope"].left_out} == {SENSOR}
+
+
+def test_a_fault_of_a_sensor_is_not_left_without_its_sensor() -> None:
+    fault = replace(effect("offset", 5.0), choice=(("sensor", "sensor-1"),))
+
+    def of(values: Mapping[str, float]) -> np.ndarray:
+        x = np.arange(120.0)
+        return np.asarray(values.get("offset", 0.0) * ((x >= 40) & (x < 80)))
+
+    data = case(of, of({"offset": 3.0}), (fault,), SETTINGS, sensors=3)
+    support = supported(data, (fault,), ())[fault.key]
+    assert support.own == support.only == "sensor-1"
+    assert [entry.name for entry in support.left_out] == ["sensor-0", "sensor-2"]
+    assert support.weakest.probability > 0.99

@@ -28,6 +28,7 @@ if TYPE_CHECKING:
     from tyrefem.diagnose.residuals import Residuals
     from tyrefem.diagnose.robustness import Robustness
     from tyrefem.diagnose.runs import MeasuredSensor
+    from tyrefem.diagnose.support import Support
     from tyrefem.diagnose.verdict import Judgement
     from tyrefem.inputs.study import StudyData
 
@@ -49,7 +50,8 @@ class DiagnosisData(Brief):
     movements : effect of the best set -> largest change of a reading by it.
     law : law of the missing heat over the runs; None if heat was not missing, or at no clear place. signatures : what
         effects and mechanisms would do beside it.
-    robustness : effects beside discrepancy models; None if there is no gap.
+    robustness : effects beside discrepancy models; None if there is no gap. supports : named effect -> its
+        probability with each sensor and run left out.
     notes : candidates that were left out, and why.
     """
 
@@ -73,6 +75,7 @@ class DiagnosisData(Brief):
     law: HeatLaw | None = None
     signatures: tuple[LawSignature, ...] = ()
     robustness: Robustness | None = None
+    supports: Mapping[Candidate, Support] = field(default_factory=dict)
 
     def _title(self) -> str:
         return f"of {self.original.name}: {self.verdict}"

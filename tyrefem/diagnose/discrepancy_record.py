@@ -1,7 +1,8 @@
-"""Effects beside discrepancy models, as plain data."""
+"""How sure a named effect is: beside discrepancy models, and without each sensor and run; as plain data."""
 
 from __future__ import annotations
 
+import math
 from typing import TYPE_CHECKING, Any
 
 from tyrefem.diagnose.verdict import PARTLY
@@ -19,6 +20,30 @@ def effect_probability(d: DiagnosisData, member: Candidate) -> float:
     if d.verdict == PARTLY and d.robustness is not None:
         return d.robustness.least(member.key)
     return d.judgement.named.get(member.key, 0.0)
+
+
+def confidence(d: DiagnosisData) -> float:
+    """Smallest probability of a named effect: as found, beside discrepancies, or without one sensor or run.
+
+    NaN without a named effect. An effect that can show only at one sensor, or in one run, is not left without it.
+    """
+    if not d.supports:
+        return math.nan
+    chances = [effect_probability(d, member) for member in d.best.members]
+    weakest = [support.weakest.probability for support in d.supports.values() if support.weakest]
+    return min([*chances, *weakest])
+
+
+def support_row(d: DiagnosisData, member: Candidate) -> dict[str, Any] | None:
+    """Probability of an effect without each sensor and run; ``only``: the one that alone asks for it. Null if unknown.
+
+    ``own``: the sensor or run that alone can show the effect, null if all can.
+    """
+    support = d.supports.get(member)
+    if support is None:
+        return None
+    rows = [{"kind": each.kind, "name": each.name, "probability": each.probability} for each in support.left_out]
+    return {"only": support.only or None, "own": support.own or None, "without": rows}
 
 
 def discrepancy_rows(d: DiagnosisData) -> list[dict[str, Any]]:

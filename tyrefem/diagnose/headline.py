@@ -17,6 +17,7 @@ from tyrefem.diagnose.numbers import amount, correction_subject, correction_word
 from tyrefem.diagnose.partly_words import besides_words, least_words, ranges
 from tyrefem.diagnose.pulls import Pull, pulls
 from tyrefem.diagnose.result_tables import clearest, competing_sets, inclusion_probability
+from tyrefem.diagnose.support_words import support_words
 from tyrefem.diagnose.verdict import CONFOUNDED, IDENTIFIED, NO_GAP, PARTLY, RankedSet
 from tyrefem.diagnose.words import (
     besides,
@@ -93,7 +94,7 @@ def _moved(d: DiagnosisData, pull: Pull) -> Movement:
 def _identified(d: DiagnosisData) -> tuple[str, str, str]:
     wrong = _joined([effect_clause(d, member) for member in d.best.members])
     chance = f"{_it_is(d.best.members)} {percent(d.judgement.probability)} probable"
-    sure = f"{chance} among all that was tried; {_closed(d)}."
+    sure = " ".join((f"{chance} among all that was tried; {_closed(d)}.", *support_words(d)[:1]))
     values = "values" if len(d.best.members) > 1 else "value"
     step = f"Check that you believe the {values}, then go on with amended.toml"
     if d.again is not None and d.again.verdict != NO_GAP:
@@ -128,6 +129,7 @@ def _partly(d: DiagnosisData) -> tuple[str, str, str]:
     clauses = _joined([part_clause(d, member) for member in d.best.members])
     wrong = f"This is a part of it: {clauses.rstrip('.')}; {besides_words(d)}."
     sure = f"{_it_is(d.best.members)} {least_words(d)} probable, whatever else is wrong; {_closed(d)}."
+    sure = " ".join((sure, *support_words(d)[:1]))
     rest = _draft_step(d) or "look for the rest where the page shows what is left: strain energy, tan delta, drive"
     return wrong, sure, f"Check that you believe the range, then {rest}."
 

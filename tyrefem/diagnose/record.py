@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from typing import TYPE_CHECKING, Any
 
-from tyrefem.diagnose.discrepancy_record import discrepancy_rows, effect_probability
+from tyrefem.diagnose.discrepancy_record import confidence, discrepancy_rows, effect_probability, support_row
 from tyrefem.diagnose.headline import headline
 from tyrefem.diagnose.heat_words import is_told, source_place, source_words
 from tyrefem.diagnose.law_record import law_record
@@ -46,6 +46,7 @@ def record(d: DiagnosisData) -> dict[str, Any]:
                 "probability": effect_probability(d, member),
                 "parameters": parameters(member.unknowns, d.best),
                 "moves": _moves(d, member),
+                "support": support_row(d, member),
                 "source": member.effect.source,
             }
             for member in named
@@ -59,6 +60,7 @@ def record(d: DiagnosisData) -> dict[str, Any]:
             "noise_K": d.noise,
         },
         "noise": noise(d),
+        "confidence": confidence(d),
         "discrepancies": discrepancy_rows(d),
         "where": where(d),
         "next_experiment": dict(d.next_experiment),

@@ -43,6 +43,10 @@ class SharedError(Brief):
         """L^-1 times rows (n, ...) of the fitted runs, with 1 + C C^T = L L^T."""
         return np.asarray(solve_triangular(self._root, rows, lower=True))
 
+    def colored(self, rows: Array) -> Array:
+        """L times whitened rows: the inverse of `whitened`."""
+        return np.asarray(self._root @ rows)
+
     @cached_property
     def _columns(self) -> Array:
         return self.whitened(self.fitted)

@@ -13,6 +13,7 @@ from tyrefem.diagnose.numbers import amount, correction_words, parameter_name, p
 from tyrefem.diagnose.partly_words import besides_words, explaining_words, least_words, ranges, tried_words
 from tyrefem.diagnose.pulls import pulls
 from tyrefem.diagnose.result_tables import clearest, competing_sets, inclusion_probability
+from tyrefem.diagnose.support_words import support_words
 from tyrefem.diagnose.verdict import CONFOUNDED, IDENTIFIED, NO_GAP, PARTLY
 
 if TYPE_CHECKING:
@@ -87,7 +88,8 @@ def _verdict_sentences(d: DiagnosisData) -> tuple[str, ...]:
         return (first, *_corrected(d))
     clauses = [effect_words(member, d.best, d.movements.get(member)) for member in d.best.members]
     if d.verdict == IDENTIFIED:
-        return _joined(clauses, [f"Probability {percent(d.judgement.probability)}."], closing)
+        sure = f"Probability {percent(d.judgement.probability)}."
+        return _joined(clauses, [sure, *support_words(d)], closing)
     if d.verdict == CONFOUNDED:
         return _confounded(d, closing)
     if d.verdict == PARTLY:
@@ -131,6 +133,7 @@ def _partly(d: DiagnosisData, closing: str) -> tuple[str, ...]:
         f"whatever else is wrong ({least_words(d)} probable).",
         f"{besides[0].upper()}{besides[1:]}.",
         f"Tried beside it: {tried_words(d)}.",
+        *support_words(d),
         *d.judgement.doubts,
         closing,
     )

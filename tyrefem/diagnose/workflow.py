@@ -5,13 +5,13 @@ from __future__ import annotations
 import math
 import time
 from collections.abc import Callable, Mapping, Sequence
-from dataclasses import dataclass, replace
+from dataclasses import dataclass, field, replace
 from typing import Any, Unpack
 
 from tyrefem.brief import Brief
 from tyrefem.compare.experiment import ColumnNames, Table, experiments
 from tyrefem.diagnose.amend import Change, amended, changes
-from tyrefem.diagnose.candidates import Members, SetPrior, in_single_runs, possible, simulated
+from tyrefem.diagnose.candidates import Candidate, Members, SetPrior, in_single_runs, possible, simulated
 from tyrefem.diagnose.criterion import Criterion
 from tyrefem.diagnose.diagnosis import DiagnosisData
 from tyrefem.diagnose.effort import check_effort
@@ -36,6 +36,7 @@ from tyrefem.diagnose.runs import MeasuredDrive, measured_drive, with_noise_of_d
 from tyrefem.diagnose.selection import SelectionProblem
 from tyrefem.diagnose.sensitivities import responses, sensitivities, unknowns_of
 from tyrefem.diagnose.settings import DiagnosisSettings
+from tyrefem.diagnose.support import Support, supports
 from tyrefem.diagnose.unknowns import Unknown
 from tyrefem.diagnose.verdict import (
     CONFOUNDED,
@@ -159,6 +160,7 @@ def _look(
         law=law,
         signatures=signatures,
         robustness=ranking.robustness,
+        supports=ranking.supports,
     )
 
 
@@ -195,6 +197,7 @@ class Ranking(Brief):
     movements : what each effect of the best set moves at the sensors.
     robustness : effects beside discrepancy models; None if there is no gap. If the verdict is "partly identified",
         ``best`` is the fit of the effects that act whatever else is wrong, and ``missing`` is the heat beside them.
+    supports : effect of the best set -> its support by the sensors and runs, if the verdict names it.
     """
 
     judgement: Judgement
@@ -204,6 +207,7 @@ class Ranking(Brief):
     fit_of: Callable[[Members], FittedSet]
     movements: Movements
     robustness: Robustness | None = None
+    supports: Mapping[Candidate, Support] = field(default_factory=dict)
 
 
 def rank(
@@ -278,13 +282,18 @@ def rank(
     robust = robustness(problem, scored, certain=judgement.verdict == IDENTIFIED)
     judgement, partly = beside_discrepancies(judgement, robust, settings)
     if not partly:
-        return Ranking(judgement, best_fit, null, missing, fit_of, movements_of(best_fit), robust)
+        of_effects = {}
+        if judgement.verdict == IDENTIFIED:
+            of_effects = supports(residuals, best_fit, fits, candidates, prior)
+        return Ranking(judgement, best_fit, null, missing, fit_of, movements_of(best_fit), robust, of_effects)
     alone = fit_of(problem.ordered(partly))
     best_fit = fit_beside(problem, robust.models[0], alone)
     over_time = heat_over_time(residuals, predictions.evaluations, alone, fitting)
     missing = with_course(missing_heat(residuals, origin.patches, alone), over_time)
     moved = movements(residuals, predictions, best_fit)
-    return Ranking(judgement, best_fit, null, missing, fit_of, moved, robust)
+    leading = robust.models[0]
+    of_effects = supports(leading.residuals or residuals, best_fit, leading.fits, candidates, prior)
+    return Ranking(judgement, best_fit, null, missing, fit_of, moved, robust, of_effects)
 
 
 class _UnknownOrigin:
