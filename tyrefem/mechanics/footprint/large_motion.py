@@ -24,16 +24,21 @@ Flags = NDArray[np.bool_]
 AHEAD, CORRECTION, WILD = 0.35, 0.7, 2.0
 #: A first Newton step that is larger than aimed at by more than this factor is made smaller.
 LARGE_STEP = 1.6
-#: Damping after an unstable Newton step, and number of these after which the balance fails.
+#: Damping of the first Newton step to another deflection, and after an unstable step; number of unstable steps after
+#: which the balance fails.
 DAMPING, UNSTABLE = 0.1, 8
 #: Least damping after a Newton step whose change of a displacement gradient is below `SMOOTH`; else it is `DAMPING`.
-LEAST_DAMPING, SMOOTH = 0.02, 0.1
+LEAST_DAMPING, SMOOTH = 0.005, 0.1
+#: Damping of the first Newton step where more harmonics refine a balance.
+REFINING = 0.01
 #: After a smaller change the last stiffness is used again.
 ALIKE = 0.02
 #: Newton steps. After the last a change and a missed load of this times the tolerance are allowed.
 STEPS, CYCLE = 12, 3.0
 #: After a Newton step the next one is smaller by more than this factor: a loose balance ends one step earlier.
 NEXT = 10.0
+#: In the last step the load changes by less than this times the tolerance. In a looser state it can be 20 % off.
+LOAD_CHANGE = 20.0
 #: Above this tolerance, and below it, this share of the contacts may change in the last step.
 LOOSE, FLIPPED = 5e-3, (0.1, 0.02)
 #: Accuracy of conjugate gradients: residual of a Newton step; energy for a change of deflection and for the stiffness.
@@ -150,7 +155,8 @@ class LargeMotion:
         closed: Flags | None = None
         rate = start.rate
         tangent: Tangent | None = None
-        unstable, change, damping = 0, np.inf, DAMPING
+        unstable, change, now = 0, np.inf, start.load
+        damping = DAMPING if deflection != start.deflection else REFINING
         for count in range(STEPS):
             tangent = (
                 replace(tangent, forces=outside.forces(u)) if tangent and change <= ALIKE else outside.at(u, np.float32)
@@ -184,10 +190,11 @@ class LargeMotion:
             after = gaps - touching.into(step.motion) + touching.tail @ (step.forces - forces)
             u, forces = u + share * step.motion, forces + share * (step.forces - forces)
             before, closed = closed, touching.closed(after, step.forces, closed)
-            now = self._sides * float(normal_components @ forces)
+            last_load, now = now, self._sides * float(normal_components @ forces)
             last = share * float(np.abs(step.motion).max()) / max(float(np.abs(u).max()), 1e-300)
             done = last <= (tolerance if tolerance <= LOOSE else NEXT * tolerance) and share == 1
             done &= damping < 2 * DAMPING  # a damped step is short also far from balance
+            done &= abs(now - last_load) <= LOAD_CHANGE * tolerance * abs(now)
             flipped = FLIPPED[0] if tolerance > LOOSE else FLIPPED[1]
             done &= int((closed != before).sum()) <= max(1.0, flipped * int(closed.sum()))
             damping = max(damping / 3, DAMPING if change > SMOOTH else LEAST_DAMPING)
