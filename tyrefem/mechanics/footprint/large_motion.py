@@ -39,6 +39,8 @@ STEPS, CYCLE = 12, 3.0
 NEXT = 10.0
 #: In the last step the load changes by less than this times the tolerance. In a looser state it can be 20 % off.
 LOAD_CHANGE = 20.0
+#: Largest change of a displacement gradient in the last step.
+LAST = 0.2
 #: Above this tolerance, and below it, this share of the contacts may change in the last step.
 LOOSE, FLIPPED = 5e-3, (0.1, 0.02)
 #: Accuracy of conjugate gradients: residual of a Newton step; energy for a change of deflection and for the stiffness.
@@ -194,7 +196,7 @@ class LargeMotion:
             last = share * float(np.abs(step.motion).max()) / max(float(np.abs(u).max()), 1e-300)
             done = last <= (tolerance if tolerance <= LOOSE else NEXT * tolerance) and share == 1
             done &= damping < 2 * DAMPING  # a damped step is short also far from balance
-            done &= abs(now - last_load) <= LOAD_CHANGE * tolerance * abs(now)
+            done &= abs(now - last_load) <= LOAD_CHANGE * tolerance * abs(now) and change <= LAST
             flipped = FLIPPED[0] if tolerance > LOOSE else FLIPPED[1]
             done &= int((closed != before).sum()) <= max(1.0, flipped * int(closed.sum()))
             damping = max(damping / 3, DAMPING if change > SMOOTH else LEAST_DAMPING)
