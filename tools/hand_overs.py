@@ -103,7 +103,8 @@ def form(value: Any, holds: Callable[[Any], bool]) -> str:
     """What an object is called in a walk: text, table, number, array, or its class; of a list what is in it."""
     if isinstance(value, float | str):
         return "number" if isinstance(value, float) else "text"
-    if isinstance(value, dict | list | tuple):
+    # A named tuple is what its class says.
+    if isinstance(value, dict | list | tuple) and not hasattr(value, "_fields"):
         entries = value.values() if isinstance(value, dict) else value
         inner = next(form(entry, holds) for entry in entries if holds(entry))
         return "table" if inner == "text" else inner
