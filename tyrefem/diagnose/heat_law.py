@@ -18,7 +18,6 @@ from tyrefem.diagnose.heat_evidence import log_mean_exp, shares
 from tyrefem.diagnose.law_evidence import LawData, LawFit, fitted_law
 from tyrefem.diagnose.law_terms import (
     NO_SWITCH,
-    PRIOR_SD,
     REST,
     SPEED,
     DriveVariables,
@@ -34,7 +33,7 @@ SAME = 0.02
 #: Switches of kinds that are this far below the best are not fitted with further terms, nats.
 FAR = 8.0
 #: Laws within this of the best are reported as alternatives, nats.
-NEAR = 2.3
+NEAR = 4.6
 #: The runs tell an exponent if its posterior sd is below this share of the prior sd.
 NARROWED = 0.5
 
@@ -115,7 +114,7 @@ def place_law(data: LawData, variables: DriveVariables, terms: LawTerms, *, insi
     options = structures(terms)
     possible = _telling(data, switches(variables, inside=inside))
     plain = next(switch for switch in possible if switch.kind == NO_SWITCH)
-    first = [_fitted(data, names, features, plain) for names in options]
+    first = [fitted_law(data, terms, names, plain) for names in options]
     best = max(first, key=lambda fit: fit.log_evidence + math.log(options[fit.terms]))
     by_kind: dict[str, list[Switch]] = {}
     for switch in possible:
@@ -130,7 +129,7 @@ def place_law(data: LawData, variables: DriveVariables, terms: LawTerms, *, insi
             continue
         chosen = each[int(shown[kind].max(axis=0).argmax())]
         fits = first if kind == NO_SWITCH else [
-            _fitted(data, names, features, chosen, best) for names in options if _switchable(kind, names)
+            _fitted(data, terms, names, chosen, best) for names in options if _switchable(kind, names)
         ]  # fmt: skip
         for fit in fits:
             spread = _time_share(data, features, fit, each)
@@ -155,14 +154,10 @@ def place_law(data: LawData, variables: DriveVariables, terms: LawTerms, *, insi
     )  # fmt: skip
 
 
-def _fitted(
-    data: LawData, names: Sequence[str], features: Mapping[str, Array], switch: Switch, like: LawFit | None = None
-) -> LawFit:
-    start = None
-    if like is not None:
-        known = dict(zip(like.terms, like.mean, strict=True))
-        start = np.array([known.get(name, 0.0) for name in names])
-    return fitted_law(data, names, [features[name] for name in names], switch, start)
+def _fitted(data: LawData, terms: LawTerms, names: Sequence[str], switch: Switch, like: LawFit) -> LawFit:
+    known = dict(zip(like.terms, like.mean, strict=True))
+    start = np.array([known.get(name, terms.prior(name)[0]) for name in names])
+    return fitted_law(data, terms, names, switch, start)
 
 
 def _switchable(kind: str, names: Sequence[str]) -> bool:
@@ -247,6 +242,6 @@ def _exponents(
         at = fit.terms.index(name)
         sd = float(fit.sd[at])
         chance = sum(chances[n] for n in holding)
-        narrowed = sd < NARROWED * PRIOR_SD[name]
+        narrowed = sd < NARROWED * terms.prior(name)[1]
         result.append(Exponent(name, float(fit.mean[at]), sd, chance, narrowed, terms.references[name]))
     return tuple(sorted(result, key=lambda entry: (entry.name not in chosen.terms, -entry.probability)))

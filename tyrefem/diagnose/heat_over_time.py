@@ -33,7 +33,8 @@ class SourceBasis(Brief):
     Parameters
     ----------
     data : the data, base numbers and sensors integrated out. entries : places with their courses, on ``grid``.
-    unknowns : of the places. grid, coarse : the fitted runs with fine and with few knots. tried : all places, coarse.
+    unknowns : of the places. grid, coarse : the fitted runs with fine and with few knots.
+    tried : every other place, coarse, single layers at the places' stations included, with its unknown.
     """
 
     data: ProjectedData
@@ -41,7 +42,7 @@ class SourceBasis(Brief):
     unknowns: tuple[Unknown, ...]
     grid: CourseGrid
     coarse: CourseGrid
-    tried: tuple[Place, ...]
+    tried: tuple[tuple[Place, Unknown], ...]
 
 
 @dataclass(frozen=True, eq=False)
@@ -110,10 +111,11 @@ def _estimated(
     # What even the free courses leave is an error of the linear model: with less weight it makes no further sources.
     exact, data = data, replace(data, weight=min(1.0, len(data.data) / misfit(data, chosen)))
     chosen = pursuit(data, places, coarse, settings.most_sources, settings.source_gain)
-    shares, refined = [], []
+    shares, refined, layered = [], [], dict[tuple[float, str], Place]()
     for number, (place, _) in enumerate(chosen):
         others = [entry for other, entry in enumerate(chosen) if other != number]
         layers = responses.places(coarse, layer_patches(study, settings, place.station))
+        layered |= {(layer.station, layer.where): layer for layer in layers}
         options = [option for option in (*places, *layers) if all(option is not other for other, _ in others)]
         share = place_shares(data, options, others, coarse)
         shares.append(share)
@@ -149,7 +151,8 @@ def _estimated(
     values, sd = values_with_sources(data, nuisance, named) if written else ({}, {})
     unknowns = tuple(unknown for unknown, _, _ in named) if written else ()
     sources.sort(key=lambda source: -abs(source.amount) / source.sd)
-    basis = SourceBasis(data, tuple(current), of_places, fine, coarse, tuple(places))
+    every = [(place, unknown_of[place.station, place.where]) for place in (*places, *layered.values())]
+    basis = SourceBasis(data, tuple(current), of_places, fine, coarse, tuple(every))
     return HeatOverTime(
         tuple(sources), fine.knots, fine.names, rolling, cools, log_evidence, values, sd, unknowns, basis
     )

@@ -13,7 +13,7 @@ from scipy.optimize import minimize
 from tyrefem.brief import Brief
 from tyrefem.diagnose.heat_evidence import ProjectedData
 from tyrefem.diagnose.heat_sources import SIZES
-from tyrefem.diagnose.law_terms import NO_SWITCH, PRIOR_SD, Switch
+from tyrefem.diagnose.law_terms import NO_SWITCH, LawTerms, Switch
 
 Array = NDArray[np.float64]
 #: Largest exponent times logarithm: a law over the runs varies by no more than exp(2 x this).
@@ -125,33 +125,29 @@ def law_strength(features: Sequence[Array], exponents: Array, switch: Switch) ->
 
 
 def fitted_law(
-    data: LawData, names: Sequence[str], features: Sequence[Array], switch: Switch, start: Array | None = None
+    data: LawData, terms: LawTerms, names: Sequence[str], switch: Switch, start: Array | None = None
 ) -> LawFit:
-    """The best exponents of a law, their covariance and its evidence.
+    """The best exponents of a law with some of the terms, their covariance and its evidence.
 
-    Maximises L(z) = gain(exponents = sd z) - |z|^2/2; ln evidence = L - ln det(-L'')/2 (Laplace; the amplitude is
-    integrated exactly).
-
-    Parameters
-    ----------
-    names, features : terms, with (n,) each. start : exponents at which the search also begins.
+    Maximises L(z) = gain(exponents = mean + sd z) - |z|^2/2; ln evidence = L - ln det(-L'')/2 (Laplace; the amplitude
+    is integrated exactly). ``start``: exponents at which the search also begins.
     """
-    scale = np.array([PRIOR_SD[name] for name in names])
+    middle, scale = (np.array([terms.prior(name)[which] for name in names]) for which in (0, 1))
     if not len(names):
         return LawFit((), switch, np.zeros(0), np.zeros((0, 0)), data.gain(switch.on))
-    logs = np.array(features) * scale[:, None]
+    features = np.array([terms.features[name] for name in names])
 
     def slope(z: Array) -> tuple[float, Array]:
-        strength = law_strength(list(logs), z, switch)
+        strength = law_strength(list(features), middle + scale * z, switch)
         u = data.hats @ strength
-        by_z = data.hats @ (strength * logs).T
+        by_z = data.hats @ (strength * features * scale[:, None]).T
         turned = data.gram @ u
         value, by_g, by_o, _ = _gain(float(u @ turned), float(u @ data.overlap), data.sizes)
         gradient = 2 * by_g * (turned @ by_z) + by_o * (data.overlap @ by_z)
         return -value + float(z @ z) / 2, -gradient + z
 
-    begins = [np.zeros(len(names)), *(0.75 * sign * row for row in np.eye(len(names)) for sign in (1, -1))]
-    begins += [] if start is None else [np.asarray(start) / scale]
+    begins = [np.zeros(len(names)), *(1.5 * sign * row for row in np.eye(len(names)) for sign in (1, -1))]
+    begins += [] if start is None else [(np.asarray(start) - middle) / scale]
     ranked = sorted(begins, key=lambda z: slope(z)[0])
     tried = [minimize(slope, z, jac=True, method="BFGS", options={"gtol": 1e-4}) for z in ranked[:2]]
     best = min(tried, key=lambda result: float(result.fun))
@@ -160,7 +156,7 @@ def fitted_law(
     values, vectors = np.linalg.eigh((hessian + hessian.T) / 2)
     values = np.maximum(values, 1e-3)
     covariance = (vectors / values) @ vectors.T * np.outer(scale, scale)
-    return LawFit(tuple(names), switch, scale * z, covariance, float(-best.fun - np.log(values).sum() / 2))
+    return LawFit(tuple(names), switch, middle + scale * z, covariance, float(-best.fun - np.log(values).sum() / 2))
 
 
 def plain_switch(count: int) -> Switch:

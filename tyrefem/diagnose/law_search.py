@@ -11,19 +11,30 @@ from numpy.typing import NDArray
 
 from tyrefem.brief import Brief
 from tyrefem.diagnose.evaluations import Evaluations
-from tyrefem.diagnose.heat_courses import CORRELATED, Course, CourseGrid, constant, courses, free
+from tyrefem.diagnose.heat_courses import BEGINS, ENDS, Course, CourseGrid, courses
 from tyrefem.diagnose.heat_evidence import ProjectedData
 from tyrefem.diagnose.heat_law import PlaceLaw, place_law
 from tyrefem.diagnose.heat_over_time import HeatOverTime, SourceBasis, source_columns
 from tyrefem.diagnose.heat_sources import Place, evidence
-from tyrefem.diagnose.law_evidence import law_data
+from tyrefem.diagnose.law_evidence import fitted_law, law_data, law_strength, plain_switch
 from tyrefem.diagnose.law_places import HEAT, LOSS, LawPlace, law_place, points_of, shares_of_model
-from tyrefem.diagnose.law_terms import DriveVariables, drive_variables, fine_times, law_terms
+from tyrefem.diagnose.law_terms import (
+    LOAD,
+    PRESSURE,
+    ROLLING,
+    SPEED,
+    DriveVariables,
+    Switch,
+    drive_variables,
+    fine_times,
+    law_terms,
+)
 from tyrefem.diagnose.residuals import Residuals
 
 Array = NDArray[np.float64]
-#: Shares of the model's heat or films whose laws are tried, and how far below the sources they may be, nats.
-MOST_SHARES, FAR = 3, 20.0
+#: Largest number of places, and of shares of the model's heat or of films, whose laws are tried alone; and how far
+#: below the best of its kind each may be, nats.
+MOST_PLACES, MOST_SHARES, FAR = 3, 3, 30.0
 #: A law holds for all runs if sources with a free strength in every run explain the data by no more than this better.
 WORSE = 3.0
 
@@ -78,103 +89,126 @@ def heat_law(
     over_time: HeatOverTime | None,
     tick: Callable[[], None] | None = None,
 ) -> HeatLaw | None:
-    """The law of the largest clear source; None without one.
+    """The law of the missing heat; None without a clear source.
 
-    Its place competes with shares of the model's own heat (in all regions and in each) and with shares of the films,
-    beside the other sources and alone. The linear model is that of `heat_over_time`.
+    Tried are: the place of every clear source, beside the other sources and alone; other places alone, as one source
+    with a law may look like several; shares of the model's own heat (in all regions and in each) and of the films. The
+    linear model is that of `heat_over_time`. Few knots in time choose the most promising ones of each kind.
     """
     if over_time is None or over_time.basis is None or not over_time.clear:
         return None
-    basis, largest = over_time.basis, over_time.clear[0]
-    main = next(
-        number
-        for number, (place, _) in enumerate(basis.entries)
-        if (place.station, place.where) == (largest.station, largest.where)
-    )
-    others = [entry for number, entry in enumerate(basis.entries) if number != main]
-    # Every source pays for the choice of its place, every other source for that of its course, too.
-    of_place = math.log(len(basis.tried))
-    of_other = of_place + math.log(sum(1 for _ in courses(basis.grid)))
-    models = shares_of_model(residuals)
-    patch = law_place(basis.entries[main][0], basis.unknowns[main])
-    tried = [(patch, basis.entries[main][0].columns, False, -of_place - len(others) * of_other)]
-    for model, columns, alone in _promising(residuals, evaluations, basis, others, models, tick):
-        tried.append((model, columns, alone, -math.log(len(models)) - (0 if alone else len(others) * of_other)))
-    variables, temperatures = _variables(residuals, evaluations, basis.grid, [entry[0] for entry in tried], tick)
-    ranked = []
-    for (place, columns, alone, prior), temperature in zip(tried, temperatures, strict=True):
-        data = basis.data if alone else _beside(basis.data, others)
-        of_place_data = law_data(data, columns, place.sd, variables.hats)
-        terms = law_terms(variables, temperature if place.kind in (HEAT, LOSS) else None)
-        law = place_law(of_place_data, variables, terms, inside=place.inside)
-        ranked.append(
-            (law.log_evidence + prior, RankedPlace(place, law, 0 if alone else len(others), 0.0, columns, data))
+    basis = over_time.basis
+    variables = _drive(residuals, evaluations, basis.grid, tick)
+    clear = {(source.station, source.where) for source in over_time.clear}
+    options = [
+        _Option(
+            law_place(place, unknown), tuple(entry for entry in basis.entries if entry[0] is not place), place.columns
         )
-    ranked.sort(key=lambda entry: -entry[0])
+        for (place, _), unknown in zip(basis.entries, basis.unknowns, strict=True)
+        if (place.station, place.where) in clear
+    ]
+    known = {option.place.unknown: option.columns for option in options}
+    models = shares_of_model(residuals)
+    coarse = source_columns(residuals, evaluations, basis.coarse, [model.unknown for model in models], tick)
+    alone = [(law_place(place, unknown), place.columns) for place, unknown in basis.tried]
+    chosen = _promising(basis, variables, alone, MOST_PLACES)
+    chosen += _promising(basis, variables, list(zip(models, coarse, strict=True)), MOST_SHARES)
+    chosen += [option.place for option in options if all(option.place.unknown != place.unknown for place in chosen)]
+    new = [place.unknown for place in chosen if place.unknown not in known]
+    known |= zip(new, source_columns(residuals, evaluations, basis.grid, new, tick), strict=True)
+    options = [option for option in options if option.others]
+    options += [_Option(place, (), known[place.unknown]) for place in chosen]
+    # Every source pays for the choice of its place, and beside sources of a free course for that of their courses.
+    of_place = math.log(len(basis.tried) + len(models))
+    of_other = of_place + math.log(sum(1 for _ in courses(basis.grid)))
+    temperatures = _temperatures(residuals, evaluations, variables, [option.place for option in options], tick)
+    ranked = []
+    for option, temperature in zip(options, temperatures, strict=True):
+        place, data = option.place, _beside(basis.data, option.others)
+        terms = law_terms(variables, temperature if place.kind in (HEAT, LOSS) else None, of_heat=place.kind == HEAT)
+        of_option = law_data(data, option.columns, place.sd, variables.hats)
+        law = place_law(of_option, variables, terms, inside=place.inside)
+        entry = RankedPlace(place, law, len(option.others), 0.0, option.columns, data)
+        ranked.append((law.log_evidence - of_place - len(option.others) * of_other, entry))
+    ranked.sort(key=lambda scored: -scored[0])
     top = ranked[0][0]
     by_run = basis.data.log_evidence + evidence(basis.data, list(basis.entries)) - len(basis.entries) * of_other
-    return HeatLaw(tuple(replace(place, below=top - score) for score, place in ranked), variables, top - by_run, basis)
+    return HeatLaw(tuple(replace(entry, below=top - score) for score, entry in ranked), variables, top - by_run, basis)
+
+
+@dataclass(frozen=True, eq=False)
+class _Option:
+    """A place for a law, beside other sources of free courses; ``columns``: fine responses."""
+
+    place: LawPlace
+    others: tuple[tuple[Place, Course], ...]
+    columns: Array
 
 
 def _beside(data: ProjectedData, others: Sequence[tuple[Place, Course]]) -> ProjectedData:
     """The data with the coefficients of other sources integrated out, too."""
+    if not others:
+        return data
     columns = [place.sd * place.columns @ course.factor for place, course in others]
     count = sum(each.shape[1] for each in columns)
     return replace(data, jacobian=np.hstack([data.jacobian, *columns]), sd=np.concatenate([data.sd, np.ones(count)]))
 
 
 def _promising(
-    residuals: Residuals,
-    evaluations: Evaluations,
-    basis: SourceBasis,
-    others: Sequence[tuple[Place, Course]],
-    models: Sequence[LawPlace],
-    tick: Callable[[], None] | None,
-) -> list[tuple[LawPlace, Array, bool]]:
-    """The shares of the model that may explain as much as the sources: with fine responses, and whether alone."""
-    coarse = basis.coarse
-    kinds = (constant(coarse), *(free(coarse, share * float(coarse.ends.max())) for share in CORRELATED))
-    columns = source_columns(residuals, evaluations, coarse, [model.unknown for model in models], tick)
-    needed = evidence(basis.data, list(basis.entries)) - FAR
+    basis: SourceBasis, variables: DriveVariables, places: Sequence[tuple[LawPlace, Array]], most: int
+) -> list[LawPlace]:
+    """The places whose laws explain most alone, by responses at few knots: always on, or begun or ended in between."""
+    coarse = replace(variables, grid=basis.coarse)
+    longest = float(basis.coarse.ends.max())
+    t = coarse.times
+    tried = [plain_switch(len(t))]
+    for time in longest * np.linspace(0.1, 0.9, 9):
+        tried += [Switch(BEGINS, (t >= time).astype(float), time), Switch(ENDS, (t < time).astype(float), time)]
     scored = []
-    for number, (model, each) in enumerate(zip(models, columns, strict=True)):
-        place = Place(model.station, model.where, model.sd, model.inside, each)
-        for alone in (True, False) if others else (True,):
-            beside = [] if alone else list(others)
-            scored.append((max(evidence(basis.data, [*beside, (place, kind)]) for kind in kinds), number, alone))
-    scored.sort(reverse=True)
-    kept: dict[int, bool] = {}
-    for value, number, alone in scored:
-        if value >= needed and number not in kept and len(kept) < MOST_SHARES:
-            kept[number] = alone
-    if not kept:
-        return []
-    chosen = [models[number] for number in kept]
-    fine = source_columns(residuals, evaluations, basis.grid, [model.unknown for model in chosen], tick)
-    return [(model, each, alone) for model, each, alone in zip(chosen, fine, kept.values(), strict=True)]
+    for place, columns in places:
+        data = law_data(basis.data, columns, place.sd, coarse.hats)
+        terms = law_terms(coarse, of_heat=place.kind == HEAT)
+        names = [name for name in (SPEED, LOAD, PRESSURE) if name in terms.features]
+        rolls = coarse.rolling.astype(float) if place.inside else np.ones(len(t))
+        usual = law_strength([terms.features[name] for name in names], np.array([terms.prior(n)[0] for n in names]),
+                             Switch(ROLLING, rolls))  # fmt: skip
+        switch = max(tried, key=lambda each: data.gain(each.on * usual))
+        fits = [fitted_law(data, terms, names, each) for each in (tried[0], switch)]
+        scored.append((max(fit.log_evidence for fit in fits), place))
+    scored.sort(key=lambda entry: -entry[0])
+    return [place for value, place in scored[:most] if value > scored[0][0] - FAR]
 
 
-def _variables(
+def _drive(
+    residuals: Residuals, evaluations: Evaluations, grid: CourseGrid, tick: Callable[[], None] | None
+) -> DriveVariables:
+    """What varies over the fitted runs."""
+    times = zip(residuals.fitted, fine_times(grid), strict=True)
+    questions = [(number, tuple(map(float, each)), ()) for number, each in times]
+    return drive_variables(grid, evaluations.of("drive_variables", questions, tick))
+
+
+def _temperatures(
     residuals: Residuals,
     evaluations: Evaluations,
-    grid: CourseGrid,
+    variables: DriveVariables,
     places: Sequence[LawPlace],
     tick: Callable[[], None] | None,
-) -> tuple[DriveVariables, list[Array]]:
-    """What varies over the fitted runs, and the temperature at every place: computed, plus the nearest sensor's gap."""
+) -> list[Array]:
+    """By place: its temperature (n,) degC over the runs, computed, plus the nearest sensor's gap."""
     points = points_of(residuals.study, places)
-    times = fine_times(grid)
+    times = fine_times(variables.grid)
     questions = [
         (number, tuple(map(float, each)), points) for number, each in zip(residuals.fitted, times, strict=True)
     ]
     answers = evaluations.of("drive_variables", questions, tick)
-    temperatures: list[list[Array]] = [[] for _ in places]
-    for number, each, answer in zip(residuals.fitted, times, answers, strict=True):
-        for order, of_place in enumerate(points):
-            gap = _gap_near(residuals, number, each, np.array(of_place).mean(axis=0))
-            temperatures[order].append(answer[5 + order] + gap)
-    variables = drive_variables(grid, [answer[:5] for answer in answers])
-    return variables, [np.concatenate(each) for each in temperatures]
+    return [
+        np.concatenate([
+            answer[5 + order] + _gap_near(residuals, number, each, np.array(of_place).mean(axis=0))
+            for number, each, answer in zip(residuals.fitted, times, answers, strict=True)
+        ])
+        for order, of_place in enumerate(points)
+    ]  # fmt: skip
 
 
 def _gap_near(residuals: Residuals, number: int, times: Array, place: Array) -> Array:

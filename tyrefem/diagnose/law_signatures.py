@@ -109,7 +109,7 @@ def _of_response(response: Array, heat: HeatLaw, data: ProjectedData) -> tuple[f
         turned = noiseless.times(column)
         return float(turned @ response) ** 2 / max(float(turned @ column), 1e-30)
 
-    place = max(basis.tried, key=explained)
+    place = max((place for place, _ in basis.tried), key=explained)
     coarse = replace(heat.variables, grid=basis.coarse)
     statistics = noiseless.with_sources(place.columns)
     # A response as clear as the law's tells its exponents; a faint one would leave them at the prior.
@@ -121,7 +121,7 @@ def _of_response(response: Array, heat: HeatLaw, data: ProjectedData) -> tuple[f
     terms: LawTerms = heat.law.terms
     names = [name for name in (SPEED, LOAD, PRESSURE) if name in terms.features]
     names = [name for name in names if (LOAD, name) not in terms.together and (SPEED, name) not in terms.together]
-    fit = fitted_law(of_place, names, [terms.features[name] for name in names], plain_switch(len(coarse.times)))
+    fit = fitted_law(of_place, terms, names, plain_switch(len(coarse.times)))
     return place.station, place.where, dict(zip(names, map(float, fit.mean), strict=True))
 
 

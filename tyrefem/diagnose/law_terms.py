@@ -13,19 +13,27 @@ from tyrefem.brief import Brief
 from tyrefem.diagnose.heat_courses import BEGINS, ENDS, PHASE, RUN, CourseGrid
 
 Array = NDArray[np.float64]
-#: Prior sd of an exponent (estimate: heat in tyres goes with powers from -2 to 3), and of a rate of temperature, 1/K
-#: (estimate: loss laws have 0.01 to 0.02 1/K).
-EXPONENT_SD, RATE_SD = 2.0, 0.02
 #: Names of the terms. `WARM`: exp(rate (T - reference)). `ABOVE`: power of the temperature above the ambient.
 SPEED, LOAD, PRESSURE, DEFLECTION = "speed", "load", "pressure", "deflection"
 WARM, ABOVE = "temperature", "temperature above ambient"
 MECHANICAL = (LOAD, PRESSURE, DEFLECTION)
 #: Terms that are never together: deflection follows from load and pressure.
 SETS_OF_MECHANICAL = ((), (LOAD,), (PRESSURE,), (DEFLECTION,), (LOAD, PRESSURE))
-PRIOR_SD: Mapping[str, float] = {
-    SPEED: EXPONENT_SD, LOAD: EXPONENT_SD, PRESSURE: EXPONENT_SD, DEFLECTION: EXPONENT_SD, WARM: RATE_SD,
-    ABOVE: EXPONENT_SD,
+#: Prior mean and sd of the exponents (of the temperature's rate: 1/K), all estimates. Heat inside is work per
+#: revolution times revolutions per second, work the square of a strain; loss laws have rates of 0.01 to 0.02 1/K.
+OF_HEAT: Mapping[str, tuple[float, float]] = {
+    SPEED: (1.0, 1.0), LOAD: (1.0, 1.5), PRESSURE: (0.0, 1.5), DEFLECTION: (2.0, 1.5), WARM: (0.0, 0.02),
+    ABOVE: (0.0, 1.0),
 }  # fmt: skip
+#: The same for a flux through a surface, and for a share of a film or of the model's own heat.
+OF_SHARE: Mapping[str, tuple[float, float]] = {
+    SPEED: (0.0, 1.0), LOAD: (0.0, 1.5), PRESSURE: (0.0, 1.5), DEFLECTION: (0.0, 1.5), WARM: (0.0, 0.02),
+    ABOVE: (0.0, 1.0),
+}  # fmt: skip
+#: Prior probability that speed takes part in heat inside, and in a flux or share; that temperature takes part.
+SPEED_IN_HEAT, SPEED_IN_SHARE, TEMPERATURE_IN = 0.8, 0.4, 0.3
+#: Prior probabilities of the mechanical variables, in the order of `SETS_OF_MECHANICAL`; for heat, and for the others.
+MECHANICAL_IN_HEAT, MECHANICAL_IN_SHARE = (0.3, 0.2, 0.05, 0.35, 0.1), (0.6, 0.1, 0.1, 0.15, 0.05)
 #: Walking pace, m/s: below it a power of speed is held. Least temperature above the ambient in a power of it, K.
 SLOWEST, LEAST_ABOVE = 1.0, 1.0
 #: A variable hardly varies if its largest value is less than this above its smallest (ln, or K for temperature).
@@ -92,17 +100,25 @@ class LawTerms(Brief):
     ----------
     features : term -> (n,) ln(variable / reference), or T - reference (K) for `WARM`.
     references : term -> reference (SI, degC): the mean (of the logarithm) while the tyre rolls.
-    hardly : variables that hardly vary. together : pairs of variables that vary together.
+    hardly : variables that hardly vary. together : pairs of variables that vary together. of_heat : heat inside, W/m3.
     """
 
     features: Mapping[str, Array]
     references: Mapping[str, float]
     hardly: tuple[str, ...]
     together: tuple[tuple[str, str], ...]
+    of_heat: bool = True
+
+    def prior(self, name: str) -> tuple[float, float]:
+        """Prior mean and sd of a term's exponent."""
+        return (OF_HEAT if self.of_heat else OF_SHARE)[name]
 
 
-def law_terms(variables: DriveVariables, temperature: Array | None = None) -> LawTerms:
-    """The terms that these runs can show; ``temperature`` (n,) degC at the place, None: no temperature law there."""
+def law_terms(variables: DriveVariables, temperature: Array | None = None, *, of_heat: bool = True) -> LawTerms:
+    """The terms that these runs can show.
+
+    ``temperature`` (n,) degC at the place, None: no temperature law there. ``of_heat``: heat inside, W/m3.
+    """
     rolling = variables.rolling if variables.rolling.any() else np.ones(len(variables.times), dtype=bool)
     values = {SPEED: np.maximum(variables.speed, SLOWEST)}
     values |= {name: np.maximum(getattr(variables, name), 1e-12) for name in MECHANICAL}
@@ -129,25 +145,29 @@ def law_terms(variables: DriveVariables, temperature: Array | None = None) -> La
         for second in names[number + 1 :]
         if abs(np.corrcoef(features[first][rolling], features[second][rolling])[0, 1]) > TOGETHER
     )
-    return LawTerms(features, references, tuple(hardly), together)
+    return LawTerms(features, references, tuple(hardly), together, of_heat)
 
 
 def structures(terms: LawTerms) -> dict[tuple[str, ...], float]:
-    """Sets of terms -> prior probability: half for each of speed, mechanical variables and temperature to take part."""
+    """Sets of terms -> prior probability, shared by those that these runs can show."""
     known = terms.features
-    speeds: list[tuple[str, ...]] = [(), (SPEED,)] if SPEED in known else [()]
-    mechanical = [names for names in SETS_OF_MECHANICAL if all(name in known for name in names)]
-    warm = [(), *((name,) for name in (WARM, ABOVE) if name in known)]
-    result: dict[tuple[str, ...], float] = {}
-    for first in speeds:
-        for second in mechanical:
-            for third in warm:
-                prior = 1.0
-                for chosen, count in ((first, len(speeds)), (second, len(mechanical)), (third, len(warm))):
-                    if count > 1:
-                        prior *= 0.5 if not chosen else 0.5 / (count - 1)
-                result[(*first, *second, *third)] = prior
-    return result
+    speed = SPEED_IN_HEAT if terms.of_heat else SPEED_IN_SHARE
+    speeds = {(): 1 - speed} | ({(SPEED,): speed} if SPEED in known else {})
+    weights = MECHANICAL_IN_HEAT if terms.of_heat else MECHANICAL_IN_SHARE
+    mechanical = {
+        names: weight
+        for names, weight in zip(SETS_OF_MECHANICAL, weights, strict=True)
+        if all(name in known for name in names)
+    }
+    temperatures = [name for name in (WARM, ABOVE) if name in known]
+    warm = {(): 1 - TEMPERATURE_IN} | {(name,): TEMPERATURE_IN / len(temperatures) for name in temperatures}
+    total = sum(speeds.values()) * sum(mechanical.values()) * sum(warm.values())
+    return {
+        (*first, *second, *third): speeds[first] * mechanical[second] * warm[third] / total
+        for first in speeds
+        for second in mechanical
+        for third in warm
+    }
 
 
 @dataclass(frozen=True, eq=False)
