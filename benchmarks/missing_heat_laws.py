@@ -2,8 +2,9 @@
 
     python benchmarks/missing_heat_laws.py [--case payne] [--out docs/evidence/tables/diagnosis-laws.csv]
 
-The layout is `hidden-effect` (8 histories, three fitted runs, one held out) with two further runs. Data come from another
-mesh with 0.5 K noise. Each case is diagnosed twice: without and with the draft effect of the first diagnosis.
+The layout is `hidden-effect` (8 histories, three fitted runs, one held out) with two further runs. Data come from
+another mesh with 0.5 K noise. Each case is diagnosed twice: without and with the draft effect of the first diagnosis.
+Effects of single sensors are left out of the catalogue, and the fits have a 6 mm mesh: a third of the time.
 """
 
 from __future__ import annotations
@@ -23,12 +24,15 @@ import tomli_w
 
 import tyrefem as tf
 from tyrefem.diagnose.law_words import law_formula, law_words
+from tyrefem.diagnose.settings import DiagnosisSettings
 from tyrefem.diagnose.words import verdict_words
 from tyrefem.effects import use_effects
 from tyrefem.simulation.surroundings import GAS
 
 HIDDEN = Path(__file__).parent / "hidden_laws"
 NOISE, EVERY = 0.5, 10.0
+SETTINGS = DiagnosisSettings(looks=1, largest=1, mesh_size="6 mm")
+OF_SENSORS = ["sensor-lag", "sensor-misplaced", "sensor-offset", "swapped-channels", "clock-offset"]
 #: Further fitted runs: three runs leave two ratios, too few for exponents of speed, load and pressure.
 FURTHER: tuple[dict[str, Any], ...] = (
     {"run": "E", "drive": {"load": "2000 lbf", "phases.rolling.speed": "35 mph"}},
@@ -47,7 +51,7 @@ CASES: Mapping[str, tuple[dict[str, Any], str, list[str]]] = {
         [],
     ),
     "evaporation": (
-        {"name": "hidden-evaporation", "film": "60 W/m**2/K"},
+        {"name": "hidden-evaporation", "film": "400 W/m**2/K"},
         "film of the tread while rolling, falling to nothing at 600 s",
         [],
     ),
@@ -76,7 +80,7 @@ def measured(folder: Path, entry: Mapping[str, Any], exclude: list[str], size: s
         pd.DataFrame(columns).to_csv(folder / f"{run['run']}.csv", index=False)
         run["table"] = f"{run.pop('run')}.csv"
     os.environ["TYREFEM_EFFECTS"] = ""
-    study = base.replace({"mesh.size": size, "measured": runs, "diagnosis.exclude": exclude})
+    study = base.replace({"mesh.size": size, "measured": runs, "diagnosis.exclude": [*exclude, *OF_SENSORS]})
     (folder / "study.toml").write_text(tomli_w.dumps(dict(study.data)), encoding="utf-8")
     return tf.study(folder / "study.toml")
 
@@ -86,7 +90,7 @@ def case(name: str, size: str, seed: int, workers: int, folder: Path) -> dict[st
     entry, words, exclude = CASES[name]
     study = measured(folder, entry, exclude, size, seed)
     began = time.process_time()
-    first = study.diagnose(looks=1, largest=2, workers=workers)
+    first = study.diagnose(settings=SETTINGS, workers=workers)
     seconds = time.process_time() - began
     for sentence in verdict_words(first):
         print("  ", sentence)
@@ -118,7 +122,7 @@ def case(name: str, size: str, seed: int, workers: int, folder: Path) -> dict[st
     if not first.law.holds:
         return row
     began = time.process_time()
-    second = study.diagnose(looks=1, largest=2, workers=workers, effects=folder / "first" / "effects")
+    second = study.diagnose(settings=SETTINGS, workers=workers, effects=folder / "first" / "effects")
     os.environ["TYREFEM_EFFECTS"] = ""
     for sentence in verdict_words(second):
         print("  ", sentence)
@@ -136,7 +140,7 @@ def main() -> None:
     """Run the cases and write the table."""
     parser = argparse.ArgumentParser(description=__doc__)
     parser.add_argument("--case", choices=[*CASES, "all"], default="all")
-    parser.add_argument("--size", default="6 mm", help="mesh of the study")
+    parser.add_argument("--size", default="8 mm", help="mesh of the study")
     parser.add_argument("--seed", type=int, default=1)
     parser.add_argument("--workers", type=int, default=1)
     parser.add_argument("--out", type=Path)

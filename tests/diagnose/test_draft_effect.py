@@ -27,6 +27,8 @@ Array = NDArray[np.float64]
 REFERENCES = {"speed": 10.0, "load": 12e3, "temperature": 60.0}
 STATION = (("station", "0.06 m"), ("width", "0.01 m"))
 
+HEATED = Unknown("heat", 1.0, effect="missing-heat", choice=STATION)
+
 
 @pytest.fixture(autouse=True)
 def _own_catalogue(monkeypatch: pytest.MonkeyPatch) -> None:
@@ -84,7 +86,7 @@ class TyreStub:
 
 
 def test_heat_at_a_station(tmp_path: Path) -> None:
-    place = LawPlace(HEAT, 0.06, "all layers", Unknown("heat", 1.0, choice=STATION), 1.0)
+    place = LawPlace(HEAT, 0.06, "all layers", HEATED, 1.0)
     effect = loaded(tmp_path, place, law({"speed": 1.5, "load": 0.5, "temperature": -0.02}, "begins", 300.0))
     assert "2e+04 +- 2e+03 W/m**3" in effect.source
     assert "speed 1.5 +- 0.1" in effect.source
@@ -98,6 +100,15 @@ def test_heat_at_a_station(tmp_path: Path) -> None:
     assert hot.heat_addend(TyreStub(), "tread", x, 400.0, T) == pytest.approx(expected)
     assert not np.any(hot.heat_addend(TyreStub(), "tread", x, 299.0, T))
     assert not np.any(hot.heat_addend(TyreStub(0.0), "tread", x, 400.0, T))
+
+
+def test_heat_of_several_parts_has_one_law(tmp_path: Path) -> None:
+    layer = Unknown("layer", 1.0, effect="missing-heat", choice=(*STATION, ("region", "carcass")))
+    place = LawPlace(HEAT, 0.06, "all layers", HEATED, 1.0, ((HEATED, 1.0), (layer, 0.5)))
+    hot = loaded(tmp_path, place, law({"load": 1.0}))(heat="2e4 W/m**3")
+    x, T = np.array([[0.06], [0.0]]), np.array([60.0])
+    assert hot.heat_addend(TyreStub(), "tread", x, 1.0, T) == pytest.approx(np.array([4e4]))
+    assert hot.heat_addend(TyreStub(), "carcass", x, 1.0, T) == pytest.approx(np.array([6e4]))
 
 
 def test_a_flux_and_a_share_of_the_loss(tmp_path: Path) -> None:
@@ -127,18 +138,18 @@ def test_a_film_of_the_drive(tmp_path: Path) -> None:
 
 
 def test_a_law_of_one_run_becomes_an_effect_of_the_day(tmp_path: Path) -> None:
-    place = LawPlace(HEAT, 0.06, "all layers", Unknown("heat", 1.0, choice=STATION), 1.0)
+    place = LawPlace(HEAT, 0.06, "all layers", HEATED, 1.0)
     assert loaded(tmp_path, place, law({}, "run run-1")).of_the_day
 
 
 def test_a_second_draft_at_the_same_place_has_another_name(tmp_path: Path) -> None:
-    place = LawPlace(HEAT, 0.06, "all layers", Unknown("heat", 1.0, choice=STATION), 1.0)
+    place = LawPlace(HEAT, 0.06, "all layers", HEATED, 1.0)
     assert loaded(tmp_path, place, law({})).name == "inferred-heat-60-mm"
     assert list(draft_effects(diagnosis(place, law({})))) == ["inferred_heat_60_mm_2.py"]
 
 
 def test_no_draft_without_a_law_that_holds() -> None:
-    place = LawPlace(HEAT, 0.06, "all layers", Unknown("heat", 1.0, choice=STATION), 1.0)
+    place = LawPlace(HEAT, 0.06, "all layers", HEATED, 1.0)
     d = diagnosis(place, replace(law({})))
     d.law.holds = False
     assert draft_effects(d) == {}

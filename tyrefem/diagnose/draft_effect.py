@@ -10,7 +10,7 @@ from pathlib import Path
 from typing import TYPE_CHECKING
 
 from tyrefem.diagnose.heat_courses import BEGINS, ENDS, PHASE, RUN
-from tyrefem.diagnose.heat_patches import ALL_LAYERS, SURFACES
+from tyrefem.diagnose.heat_patches import ALL_LAYERS, SURFACES, place_of
 from tyrefem.diagnose.law_places import EVERYWHERE, FILM, FLUX, HEAT, LOSS, UNITS, LawPlace
 from tyrefem.diagnose.law_terms import (
     ABOVE,
@@ -25,6 +25,7 @@ from tyrefem.diagnose.law_terms import (
     WARM,
 )
 from tyrefem.diagnose.law_words import law_formula, law_place_words
+from tyrefem.diagnose.unknowns import Unknown
 from tyrefem.effects import catalogue
 from tyrefem.effects.missing_flux import BOUNDARIES
 
@@ -186,18 +187,16 @@ def _port(place: LawPlace, amplitude: str) -> str:
     """The port where the effect acts."""
     choice = dict(place.unknown.choice)
     shape = "np.exp(-(((s - {0}) / {1}) ** 2) / 2)"
-    if place.kind in (HEAT, FLUX):
+    if place.kind == FLUX:
         shape = shape.format(*(choice[key].split()[0] for key in ("station", "width")))
     if place.kind == HEAT:
-        only = "" if place.where == ALL_LAYERS else (
-            f"        if tyre.region(zone) != {place.where!r}:\n            return 0.0\n"
-        )  # fmt: skip
-        return (
-            "    def heat_addend(self, tyre, zone, x, t, T):\n"
-            '        """W/m3 at points x (2, n)."""\n'
-            f"{only}        s, _ = tyre.places(x)\n"
-            f"        return self.{amplitude} * self.law(tyre, t, T) * {shape}\n"
-        )
+        return "".join([
+            "    def heat_addend(self, tyre, zone, x, t, T):\n",
+            '        """W/m3 at points x (2, n)."""\n',
+            "        s, _ = tyre.places(x)\n        shape = np.zeros_like(s)\n",
+            *(_patch(unknown, share) for unknown, share in place.parts or ((place.unknown, 1.0),)),
+            f"        return self.{amplitude} * self.law(tyre, t, T) * shape\n",
+        ])  # fmt: skip
     if place.kind == FLUX:
         return (
             "    def flux(self, tyre, surface, x, t):\n"
@@ -220,6 +219,16 @@ def _port(place: LawPlace, amplitude: str) -> str:
         f"        if film != {place.where!r}:\n            return 1.0\n"
         f"        return max(1 + self.{amplitude} * float(self.law(tyre, t)), 0.05)\n"
     )
+
+
+def _patch(unknown: Unknown, share: float) -> str:
+    """The shape of the heat about one station."""
+    station, where = place_of(unknown)
+    width = dict(unknown.choice)["width"].split()[0]
+    line = f"shape = shape + {share:.4g} * np.exp(-(((s - {station!r}) / {width}) ** 2) / 2)\n"
+    if where == ALL_LAYERS:
+        return f"        {line}"
+    return f"        if tyre.region(zone) == {where!r}:\n            {line}"
 
 
 def _class_name(name: str) -> str:

@@ -34,7 +34,8 @@ class LawPlace(Brief):
     """A place that a law may have.
 
     ``kind``: one of `UNITS`. ``station``: m along the meridian, NaN for a share. ``where``: layer, surface, region or
-    film. ``unknown``: the amplitude as a diagnosis varies it.
+    film. ``unknown``: the amplitude as a diagnosis varies it. ``parts``: of heat at several places with one law, the
+    unknown and the share of the amplitude of each.
     """
 
     kind: str
@@ -42,6 +43,7 @@ class LawPlace(Brief):
     where: str
     unknown: Unknown
     sd: float
+    parts: tuple[tuple[Unknown, float], ...] = ()
 
     @property
     def inside(self) -> bool:

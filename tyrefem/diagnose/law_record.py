@@ -17,9 +17,9 @@ def law_record(d: DiagnosisData) -> dict[str, Any] | None:
     """The law of the missing heat; null without a clear source.
 
     ``holds``: whether one law describes the heat in all fitted runs. ``lead_nats``: ln evidence over sources with a
-    free strength in every run. ``exponents``: of every variable that varies, those of the law first; ``told_by_runs``
-    is false where the runs leave the prior almost as it was. ``places``: the places that competed. ``signatures``:
-    effects and mechanisms, most alike first. ``draft_effect``: file of the draft effect.
+    free strength in every run; ``share``: its gain over theirs. ``exponents``: of every variable that varies, those of
+    the law first; ``told_by_runs`` is false where the runs leave the prior almost as it was. ``places``: the places
+    that competed. ``signatures``: effects and mechanisms, most alike first. ``draft_effect``: file of the draft effect.
     """
     heat = d.law
     if heat is None:
@@ -29,6 +29,7 @@ def law_record(d: DiagnosisData) -> dict[str, Any] | None:
         "sentences": [f"{sentence}." for sentence in law_words(d)],
         "holds": heat.holds,
         "lead_nats": heat.lead,
+        "share": heat.share,
         **_place(d, first),
         "exponents": [
             {

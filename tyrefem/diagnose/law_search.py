@@ -15,7 +15,7 @@ from tyrefem.diagnose.heat_courses import BEGINS, ENDS, Course, CourseGrid, cour
 from tyrefem.diagnose.heat_evidence import ProjectedData
 from tyrefem.diagnose.heat_law import PlaceLaw, place_law
 from tyrefem.diagnose.heat_over_time import HeatOverTime, SourceBasis, source_columns
-from tyrefem.diagnose.heat_sources import Place, evidence
+from tyrefem.diagnose.heat_sources import Place, UnknownSource, evidence
 from tyrefem.diagnose.law_evidence import fitted_law, law_data, law_strength, plain_switch
 from tyrefem.diagnose.law_places import HEAT, LOSS, LawPlace, law_place, points_of, shares_of_model
 from tyrefem.diagnose.law_terms import (
@@ -35,8 +35,9 @@ Array = NDArray[np.float64]
 #: Largest number of places, and of shares of the model's heat or of films, whose laws are tried alone; and how far
 #: below the best of its kind each may be, nats.
 MOST_PLACES, MOST_SHARES, FAR = 3, 3, 30.0
-#: A law holds for all runs if sources with a free strength in every run explain the data by no more than this better.
-WORSE = 3.0
+#: A law holds for all runs if sources with a free strength in every run explain the data by no more than this better,
+#: nats, or if it describes this share of the gain of ln evidence that they have.
+WORSE, MOSTLY = 3.0, 0.9
 
 
 @dataclass(frozen=True, eq=False)
@@ -57,14 +58,17 @@ class HeatLaw(Brief):
 
     Parameters
     ----------
-    ranking : places with their laws, best first. variables : what varies over the runs.
-    lead : ln evidence of the best law over sources with a free strength in every run.
+    ranking : places with their laws: first those that describe nearly all by themselves, then by evidence.
+    variables : what varies over the runs.
+    lead : ln evidence of the first law over sources with a free strength in every run. share : its gain of ln evidence
+        over theirs.
     basis : the data, and the coarse places of `HeatOverTime`.
     """
 
     ranking: tuple[RankedPlace, ...]
     variables: DriveVariables
     lead: float
+    share: float
     basis: SourceBasis
 
     @property
@@ -80,7 +84,7 @@ class HeatLaw(Brief):
     @property
     def holds(self) -> bool:
         """Whether one law with a clear amplitude describes the heat in all fitted runs."""
-        return self.law.clear and self.lead > -WORSE
+        return self.law.clear and (self.lead > -WORSE or self.share >= MOSTLY)
 
 
 def heat_law(
@@ -91,32 +95,27 @@ def heat_law(
 ) -> HeatLaw | None:
     """The law of the missing heat; None without a clear source.
 
-    Tried are: the place of every clear source, beside the other sources and alone; other places alone, as one source
-    with a law may look like several; shares of the model's own heat (in all regions and in each) and of the films. The
-    linear model is that of `heat_over_time`. Few knots in time choose the most promising ones of each kind.
+    Tried are: the source that moves readings most, beside the other sources and alone; all heat of its sign with one
+    law; other places alone, as one source with a law may look like several; shares of the model's own heat (in all
+    regions and in each) and of the films. The linear model is that of `heat_over_time`. Few knots in time choose the
+    most promising ones of each kind.
     """
     if over_time is None or over_time.basis is None or not over_time.clear:
         return None
     basis = over_time.basis
     variables = _drive(residuals, evaluations, basis.grid, tick)
-    clear = {(source.station, source.where) for source in over_time.clear}
-    options = [
-        _Option(
-            law_place(place, unknown), tuple(entry for entry in basis.entries if entry[0] is not place), place.columns
-        )
-        for (place, _), unknown in zip(basis.entries, basis.unknowns, strict=True)
-        if (place.station, place.where) in clear
-    ]
-    known = {option.place.unknown: option.columns for option in options}
+    options = _of_sources(over_time, basis)
+    known = {option.place.unknown: option.columns for option in options if not option.place.parts}
     models = shares_of_model(residuals)
     coarse = source_columns(residuals, evaluations, basis.coarse, [model.unknown for model in models], tick)
     alone = [(law_place(place, unknown), place.columns) for place, unknown in basis.tried]
     chosen = _promising(basis, variables, alone, MOST_PLACES)
     chosen += _promising(basis, variables, list(zip(models, coarse, strict=True)), MOST_SHARES)
-    chosen += [option.place for option in options if all(option.place.unknown != place.unknown for place in chosen)]
+    single = [option.place for option in options if not option.place.parts]
+    chosen += [place for place in single if all(place.unknown != other.unknown for other in chosen)]
     new = [place.unknown for place in chosen if place.unknown not in known]
     known |= zip(new, source_columns(residuals, evaluations, basis.grid, new, tick), strict=True)
-    options = [option for option in options if option.others]
+    options = [option for option in options if option.others or option.place.parts]
     options += [_Option(place, (), known[place.unknown]) for place in chosen]
     # Every source pays for the choice of its place, and beside sources of a free course for that of their courses.
     of_place = math.log(len(basis.tried) + len(models))
@@ -129,11 +128,18 @@ def heat_law(
         of_option = law_data(data, option.columns, place.sd, variables.hats)
         law = place_law(of_option, variables, terms, inside=place.inside)
         entry = RankedPlace(place, law, len(option.others), 0.0, option.columns, data)
-        ranked.append((law.log_evidence - of_place - len(option.others) * of_other, entry))
-    ranked.sort(key=lambda scored: -scored[0])
-    top = ranked[0][0]
-    by_run = basis.data.log_evidence + evidence(basis.data, list(basis.entries)) - len(basis.entries) * of_other
-    return HeatLaw(tuple(replace(entry, below=top - score) for score, entry in ranked), variables, top - by_run, basis)
+        places = max(len(place.parts), 1)
+        ranked.append((law.log_evidence - places * of_place - len(option.others) * of_other, entry))
+    top, none = max(score for score, _ in ranked), basis.data.log_evidence
+    by_run = none + evidence(basis.data, list(basis.entries)) - len(basis.entries) * of_other
+
+    def share(score: float) -> float:
+        return (score - none) / max(by_run - none, 1e-9)
+
+    ranked.sort(key=lambda scored: (bool(scored[1].beside) or share(scored[0]) < MOSTLY, -scored[0]))
+    first = ranked[0][0]
+    ranking = tuple(replace(entry, below=top - score) for score, entry in ranked)
+    return HeatLaw(ranking, variables, first - by_run, share(first), basis)
 
 
 @dataclass(frozen=True, eq=False)
@@ -143,6 +149,41 @@ class _Option:
     place: LawPlace
     others: tuple[tuple[Place, Course], ...]
     columns: Array
+
+
+def _of_sources(over_time: HeatOverTime, basis: SourceBasis) -> list[_Option]:
+    """The source that moves readings most, beside the others; and all heat of its sign with one law.
+
+    A source of another shape than a patch looks like several at one place.
+    """
+    entry_of = {(entry[0].station, entry[0].where): number for number, entry in enumerate(basis.entries)}
+    clear = {entry_of[source.station, source.where]: source for source in over_time.clear}
+    main = max(clear, key=lambda number: _moved(clear[number]))
+    alike = [
+        number
+        for number, source in clear.items()
+        if source.inside and clear[main].inside and source.amount * clear[main].amount > 0
+    ]
+    place = law_place(basis.entries[main][0], basis.unknowns[main])
+    columns = basis.entries[main][0].columns
+    options = [_Option(place, _without(basis, [main]), columns)]
+    if len(alike) > 1:
+        shares = {number: clear[number].amount / clear[main].amount for number in alike}
+        parts = tuple((basis.unknowns[number], share) for number, share in shares.items())
+        whole = replace(place, parts=parts)
+        together = np.sum([share * basis.entries[number][0].columns for number, share in shares.items()], axis=0)
+        options += [_Option(whole, (), together)]
+        options += [_Option(whole, others, together)] if (others := _without(basis, alike)) else []
+    return options
+
+
+def _moved(source: UnknownSource) -> float:
+    """What a source moves at the sensors, K."""
+    return 0.0 if source.move is None else abs(source.move.kelvin)
+
+
+def _without(basis: SourceBasis, numbers: Sequence[int]) -> tuple[tuple[Place, Course], ...]:
+    return tuple(entry for number, entry in enumerate(basis.entries) if number not in numbers)
 
 
 def _beside(data: ProjectedData, others: Sequence[tuple[Place, Course]]) -> ProjectedData:

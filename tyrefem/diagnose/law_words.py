@@ -6,7 +6,7 @@ import math
 from typing import TYPE_CHECKING
 
 from tyrefem.diagnose.heat_courses import BEGINS, ENDS, PHASE, RUN
-from tyrefem.diagnose.heat_patches import SURFACES
+from tyrefem.diagnose.heat_patches import SURFACES, place_of
 from tyrefem.diagnose.heat_words import station_words
 from tyrefem.diagnose.law_places import FILM, FLUX, LOSS, UNITS, LawPlace
 from tyrefem.diagnose.law_terms import ABOVE, DEFLECTION, LOAD, NO_SWITCH, PRESSURE, REST, ROLLING, SPEED, WARM
@@ -23,6 +23,8 @@ REFERENCES = {
     SPEED: (1.0, "m/s"), LOAD: (1e-3, "kN"), PRESSURE: (1e-5, "bar"), DEFLECTION: (1e3, "mm"), WARM: (1.0, "°C"),
     ABOVE: (1.0, "K above ambient"),
 }  # fmt: skip
+#: A law that describes less than this is said to.
+PART = 0.995
 FILM_NAMES = {
     "road": "film between tread and road", "outside_air": "outside air film",
     "tread_air": "air film of the tread between two contacts", "contained_air": "film of the contained air",
@@ -44,7 +46,9 @@ def law_words(d: DiagnosisData) -> tuple[str, ...]:
         f"{100 * law.amplitude:+.0f} ± {100 * law.sd:.0f} %"
     )  # fmt: skip
     at = [reference_words(law, name) for name in law.fit.terms]
-    return (f"{first}: {size}{' at ' + ', '.join(at) if at else ''}", *limits(law))
+    part = f"It describes {percent(heat.share)} of what heat with a free course in every run describes"
+    rest = [part] if heat.share < PART else []
+    return (f"{first}: {size}{' at ' + ', '.join(at) if at else ''}", *rest, *limits(law))
 
 
 def limits(law: PlaceLaw) -> list[str]:
@@ -83,6 +87,8 @@ def law_place_words(d: DiagnosisData, place: LawPlace) -> str:
     if place.kind == FILM:
         return f"a share of the {FILM_NAMES[place.where]}"
     station = station_words(d, place.station)
+    if len(stations := dict.fromkeys(place_of(unknown)[0] for unknown, _ in place.parts)) > 1:
+        return " and ".join(station_words(d, each) for each in stations)
     if place.kind == FLUX:
         return f"at the {place.where}, {station}" if place.where in SURFACES else station
     return station
