@@ -12,7 +12,7 @@ from tyrefem.diagnose.heat_courses import CourseGrid
 from tyrefem.diagnose.heat_evidence import ProjectedData
 from tyrefem.diagnose.heat_law import PlaceLaw, place_law
 from tyrefem.diagnose.law_evidence import LawData, fitted_law, law_data, plain_switch
-from tyrefem.diagnose.law_terms import DriveVariables, drive_variables, fine_times, law_terms
+from tyrefem.diagnose.law_terms import DriveVariables, drive_variables, fine_times, law_terms, structures
 
 Array = NDArray[np.float64]
 #: Run -> speed m/s, load N, pressure Pa.
@@ -182,7 +182,22 @@ def test_the_evidence_is_the_integral_over_amplitude_and_exponent() -> None:
     assert fit.log_evidence == pytest.approx(exact, abs=0.05)
 
 
-def test_noise_alone_shows_no_clear_law() -> None:
-    shown = [law(lambda v: np.zeros(len(v.times)), seed=seed) for seed in range(3)]
-    assert not any(abs(each.amplitude) > 3 * each.sd for each in shown)
-    assert not any(entry.narrowed for each in shown for entry in each.exponents)
+@pytest.mark.parametrize("seed", range(3))
+def test_noise_alone_is_no_evidence_of_any_law(seed: int) -> None:
+    variables, columns = problem(APART)
+    data = measured(variables, columns, lambda v: np.zeros(len(v.times)), seed)
+    shown = place_law(data, variables, law_terms(variables), inside=True)
+    assert abs(shown.amplitude) < 3 * shown.sd
+    assert shown.log_evidence - data.base < 1.0
+
+
+@pytest.mark.parametrize("of_heat", [True, False])
+@pytest.mark.parametrize("runs", [APART, CONFOUNDED, {"a": APART["a"]}])
+def test_prior_probabilities_of_laws_sum_to_one(runs: dict[str, tuple[float, float, float]], of_heat: bool) -> None:
+    variables, _ = problem(runs)
+    temperature = np.linspace(25.0, 90.0, len(variables.times))
+    terms = law_terms(variables, temperature, of_heat=of_heat)
+    assert sum(structures(terms).values()) == pytest.approx(1.0)
+    # Heat inside usually goes with the speed.
+    speedy = sum(prior for names, prior in structures(terms).items() if "speed" in names)
+    assert speedy == pytest.approx((0.8 if of_heat else 0.4) if len(runs) > 1 else 0.0)
