@@ -152,28 +152,27 @@ class _Option:
 
 
 def _of_sources(over_time: HeatOverTime, basis: SourceBasis) -> list[_Option]:
-    """The source that moves readings most, beside the others; and all heat of its sign with one law.
+    """The source that moves readings most, beside the others; and all heat inside of one sign with one law.
 
     A source of another shape than a patch looks like several at one place.
     """
     entry_of = {(entry[0].station, entry[0].where): number for number, entry in enumerate(basis.entries)}
     clear = {entry_of[source.station, source.where]: source for source in over_time.clear}
     main = max(clear, key=lambda number: _moved(clear[number]))
-    alike = [
-        number
-        for number, source in clear.items()
-        if source.inside and clear[main].inside and source.amount * clear[main].amount > 0
-    ]
     place = law_place(basis.entries[main][0], basis.unknowns[main])
-    columns = basis.entries[main][0].columns
-    options = [_Option(place, _without(basis, [main]), columns)]
-    if len(alike) > 1:
-        shares = {number: clear[number].amount / clear[main].amount for number in alike}
+    options = [_Option(place, _without(basis, [main]), basis.entries[main][0].columns)]
+    inside = [number for number, source in clear.items() if source.inside]
+    if len(inside) < 2:
+        return options
+    first = max(inside, key=lambda number: _moved(clear[number]))
+    shares = {number: clear[number].amount / clear[first].amount for number in inside}
+    shares = {number: share for number, share in shares.items() if share > 0}
+    if len(shares) > 1:
         parts = tuple((basis.unknowns[number], share) for number, share in shares.items())
-        whole = replace(place, parts=parts)
-        together = np.sum([share * basis.entries[number][0].columns for number, share in shares.items()], axis=0)
-        options += [_Option(whole, (), together)]
-        options += [_Option(whole, others, together)] if (others := _without(basis, alike)) else []
+        whole = replace(law_place(basis.entries[first][0], basis.unknowns[first]), parts=parts)
+        columns = np.sum([share * basis.entries[number][0].columns for number, share in shares.items()], axis=0)
+        options += [_Option(whole, (), columns)]
+        options += [_Option(whole, others, columns)] if (others := _without(basis, tuple(shares))) else []
     return options
 
 

@@ -7,6 +7,7 @@ from typing import TYPE_CHECKING
 
 from tyrefem.diagnose.heat_courses import BEGINS, ENDS, PHASE, RUN
 from tyrefem.diagnose.heat_patches import SURFACES, place_of
+from tyrefem.diagnose.heat_sources import CLEAR
 from tyrefem.diagnose.heat_words import station_words
 from tyrefem.diagnose.law_places import FILM, FLUX, LOSS, UNITS, LawPlace
 from tyrefem.diagnose.law_terms import ABOVE, DEFLECTION, LOAD, NO_SWITCH, PRESSURE, REST, ROLLING, SPEED, WARM
@@ -55,7 +56,8 @@ def limits(law: PlaceLaw) -> list[str]:
     """What these runs cannot tell of a law."""
     sentences = []
     if law.alternatives:
-        shown = list(dict.fromkeys(_short(fit) for fit, _ in law.alternatives if _short(fit) != _short(law.fit)))[:3]
+        others = [fit for fit, _ in law.alternatives if not _adds_nothing(fit, law.fit)]
+        shown = list(dict.fromkeys(_short(fit) for fit in others if _short(fit) != _short(law.fit)))[:3]
         if shown:
             sentences.append(f"These runs do not tell it from {', or '.join(shown)}")
     sentences += [f"{_and(pair).capitalize()} vary together in these runs" for pair in law.together]
@@ -110,6 +112,14 @@ def _short(fit: LawFit) -> str:
         parts.append(f"exp({100 * mean:+.1f} %/K × temperature)" if name == WARM else f"{name}^{mean:.1f}")
     when = "" if fit.switch.kind == NO_SWITCH else f", {_kind(fit.switch.kind)}"
     return f"{' × '.join(parts) or 'constant heat'}{when}"
+
+
+def _adds_nothing(fit: LawFit, best: LawFit) -> bool:
+    """Whether a law is the best one with further terms whose exponents may be 0."""
+    if not set(best.terms) < set(fit.terms) or fit.switch.kind != best.switch.kind:
+        return False
+    further = [number for number, name in enumerate(fit.terms) if name not in best.terms]
+    return all(abs(fit.mean[number]) < CLEAR * fit.sd[number] for number in further)
 
 
 def _when(heat: HeatLaw) -> str:
