@@ -134,6 +134,7 @@ def _partly(d: DiagnosisData, closing: str) -> tuple[str, ...]:
         f"{besides[0].upper()}{besides[1:]}.",
         f"Tried beside it: {tried_words(d)}.",
         *support_words(d),
+        *(f"{sentence}." for sentence in law_words(d)),
         *d.judgement.doubts,
         closing,
     )
