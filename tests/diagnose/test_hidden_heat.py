@@ -49,11 +49,11 @@ def test_heat_that_begins_late_is_dated_and_its_draft_effect_is_identified(
     assert first["time_s"] == pytest.approx(70.0, abs=max(3 * first["time_sd_s"], 8.0))
     assert {"kind", "region", "station_m", "stations_m", "watts", "runs"} <= set(missing)
     assert first["sentence"] in verdict_words(d)[1]
-    # What the source moves is the gap at the sensor: there all of the amended study's change is the source's.
+    # What the source moves (linear model) is the gap at the sensor: there the amended study's change is the source's.
     moves = first["moves"]
     assert moves["sensor"] == "sidewall-outer"
     largest = max(float(np.abs(d.after[run] - d.before[run]).max()) for run in d.before)
-    assert moves["largest_K"] == pytest.approx(largest, rel=0.1)
+    assert moves["largest_K"] == pytest.approx(largest, rel=0.15)
     stated = drawn_sources(d)
     assert [source.amount for source in stated] == [source.amount for source in d.missing.over_time.clear]
     strength, spread = by_run(stated[0], d.missing.over_time)
