@@ -13,11 +13,11 @@ from tyrefem.geometry.meshing import build
 from tyrefem.inputs.study import StudyData
 from tyrefem.mechanics.solid.inflation import Inflation, inflate
 from tyrefem.sizes import draw_size
-from tyrefem.sizes.meridian import SizedMeridian, bias_meridian, radial_meridian
+from tyrefem.sizes.meridian import SizedMeridian, belted_meridian, bias_meridian, radial_meridian
 
 
-def inflated(size: str, mesh_size: float) -> Inflation:
-    rules = draw_size(size).rules
+def inflated(size: str, mesh_size: float, parameters: dict[str, str]) -> Inflation:
+    rules = draw_size(size, parameters).rules
     drive = {
         "speed": "60 km/h",
         "load": rules["rated_load"].text,
@@ -25,21 +25,28 @@ def inflated(size: str, mesh_size: float) -> Inflation:
         "duration": "60 s",
         "ambient": "25 degC",
     }
-    study = StudyData("sized", {"title": size, "section": size, "materials": {}, "drive": drive}, None, Path())
+    section = {"size": size, "parameters": parameters} if parameters else size
+    study = StudyData("sized", {"title": size, "section": section, "materials": {}, "drive": drive}, None, Path())
     return inflate(study, mesh=build(study.section, size=mesh_size, through=1))
 
 
-def grown(line: SizedMeridian, crown: float, width: float) -> SizedMeridian:
-    """The line in equilibrium on the same rim whose crown and half width are larger, m."""
-    half, rim = line.half_width + width, (line.rim, line.offset, line.bend)
+def grown(line: SizedMeridian, crown: float, width: float, pressed: float = 0.0) -> SizedMeridian:
+    """The line in equilibrium on the same rim whose crown and half width are larger, m; ``pressed``: m by which the
+    plies come nearer to the flange."""
+    half, rim = line.half_width + width, (line.rim, line.offset - pressed, line.bend - pressed)
+    if line.belted:
+        return belted_meridian(line.crown + crown, line.belted.edge, line.belted.power, half, *rim)
     if line.membrane.lift:
         return bias_meridian(line.crown + crown, half, *rim, None)[0]
     return radial_meridian(line.crown + crown, line.crown_radius, half, *rim)
 
 
-def deviations(size: str, mesh_size: float) -> tuple[np.ndarray, tuple[float, float]]:
-    """Distance of the inflated carcass line from the nearest grown line in equilibrium, m; its growth."""
-    line, state = draw_size(size).meridian, inflated(size, mesh_size)
+def deviations(
+    size: str, mesh_size: float, parameters: dict[str, str] | None = None, *, presses: bool = False
+) -> tuple[np.ndarray, tuple[float, ...]]:
+    """Distance of the inflated carcass line from the nearest grown line in equilibrium, m; its growth, and where it
+    ``presses`` the bead's rubber also by how much."""
+    line, state = draw_size(size, parameters or {}).meridian, inflated(size, mesh_size, parameters or {})
     r, z, _ = line.at(np.linspace(0.0, line.flange_s, 140))
     places = np.stack([r, z], axis=1)
     moved = np.stack([griddata(state.body.rings.nodes.T, part, places) for part in state.displacement], axis=1)
@@ -53,9 +60,9 @@ def deviations(size: str, mesh_size: float) -> tuple[np.ndarray, tuple[float, fl
         close = gap[np.arange(len(nearest)), nearest]
         return close[:, 0] * np.sin(phi[nearest]) + close[:, 1] * np.cos(phi[nearest])
 
-    start = [float(moved[0, 0]), float(np.nanmax(moved[:, 1]))]
+    start = [float(moved[0, 0]), float(np.nanmax(moved[:, 1])), *([0.0] if presses else [])]
     growth = least_squares(lambda x: 1e3 * away(x), start, diff_step=1e-3, x_scale=1e-3).x
-    return away(growth), (float(growth[0]), float(growth[1]))
+    return away(growth), tuple(float(value) for value in growth)
 
 
 @pytest.mark.parametrize(
@@ -75,6 +82,20 @@ def test_the_inflated_line_is_one_in_equilibrium(size: str, mesh_size: float) ->
     assert 0 < width < 0.006
     assert np.abs(away).max() < 1e-3
     assert np.sqrt((away**2).mean()) < 0.5e-3
+
+
+def test_with_the_belts_share_only_the_bead_gives_way() -> None:
+    """The plies press the bead's rubber by more than 1 mm; otherwise crown, shoulder and wall stay in equilibrium.
+
+    An arc under the belts leaves more than twice as much.
+    """
+    size = "22x5.5R12 8PR"
+    arc, _ = deviations(size, 8e-3, presses=True)
+    share, (_, _, pressed) = deviations(size, 8e-3, {"belt_power": "6"}, presses=True)
+    assert 1e-3 < pressed < 2e-3
+    assert np.abs(share).max() < 0.3e-3
+    assert np.sqrt((share**2).mean()) < 0.15e-3
+    assert np.sqrt((arc**2).mean()) > 2 * np.sqrt((share**2).mean())
 
 
 def test_a_line_out_of_equilibrium_is_told() -> None:

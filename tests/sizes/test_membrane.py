@@ -8,7 +8,9 @@ from scipy.integrate import quad, solve_ivp
 
 from tyrefem.geometry.spline import SplineLine
 from tyrefem.sizes import draw_size
+from tyrefem.sizes.crown import BeltedCrown
 from tyrefem.sizes.membrane import Membrane
+from tyrefem.sizes.meridian import SizedMeridian
 
 pytestmark = pytest.mark.fast
 SIZES = ("205/60R15", "255/40R17", "LT245/75R16", "295/80R22.5", "22x5.5 8PR", "40x14", "46x17R20")
@@ -104,3 +106,35 @@ def test_plies_hang_over_the_flange_of_a_narrow_rim() -> None:
     s = np.linspace(0.0, line.flange_s, 200)
     assert np.abs(line.membrane.residual(line.at(s)[0])).max() < 1e-9
     assert draw_size("22x5.5 8PR").meridian.leaves > -1.55
+
+
+@pytest.mark.parametrize("power", [2.0, 5.0])
+def test_belt_and_plies_together_carry_the_pressure_under_the_belt(power: float) -> None:
+    """N_phi kappa_phi + g p = p and 2 pi r N_phi sin phi = pi p (r^2 - r_m^2), curvature by differences of the line."""
+    crown = BeltedCrown(0.3, 0.24, 0.07, 0.85, power)
+    s, r, z, phi = crown.run()
+    tension = (r**2 - 0.24**2) / (2 * r * np.sin(phi))
+    share = np.array([crown.share_at(place) for place in s])
+    assert (-tension * np.gradient(phi, s) + share)[2:-2] == pytest.approx(1.0, abs=2e-3)
+    assert np.gradient(r, s)[2:-2] == pytest.approx(-np.cos(phi[2:-2]), abs=1e-3)
+    assert np.gradient(z, s)[2:-2] == pytest.approx(np.sin(phi[2:-2]), abs=1e-3)
+    assert crown.radius == pytest.approx(tension[0] / (1 - 0.85))
+
+
+@pytest.mark.parametrize(("size", "power"), [("295/80R22.5", "2"), ("46x17R20", "6")])
+def test_the_belts_share_ends_at_the_belts_edge_without_a_jump(size: str, power: str) -> None:
+    """Same width on the same rim; the curvature goes on behind the edge, where the arc's jumps to several times its."""
+    arc, drawn = draw_size(size), draw_size(size, {"belt_power": power})
+    line, rules = drawn.meridian, drawn.rules
+    widest = max(rules[name].value for name in rules.numbers if "belt" in name and name.endswith("_width"))
+    assert line.join_s == pytest.approx(widest / 2, abs=1e-6)
+    assert line.half_width == pytest.approx(arc.meridian.half_width, abs=5e-6)
+    assert rules["crown_radius"].value == pytest.approx(line.belted.radius)
+
+    def jump(meridian: SizedMeridian) -> float:
+        end, step = meridian.join_s, 1e-3
+        phi = meridian.at(np.array([end - 2 * step, end - step, end + step, end + 2 * step]))[2]
+        return float((phi[2] - phi[3]) / (phi[0] - phi[1]))
+
+    assert 0.9 < jump(line) < 1.2
+    assert jump(arc.meridian) > 4

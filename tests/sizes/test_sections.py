@@ -145,6 +145,9 @@ def test_the_size_of_the_clark_and_dodge_tyre_is_its_section() -> None:
         ({"size": "205/60R15", "parameters": {"crown_radius": "1 mm"}}, "outside what is possible here: 50 mm to"),
         ({"size": "205/60R15", "parameters": {"apex_height": "200 mm"}}, "from the bead to below the widest place"),
         ({"size": "205/60R15", "parameters": {"section_width": "165 mm", "rim_width": "7.5 in"}}, "."),
+        ({"size": "295/80R22.5", "parameters": {"belt_power": "2", "crown_radius": "0.6 m"}}, "give one of them"),
+        ({"size": "385/65R22.5", "parameters": {"belt_power": "2"}}, "a larger belt_power, a wider belt"),
+        ({"size": "22x5.5 8PR", "parameters": {"belt_power": "2"}}, "no number 'belt_power'"),
         ({"size": "205/60R15", "color": "black"}, "unknown key 'color'"),
     ],
 )  # fmt: skip

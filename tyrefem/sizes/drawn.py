@@ -81,6 +81,7 @@ def section_data(
         if radial
         else "sin phi ~ (r^2 - r_m^2) sin alpha, cos alpha/r constant"
     )
+    before = "with the belts' share of the pressure" if line.belted else "an arc"
     return {
         "title": more["title"],
         "line": {
@@ -89,7 +90,7 @@ def section_data(
             "points": {"unit": "mm", "values": [[round(r * 1e3, 4), round(z * 1e3, 4)] for r, z in points]},
             "source": f"cords in equilibrium under pressure, {words} (Purdy), from {line.join_s * 1e3:.1f} mm to "
             f"{line.flange_s * 1e3:.1f} mm along "
-            f"the line, r_m {line.membrane.widest * 1e3:.1f} mm; an arc before, the rim's flange and seat behind "
+            f"the line, r_m {line.membrane.widest * 1e3:.1f} mm; {before} before, the rim's flange and seat behind "
             f"it; fitted to {size.text} by "
             "tyrefem.sizes",
         },

@@ -11,6 +11,7 @@ import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
 from tyrefem.errors import InputError
+from tyrefem.sizes.crown import BeltedCrown
 from tyrefem.sizes.membrane import Membrane
 from tyrefem.sizes.rim import Rim
 
@@ -26,8 +27,9 @@ LEAST_ANGLES = (-1.55, -1.9)
 class SizedMeridian:
     """Carcass line from the crown to the bead seat.
 
-    Crown arc of ``crown_radius`` over ``join`` rad; `Membrane` from there to the angle ``leaves``; an arc of radius
-    ``bend`` the other way, about the rim's flange; a straight part at right angles to the seat. ``offset``: material
+    Crown arc of ``crown_radius`` over ``join`` rad, or the line ``belted``; `Membrane` from there to the angle
+    ``leaves``; an arc of radius ``bend`` the other way, about the rim's flange; a straight part at right angles to the
+    seat. ``offset``: material
     outside of the line at the bead.
     """
 
@@ -39,6 +41,7 @@ class SizedMeridian:
     rim: Rim
     offset: float
     bend: float
+    belted: BeltedCrown | None = None
 
     @property
     def bend_centre(self) -> tuple[float, float]:
@@ -57,10 +60,7 @@ class SizedMeridian:
     @cached_property
     def _line(self) -> tuple[Array, Array, Array, Array]:
         """s, r, z, phi of fine samples."""
-        theta = np.linspace(0.0, self.join, 60) if self.join > 0 else np.zeros(1)
-        r = self.crown - self.crown_radius * (1 - np.cos(theta))
-        z = self.crown_radius * np.sin(theta)
-        parts = [(self.crown_radius * theta, r, z, np.pi / 2 - theta)]
+        parts = [self._crown]
         phi, r, z, s = self.membrane.run(np.pi / 2 - self.join, self.leaves, FINE)
         parts.append((parts[-1][0][-1] + s, r, parts[-1][2][-1] + z, phi))
         bend = self.bend
@@ -74,6 +74,15 @@ class SizedMeridian:
         joined = [np.concatenate([part[k][bool(n) :] for n, part in enumerate(parts)]) for k in range(4)]
         return joined[0], joined[1], joined[2], joined[3]
 
+    @cached_property
+    def _crown(self) -> tuple[Array, Array, Array, Array]:
+        """s, r, z, phi up to where the membrane begins."""
+        if self.belted is not None:
+            return self.belted.run()
+        theta = np.linspace(0.0, self.join, 60) if self.join > 0 else np.zeros(1)
+        r = self.crown - self.crown_radius * (1 - np.cos(theta))
+        return self.crown_radius * theta, r, self.crown_radius * np.sin(theta), np.pi / 2 - theta
+
     @property
     def length(self) -> float:
         """Crown to bead seat, m."""
@@ -82,7 +91,7 @@ class SizedMeridian:
     @property
     def join_s(self) -> float:
         """Where the membrane begins, m from the crown."""
-        return self.crown_radius * self.join if self.join > 0 else 0.0
+        return float(self._crown[0][-1])
 
     @property
     def flange_s(self) -> float:
@@ -170,6 +179,51 @@ def radial_meridian(
     )
     if solution is None:
         raise _impossible(half_width, rim)
+    return line(solution)
+
+
+def belted_meridian(
+    crown: float, edge: float, power: float, half_width: float, rim: Rim, offset: float, bend: float
+) -> SizedMeridian:
+    """The line of a radial whose belt carries the share of `BeltedCrown` up to ``edge``, m: r_m, the share at the mid
+    plane (with it the crown radius) and the angle at the flange are solved for.
+
+    Raises
+    ------
+    InputError : no such line: the belt is too narrow for its ``power``.
+    """
+
+    def line(x: Array) -> SizedMeridian:
+        widest, share, leaves = (float(value) for value in x)
+        belted = BeltedCrown(crown, widest, edge, share, power)
+        _, r, _, phi = belted.run()
+        membrane = Membrane(widest, float((r[-1] ** 2 - widest**2) / np.sin(phi[-1])))
+        join = float(np.pi / 2 - phi[-1])
+        return SizedMeridian(membrane, crown, belted.radius, join, leaves, rim, offset, bend, belted)
+
+    def misses(x: Array) -> list[float]:
+        drawn = line(x)
+        start = float(drawn._crown[2][-1])
+        _, _, z, _ = drawn.membrane.run(np.pi / 2 - drawn.join, 0.0, 40)
+        return [start + z[-1] - half_width, *_flange_misses(drawn, start)]
+
+    starts = [
+        np.array([height * rim.diameter / 2 + (1 - height) * crown, share, leaves])
+        for height in (0.45, 0.35)
+        for share in (0.8, 0.6, 0.9)
+        for leaves in (-0.9, -0.6)
+    ]
+    solution = _solved(
+        misses,
+        starts,
+        lambda x, least: rim.diameter / 2 < x[0] < crown and 0 < x[1] < 1 and least < x[2] < rim.taper,
+    )
+    if solution is None:
+        raise InputError(
+            f"no crown line has a belt {2e3 * edge:.4g} mm wide whose share of the pressure falls with the power "
+            f"{power:g}; a larger belt_power, a wider belt or crown_radius in its place",
+            field="parameters.belt_power",
+        )
     return line(solution)
 
 

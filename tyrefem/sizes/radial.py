@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Mapping
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from functools import cached_property
 from typing import Any
 
@@ -14,7 +14,7 @@ from tyrefem.errors import InputError
 from tyrefem.sizes.cards import bead_card
 from tyrefem.sizes.designation import TyreSize
 from tyrefem.sizes.drawn import Drawn, length, section_data, table, thickness
-from tyrefem.sizes.meridian import radial_meridian
+from tyrefem.sizes.meridian import belted_meridian, radial_meridian
 from tyrefem.sizes.rim import Rim
 from tyrefem.sizes.rules import Rules
 
@@ -46,7 +46,8 @@ class Radial:
     """A radial to be drawn: rules that hold all its numbers, its rim, and the names of its regions.
 
     The first belt's layer goes on as the apex, the second's as the turn-up. ``apex``: region of the apex and share
-    of its height that it takes, from the tip on.
+    of its height that it takes, from the tip on. ``share_end``: where the belts' share of the pressure ends,
+    m along the line; None: the plies' crown is an arc.
     """
 
     size: TyreSize
@@ -57,6 +58,7 @@ class Radial:
     apex: tuple[tuple[str, float], ...]
     title: str
     bead_fill: float
+    share_end: float | None = None
 
     def n(self, name: str) -> float:
         """A number by its name, SI."""
@@ -95,7 +97,10 @@ class Radial:
         if crown < self.rim.diameter / 2 + 0.02:
             raise InputError("leaves no room for a sidewall above the rim", field="parameters.outer_diameter")
         half = self.n("section_width") / 2 - self.wall_outside
-        return radial_meridian(crown, self.n("crown_radius"), half, self.rim, self.bead_outside, self.n("bend_radius"))
+        at_rim = self.rim, self.bead_outside, self.n("bend_radius")
+        if self.share_end is None:
+            return radial_meridian(crown, self.n("crown_radius"), half, *at_rim)
+        return belted_meridian(crown, self.share_end, self.n("belt_power"), half, *at_rim)
 
     @cached_property
     def tread_edge(self) -> float:
@@ -322,6 +327,35 @@ class Radial:
             "flange_radius and what lies outside of the plies at the bead: the plies bend about the flange's centre"
         )
         self.rules("bend_radius", radius, "mm", source, 3e-3)
+
+    def with_belt_share(self) -> Radial:
+        """This radial, or where ``belt_power`` is given the one whose belts carry that share of the pressure up to the
+        edge of the widest; `crown_radius` is then solved for.
+
+        Raises
+        ------
+        InputError : ``crown_radius`` is given as well; no such line.
+        """
+        rules = self.rules
+        if "belt_power" not in rules.given:
+            return self
+        if "crown_radius" in rules.given:
+            raise InputError(
+                "is solved for where belt_power is given: give one of them", field="parameters.crown_radius"
+            )
+        rules("belt_power", 2.0, "1", "", 1.0, 20.0)
+        widths = [self.n(belt.width) for belt in self.belts if belt.width in rules.numbers]
+        share_end = max(widths, default=0.0) / 2 or self.tread_edge
+        belted = replace(self, share_end=share_end)
+        # A belt without a width yet gets that of the tread, whose edge moves with the line.
+        for _ in range(0 if widths else 30):
+            share_end, before = belted.tread_edge, share_end
+            belted = replace(self, share_end=share_end)
+            if abs(share_end - before) < 1e-8:
+                break
+        source = "solved for: the belts' share of the pressure falls with belt_power to the edge of the widest belt"
+        rules("crown_radius", belted.line.crown_radius, "mm", source)
+        return belted
 
     def drawn(self, materials: Mapping[str, Any]) -> Drawn:
         """The section's file."""

@@ -95,6 +95,7 @@ def draw(size: TyreSize, rule: Rules) -> Drawn:
         BEAD_FILL,
     )
     radial.add_bend()
+    radial = radial.with_belt_share()
     belt = rule(
         "inner_belts_width", 2 * radial.tread_edge, "mm", f"{ESTIMATE}, as wide as the plies under the tread", 0.02
     )

@@ -130,6 +130,7 @@ def draw_with(
         size, rule, rim, "body-ply", belts, (("apex", 1.0),), f"{size.text} {size.kind} radial by its size", BEAD_FILL
     )
     radial.add_bend()
+    radial = radial.with_belt_share()
     rule.check_all_used()
     count = round(radial.n("plies"))
     ply = {

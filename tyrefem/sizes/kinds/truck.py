@@ -110,6 +110,7 @@ def draw(size: TyreSize, rule: Rules) -> Drawn:
         BEAD_FILL,
     )
     radial.add_bend()
+    radial = radial.with_belt_share()
     rule.check_all_used()
     ply = {
         "base": "truck-body-ply",
