@@ -13,6 +13,7 @@ import numpy as np
 from tyrefem.brief import Brief
 from tyrefem.diagnose.candidates import SetPrior
 from tyrefem.diagnose.numbers import percent
+from tyrefem.diagnose.prior_sensitivity import PriorChange, prior_sensitivity
 from tyrefem.diagnose.residual_tables import residual_table, rms
 
 if TYPE_CHECKING:
@@ -123,6 +124,11 @@ class DiagnosisData(Brief):
         """ln of the prior probability of a set."""
         expected, settings = self.original.card.diagnosis.effects_expected, self.gap.settings
         return SetPrior(self.candidates, expected, settings.size_shares, settings.odd_run_share)
+
+    @functools.cached_property
+    def prior_sensitivity(self) -> tuple[PriorChange, ...]:
+        """The verdict with priors of the leading effects three times as large, and a third."""
+        return prior_sensitivity(self.judgement, self.gap, self.null, self.best, self.robustness)
 
     def rms(self, *, after: bool, held_out: bool) -> float:
         """Root mean square of measured - computed, K."""

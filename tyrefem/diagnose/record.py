@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from dataclasses import asdict
 from typing import TYPE_CHECKING, Any
 
 from tyrefem.diagnose.discrepancy_record import confidence, discrepancy_rows, effect_probability, support_row
@@ -62,6 +63,7 @@ def record(d: DiagnosisData) -> dict[str, Any]:
         "noise": noise(d),
         "confidence": confidence(d),
         "discrepancies": discrepancy_rows(d),
+        "prior_sensitivity": [asdict(change) for change in d.prior_sensitivity],
         "where": where(d),
         "next_experiment": dict(d.next_experiment),
         "amended_study": AMENDED,

@@ -11,10 +11,11 @@ from tyrefem.diagnose.heat_words import heat_words
 from tyrefem.diagnose.law_words import law_words
 from tyrefem.diagnose.numbers import amount, correction_words, parameter_name, percent
 from tyrefem.diagnose.partly_words import besides_words, explaining_words, least_words, ranges, tried_words
+from tyrefem.diagnose.prior_sensitivity import prior_words
 from tyrefem.diagnose.pulls import pulls
 from tyrefem.diagnose.result_tables import clearest, competing_sets, inclusion_probability
 from tyrefem.diagnose.support_words import support_words
-from tyrefem.diagnose.verdict import CONFOUNDED, IDENTIFIED, NO_GAP, PARTLY
+from tyrefem.diagnose.verdict import CONFOUNDED, IDENTIFIED, NO_GAP, PARTLY, UNEXPLAINED
 
 if TYPE_CHECKING:
     from tyrefem.diagnose.diagnosis import DiagnosisData
@@ -61,7 +62,8 @@ def effect_words(candidate: Candidate, fit: FittedSet, move: Movement | None = N
 def verdict_words(d: DiagnosisData) -> tuple[str, ...]:
     """The verdict in a few sentences, the most important first."""
     again = again_words(d) if d.verdict == IDENTIFIED else ()
-    return (*_verdict_sentences(d), *noise_words(d), *again)
+    priors = () if d.verdict == UNEXPLAINED else prior_words(d.prior_sensitivity, d.verdict)
+    return (*_verdict_sentences(d), *priors, *noise_words(d), *again)
 
 
 def noise_words(d: DiagnosisData) -> tuple[str, ...]:

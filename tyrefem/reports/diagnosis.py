@@ -16,6 +16,7 @@ from tyrefem.diagnose.discrepancy_record import effect_probability
 from tyrefem.diagnose.draft_effect import EFFECTS, draft_effects
 from tyrefem.diagnose.headline import QUESTIONS, headline, label
 from tyrefem.diagnose.numbers import amount, base_name, parameter_name, percent
+from tyrefem.diagnose.prior_sensitivity import prior_words
 from tyrefem.diagnose.record import AMENDED, record, where
 from tyrefem.diagnose.result_tables import candidate_rows, finite, history_table, set_rows, where_table
 from tyrefem.diagnose.set_posteriors import POSTERIOR, posterior_record
@@ -262,6 +263,17 @@ def _linear(d: DiagnosisData) -> list[str]:
     ]
 
 
+def _priors(d: DiagnosisData) -> list[str]:
+    """What follows if the prior of a leading effect is three times as large, or a third."""
+    tried = list(dict.fromkeys(change.effect for change in d.prior_sensitivity))
+    first = (
+        f"Priors (probability and usual size) of {', '.join(tried)}, each three times as large and a third: "
+        f"{sum(change.decides for change in d.prior_sensitivity)} of {len(d.prior_sensitivity)} change the verdict or "
+        "its names."
+    )
+    return [first, *prior_words(d.prior_sensitivity, d.verdict)]
+
+
 def _assumed(d: DiagnosisData) -> list[str]:
     choice = d.original.card.diagnosis
     return [
@@ -274,6 +286,7 @@ def _assumed(d: DiagnosisData) -> list[str]:
         *_linear(d),
         f"A correct model deviates by {choice.discrepancy:g} K (standard deviation), correlated over "
         f"{choice.correlation_time:g} s. The noise of readings is independent.",
+        *_priors(d),
         *([f"Excluded by the study: {', '.join(choice.exclude)}."] if choice.exclude else []),
         *(f"{note[0].upper()}{note[1:]}." for note in d.notes),
         "The model is linear within the uncertainty of every fit (Laplace approximation). Parameters have Gaussian "
