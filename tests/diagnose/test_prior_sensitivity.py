@@ -160,7 +160,9 @@ def test_beside_a_discrepancy_the_odds_of_the_effect_change_too() -> None:
 def test_record_and_page_list_the_priors(case: Any) -> None:
     rows = json.loads((case.folder / "verdict.json").read_text(encoding="utf-8"))["prior_sensitivity"]
     assert {row["effect"] for row in rows} >= {"hot-road", "no effect", "not in the catalogue"}
-    assert {(row["prior"], row["factor"]) for row in rows} == {(p, f) for p in (PROBABILITY, AMPLITUDE) for f in FACTORS}
+    assert {(row["prior"], row["factor"]) for row in rows} == {
+        (p, f) for p in (PROBABILITY, AMPLITUDE) for f in FACTORS
+    }
     assert not any(row["decides"] for row in rows), "a road 25 K warmer is certain under any of these priors"
     page = (case.folder / "diagnosis.html").read_text(encoding="utf-8")
     assert f"each three times as large and a third: 0 of {len(rows)} change the verdict or its names." in page
