@@ -26,7 +26,8 @@ FACTORS = (1 / 3, 3.0)
 PROBABILITY, AMPLITUDE = "probability", "amplitude"
 #: Names of the two alternatives without an effect.
 NO_EFFECT, OUTSIDE = "no effect", "not in the catalogue"
-#: Effects of sets above this probability are examined, and so many of them; sets this far below the best do not count.
+#: Effects of sets above this probability are examined, and so many of them; sets without a fit that are this far
+#: below the best (nats) are not examined.
 LEAST, MOST, FAR = 0.01, 8, 12.0
 
 
@@ -36,7 +37,8 @@ class PriorChange(Brief):
 
     Parameters
     ----------
-    effect : key of the effect, or "no effect", or "not in the catalogue". prior : "probability" or "amplitude".
+    effect : name of the effect (all variants and runs), or "no effect", or "not in the catalogue".
+    prior : "probability" or "amplitude".
     factor : on the prior probability, or on the standard deviations of the amplitudes.
     verdict, best : the verdict and the named effects, or the most probable set if none is named.
     share : probability that the members of the most probable set act. decides : the verdict or its names change.
@@ -63,9 +65,10 @@ def prior_sensitivity(
 ) -> tuple[PriorChange, ...]:
     """The verdicts that the priors of the leading effects decide; cheap, as nothing is simulated.
 
-    A factor f on the prior probability of an effect multiplies the odds of every set that contains it by f. Another
-    standard deviation of its amplitudes changes the Gaussian evidence of these sets: `evidence_change`. The verdict
-    follows from the sets ranked again. Beside a discrepancy model the odds of the effect change in the same way; the
+    A factor f on the prior probability of an effect, all its variants together, multiplies the odds of every set that
+    contains it by f. Another standard deviation of its amplitudes changes the Gaussian evidence of these sets, see
+    `evidence_change`. The verdict follows from the sets ranked again. Beside a discrepancy model the odds of
+    the effect change in the same way; the
     model's own probability stays.
 
     Parameters
@@ -148,19 +151,24 @@ def _variants(
 ) -> list[_Variant]:
     """(effect, prior, factor, number of the set -> change of its score, effects beside discrepancy models)."""
     variants: list[_Variant] = []
-    for effect in leading_effects(ranking):
-        with_it = [number for number, entry in enumerate(ranking) if effect in entry.members]
-        near = [number for number in with_it if ranking[number].score > ranking[0].score - FAR]
+    models = robustness.models if robustness else ()
+    for name in leading_effects(ranking):
+        members = [[each for each in entry.members if each.name == name] for entry in ranking]
+        with_it = [number for number, of_name in enumerate(members) if of_name]
+        top = ranking[0].score
+        near = [number for number in with_it if ranking[number].fit is not None or ranking[number].score > top - FAR]
+        amplitudes = [unknown for number in near for each in members[number] for unknown in each.amplitudes]
         for factor in FACTORS:
             shift = math.log(factor)
-            beside = _beside(robustness, effect, [shift] * len(robustness.models) if robustness else [])
-            variants.append((effect.key, PROBABILITY, factor, dict.fromkeys(with_it, shift), beside))
-        for factor in FACTORS if effect.amplitudes else ():
-            changed = dict.fromkeys(effect.amplitudes, factor)
+            beside = _beside(robustness, name, [shift] * len(models))
+            variants.append((name, PROBABILITY, factor, dict.fromkeys(with_it, shift), beside))
+        for factor in FACTORS if amplitudes else ():
+            changed = dict.fromkeys(amplitudes, factor)
             shifts = {number: _shift(ranking, number, residuals, null, changed) for number in near}
-            models = robustness.models if robustness else ()
-            beside = _beside(robustness, effect, [_shift_beside(model, effect, changed) for model in models])
-            variants.append((effect.key, AMPLITUDE, factor, shifts, beside))
+            # Sets far below the best change as the best set with the effect does.
+            shifts = dict.fromkeys(with_it, shifts[near[0]]) | shifts
+            beside = _beside(robustness, name, [_shift_beside(model, name, changed) for model in models])
+            variants.append((name, AMPLITUDE, factor, shifts, beside))
     for key in (NO_EFFECT, OUTSIDE):
         places = [number for number, entry in enumerate(ranking) if entry.key == key]
         odds = [(factor, dict.fromkeys(places, math.log(factor))) for factor in (FACTORS if places else ())]
@@ -168,10 +176,13 @@ def _variants(
     return variants
 
 
-def leading_effects(ranking: Sequence[RankedSet]) -> tuple[Candidate, ...]:
-    """The effects of the most probable set and of all sets above 1 %, at most eight."""
+def leading_effects(ranking: Sequence[RankedSet]) -> tuple[str, ...]:
+    """Names of the effects of the most probable set and of all sets above 1 %, at most eight.
+
+    The variants of an effect, and its forms in single runs, share a prior.
+    """
     sets = [entry for number, entry in enumerate(ranking) if number == 0 or entry.probability >= LEAST]
-    return tuple(dict.fromkeys(member for entry in sets for member in entry.members))[:MOST]
+    return tuple(dict.fromkeys(member.name for entry in sets for member in entry.members))[:MOST]
 
 
 def _shift(
@@ -210,21 +221,23 @@ def _shifted(ranking: Sequence[RankedSet], shifts: Mapping[int, float]) -> tuple
     return tuple(sorted(entries, key=lambda entry: -entry.score))
 
 
-def _beside(robustness: Robustness | None, effect: Candidate, shifts: Sequence[float]) -> Robustness | None:
+def _beside(robustness: Robustness | None, name: str, shifts: Sequence[float]) -> Robustness | None:
     """The effects beside discrepancy models; ``shifts``: of ln odds of one effect, by model."""
     if robustness is None:
         return None
     models = []
     for model, shift in zip(robustness.models, shifts, strict=True):
-        share, odds = model.named.get(effect.key, 0.0), math.exp(min(shift, 700.0))
-        named = {**model.named, effect.key: min(share * odds / (1 - share + share * odds), 1.0) if share else 0.0}
-        models.append(replace(model, named=named))
+        of_effect = {key: share for key, share in model.named.items() if key.split(" ")[0] == name}
+        acts, odds = min(sum(of_effect.values()), 1.0), math.exp(min(shift, 700.0))
+        total = 1 - acts + acts * odds
+        named = {key: min(share * odds / total, 1.0) for key, share in of_effect.items()}
+        models.append(replace(model, named={**model.named, **named}))
     return Robustness(tuple(models))
 
 
-def _shift_beside(model: UnderDiscrepancy, effect: Candidate, changed: Mapping[Unknown, float]) -> float:
+def _shift_beside(model: UnderDiscrepancy, name: str, changed: Mapping[Unknown, float]) -> float:
     """Change of ln evidence of the best fitted set with the effect beside a discrepancy model; 0 without such a fit."""
-    fits = [fit for members, fit in model.fits.items() if effect in members]
+    fits = [fit for members, fit in model.fits.items() if any(each.name == name for each in members)]
     if not fits:
         return 0.0
     fit = max(fits, key=lambda each: each.log_evidence)
