@@ -9,12 +9,13 @@ from typing import TYPE_CHECKING
 
 from tyrefem.brief import Brief
 from tyrefem.diagnose.candidates import Candidate
+from tyrefem.diagnose.discrepancy import ENERGY
 from tyrefem.diagnose.draft_effect import EFFECTS, draft_effects
 from tyrefem.diagnose.heat_sources import STATED, UnknownSource
 from tyrefem.diagnose.heat_words import course_words, source_place
 from tyrefem.diagnose.materiality import Movement, largest_change
 from tyrefem.diagnose.numbers import amount, correction_subject, correction_words, percent, run_words
-from tyrefem.diagnose.partly_words import besides_words, least_words, ranges
+from tyrefem.diagnose.partly_words import besides_words, explaining_words, least_words, ranges
 from tyrefem.diagnose.pulls import Pull, pulls
 from tyrefem.diagnose.result_tables import clearest, competing_sets, inclusion_probability
 from tyrefem.diagnose.support_words import support_words
@@ -130,26 +131,30 @@ def _partly(d: DiagnosisData) -> tuple[str, str, str]:
     wrong = f"This is a part of it: {clauses.rstrip('.')}; {besides_words(d)}."
     sure = f"{_it_is(d.best.members)} {least_words(d)} probable, whatever else is wrong; {_closed(d)}."
     sure = " ".join((sure, *support_words(d)[:1]))
-    rest = _draft_step(d) or "look for the rest where the page shows what is left: strain energy, tan delta, drive"
+    rest = _rest(d) or "look for the rest where the page shows what is left: strain energy, tan delta, drive"
     return wrong, sure, f"Check that you believe the range, then {rest}."
 
 
-def _draft_step(d: DiagnosisData) -> str:
-    """How to judge the draft effect, if there is one."""
+def _rest(d: DiagnosisData) -> str:
+    """How to go on with what no effect explains: by strain laws, or by the draft effect; empty without either."""
+    if d.robustness is not None and d.robustness.models[0].name == ENERGY:
+        return "compare strain laws and tan delta where the heat differs (tyrefem strain STUDY)"
     files = list(draft_effects(d))
     return f"judge the draft {EFFECTS}/{files[0]} (tyrefem diagnose STUDY --effects {EFFECTS})" if files else ""
 
 
 def _unexplained(d: DiagnosisData) -> tuple[str, str, str]:
     sources = () if d.missing.over_time is None else d.missing.over_time.clear
-    wrong = f"No effect in the catalogue explains the deviation; {heat_clause(d, sources)}."
+    other = explaining_words(d)
+    cause = f"{other[0].lower()}{other[1:].rstrip('.')}" if other else heat_clause(d, sources)
+    wrong = f"No effect in the catalogue explains the deviation; {cause}."
     if d.judgement.doubts:
         sure = f"{_opened(d.judgement.doubts[0])}; {_gap(d)}."
     else:
         chance = percent(d.judgement.best.probability)
         sure = f"A cause outside the catalogue is {chance} probable against every set of effects tried; {_gap(d)}."
     row = clearest(d)
-    rest = _draft_step(d) or "write the cause as an effect (docs/effects.md) and diagnose again"
+    rest = _rest(d) or "write the cause as an effect (docs/effects.md) and diagnose again"
     place = f"{row['sensor']} in {run_words(str(row['run']))}"
     step = (
         f"Check {place} first, where measured - computed is {row['mean_K']:+z.1f} K {phase_words(str(row['phase']))}: "

@@ -37,7 +37,7 @@ if TYPE_CHECKING:
 PAGE = "diagnosis.html"
 _FILES = ("verdict.json", POSTERIOR, AMENDED, "difference.txt", "where.csv", "histories.csv", PAGE, "rms.png",
           "residual-map*.png", "probabilities.png", "histories-*.png", "missing-heat*.png", "gap.png", SUMMARY,
-          f"{EFFECTS}/inferred_*.py")  # fmt: skip
+          "energy-share.png", f"{EFFECTS}/inferred_*.py")  # fmt: skip
 #: Largest number of looks at the same data.
 MOST_LOOKS = 9
 #: Files that `save` may write.

@@ -13,6 +13,7 @@ from tyrefem.diagnose.numbers import percent
 from tyrefem.diagnose.result_tables import candidate_rows, rms_table, set_rows
 from tyrefem.diagnose.runs import MeasuredDrive, MeasuredSensor
 from tyrefem.diagnose.verdict import UNEXPLAINED
+from tyrefem.reports.diagnosis_energy import energy_figures
 from tyrefem.reports.diagnosis_gap import AFTER, BEFORE, HELD_OUT, gap_figure
 from tyrefem.reports.diagnosis_missing import missing_figures
 from tyrefem.reports.diagnosis_sections import residual_figures
@@ -41,7 +42,7 @@ if TYPE_CHECKING:
 
 def pictures(d: DiagnosisData) -> dict[str, bytes]:
     """File name -> PNG: ``gap``, ``rms``, ``residual-map``, ``probabilities``, histories; ``missing-heat`` if
-    unexplained.
+    unexplained; ``energy-share`` if another strain energy is the most probable discrepancy.
     """
     drawn = {
         "gap.png": gap_figure(d),
@@ -51,6 +52,7 @@ def pictures(d: DiagnosisData) -> dict[str, bytes]:
     }
     if d.verdict == UNEXPLAINED:
         drawn |= missing_figures(d)
+    drawn |= energy_figures(d)
     for number, run in enumerate(d.gap.runs):
         name = re.sub(r"[^\w.-]+", "-", run.name).strip("-.") or "run"
         file, again = f"histories-{name}.png", 2

@@ -210,7 +210,7 @@ def _missing_stations(d: DiagnosisData) -> Figure:
             along = missing.stations * 1e3
             mean, spread = (missing.heat, missing.heat_sd) if inside else (missing.flux, missing.flux_sd)
         divisor, shown = si(float(np.nanmax(np.abs(mean) + spread, initial=0.0)), unit)
-        _zones(axes, section)
+        draw_zones(axes, section)
         for number, run in enumerate(missing.runs):
             shift = (number - (many - 1) / 2) * min(0.14 * spacing, 0.5 * spacing / many)
             label = f"{short(run, 24)}, up to {missing.speeds[number]:.1f} m/s"
@@ -254,7 +254,7 @@ def by_run(source: UnknownSource, over_time: HeatOverTime) -> tuple[Array, Array
     return np.array(means), np.array(spreads)
 
 
-def _zones(axes: Axes, section: Section) -> None:
+def draw_zones(axes: Axes, section: Section) -> None:
     """Shade the sidewall and the bead, with a label."""
     shoulder, end = section.line.shoulder_s * 1e3, section.line.length * 1e3
     for number, (name, start, stop) in enumerate((("crown", 0.0, shoulder), ("sidewall and bead", shoulder, end))):
