@@ -12,12 +12,12 @@ from formula import Case, case, effect
 
 from tyrefem.diagnose.candidates import SetPrior
 from tyrefem.diagnose.criterion import LogEvidence
-from tyrefem.diagnose.discrepancy import ENERGY, NONE, Discrepancy, discrepancies
+from tyrefem.diagnose.discrepancy import ENERGY, NONE, Discrepancy, beside_law, discrepancies
 from tyrefem.diagnose.energy_shapes import courses, energy_shapes
 from tyrefem.diagnose.fits import first_fits
 from tyrefem.diagnose.forward_selection import ForwardSelection
 from tyrefem.diagnose.partly import beside_discrepancies
-from tyrefem.diagnose.ranked_beside import robustness
+from tyrefem.diagnose.ranked_beside import RankedBeside, robustness, under
 from tyrefem.diagnose.robustness import Robustness
 from tyrefem.diagnose.selection import SelectionProblem
 from tyrefem.diagnose.settings import DEFAULT
@@ -86,6 +86,29 @@ def test_an_effect_beside_a_wrong_strain_energy_is_partly_identified() -> None:
     low, high = robust.interval(HOT.amplitudes[0])
     assert low < 25.0 < high
     assert high - low < 12.0
+
+
+def test_an_effect_that_another_strain_law_does_not_need_is_not_named() -> None:
+    # The readings have the bump of the effect; one other law heats just there, another one does not.
+    data = measured(hot=25.0, off=0.25)
+    judgement, members, robust = diagnosed(data)
+    assert members == (HOT,)
+    bump = 25.0 * np.exp(-(((S - 0.2) / 0.06) ** 2) / 2)
+    problem = SelectionProblem(
+        data.residuals, data.predictions, (HOT, COLD), SetPrior((HOT, COLD), 0.5, SETTINGS.size_shares), LogEvidence()
+    )
+    fits = {part: first_fits(data.residuals, data.predictions, [part])[0] for part in ((), (HOT,))}
+    for change, named in ((4.0 * S, True), (bump, False)):
+        beside = RankedBeside(problem, beside_law(data.residuals, "other", [change]))
+        beside.begin(fits)
+        law = under(beside.discrepancy, beside.scored())
+        assert (law.named["hot"] > SETTINGS.named_probability) is named
+        revised, named_members = beside_discrepancies(
+            replace(judgement, verdict=UNEXPLAINED), replace(robust, laws=(law,)), SETTINGS
+        )
+        assert named_members == ((HOT,) if named else ())
+        assert (revised.verdict == PARTLY) is named
+        assert any("the strain law other" in reason for reason in revised.reasons) is not named
 
 
 def test_a_misfit_that_no_discrepancy_explains_names_nothing() -> None:

@@ -18,6 +18,8 @@ from tyrefem.diagnose.unknowns import Unknown
 
 Array = NDArray[np.float64]
 NONE, ENERGY, HEAT, READINGS = "none", "strain energy", "missing heat", "correlated readings"
+#: Name of a discrepancy by another strain law: this and the law's name.
+LAW = "strain law "
 #: Components of a correlated discrepancy with less than this share of the largest one's variance are left out.
 SMALLEST = 1e-3
 
@@ -42,6 +44,8 @@ class Discrepancy(Brief):
     @property
     def words(self) -> str:
         """What the model allows for, as the object of "with"."""
+        if self.name.startswith(LAW):
+            return f"the {self.name}"
         words = {
             NONE: "the model as it is",
             ENERGY: "another strain energy along the meridian",
@@ -49,6 +53,15 @@ class Discrepancy(Brief):
             READINGS: "errors of the readings",
         }[self.name]
         return f"{words} that neighbours in time share ({self.size:g} K)" if self.size else words
+
+
+def beside_law(residuals: Residuals, law: str, changes: Sequence[Array]) -> Discrepancy:
+    """Another strain law, to first order: its changes of the readings by run (K), beside another strain energy too."""
+    further = residuals.unknowns[residuals.nuisance :]
+    energy = [unknown for unknown in further if unknown.effect == SHAPE]
+    shaped = replace(residuals, sensitivities=residuals.sensitivities.with_nuisance(energy), offset=tuple(changes))
+    of_runs = _of_runs(residuals, energy, residuals.settings.energy_of_run)
+    return Discrepancy(f"{LAW}{law}", 0.0, _beside(shaped, [of_runs]))
 
 
 def discrepancies(residuals: Residuals) -> Iterator[Discrepancy]:

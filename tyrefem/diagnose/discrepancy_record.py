@@ -47,7 +47,10 @@ def support_row(d: DiagnosisData, member: Candidate) -> dict[str, Any] | None:
 
 
 def discrepancy_rows(d: DiagnosisData) -> list[dict[str, Any]]:
-    """Effects beside every discrepancy model, the most probable model first; parameters in SI. Empty without a gap."""
+    """Effects beside every discrepancy model, the most probable model first; parameters in SI. Empty without a gap.
+
+    Other strain laws that were tried come last; they have no probability.
+    """
     unknowns = {unknown.key: unknown for each in d.candidates for unknown in each.unknowns}
     return [
         {
@@ -63,5 +66,5 @@ def discrepancy_rows(d: DiagnosisData) -> list[dict[str, Any]]:
                 if key in unknowns
             },
         }
-        for model in (d.robustness.models if d.robustness else ())
+        for model in ((*d.robustness.models, *d.robustness.laws) if d.robustness else ())
     ]

@@ -250,7 +250,7 @@ def _predictive(r: Array, covariance: Array) -> tuple[float, float]:
 def linear_about(residuals: Residuals, fit: FittedSet, unknowns: Sequence[Unknown]) -> LinearModel:
     """The linear model about a fit; the columns of further unknowns are those at x = 0.
 
-    A shared error of the residuals that the fit was made without is whitened.
+    A shared error of the residuals that the fit was made without is whitened, and their offset subtracted.
     """
     columns = [residuals.unknowns.index(unknown) for unknown in unknowns]
     further = np.vstack([residuals.whitened[i][:, columns] for i in residuals.fitted])
@@ -258,6 +258,10 @@ def linear_about(residuals: Residuals, fit: FittedSet, unknowns: Sequence[Unknow
     if (shared := residuals.shared_error) is not None:
         further = shared.whitened(further)
         if fit.shared_error is None:
+            if residuals.offset:
+                data = data - np.concatenate(
+                    [residuals.runs[i].whitened(residuals.offset[i]) for i in residuals.fitted]
+                )
             jacobian, data = shared.whitened(jacobian), shared.whitened(data)
     return LinearModel(
         DesignMatrix((*fit.unknowns, *unknowns), len(fit.unknowns), np.hstack([jacobian, further])), data

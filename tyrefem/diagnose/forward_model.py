@@ -246,6 +246,15 @@ class ForwardModel(Brief):
             return np.full(self.drives[number].size, np.nan)
         return self.blocks(number, simulated.grid, simulated.readings)
 
+    def change_by_law(self, number: int, law: str) -> Array:
+        """Block means at a drive with another strain law, minus those of the study, at x = 0; NaN if it cannot run."""
+        base = self.base(number)
+        try:
+            other = fixed_step_run(base.study.replace({"mechanics.strain": law}), every=base.every)
+        except InputError:
+            return np.full(self.drives[number].size, np.nan)
+        return self.blocks(number, other.grid, other.readings) - self.blocks(number, base.grid, base.readings)
+
     def simulate(self, number: int, values: Values) -> FixedStepRun:
         """Fixed-step simulation of a drive with unknowns at ``values``; it has temperatures at any place."""
         study = self.with_values(self.driven(self.coarse, number), values)

@@ -38,7 +38,13 @@ def beside_discrepancies(
         judgement = _unexplained(judgement, doubt)
     leading = robustness.models[0]
     by_key = {member.key: member for fits in leading.fits for member in fits}
-    members = robustness.robust(by_key.values(), settings.named_probability)
+    least = settings.named_probability
+    members = robustness.robust(by_key.values(), least)
+    for member in replace(robustness, laws=()).robust(by_key.values(), least):
+        if member not in members:
+            law = min(robustness.laws, key=lambda law: law.named.get(member.key, 0.0))
+            reason = f"{member.key} is not named: with {law.words} it is less probable, or of the other sign"
+            judgement = replace(judgement, reasons=(*judgement.reasons, reason))
     if not members or len(members) > settings.largest or not _predicts_held_out(leading, members):
         return judgement, ()
     least = min(robustness.least(member.key) for member in members)

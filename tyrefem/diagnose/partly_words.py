@@ -53,7 +53,8 @@ def tried_words(d: DiagnosisData) -> str:
     """What else may be wrong, as it was tried."""
     robust = d.robustness
     assert robust is not None
-    return "; ".join(model.words for model in robust.models if model.name != NONE)
+    tried = "; ".join(model.words for model in (*robust.models, *robust.laws) if model.name != NONE)
+    return f"{tried} (not tried: strain law {', '.join(robust.untried)})" if robust.untried else tried
 
 
 def besides_words(d: DiagnosisData) -> str:

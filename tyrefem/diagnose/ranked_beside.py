@@ -10,11 +10,12 @@ import numpy as np
 
 from tyrefem.brief import Brief
 from tyrefem.diagnose.candidates import Candidate, Members, separate
-from tyrefem.diagnose.discrepancy import NONE, READINGS, Discrepancy, discrepancies
+from tyrefem.diagnose.discrepancy import NONE, READINGS, Discrepancy, beside_law, discrepancies
 from tyrefem.diagnose.fits import FittedSet, first_fits, fitted_beside, linear_about, state_beside
 from tyrefem.diagnose.gauss_newton import FitState, initial_state
 from tyrefem.diagnose.robustness import Robustness, UnderDiscrepancy, weighed
 from tyrefem.diagnose.selection import ScoredSet, SelectionProblem
+from tyrefem.mechanics.strain_laws import strain_laws
 
 #: A set whose linear estimate is this far below the best is not fitted beside a discrepancy, nats.
 FAR = 60.0
@@ -197,10 +198,10 @@ def robustness(problem: SelectionProblem, scored: Sequence[ScoredSet], *, certai
     share = (1 - settings.right_model) / max(len(ranked), 1)
 
     def result() -> Robustness:
-        models = [(_under(Discrepancy(NONE, 0.0, problem.residuals), alone), settings.right_model, _total(alone))]
+        models = [(under(Discrepancy(NONE, 0.0, problem.residuals), alone), settings.right_model, _total(alone))]
         for beside in ranked.values():
             rows = beside.scored()
-            models.append((_under(beside.discrepancy, rows), share, _total(rows)))
+            models.append((under(beside.discrepancy, rows), share, _total(rows)))
         return weighed(models)
 
     first = result()
@@ -209,6 +210,29 @@ def robustness(problem: SelectionProblem, scored: Sequence[ScoredSet], *, certai
     for beside in left:
         beside.further()
     return result() if left else first
+
+
+def beside_strain_laws(problem: SelectionProblem, robust: Robustness, fits: Sequence[FittedSet]) -> Robustness:
+    """The sets of some fits, and those with one effect more or less, ranked again beside every other strain law.
+
+    The fits are without a discrepancy. A law that presses the tyre on the road costs too much and is not tried, nor is
+    one that the study cannot run, or that needs further inputs.
+    """
+    residuals, evaluations = problem.residuals, problem.predictions.evaluations
+    numbers = range(len(residuals.runs))
+    tried, untried = [], []
+    for name, law in strain_laws().items():
+        if name == residuals.study.card.mechanics.strain or not law.compared:
+            continue
+        answers = [] if law.presses else evaluations.of("change_by_law", [(number, name) for number in numbers])
+        if not answers or not all(np.isfinite(change).all() for change in answers):
+            untried.append(name)
+            continue
+        beside = RankedBeside(problem, beside_law(residuals, name, answers))
+        beside.begin({problem.ordered(fit.members): fit for fit in fits})
+        beside.further()
+        tried.append(replace(under(beside.discrepancy, beside.scored()), probability=math.nan))
+    return replace(robust, laws=tuple(tried), untried=tuple(untried))
 
 
 def fit_beside(problem: SelectionProblem, model: UnderDiscrepancy, fit: FittedSet) -> FittedSet:
@@ -241,7 +265,7 @@ def _total(scored: Sequence[ScoredSet]) -> float:
     return float(np.logaddexp.reduce([entry.score for entry in scored]))
 
 
-def _under(model: Discrepancy, scored: Sequence[ScoredSet]) -> UnderDiscrepancy:
+def under(model: Discrepancy, scored: Sequence[ScoredSet]) -> UnderDiscrepancy:
     """The sets beside a model, still without the model's probability."""
     total = _total(scored)
     named: dict[str, float] = {}

@@ -30,6 +30,7 @@ class Residuals(Brief):
     ----------
     study : the study. runs : the measured runs. sensitivities : computed block means and their derivatives.
     shared_error : error of the model that the readings share; None: none beyond each sensor's own.
+    offset : by run (n_blocks,) K, a known error of the computed temperatures, which is added; empty: none.
     """
 
     study: StudyData
@@ -37,6 +38,7 @@ class Residuals(Brief):
     sensitivities: Sensitivities
     settings: DiagnosisSettings = DEFAULT
     shared_error: SharedError | None = None
+    offset: tuple[Array, ...] = ()
 
     @property
     def unknowns(self) -> tuple[Unknown, ...]:
@@ -96,7 +98,8 @@ class Residuals(Brief):
     def residual(self, number: int, computed: Array) -> Array:
         """Whitened measured - computed of a run, from block means on the coarse mesh."""
         run = self.runs[number]
-        return run.whitened(run.measured - self.corrected(number, computed))
+        off = self.offset[number] if self.offset else 0.0
+        return run.whitened(run.measured - self.corrected(number, computed) - off)
 
     def joined(self, parts: Sequence[Array]) -> Array:
         """Whitened rows of the fitted runs, one run after the other; a shared error is whitened too."""

@@ -52,9 +52,15 @@ class UnderDiscrepancy(Brief):
 
 @dataclass(frozen=True, eq=False)
 class Robustness(Brief):
-    """Probabilities of effects beside every discrepancy model; ``models``: the models, the most probable first."""
+    """Probabilities of effects beside every discrepancy model.
+
+    ``models``: the models, the most probable first. ``laws``: other strain laws that were tried, without a probability.
+    ``untried``: other strain laws that were not tried.
+    """
 
     models: tuple[UnderDiscrepancy, ...]
+    laws: tuple[UnderDiscrepancy, ...] = ()
+    untried: tuple[str, ...] = ()
 
     def _title(self) -> str:
         return f"{len(self.models)} models, {self.models[0].name} first"
@@ -65,8 +71,8 @@ class Robustness(Brief):
         return sum(model.probability for model in self.models if model.name == NONE)
 
     def least(self, key: str) -> float:
-        """Smallest probability of an effect over the models, also over improbable ones."""
-        return min(model.named.get(key, 0.0) for model in self.models)
+        """Smallest probability of an effect over the models, also over improbable ones, and over the strain laws."""
+        return min(model.named.get(key, 0.0) for model in (*self.models, *self.laws))
 
     def mean(self, key: str) -> float:
         """Probability of an effect, averaged over the models by their probabilities."""
@@ -84,7 +90,8 @@ class Robustness(Brief):
     def agrees(self, candidate: Candidate) -> bool:
         """Whether an effect has the same sign beside every model, and beside probable models like amounts (`APART`)."""
         for unknown in candidate.amplitudes:
-            known = [(model.probability, model.values.get(unknown.key)) for model in self.models]
+            every = (*self.models, *self.laws)
+            known = [(model.probability, model.values.get(unknown.key)) for model in every]
             first = known[0][1]
             if first is None:
                 return False

@@ -29,7 +29,7 @@ from tyrefem.diagnose.multifidelity import Predictions
 from tyrefem.diagnose.next_experiment import next_experiment
 from tyrefem.diagnose.options import DiagnosisOptions, Method, SimulationWork, grouped
 from tyrefem.diagnose.partly import beside_discrepancies
-from tyrefem.diagnose.ranked_beside import fit_beside, robustness
+from tyrefem.diagnose.ranked_beside import beside_strain_laws, fit_beside, robustness
 from tyrefem.diagnose.residuals import Residuals, residuals_of
 from tyrefem.diagnose.robustness import Robustness
 from tyrefem.diagnose.runs import MeasuredDrive, measured_drive, with_noise_of_data
@@ -280,7 +280,14 @@ def rank(
     if judgement.verdict == NO_GAP:
         return Ranking(judgement, best_fit, null, missing, fit_of, movements_of(best_fit))
     robust = robustness(problem, scored, certain=judgement.verdict == IDENTIFIED)
-    judgement, partly = beside_discrepancies(judgement, robust, settings)
+    revised, partly = beside_discrepancies(judgement, robust, settings)
+    if partly:
+        if tick:
+            tick("trying other strain laws")
+        sets = dict.fromkeys(problem.ordered(each) for each in ((), *((member,) for member in partly), partly))
+        robust = beside_strain_laws(problem, robust, [fit_of(members) for members in sets])
+        revised, partly = beside_discrepancies(judgement, robust, settings)
+    judgement = revised
     if not partly:
         of_effects = {}
         if judgement.verdict == IDENTIFIED:

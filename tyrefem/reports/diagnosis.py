@@ -155,7 +155,7 @@ def _discrepancies(d: DiagnosisData) -> list[dict[str, str]]:
     return [
         {
             "words": model.words,
-            "probability": percent(model.probability),
+            "probability": "" if math.isnan(model.probability) else percent(model.probability),
             "effects": "; ".join(
                 f"{key} {percent(share)}" for key, share in list(model.named.items())[:4] if share > 0.05
             )
