@@ -31,7 +31,8 @@ def support_words(d: DiagnosisData) -> tuple[str, ...]:
     others = "The other effects stay" if alone and len(d.supports) > len(shared) else "They stay"
     subject = "It stays" if len(d.supports) == 1 else others
     without = f"without any one sensor or run (least without {_named(weakest)})"
-    first = f"{subject} at least {percent(least)} probable {without}."
+    chance = percent(least)
+    first = f"{subject} {chance if chance.startswith('more') else f'at least {chance}'} probable {without}."
     return (first, *alone)
 
 
