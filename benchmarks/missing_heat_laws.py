@@ -128,17 +128,18 @@ def case(name: str, size: str, seed: int, workers: int, folder: Path, *, whole: 
         return row
     began = time.process_time()
     second = study.diagnose(settings=SETTINGS, workers=workers, effects=folder / "first" / "effects")
-    os.environ["TYREFEM_EFFECTS"] = ""
     for sentence in verdict_words(second):
         print("  ", sentence)
     print(f"   processor seconds {seconds:.0f} and {time.process_time() - began:.0f}")
     draft = next((folder / "first" / "effects").glob("*.py")).stem.replace("_", "-")
     chance = sum(share for key, share in second.judgement.named.items() if key.startswith(draft))
-    return row | {
+    row |= {
         "second_verdict": second.verdict, "second_set": second.best.key, "draft_probability": f"{chance:.3f}",
         "fitted_after_K": f"{second.rms(after=True, held_out=False):.2f}",
         "held_out_after_K": f"{second.rms(after=True, held_out=True):.2f}",
     }  # fmt: skip
+    os.environ["TYREFEM_EFFECTS"] = ""
+    return row
 
 
 def main() -> None:

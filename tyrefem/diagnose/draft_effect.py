@@ -99,7 +99,8 @@ def draft_source(d: DiagnosisData, name: str) -> str:
         low = max(low, -0.95)
     where = law_place_words(d, place)
     exponents = [law.exponent[term] for term in law.fit.terms]
-    tables = ", ".join(Path(entry.table).name for entry in d.original.measured) or ", ".join(heat.basis.grid.names)
+    fitted = [Path(entry.table).name for entry in d.original.measured if not entry.hold_out]
+    tables = ", ".join(dict.fromkeys(fitted)) or ", ".join(heat.basis.grid.names)
     today = datetime.datetime.now(tz=datetime.UTC).date().isoformat()
     shown = f"{law.amplitude:.3g} +- {law.sd:.2g} {'' if unit == '1' else unit}".rstrip()
     intervals = "; ".join(f"{PARAMETERS[e.name][1]} {e.mean:.3g} +- {e.sd:.2g}" for e in exponents)
