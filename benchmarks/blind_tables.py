@@ -64,7 +64,8 @@ def write(blind: Blind) -> None:
     """Rates, failures and picture of one model of the data, and its table of goals in the page."""
     name = blind.data_model
     table(TABLES / f"diagnosis-blind-{name}.csv", RATE, [rate_row(*item) for item in blind.rates.items() if item[1].of])
-    table(TABLES / f"diagnosis-blind-{name}-failures.csv", FAILURE, [failure_row(each) for each in blind.failures])
+    failed = [failure_row(each) for each in blind.failures] or [["none", *"-" * (len(FAILURE) - 1)]]
+    table(TABLES / f"diagnosis-blind-{name}-failures.csv", FAILURE, failed)
     if name == STRUCTURAL:
         with atomic_path(PICTURES / "blind-structural.png") as temporary:
             temporary.write_bytes(png(picture(blind)))
