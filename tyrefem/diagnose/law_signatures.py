@@ -33,8 +33,8 @@ MECHANISMS: Mapping[str, Mapping[str, float]] = {
 #: The same for a share of the model's own heat, which has speed and strain energy in it.
 SHARES: Mapping[str, Mapping[str, float]] = {
     "the same share in all runs (loss tangent, strain energy)": {},
-    "a loss that falls with strain (Payne)": {DEFLECTION: -1.0},
-    "a loss that rises with strain": {DEFLECTION: 1.0},
+    "a share that falls with the deflection": {DEFLECTION: -1.0},
+    "a share in proportion to the deflection (negative: a loss that falls with strain, Payne)": {DEFLECTION: 1.0},
     "a loss in proportion to the frequency (viscous)": {SPEED: 1.0},
 }
 #: Effects whose responses are this small beside noise are left out of the table (nats at one prior sd).
