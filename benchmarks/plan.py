@@ -1,6 +1,7 @@
 """Does a test plan lead to the right name? Blind cases whose first run is confounded, continued by plan and at random.
 
-    python benchmarks/plan.py --cases 40 --seed 1 --out results/plan
+    python benchmarks/plan.py --cases 40 --seed 1 --out results/plan                # with fits: half a minute a case
+    python benchmarks/plan.py --cases 40 --seed 1 --out results/plan-linear --linear
 
 The layout: 22x5.5 8PR, four thermocouples and the contained air, one run of 15 minutes. Eleven effects compete. A case
 hides one of them, wrong base numbers and displaced sensors in synthetic data, from another mesh and time integration.
@@ -12,6 +13,7 @@ drives, up to three. Every finished case is written at once, and the same comman
 from __future__ import annotations
 
 import argparse
+import itertools
 import json
 import math
 import time
@@ -20,24 +22,33 @@ from pathlib import Path
 from typing import Any
 
 import numpy as np
+from scipy.stats import chi2
 
 import tyrefem as tf
+from tyrefem.compare.experiment import experiments
 from tyrefem.diagnose.blind import BlindCase
-from tyrefem.diagnose.candidates import SetPrior, catalogue_candidates
-from tyrefem.diagnose.diagnosis import DiagnosisData
+from tyrefem.diagnose.candidates import Members, SetPrior, catalogue_candidates
 from tyrefem.diagnose.evaluations import Evaluations
+from tyrefem.diagnose.evidence import posterior
 from tyrefem.diagnose.forward_model import DriveResponse, ForwardModel
 from tyrefem.diagnose.isolability import MARGIN, competitors_of, margins
 from tyrefem.diagnose.linear_model import LinearModel
+from tyrefem.diagnose.residuals import residuals_of
+from tyrefem.diagnose.runs import measured_drive
 from tyrefem.diagnose.sampling import DriveSampling, SensorSampling
 from tyrefem.diagnose.sensitivities import Sensitivities, responses, sensitivities, unknowns_of
+from tyrefem.diagnose.set_posteriors import SetPosterior
 from tyrefem.diagnose.settings import DiagnosisSettings
 from tyrefem.diagnose.synthetic import Logger, record
 from tyrefem.diagnose.unknowns import base_unknowns, sensor_unknowns, with_values
+from tyrefem.diagnose.verdict import CONFOUNDED, IDENTIFIED, NO_GAP, UNEXPLAINED
 from tyrefem.diagnose.workflow import diagnose
 from tyrefem.effects import catalogue
 from tyrefem.measured import MeasuredRun
+from tyrefem.plan.batch import greedy_batch
+from tyrefem.plan.beliefs import Beliefs
 from tyrefem.plan.drives import CandidateDrive, candidate_drives
+from tyrefem.plan.readings import planned_readings
 from tyrefem.plan.workflow import plan
 from tyrefem.simulation.surroundings import GAS
 
@@ -160,8 +171,19 @@ def measured(layout: Layout, case: BlindCase, name: str, drive: int) -> Measured
     return record(with_values(driven, case.values).replace(layout.data_mesh), name, Logger(), rng)
 
 
+@dataclass(frozen=True, eq=False)
+class Verdict:
+    """A verdict, the best set, its probability, the sets, and what a plan needs to know."""
+
+    verdict: str
+    best: Members
+    probability: float
+    sets: dict[str, float]
+    knowledge: Any
+
+
 class Course:
-    """The runs of a case so far, and their diagnosis."""
+    """The runs of a case so far, and the verdicts by `tyrefem.diagnose`."""
 
     def __init__(self, layout: Layout, case: BlindCase) -> None:
         self.layout, self.case = layout, case
@@ -169,54 +191,124 @@ class Course:
         self.runs: list[MeasuredRun] = []
         self.rows: list[dict[str, Any]] = []
 
-    def add(self, drive: int) -> DiagnosisData:
-        """Make a run, and diagnose all runs."""
+    def measure(self, drive: int) -> None:
+        """Make a run."""
         name = run_name(drive, self.drives.count(drive))
         self.drives.append(drive)
         self.runs.append(measured(self.layout, self.case, name, drive))
-        known = [self.layout.known[number] for number in self.drives]
-        diagnosis = diagnose(self.layout.study, self.runs, known=known, settings=SETTINGS, rerun=False)
-        judgement = diagnosis.judgement
-        right = {member.key for member in judgement.best.members} == set(self.case.names)
+
+    def add(self, drive: int) -> Verdict:
+        """Make a run, and diagnose all runs."""
+        self.measure(drive)
+        verdict = self.judged([self.layout.known[number] for number in self.drives])
+        right = {member.key for member in verdict.best} == set(self.case.names)
         self.rows.append(
             {
                 "drive": self.layout.drives[drive].name,
-                "verdict": diagnosis.verdict,
-                "best": judgement.best.key,
-                "probability": judgement.probability,
-                "right": bool(right and diagnosis.verdict == "identified"),
-                "hidden_probability": judgement.named.get(self.case.names[0], 0.0),
+                "verdict": verdict.verdict,
+                "best": key_of_set(verdict.best),
+                "probability": verdict.probability,
+                "right": bool(right and verdict.verdict == IDENTIFIED),
             }
         )
-        return diagnosis
+        return verdict
+
+    def judged(self, known: list[DriveResponse]) -> Verdict:
+        """The verdict on all runs."""
+        diagnosis = diagnose(self.layout.study, self.runs, known=known, settings=SETTINGS, rerun=False)
+        judgement = diagnosis.judgement
+        sets = {entry.key: entry.probability for entry in judgement.ranking[:4]}
+        return Verdict(diagnosis.verdict, judgement.best.members, judgement.probability, sets, diagnosis)
+
+    def proposed(self, verdict: Verdict) -> tuple[int, float]:
+        """Number of the drive that the plan proposes, and the expected probability of the true set after it."""
+        proposal = plan(self.layout.study, verdict.knowledge, settings=SETTINGS, known=self.layout.known)
+        if proposal.steps and proposal.steps[0].drive is not None:
+            return self.layout.drives.index(proposal.steps[0].drive), proposal.steps[0].right
+        return (proposal.compared[0].drive or 0) if proposal.compared else 0, math.nan
 
     @property
     def ended(self) -> bool:
         """Whether an effect is named."""
-        return self.rows[-1]["verdict"] == "identified"
+        return bool(self.rows) and self.rows[-1]["verdict"] == IDENTIFIED
 
 
-def followed(layout: Layout, first: Course, diagnosis: Any) -> tuple[list[Any], list[float]]:
-    """The verdicts along the plan, one run at a time, and the expected probability that each plan stated."""
-    course, expected = first, list[float]()
-    while not course.ended and len(course.drives) <= PLANNED:
-        proposal = plan(layout.study, diagnosis, settings=SETTINGS, known=layout.known)
-        if proposal.steps and proposal.steps[0].drive is not None:
-            drive = layout.drives.index(proposal.steps[0].drive)
-            expected.append(proposal.steps[0].right)
+class LinearCourse(Course):
+    """The same with verdicts by the evidence of the linear model about x = 0: all single effects and pairs, no fits."""
+
+    def judged(self, known: list[DriveResponse]) -> Verdict:
+        """The verdict on all runs."""
+        study = self.layout.study
+        runs = tuple(measured_drive(each, study, SETTINGS) for each in experiments(study, self.runs))
+        of_layout = self.layout.sensitive
+        sensitive = sensitivities([run.sampling for run in runs], of_layout.unknowns, of_layout.nuisance, known)
+        linear = residuals_of(study, runs, sensitive, SETTINGS).linear(range(len(runs)))
+        candidates = catalogue_candidates(study)
+        prior = SetPrior(candidates, study.card.diagnosis.effects_expected)
+        singles = [(candidate,) for candidate in candidates]
+        sets: list[Members] = [(), *singles, *itertools.combinations(candidates, 2)]
+        score = np.array([prior(members) + linear.log_evidence(members) for members in sets])
+        p = np.exp(score - score.max())
+        p /= p.sum()
+        order = np.argsort(-p)
+        best = sets[order[0]]
+        acts = float(sum(share for share, members in zip(p, sets, strict=True) if set(best) <= set(members)))
+        misfit = chi2.sf(linear.least_misfit(best), len(linear.data))
+        if misfit < SETTINGS.rejected_p:
+            verdict = UNEXPLAINED
+        elif not best:
+            verdict = NO_GAP
+        elif acts >= SETTINGS.named_probability and p[order[0]] >= SETTINGS.alone_probability:
+            verdict = IDENTIFIED
         else:
-            drive = int(np.argmax(proposal.candidates["gain_nats"])) if len(proposal.candidates) else 0
-            expected.append(math.nan)
-        diagnosis = course.add(drive)
+            verdict = CONFOUNDED
+        posteriors = tuple(_set_posterior(linear, sets[i], float(p[i] / p[order[:12]].sum())) for i in order[:12])
+        noise = {sensor.sensor: sensor.noise for sensor in runs[0].sensors}
+        beliefs = Beliefs(study, posteriors, noise)
+        return Verdict(verdict, best, acts, {key_of_set(sets[i]): float(p[i]) for i in order[:4]}, beliefs)
+
+    def proposed(self, verdict: Verdict) -> tuple[int, float]:
+        """Number of the drive that the plan proposes, and the expected probability of the true set after it."""
+        layout = self.layout
+        readings = planned_readings(
+            verdict.knowledge, layout.study, layout.drives, (), settings=SETTINGS, known=layout.known
+        )
+        search = greedy_batch(readings, layout.drives, (), layout.study.card.plan)
+        entry = (search.chosen or search.compared)[0]
+        return entry.drive or 0, entry.information.right
+
+
+def _set_posterior(linear: LinearModel, members: Members, probability: float) -> SetPosterior:
+    """The Gaussian of a set's unknowns in the linear model."""
+    design = linear.design
+    unknowns = (*design.unknowns[: design.nuisance], *(u for member in members for u in member.amplitudes))
+    J = linear.jacobian[:, design.columns(unknowns)]
+    sd, low, high = (np.array([getattr(unknown, name) for unknown in unknowns]) for name in ("sd", "low", "high"))
+    fit = posterior(J.T @ J, J.T @ linear.data, sd, low, high)
+    return SetPosterior(members, probability, unknowns, fit.mean, fit.covariance)
+
+
+def key_of_set(members: Members) -> str:
+    """The members' keys."""
+    return " + ".join(sorted(member.key for member in members)) or "no effect"
+
+
+def followed(course: Course, verdict: Verdict) -> tuple[list[Any], list[float]]:
+    """The verdicts along the plan, one run at a time, and the expected probability that each plan stated."""
+    expected: list[float] = []
+    while not course.ended and len(course.drives) <= PLANNED:
+        drive, right = course.proposed(verdict)
+        expected.append(right)
+        verdict = course.add(drive)
     return course.rows[1:], expected
 
 
-def at_random(layout: Layout, case: BlindCase) -> list[Any]:
+def at_random(course: Course) -> list[Any]:
     """The verdicts along random drives after the same first run."""
-    course, rng = Course(layout, case), np.random.default_rng([case.seed, case.number, 7])
-    course.drives, course.runs = [0], [measured(layout, case, run_name(0, 0), 0)]
-    while len(course.drives) <= RANDOM and not (course.rows and course.ended):
-        course.add(int(rng.integers(len(layout.drives))))
+    rng = np.random.default_rng([course.case.seed, course.case.number, 7])
+    course.measure(0)
+    while not course.ended and len(course.drives) <= RANDOM:
+        course.add(int(rng.integers(len(course.layout.drives))))
     return course.rows
 
 
@@ -264,21 +356,21 @@ def write_row(file: Path, row: dict[str, Any]) -> None:
     print(row["number"], row["hidden"], row.get("verdict", ""), courses, f"{row['processor_s']:.0f} s", flush=True)
 
 
-def planned_case(layout: Layout, case: BlindCase, lead: float) -> dict[str, Any]:
+def planned_case(course: Course, lead: float) -> dict[str, Any]:
     """The first verdict of a case, and the verdicts along the plan if it is "confounded"."""
-    start, first = time.process_time(), Course(layout, case)
-    diagnosis = first.add(0)
+    start, case, layout = time.process_time(), course.case, course.layout
+    verdict = course.add(0)
     row: dict[str, Any] = {
         "number": case.number,
         "hidden": case.names,
         "amplitude": [case.values[unknown] / unknown.sd for unknown in case.hidden[0].amplitudes],
         "lead": lead,
-        "verdict": diagnosis.verdict,
-        "sets": {entry.key: entry.probability for entry in diagnosis.judgement.ranking[:4]},
+        "verdict": verdict.verdict,
+        "sets": verdict.sets,
     }
-    if diagnosis.verdict == "confounded":
+    if verdict.verdict == CONFOUNDED:
         row["identifiable"] = bool(min(leads(layout, case, list(range(len(layout.drives))))) >= MARGIN)
-        row["plan"], row["expected"] = followed(layout, first, diagnosis)
+        row["plan"], row["expected"] = followed(course, verdict)
     return row | {"processor_s": time.process_time() - start}
 
 
@@ -290,10 +382,11 @@ def main() -> None:
     parser.add_argument("--drives", type=int, default=9)
     parser.add_argument("--data-mesh", default="4 mm", help="Mesh of the synthetic data: triangles, quadratic.")
     parser.add_argument("--minutes", type=float, default=600.0, help="No case begins after this time.")
+    parser.add_argument("--linear", action="store_true", help="Verdicts by the linear model: seconds a case.")
     parser.add_argument("--out", type=Path, default=Path("results/plan"))
     given = parser.parse_args()
     given.out.mkdir(parents=True, exist_ok=True)
-    began = time.monotonic()
+    began, kind = time.monotonic(), LinearCourse if given.linear else Course
 
     def is_left(share: float) -> bool:
         return time.monotonic() - began < 60 * given.minutes * share
@@ -309,7 +402,7 @@ def main() -> None:
         case = drawn_case(layout, number, given.seed)
         none, other = leads(layout, case, [0])
         if none >= SEEN and other <= CLOSE:
-            rows.append(planned_case(layout, case, other))
+            rows.append(planned_case(kind(layout, case), other))
             write_row(files[0], rows[-1])
     kept = {row["number"]: row for row in rows if row["verdict"] == "confounded"}
     for row in written(files[1]):
@@ -318,7 +411,7 @@ def main() -> None:
         if not is_left(1.0):
             break
         start, case = time.process_time(), drawn_case(layout, number, given.seed)
-        kept[number]["random"] = at_random(layout, case)
+        kept[number]["random"] = at_random(kind(layout, case))
         done = {"number": number, "hidden": case.names, "random": kept[number]["random"]}
         write_row(files[1], done | {"processor_s": time.process_time() - start})
     print(json.dumps(summary(list(kept.values()), len(rows)), indent=1))

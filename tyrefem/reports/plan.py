@@ -77,7 +77,11 @@ def picture(plan: PlanData) -> bytes:
     _bars(add_axes(drawn, 4.6, 0.55, 3.0, height - TITLE - 0.75), rows)
     _course(add_axes(drawn, 8.5, 0.55, 3.8, height - TITLE - 0.75), plan)
     state = f"after the verdict '{plan.beliefs.verdict}'" if plan.beliefs.verdict else "before any data"
-    title(drawn, f"Plan of {plan.study}, {state}", "expected information about which effects act, nats")
+    title(
+        drawn,
+        f"Plan of {plan.study}, {state}",
+        "expected information about which effects act, nats; best per cost first",
+    )
     return png(drawn)
 
 
@@ -95,7 +99,7 @@ def _bars(axes: Axes, rows: list[dict[Any, Any]]) -> None:
 
 
 def _label(row: dict[Any, Any]) -> str:
-    parts = [row[key] for key in ("drive", "place") if isinstance(row[key], str)]
+    parts = [row[key] for key in ("drive", "sensor") if isinstance(row[key], str)]
     return " + ".join(parts)
 
 
