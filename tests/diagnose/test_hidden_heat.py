@@ -88,6 +88,7 @@ def test_heat_that_begins_late_is_dated_and_its_draft_effect_is_identified(
     monkeypatch.setenv("TYREFEM_EFFECTS", "")
     (draft,) = (tmp_path / "out" / "effects").glob("*.py")
     assert law["draft_effect"] == f"effects/{draft.name}"
+    assert any(f"effects/{draft.name}" in sentence for sentence in verdict_words(d))
     assert "inferred from" in draft.read_text(encoding="utf-8")
     second = owner.diagnose(largest=1, looks=1, effects=draft.parent)
     assert second.verdict == IDENTIFIED

@@ -7,6 +7,7 @@ from collections.abc import Sequence
 from typing import TYPE_CHECKING
 
 from tyrefem.diagnose.candidates import Candidate
+from tyrefem.diagnose.draft_effect import EFFECTS, draft_effects
 from tyrefem.diagnose.heat_words import heat_words
 from tyrefem.diagnose.law_words import law_words
 from tyrefem.diagnose.numbers import amount, correction_words, parameter_name, percent
@@ -150,6 +151,10 @@ def _next_step(d: DiagnosisData) -> tuple[str, ...]:
         f"({row['mean_K']:+z.1f} K on average {phase_words(str(row['phase']))}): its place and channel, the run's "
         "drive, and the stated uncertainties.",
         "A cause outside the catalogue can be written as an effect (docs/effects.md) and diagnosed again.",
+        *(
+            f"A draft with this law is in {EFFECTS}/{name}: check it, then diagnose again with --effects {EFFECTS}."
+            for name in draft_effects(d)
+        ),
     )
 
 
