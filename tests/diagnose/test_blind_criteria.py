@@ -60,10 +60,10 @@ def test_structural_rates_count_what_they_say() -> None:
     # "leak" beside the sun, "leak" where nothing is hidden, and "sun" beside a cause outside the catalogue.
     assert counts["all cases: confident wrong name"] == (3, 12)
     assert counts["nothing hidden: no effect named"] == (2, 3)
-    assert counts["nothing hidden: no effect named, speed laws of films included"] == (1, 3)
+    assert counts["nothing hidden: nothing named, not even a film"] == (1, 3)
     assert counts["outside the catalogue: no effect named"] == (1, 2)
     assert counts["another strain law: confident wrong name"] == (1, 3)
-    assert counts["modes of the strain energy, identifiable: all named"] == (3, 5)
+    assert counts["energy by modes, identifiable: all named"] == (3, 5)
     goals = {name: rate.wanted for name, rate in rates.items() if rate.wanted}
     assert list(goals.values()) == ["at least 95 %", "at least 70 %", "at most 2 %", "at least 97 %"]
 

@@ -176,7 +176,7 @@ def structural_rates(rows: Sequence[Row]) -> dict[str, Rate]:
         "identifiable: some hidden effect named": rate(able, lambda row: bool(set(row["hidden"]) & names(row))),
         "all cases: confident wrong name": rate(rows, lambda row: bool(false_names(row)), 0.02, at_most=True),
         "nothing hidden: no effect named": rate(none, lambda row: not false_names(row), 0.97),
-        "nothing hidden: no effect named, speed laws of films included": rate(none, lambda row: not names(row)),
+        "nothing hidden: nothing named, not even a film": rate(none, lambda row: not names(row)),
         "outside the catalogue: no effect named": rate(outside, lambda row: not false_names(row)),
     }
     for kind, words in (("one", "one effect"), ("two", "two effects")):
@@ -184,7 +184,7 @@ def structural_rates(rows: Sequence[Row]) -> dict[str, Rate]:
         rates[f"{words}, identifiable: in the reported set"] = rate(cases, in_set)
         rates[f"{words}, identifiable: all named"] = rate(cases, lambda row: set(row["hidden"]) <= names(row))
         rates[f"{words}: confident wrong name"] = rate(of_kind(rows, kind), lambda row: bool(false_names(row)))
-    for law, words in ((False, "modes of the strain energy"), (True, "another strain law")):
+    for law, words in ((False, "energy by modes"), (True, "another strain law")):
         cases = [row for row in rows if bool(row["other_model"]["strain_law"]) == law]
         inside = [row for row in able if bool(row["other_model"]["strain_law"]) == law]
         rates[f"{words}, identifiable: in the reported set"] = rate(inside, in_set)
