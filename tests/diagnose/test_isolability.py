@@ -2,12 +2,16 @@
 
 from __future__ import annotations
 
+import json
 from dataclasses import replace
+from pathlib import Path
 
 import numpy as np
 import pytest
-from hidden import RIVALS, Case
+from hidden import RIVALS, RUNS, Case
+from typer.testing import CliRunner
 
+from tyrefem.cli import app
 from tyrefem.diagnose.candidates import Candidate, SetPrior
 from tyrefem.diagnose.evaluations import Evaluations
 from tyrefem.diagnose.forward_model import ForwardModel
@@ -93,3 +97,23 @@ def test_the_printed_table_has_the_units_of_study_files(isolability_result: Isol
     assert row.split()[:5] == ["pressure-loss", "kPa/min", "0.9", "1.2", "1.8"]
     assert header.split()[-2] == "told_from"
     assert result.table.loc[0, ["unit", "told_from"]].tolist() == ["Pa/s", 30.0]
+
+
+def test_the_command_calibrates_a_layout(
+    case: Case, known: Sensitivities, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    monkeypatch.setattr("tyrefem.diagnose.isolability.planned_sensitivities", lambda *_, **__: known)
+    out = tmp_path / "out"
+    arguments = ["isolability", str(case.study.file), "--calibrate", "60", "--out", str(out), "--quiet"]
+    result = CliRunner().invoke(app, arguments)
+    assert result.exit_code == 0, result.output
+    assert "60 quick cases of study, seed 1" in result.output
+    record = json.loads((out / "calibration.json").read_text(encoding="utf-8"))
+    assert record["layout"]["runs"] == list(RUNS)
+    assert sum(record["ranks"]["base_numbers_and_sensors"]["counts"]) >= 50
+    assert record["unexplained"]["nothing_hidden"]["misfit"]["of"] == 100_000
+    fresh = record["conformal"]["fresh_cases"]
+    assert fresh["all"]["of"] == fresh["an effect leads"]["of"] + fresh["no effect leads"]["of"] == 30
+    assert (out / "calibration.png").read_bytes()[:4] == b"\x89PNG"
+    refused = CliRunner().invoke(app, [*arguments[:3], "10"])
+    assert refused.exit_code == 2

@@ -58,6 +58,9 @@ def diagnose(
     effects: Annotated[
         Path | None, typer.Option("--effects", help="Folder with effects of your own, such as drafts of a diagnosis.")
     ] = None,
+    calibration: Annotated[
+        Path | None, typer.Option(help="Folder of tyrefem isolability --calibrate, for a set with known coverage.")
+    ] = None,
     force: ForceOption = False,
     quiet: QuietOption = False,
     as_json: JsonOption = False,
@@ -98,6 +101,7 @@ def diagnose(
                 store=store,
                 reduced=reduced,
                 strategy=STRATEGIES[strategy],
+                calibration=calibration,
             )
             tick("drawing", 0, 0)
             page = diagnosis.save(folder)
@@ -116,7 +120,8 @@ def diagnose(
     for question, sentence in zip((label(diagnosis).upper(), *QUESTIONS[1:]), headline(diagnosis), strict=True):
         typer.echo(f"{question}: {sentence}")
     heat = (heat_words(diagnosis), *law_words(diagnosis)) if diagnosis.verdict == UNEXPLAINED else ()
-    for sentence in (*(f"{each}." for each in heat), *noise_words(diagnosis)):
+    conformal = () if diagnosis.conformal is None else (diagnosis.conformal.words(diagnosis.judgement.ranking),)
+    for sentence in (*(f"{each}." for each in heat), *conformal, *noise_words(diagnosis)):
         typer.echo(sentence)
     for note in dict.fromkeys(note for look in diagnosis.looks for note in look.notes):
         typer.echo(f"Note: {note}")

@@ -25,7 +25,7 @@ from tyrefem.interruption import keeping
 from tyrefem.output.folder import results_folder
 
 #: Files that the command writes.
-FILES = ("isolability.csv", "isolability.json", "isolability.png")
+FILES = ("isolability.csv", "isolability.json", "isolability.png", "calibration.json", "calibration.png")
 
 
 def isolability(
@@ -34,16 +34,26 @@ def isolability(
     case: CaseOption = None,
     out: Annotated[Path | None, typer.Option("--out", help="Folder; default: results/STUDY-isolability.")] = None,
     workers: Annotated[int | None, typer.Option(min=1, help="Processes; default: one per core, at most 4.")] = None,
+    cases: Annotated[
+        int | None,
+        typer.Option("--calibrate", min=40, max=100_000, help="Quick cases that test the stated probabilities."),
+    ] = None,
+    seed: Annotated[int, typer.Option(min=0, help="Seed of the quick cases.")] = 1,
     force: ForceOption = False,
     quiet: QuietOption = False,
     as_json: JsonOption = False,
 ) -> None:
-    """Compute which effects the study's sensors and runs can distinguish, and how strong these must be."""
+    """Compute which effects the study's sensors and runs can distinguish, and how strong these must be.
+
+    With --calibrate N, N quick cases test the probabilities that a diagnosis would state.
+    """
     from tyrefem.api import study as load
+    from tyrefem.diagnose.calibration import calibrated
     from tyrefem.diagnose.evaluations import ProgressStore
-    from tyrefem.diagnose.isolability import NEEDS
+    from tyrefem.diagnose.isolability import NEEDS, planned_sensitivities
     from tyrefem.diagnose.isolability import isolability as found_by
     from tyrefem.output import atomic_folder, jsonable
+    from tyrefem.reports.calibration import save
     from tyrefem.reports.isolability import picture
     from tyrefem.variants.answer_store import PROGRESS
 
@@ -56,19 +66,27 @@ def isolability(
         store = ProgressStore(folder / PROGRESS)
         with keeping(lambda: store.kept):
             with progress(f"{loaded.name}: sensitivities", 1.0, quiet=quiet or as_json) as step:
-                result = found_by(
+                known = planned_sensitivities(
                     loaded, workers=count, progress=lambda _what, done, total: step(done / max(total, 1)), store=store
                 )
+            result = found_by(loaded, known=known)
+            calibration = None
+            if cases is not None:
+                with progress(f"{loaded.name}: {cases} quick cases", 1.0, quiet=quiet or as_json) as step:
+                    calibration = calibrated(loaded, known, cases, seed, lambda done: step(done / cases))
             with atomic_folder(folder) as temporary:
                 result.table.to_csv(temporary / "isolability.csv", index=False, lineterminator="\n")
                 text = json.dumps(jsonable(result.to_dict()), indent=1, ensure_ascii=False, allow_nan=False)
                 (temporary / "isolability.json").write_text(text + "\n", encoding="utf-8")
                 (temporary / "isolability.png").write_bytes(picture(result))
+                if calibration is not None:
+                    save(calibration, temporary)
         store.clear()
     if as_json:
-        print_json(jsonable(result.to_dict()))
+        contents = result.to_dict() | ({} if calibration is None else {"calibration": calibration.to_dict()})
+        print_json(jsonable(contents))
         return
-    for line in result.words():
+    for line in [*result.words(), *([] if calibration is None else calibration.words())]:
         typer.echo(line)
     typer.echo(f"results in {folder}")
 

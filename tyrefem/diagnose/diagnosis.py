@@ -21,6 +21,7 @@ if TYPE_CHECKING:
 
     from tyrefem.diagnose.amend import Change
     from tyrefem.diagnose.candidates import Candidate
+    from tyrefem.diagnose.conformal import ConformalCalibration
     from tyrefem.diagnose.fits import FittedSet
     from tyrefem.diagnose.law_search import HeatLaw
     from tyrefem.diagnose.law_signatures import LawSignature
@@ -53,7 +54,7 @@ class DiagnosisData(Brief):
         effects and mechanisms would do beside it.
     robustness : effects beside discrepancy models; None if there is no gap. supports : named effect -> its
         probability with each sensor and run left out.
-    notes : candidates that were left out, and why.
+    notes : candidates that were left out, and why. conformal : calibration of the layout, if one was given.
     """
 
     original: StudyData
@@ -76,6 +77,7 @@ class DiagnosisData(Brief):
     law: HeatLaw | None = None
     signatures: tuple[LawSignature, ...] = ()
     robustness: Robustness | None = None
+    conformal: ConformalCalibration | None = None
     supports: Mapping[Candidate, Support] = field(default_factory=dict)
 
     def _title(self) -> str:

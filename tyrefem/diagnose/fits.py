@@ -216,7 +216,7 @@ def _concluded(residuals: Residuals, predictions: Predictions, state: FitState) 
             rest = shared.held_out_from(state.r, rest)
             slopes = shared.held_out_from(state.J[:, known], slopes)
             spread = shared.held_out_covariance
-        log_held, p_held = _predictive(rest, spread + slopes @ covariance @ slopes.T)
+        log_held, p_held = predictive(rest, spread + slopes @ covariance @ slopes.T)
     data = state.r + state.J @ state.x
     # A first fit gets credit for the predicted reduction, because it may be continued; a continued fit does not.
     penalty = state.predicted_reduction / 2 if state.continuation else 0.0
@@ -239,7 +239,7 @@ def _concluded(residuals: Residuals, predictions: Predictions, state: FitState) 
     )
 
 
-def _predictive(r: Array, covariance: Array) -> tuple[float, float]:
+def predictive(r: Array, covariance: Array) -> tuple[float, float]:
     """ln N(r; 0, covariance) up to a constant, and the chi-squared probability of r."""
     root = np.linalg.cholesky(covariance)
     z = np.linalg.solve(root, r)

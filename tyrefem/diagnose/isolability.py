@@ -238,12 +238,7 @@ def isolability(
     NEEDS.check(study)
     candidates = candidates_of(study)
     if known is None:
-        model = ForwardModel(study, planned(study))
-        check_effort(model, f"the sensitivities of {study.name}", SENSITIVITIES, workers)
-        if store is not None:
-            store.open(model)
-        with evaluating(model, workers, store) as evaluations:
-            known = layout_sensitivities(evaluations, progress=progress)
+        known = planned_sensitivities(study, workers=workers, progress=progress, store=store)
     prior = SetPrior(candidates, study.card.diagnosis.effects_expected)
     linear = _noiseless(known, known.fitted)
     n = len(candidates)
@@ -270,6 +265,24 @@ def isolability(
         shares,
         layout_notes(study),
     )
+
+
+def planned_sensitivities(
+    study: StudyData,
+    *,
+    workers: int = 1,
+    progress: Callable[[str, int, int], None] | None = None,
+    store: ProgressStore | None = None,
+) -> Sensitivities:
+    """Sensitivities of the planned runs of a study; arguments and errors are those of `isolability`."""
+    NEEDS.check(study)
+    candidates_of(study)
+    model = ForwardModel(study, planned(study))
+    check_effort(model, f"the sensitivities of {study.name}", SENSITIVITIES, workers)
+    if store is not None:
+        store.open(model)
+    with evaluating(model, workers, store) as evaluations:
+        return layout_sensitivities(evaluations, progress=progress)
 
 
 def layout_sensitivities(

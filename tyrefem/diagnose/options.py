@@ -31,12 +31,14 @@ class Method:
     ----------
     candidates : study -> the effects that it may lack. criterion : quality of a set's explanation of the data.
     strategy : search over sets of effects. settings : numerical parameters of the diagnosis.
+    calibration : file of a calibration of the layout, or its folder; None: no conformal set.
     """
 
     candidates: CandidateSpace = catalogue_candidates
     criterion: Criterion = field(default_factory=LogEvidence)
     strategy: Strategy = field(default_factory=ForwardSelection)
     settings: DiagnosisSettings = DEFAULT
+    calibration: Path | None = None
 
 
 @dataclass(frozen=True)
@@ -86,6 +88,7 @@ class DiagnosisOptions(TypedDict, total=False):
     rerun: bool
     store: ProgressStore | None
     effects: str | Path | None
+    calibration: str | Path | None
 
 
 def grouped(options: Mapping[str, Any]) -> tuple[ColumnNames, Method, SimulationWork]:
@@ -97,4 +100,6 @@ def grouped(options: Mapping[str, Any]) -> tuple[ColumnNames, Method, Simulation
     settings = given.pop("settings", DiagnosisSettings())
     settings = replace(settings, **{name: given.pop(name) for name in ("largest", "looks", "reduced") if name in given})
     parts = {name: given.pop(name) for name in ("candidates", "criterion", "strategy") if name in given}
-    return columns, Method(**parts, settings=settings), SimulationWork(**given)
+    calibration = given.pop("calibration", None)
+    method = Method(**parts, settings=settings, calibration=None if calibration is None else Path(calibration))
+    return columns, method, SimulationWork(**given)

@@ -5,6 +5,7 @@ from __future__ import annotations
 from dataclasses import dataclass
 
 import numpy as np
+from numpy.typing import NDArray
 from scipy.stats import chi2
 
 from tyrefem.brief import Brief
@@ -62,11 +63,17 @@ def pulls_p(fit: FittedSet) -> float:
         return 1.0
     sd = np.array([fit.unknowns[k].sd for k in places])
     z = fit.posterior.mean[places] / sd
-    A = np.eye(len(places)) - fit.posterior.covariance[np.ix_(places, places)] / np.outer(sd, sd)
+    covariance = fit.posterior.covariance[np.ix_(places, places)] / np.outer(sd, sd)
+    return float(pulls_probability(np.array(float(z @ z)), covariance))
+
+
+def pulls_probability(squares: NDArray[np.float64], covariance: NDArray[np.float64]) -> NDArray[np.float64]:
+    """Probability of sums of squared pulls at least as large; ``covariance``: posterior, in prior sd. See `pulls_p`."""
+    A = np.eye(len(covariance)) - covariance
     first, second = float(np.trace(A)), float((A * A).sum())
     if first <= 0 or second <= 0:
-        return 1.0
-    return float(chi2.sf(float(z @ z) * first / second, first**2 / second))
+        return np.ones_like(squares)
+    return np.asarray(chi2.sf(squares * first / second, first**2 / second))
 
 
 def improbable_pulls(key: str, fit: FittedSet, settings: DiagnosisSettings) -> str:

@@ -63,6 +63,7 @@ def record(d: DiagnosisData) -> dict[str, Any]:
         "noise": noise(d),
         "confidence": confidence(d),
         "discrepancies": discrepancy_rows(d),
+        "conformal": None if d.conformal is None else d.conformal.to_dict(d.judgement.ranking),
         "prior_sensitivity": [asdict(change) for change in d.prior_sensitivity],
         "where": where(d),
         "next_experiment": dict(d.next_experiment),

@@ -64,7 +64,8 @@ def verdict_words(d: DiagnosisData) -> tuple[str, ...]:
     """The verdict in a few sentences, the most important first."""
     again = again_words(d) if d.verdict == IDENTIFIED else ()
     priors = () if d.verdict == UNEXPLAINED else prior_words(d.prior_sensitivity, d.verdict)
-    return (*_verdict_sentences(d), *priors, *noise_words(d), *again)
+    conformal = () if d.conformal is None else (d.conformal.words(d.judgement.ranking),)
+    return (*_verdict_sentences(d), *conformal, *priors, *noise_words(d), *again)
 
 
 def noise_words(d: DiagnosisData) -> tuple[str, ...]:

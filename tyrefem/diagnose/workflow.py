@@ -12,6 +12,7 @@ from tyrefem.brief import Brief
 from tyrefem.compare.experiment import ColumnNames, Table, experiments
 from tyrefem.diagnose.amend import Change, amended, changes
 from tyrefem.diagnose.candidates import Candidate, Members, SetPrior, in_single_runs, possible, simulated
+from tyrefem.diagnose.conformal import read_calibration
 from tyrefem.diagnose.criterion import Criterion
 from tyrefem.diagnose.diagnosis import DiagnosisData
 from tyrefem.diagnose.effort import check_effort
@@ -80,14 +81,22 @@ def diagnose(study: StudyData, table: Table | None = None, **options: Unpack[Dia
     rerun : run the amended study on its mesh at the end; otherwise ``after`` is the prediction of the fit.
     effects : folder with further effects, as ``TYREFEM_EFFECTS`` names them; they stay in the catalogue afterwards.
     store : store of finished simulations, from which an interrupted diagnosis continues.
+    calibration : folder or ``calibration.json`` of ``tyrefem isolability --calibrate`` for this layout; the first look
+        then has a conformal set.
 
     Raises
     ------
-    InputError : as `compare`; or every run is held out, or no reading is within the simulated drive.
+    InputError : as `compare`; or every run is held out, or no reading is within the simulated drive; or the calibration
+        belongs to another layout.
     TypeError : a keyword that is none of these.
     """
     columns, method, work = grouped(options)
     NEEDS.check(study, table)
+    conformal = None
+    if method.calibration is not None:
+        runs = _measured_drives(study, table, columns, method.settings)
+        sensors = dict.fromkeys(name for run in runs for name in run.parts())
+        conformal = read_calibration(method.calibration, study.name, list(sensors), [run.name for run in runs])
     looks: list[DiagnosisData] = []
     while not looks or (looks[-1].verdict == IDENTIFIED and len(looks) < method.settings.looks):
         current = looks[-1].study if looks else study
@@ -95,7 +104,7 @@ def diagnose(study: StudyData, table: Table | None = None, **options: Unpack[Dia
     result = looks.pop()
     while looks:
         result = replace(looks.pop(), again=result)
-    return result
+    return replace(result, conformal=conformal)
 
 
 def _look(
