@@ -109,7 +109,7 @@ def test_the_command_calibrates_a_layout(
     assert result.exit_code == 0, result.output
     assert "60 quick cases of study, seed 1" in result.output
     record = json.loads((out / "calibration.json").read_text(encoding="utf-8"))
-    assert record["layout"]["runs"] == list(RUNS)
+    assert len(record["layout"]["runs"]) == len(RUNS)
     assert sum(record["ranks"]["base_numbers_and_sensors"]["counts"]) >= 50
     assert record["unexplained"]["nothing_hidden"]["misfit"]["of"] == 100_000
     fresh = record["conformal"]["fresh_cases"]

@@ -66,7 +66,7 @@ def false_alarms(layout: LinearLayout, draws: int, seed: int) -> dict[str, Frequ
     n = design.nuisance
     sd = design.sd[:n]
     J, held_out = design.jacobian[:, :n] * sd, layout.held_out[:, :n] * sd
-    covariance: Array = np.linalg.inv(np.eye(n) + J.T @ J)
+    covariance = np.asarray(np.linalg.inv(np.eye(n) + J.T @ J), dtype=np.float64)
     root = np.linalg.cholesky(np.eye(len(held_out)) + held_out @ covariance @ held_out.T)
     rng = np.random.default_rng([seed, draws])
     names = ("misfit", "a pull", "all pulls", "held-out runs")
