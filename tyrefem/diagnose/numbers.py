@@ -36,6 +36,16 @@ def percent(probability: float) -> str:
     return f"{100 * probability:.0f} %" if probability >= 0.1 else f"{100 * probability:.1f} %"
 
 
+def at_least(probability: float) -> str:
+    """A lower limit of a probability as text.
+
+    >>> at_least(0.97), at_least(0.99999)
+    ('at least 97 %', 'more than 99.99 %')
+    """
+    text = percent(probability)
+    return text if text.startswith(("more", "less")) else f"at least {text}"
+
+
 def amount(value: float, sd: float, unit: str) -> str:
     """A value with sign, standard deviation and unit, rounded to the digits of the standard deviation.
 

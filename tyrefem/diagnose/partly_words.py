@@ -10,7 +10,7 @@ from numpy.typing import NDArray
 from tyrefem.diagnose.discrepancy import ENERGY, HEAT, NONE
 from tyrefem.diagnose.energy_shapes import SHAPE, courses
 from tyrefem.diagnose.heat_words import NOT_CLEAR, heat_words, station_words
-from tyrefem.diagnose.numbers import amount, extent, parameter_name, percent
+from tyrefem.diagnose.numbers import amount, at_least, extent, parameter_name
 from tyrefem.diagnose.robustness import LEAST_P
 
 if TYPE_CHECKING:
@@ -45,8 +45,7 @@ def least_words(d: DiagnosisData) -> str:
     """The smallest probability of the effects over the discrepancy models: "at least 97 %"."""
     robust = d.robustness
     assert robust is not None
-    least = percent(min(robust.least(member.key) for member in d.best.members))
-    return least if least.startswith(("more", "less")) else f"at least {least}"
+    return at_least(min(robust.least(member.key) for member in d.best.members))
 
 
 def tried_words(d: DiagnosisData) -> str:

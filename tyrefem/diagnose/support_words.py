@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from typing import TYPE_CHECKING
 
-from tyrefem.diagnose.numbers import percent, run_words
+from tyrefem.diagnose.numbers import at_least, percent, run_words
 from tyrefem.diagnose.support import ALONE, RUN, LeftOut
 
 if TYPE_CHECKING:
@@ -31,8 +31,7 @@ def support_words(d: DiagnosisData) -> tuple[str, ...]:
     others = "The other effects stay" if alone and len(d.supports) > len(shared) else "They stay"
     subject = "It stays" if len(d.supports) == 1 else others
     without = f"without any one sensor or run (least without {_named(weakest)})"
-    chance = percent(least)
-    first = f"{subject} {chance if chance.startswith('more') else f'at least {chance}'} probable {without}."
+    first = f"{subject} {at_least(least)} probable {without}."
     return (first, *alone)
 
 
