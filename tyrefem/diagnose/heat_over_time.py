@@ -121,8 +121,9 @@ def _estimated(
         shares.append(share)
         refined.append(next(o for o in options if (o.station, o.where) == next(iter(share))))
     unknown_of = {place_of(unknown): unknown for unknown in tried}
-    for place in refined:
-        for unknown in layer_patches(study, settings, place.station):
+    # The station of a source may move while its layers compete, so those of both stations are needed.
+    for station in dict.fromkeys([*(station for station, _ in layered), *(place.station for place in refined)]):
+        for unknown in layer_patches(study, settings, station):
             unknown_of[place_of(unknown)] = unknown
     of_places = tuple(unknown_of[place.station, place.where] for place in refined)
     resolved = responses.places(fine, of_places)
