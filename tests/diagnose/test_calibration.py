@@ -201,6 +201,11 @@ def test_the_conformal_set_in_words() -> None:
         "(95 % wanted; such sets held the true one in 288 of 300 fresh quick cases)."
     )
     assert third.probability < second.probability
+    pair = next(entry for entry in judgement.ranking if len(entry.members) == 2)
+    alone = next(entry for entry in judgement.ranking if entry.members == pair.members[:1])
+    both = (replace(alone, score=0.0, probability=0.6), replace(pair, score=-1.0, probability=0.4))
+    of_both = replace(known, thresholds={"an effect leads": 0.9})
+    assert of_both.words(both).endswith(f"fresh quick cases). All of them have {alone.key}.")
 
 
 def test_a_diagnosis_with_a_calibration_states_its_conformal_set(case: Any, tmp_path: Any) -> None:

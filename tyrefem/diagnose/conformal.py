@@ -74,6 +74,11 @@ class ConformalCalibration(Brief):
         best = max(ranking, key=lambda entry: entry.score)
         return conformal_sets(ranking, self.thresholds[LEADS[bool(best.members) or best.outside]])
 
+    def in_all(self, ranking: Sequence[RankedSet]) -> tuple[str, ...]:
+        """Keys of the effects that every set of the conformal set has."""
+        first, *others = [{member.key for member in entry.members} for entry in self.of(ranking)]
+        return tuple(sorted(first.intersection(*others)))
+
     def to_dict(self, ranking: Sequence[RankedSet]) -> dict[str, Any]:
         """The conformal set of a diagnosis as plain data, with the check of its coverage."""
         best = max(ranking, key=lambda entry: entry.score)
@@ -81,6 +86,7 @@ class ConformalCalibration(Brief):
         return {
             "sentence": self.words(ranking),
             "sets": [entry.key for entry in self.of(ranking)],
+            "effects_in_all": list(self.in_all(ranking)),
             "coverage_wanted": self.coverage,
             "threshold": self.thresholds[group],
             "fresh_cases": dict(self.checks[group]),
@@ -94,7 +100,10 @@ class ConformalCalibration(Brief):
         more = f"; and {len(sets) - MOST} more" if len(sets) > MOST else ""
         first = "It is this set" if len(sets) == 1 else f"It is one of these {COUNTS.get(len(sets), len(sets))} sets"
         held = f"{check['held']:.0f} of {check['of']:.0f} fresh quick cases"
-        return f"{first}: {names}{more} ({100 * self.coverage:g} % wanted; such sets held the true one in {held})."
+        common = self.in_all(ranking) if len(sets) > 1 else ()
+        all_have = f" All of them have {' and '.join(common)}." if common else ""
+        wanted = f"{100 * self.coverage:g} % wanted; such sets held the true one in {held}"
+        return f"{first}: {names}{more} ({wanted}).{all_have}"
 
 
 def read_calibration(path: Path, study: str, sensors: Sequence[str], runs: Sequence[str]) -> ConformalCalibration:
