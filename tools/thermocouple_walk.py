@@ -55,7 +55,7 @@ class ThermocoupleWalk:
         ------
         graphlib.CycleError : something is handed back to a module from which it has come.
         """
-        first = list(dict.fromkeys(step.module for step in self.steps))
+        first = list(dict.fromkeys(step.module for step in self.steps if step.module != step.taker))
         order = TopologicalSorter({module: self._givers(module) & set(first) for module in first})
         order.prepare()
         modules: list[str] = []

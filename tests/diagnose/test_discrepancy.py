@@ -55,7 +55,8 @@ def diagnosed(data: Case) -> tuple[Judgement, tuple[Any, ...], Robustness]:
     scored = problem.settled(ForwardSelection().search(problem))
     judgement = judge(ranked(scored), lambda members: None, SETTINGS)
     robust = robustness(problem, scored, certain=judgement.verdict == IDENTIFIED)
-    return (*beside_discrepancies(judgement, robust, SETTINGS), robust)
+    revision = beside_discrepancies(judgement, robust, SETTINGS)
+    return judgement.revised(revision.verdict, revision.reasons, revision.doubts), revision.members, robust
 
 
 def test_an_effect_in_a_right_model_stays_identified() -> None:
@@ -101,14 +102,12 @@ def test_an_effect_that_another_strain_law_does_not_need_is_not_named() -> None:
     for change, named in ((4.0 * S, True), (bump, False)):
         beside = RankedBeside(problem, beside_law(data.residuals, "other", [change]))
         beside.begin(fits)
-        law = under(beside.discrepancy, beside.scored())
+        law = under(beside.discrepancy, beside.residuals, beside.scored())
         assert (law.named["hot"] > SETTINGS.named_probability) is named
-        revised, named_members = beside_discrepancies(
-            replace(judgement, verdict=UNEXPLAINED), replace(robust, laws=(law,)), SETTINGS
-        )
-        assert named_members == ((HOT,) if named else ())
-        assert (revised.verdict == PARTLY) is named
-        assert any("the strain law other" in reason for reason in revised.reasons) is not named
+        revision = beside_discrepancies(replace(judgement, verdict=UNEXPLAINED), replace(robust, laws=(law,)), SETTINGS)
+        assert revision.members == ((HOT,) if named else ())
+        assert (revision.verdict == PARTLY) is named
+        assert any("the strain law other" in reason for reason in revision.reasons) is not named
 
 
 def test_a_misfit_that_no_discrepancy_explains_names_nothing() -> None:

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Iterator, Sequence
-from dataclasses import dataclass, replace
+from dataclasses import dataclass
 
 import numpy as np
 from numpy.typing import NDArray
@@ -26,17 +26,21 @@ SMALLEST = 1e-3
 
 @dataclass(frozen=True, eq=False)
 class Discrepancy(Brief):
-    """A discrepancy model: ``residuals`` beside it.
+    """A discrepancy model.
 
     Parameters
     ----------
     name : of the model. size : K, of a correlated discrepancy of the readings; 0: none.
-    residuals : with the model's unknowns among those of every set, and with the error that readings share.
+    nuisance : unknowns that every set has beside the model.
+    shared_error : error that readings share; None: none.
+    offset : by run (n_blocks,) K, added to the computed temperatures; empty: none.
     """
 
     name: str
     size: float
-    residuals: Residuals
+    shared_error: SharedError | None = None
+    nuisance: tuple[Unknown, ...] = ()
+    offset: tuple[Array, ...] = ()
 
     def _title(self) -> str:
         return f"{self.name}, {self.size:g} K"
@@ -58,10 +62,9 @@ class Discrepancy(Brief):
 def beside_law(residuals: Residuals, law: str, changes: Sequence[Array]) -> Discrepancy:
     """Another strain law, to first order: its changes of the readings by run (K), beside another strain energy too."""
     further = residuals.unknowns[residuals.nuisance :]
-    energy = [unknown for unknown in further if unknown.effect == SHAPE]
-    shaped = replace(residuals, sensitivities=residuals.sensitivities.with_nuisance(energy), offset=tuple(changes))
+    energy = tuple(unknown for unknown in further if unknown.effect == SHAPE)
     of_runs = _of_runs(residuals, energy, residuals.settings.energy_of_run)
-    return Discrepancy(f"{LAW}{law}", 0.0, _beside(shaped, [of_runs]))
+    return Discrepancy(f"{LAW}{law}", 0.0, _shared(residuals, [of_runs]), energy, tuple(changes))
 
 
 def discrepancies(residuals: Residuals) -> Iterator[Discrepancy]:
@@ -73,32 +76,30 @@ def discrepancies(residuals: Residuals) -> Iterator[Discrepancy]:
     - correlated readings: a course over time for each sensor and run.
     """
     further = residuals.unknowns[residuals.nuisance :]
-    energy = [unknown for unknown in further if unknown.effect == SHAPE]
+    energy = tuple(unknown for unknown in further if unknown.effect == SHAPE)
     if energy:
         of_runs = _of_runs(residuals, energy, residuals.settings.energy_of_run)
-        shaped = replace(residuals, sensitivities=residuals.sensitivities.with_nuisance(energy))
         for size in (0.0, *residuals.settings.discrepancy_sizes[:2]):
-            yield Discrepancy(ENERGY, size, _beside(shaped, [of_runs, *_courses(residuals, size)]))
+            yield Discrepancy(ENERGY, size, _shared(residuals, [of_runs, *_courses(residuals, size)]), energy)
     heat = [unknown for unknown in further if unknown.effect in ("missing-heat", "missing-flux")]
     if heat:
         both = [_of_all(residuals, heat, 1.0), _of_runs(residuals, heat, 0.5)]
-        yield Discrepancy(HEAT, 0.0, _beside(residuals, both))
+        yield Discrepancy(HEAT, 0.0, _shared(residuals, both))
     for size in residuals.settings.discrepancy_sizes:
-        yield Discrepancy(READINGS, size, _beside(residuals, _courses(residuals, size)))
+        yield Discrepancy(READINGS, size, _shared(residuals, _courses(residuals, size)))
 
 
 #: Columns of the readings by run.
 Columns = dict[int, Array]
 
 
-def _beside(residuals: Residuals, parts: Sequence[Columns]) -> Residuals:
+def _shared(residuals: Residuals, parts: Sequence[Columns]) -> SharedError:
     def stacked(runs: Sequence[int]) -> Array:
         return np.hstack([np.vstack([part[number] for number in runs]) for part in parts])
 
     held_out = residuals.held_out
     width = sum(next(iter(part.values())).shape[1] for part in parts)
-    error = SharedError(stacked(residuals.fitted), stacked(held_out) if held_out else np.zeros((0, width)))
-    return replace(residuals, shared_error=error)
+    return SharedError(stacked(residuals.fitted), stacked(held_out) if held_out else np.zeros((0, width)))
 
 
 def _of_all(residuals: Residuals, unknowns: Sequence[Unknown], share: float) -> Columns:

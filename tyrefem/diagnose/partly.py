@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import math
 from dataclasses import replace
+from typing import NamedTuple
 
 from tyrefem.diagnose.candidates import Candidate, Members
 from tyrefem.diagnose.discrepancy import NONE
@@ -12,9 +13,22 @@ from tyrefem.diagnose.settings import DiagnosisSettings
 from tyrefem.diagnose.verdict import CONFOUNDED, IDENTIFIED, NO_GAP, PARTLY, UNEXPLAINED, Judgement
 
 
-def beside_discrepancies(
-    judgement: Judgement, robustness: Robustness, settings: DiagnosisSettings
-) -> tuple[Judgement, Members]:
+class Revision(NamedTuple):
+    """A verdict with what else may be wrong, its ``reasons`` and ``doubts``, and ``members``, the effects that are part
+    of the cause if it is "partly identified"."""
+
+    verdict: str
+    reasons: tuple[str, ...]
+    doubts: tuple[str, ...]
+    members: Members = ()
+
+    def doubted(self, doubt: str) -> Revision:
+        """Unexplained for a further reason."""
+        sentence = f"{doubt[0].upper()}{doubt[1:]}."
+        return Revision(UNEXPLAINED, (*self.reasons, doubt), (*self.doubts, sentence))
+
+
+def beside_discrepancies(judgement: Judgement, robustness: Robustness, settings: DiagnosisSettings) -> Revision:
     """The verdict with what else may be wrong, and the effects that are part of the cause.
 
     - *identified* stays if every member acts with at least 90 % probability, averaged over the discrepancy models by
@@ -24,52 +38,41 @@ def beside_discrepancies(
       predict the held-out runs no worse than no effect.
     - *unexplained*: more is wrong, and there is no such effect.
     """
+    revision = Revision(judgement.verdict, judgement.reasons, judgement.doubts)
     if judgement.verdict == NO_GAP:
-        return judgement, ()
+        return revision
+    leading, least = robustness.models[0], settings.named_probability
     if judgement.verdict == IDENTIFIED:
-        doubtful = [each for each in judgement.best.members if robustness.mean(each.key) < settings.named_probability]
+        doubtful = [each for each in judgement.best.members if robustness.mean(each.key) < least]
         if not doubtful:
-            return judgement, ()
-        judgement = _doubted(judgement, robustness, doubtful[0])
+            return revision
+        revision = revision.doubted(_doubt(robustness, doubtful[0]))
     elif judgement.verdict == CONFOUNDED:
-        if robustness.models[0].name == NONE:
-            return judgement, ()
-        doubt = f"the data ask for {robustness.models[0].words} ({_percent(robustness.models[0].probability)})"
-        judgement = _unexplained(judgement, doubt)
-    leading = robustness.models[0]
+        if leading.name == NONE:
+            return revision
+        revision = revision.doubted(f"the data ask for {leading.words} ({_percent(leading.probability)})")
     by_key = {member.key: member for fits in leading.fits for member in fits}
-    least = settings.named_probability
     members = robustness.robust(by_key.values(), least)
     for member in replace(robustness, laws=()).robust(by_key.values(), least):
         if member not in members:
             law = min(robustness.laws, key=lambda law: law.named.get(member.key, 0.0))
             reason = f"{member.key} is not named: with {law.words} it is less probable, or of the other sign"
-            judgement = replace(judgement, reasons=(*judgement.reasons, reason))
+            revision = revision._replace(reasons=(*revision.reasons, reason))
     if not members or len(members) > settings.largest or not _predicts_held_out(leading, members):
-        return judgement, ()
-    least = min(robustness.least(member.key) for member in members)
+        return revision
+    smallest = min(robustness.least(member.key) for member in members)
     reason = (
-        f"{' + '.join(member.key for member in members)} acts with at least {_percent(least)} whatever else is wrong"
+        f"{' + '.join(member.key for member in members)} acts with at least {_percent(smallest)} whatever else is wrong"
     )
-    return replace(judgement, verdict=PARTLY, reasons=(*judgement.reasons, reason)), members
+    return revision._replace(verdict=PARTLY, reasons=(*revision.reasons, reason), members=members)
 
 
-def _doubted(judgement: Judgement, robustness: Robustness, member: Candidate) -> Judgement:
-    """An identified set of which a member is not needed beside a probable discrepancy."""
+def _doubt(robustness: Robustness, member: Candidate) -> str:
+    """Why a member of an identified set is not needed beside a probable discrepancy."""
     against = min(robustness.models, key=lambda model: (model.named.get(member.key, 0.0) - 1) * model.probability)
-    doubt = (
+    return (
         f"with {against.words}, for which the data speak ({_percent(against.probability)}), "
         f"{member.key} acts with {_percent(against.named.get(member.key, 0.0))} only"
-    )
-    return _unexplained(judgement, doubt)
-
-
-def _unexplained(judgement: Judgement, doubt: str) -> Judgement:
-    return replace(
-        judgement,
-        verdict=UNEXPLAINED,
-        reasons=(*judgement.reasons, doubt),
-        doubts=(*judgement.doubts, f"{doubt[0].upper()}{doubt[1:]}."),
     )
 
 

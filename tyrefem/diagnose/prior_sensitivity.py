@@ -83,7 +83,9 @@ def prior_sensitivity(
         judged = judge(entries, lambda members: known.get(frozenset(members)), residuals.settings)
         members: tuple[Candidate, ...] = ()
         if models is not None:
-            judged, members = beside_discrepancies(judged, models, residuals.settings)
+            revision = beside_discrepancies(judged, models, residuals.settings)
+            judged = judged.revised(revision.verdict, revision.reasons, revision.doubts)
+            members = revision.members
         named = " + ".join(sorted(member.key for member in members)) if judged.verdict == PARTLY else judged.best.key
         return judged, named
 

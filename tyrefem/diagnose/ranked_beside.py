@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import functools
 import math
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, field, replace
@@ -13,7 +14,8 @@ from tyrefem.diagnose.candidates import Candidate, Members, separate
 from tyrefem.diagnose.discrepancy import NONE, READINGS, Discrepancy, beside_law, discrepancies
 from tyrefem.diagnose.fits import FittedSet, first_fits, fitted_beside, linear_about, state_beside
 from tyrefem.diagnose.gauss_newton import FitState, initial_state
-from tyrefem.diagnose.robustness import Robustness, UnderDiscrepancy, weighed
+from tyrefem.diagnose.residuals import Residuals
+from tyrefem.diagnose.robustness import Robustness, UnderDiscrepancy, shares
 from tyrefem.diagnose.selection import ScoredSet, SelectionProblem
 from tyrefem.mechanics.strain_laws import strain_laws
 
@@ -37,6 +39,12 @@ class RankedBeside(Brief):
     def _title(self) -> str:
         return f"{self.discrepancy.name}, {len(self.fits)} fits"
 
+    @functools.cached_property
+    def residuals(self) -> Residuals:
+        """The residuals beside the discrepancy."""
+        of = self.discrepancy
+        return self.problem.residuals.beside(of.nuisance, of.shared_error, of.offset)
+
     def score(self, members: Members) -> float:
         """ln(prior) + ln evidence of a fitted set."""
         return self.problem.prior(members) + self.fits[members].log_evidence
@@ -48,7 +56,7 @@ class RankedBeside(Brief):
 
     def begin(self, fits: Mapping[Members, FittedSet]) -> None:
         """Fit the leading sets beside the discrepancy, from their fits without it; no effect first."""
-        residuals, problem = self.discrepancy.residuals, self.problem
+        residuals, problem = self.residuals, self.problem
         estimates = {
             members: problem.prior(members) + evidence(state_beside(residuals, fit), residuals.log_det)
             for members, fit in fits.items()
@@ -90,8 +98,7 @@ class RankedBeside(Brief):
             if not near:
                 return
             starts = {members: start for members in near if (start := self._start(members)) is not None}
-            residuals = self.discrepancy.residuals
-            self._take(first_fits(residuals, self.problem.predictions, near, starts, self.problem._count))
+            self._take(first_fits(self.residuals, self.problem.predictions, near, starts, self.problem._count))
             self._estimate()
 
     def _take(self, fits: Sequence[FittedSet]) -> None:
@@ -113,7 +120,7 @@ class RankedBeside(Brief):
                 continue
             for member in members:
                 part = tuple(each for each in members if each != member)
-                value = self.problem.prior(part) + _without(fit, member, self.discrepancy)
+                value = self.problem.prior(part) + _without(fit, member, self.residuals.log_det)
                 self._better(part, value)
             if len(members) < settings.largest:
                 self._extend(members, fit)
@@ -122,7 +129,7 @@ class RankedBeside(Brief):
         problem = self.problem
         others = [each for each in problem.candidates if separate(each, members)]
         unknowns = [unknown for each in others for unknown in (*each.amplitudes, *each.presence)]
-        about = linear_about(self.discrepancy.residuals, fit, unknowns)
+        about = linear_about(self.residuals, fit, unknowns)
         of_part = about.log_evidence(())
         for candidate in others:
             more = problem.ordered((*members, candidate))
@@ -148,7 +155,7 @@ def evidence(state: FitState, log_det: float) -> float:
     return state.posterior.log_evidence - float(data @ data) / 2 - log_det
 
 
-def _without(fit: FittedSet, member: Candidate, discrepancy: Discrepancy) -> float:
+def _without(fit: FittedSet, member: Candidate, log_det: float) -> float:
     """ln evidence of a fitted set without a member, in the linear model about the fit."""
     kept = [place for place, unknown in enumerate(fit.unknowns) if unknown not in member.unknowns]
     if member.presence or len(kept) == len(fit.unknowns):
@@ -163,7 +170,7 @@ def _without(fit: FittedSet, member: Candidate, discrepancy: Discrepancy) -> flo
         J=state.J[:, kept],
     )
     part = replace(part, posterior=part.fitted())
-    return evidence(part, discrepancy.residuals.log_det)
+    return evidence(part, log_det)
 
 
 def robustness(problem: SelectionProblem, scored: Sequence[ScoredSet], *, certain: bool) -> Robustness:
@@ -198,11 +205,14 @@ def robustness(problem: SelectionProblem, scored: Sequence[ScoredSet], *, certai
     share = (1 - settings.right_model) / max(len(ranked), 1)
 
     def result() -> Robustness:
-        models = [(under(Discrepancy(NONE, 0.0, problem.residuals), alone), settings.right_model, _total(alone))]
-        for beside in ranked.values():
-            rows = beside.scored()
-            models.append((under(beside.discrepancy, rows), share, _total(rows)))
-        return weighed(models)
+        sets = [(Discrepancy(NONE, 0.0), problem.residuals, settings.right_model, alone)]
+        sets += [(beside.discrepancy, beside.residuals, share, beside.scored()) for beside in ranked.values()]
+        probabilities = shares([math.log(prior) + _total(rows) for _, _, prior, rows in sets])
+        models = [
+            replace(under(discrepancy, residuals, rows), probability=probability)
+            for (discrepancy, residuals, _, rows), probability in zip(sets, probabilities, strict=True)
+        ]
+        return Robustness(tuple(sorted(models, key=lambda model: -model.probability)))
 
     first = result()
     probable = {model.name for model in first.models if model.probability > PROBABLE}
@@ -231,7 +241,8 @@ def beside_strain_laws(problem: SelectionProblem, robust: Robustness, fits: Sequ
         beside = RankedBeside(problem, beside_law(residuals, name, answers))
         beside.begin({problem.ordered(fit.members): fit for fit in fits})
         beside.further()
-        tried.append(replace(under(beside.discrepancy, beside.scored()), probability=math.nan))
+        law_sets = under(beside.discrepancy, beside.residuals, beside.scored())
+        tried.append(replace(law_sets, probability=math.nan))
     return replace(robust, laws=tuple(tried), untried=tuple(untried))
 
 
@@ -250,7 +261,7 @@ def _sizes_in_order(problem: SelectionProblem, fits: Mapping[Members, FittedSet]
     sizes = [each for each in every if each.name == READINGS]
 
     def best(discrepancy: Discrepancy) -> float:
-        residuals = discrepancy.residuals
+        residuals = RankedBeside(problem, discrepancy).residuals
         return max(
             problem.prior(members) + evidence(state_beside(residuals, fit), residuals.log_det)
             for members, fit in fits.items()
@@ -265,7 +276,7 @@ def _total(scored: Sequence[ScoredSet]) -> float:
     return float(np.logaddexp.reduce([entry.score for entry in scored]))
 
 
-def under(model: Discrepancy, scored: Sequence[ScoredSet]) -> UnderDiscrepancy:
+def under(model: Discrepancy, residuals: Residuals, scored: Sequence[ScoredSet]) -> UnderDiscrepancy:
     """The sets beside a model, still without the model's probability."""
     total = _total(scored)
     named: dict[str, float] = {}
@@ -281,6 +292,4 @@ def under(model: Discrepancy, scored: Sequence[ScoredSet]) -> UnderDiscrepancy:
                 }
     named = dict(sorted(named.items(), key=lambda item: -item[1]))
     fits = {entry.members: entry.fit for entry in scored if entry.fit is not None}
-    return UnderDiscrepancy(
-        model.name, model.size, model.words, 0.0, named, scored[0].members, values, fits, model.residuals
-    )
+    return UnderDiscrepancy(model.name, model.size, model.words, 0.0, named, scored[0].members, values, fits, residuals)

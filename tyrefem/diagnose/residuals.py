@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from functools import cached_property
 
 import numpy as np
@@ -39,6 +39,13 @@ class Residuals(Brief):
     settings: DiagnosisSettings = DEFAULT
     shared_error: SharedError | None = None
     offset: tuple[Array, ...] = ()
+
+    def beside(
+        self, nuisance: Sequence[Unknown], shared_error: SharedError | None, offset: tuple[Array, ...] = ()
+    ) -> Residuals:
+        """The residuals with further unknowns in every set, an error that readings share and a known error."""
+        sensitivities = self.sensitivities.with_nuisance(nuisance) if nuisance else self.sensitivities
+        return replace(self, sensitivities=sensitivities, shared_error=shared_error, offset=offset)
 
     @property
     def unknowns(self) -> tuple[Unknown, ...]:

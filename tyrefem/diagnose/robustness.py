@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import math
 from collections.abc import Iterable, Mapping, Sequence
-from dataclasses import dataclass, replace
+from dataclasses import dataclass
 
 from tyrefem.brief import Brief
 from tyrefem.diagnose.candidates import Candidate, Members
@@ -112,13 +112,8 @@ class Robustness(Brief):
         return tuple(each for each in candidates if self.least(each.key) >= probability and self.agrees(each))
 
 
-def weighed(models: Sequence[tuple[UnderDiscrepancy, float, float]]) -> Robustness:
-    """Models with their probabilities, from triples (model, prior probability, ln evidence)."""
-    scores = [math.log(prior) + evidence for _, prior, evidence in models]
+def shares(scores: Sequence[float]) -> list[float]:
+    """Probabilities of models from ln(prior probability) + ln evidence."""
     top = max(scores)
     total = math.fsum(math.exp(score - top) for score in scores)
-    results = [
-        replace(model, probability=math.exp(score - top) / total)
-        for (model, _, _), score in zip(models, scores, strict=True)
-    ]
-    return Robustness(tuple(sorted(results, key=lambda model: -model.probability)))
+    return [math.exp(score - top) / total for score in scores]

@@ -88,6 +88,10 @@ class Judgement(Brief):
         """Probability that all members of the best set act, alone or with other effects."""
         return probability(self.ranking)
 
+    def revised(self, verdict: str, reasons: tuple[str, ...], doubts: tuple[str, ...]) -> Judgement:
+        """The same sets with another verdict."""
+        return replace(self, verdict=verdict, reasons=reasons, doubts=doubts)
+
 
 def ranked(
     scored: Sequence[ScoredSet], outside: float | None = None, outside_held_out: float = math.nan

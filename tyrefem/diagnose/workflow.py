@@ -289,14 +289,15 @@ def rank(
     if judgement.verdict == NO_GAP:
         return Ranking(judgement, best_fit, null, missing, fit_of, movements_of(best_fit))
     robust = robustness(problem, scored, certain=judgement.verdict == IDENTIFIED)
-    revised, partly = beside_discrepancies(judgement, robust, settings)
-    if partly:
+    revision = beside_discrepancies(judgement, robust, settings)
+    if partly := revision.members:
         if tick:
             tick("trying other strain laws")
         sets = dict.fromkeys(problem.ordered(each) for each in ((), *((member,) for member in partly), partly))
         robust = beside_strain_laws(problem, robust, [fit_of(members) for members in sets])
-        revised, partly = beside_discrepancies(judgement, robust, settings)
-    judgement = revised
+        revision = beside_discrepancies(judgement, robust, settings)
+    judgement = judgement.revised(revision.verdict, revision.reasons, revision.doubts)
+    partly = revision.members
     if not partly:
         of_effects = {}
         if judgement.verdict == IDENTIFIED:
