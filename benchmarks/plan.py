@@ -38,6 +38,7 @@ from tyrefem.diagnose.runs import measured_drive
 from tyrefem.diagnose.sampling import DriveSampling, SensorSampling
 from tyrefem.diagnose.sensitivities import Sensitivities, responses, sensitivities, unknowns_of
 from tyrefem.diagnose.set_posteriors import SetPosterior
+from tyrefem.diagnose.options import SimulationWork
 from tyrefem.diagnose.settings import DiagnosisSettings
 from tyrefem.diagnose.synthetic import Logger, record
 from tyrefem.diagnose.unknowns import base_unknowns, sensor_unknowns, with_values
@@ -271,7 +272,12 @@ class LinearCourse(Course):
         """Number of the drive that the plan proposes, and the expected probability of the true set after it."""
         layout = self.layout
         readings = planned_readings(
-            verdict.knowledge, layout.study, layout.drives, (), settings=SETTINGS, known=layout.known
+            verdict.knowledge,
+            layout.study,
+            layout.drives,
+            (),
+            settings=SETTINGS,
+            work=SimulationWork(known=layout.known),
         )
         search = greedy_batch(readings, layout.drives, (), layout.study.card.plan)
         entry = (search.chosen or search.compared)[0]

@@ -37,13 +37,13 @@ def confidence(d: DiagnosisData) -> float:
 def support_row(d: DiagnosisData, member: Candidate) -> dict[str, Any] | None:
     """Probability of an effect without each sensor and run; ``only``: the one that alone asks for it. Null if unknown.
 
-    ``own``: the sensor or run that alone can show the effect, null if all can.
+    ``only_at``: the sensor or run that alone can show the effect, null if all can.
     """
     support = d.supports.get(member)
     if support is None:
         return None
     rows = [{"kind": each.kind, "name": each.name, "probability": each.probability} for each in support.left_out]
-    return {"only": support.only or None, "own": support.own or None, "without": rows}
+    return {"only": support.only or None, "only_at": support.only_at or None, "without": rows}
 
 
 def discrepancy_rows(d: DiagnosisData) -> list[dict[str, Any]]:

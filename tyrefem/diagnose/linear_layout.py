@@ -154,14 +154,14 @@ class LinearLayout(Brief):
         size = (first >= 0).astype(int) + (second >= 0)
 
         def single(i: Array, b: Array) -> Array:
-            """ln evidence of one amplitude for overlaps b, or of a fixed signal."""
+            """ln evidence of a single amplitude for overlaps b, or of a fixed signal."""
             a, s = 1 + sd[i] ** 2 * diagonal[i], sd[i]
             z = s * b / a
             free = s * b * z / 2 - np.log(a) / 2 + bounded(z, 1 / np.sqrt(a), low[i] / s, high[i] / s)
             return np.where(amplitude[i], free, b - diagonal[i] / 2)
 
-        one = np.flatnonzero(size == 1)
-        result[one] = single(first[one], overlap[first[one]])
+        alone = np.flatnonzero(size == 1)
+        result[alone] = single(first[alone], overlap[first[alone]])
         two = np.flatnonzero(size == 2)
         i, j = first[two], second[two]
         # A fixed signal is subtracted from the data; it comes first.
@@ -222,8 +222,8 @@ def linear_layout(study: StudyData, known: Sensitivities, settings: DiagnosisSet
     heat_held_out = _by_run([J[:, columns] for J in held_out])
     k = len(known.unknowns)
     # The runs' own parts of held-out runs are columns of their own, which no fitted run has.
-    own, p = len(known.fitted) * len(columns), len(columns)
-    heat_held_out = np.hstack([heat_held_out[:, :p], np.zeros((len(heat_held_out), own)), heat_held_out[:, p:]])
+    of_runs, p = len(known.fitted) * len(columns), len(columns)
+    heat_held_out = np.hstack([heat_held_out[:, :p], np.zeros((len(heat_held_out), of_runs)), heat_held_out[:, p:]])
     heat = np.hstack([heat, np.zeros((len(heat), len(known.held_out) * p))])
     return LinearLayout(
         known.design(known.fitted),

@@ -104,10 +104,10 @@ def within(unknown: Unknown, rng: np.random.Generator) -> float:
 
 def quick_case(layout: LinearLayout, rng: np.random.Generator) -> QuickCase:
     """Draw a cause and its readings, and judge them."""
-    truth = drawn(layout, rng)
-    judgement = layout.judge(truth.fitted, truth.held_out)
-    outside = truth.place < 0
-    members = () if outside else layout.sets[truth.place]
+    hidden = drawn(layout, rng)
+    judgement = layout.judge(hidden.fitted, hidden.held_out)
+    outside = hidden.place < 0
+    members = () if outside else layout.sets[hidden.place]
     names, best = {member.key for member in members}, judgement.best
     true_set = next(
         entry for entry in judgement.ranking if entry.outside == outside and {m.key for m in entry.members} == names
@@ -117,10 +117,10 @@ def quick_case(layout: LinearLayout, rng: np.random.Generator) -> QuickCase:
     ranks: tuple[float, ...] = ()
     base_rank = p_value = float("nan")
     if not outside:
-        fit = layout.fit(truth.fitted, np.zeros(0), members)
+        fit = layout.fit(hidden.fitted, np.zeros(0), members)
         amplitudes = [unknown for member in members for unknown in member.amplitudes]
         base = layout.design.unknowns[int(rng.integers(layout.design.nuisance))]
-        *of_amplitudes, base_rank = posterior_ranks(fit, truth.values, [*amplitudes, base])
+        *of_amplitudes, base_rank = posterior_ranks(fit, hidden.values, [*amplitudes, base])
         ranks, p_value = tuple(of_amplitudes), fit.p_value
     return QuickCase(
         tuple(sorted(names)),

@@ -41,11 +41,11 @@ class LeftOut(Brief):
 class Support(Brief):
     """Support of an effect by the sensors and runs; ``left_out``: the smallest probability first.
 
-    ``own``: sensor or run of an effect that can show only there, such as a sensor's offset; it is never left out.
+    ``only_at``: sensor or run of an effect that can show only there, such as a sensor's offset; it is never left out.
     """
 
     left_out: tuple[LeftOut, ...]
-    own: str = ""
+    only_at: str = ""
 
     @property
     def weakest(self) -> LeftOut | None:
@@ -55,8 +55,8 @@ class Support(Brief):
     @property
     def only(self) -> str:
         """The only sensor or run that asks for the effect; empty if there are more."""
-        if self.own:
-            return self.own
+        if self.only_at:
+            return self.only_at
         return self.left_out[0].name if self.left_out and self.left_out[0].probability < ALONE else ""
 
 
@@ -73,7 +73,7 @@ def supports(
     the best fit. Base numbers, sensors and amounts are fitted again without the left-out readings.
     """
     chances: dict[Candidate, list[LeftOut]] = {member: [] for member in best.members}
-    own = {member: _own(member) for member in best.members}
+    places = {member: _place(member) for member in best.members}
     models = {members: (prior(members), _Rows.of(fit)) for members, fit in fits.items()}
     about = _Rows.of(best)
     unknowns = [unknown for each in candidates for unknown in (*each.amplitudes, *each.presence)]
@@ -100,16 +100,16 @@ def supports(
                 sets[changed] = max(value, sets.get(changed, -math.inf))
         total = float(np.logaddexp.reduce(list(sets.values())))
         for member in best.members:
-            if own[member] != name:
+            if places[member] != name:
                 share = math.fsum(math.exp(value - total) for members, value in sets.items() if member in members)
                 chances[member].append(LeftOut(kind, name, share))
     return {
-        member: Support(tuple(sorted(each, key=lambda entry: entry.probability)), own[member])
+        member: Support(tuple(sorted(each, key=lambda entry: entry.probability)), places[member])
         for member, each in chances.items()
     }
 
 
-def _own(member: Candidate) -> str:
+def _place(member: Candidate) -> str:
     """The sensor or run that alone can show an effect."""
     return dict(member.choice).get("sensor", member.runs[0] if len(member.runs) == 1 else "")
 

@@ -16,8 +16,8 @@ def support_words(d: DiagnosisData) -> tuple[str, ...]:
     alone, shared = [], []
     for member, support in d.supports.items():
         weakest = support.weakest
-        if support.own:
-            alone.append(f"{member.key} can show only {_where(support.own, d)}.")
+        if support.only_at:
+            alone.append(f"{member.key} can show only {_where(support.only_at, d)}.")
         elif support.only and weakest is not None:
             alone.append(
                 f"Only {_named(weakest)} asks for {member.key}: without it the probability is "
@@ -39,6 +39,6 @@ def _named(left: LeftOut) -> str:
     return run_words(left.name) if left.kind == RUN else left.name
 
 
-def _where(own: str, d: DiagnosisData) -> str:
+def _where(place: str, d: DiagnosisData) -> str:
     runs = {run.name for run in d.gap.runs}
-    return f"in {run_words(own)}" if own in runs else f"at {own}"
+    return f"in {run_words(place)}" if place in runs else f"at {place}"

@@ -11,10 +11,11 @@ from numpy.typing import NDArray
 
 from tyrefem.brief import Brief
 from tyrefem.diagnose.effort import SENSITIVITIES, check_effort
-from tyrefem.diagnose.evaluations import Evaluations, ProgressStore, evaluating
-from tyrefem.diagnose.forward_model import DriveResponse, ForwardModel
+from tyrefem.diagnose.evaluations import Evaluations, evaluating
+from tyrefem.diagnose.forward_model import ForwardModel
 from tyrefem.diagnose.isolability import READING_INTERVAL
 from tyrefem.diagnose.multifidelity import Predictions
+from tyrefem.diagnose.options import SimulationWork
 from tyrefem.diagnose.sampling import DriveSampling, SensorSampling
 from tyrefem.diagnose.sensitivities import Sensitivities, responses, sensitivities
 from tyrefem.diagnose.settings import DEFAULT, DiagnosisSettings
@@ -90,10 +91,7 @@ def planned_readings(
     places: Sequence[CandidatePlace],
     *,
     settings: DiagnosisSettings = DEFAULT,
-    workers: int = 1,
-    progress: Tick | None = None,
-    store: ProgressStore | None = None,
-    known: Sequence[DriveResponse] | None = None,
+    work: SimulationWork = SimulationWork(),
 ) -> PlannedReadings:
     """Simulate every drive with its sensitivities, and predict its readings for every set.
 
@@ -103,7 +101,67 @@ def planned_readings(
     Parameters
     ----------
     study : with the sensors of ``places``.
-    known : responses of the drives to these unknowns or to more, if they are available.
+    work : its ``known`` are responses of the drives to these unknowns or to more, if they are available.
+
+    Raises
+    ------
+    InputError : a drive cannot run; the given responses belong to another study.
+    """
+    grams: dict[tuple[int, str], Array]
+
+    def expected(self, drives: Sequence[int], added: Collection[str]) -> Gaussians:
+        """What the sets predict for several runs, read by the installed and by added sensors.
+
+        All runs share base numbers, amplitudes and sensors; noise and discrepancy of two runs are independent.
+        """
+        sensors = (*self.installed, *sorted(added))
+        gram = np.sum([self.grams[number, sensor] for number in drives for sensor in sensors], axis=0)
+        n = len(self.unknowns)
+        further = [number for name in sorted(added) for number in self.of_sensor[name]]
+        idle = {number for name in set(self.of_sensor) - set(added) for number in self.of_sensor[name]}
+        active = [number for number in range(n) if gram[number, number] > 0 and number not in idle]
+        kept = [*active, *range(n, len(gram))]
+        factors = []
+        for L in self._factors:
+            sd = np.zeros((len(self.unknowns), len(further)))
+            sd[further, range(len(further))] = [self.unknowns[number].sd for number in further]
+            factors.append(np.hstack([L, sd])[active])
+        return projected(gram[np.ix_(kept, kept)], len(active), factors, self.beliefs.probabilities)
+
+    @cached_property
+    def _factors(self) -> list[Array]:
+        """By set L (n, r): covariance L L^T of its unknowns; unknowns that it does not have are 0."""
+        place = {unknown: column for column, unknown in enumerate(self.unknowns)}
+        factors = []
+        for entry in self.beliefs.sets:
+            values, vectors = np.linalg.eigh(entry.covariance)
+            root = vectors * np.sqrt(np.maximum(values, 0.0))
+            L = np.zeros((len(self.unknowns), len(values)))
+            for row, unknown in enumerate(entry.unknowns):
+                if unknown in place:
+                    L[place[unknown]] = root[row]
+            factors.append(L)
+        return factors
+
+
+def planned_readings(
+    beliefs: Beliefs,
+    study: StudyData,
+    drives: Sequence[CandidateDrive],
+    places: Sequence[CandidatePlace],
+    *,
+    settings: DiagnosisSettings = DEFAULT,
+    work: SimulationWork = SimulationWork(),
+) -> PlannedReadings:
+    """Simulate every drive with its sensitivities, and predict its readings for every set.
+
+    After a verdict, the change of the readings by a set is that of its fit: by the certified reduced model of the
+    drive, or by simulation. Before a test it is linear. Slopes are those at x = 0.
+
+    Parameters
+    ----------
+    study : with the sensors of ``places``.
+    work : its ``known`` are responses of the drives to these unknowns or to more, if they are available.
 
     Raises
     ------

@@ -13,6 +13,7 @@ from tyrefem.diagnose.diagnosis import DiagnosisData
 from tyrefem.diagnose.evaluations import ProgressStore
 from tyrefem.diagnose.forward_model import DriveResponse
 from tyrefem.diagnose.isolability import layout_notes
+from tyrefem.diagnose.options import SimulationWork
 from tyrefem.diagnose.settings import DiagnosisSettings
 from tyrefem.diagnose.workflow import diagnose
 from tyrefem.inputs.study import StudyData
@@ -69,17 +70,8 @@ def plan(
     extended, places = with_candidate_sensors(study, beliefs.noise)
     # The folder of a diagnosis's simulations keeps those of one layout only.
     further = None if store is None else replace(store, folder=store.folder.with_name(f"{store.folder.name}-plan"))
-    readings = planned_readings(
-        beliefs,
-        extended,
-        drives,
-        places,
-        settings=settings,
-        workers=workers,
-        progress=progress,
-        store=store if after is None else further,
-        known=known,
-    )
+    work = SimulationWork(workers, progress, known, store=store if after is None else further)
+    readings = planned_readings(beliefs, extended, drives, places, settings=settings, work=work)
     search = greedy_batch(readings, drives, places, study.card.plan, progress)
     notes = layout_notes(study)[:1] if not beliefs.verdict else ()
     steps = _steps(readings, search, drives, places)
