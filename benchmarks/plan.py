@@ -33,12 +33,12 @@ from tyrefem.diagnose.evidence import posterior
 from tyrefem.diagnose.forward_model import DriveResponse, ForwardModel
 from tyrefem.diagnose.isolability import MARGIN, competitors_of, margins
 from tyrefem.diagnose.linear_model import LinearModel
+from tyrefem.diagnose.options import SimulationWork
 from tyrefem.diagnose.residuals import residuals_of
 from tyrefem.diagnose.runs import measured_drive
 from tyrefem.diagnose.sampling import DriveSampling, SensorSampling
 from tyrefem.diagnose.sensitivities import Sensitivities, responses, sensitivities, unknowns_of
 from tyrefem.diagnose.set_posteriors import SetPosterior
-from tyrefem.diagnose.options import SimulationWork
 from tyrefem.diagnose.settings import DiagnosisSettings
 from tyrefem.diagnose.synthetic import Logger, record
 from tyrefem.diagnose.unknowns import base_unknowns, sensor_unknowns, with_values

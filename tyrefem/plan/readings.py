@@ -89,69 +89,8 @@ def planned_readings(
     study: StudyData,
     drives: Sequence[CandidateDrive],
     places: Sequence[CandidatePlace],
-    *,
+    work: SimulationWork,
     settings: DiagnosisSettings = DEFAULT,
-    work: SimulationWork = SimulationWork(),
-) -> PlannedReadings:
-    """Simulate every drive with its sensitivities, and predict its readings for every set.
-
-    After a verdict, the change of the readings by a set is that of its fit: by the certified reduced model of the
-    drive, or by simulation. Before a test it is linear. Slopes are those at x = 0.
-
-    Parameters
-    ----------
-    study : with the sensors of ``places``.
-    work : its ``known`` are responses of the drives to these unknowns or to more, if they are available.
-
-    Raises
-    ------
-    InputError : a drive cannot run; the given responses belong to another study.
-    """
-    grams: dict[tuple[int, str], Array]
-
-    def expected(self, drives: Sequence[int], added: Collection[str]) -> Gaussians:
-        """What the sets predict for several runs, read by the installed and by added sensors.
-
-        All runs share base numbers, amplitudes and sensors; noise and discrepancy of two runs are independent.
-        """
-        sensors = (*self.installed, *sorted(added))
-        gram = np.sum([self.grams[number, sensor] for number in drives for sensor in sensors], axis=0)
-        n = len(self.unknowns)
-        further = [number for name in sorted(added) for number in self.of_sensor[name]]
-        idle = {number for name in set(self.of_sensor) - set(added) for number in self.of_sensor[name]}
-        active = [number for number in range(n) if gram[number, number] > 0 and number not in idle]
-        kept = [*active, *range(n, len(gram))]
-        factors = []
-        for L in self._factors:
-            sd = np.zeros((len(self.unknowns), len(further)))
-            sd[further, range(len(further))] = [self.unknowns[number].sd for number in further]
-            factors.append(np.hstack([L, sd])[active])
-        return projected(gram[np.ix_(kept, kept)], len(active), factors, self.beliefs.probabilities)
-
-    @cached_property
-    def _factors(self) -> list[Array]:
-        """By set L (n, r): covariance L L^T of its unknowns; unknowns that it does not have are 0."""
-        place = {unknown: column for column, unknown in enumerate(self.unknowns)}
-        factors = []
-        for entry in self.beliefs.sets:
-            values, vectors = np.linalg.eigh(entry.covariance)
-            root = vectors * np.sqrt(np.maximum(values, 0.0))
-            L = np.zeros((len(self.unknowns), len(values)))
-            for row, unknown in enumerate(entry.unknowns):
-                if unknown in place:
-                    L[place[unknown]] = root[row]
-            factors.append(L)
-        return factors
-
-
-def planned_readings(
-    beliefs: Beliefs,
-    study: StudyData,
-    drives: Sequence[CandidateDrive],
-    places: Sequence[CandidatePlace],
-    *,
-    settings: DiagnosisSettings = DEFAULT,
-    work: SimulationWork = SimulationWork(),
 ) -> PlannedReadings:
     """Simulate every drive with its sensitivities, and predict its readings for every set.
 
@@ -169,11 +108,11 @@ def planned_readings(
     """
     samplings = tuple(_sampling(beliefs, study, drive, places) for drive in drives)
     model = ForwardModel(study, samplings, settings=settings)
-    if known is None:
+    if work.known is None:
         _check_drives(model, drives)
-        check_effort(model, f"the plan of {study.name}", SENSITIVITIES, workers)
-    if store is not None:
-        store.open(model)
+        check_effort(model, f"the plan of {study.name}", SENSITIVITIES, work.workers)
+    if work.store is not None:
+        work.store.open(model)
     unknowns, presence = _columns(beliefs)
     installed = tuple(sampling.sensor for sampling in samplings[0].sensors[: len(beliefs.noise)])
     further: list[Unknown] = []
@@ -184,14 +123,14 @@ def planned_readings(
         further += of_place
     columns = (*unknowns, *further)
     everything = (*columns, *presence)
-    with evaluating(model, workers, store) as evaluations:
+    with evaluating(model, work.workers, work.store) as evaluations:
         try:
-            at_hand = known or responses(evaluations, everything, progress)
+            at_hand = work.known or responses(evaluations, everything, work.progress)
         except InputError as error:
             raise InputError(f"a drive of the plan cannot run: {error}", field="plan.limits", file=study.file) from None
         sensitive = sensitivities(samplings, everything, 0, [response.of(everything) for response in at_hand])
         beliefs = beliefs.without(sensitive.failed)
-        changes = _changes(beliefs, sensitive, evaluations, progress)
+        changes = _changes(beliefs, sensitive, evaluations, work.progress)
     grams: dict[tuple[int, str], Array] = {}
     for number, drive in enumerate(samplings):
         J = np.nan_to_num(sensitive.whitened[number][:, : len(columns)])

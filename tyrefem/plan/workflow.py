@@ -71,7 +71,7 @@ def plan(
     # The folder of a diagnosis's simulations keeps those of one layout only.
     further = None if store is None else replace(store, folder=store.folder.with_name(f"{store.folder.name}-plan"))
     work = SimulationWork(workers, progress, known, store=store if after is None else further)
-    readings = planned_readings(beliefs, extended, drives, places, settings=settings, work=work)
+    readings = planned_readings(beliefs, extended, drives, places, work, settings)
     search = greedy_batch(readings, drives, places, study.card.plan, progress)
     notes = layout_notes(study)[:1] if not beliefs.verdict else ()
     steps = _steps(readings, search, drives, places)
