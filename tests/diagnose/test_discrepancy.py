@@ -200,6 +200,6 @@ def test_a_fault_of_a_sensor_is_not_left_without_its_sensor() -> None:
 
     data = case(of, of({"offset": 3.0}), (fault,), SETTINGS, sensors=3)
     support = supported(data, (fault,), ())[fault.key]
-    assert support.own == support.only == "sensor-1"
+    assert support.only_at == support.only == "sensor-1"
     assert [entry.name for entry in support.left_out] == ["sensor-0", "sensor-2"]
     assert support.weakest.probability > 0.99

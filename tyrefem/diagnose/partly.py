@@ -55,7 +55,7 @@ def beside_discrepancies(judgement: Judgement, robustness: Robustness, settings:
     members = robustness.robust(by_key.values(), least)
     for member in replace(robustness, laws=()).robust(by_key.values(), least):
         if member not in members:
-            law = min(robustness.laws, key=lambda law: law.named.get(member.key, 0.0))
+            law = min(robustness.counted, key=lambda law: law.named.get(member.key, 0.0))
             reason = f"{member.key} is not named: with {law.words} it is less probable, or of the other sign"
             revision = revision._replace(reasons=(*revision.reasons, reason))
     if not members or len(members) > settings.largest or not _predicts_held_out(leading, members):

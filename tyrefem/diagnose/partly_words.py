@@ -52,7 +52,9 @@ def tried_words(d: DiagnosisData) -> str:
     """What else may be wrong, as it was tried."""
     robust = d.robustness
     assert robust is not None
-    tried = "; ".join(model.words for model in (*robust.models, *robust.laws) if model.name != NONE)
+    tried = "; ".join(model.words for model in robust.counted if model.name != NONE)
+    refuted = ", ".join(law.words for law in robust.laws if law.refuted)
+    tried += f" (not counted, as the data refute it: {refuted})" if refuted else ""
     return f"{tried} (not tried: strain law {', '.join(robust.untried)})" if robust.untried else tried
 
 

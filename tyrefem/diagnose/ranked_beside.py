@@ -104,7 +104,10 @@ class RankedBeside(Brief):
     def _take(self, fits: Sequence[FittedSet]) -> None:
         for fit in fits:
             members = self.problem.ordered(fit.members)
-            self.fits[members] = fit
+            known = self.fits.get(members)
+            # A fit beside a law far from the data may end worse than it began.
+            if known is None or fit.log_evidence > known.log_evidence:
+                self.fits[members] = fit
             self.estimates.pop(members, None)
 
     def _start(self, members: Members) -> FittedSet | None:

@@ -49,6 +49,11 @@ class UnderDiscrepancy(Brief):
         """Largest probability, among the fitted sets, of a misfit at least as large if set and model are right."""
         return max((fit.p_value for fit in self.fits.values()), default=0.0)
 
+    @property
+    def refuted(self) -> bool:
+        """Whether noise cannot explain the misfit of any fitted set."""
+        return bool(self.fits) and self.p_value < LEAST_P
+
 
 @dataclass(frozen=True, eq=False)
 class Robustness(Brief):
@@ -70,9 +75,14 @@ class Robustness(Brief):
         """Probability that the model is right but for the effects."""
         return sum(model.probability for model in self.models if model.name == NONE)
 
+    @property
+    def counted(self) -> tuple[UnderDiscrepancy, ...]:
+        """The models, also improbable ones, and the strain laws that the data do not refute."""
+        return (*self.models, *(law for law in self.laws if not law.refuted))
+
     def least(self, key: str) -> float:
-        """Smallest probability of an effect over the models, also over improbable ones, and over the strain laws."""
-        return min(model.named.get(key, 0.0) for model in (*self.models, *self.laws))
+        """Smallest probability of an effect over the models and strain laws that count."""
+        return min(model.named.get(key, 0.0) for model in self.counted)
 
     def mean(self, key: str) -> float:
         """Probability of an effect, averaged over the models by their probabilities."""
@@ -90,8 +100,7 @@ class Robustness(Brief):
     def agrees(self, candidate: Candidate) -> bool:
         """Whether an effect has the same sign beside every model, and beside probable models like amounts (`APART`)."""
         for unknown in candidate.amplitudes:
-            every = (*self.models, *self.laws)
-            known = [(model.probability, model.values.get(unknown.key)) for model in every]
+            known = [(model.probability, model.values.get(unknown.key)) for model in self.counted]
             first = known[0][1]
             if first is None:
                 return False
