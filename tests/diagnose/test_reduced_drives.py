@@ -189,7 +189,7 @@ def test_the_verdict_is_that_of_simulations_alone(drives: Drives, never: Diagnos
         == ["hot-road"]
     )
     for unknown, x in never.best.values.items():
-        assert abs(auto.best.values[unknown] - x) < 0.15 * max(never.best.sd[unknown], 1e-9)
+        assert abs(auto.best.values[unknown] - x) < 0.2 * max(never.best.sd[unknown], 1e-9)
     assert auto.judgement.probability == pytest.approx(never.judgement.probability, abs=0.02)
     account = auto.to_dict()["reduced"]
     assert account["used"]
