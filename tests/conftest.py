@@ -63,6 +63,12 @@ def needs_compiler() -> None:
 
 
 @pytest.fixture(scope="session")
+def needs_chromium() -> None:
+    """A browser prints pages; else skip, or fail where TYREFEM_REQUIRE_LIBRARIES is set."""
+    _needs("chromium", "import shutil; assert shutil.which('chromium'), 'chromium is not installed'")
+
+
+@pytest.fixture(scope="session")
 def speaks_briefly() -> Callable[[object], set[type]]:
     """A check that the `repr` of an object and of all that its public attributes lead to is short; gives the types."""
 

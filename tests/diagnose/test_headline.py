@@ -4,7 +4,6 @@ from __future__ import annotations
 
 import json
 import re
-import shutil
 import subprocess
 from collections.abc import Callable
 from dataclasses import replace
@@ -262,7 +261,7 @@ def crowded(d: DiagnosisData) -> DiagnosisData:
     return replace(d, changes=(*d.changes, *many), judgement=replace(d.judgement, doubts=(f"{doubt}.",)))
 
 
-@pytest.mark.skipif(shutil.which("chromium") is None, reason="needs chromium, which prints the page")
+@pytest.mark.usefixtures("needs_chromium")
 @pytest.mark.parametrize("make", [lambda d: d, confounded, crowded], ids=["identified", "confounded", "crowded"])
 def test_the_summary_prints_on_one_page(
     make: Callable[[DiagnosisData], DiagnosisData], case: Case, tmp_path: Path
