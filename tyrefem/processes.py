@@ -26,8 +26,6 @@ class _ProcessWithoutCtrlC(SpawnProcess):
 
     def start(self) -> None:
         """Start it with the signal blocked; the process inherits this."""
-        # A tracker process started here would unblock the signal, so it is started before.
-        _start_tracker()
         with _blocked():
             super().start()
 
@@ -67,7 +65,7 @@ def _start_tracker() -> None:
     """Start the process that removes what this one leaves behind, without its warning.
 
     An interrupted process that ends at once leaves the semaphores of its queues. They are removed, so the user need not
-    know.
+    know. Started with the first worker, the tracker would unblock Ctrl-C for it.
     """
     if os.name != "posix":
         return
