@@ -25,6 +25,7 @@ if TYPE_CHECKING:
     from tyrefem.diagnose.fits import FittedSet
     from tyrefem.diagnose.law_search import HeatLaw
     from tyrefem.diagnose.law_signatures import LawSignature
+    from tyrefem.diagnose.law_trials import BetterLaw, LawTrial
     from tyrefem.diagnose.materiality import Movement
     from tyrefem.diagnose.missing_heat import UnknownHeat
     from tyrefem.diagnose.residuals import Residuals
@@ -54,6 +55,8 @@ class DiagnosisData(Brief):
         effects and mechanisms would do beside it.
     robustness : effects beside discrepancy models; None if there is no gap. supports : named effect -> its
         probability with each sensor and run left out.
+    law_trials : other strain laws, if the study does not explain the data. better_law : the one in place of the
+        study's; judgement, fits and amended study are then by this law, ``original`` and ``before`` by the study's.
     notes : candidates that were left out, and why. conformal : calibration of the layout, if one was given.
     """
 
@@ -79,6 +82,8 @@ class DiagnosisData(Brief):
     robustness: Robustness | None = None
     conformal: ConformalCalibration | None = None
     supports: Mapping[Candidate, Support] = field(default_factory=dict)
+    law_trials: tuple[LawTrial, ...] = ()
+    better_law: BetterLaw | None = None
 
     def _title(self) -> str:
         return f"of {self.original.name}: {self.verdict}"

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Iterator, Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 import numpy as np
 from numpy.typing import NDArray
@@ -65,6 +65,15 @@ def beside_law(residuals: Residuals, law: str, changes: Sequence[Array]) -> Disc
     energy = tuple(unknown for unknown in further if unknown.effect == SHAPE)
     of_runs = _of_runs(residuals, energy, residuals.settings.energy_of_run)
     return Discrepancy(f"{LAW}{law}", 0.0, _shared(residuals, [of_runs]), energy, tuple(changes))
+
+
+def with_courses(residuals: Residuals, discrepancy: Discrepancy, size: float) -> Discrepancy:
+    """A discrepancy with errors of the readings that neighbours in time share too, of ``size`` (K)."""
+    known, further = discrepancy.shared_error, _shared(residuals, _courses(residuals, size))
+    if known is not None:
+        fitted, held_out = np.hstack([known.fitted, further.fitted]), np.hstack([known.held_out, further.held_out])
+        further = SharedError(fitted, held_out)
+    return replace(discrepancy, size=size, shared_error=further)
 
 
 def discrepancies(residuals: Residuals) -> Iterator[Discrepancy]:

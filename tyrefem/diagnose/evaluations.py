@@ -33,6 +33,10 @@ class ProgressStore(AnswerStore):
         """The store of a further look at the same data; for the first look, this store."""
         return self if number == 0 else ProgressStore(self.folder.with_name(f"{self.folder.name}-{number + 1}"))
 
+    def by_law(self, law: str) -> ProgressStore:
+        """The store of the diagnosis with another strain law."""
+        return ProgressStore(self.folder.with_name(f"{self.folder.name}-{law}"))
+
     def clear(self) -> None:
         """Delete the stored evaluations of all looks, after the diagnosis is finished."""
         for folder in (self.folder, *self.folder.parent.glob(f"{self.folder.name}-*")):

@@ -21,6 +21,7 @@ from tyrefem.diagnose.reduced_forward import Modes, ReducedDrive, modes_of
 from tyrefem.diagnose.sampling import DriveSampling
 from tyrefem.diagnose.settings import DEFAULT, DiagnosisSettings
 from tyrefem.diagnose.source_responses import source_responses
+from tyrefem.diagnose.strain_law_study import STRETCHES, by_law, heat_along
 from tyrefem.diagnose.unknowns import Unknown, with_values
 from tyrefem.errors import InputError
 from tyrefem.inputs.study import StudyData
@@ -246,14 +247,29 @@ class ForwardModel(Brief):
             return np.full(self.drives[number].size, np.nan)
         return self.blocks(number, simulated.grid, simulated.readings)
 
-    def change_by_law(self, number: int, law: str) -> Array:
-        """Block means at a drive with another strain law, minus those of the study, at x = 0; NaN if it cannot run."""
+    def change_by_law(self, number: int, law: str, level: float = 0.0) -> Array:
+        """Block means at a drive with another strain law, minus those of the study, at x = 0; NaN if it cannot run.
+
+        ``level``: ln of a factor on the heat by the other law.
+        """
         base = self.base(number)
         try:
-            other = fixed_step_run(base.study.replace({"mechanics.strain": law}), every=base.every)
+            other = fixed_step_run(by_law(base.study, law, level), every=base.every)
         except InputError:
             return np.full(self.drives[number].size, np.nan)
         return self.blocks(number, other.grid, other.readings) - self.blocks(number, base.grid, base.readings)
+
+    def heat_by_law(self, number: int, law: str) -> Array:
+        """(2, n) W in equal stretches from crown to bead as the tyre begins to turn: the study's law, another law.
+
+        NaN if the law cannot run.
+        """
+        base = self.base(number)
+        try:
+            other = RollingTyre(by_law(base.study, law, 0.0))
+            return np.array([heat_along(base.tyre), heat_along(other)])
+        except InputError:
+            return np.full((2, STRETCHES), np.nan)
 
     def simulate(self, number: int, values: Values) -> FixedStepRun:
         """Fixed-step simulation of a drive with unknowns at ``values``; it has temperatures at any place."""

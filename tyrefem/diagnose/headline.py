@@ -18,6 +18,7 @@ from tyrefem.diagnose.numbers import amount, correction_subject, correction_word
 from tyrefem.diagnose.partly_words import besides_words, explaining_words, least_words, ranges
 from tyrefem.diagnose.pulls import Pull, pulls
 from tyrefem.diagnose.result_tables import clearest, competing_sets, inclusion_probability
+from tyrefem.diagnose.strain_words import law_in_short, law_sure
 from tyrefem.diagnose.support_words import support_words
 from tyrefem.diagnose.verdict import CONFOUNDED, IDENTIFIED, NO_GAP, PARTLY, RankedSet
 from tyrefem.diagnose.words import (
@@ -48,7 +49,21 @@ def headline(d: DiagnosisData) -> tuple[str, str, str]:
         NO_GAP: _no_gap,
         PARTLY: _partly,
     }.get(d.verdict, _unexplained)(d)
-    return wrong, sure, next_step
+    if d.better_law is None:
+        return wrong, sure, next_step
+    first, law = law_in_short(d), f"{law_sure(d.better_law)}."
+    if d.better_law.alone:
+        closed = _closed(d)
+        wrong, sure = "With it no effect is missing.", f"{closed[0].upper()}{closed[1:]}."
+        next_step = (
+            f"Go on with amended.toml, which has the strain law {d.better_law.trial.law}; compare strain laws, section "
+            "and cards where the heat differs (tyrefem strain STUDY)."
+        )
+    elif d.verdict == PARTLY:
+        wrong = wrong.replace("This is a part of it: ", "Besides: ", 1)
+    else:
+        wrong = wrong.replace("explains the deviation", "explains the rest", 1)
+    return f"{first} {wrong}", f"{law} {sure}", next_step
 
 
 def label(d: DiagnosisData) -> str:

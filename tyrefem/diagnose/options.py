@@ -56,7 +56,12 @@ class SimulationWork:
         if not number:
             return self
         store = None if self.store is None else self.store.look(number)
-        return replace(self, progress=_numbered(self.progress, number), known=None, store=store)
+        return replace(self, progress=_suffixed(self.progress, f"look {number + 1}"), known=None, store=store)
+
+    def by_law(self, law: str) -> SimulationWork:
+        """The options for the diagnosis with another strain law."""
+        store = None if self.store is None else self.store.by_law(law)
+        return replace(self, progress=_suffixed(self.progress, f"strain law {law}"), known=None, store=store)
 
     def tick(self, what: str, done: int = 0, total: int = 0) -> None:
         """Report progress."""
@@ -64,10 +69,10 @@ class SimulationWork:
             self.progress(what, done, total)
 
 
-def _numbered(progress: Tick | None, number: int) -> Tick | None:
+def _suffixed(progress: Tick | None, suffix: str) -> Tick | None:
     if progress is None:
         return None
-    return lambda what, done, total: progress(f"{what}, look {number + 1}", done, total)
+    return lambda what, done, total: progress(f"{what}, {suffix}", done, total)
 
 
 class DiagnosisOptions(TypedDict, total=False):

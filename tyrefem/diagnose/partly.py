@@ -28,7 +28,9 @@ class Revision(NamedTuple):
         return Revision(UNEXPLAINED, (*self.reasons, doubt), (*self.doubts, sentence))
 
 
-def beside_discrepancies(judgement: Judgement, robustness: Robustness, settings: DiagnosisSettings) -> Revision:
+def beside_discrepancies(
+    judgement: Judgement, robustness: Robustness, settings: DiagnosisSettings, *, law_replaced: bool = False
+) -> Revision:
     """The verdict with what else may be wrong, and the effects that are part of the cause.
 
     - *identified* stays if every member acts with at least 90 % probability, averaged over the discrepancy models by
@@ -37,6 +39,8 @@ def beside_discrepancies(judgement: Judgement, robustness: Robustness, settings:
       discrepancy model, with amounts that agree; beside the most probable model noise explains the misfit, and they
       predict the held-out runs no worse than no effect.
     - *unexplained*: more is wrong, and there is no such effect.
+
+    ``law_replaced``: the study's strain law was wrong, and another one stands in its place; nothing is "identified".
     """
     revision = Revision(judgement.verdict, judgement.reasons, judgement.doubts)
     if judgement.verdict == NO_GAP:
@@ -44,9 +48,10 @@ def beside_discrepancies(judgement: Judgement, robustness: Robustness, settings:
     leading, least = robustness.models[0], settings.named_probability
     if judgement.verdict == IDENTIFIED:
         doubtful = [each for each in judgement.best.members if robustness.mean(each.key) < least]
-        if not doubtful:
+        if not doubtful and not law_replaced:
             return revision
-        revision = revision.doubted(_doubt(robustness, doubtful[0]))
+        doubt = _doubt(robustness, doubtful[0]) if doubtful else "the study's strain law is not that of the data"
+        revision = revision.doubted(doubt)
     elif judgement.verdict == CONFOUNDED:
         if leading.name == NONE:
             return revision

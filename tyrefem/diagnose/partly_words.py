@@ -63,6 +63,8 @@ def besides_words(d: DiagnosisData) -> str:
     robust = d.robustness
     assert robust is not None
     leading = robust.models[0]
+    if leading.name == NONE:
+        return "besides it nothing else is clear"
     if leading.name == ENERGY and (shares := energy_words(d, d.best)):
         return f"besides it {shares}"
     if leading.name != HEAT:

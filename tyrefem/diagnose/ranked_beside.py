@@ -210,12 +210,14 @@ def robustness(problem: SelectionProblem, scored: Sequence[ScoredSet], *, certai
     def result() -> Robustness:
         sets = [(Discrepancy(NONE, 0.0), problem.residuals, settings.right_model, alone)]
         sets += [(beside.discrepancy, beside.residuals, share, beside.scored()) for beside in ranked.values()]
-        probabilities = shares([math.log(prior) + _total(rows) for _, _, prior, rows in sets])
+        scores = [math.log(prior) + _total(rows) for _, _, prior, rows in sets]
+        probabilities = shares(scores)
         models = [
             replace(under(discrepancy, residuals, rows), probability=probability)
             for (discrepancy, residuals, _, rows), probability in zip(sets, probabilities, strict=True)
         ]
-        return Robustness(tuple(sorted(models, key=lambda model: -model.probability)))
+        ordered = tuple(sorted(models, key=lambda model: -model.probability))
+        return Robustness(ordered, log_evidence=float(np.logaddexp.reduce(scores)))
 
     first = result()
     probable = {model.name for model in first.models if model.probability > PROBABLE}

@@ -63,6 +63,8 @@ def record(d: DiagnosisData) -> dict[str, Any]:
         "noise": noise(d),
         "confidence": confidence(d),
         "discrepancies": discrepancy_rows(d),
+        "strain_laws": [trial.to_dict() for trial in d.law_trials],
+        "better_strain_law": None if d.better_law is None else d.better_law.to_dict(),
         "conformal": None if d.conformal is None else d.conformal.to_dict(d.judgement.ranking),
         "prior_sensitivity": [asdict(change) for change in d.prior_sensitivity],
         "where": where(d),

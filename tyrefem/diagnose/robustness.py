@@ -60,12 +60,14 @@ class Robustness(Brief):
     """Probabilities of effects beside every discrepancy model.
 
     ``models``: the models, the most probable first. ``laws``: other strain laws that were tried, without a probability.
-    ``untried``: other strain laws that were not tried.
+    ``untried``: other strain laws that were not tried. ``log_evidence``: ln evidence of the data, over all models and
+    sets of effects with their priors.
     """
 
     models: tuple[UnderDiscrepancy, ...]
     laws: tuple[UnderDiscrepancy, ...] = ()
     untried: tuple[str, ...] = ()
+    log_evidence: float = math.nan
 
     def _title(self) -> str:
         return f"{len(self.models)} models, {self.models[0].name} first"

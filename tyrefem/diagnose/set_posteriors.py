@@ -120,11 +120,16 @@ def tables(study: StudyData) -> dict[str, Any]:
 
 
 def posterior_record(d: DiagnosisData) -> dict[str, Any]:
-    """Contents of ``posterior.json``: sets with the posteriors of their unknowns, noise of sensors, names of runs."""
+    """Contents of ``posterior.json``: sets with the posteriors of their unknowns, noise of sensors, names of runs.
+
+    ``strain_law``: name and level of the strain law in place of the study's, null if this stands; see `by_law`.
+    """
+    better = d.better_law
     return {
         "study": d.original.name,
         "verdict": d.verdict,
         "tables": tables(d.original),
+        "strain_law": None if better is None else {"name": better.trial.law, "level": better.trial.level},
         "runs": [run.name for run in d.gap.runs],
         "noise_K": noise_by_sensor(d),
         "sets": [entry.to_dict() for entry in set_posteriors(d)],

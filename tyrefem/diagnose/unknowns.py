@@ -93,7 +93,8 @@ class Unknown:
     def belongs_to(self, entry: Mapping[str, Any]) -> bool:
         """Whether an entry of ``[[effects]]`` is this unknown's effect, with its choices and runs."""
         same_runs = tuple(entry.get("runs", ())) == self.runs
-        return same_runs and all(entry.get(key) == value for key, value in self.entry.items() if key != "runs")
+        # Choices may be written as numbers.
+        return same_runs and all(str(entry.get(key)) == value for key, value in self.entry.items() if key != "runs")
 
     @property
     def measures(self) -> bool:

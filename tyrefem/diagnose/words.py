@@ -15,6 +15,7 @@ from tyrefem.diagnose.partly_words import besides_words, explaining_words, least
 from tyrefem.diagnose.prior_sensitivity import prior_words
 from tyrefem.diagnose.pulls import pulls
 from tyrefem.diagnose.result_tables import clearest, competing_sets, inclusion_probability
+from tyrefem.diagnose.strain_words import law_sentences
 from tyrefem.diagnose.support_words import support_words
 from tyrefem.diagnose.verdict import CONFOUNDED, IDENTIFIED, NO_GAP, PARTLY, UNEXPLAINED
 
@@ -65,7 +66,7 @@ def verdict_words(d: DiagnosisData) -> tuple[str, ...]:
     again = again_words(d) if d.verdict == IDENTIFIED else ()
     priors = () if d.verdict == UNEXPLAINED else prior_words(d.prior_sensitivity, d.verdict)
     conformal = () if d.conformal is None else (d.conformal.words(d.judgement.ranking),)
-    return (*_verdict_sentences(d), *conformal, *priors, *noise_words(d), *again)
+    return (*law_sentences(d), *_verdict_sentences(d), *conformal, *priors, *noise_words(d), *again)
 
 
 def noise_words(d: DiagnosisData) -> tuple[str, ...]:
@@ -102,6 +103,8 @@ def _verdict_sentences(d: DiagnosisData) -> tuple[str, ...]:
 
 
 def _unexplained(d: DiagnosisData, closing: str) -> tuple[str, ...]:
+    if d.better_law is not None and d.better_law.alone:
+        return ("With this strain law no effect is missing.", *_corrected(d), closing)
     named = " and ".join(member.key for member in d.best.members)
     partly = (f"These effects explain part of the deviation: {named}.",) if named else ()
     entries = {change.unknown.key for change in d.changes if change.missing}

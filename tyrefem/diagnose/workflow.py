@@ -11,6 +11,7 @@ from typing import Any, Unpack
 from tyrefem.brief import Brief
 from tyrefem.compare.experiment import ColumnNames, Table, experiments
 from tyrefem.diagnose.amend import Change, amended, changes
+from tyrefem.diagnose.better_law import by_better_law
 from tyrefem.diagnose.candidates import Candidate, Members, SetPrior, in_single_runs, possible, simulated
 from tyrefem.diagnose.conformal import read_calibration
 from tyrefem.diagnose.criterion import Criterion
@@ -24,6 +25,7 @@ from tyrefem.diagnose.heat_over_time import heat_over_time
 from tyrefem.diagnose.heat_patches import patches
 from tyrefem.diagnose.law_search import HeatLaw, heat_law
 from tyrefem.diagnose.law_signatures import law_signatures
+from tyrefem.diagnose.law_trials import LawTrial, law_trials
 from tyrefem.diagnose.materiality import Movements, movements
 from tyrefem.diagnose.missing_heat import UnknownHeat, missing_heat, missing_heat_fitted, with_course
 from tyrefem.diagnose.multifidelity import Predictions
@@ -37,6 +39,7 @@ from tyrefem.diagnose.runs import MeasuredDrive, measured_drive, with_noise_of_d
 from tyrefem.diagnose.selection import SelectionProblem
 from tyrefem.diagnose.sensitivities import responses, sensitivities, unknowns_of
 from tyrefem.diagnose.settings import DiagnosisSettings
+from tyrefem.diagnose.strain_law_study import by_law
 from tyrefem.diagnose.support import Support, supports
 from tyrefem.diagnose.unknowns import Unknown
 from tyrefem.diagnose.verdict import (
@@ -100,17 +103,39 @@ def diagnose(study: StudyData, table: Table | None = None, **options: Unpack[Dia
     looks: list[DiagnosisData] = []
     while not looks or (looks[-1].verdict == IDENTIFIED and len(looks) < method.settings.looks):
         current = looks[-1].study if looks else study
-        looks.append(_look(current, table, columns, method, work.look(len(looks))))
+        looks.append(_look_by_laws(current, table, columns, method, work.look(len(looks))))
     result = looks.pop()
     while looks:
         result = replace(looks.pop(), again=result)
     return replace(result, conformal=conformal)
 
 
-def _look(
+def _look_by_laws(
     study: StudyData, table: Table | None, columns: ColumnNames, method: Method, work: SimulationWork
 ) -> DiagnosisData:
-    """One diagnosis, from the measured runs to the amended study."""
+    """One diagnosis; by another strain law if the study's does not explain the data and they clearly prefer it."""
+    stated = _look(study, table, columns, method, work)
+    trial = next((each for each in stated.law_trials if each.promising), None)
+    if trial is None:
+        return stated
+    replaced = by_law(study, trial.law, trial.level)
+    other = _look(replaced, table, columns, method, work.by_law(trial.law), law_replaced=True)
+    return by_better_law(stated, other, trial)
+
+
+def _look(
+    study: StudyData,
+    table: Table | None,
+    columns: ColumnNames,
+    method: Method,
+    work: SimulationWork,
+    *,
+    law_replaced: bool = False,
+) -> DiagnosisData:
+    """One diagnosis, from the measured runs to the amended study.
+
+    ``law_replaced``: the strain law is not the one of the study that was given.
+    """
     began = time.perf_counter()
     settings = method.settings
     runs = _measured_drives(study, table, columns, settings)
@@ -134,11 +159,15 @@ def _look(
         predictions = Predictions(
             evaluations, [response.modes for response in known] if settings.reduced == "auto" else ()
         )
-        ranking = rank(residuals, predictions, candidates, method, _SimulationCounter(work.tick))
+        ranking = rank(
+            residuals, predictions, candidates, method, _SimulationCounter(work.tick), law_replaced=law_replaced
+        )
         if not predictions.confirmed(ranking.best.members, ranking.best.values):
             work.tick("reduced models are not accurate at the best fit: repeating with simulations")
             predictions = replace(predictions, modes=(), given_up=True)
-            ranking = rank(residuals, predictions, candidates, method, _SimulationCounter(work.tick))
+            ranking = rank(
+                residuals, predictions, candidates, method, _SimulationCounter(work.tick), law_replaced=law_replaced
+            )
         values, sd, missing_unknowns = _missing_unknowns(residuals, ranking)
         change = changes(residuals, values, sd, missing_unknowns)
         work.tick("running the amended study")
@@ -149,6 +178,10 @@ def _look(
         if ranking.judgement.verdict == CONFOUNDED:
             work.tick("ranking next experiments")
             further = next_experiment(evaluations.model, ranking.judgement, ranking.fit_of)
+        trials: tuple[LawTrial, ...] = ()
+        if not law_replaced and ranking.judgement.verdict in (UNEXPLAINED, PARTLY):
+            work.tick("trying other strain laws")
+            trials = law_trials(residuals, evaluations)
     return DiagnosisData(
         original=study,
         study=amended(study, change),
@@ -170,6 +203,7 @@ def _look(
         signatures=signatures,
         robustness=ranking.robustness,
         supports=ranking.supports,
+        law_trials=trials,
     )
 
 
@@ -225,8 +259,13 @@ def rank(
     candidates: Members,
     method: Method,
     tick: Callable[[str], None] | None = None,
+    *,
+    law_replaced: bool = False,
 ) -> Ranking:
-    """Search for sets that explain the residuals, and rank them with heat of unknown origin."""
+    """Search for sets that explain the residuals, and rank them with heat of unknown origin.
+
+    ``law_replaced``: see `beside_discrepancies`.
+    """
     settings, expected = residuals.settings, residuals.study.card.diagnosis.effects_expected
     prior = SetPrior(candidates, expected, settings.size_shares, settings.odd_run_share)
     origin = _UnknownOrigin(residuals, predictions, method.criterion, math.log(expected * settings.outside_share))
@@ -288,14 +327,14 @@ def rank(
     best_fit = ahead.fit or (null if ahead.outside else fit_of(ahead.members))
     if judgement.verdict == NO_GAP:
         return Ranking(judgement, best_fit, null, missing, fit_of, movements_of(best_fit))
-    robust = robustness(problem, scored, certain=judgement.verdict == IDENTIFIED)
-    revision = beside_discrepancies(judgement, robust, settings)
+    robust = robustness(problem, scored, certain=judgement.verdict == IDENTIFIED and not law_replaced)
+    revision = beside_discrepancies(judgement, robust, settings, law_replaced=law_replaced)
     if partly := revision.members:
         if tick:
             tick("trying other strain laws")
         sets = dict.fromkeys(problem.ordered(each) for each in ((), *((member,) for member in partly), partly))
         robust = beside_strain_laws(problem, robust, [fit_of(members) for members in sets])
-        revision = beside_discrepancies(judgement, robust, settings)
+        revision = beside_discrepancies(judgement, robust, settings, law_replaced=law_replaced)
     judgement = judgement.revised(revision.verdict, revision.reasons, revision.doubts)
     partly = revision.members
     if not partly:

@@ -26,6 +26,7 @@ from tyrefem.diagnose.set_posteriors import (
     tables,
 )
 from tyrefem.diagnose.settings import DiagnosisSettings
+from tyrefem.diagnose.strain_law_study import by_law
 from tyrefem.diagnose.unknowns import Unknown, base_unknowns, sensor_unknowns
 from tyrefem.diagnose.verdict import NO_GAP
 from tyrefem.diagnose.words import AGAIN
@@ -47,7 +48,8 @@ class Beliefs(Brief):
 
     Parameters
     ----------
-    study : the study that the data were compared with. sets : with probabilities that sum to 1, most probable first.
+    study : the study that the data were compared with, by the strain law of the diagnosis.
+    sets : with probabilities that sum to 1, most probable first.
     noise : installed sensor -> noise of a reading, K. runs : names of the measured runs.
     verdict : of the earlier diagnosis; empty before a test.
     """
@@ -123,7 +125,7 @@ def diagnosed_beliefs(diagnosis: DiagnosisData) -> Beliefs:
     looks = [look for look in diagnosis.looks if look.verdict != NO_GAP] or [diagnosis]
     d = looks[-1]
     runs = tuple(run.name for run in d.gap.runs)
-    return Beliefs(d.original, _normalised(set_posteriors(d)), noise_by_sensor(d), runs, d.verdict)
+    return Beliefs(d.gap.study, _normalised(set_posteriors(d)), noise_by_sensor(d), runs, d.verdict)
 
 
 def _check_tables(study: StudyData, diagnosed: Mapping[str, Any]) -> None:
@@ -154,6 +156,8 @@ def stored_beliefs(study: StudyData, folder: Path) -> Beliefs:
     except ValueError:
         raise InputError("is damaged: diagnose again", file=file) from None
     try:
+        if (law := record.get("strain_law")) is not None:
+            study = by_law(study, str(law["name"]), float(law["level"]))
         sets = read_posteriors(record, study, DiagnosisSettings())
         noise = {str(name): float(value) for name, value in record["noise_K"].items()}
         runs, verdict = tuple(map(str, record["runs"])), str(record["verdict"])

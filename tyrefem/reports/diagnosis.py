@@ -111,8 +111,9 @@ def page(d: DiagnosisData, images: Mapping[str, bytes], *, version: str) -> str:
         pictures=embedded,
         shown=SHOWN,
         law=law_block(d),
-        unexplained=d.verdict == UNEXPLAINED,
+        unexplained=d.verdict == UNEXPLAINED and not (d.better_law is not None and d.better_law.alone),
         discrepancies=_discrepancies(d),
+        laws=_laws(d),
         confounded=d.verdict == CONFOUNDED,
     )
 
@@ -162,6 +163,20 @@ def _discrepancies(d: DiagnosisData) -> list[dict[str, str]]:
             or "none",
         }
         for model in (d.robustness.models if d.robustness else ())
+    ]
+
+
+def _laws(d: DiagnosisData) -> list[dict[str, str]]:
+    """Other strain laws with the tyre's heat as in the study, before anything is fitted."""
+    return [
+        {
+            "law": trial.law,
+            "factor": f"{math.exp(trial.level):.2f}",
+            "rms": f"{trial.rms:.1f} K",
+            "held_out": "" if math.isnan(trial.held_out_rms) else f"{trial.held_out_rms:.1f} K",
+            "gain": f"{trial.gain:+z,.0f}",
+        }
+        for trial in d.law_trials
     ]
 
 

@@ -1,0 +1,53 @@
+"""A diagnosis by another strain law, taken in place of that by the study's law if the data clearly prefer it."""
+
+from __future__ import annotations
+
+import math
+from dataclasses import replace
+
+from tyrefem.diagnose.diagnosis import DiagnosisData
+from tyrefem.diagnose.law_trials import BetterLaw, LawTrial, stated_law
+from tyrefem.diagnose.verdict import NO_GAP, UNEXPLAINED
+
+#: Another law is taken if its ln evidence is ahead by this, over all sets of effects and discrepancies.
+CLEARLY = 10.0
+
+
+def by_better_law(stated: DiagnosisData, other: DiagnosisData, trial: LawTrial) -> DiagnosisData:
+    """The diagnosis of a study by the better of two strain laws; ``other``: by the law of ``trial``.
+
+    The other law is taken if its evidence is ahead by `CLEARLY` and it predicts the held-out runs better. Without a gap
+    by this law the verdict is "unexplained": a strain law is no effect of the catalogue.
+    """
+    log_odds, lead = evidence(other) - evidence(stated), held_out(other) - held_out(stated)
+    if log_odds < CLEARLY or lead < 0:
+        return stated
+    alone = other.verdict == NO_GAP
+    judgement = other.judgement
+    if alone:
+        reason = f"with the strain law {trial.law} no effect is missing"
+        judgement = judgement.revised(UNEXPLAINED, (*judgement.reasons, reason), ())
+    return replace(
+        other,
+        original=stated.original,
+        judgement=judgement,
+        before=stated.before,
+        seconds=stated.seconds + other.seconds,
+        law_trials=stated.law_trials,
+        better_law=BetterLaw(stated_law(stated.gap), trial, log_odds, lead, alone),
+    )
+
+
+def evidence(d: DiagnosisData) -> float:
+    """ln evidence of a diagnosis over all sets of effects and discrepancies; without a gap that of no effect alone."""
+    if d.robustness is not None:
+        return d.robustness.log_evidence
+    return d.prior(()) + d.null.log_evidence + math.log(d.gap.settings.right_model)
+
+
+def held_out(d: DiagnosisData) -> float:
+    """ln p(held-out data | fitted data) of the best fitted set beside the most probable discrepancy."""
+    if d.robustness is None:
+        return d.null.held_out
+    fits = d.robustness.models[0].fits
+    return max(fits.values(), key=lambda fit: d.prior(fit.members) + fit.log_evidence).held_out

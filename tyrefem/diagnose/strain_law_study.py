@@ -1,0 +1,54 @@
+"""A study with another strain law in place of its own, and the heat of a tyre along the meridian."""
+
+from __future__ import annotations
+
+import numpy as np
+from numpy.typing import NDArray
+
+from tyrefem.diagnose.energy_shapes import SHAPE
+from tyrefem.inputs.study import StudyData
+from tyrefem.mechanics.strain_laws import strain_laws
+from tyrefem.simulation.rolling_tyre import RollingTyre
+
+Array = NDArray[np.float64]
+#: Equal stretches of the meridian between crown and bead in which heat is compared.
+STRETCHES = 12
+#: Prior standard deviation of ln of the factor on another law's heat (estimate): a barrel has half the arcs' energy.
+LEVEL_SD = 0.5
+#: Temperature at which heat is compared, degC.
+WARM = 60.0
+
+
+def by_law(study: StudyData, law: str, level: float) -> StudyData:
+    """The study with another strain law, its heat times exp(level); `LEVEL_SD` is stated as its standard deviation.
+
+    A law that presses the tyre on the road does so in linear motion, which takes seconds.
+    """
+    entries = [dict(entry) for entry in study.data.get("effects", [])]
+    known = next((entry for entry in entries if entry["name"] == SHAPE and str(entry.get("half_waves")) == "0"), None)
+    if known is None:
+        known = {"name": SHAPE, "half_waves": "0", "log_factor": 0.0}
+        entries.append(known)
+    known["log_factor"] = float(known["log_factor"]) + level
+    known["sd"] = {"log_factor": LEVEL_SD}
+    motion = {"mechanics.motion": "linear"} if strain_laws()[law].presses else {}
+    return study.replace({"mechanics.strain": law, "effects": entries} | motion)
+
+
+def heat_along(tyre: RollingTyre) -> Array:
+    """(`STRETCHES`,) W of hysteresis in equal stretches from crown to bead as the tyre begins to turn, at `WARM`.
+
+    Zero for a drive without rolling. Effects on the heat are left out.
+    """
+    watts = np.zeros(STRETCHES)
+    begin = next((t + 1e-6 for t in tyre.drive.starts if tyre.motion(t + 1e-6).turns), None)
+    if begin is None:
+        return watts
+    operators, section = tyre.problem.operators, tyre.study.section
+    for zone, source in tyre.hysteresis.items():
+        x = operators.nodes(zone)
+        heat = operators.mass_row(zone)[operators.dofs(zone)] * source(x, begin, np.full(x.shape[1], WARM))
+        s, _ = section.locate(x.T)
+        stretch = np.minimum((np.abs(s) / section.line.length * STRETCHES).astype(int), STRETCHES - 1)
+        np.add.at(watts, stretch, heat)
+    return watts
