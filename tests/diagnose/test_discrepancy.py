@@ -41,10 +41,14 @@ def law(values: Mapping[str, float]) -> np.ndarray:
     return np.asarray(heat + values.get("hot", 0.0) * hot + values.get("cold", 0.0) * cold)
 
 
-def measured(hot: float = 0.0, off: float = 0.0) -> Case:
-    """Readings with unit noise; the heat's truth is steeper along the meridian than any half wave, by ``off``."""
+def measured(hot: float = 0.0, off: float = 0.0, factor: float = 0.0) -> Case:
+    """Readings with unit noise; the heat's truth is steeper along the meridian than any half wave, by ``off``.
+
+    ``factor``: ln of its factor at the crown, and of that at the bead with the other sign.
+    """
     rng = np.random.default_rng(4)
-    truth = law({"hot": hot}) + 40.0 * (1 + S) * off * np.tanh((0.45 - S) / 0.2) + rng.normal(size=len(S))
+    steep = np.tanh((0.45 - S) / 0.2)
+    truth = law({"hot": hot}) + 40.0 * (1 + S) * (off * steep + np.expm1(factor * steep)) + rng.normal(size=len(S))
     return case(law, truth, (HOT, COLD), SETTINGS, further=SHAPES)
 
 
@@ -87,6 +91,20 @@ def test_an_effect_beside_a_wrong_strain_energy_is_partly_identified() -> None:
     low, high = robust.interval(HOT.amplitudes[0])
     assert low < 25.0 < high
     assert high - low < 12.0
+
+
+@pytest.mark.parametrize("hot", [25.0, 0.0])
+def test_a_strain_energy_that_is_wrong_by_a_factor_is_followed(hot: float) -> None:
+    # The tyre makes up to 3.5 times the model's heat at the crown and a third of it at the bead.
+    judgement, members, robust = diagnosed(measured(hot=hot, off=0.0, factor=1.2))
+    assert robust.models[0].name == ENERGY
+    shapes = robust.models[0].fits[robust.models[0].best]
+    assert max(unknown.sd for unknown in shapes.unknowns if unknown.effect == "heat-shape") > 0.4
+    assert judgement.verdict == (PARTLY if hot else UNEXPLAINED)
+    assert members == ((HOT,) if hot else ())
+    if hot:
+        low, high = robust.interval(HOT.amplitudes[0])
+        assert low < hot < high
 
 
 def test_an_effect_that_another_strain_law_does_not_need_is_not_named() -> None:
@@ -151,7 +169,9 @@ def test_a_fit_beside_a_discrepancy_has_the_evidence_of_the_joint_model() -> Non
 
 def test_the_models_are_those_that_the_unknowns_allow() -> None:
     names = [each.name for each in discrepancies(measured().residuals)]
-    assert names.count(ENERGY) == 3
+    # Without errors of the readings and with two sizes of them, each with narrow and wide priors.
+    assert names.count(ENERGY) == 6
+    assert {each.width for each in discrepancies(measured().residuals)} == {1.0, *DEFAULT.energy_widths}
     assert all(isinstance(each, Discrepancy) for each in discrepancies(measured().residuals))
     without = case(law, law({}), (HOT, COLD), SETTINGS)
     assert ENERGY not in [each.name for each in discrepancies(without.residuals)]

@@ -13,6 +13,7 @@ from numpy.typing import NDArray
 
 from tyrefem.diagnose.candidates import Candidate, Members, SetPrior, catalogue_candidates
 from tyrefem.diagnose.diagnosis import DiagnosisData
+from tyrefem.diagnose.discrepancy_record import possible_effects
 from tyrefem.diagnose.evaluations import Evaluations, evaluating
 from tyrefem.diagnose.forward_model import DriveResponse, ForwardModel
 from tyrefem.diagnose.isolability import MARGIN, competitors_of, layout_sensitivities, margins, planned
@@ -280,6 +281,8 @@ def outcome_row(diagnosis: DiagnosisData) -> dict[str, Any]:
         chosen |= (
             {"not in the catalogue"} if ranked.outside else {member.key for member in ranked.members} or {"no effect"}
         )
+    # "Unexplained" tells which effects may act beside what else is wrong.
+    chosen |= set(possible_effects(diagnosis))
     return {
         "verdict": diagnosis.verdict,
         "named": named,

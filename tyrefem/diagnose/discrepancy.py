@@ -34,6 +34,7 @@ class Discrepancy(Brief):
     nuisance : unknowns that every set has beside the model.
     shared_error : error that readings share; None: none.
     offset : by run (n_blocks,) K, added to the computed temperatures; empty: none.
+    width : factor on the prior standard deviations of ``nuisance``.
     """
 
     name: str
@@ -41,6 +42,7 @@ class Discrepancy(Brief):
     shared_error: SharedError | None = None
     nuisance: tuple[Unknown, ...] = ()
     offset: tuple[Array, ...] = ()
+    width: float = 1.0
 
     def _title(self) -> str:
         return f"{self.name}, {self.size:g} K"
@@ -80,7 +82,7 @@ def discrepancies(residuals: Residuals) -> Iterator[Discrepancy]:
     """The discrepancy models beside which sets of effects are ranked again.
 
     - strain energy: half waves along the meridian, the same in all runs, fitted with the full model; and a smaller
-      part for each run, linear;
+      part for each run, linear. Priors several times as wide follow a strain energy that is wrong by a factor;
     - missing heat: patches of heat and flux, a part that all runs share and a part for each run, linear;
     - correlated readings: a course over time for each sensor and run.
     """
@@ -88,8 +90,15 @@ def discrepancies(residuals: Residuals) -> Iterator[Discrepancy]:
     energy = tuple(unknown for unknown in further if unknown.effect == SHAPE)
     if energy:
         of_runs = _of_runs(residuals, energy, residuals.settings.energy_of_run)
-        for size in (0.0, *residuals.settings.discrepancy_sizes[:2]):
-            yield Discrepancy(ENERGY, size, _shared(residuals, [of_runs, *_courses(residuals, size)]), energy)
+        widths = (1.0, *residuals.settings.energy_widths)
+        sizes = ((0.0, width) for width in widths)
+        errors = (
+            (size, width) for size in residuals.settings.discrepancy_sizes[:2] for width in (widths[0], widths[-1])
+        )
+        for size, width in (*sizes, *errors):
+            shapes = tuple(replace(unknown, sd=width * unknown.sd) for unknown in energy)
+            shared = _shared(residuals, [of_runs, *_courses(residuals, size)])
+            yield Discrepancy(ENERGY, size, shared, shapes, width=width)
     heat = [unknown for unknown in further if unknown.effect in ("missing-heat", "missing-flux")]
     if heat:
         both = [_of_all(residuals, heat, 1.0), _of_runs(residuals, heat, 0.5)]

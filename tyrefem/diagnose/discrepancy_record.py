@@ -5,7 +5,7 @@ from __future__ import annotations
 import math
 from typing import TYPE_CHECKING, Any
 
-from tyrefem.diagnose.verdict import PARTLY
+from tyrefem.diagnose.verdict import PARTLY, UNEXPLAINED
 
 if TYPE_CHECKING:
     from tyrefem.diagnose.candidates import Candidate
@@ -13,6 +13,8 @@ if TYPE_CHECKING:
 
 #: Effects below this probability are left out of a row.
 LEAST = 0.01
+#: Effects from this probability on may act beside a discrepancy.
+POSSIBLE = 0.05
 
 
 def effect_probability(d: DiagnosisData, member: Candidate) -> float:
@@ -44,6 +46,17 @@ def support_row(d: DiagnosisData, member: Candidate) -> dict[str, Any] | None:
         return None
     rows = [{"kind": each.kind, "name": each.name, "probability": each.probability} for each in support.left_out]
     return {"only": support.only or None, "only_at": support.only_at or None, "without": rows}
+
+
+def possible_effects(d: DiagnosisData) -> dict[str, float]:
+    """Candidate key -> probability beside the discrepancy that explains the data, if the verdict is "unexplained".
+
+    Effects below `POSSIBLE` are left out, and all if noise explains no set's misfit beside it.
+    """
+    leading = d.robustness.models[0] if d.robustness is not None else None
+    if d.verdict != UNEXPLAINED or leading is None or leading.refuted or not leading.fits:
+        return {}
+    return {key: share for key, share in leading.named.items() if share >= POSSIBLE}
 
 
 def discrepancy_rows(d: DiagnosisData) -> list[dict[str, Any]]:

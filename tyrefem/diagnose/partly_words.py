@@ -2,15 +2,18 @@
 
 from __future__ import annotations
 
+import math
 from typing import TYPE_CHECKING
 
 import numpy as np
 from numpy.typing import NDArray
 
 from tyrefem.diagnose.discrepancy import ENERGY, HEAT, NONE
+from tyrefem.diagnose.discrepancy_record import possible_effects
 from tyrefem.diagnose.energy_shapes import SHAPE, courses
 from tyrefem.diagnose.heat_words import NOT_CLEAR, heat_words, station_words
-from tyrefem.diagnose.numbers import amount, at_least, extent, parameter_name
+from tyrefem.diagnose.numbers import amount, at_least, extent, parameter_name, percent
+from tyrefem.diagnose.residual_tables import rms
 from tyrefem.diagnose.robustness import LEAST_P
 
 if TYPE_CHECKING:
@@ -21,6 +24,8 @@ if TYPE_CHECKING:
 Array = NDArray[np.float64]
 #: A share of the heat is stated if it differs from zero by more than this many standard deviations.
 CLEAR = 2.0
+#: Another strain energy is told if it explains more than this share of the deviation.
+MOST = 0.5
 
 
 def ranges(d: DiagnosisData, member: Candidate) -> list[str]:
@@ -74,14 +79,47 @@ def besides_words(d: DiagnosisData) -> str:
 
 
 def explaining_words(d: DiagnosisData) -> str:
-    """The discrepancy that explains the deviation without a named effect, as a sentence; empty if none does."""
+    """The discrepancy that explains the deviation without a named effect, as a sentence; empty if none does.
+
+    Another strain energy is also told if it explains most of the deviation, but noise does not explain the rest.
+    """
     leading = d.robustness.models[0] if d.robustness else None
-    if leading is None or leading.name == NONE or leading.p_value < LEAST_P:
+    if leading is None:
         return ""
+    if leading.name == NONE or leading.p_value < LEAST_P:
+        return _energy_explains(d)
     fit = leading.fits.get(())
     shares = energy_words(d, fit) if leading.name == ENERGY and fit is not None else ""
     words = f"{leading.words[0].upper()}{leading.words[1:]}"
     return f"{words} would explain it{f': {shares}' if shares else ''}."
+
+
+def _energy_explains(d: DiagnosisData) -> str:
+    """The share of the deviation that another strain energy explains, if it is most of it; else empty."""
+    assert d.robustness is not None
+    fit = next((model.fits.get(()) for model in d.robustness.models if model.name == ENERGY), None)
+    if fit is None:
+        return ""
+    before, after = d.rms(after=False, held_out=False), rms(d.gap, fit.computed, d.gap.fitted)
+    share = 1 - beyond_noise(after, d.noise) / max(beyond_noise(before, d.noise), 1e-12)
+    shares = energy_words(d, fit)
+    if share < MOST or not shares:
+        return ""
+    return (
+        f"Another strain energy along the meridian explains {100 * share:.0f} % of it (rms {before:.1f} to "
+        f"{after:.1f} K in the fitted runs), not all: {shares}."
+    )
+
+
+def beyond_noise(rms_of_all: float, noise: float) -> float:
+    """sqrt(rms^2 - noise^2), K, of a deviation; 0 if it is no larger than the noise."""
+    return math.sqrt(max(rms_of_all**2 - noise**2, 0.0))
+
+
+def beside_it_words(d: DiagnosisData) -> str:
+    """Effects that may act beside the discrepancy that explains the deviation, as a sentence; empty if none may."""
+    shown = [f"{key} ({percent(share)})" for key, share in possible_effects(d).items()]
+    return f"Beside it may act, not sure enough to be named: {', '.join(shown)}." if shown else ""
 
 
 def energy_words(d: DiagnosisData, fit: FittedSet) -> str:

@@ -12,7 +12,7 @@ import numpy as np
 from tyrefem.brief import Brief
 from tyrefem.diagnose.candidates import Candidate, Members, separate
 from tyrefem.diagnose.discrepancy import NONE, READINGS, Discrepancy, beside_law, discrepancies
-from tyrefem.diagnose.fits import FittedSet, first_fits, fitted_beside, linear_about, state_beside
+from tyrefem.diagnose.fits import FittedSet, continued, first_fits, fitted_beside, linear_about, state_beside
 from tyrefem.diagnose.gauss_newton import FitState, initial_state
 from tyrefem.diagnose.residuals import Residuals
 from tyrefem.diagnose.robustness import Robustness, UnderDiscrepancy, shares
@@ -21,6 +21,8 @@ from tyrefem.mechanics.strain_laws import strain_laws
 
 #: A set whose linear estimate is this far below the best is not fitted beside a discrepancy, nats.
 FAR = 60.0
+#: A fit with half waves beyond so many prior standard deviations asks for wider priors; fits that are continued there.
+STRAIN, RENEWED = 2.5, 2
 #: A model is probable enough for further fits from this probability on.
 PROBABLE = 1e-3
 #: Beside a discrepancy of this size noise explains the misfit, so that no larger one is tried.
@@ -35,15 +37,36 @@ class RankedBeside(Brief):
     discrepancy: Discrepancy
     fits: dict[Members, FittedSet] = field(default_factory=dict)
     estimates: dict[Members, float] = field(default_factory=dict)
+    _here: Residuals | None = None
 
     def _title(self) -> str:
         return f"{self.discrepancy.name}, {len(self.fits)} fits"
 
-    @functools.cached_property
+    @property
     def residuals(self) -> Residuals:
-        """The residuals beside the discrepancy."""
+        """The residuals beside the discrepancy; with sensitivities to effects at the best fit if they were taken."""
+        return self._here or self._at_origin
+
+    @functools.cached_property
+    def _at_origin(self) -> Residuals:
         of = self.discrepancy
         return self.problem.residuals.beside(of.nuisance, of.shared_error, of.offset)
+
+    @property
+    def best(self) -> FittedSet:
+        """The fitted set with the highest score."""
+        return self.fits[max(self.fits, key=self.score)]
+
+    @property
+    def strained(self) -> bool:
+        """Whether the best fit needs much more of the discrepancy than its prior expects."""
+        fit, nuisance = self.best, set(self.discrepancy.nuisance)
+        return any(abs(fit.values[unknown]) > STRAIN * unknown.sd for unknown in fit.unknowns if unknown in nuisance)
+
+    @property
+    def far(self) -> bool:
+        """Whether the fits lie far from the study, where sensitivities differ from those at x = 0: priors are wide."""
+        return self.discrepancy.width > 1.0 and self.discrepancy.size == 0.0
 
     def score(self, members: Members) -> float:
         """ln(prior) + ln evidence of a fitted set."""
@@ -83,7 +106,23 @@ class RankedBeside(Brief):
         )
         self._take(first_fits(residuals, problem.predictions, restarted, None, problem._count))
         self.estimates |= {members: value for members, value in estimates.items() if members not in self.fits}
+        if self.far:
+            self._renew()
         self._estimate()
+
+    def _renew(self) -> None:
+        """Continue the best fits with sensitivities at their points; take those of all effects at the best one."""
+        problem = self.problem
+        leading = sorted(self.fits, key=self.score)[-RENEWED:]
+        self._take(
+            continued(self.residuals, problem.predictions, [self.fits[part] for part in leading], problem._count)
+        )
+        unknowns = [unknown for each in problem.candidates for unknown in (*each.amplitudes, *each.presence)]
+        point = problem.ordered(self.best.members), tuple(unknowns), self.best.state.current_values
+        numbers = self.residuals.fitted
+        (columns,) = problem.predictions.jacobians([point], numbers, problem._count)
+        sensitive = self.residuals.sensitivities.with_columns(unknowns, dict(zip(numbers, columns, strict=True)))
+        self._here = replace(self.residuals, sensitivities=sensitive)
 
     def further(self) -> None:
         """Fit the best estimated sets, twice, and estimate from them."""
@@ -199,7 +238,7 @@ def robustness(problem: SelectionProblem, scored: Sequence[ScoredSet], *, certai
     ranked: dict[str, RankedBeside] = {}
     for discrepancy in _sizes_in_order(problem, fits):
         known = ranked.get(discrepancy.name)
-        if known is not None and known.p_value > USUAL_P:
+        if known is not None and not _further(known, discrepancy):
             continue
         beside = RankedBeside(problem, discrepancy)
         beside.begin(fits)
@@ -225,6 +264,14 @@ def robustness(problem: SelectionProblem, scored: Sequence[ScoredSet], *, certai
     for beside in left:
         beside.further()
     return result() if left else first
+
+
+def _further(known: RankedBeside, discrepancy: Discrepancy) -> bool:
+    """Whether to try a discrepancy beside the best one of its name: a wider one, or one with errors of the readings."""
+    same_width = discrepancy.width == known.discrepancy.width
+    if known.p_value > USUAL_P:
+        return known.strained and not same_width and discrepancy.size == known.discrepancy.size
+    return discrepancy.size == 0.0 or same_width
 
 
 def beside_strain_laws(problem: SelectionProblem, robust: Robustness, fits: Sequence[FittedSet]) -> Robustness:

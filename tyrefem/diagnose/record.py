@@ -5,7 +5,13 @@ from __future__ import annotations
 from dataclasses import asdict
 from typing import TYPE_CHECKING, Any
 
-from tyrefem.diagnose.discrepancy_record import confidence, discrepancy_rows, effect_probability, support_row
+from tyrefem.diagnose.discrepancy_record import (
+    confidence,
+    discrepancy_rows,
+    effect_probability,
+    possible_effects,
+    support_row,
+)
 from tyrefem.diagnose.headline import headline
 from tyrefem.diagnose.heat_words import is_told, source_place, source_words
 from tyrefem.diagnose.law_record import law_record
@@ -63,6 +69,7 @@ def record(d: DiagnosisData) -> dict[str, Any]:
         "noise": noise(d),
         "confidence": confidence(d),
         "discrepancies": discrepancy_rows(d),
+        "possible_effects": possible_effects(d),
         "strain_laws": [trial.to_dict() for trial in d.law_trials],
         "better_strain_law": None if d.better_law is None else d.better_law.to_dict(),
         "conformal": None if d.conformal is None else d.conformal.to_dict(d.judgement.ranking),

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Iterable, Sequence
+from collections.abc import Callable, Iterable, Mapping, Sequence
 from dataclasses import dataclass, replace
 from functools import cached_property
 
@@ -77,18 +77,34 @@ class Sensitivities(Brief):
         return replace(self, unknowns=(*self.unknowns, *unknowns), jacobians=tuple(jacobians))
 
     def with_nuisance(self, unknowns: Sequence[Unknown]) -> Sensitivities:
-        """With these unknowns, which it has, among those that belong to every model."""
-        known = set(unknowns)
-        first = [column for column, unknown in enumerate(self.unknowns[: self.nuisance]) if unknown not in known]
-        moved = [column for column, unknown in enumerate(self.unknowns) if unknown in known]
-        rest = [column for column in range(self.nuisance, len(self.unknowns)) if self.unknowns[column] not in known]
+        """With these unknowns among those that belong to every model; it has unknowns of their keys.
+
+        They may have other priors than these.
+        """
+        moved_to = {unknown.key: unknown for unknown in unknowns}
+        of_model = range(self.nuisance)
+        moved = [column for column, unknown in enumerate(self.unknowns) if unknown.key in moved_to]
+        first = [column for column in of_model if column not in moved]
+        rest = [column for column in range(self.nuisance, len(self.unknowns)) if column not in moved]
         order = [*first, *moved, *rest]
         return replace(
             self,
-            unknowns=tuple(self.unknowns[column] for column in order),
+            unknowns=tuple(moved_to.get(self.unknowns[column].key, self.unknowns[column]) for column in order),
             nuisance=len(first) + len(moved),
             jacobians=tuple(J[:, order] for J in self.jacobians),
         )
+
+    def with_columns(self, unknowns: Sequence[Unknown], columns: Mapping[int, Array]) -> Sensitivities:
+        """With other sensitivities to some unknowns at some drives: number of the drive -> (n_blocks, k), K.
+
+        Those that are not finite are left as they are.
+        """
+        places = [self.unknowns.index(unknown) for unknown in unknowns]
+        jacobians = [J.copy() for J in self.jacobians]
+        for number, new in columns.items():
+            usable = np.isfinite(new).all(axis=0)
+            jacobians[number][:, np.array(places)[usable]] = new[:, usable]
+        return replace(self, jacobians=tuple(jacobians))
 
     def without(self, unknowns: Sequence[Unknown]) -> Sensitivities:
         """The sensitivities without the columns of some effects' unknowns."""

@@ -157,6 +157,8 @@ class DiagnosisSettings:
     energy_sd: float = 0.25
     energy_length: float = 0.25
     energy_modes: int = 7
+    #: Factors on the prior sd of the strain energy that are tried where it is wrong by more than these priors expect.
+    energy_widths: tuple[float, ...] = (3.0,)
     #: Prior sd of each run's own strain energy over that of all runs.
     energy_of_run: float = 0.3
     #: Sizes of a correlated discrepancy of the readings that are tried, K; it is alike over this share of a run.

@@ -9,6 +9,7 @@ import numpy as np
 
 from tyrefem.diagnose.heat_words import station_words
 from tyrefem.diagnose.numbers import percent
+from tyrefem.diagnose.partly_words import beyond_noise
 
 if TYPE_CHECKING:
     from tyrefem.diagnose.diagnosis import DiagnosisData
@@ -111,8 +112,6 @@ def explained_share(d: DiagnosisData) -> float:
     """
     assert d.better_law is not None
     trial, held_out = d.better_law.trial, bool(d.gap.held_out)
-    before, after = (
-        math.sqrt(max(rms**2 - d.noise**2, 0.0))
-        for rms in (d.rms(after=False, held_out=held_out), trial.held_out_rms if held_out else trial.rms)
-    )
+    by_law = trial.held_out_rms if held_out else trial.rms
+    before, after = (beyond_noise(each, d.noise) for each in (d.rms(after=False, held_out=held_out), by_law))
     return 1 - after / before if before > 0 else 0.0

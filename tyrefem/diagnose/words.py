@@ -11,7 +11,14 @@ from tyrefem.diagnose.draft_effect import EFFECTS, draft_effects
 from tyrefem.diagnose.heat_words import heat_words
 from tyrefem.diagnose.law_words import law_words
 from tyrefem.diagnose.numbers import amount, correction_words, parameter_name, percent
-from tyrefem.diagnose.partly_words import besides_words, explaining_words, least_words, ranges, tried_words
+from tyrefem.diagnose.partly_words import (
+    beside_it_words,
+    besides_words,
+    explaining_words,
+    least_words,
+    ranges,
+    tried_words,
+)
 from tyrefem.diagnose.prior_sensitivity import prior_words
 from tyrefem.diagnose.pulls import pulls
 from tyrefem.diagnose.result_tables import clearest, competing_sets, inclusion_probability
@@ -115,7 +122,7 @@ def _unexplained(d: DiagnosisData, closing: str) -> tuple[str, ...]:
         "No effect in the catalogue explains the deviation.",
         *d.judgement.doubts,
         f"{heat_words(d)}.",
-        *([sentence] if (sentence := explaining_words(d)) else []),
+        *(sentence for sentence in (explaining_words(d), beside_it_words(d)) if sentence),
         *(f"{sentence}." for sentence in law_words(d)),
         *partly,
         *([described] if entries else []),

@@ -1,0 +1,76 @@
+""""Unexplained" says something: how much another strain energy explains, and which effects may act beside it."""
+
+from __future__ import annotations
+
+from dataclasses import replace
+
+import numpy as np
+import pytest
+from hidden import Case
+from made_up import unexplained
+
+from tyrefem.diagnose import DiagnosisData
+from tyrefem.diagnose.blind import outcome_row
+from tyrefem.diagnose.discrepancy import ENERGY, READINGS
+from tyrefem.diagnose.discrepancy_record import possible_effects
+from tyrefem.diagnose.energy_shapes import energy_shapes
+from tyrefem.diagnose.evidence import Posterior
+from tyrefem.diagnose.fits import FittedSet
+from tyrefem.diagnose.headline import headline
+from tyrefem.diagnose.partly_words import MOST, explaining_words
+from tyrefem.diagnose.record import record
+from tyrefem.diagnose.robustness import Robustness, UnderDiscrepancy
+from tyrefem.diagnose.words import verdict_words
+
+
+def beside_energy(d: DiagnosisData, left: float) -> FittedSet:
+    """A fit of no effect whose half waves raise the heat at the crown; ``left``: share of the deviation that it leaves.
+
+    Noise does not explain the rest.
+    """
+    shapes = energy_shapes(d.original, d.gap.settings)
+    mean = np.zeros(len(shapes))
+    mean[:3] = 0.3
+    covariance = np.diag([0.03**2] * len(shapes))
+    posterior = Posterior(mean, covariance, 0.0, np.zeros(len(shapes), dtype=bool), np.zeros(len(shapes)))
+    runs = dict(enumerate(d.gap.runs))
+    computed = {i: run.measured - left * (run.measured - d.before[i]) for i, run in runs.items()}
+    return replace(d.null, unknowns=shapes, posterior=posterior, computed=computed, misfit=1e6)
+
+
+def with_models(d: DiagnosisData, left: float, leading_p: float) -> DiagnosisData:
+    """As if errors of the readings were most probable, with this probability of their misfit."""
+    d = unexplained(d, 1e3)
+    misfit = d.best.readings if leading_p else 1e6
+    readings = replace(d.null, misfit=float(misfit))
+    models = (
+        UnderDiscrepancy(READINGS, 4.0, "errors of the readings", 0.9, {"hot-road": 0.4}, (), {}, {(): readings}),
+        UnderDiscrepancy(ENERGY, 0.0, "another strain energy", 0.1, {}, (), {}, {(): beside_energy(d, left)}),
+    )
+    return replace(d, robustness=Robustness(models))
+
+
+def test_a_strain_energy_that_explains_most_is_told_with_place_and_amount(case: Case) -> None:
+    d = with_models(case.diagnosis, left=0.2, leading_p=0.0)
+    sentence = explaining_words(d)
+    assert sentence.startswith("Another strain energy along the meridian explains ")
+    # 0.2 of the deviation is left, and the scatter within blocks.
+    before = d.rms(after=False, held_out=False)
+    assert f"(rms {before:.1f} to " in sentence
+    assert "more heat in the crown" in sentence
+    assert sentence in verdict_words(d)
+    assert "another strain energy along the meridian explains" in headline(d)[0]
+    assert possible_effects(d) == {}
+
+
+def test_a_strain_energy_that_explains_little_is_not_told(case: Case) -> None:
+    assert explaining_words(with_models(case.diagnosis, left=1.1 - MOST / 2, leading_p=0.0)) == ""
+
+
+def test_effects_that_may_act_beside_a_discrepancy_are_in_the_set(case: Case) -> None:
+    d = with_models(case.diagnosis, left=0.2, leading_p=0.5)
+    assert possible_effects(d) == {"hot-road": pytest.approx(0.4)}
+    assert "Beside it may act, not sure enough to be named: hot-road (40 %)." in " ".join(verdict_words(d))
+    assert record(d)["possible_effects"] == {"hot-road": pytest.approx(0.4)}
+    assert "hot-road" in outcome_row(d)["set"]
+    assert outcome_row(d)["named"] == []
