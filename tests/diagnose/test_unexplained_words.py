@@ -1,4 +1,4 @@
-""""Unexplained" says something: how much another strain energy explains, and which effects may act beside it."""
+""" "Unexplained" says something: how much another strain energy explains, and which effects may act beside it."""
 
 from __future__ import annotations
 

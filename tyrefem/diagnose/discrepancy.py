@@ -58,7 +58,10 @@ class Discrepancy(Brief):
             HEAT: "heat of unknown origin",
             READINGS: "errors of the readings",
         }[self.name]
-        return f"{words} that neighbours in time share ({self.size:g} K)" if self.size else words
+        if not self.size:
+            return words
+        errors = "" if self.name == READINGS else ", and errors of the readings"
+        return f"{words}{errors} that neighbours in time share ({self.size:g} K)"
 
 
 def beside_law(residuals: Residuals, law: str, changes: Sequence[Array]) -> Discrepancy:

@@ -24,6 +24,8 @@ if TYPE_CHECKING:
 Array = NDArray[np.float64]
 #: A share of the heat is stated if it differs from zero by more than this many standard deviations.
 CLEAR = 2.0
+#: From this ratio on heats are told as "2.5 times the heat".
+TIMES = 2.5
 #: Another strain energy is told if it explains more than this share of the deviation.
 MOST = 0.5
 
@@ -133,12 +135,17 @@ def energy_words(d: DiagnosisData, fit: FittedSet) -> str:
     for sign, words in ((1.0, "more"), (-1.0, "less")):
         at = int(np.argmax(sign * ratio))
         if sign * ratio[at] > CLEAR:
-            size = amount(100 * abs(float(share[at])), 100 * float(sd[at]), "%").lstrip("+")
-            clauses.append((abs(float(ratio[at])), f"{size} {words} heat {station_words(d, float(s[at]))}"))
+            if share[at] > TIMES - 1:
+                size = f"{amount(1 + float(share[at]), float(sd[at]), '1').lstrip('+')} times the heat"
+            else:
+                size = f"{amount(100 * abs(float(share[at])), 100 * float(sd[at]), '%').lstrip('+')} {words} heat"
+            clauses.append((abs(float(ratio[at])), f"{size} {station_words(d, float(s[at]))}"))
     clauses.sort(key=lambda clause: -clause[0])
     if not clauses:
         return ""
-    return f"the tyre makes {' and '.join(text for _, text in clauses)} than the model"
+    # "Times the heat" needs no "than".
+    compared = "than the model" if "times the heat" not in clauses[-1][1] else "of the model"
+    return f"the tyre makes {' and '.join(text for _, text in clauses)} {compared}"
 
 
 def energy_shares(d: DiagnosisData, fit: FittedSet) -> tuple[Array, Array, Array]:
