@@ -1,13 +1,16 @@
-"""Does a test plan lead to the right name? Blind cases whose first run is confounded, continued by plan and at random.
+"""Does a test plan lead to the right name? Confounded blind cases, continued by plan and at random.
 
-    python benchmarks/plan.py --cases 40 --seed 1 --out results/plan                # with fits: half a minute a case
-    python benchmarks/plan.py --cases 40 --seed 1 --out results/plan-linear --linear
+    python benchmarks/plan.py --seed 2 --cases 5 --out results/plan               # every layout: about a minute a case
+    python benchmarks/plan.py --layouts four --seed 1 --cases 40 --out results/plan-four
+    python benchmarks/plan.py --layouts four --linear --out results/plan-linear   # verdicts without fits
 
-The layout: 22x5.5 8PR, four thermocouples and the contained air, one run of 15 minutes. Eleven effects compete. A case
-hides one of them, wrong base numbers and displaced sensors in synthetic data, from another mesh and time integration.
-If the first verdict is "confounded", the case counts. The next run is chosen by `tyrefem plan` and simulated with the
-hidden cause; all runs are diagnosed again; both up to twice. Then the same cases get runs at random from the same
-drives, up to three. Every finished case is written at once, and the same command goes on.
+The tyre is the 22x5.5 8PR. The layouts of `benchmarks/plan_layouts.py` differ in thermocouples, first runs and
+competing effects; the contained air is always read. A case hides one effect, wrong base numbers and displaced sensors
+in synthetic data, from another mesh and time integration. It counts if the first verdict is "confounded". The next run
+is chosen by `tyrefem plan` and simulated with the hidden cause; all runs are diagnosed again; both up to twice. Then
+the same case gets runs at random from the same drives, up to two. Of each hidden effect at most two cases of a layout
+count, so that no pair fills it. Every finished case is written at once, and the same command goes on.
+`benchmarks/plan_table.py` makes the tables.
 """
 
 from __future__ import annotations
@@ -17,11 +20,14 @@ import itertools
 import json
 import math
 import time
+from collections import Counter
+from collections.abc import Callable, Iterator, Sequence
 from dataclasses import dataclass
 from pathlib import Path
 from typing import Any
 
 import numpy as np
+from plan_layouts import LAYOUTS, LayoutChoice
 from scipy.stats import chi2
 
 import tyrefem as tf
@@ -45,6 +51,7 @@ from tyrefem.diagnose.unknowns import base_unknowns, sensor_unknowns, with_value
 from tyrefem.diagnose.verdict import CONFOUNDED, IDENTIFIED, NO_GAP, UNEXPLAINED
 from tyrefem.diagnose.workflow import diagnose
 from tyrefem.effects import catalogue
+from tyrefem.errors import InputError
 from tyrefem.measured import MeasuredRun
 from tyrefem.plan.batch import greedy_batch
 from tyrefem.plan.beliefs import Beliefs
@@ -53,19 +60,16 @@ from tyrefem.plan.readings import planned_readings
 from tyrefem.plan.workflow import plan
 from tyrefem.simulation.surroundings import GAS
 
-EFFECTS = (
-    "hot-road", "tread-slip", "brake-heat", "sun", "radiation", "loss-speed-exponent", "loss-temperature-law",
-    "outside-film-speed", "pressure-rise", "under-inflation-flexing", "cord-conduction",
-)  # fmt: skip
-SENSORS = ("crown-middle", "tread-outer", "shoulder-outer", "sidewall-outer")
+#: Files of finished cases: name-LAYOUT-SEED.jsonl.
+FILES = ("cases", "random")
 #: Most further runs: by plan, and at random.
-PLANNED, RANDOM = 2, 3
+PLANNED, RANDOM = 2, 2
 #: Amplitudes, prior standard deviations (log-uniform).
 AMPLITUDES = (0.7, 3.0)
 #: A case is tried if the linear model sees the effect by this lead, nats, and another effect is closer than `CLOSE`.
 SEEN, CLOSE = 6.0, 2.5
-#: Share of the time for planned runs; the rest is for random ones.
-PLANNED_SHARE = 0.68
+#: Largest number of draws of a layout; of its cases that hide the same effect (all of them in the layout "four").
+DRAWS, ALIKE = 1500, 2
 SETTINGS = DiagnosisSettings(mesh_size="5 mm", largest=2, looks=1)
 
 
@@ -73,6 +77,8 @@ SETTINGS = DiagnosisSettings(mesh_size="5 mm", largest=2, looks=1)
 class Layout:
     """The study, the drives of a plan, and the response of each, computed once."""
 
+    name: str
+    choice: LayoutChoice
     study: tf.Study
     drives: tuple[CandidateDrive, ...]
     known: tuple[DriveResponse, ...]
@@ -81,25 +87,26 @@ class Layout:
     data_mesh: dict[str, str]
 
 
-def study_of(drives: int) -> tf.Study:
+def study_of(choice: LayoutChoice, drives: int) -> tf.Study:
     """The study with its limits; a measured entry for every drive and its repetitions."""
     shipped = tf.study("hidden-effect")
     changes: dict[str, Any] = {
-        "title": "Four thermocouples",
-        "drive": {
-            "speed": "20 mph", "load": "3000 lbf", "pressure": "83 psi", "ambient": "25 degC", "duration": "900 s",
-        },
-        "sensors": {name: shipped.data["sensors"][name] for name in SENSORS},
-        "diagnosis": {"exclude": sorted(name for name in catalogue() if name not in EFFECTS)},
+        "title": "A few thermocouples",
+        "drive": choice.drive,
+        "sensors": {name: shipped.data["sensors"][name] for name in choice.sensors},
+        "diagnosis": {"exclude": sorted(name for name in catalogue() if name not in choice.effects)},
         "plan": {
             "limits": {
-                "drive.speed": ["10 mph", "30 mph"], "drive.load": ["2000 lbf", "4000 lbf"],
+                "drive.speed": ["10 mph", "30 mph"],
+                "drive.load": ["2000 lbf", "4000 lbf"],
                 "drive.pressure": ["66 psi", "100 psi"],
             },
-            "drives": drives, "runs_most": 1, "sensors_most": 0,
+            "drives": drives,
+            "runs_most": 1,
+            "sensors_most": 0,
         },
         "measured": [],
-    }  # fmt: skip
+    }
     study = shipped.replace(changes)
     entries = [
         {"table": "none.csv", "run": run_name(number, again), "drive": drive.changes}
@@ -114,9 +121,10 @@ def run_name(drive: int, again: int) -> str:
     return f"drive {drive}, {again}"
 
 
-def layout_of(drives: int, data_mesh: dict[str, str]) -> Layout:
+def layout_of(name: str, drives: int, data_mesh: dict[str, str]) -> Layout:
     """Responses of all drives to all unknowns."""
-    study = study_of(drives)
+    choice = LAYOUTS[name]
+    study = study_of(choice, drives)
     tried = candidate_drives(study)
     names = [*study.sensors, GAS]
     unknowns, nuisance = unknowns_of(study, set(names), catalogue_candidates(study), SETTINGS)
@@ -126,17 +134,19 @@ def layout_of(drives: int, data_mesh: dict[str, str]) -> Layout:
             run_name(number, 0),
             dict(drive.changes),
             False,
-            tuple(SensorSampling(name, times, 0.5, 0.1, 120.0) for name in names),
+            tuple(SensorSampling(sensor, times, 0.5, 0.1, 120.0) for sensor in names),
         )
         for number, drive in enumerate(tried)
     )  # fmt: skip
     evaluations = Evaluations(ForwardModel(study, samplings, settings=SETTINGS))
     known = responses(evaluations, unknowns)
-    return Layout(study, tried, known, sensitivities(samplings, unknowns, nuisance, known), evaluations, data_mesh)
+    sensitive = sensitivities(samplings, unknowns, nuisance, known)
+    return Layout(name, choice, study, tried, known, sensitive, evaluations, data_mesh)
 
 
 def drawn_case(layout: Layout, number: int, seed: int) -> BlindCase:
     """A case: one hidden effect, base numbers and sensors from their priors."""
+    seed += 1000 * list(LAYOUTS).index(layout.name)
     rng = np.random.default_rng([seed, number])
     candidates = catalogue_candidates(layout.study)
     member = candidates[int(rng.integers(len(candidates)))]
@@ -151,8 +161,8 @@ def drawn_case(layout: Layout, number: int, seed: int) -> BlindCase:
     return BlindCase(number, seed, "one", (member,), values)
 
 
-def leads(layout: Layout, case: BlindCase, numbers: list[int]) -> tuple[float, float]:
-    """Lead of the hidden effect over no effect, and over the closest other effect, without noise, nats."""
+def leads(layout: Layout, case: BlindCase, numbers: Sequence[int]) -> tuple[float, float, str]:
+    """Lead of the hidden effect over no effect, and over the closest other effect, without noise, nats; its key."""
     hidden = {unknown: case.values[unknown] for unknown in case.hidden[0].amplitudes}
     model, sensitive = layout.evaluations.model, layout.sensitive
     signal = np.concatenate(
@@ -161,8 +171,10 @@ def leads(layout: Layout, case: BlindCase, numbers: list[int]) -> tuple[float, f
     candidates = catalogue_candidates(layout.study)
     prior = SetPrior(candidates, layout.study.card.diagnosis.effects_expected)
     linear = LinearModel(sensitive.design(numbers), signal)
-    none, *others = margins(linear, signal, case.hidden, competitors_of(case.hidden, candidates), prior)
-    return none, min(others)
+    competitors = competitors_of(case.hidden, candidates)
+    none, *others = margins(linear, signal, case.hidden, competitors, prior)
+    closest = int(np.argmin(others))
+    return none, others[closest], key_of_set(competitors[1 + closest])
 
 
 def measured(layout: Layout, case: BlindCase, name: str, drive: int) -> MeasuredRun:
@@ -198,14 +210,28 @@ class Course:
         self.drives.append(drive)
         self.runs.append(measured(self.layout, self.case, name, drive))
 
+    def begin(self) -> None:
+        """Make the first runs."""
+        for drive in self.layout.choice.first:
+            self.measure(drive)
+
+    @property
+    def further(self) -> int:
+        """Number of runs after the first ones."""
+        return len(self.drives) - len(self.layout.choice.first)
+
     def add(self, drive: int) -> Verdict:
         """Make a run, and diagnose all runs."""
         self.measure(drive)
+        return self.diagnosed()
+
+    def diagnosed(self) -> Verdict:
+        """Diagnose all runs."""
         verdict = self.judged([self.layout.known[number] for number in self.drives])
         right = {member.key for member in verdict.best} == set(self.case.names)
         self.rows.append(
             {
-                "drive": self.layout.drives[drive].name,
+                "drive": self.layout.drives[self.drives[-1]].name,
                 "verdict": verdict.verdict,
                 "best": key_of_set(verdict.best),
                 "probability": verdict.probability,
@@ -302,7 +328,7 @@ def key_of_set(members: Members) -> str:
 def followed(course: Course, verdict: Verdict) -> tuple[list[Any], list[float]]:
     """The verdicts along the plan, one run at a time, and the expected probability that each plan stated."""
     expected: list[float] = []
-    while not course.ended and len(course.drives) <= PLANNED:
+    while not course.ended and course.further < PLANNED:
         drive, right = course.proposed(verdict)
         expected.append(right)
         verdict = course.add(drive)
@@ -312,41 +338,10 @@ def followed(course: Course, verdict: Verdict) -> tuple[list[Any], list[float]]:
 def at_random(course: Course) -> list[Any]:
     """The verdicts along random drives after the same first run."""
     rng = np.random.default_rng([course.case.seed, course.case.number, 7])
-    course.measure(0)
-    while not course.ended and len(course.drives) <= RANDOM:
+    course.begin()
+    while not course.ended and course.further < RANDOM:
         course.add(int(rng.integers(len(course.layout.drives))))
     return course.rows
-
-
-def summary(rows: list[dict[str, Any]], tried: int) -> dict[str, Any]:
-    """Rates and numbers of runs over the finished cases; random plans over the cases that have one."""
-    both = [row for row in rows if "random" in row]
-    rates: dict[str, Any] = {
-        "cases_tried": tried,
-        "confounded": len(rows),
-        "identifiable_by_all_drives": sum(row["identifiable"] for row in rows),
-        "with_random_plan": len(both),
-    }
-    for name, part in (("", rows), ("_of_identifiable", [row for row in rows if row["identifiable"]])):
-        for runs in range(1, PLANNED + 1):
-            rates[f"plan_right_after_{runs}{name}"] = sum(needed(row["plan"]) <= runs for row in part)
-    for course in ("plan", "random"):
-        for runs in range(1, PLANNED + 1):
-            rates[f"both: {course}_right_after_{runs}"] = sum(needed(row[course]) <= runs for row in both)
-        most = PLANNED + 1
-        rates[f"both: {course}_mean_runs_to_the_name (none after {PLANNED}: {most})"] = (
-            float(np.mean([min(needed(row[course]), most) for row in both])) if both else math.nan
-        )
-    rates["random_right_after_3"] = sum(needed(row["random"]) <= 3 for row in both)
-    for course in ("plan", "random"):
-        steps = [step for row in rows for step in row.get(course, [])]
-        rates[f"{course}_wrong_name"] = sum(s["verdict"] == "identified" and not s["right"] for s in steps)
-    return rates
-
-
-def needed(steps: list[dict[str, Any]]) -> int:
-    """Further runs until the right name; 99 without it."""
-    return next((i for i, step in enumerate(steps, start=1) if step["right"]), 99)
 
 
 def written(file: Path) -> list[dict[str, Any]]:
@@ -362,29 +357,71 @@ def write_row(file: Path, row: dict[str, Any]) -> None:
     print(row["number"], row["hidden"], row.get("verdict", ""), courses, f"{row['processor_s']:.0f} s", flush=True)
 
 
-def planned_case(course: Course, lead: float) -> dict[str, Any]:
+def planned_case(course: Course, lead: float, rival: str) -> dict[str, Any]:
     """The first verdict of a case, and the verdicts along the plan if it is "confounded"."""
     start, case, layout = time.process_time(), course.case, course.layout
-    verdict = course.add(0)
+    course.begin()
+    verdict = course.diagnosed()
     row: dict[str, Any] = {
         "number": case.number,
         "hidden": case.names,
         "amplitude": [case.values[unknown] / unknown.sd for unknown in case.hidden[0].amplitudes],
         "lead": lead,
+        "rival": rival,
         "verdict": verdict.verdict,
         "sets": verdict.sets,
     }
     if verdict.verdict == CONFOUNDED:
-        row["identifiable"] = bool(min(leads(layout, case, list(range(len(layout.drives))))) >= MARGIN)
+        row["identifiable"] = bool(min(leads(layout, case, range(len(layout.drives)))[:2]) >= MARGIN)
         row["plan"], row["expected"] = followed(course, verdict)
     return row | {"processor_s": time.process_time() - start}
 
 
+def drawn(layout: Layout, rows: list[dict[str, Any]], seed: int) -> Iterator[tuple[BlindCase, float, str]]:
+    """The next cases of a layout that its first runs see, and with another effect close; with its lead and key."""
+    for number in range(max((row["number"] for row in rows), default=-1) + 1, DRAWS):
+        case = drawn_case(layout, number, seed)
+        hidden = Counter(row["hidden"][0] for row in rows if row["verdict"] == CONFOUNDED)
+        if layout.name != "four" and hidden[case.names[0]] >= ALIKE:
+            continue
+        try:
+            none, other, rival = leads(layout, case, layout.choice.first)
+        except InputError:  # the effect cannot act in this drive
+            continue
+        if none >= SEEN and other <= CLOSE:
+            yield case, other, rival
+
+
+def run_layout(name: str, kind: type[Course], given: argparse.Namespace, is_left: Callable[[], bool]) -> None:
+    """The cases of a layout, by plan and at random."""
+    mesh = {"mesh.mesher": "mapped", "mesh.cell": "tri", "mesh.element": "P2", "mesh.size": given.data_mesh}
+    files = [given.out / f"{each}-{name.replace(', ', '-').replace(' ', '-')}-{given.seed}.jsonl" for each in FILES]
+    rows = written(files[0])
+    began = time.process_time()
+    layout = layout_of(name, given.drives, mesh)
+    print(f"{name}: {len(layout.drives)} drives, {time.process_time() - began:.0f} processor seconds", flush=True)
+    wanted = drawn(layout, rows, given.seed)
+    while sum(row["verdict"] == CONFOUNDED for row in rows) < given.cases and is_left():
+        case, lead, rival = next(wanted, (None, 0.0, ""))
+        if case is None:
+            break
+        rows.append(planned_case(kind(layout, case), lead, rival))
+        write_row(files[0], rows[-1])
+    finished = {row["number"] for row in written(files[1])}
+    for number in [row["number"] for row in rows if row["verdict"] == CONFOUNDED and row["number"] not in finished]:
+        if not is_left():
+            break
+        start, case = time.process_time(), drawn_case(layout, number, given.seed)
+        row = {"number": number, "hidden": case.names, "random": at_random(kind(layout, case))}
+        write_row(files[1], row | {"processor_s": time.process_time() - start})
+
+
 def main() -> None:
-    """Run, write every finished case, and print the rates."""
-    parser = argparse.ArgumentParser(description=__doc__)
-    parser.add_argument("--cases", type=int, default=40)
-    parser.add_argument("--seed", type=int, default=1)
+    """Run, and write every finished case."""
+    parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
+    parser.add_argument("--cases", type=int, default=5, help="Confounded cases of each layout.")
+    parser.add_argument("--seed", type=int, default=2)
+    parser.add_argument("--layouts", nargs="+", choices=LAYOUTS, default=[name for name in LAYOUTS if name != "four"])
     parser.add_argument("--drives", type=int, default=9)
     parser.add_argument("--data-mesh", default="4 mm", help="Mesh of the synthetic data: triangles, quadratic.")
     parser.add_argument("--minutes", type=float, default=600.0, help="No case begins after this time.")
@@ -392,35 +429,9 @@ def main() -> None:
     parser.add_argument("--out", type=Path, default=Path("results/plan"))
     given = parser.parse_args()
     given.out.mkdir(parents=True, exist_ok=True)
-    began, kind = time.monotonic(), LinearCourse if given.linear else Course
-
-    def is_left(share: float) -> bool:
-        return time.monotonic() - began < 60 * given.minutes * share
-
-    mesh = {"mesh.mesher": "mapped", "mesh.cell": "tri", "mesh.element": "P2", "mesh.size": given.data_mesh}
-    layout = layout_of(given.drives, mesh)
-    print(f"{len(layout.drives)} drives, {time.process_time():.0f} processor seconds", flush=True)
-    files = [given.out / f"{name}-{given.seed}.jsonl" for name in ("cases", "random")]
-    rows = written(files[0])
-    number = max((row["number"] for row in rows), default=-1)
-    while sum(row["verdict"] == "confounded" for row in rows) < given.cases and is_left(PLANNED_SHARE):
-        number += 1
-        case = drawn_case(layout, number, given.seed)
-        none, other = leads(layout, case, [0])
-        if none >= SEEN and other <= CLOSE:
-            rows.append(planned_case(kind(layout, case), other))
-            write_row(files[0], rows[-1])
-    kept = {row["number"]: row for row in rows if row["verdict"] == "confounded"}
-    for row in written(files[1]):
-        kept[row["number"]]["random"] = row["random"]
-    for number in [number for number, row in kept.items() if "random" not in row]:
-        if not is_left(1.0):
-            break
-        start, case = time.process_time(), drawn_case(layout, number, given.seed)
-        kept[number]["random"] = at_random(kind(layout, case))
-        done = {"number": number, "hidden": case.names, "random": kept[number]["random"]}
-        write_row(files[1], done | {"processor_s": time.process_time() - start})
-    print(json.dumps(summary(list(kept.values()), len(rows)), indent=1))
+    end = time.monotonic() + 60 * given.minutes
+    for name in given.layouts:
+        run_layout(name, LinearCourse if given.linear else Course, given, lambda: time.monotonic() < end)
 
 
 if __name__ == "__main__":
