@@ -1,6 +1,6 @@
 """Does a test plan lead to the right name? Confounded blind cases, continued by plan and at random.
 
-    python benchmarks/plan.py --seed 2 --cases 5 --out results/plan               # every layout: about a minute a case
+    python benchmarks/plan.py --seed 2 --cases 3 --out results/plan               # every layout: about a minute a case
     python benchmarks/plan.py --layouts four --seed 1 --cases 40 --out results/plan-four
     python benchmarks/plan.py --layouts four --linear --out results/plan-linear   # verdicts without fits
 
@@ -68,8 +68,8 @@ PLANNED, RANDOM = 2, 2
 AMPLITUDES = (0.7, 3.0)
 #: A case is tried if the linear model sees the effect by this lead, nats, and another effect is closer than `CLOSE`.
 SEEN, CLOSE = 6.0, 2.5
-#: Largest number of draws of a layout; of its cases that hide the same effect (all of them in the layout "four").
-DRAWS, ALIKE = 1500, 2
+#: Largest number of draws of a layout.
+DRAWS = 1500
 SETTINGS = DiagnosisSettings(mesh_size="5 mm", largest=2, looks=1)
 
 
@@ -216,6 +216,11 @@ class Course:
             self.measure(drive)
 
     @property
+    def known(self) -> list[DriveResponse]:
+        """Responses of the runs."""
+        return [self.layout.known[number] for number in self.drives]
+
+    @property
     def further(self) -> int:
         """Number of runs after the first ones."""
         return len(self.drives) - len(self.layout.choice.first)
@@ -227,7 +232,7 @@ class Course:
 
     def diagnosed(self) -> Verdict:
         """Diagnose all runs."""
-        verdict = self.judged([self.layout.known[number] for number in self.drives])
+        verdict = self.judged(self.known)
         right = {member.key for member in verdict.best} == set(self.case.names)
         self.rows.append(
             {
@@ -260,39 +265,44 @@ class Course:
         return bool(self.rows) and self.rows[-1]["verdict"] == IDENTIFIED
 
 
+def linear_verdict(course: Course, known: list[DriveResponse]) -> Verdict:
+    """The verdict on all runs of a course by the linear model about x = 0."""
+    study = course.layout.study
+    runs = tuple(measured_drive(each, study, SETTINGS) for each in experiments(study, course.runs))
+    of_layout = course.layout.sensitive
+    sensitive = sensitivities([run.sampling for run in runs], of_layout.unknowns, of_layout.nuisance, known)
+    linear = residuals_of(study, runs, sensitive, SETTINGS).linear(range(len(runs)))
+    candidates = catalogue_candidates(study)
+    prior = SetPrior(candidates, study.card.diagnosis.effects_expected)
+    singles = [(candidate,) for candidate in candidates]
+    sets: list[Members] = [(), *singles, *itertools.combinations(candidates, 2)]
+    score = np.array([prior(members) + linear.log_evidence(members) for members in sets])
+    p = np.exp(score - score.max())
+    p /= p.sum()
+    order = np.argsort(-p)
+    best = sets[order[0]]
+    acts = float(sum(share for share, members in zip(p, sets, strict=True) if set(best) <= set(members)))
+    misfit = chi2.sf(linear.least_misfit(best), len(linear.data))
+    if misfit < SETTINGS.rejected_p:
+        verdict = UNEXPLAINED
+    elif not best:
+        verdict = NO_GAP
+    elif acts >= SETTINGS.named_probability and p[order[0]] >= SETTINGS.alone_probability:
+        verdict = IDENTIFIED
+    else:
+        verdict = CONFOUNDED
+    posteriors = tuple(_set_posterior(linear, sets[i], float(p[i] / p[order[:12]].sum())) for i in order[:12])
+    noise = {sensor.sensor: sensor.noise for sensor in runs[0].sensors}
+    beliefs = Beliefs(study, posteriors, noise)
+    return Verdict(verdict, best, acts, {key_of_set(sets[i]): float(p[i]) for i in order[:4]}, beliefs)
+
+
 class LinearCourse(Course):
     """The same with verdicts by the evidence of the linear model about x = 0: all single effects and pairs, no fits."""
 
     def judged(self, known: list[DriveResponse]) -> Verdict:
         """The verdict on all runs."""
-        study = self.layout.study
-        runs = tuple(measured_drive(each, study, SETTINGS) for each in experiments(study, self.runs))
-        of_layout = self.layout.sensitive
-        sensitive = sensitivities([run.sampling for run in runs], of_layout.unknowns, of_layout.nuisance, known)
-        linear = residuals_of(study, runs, sensitive, SETTINGS).linear(range(len(runs)))
-        candidates = catalogue_candidates(study)
-        prior = SetPrior(candidates, study.card.diagnosis.effects_expected)
-        singles = [(candidate,) for candidate in candidates]
-        sets: list[Members] = [(), *singles, *itertools.combinations(candidates, 2)]
-        score = np.array([prior(members) + linear.log_evidence(members) for members in sets])
-        p = np.exp(score - score.max())
-        p /= p.sum()
-        order = np.argsort(-p)
-        best = sets[order[0]]
-        acts = float(sum(share for share, members in zip(p, sets, strict=True) if set(best) <= set(members)))
-        misfit = chi2.sf(linear.least_misfit(best), len(linear.data))
-        if misfit < SETTINGS.rejected_p:
-            verdict = UNEXPLAINED
-        elif not best:
-            verdict = NO_GAP
-        elif acts >= SETTINGS.named_probability and p[order[0]] >= SETTINGS.alone_probability:
-            verdict = IDENTIFIED
-        else:
-            verdict = CONFOUNDED
-        posteriors = tuple(_set_posterior(linear, sets[i], float(p[i] / p[order[:12]].sum())) for i in order[:12])
-        noise = {sensor.sensor: sensor.noise for sensor in runs[0].sensors}
-        beliefs = Beliefs(study, posteriors, noise)
-        return Verdict(verdict, best, acts, {key_of_set(sets[i]): float(p[i]) for i in order[:4]}, beliefs)
+        return linear_verdict(self, known)
 
     def proposed(self, verdict: Verdict) -> tuple[int, float]:
         """Number of the drive that the plan proposes, and the expected probability of the true set after it."""
@@ -358,9 +368,8 @@ def write_row(file: Path, row: dict[str, Any]) -> None:
 
 
 def planned_case(course: Course, lead: float, rival: str) -> dict[str, Any]:
-    """The first verdict of a case, and the verdicts along the plan if it is "confounded"."""
+    """The first verdict of a case after its first runs, and the verdicts along the plan if it is "confounded"."""
     start, case, layout = time.process_time(), course.case, course.layout
-    course.begin()
     verdict = course.diagnosed()
     row: dict[str, Any] = {
         "number": case.number,
@@ -377,19 +386,29 @@ def planned_case(course: Course, lead: float, rival: str) -> dict[str, Any]:
     return row | {"processor_s": time.process_time() - start}
 
 
-def drawn(layout: Layout, rows: list[dict[str, Any]], seed: int) -> Iterator[tuple[BlindCase, float, str]]:
-    """The next cases of a layout that its first runs see, and with another effect close; with its lead and key."""
+def drawn(
+    layout: Layout, rows: list[dict[str, Any]], seed: int, kind: type[Course]
+) -> Iterator[tuple[Course, float, str]]:
+    """The next cases of a layout after their first runs; with lead over the closest other effect, and its key.
+
+    The first runs see the hidden effect, and another one is close. If the layout is screened, the linear model finds
+    the noisy data confounded too, which takes a second where a diagnosis takes ten.
+    """
     for number in range(max((row["number"] for row in rows), default=-1) + 1, DRAWS):
         case = drawn_case(layout, number, seed)
         hidden = Counter(row["hidden"][0] for row in rows if row["verdict"] == CONFOUNDED)
-        if layout.name != "four" and hidden[case.names[0]] >= ALIKE:
+        if hidden[case.names[0]] >= layout.choice.alike:
             continue
         try:
             none, other, rival = leads(layout, case, layout.choice.first)
         except InputError:  # the effect cannot act in this drive
             continue
-        if none >= SEEN and other <= CLOSE:
-            yield case, other, rival
+        if none < SEEN or other > CLOSE:
+            continue
+        course = kind(layout, case)
+        course.begin()
+        if not layout.choice.screened or linear_verdict(course, course.known).verdict == CONFOUNDED:
+            yield course, other, rival
 
 
 def run_layout(name: str, kind: type[Course], given: argparse.Namespace, is_left: Callable[[], bool]) -> None:
@@ -400,12 +419,12 @@ def run_layout(name: str, kind: type[Course], given: argparse.Namespace, is_left
     began = time.process_time()
     layout = layout_of(name, given.drives, mesh)
     print(f"{name}: {len(layout.drives)} drives, {time.process_time() - began:.0f} processor seconds", flush=True)
-    wanted = drawn(layout, rows, given.seed)
+    wanted = drawn(layout, rows, given.seed, kind)
     while sum(row["verdict"] == CONFOUNDED for row in rows) < given.cases and is_left():
-        case, lead, rival = next(wanted, (None, 0.0, ""))
-        if case is None:
+        course, lead, rival = next(wanted, (None, 0.0, ""))
+        if course is None:
             break
-        rows.append(planned_case(kind(layout, case), lead, rival))
+        rows.append(planned_case(course, lead, rival))
         write_row(files[0], rows[-1])
     finished = {row["number"] for row in written(files[1])}
     for number in [row["number"] for row in rows if row["verdict"] == CONFOUNDED and row["number"] not in finished]:

@@ -30,16 +30,24 @@ MIDDLE, SLOW_LIGHT_SOFT, SLOW_HEAVY_SOFT, FAST_LIGHT_SOFT, FAST_HEAVY_SOFT = 0, 
 
 @dataclass(frozen=True)
 class LayoutChoice:
-    """A layout: thermocouples besides the contained air, numbers of the first drives, the drive, competing effects."""
+    """A layout: thermocouples besides the contained air, numbers of the first drives, the drive, competing effects.
+
+    ``alike``: largest number of cases that hide the same effect. ``screened``: whether cases are tried only if the
+    linear model, too, finds their first runs confounded.
+    """
 
     sensors: tuple[str, ...]
     first: tuple[int, ...] = (MIDDLE,)
     drive: dict[str, Any] = field(default_factory=lambda: ROLLING)
     effects: tuple[str, ...] = tuple(catalogue())
+    alike: int = 2
+    screened: bool = True
 
 
 LAYOUTS = {
-    "four": LayoutChoice(("crown-middle", "tread-outer", "shoulder-outer", "sidewall-outer"), effects=ELEVEN),
+    "four": LayoutChoice(
+        ("crown-middle", "tread-outer", "shoulder-outer", "sidewall-outer"), effects=ELEVEN, alike=40, screened=False
+    ),
     "crown": LayoutChoice(("crown-inner", "crown-middle")),
     "shoulder": LayoutChoice(("shoulder-inner", "sidewall-outer")),
     "bead": LayoutChoice(("crown-inner", "bead-middle")),
