@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import json
+from dataclasses import replace
 from pathlib import Path
 
 import numpy as np
@@ -19,7 +20,8 @@ from tyrefem.diagnose.sampling import DriveSampling
 from tyrefem.diagnose.sensitivities import responses, unknowns_of
 from tyrefem.effects import catalogue
 from tyrefem.plan.drives import candidate_drives
-from tyrefem.reports.plan import FILES
+from tyrefem.plan.workflow import rival_of
+from tyrefem.reports.plan import FILES, page
 
 RIVALS = ("hot-road", "sun", "tread-slip")
 SPEEDS = {"limits": {"drive.speed": ["10 mph", "30 mph"]}, "drives": 3, "runs_most": 2, "sensors_most": 1}
@@ -128,6 +130,28 @@ def test_a_table_is_diagnosed_first(owner: Path, tmp_path: Path, capsys: pytest.
     record = json.loads(capsys.readouterr().out)
     assert record["after"] in ("identified", "confounded", "unexplained", "no gap", "partly identified")
     assert (tmp_path / "plan/plan.csv").is_file()
+
+
+def test_sets_that_are_not_shown_are_counted_with_their_probability(owner: Path) -> None:
+    plan = tf.study(owner).plan()
+    beliefs = plan.beliefs
+    many = replace(
+        beliefs, sets=tuple(replace(beliefs.sets[0], probability=1 / 67) for _ in range(67)), verdict="confounded"
+    )
+    shown = replace(plan, beliefs=many)
+    text = page(shown, b"")
+    assert text.count('<td class="word">no effect</td>') == 12
+    assert '<td class="word quiet">55 more, not shown</td><td>82.1 %</td>' in text
+    assert "The 12 most probable of 67 sets" in text
+    assert shown.words[0].endswith("and 63 more (94 % together).")
+    assert "not shown" not in page(plan, b"")
+
+
+def test_the_rival_of_a_set_lacks_one_of_its_members() -> None:
+    first, second, third = catalogue_candidates(tf.study("hidden-effect"))[:3]
+    assert rival_of([(first,), (first, second), (), (third,)]) == 2
+    assert rival_of([(first, second), (first,), (third,)]) == 1
+    assert rival_of([(), (first,), (second,)]) == 1
 
 
 def test_where_nothing_moves_nothing_is_proposed(tmp_path: Path) -> None:

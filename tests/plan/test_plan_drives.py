@@ -75,8 +75,14 @@ def test_a_wrong_table_is_one_error(plan: dict[str, Any], words: str) -> None:
 def test_a_stated_drive_that_cannot_run_is_refused() -> None:
     # A phase name that is not there, a speed above the fastest one.
     wrong = planned({"limits": {"drive.phases.roling.speed": ["10 mph", "20 mph"]}})
-    with pytest.raises(InputError, match=r"plan\.limits: the drive .* cannot run: .*did you mean 'rolling'"):
+    with pytest.raises(
+        InputError,
+        match=r"plan\.limits\.drive\.phases\.roling\.speed: the drive has no phase 'roling'; did you mean 'rolling'",
+    ):
         candidate_drives(wrong)
+    drive = {"speed": "20 mph", "load": "2700 lbf", "pressure": "83 psi", "ambient": "25 degC", "duration": "900 s"}
+    with pytest.raises(InputError, match="it has no phases, so name the quantity alone"):
+        candidate_drives(wrong.replace({"drive": drive, "measured": []}))
     fast = planned({"limits": {"drive.speed": ["10 m/s", "500 m/s"]}})
     with pytest.raises(InputError, match=r"with speed 500 m/s cannot run: .*state narrower limits"):
         candidate_drives(fast)
@@ -115,6 +121,9 @@ def test_stated_places_and_sensors_without_readings_are_candidates() -> None:
 
 
 def test_a_place_off_the_section_or_a_name_in_use_is_refused() -> None:
+    unused = planned({"sensors": {"new": {"s": "900 mm", "depth": "3 mm"}}, "sensors_most": 0})
+    with pytest.raises(InputError, match=r"plan\.sensors\.new: s = 900\.0 mm is off the section"):
+        with_candidate_sensors(unused, ())
     off = planned({"sensors": {"new": {"s": "900 mm", "depth": "3 mm"}}})
     with pytest.raises(InputError, match=r"plan\.sensors\.new: s = 900\.0 mm is off the section"):
         with_candidate_sensors(off, ())

@@ -138,7 +138,9 @@ def _confounded(d: DiagnosisData) -> tuple[str, str, str]:
     more = f", or one of {len(sets) - SETS} less probable sets" if len(sets) > SETS else ""
     shares = ", ".join(f"{entry.key} {percent(inclusion_probability(d, entry))}" for entry in sets[:SETS])
     wrong = f"An effect is missing, but these sensors and runs cannot show which: {described}{more}."
-    return wrong, f"The probabilities are {shares}; {_closed(d)}.", step
+    both = sum(inclusion_probability(d, entry) for entry in sets[:SETS]) > 1.0
+    together = " (several may act together)" if both else ""
+    return wrong, f"Each acts with this probability: {shares}{together}; {_closed(d)}.", step
 
 
 def _partly(d: DiagnosisData) -> tuple[str, str, str]:

@@ -12,7 +12,7 @@ from numpy.typing import NDArray
 
 from tyrefem.brief import Brief
 from tyrefem.diagnose.isolability import READING_INTERVAL
-from tyrefem.errors import InputError
+from tyrefem.errors import InputError, nearest
 from tyrefem.inputs.changes import scaled
 from tyrefem.inputs.plan_choice import Limits, limit_unit
 from tyrefem.inputs.study import StudyData
@@ -62,6 +62,7 @@ def candidate_drives(study: StudyData) -> tuple[CandidateDrive, ...]:
     """
     choice = study.card.plan
     limits = dict(choice.limits) or default_limits(study)
+    _check_phases(study, limits)
     if len(limits) > MOST_LIMITS:
         message = f"{len(limits)} quantities are limited; at most {MOST_LIMITS} can vary in one plan"
         raise InputError(message, field="plan.limits", file=study.file)
@@ -80,6 +81,17 @@ def candidate_drives(study: StudyData) -> tuple[CandidateDrive, ...]:
     if not drives:
         raise refused_drive(study, *refused[0])
     return tuple(drives)
+
+
+def _check_phases(study: StudyData, limits: Limits) -> None:
+    """Refuse limits of a phase that the drive does not have."""
+    names = [str(phase.name) for phase in study.card.drive.phases] if "phases" in study.data["drive"] else []
+    for key in limits:
+        table, _, rest = key.removeprefix("drive.").partition(".")
+        phase = rest.rpartition(".")[0]
+        if table == "phases" and phase not in (*names, *map(str, range(len(names)))):
+            allowed = nearest(phase, names) if names else ": it has no phases, so name the quantity alone"
+            raise InputError(f"the drive has no phase '{phase}'{allowed}", field=f"plan.limits.{key}", file=study.file)
 
 
 def refused_drive(study: StudyData, changes: Mapping[str, str], error: InputError) -> InputError:

@@ -40,7 +40,7 @@ def with_candidate_sensors(
     InputError : a stated sensor has the name of another one, or is not in the section.
     """
     choice = study.card.plan
-    if not choice.sensors_most:
+    if not choice.sensors_most and not choice.sensors:
         return study, ()
     idle = [CandidatePlace(name, f"thermocouple {name}") for name in study.sensors if name not in installed]
     if not choice.sensors:
@@ -58,6 +58,8 @@ def with_candidate_sensors(
             extended = extended.replace({f"sensors.{name}": {"s": f"{s:.6g} m", "depth": f"{depth:.6g} m"}})
         except InputError as error:
             raise InputError(error.message, field=f"plan.sensors.{name}", file=study.file) from None
+    if not choice.sensors_most:
+        return study, ()
     return extended, (
         *idle,
         *(CandidatePlace(name, f"thermocouple {words}") for name, (_, _, words) in further.items()),

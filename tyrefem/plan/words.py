@@ -29,7 +29,9 @@ def first_words(plan: PlanData) -> str:
             f"(doubt: {plan.doubt:.2f} nats)."
         )
     shown = ", ".join(f"{entry.key} ({percent(entry.probability)})" for entry in sets[:SHOWN])
-    more = f", and {len(sets) - SHOWN} more" if len(sets) > SHOWN else ""
+    rest = sets[SHOWN:]
+    together = percent(sum(entry.probability for entry in rest))
+    more = f", and {len(rest)} more ({together}{' together' if len(rest) > 1 else ''})" if rest else ""
     return f"After the verdict '{plan.beliefs.verdict}' these sets are left: {shown}{more}."
 
 
@@ -42,7 +44,7 @@ def step_words(step: PlanStep, *, pair: bool = True) -> str:
     )
     tells += f"the true set {'then has' if pair else 'is expected to have'} {percent(step.right)} on average"
     return (
-        f"{step_name(step)}: {tells} (gain {step.gain:.2f} nats, together {step.total_gain:.2f} ± {step.sd:.2f}; "
+        f"{step_name(step)}: {tells} (gain {step.gain:.2f} nats, together {step.total_gain:.2f} ± {step.sd:.1g}; "
         f"cost {step.cost:.3g}, together {step.total_cost:.3g})."
     )
 

@@ -9,6 +9,7 @@ from dataclasses import replace
 from pathlib import Path
 from typing import Any
 
+from tyrefem.diagnose.candidates import Members
 from tyrefem.diagnose.diagnosis import DiagnosisData
 from tyrefem.diagnose.evaluations import ProgressStore
 from tyrefem.diagnose.forward_model import DriveResponse
@@ -107,6 +108,7 @@ def _steps(
 ) -> tuple[PlanStep, ...]:
     by_name = {place.name: place for place in places}
     sets = readings.beliefs.sets
+    rival = rival_of([entry.members for entry in sets])
     steps: list[PlanStep] = []
     total = before = 0.0
     for number, entry in enumerate(search.chosen, start=1):
@@ -125,9 +127,17 @@ def _steps(
                 sd=after.sd,
                 right=after.right,
                 named=after.named,
-                between=(sets[0].key, sets[1].key),
-                pair_probability=after.between(0, 1),
+                between=(sets[0].key, sets[rival].key),
+                pair_probability=after.between(0, rival),
             )
         )
         before = after.gain
     return tuple(steps)
+
+
+def rival_of(sets: Sequence[Members]) -> int:
+    """Number of the most probable set that lacks a member of the leading one; 1 if all contain it.
+
+    A set of the same effects and more names the leading effects too, so it is no rival of their name.
+    """
+    return next((number for number, members in enumerate(sets) if not set(sets[0]) <= set(members)), 1)

@@ -52,13 +52,16 @@ def page(plan: PlanData, drawn: bytes) -> str:
         lstrip_blocks=True,
     )  # fmt: skip
     first, *rest = plan_words(plan)
+    sets = plan.beliefs.sets
     return environment.get_template("plan.html").render(
         plan=plan,
         version=tyrefem.__version__,
         first=first,
         rest=rest,
         steps=[(step, step_name(step)) for step in plan.steps],
-        sets=plan.beliefs.sets[:SHOWN],
+        sets=sets[:SHOWN],
+        others=len(sets[SHOWN:]),
+        others_probability=sum(entry.probability for entry in sets[SHOWN:]),
         candidates=[_candidate(row) for row in plan.candidates.to_dict(orient="records")],
         picture=base64.b64encode(drawn).decode("ascii"),
     )
