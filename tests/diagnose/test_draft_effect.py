@@ -128,6 +128,20 @@ def test_a_flux_and_a_share_of_the_loss(tmp_path: Path) -> None:
     assert loss.heat_factor(TyreStub(), "carcass", x, 1.0, T) == 1.0
 
 
+def test_a_flux_through_a_whole_surface_is_the_same_everywhere(tmp_path: Path) -> None:
+    unknown = Unknown("flux", 1.0, effect="missing-flux", choice=(("surface", "tread"),))
+    place = LawPlace(FLUX, np.nan, "whole tread surface", unknown, 1.0)
+    effect = loaded(tmp_path, place, law({"speed": 0.8}, "ends", 400.0, amplitude=-2e3))
+    assert effect.name == "inferred-flux-whole-tread-surface"
+    assert "through the whole tread surface" in effect.sentence
+    assert effect.surfaces == ("road",)
+    x = np.array([[0.0, 0.03, 0.06], [0.0, 0.0, 0.0]])
+    wet = effect(into="-2000 W/m**2")
+    into = np.broadcast_to(wet.flux(TyreStub(), "road", x, 399.0), 3)
+    assert into == pytest.approx(np.full(3, -2e3 * 2**0.8))
+    assert not np.any(wet.flux(TyreStub(), "road", x, 401.0))
+
+
 def test_a_film_of_the_drive(tmp_path: Path) -> None:
     place = LawPlace(FILM, np.nan, "tread_air", Unknown("film", 1.0), 1.0)
     effect = loaded(tmp_path, place, law({"speed": 0.5}, "while rolling", amplitude=2.0))

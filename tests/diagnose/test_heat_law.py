@@ -12,6 +12,7 @@ from tyrefem.diagnose.heat_courses import CourseGrid
 from tyrefem.diagnose.heat_evidence import ProjectedData
 from tyrefem.diagnose.heat_law import PlaceLaw, place_law
 from tyrefem.diagnose.law_evidence import LawData, fitted_law, law_data, plain_switch
+from tyrefem.diagnose.law_scatter import SeriesScatter
 from tyrefem.diagnose.law_terms import DriveVariables, drive_variables, fine_times, law_terms, structures
 
 Array = NDArray[np.float64]
@@ -201,3 +202,40 @@ def test_prior_probabilities_of_laws_sum_to_one(runs: dict[str, tuple[float, flo
     # Heat inside usually goes with the speed.
     speedy = sum(prior for names, prior in structures(terms).items() if "speed" in names)
     assert speedy == pytest.approx((0.8 if of_heat else 0.4) if len(runs) > 1 else 0.0)
+
+
+def exponents_of_scatter(size: float, seeds: range) -> tuple[Array, Array, Array]:
+    """Exponent of speed of several tables: mean, sd of noise alone, sd with the scatter of each sensor in each run.
+
+    Every series has an error of this size (in noise sd) that its readings share, as a place of another shape leaves.
+    """
+    variables, columns = problem(APART)
+    response = columns @ (variables.hats @ (4.0 * (variables.speed / 11.0) ** 1.5))
+    series = tuple(slice(start, start + len(READ)) for start in range(0, len(columns), len(READ)))
+    terms, rows = law_terms(variables), []
+    for seed in seeds:
+        rng = np.random.default_rng(seed)
+        shared = size * np.repeat(rng.normal(size=len(series)), len(READ))
+        noise = rng.normal(size=len(columns))
+        projected = ProjectedData(response + shared + noise, np.zeros((len(columns), 1)), np.ones(1))
+        data = law_data(projected, columns, SD, variables.hats)
+        fit = fitted_law(data, terms, ["speed"], plain_switch(len(variables.times)))
+        amplitude, _ = data.amplitude(fit.strength(dict(terms.features)))
+        wide = SeriesScatter(projected, columns, series).widened(fit, amplitude, terms, variables.hats)
+        rows.append((fit.mean[0], fit.sd[0], wide.sd[0]))
+    mean, plain, wide_sd = np.array(rows).T
+    return mean, plain, wide_sd
+
+
+def test_errors_that_readings_share_in_time_widen_the_intervals_as_much_as_they_scatter_the_exponents() -> None:
+    mean, plain, wide = exponents_of_scatter(3.0, range(40))
+    assert plain.mean() < 0.35 * mean.std()
+    assert wide.mean() == pytest.approx(mean.std(), rel=0.4)
+    assert np.mean(np.abs(mean - 1.5) < 2 * wide) > 0.8
+    assert np.mean(np.abs(mean - 1.5) < 2 * plain) < 0.6
+
+
+def test_independent_noise_leaves_the_intervals_nearly_as_they_are() -> None:
+    _, plain, wide = exponents_of_scatter(0.0, range(10))
+    assert np.all(wide >= plain)
+    assert wide.mean() < 1.3 * plain.mean()

@@ -13,6 +13,7 @@ import tyrefem as tf
 from tyrefem.effects import catalogue
 from tyrefem.effects.description import example, parameter_rows, ports
 from tyrefem.effects.effect import PORTS
+from tyrefem.errors import InputError
 from tyrefem.reports.inputs import effect_rows
 
 pytestmark = pytest.mark.fast
@@ -238,3 +239,13 @@ def test_ports_that_only_measure() -> None:
     assert {port.name for port in PORTS if port.changes == "measurement"} == {
         "displacement", "lag_addend", "offset", "clock", "channel"
     }  # fmt: skip
+
+
+@pytest.mark.parametrize("part", [{"station": "60 mm"}, {"width": "10 mm"}])
+def test_a_flux_has_a_station_and_a_width_or_is_the_same_on_the_whole_surface(part: dict[str, str]) -> None:
+    entry = {"name": "missing-flux", "into": "100 W/m**2"}
+    with pytest.raises(InputError, match="state both station and width, or neither for the whole surface"):
+        tf.study("example-validation").replace({"effects": [entry | part]})
+    (whole,) = tf.study("example-validation").replace({"effects": [entry | {"surface": "tread"}]}).effects
+    assert whole.choice == {"surface": "tread"}
+    assert whole.surfaces == ("road",)

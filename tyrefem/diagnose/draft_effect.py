@@ -11,7 +11,7 @@ from typing import TYPE_CHECKING
 
 from tyrefem.diagnose.heat_courses import BEGINS, ENDS, PHASE, RUN
 from tyrefem.diagnose.heat_patches import ALL_LAYERS, SURFACES, place_of
-from tyrefem.diagnose.law_places import EVERYWHERE, FILM, FLUX, HEAT, LOSS, UNITS, LawPlace
+from tyrefem.diagnose.law_places import EVERYWHERE, FILM, FLUX, HEAT, LOSS, UNITS, WHOLE_SURFACES, LawPlace
 from tyrefem.diagnose.law_terms import (
     ABOVE,
     DEFLECTION,
@@ -59,7 +59,7 @@ FACTORS: Mapping[str, str] = {
 #: Kind of place -> family, name and meaning of the amplitude.
 AMPLITUDES: Mapping[str, tuple[str, str, str]] = {
     HEAT: ("heat", "heat", "heat at the station, at the references"),
-    FLUX: ("boundary", "into", "flux at the station, at the references"),
+    FLUX: ("boundary", "into", "flux at its station, or on the whole surface, at the references"),
     LOSS: ("heat", "gain", "share of the model's heat, at the references"),
     FILM: ("boundary", "gain", "share of the film, at the references"),
 }
@@ -156,7 +156,9 @@ def _flags(law: PlaceLaw, place: LawPlace) -> list[str]:
     if math.isfinite(law.time):
         flags.append(f"    jumps: ClassVar[tuple[float, ...]] = ({round(law.time, 1)!r},)\n")
     if place.kind == FLUX:
-        flags.append(f"    surfaces: ClassVar[tuple[str, ...]] = {BOUNDARIES[SURFACES[place.where]]!r}\n")
+        flags.append(
+            f"    surfaces: ClassVar[tuple[str, ...]] = {BOUNDARIES[{**SURFACES, **WHOLE_SURFACES}[place.where]]!r}\n"
+        )
     return flags
 
 
@@ -188,6 +190,12 @@ def _port(place: LawPlace, amplitude: str) -> str:
     """The port where the effect acts."""
     choice = dict(place.unknown.choice)
     shape = "np.exp(-(((s - {0}) / {1}) ** 2) / 2)"
+    if place.where in WHOLE_SURFACES:
+        return (
+            "    def flux(self, tyre, surface, x, t):\n"
+            '        """W/m2, the same on the whole surface."""\n'
+            f"        return self.{amplitude} * self.law(tyre, t)\n"
+        )
     if place.kind == FLUX:
         shape = shape.format(*(choice[key].split()[0] for key in ("station", "width")))
     if place.kind == HEAT:

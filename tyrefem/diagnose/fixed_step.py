@@ -60,9 +60,14 @@ class FixedStepRun:
         """Times of the readings, s."""
         return time_grid(self.times, self.every)
 
+    @cached_property
+    def starts(self) -> tuple[float, ...]:
+        """Times at which data jump, s: between them a history is smooth. See `breaks`."""
+        return tuple(start for start in breaks(self.study)[:-1] if np.abs(self.times - start).min() < 1e-9)
+
     def dense(self, history: Array) -> Array:
-        """A history at ``times`` (n_times, ...) on `grid`: cubic splines between the ends of steps, phase by phase."""
-        return on_grid(self.times, history, self.study.card.drive.starts, self.grid)
+        """A history at ``times`` (n_times, ...) on `grid`: cubic splines between the ends of steps, up to each jump."""
+        return on_grid(self.times, history, self.starts, self.grid)
 
     def at(self, s: Array, depth: Array) -> Array:
         """(n_grid, n_places) degC at stations and depths (n_places,), m."""
@@ -81,7 +86,7 @@ class FixedStepRun:
         if self.study.sensors:
             operator = located(self.tyre.problem.operators, self.sensor_points).value()
             history = (operator @ self.values[::2].T).T
-            at_sensors = on_grid(self.times[::2], history, self.study.card.drive.starts, self.grid, ends_only=True)
+            at_sensors = on_grid(self.times[::2], history, self.starts, self.grid, ends_only=True)
         names = list(self.tyre.problem.reservoirs)
         lumped = {name: self.dense(self.reservoirs[:, names.index(name)]) for name in (GAS, RIM) if name in names}
         return read(self.study, self.grid, at_sensors, lumped)
@@ -138,7 +143,7 @@ def time_grid(times: Array, every: float) -> Array:
 
 
 def on_grid(times: Array, history: Array, starts: tuple[float, ...], grid: Array, *, ends_only: bool = False) -> Array:
-    """A history at stage times (or at ends of steps only) on a grid: cubic splines within each phase."""
+    """A history at stage times (or at ends of steps only) on a grid: cubic splines from each of ``starts`` on."""
     if not ends_only:
         times, history = times[::2], history[::2]
     values = np.empty((len(grid), *history.shape[1:]))

@@ -16,6 +16,7 @@ from numpy.typing import NDArray
 from tyrefem.brief import Brief
 from tyrefem.diagnose.heat_evidence import log_mean_exp, shares
 from tyrefem.diagnose.law_evidence import LawData, LawFit, fitted_law
+from tyrefem.diagnose.law_scatter import SeriesScatter
 from tyrefem.diagnose.law_terms import (
     NO_SWITCH,
     REST,
@@ -103,8 +104,10 @@ class PlaceLaw(Brief):
         return self.amplitude * self.fit.strength(dict(self.terms.features))
 
 
-def place_law(data: LawData, variables: DriveVariables, terms: LawTerms, *, inside: bool) -> PlaceLaw:
-    """The law of the heat at one place.
+def place_law(
+    data: LawData, variables: DriveVariables, terms: LawTerms, *, inside: bool, scatter: SeriesScatter | None = None
+) -> PlaceLaw:
+    """The law of the heat at one place; ``scatter`` widens the intervals of its exponents.
 
     1. Laws of all terms without a switch are fitted.
     2. Every switch is tried with the exponents of the best of them and with none; kinds far below the best are left.
@@ -145,6 +148,10 @@ def place_law(data: LawData, variables: DriveVariables, terms: LawTerms, *, insi
         kind = scored[number][1].switch.kind
         kinds[kind] = min(kinds.get(kind, 0.0) + chance, 1.0)
     amplitude, sd = _amplitude(data, features, chosen_fit)
+    if scatter is not None:
+        chosen_fit = scatter.widened(chosen_fit, amplitude, terms, data.hats)
+        scored[0] = top, chosen_fit
+        amplitude, sd = _amplitude(data, features, chosen_fit)
     exponents = _exponents(terms, scored, chances, chosen_fit)
     near = tuple((fit, top - score) for score, fit in scored[1:] if top - score < NEAR)
     whole = top + math.log(sum(math.exp(score - top) for score, _ in scored))

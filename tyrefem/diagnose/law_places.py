@@ -1,4 +1,4 @@
-"""Places that a law of missing heat may have: about a station, the model's own heat of a region, a film."""
+"""Places that a law of missing heat may have: a station, a whole surface, the model's heat of a region, a film."""
 
 from __future__ import annotations
 
@@ -27,15 +27,20 @@ LOSS_SD, FILM_SD = 0.2, 0.4
 FILMS = ("road", "outside_air", "tread_air", "contained_air", "rim")
 #: Name of the place of a share of the heat of all regions.
 EVERYWHERE = "all regions"
+#: A flux that is the same on a whole surface: name of the place -> surface of `missing-flux`.
+WHOLE_SURFACES = {
+    "whole tread surface": "tread", "whole sidewall surface": "sidewall", "whole outer surface": "outer",
+    "whole inner surface": "inner",
+}  # fmt: skip
 
 
 @dataclass(frozen=True, eq=False)
 class LawPlace(Brief):
     """A place that a law may have.
 
-    ``kind``: one of `UNITS`. ``station``: m along the meridian, NaN for a share. ``where``: layer, surface, region or
-    film. ``unknown``: the amplitude as a diagnosis varies it. ``parts``: of heat at several places with one law, the
-    unknown and the share of the amplitude of each.
+    ``kind``: one of `UNITS`. ``station``: m along the meridian, NaN for a share or a whole surface. ``where``: layer,
+    surface, region or film. ``unknown``: the amplitude as a diagnosis varies it. ``parts``: of heat at several places
+    with one law, the unknown and the share of the amplitude of each.
     """
 
     kind: str
@@ -75,6 +80,21 @@ def shares_of_model(residuals: Residuals) -> tuple[LawPlace, ...]:
     return tuple(places)
 
 
+def whole_surfaces(residuals: Residuals) -> tuple[LawPlace, ...]:
+    """A flux that is the same on a whole surface: water that evaporates, rain, radiation.
+
+    Its prior sd is that of a single source of flux.
+    """
+    sd = residuals.settings.missing_flux * residuals.settings.source_spread
+    effect = catalogue()["missing-flux"]
+    places = []
+    for where, surface in WHOLE_SURFACES.items():
+        choice = () if surface == "outer" else (("surface", surface),)
+        (unknown,) = of_effect(effect, choice, residuals.settings.missing_flux)
+        places.append(LawPlace(FLUX, float("nan"), where, unknown, sd))
+    return tuple(places)
+
+
 def points_of(study: StudyData, places: Sequence[LawPlace]) -> Places:
     """Points (s, depth) whose mean temperature stands for each place; for films and fluxes the middle of the wall."""
     return tuple(_points(study, place) for place in places)
@@ -84,7 +104,7 @@ def _points(study: StudyData, place: LawPlace) -> tuple[tuple[float, float], ...
     section = study.section
     along = section.line.length * np.linspace(0.05, 0.95, 13)
     stations = [place.station] if np.isfinite(place.station) else list(along)
-    whole = place.where in (ALL_LAYERS, EVERYWHERE, *SURFACES)
+    whole = place.where in (ALL_LAYERS, EVERYWHERE, *SURFACES, *WHOLE_SURFACES)
     points = []
     for station in stations:
         thickness = float(section.total_thickness([station])[0])

@@ -17,7 +17,16 @@ from tyrefem.diagnose.heat_law import PlaceLaw, place_law
 from tyrefem.diagnose.heat_over_time import HeatOverTime, SourceBasis, source_columns
 from tyrefem.diagnose.heat_sources import Place, UnknownSource, evidence
 from tyrefem.diagnose.law_evidence import fitted_law, law_data, law_strength, plain_switch
-from tyrefem.diagnose.law_places import HEAT, LOSS, LawPlace, law_place, points_of, shares_of_model
+from tyrefem.diagnose.law_places import (
+    HEAT,
+    LOSS,
+    LawPlace,
+    law_place,
+    points_of,
+    shares_of_model,
+    whole_surfaces,
+)
+from tyrefem.diagnose.law_scatter import SeriesScatter
 from tyrefem.diagnose.law_terms import (
     LOAD,
     PRESSURE,
@@ -32,9 +41,9 @@ from tyrefem.diagnose.law_terms import (
 from tyrefem.diagnose.residuals import Residuals
 
 Array = NDArray[np.float64]
-#: Largest number of places, and of shares of the model's heat or of films, whose laws are tried alone; and how far
-#: below the best of its kind each may be, nats.
-MOST_PLACES, MOST_SHARES, FAR = 3, 3, 30.0
+#: Largest number of places, of shares of the model's heat or of films, and of whole surfaces, whose laws are tried
+#: alone; and how far below the best of its kind each may be, nats.
+MOST_PLACES, MOST_SHARES, MOST_SURFACES, FAR = 3, 3, 2, 30.0
 #: A law holds for all runs if sources with a free strength in every run explain the data by no more than this better,
 #: nats, or if it describes this share of the gain of ln evidence that they have.
 WORSE, MOSTLY = 3.0, 0.9
@@ -106,11 +115,13 @@ def heat_law(
     variables = _drive(residuals, evaluations, basis.grid, tick)
     options = _of_sources(over_time, basis)
     known = {option.place.unknown: option.columns for option in options if not option.place.parts}
-    models = shares_of_model(residuals)
-    coarse = source_columns(residuals, evaluations, basis.coarse, [model.unknown for model in models], tick)
+    models, surfaces = shares_of_model(residuals), whole_surfaces(residuals)
+    further = [place.unknown for place in (*models, *surfaces)]
+    coarse = source_columns(residuals, evaluations, basis.coarse, further, tick)
     alone = [(law_place(place, unknown), place.columns) for place, unknown in basis.tried]
     chosen = _promising(basis, variables, alone, MOST_PLACES)
-    chosen += _promising(basis, variables, list(zip(models, coarse, strict=True)), MOST_SHARES)
+    chosen += _promising(basis, variables, list(zip(models, coarse, strict=False)), MOST_SHARES)
+    chosen += _promising(basis, variables, list(zip(surfaces, coarse[len(models) :], strict=True)), MOST_SURFACES)
     single = [option.place for option in options if not option.place.parts]
     chosen += [place for place in single if all(place.unknown != other.unknown for other in chosen)]
     new = [place.unknown for place in chosen if place.unknown not in known]
@@ -118,15 +129,17 @@ def heat_law(
     options = [option for option in options if option.others or option.place.parts]
     options += [_Option(place, (), known[place.unknown]) for place in chosen]
     # Every source pays for the choice of its place, and beside sources of a free course for that of their courses.
-    of_place = math.log(len(basis.tried) + len(models))
+    of_place = math.log(len(basis.tried) + len(further))
     of_other = of_place + math.log(sum(1 for _ in courses(basis.grid)))
     temperatures = _temperatures(residuals, evaluations, variables, [option.place for option in options], tick)
+    series = _series(residuals)
     ranked = []
     for option, temperature in zip(options, temperatures, strict=True):
         place, data = option.place, _beside(basis.data, option.others)
         terms = law_terms(variables, temperature if place.kind in (HEAT, LOSS) else None, of_heat=place.kind == HEAT)
         of_option = law_data(data, option.columns, place.sd, variables.hats)
-        law = place_law(of_option, variables, terms, inside=place.inside)
+        scatter = SeriesScatter(data, option.columns, series)
+        law = place_law(of_option, variables, terms, inside=place.inside, scatter=scatter)
         entry = RankedPlace(place, law, len(option.others), 0.0, option.columns, data)
         places = max(len(place.parts), 1)
         ranked.append((law.log_evidence - places * of_place - len(option.others) * of_other, entry))
@@ -192,6 +205,16 @@ def _beside(data: ProjectedData, others: Sequence[tuple[Place, Course]]) -> Proj
     columns = [place.sd * place.columns @ course.factor for place, course in others]
     count = sum(each.shape[1] for each in columns)
     return replace(data, jacobian=np.hstack([data.jacobian, *columns]), sd=np.concatenate([data.sd, np.ones(count)]))
+
+
+def _series(residuals: Residuals) -> tuple[slice, ...]:
+    """Rows of each sensor in each fitted run."""
+    series, start = [], 0
+    for number in residuals.fitted:
+        run = residuals.runs[number]
+        series += [slice(start + part.start, start + part.stop) for part in run.parts().values()]
+        start += run.size
+    return tuple(series)
 
 
 def _promising(

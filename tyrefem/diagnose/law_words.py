@@ -9,7 +9,7 @@ from tyrefem.diagnose.heat_courses import BEGINS, ENDS, PHASE, RUN
 from tyrefem.diagnose.heat_patches import SURFACES, place_of
 from tyrefem.diagnose.heat_sources import CLEAR
 from tyrefem.diagnose.heat_words import station_words
-from tyrefem.diagnose.law_places import FILM, FLUX, LOSS, UNITS, LawPlace
+from tyrefem.diagnose.law_places import FILM, FLUX, LOSS, UNITS, WHOLE_SURFACES, LawPlace
 from tyrefem.diagnose.law_terms import ABOVE, DEFLECTION, LOAD, NO_SWITCH, PRESSURE, REST, ROLLING, SPEED, WARM
 from tyrefem.diagnose.numbers import amount, percent
 
@@ -88,6 +88,8 @@ def law_place_words(d: DiagnosisData, place: LawPlace) -> str:
         return f"a share of the model's own heat in {place.where}"
     if place.kind == FILM:
         return f"a share of the {FILM_NAMES[place.where]}"
+    if place.where in WHOLE_SURFACES:
+        return f"through the {place.where}"
     station = station_words(d, place.station)
     if len(stations := dict.fromkeys(place_of(unknown)[0] for unknown, _ in place.parts)) > 1:
         return " and ".join(station_words(d, each) for each in stations)

@@ -1,12 +1,12 @@
-"""Heat of unknown origin through a surface about one station of the meridian."""
+"""Heat of unknown origin through a surface, about one station of the meridian or everywhere."""
 
 from __future__ import annotations
 
-from typing import Annotated, ClassVar, Literal
+from typing import Annotated, ClassVar, Literal, Self
 
 import numpy as np
 from numpy.typing import NDArray
-from pydantic import Field
+from pydantic import Field, model_validator
 
 from tyrefem.effects.effect import Effect, Factor, Prior
 from tyrefem.effects.tyre import Tyre
@@ -14,29 +14,37 @@ from tyrefem.quantity import Unit
 
 Array = NDArray[np.float64]
 #: Surface -> its boundaries in the heat balance.
-BOUNDARIES = {"outer": ("road", "outside_air"), "inner": ("contained_air",), "rim": ("rim",)}
+BOUNDARIES = {
+    "outer": ("road", "outside_air"),
+    "tread": ("road",),
+    "sidewall": ("outside_air",),
+    "inner": ("contained_air",),
+    "rim": ("rim",),
+}
 
 
 class MissingFlux(Effect):
     """A flux exp(-((|s| - station)/width)^2 / 2) into a surface, by default the outer one, rolling or not.
 
-    ``begins`` and ``ends`` limit it to a part of the drive.
+    Without ``station`` and ``width`` it is the same on the whole surface. ``begins`` and ``ends`` limit it to a part of
+    the drive.
     """
 
     name: ClassVar[str] = "missing-flux"
     family: ClassVar[str] = "calibration"
     calibration: ClassVar[bool] = True
-    sentence: ClassVar[str] = "Heat of unknown origin into a surface about one station, in W/m2, at all times."
+    sentence: ClassVar[str] = "Heat of unknown origin into a surface, in W/m2, at all times."
     source: ClassVar[str] = "none: what a diagnosis finds when nothing in the catalogue explains a gap"
 
     station: Annotated[
-        float, Unit("m", ge=0), Field(description="distance from the crown on the meridian", examples=["60 mm"])
-    ]
+        float | None, Unit("m", ge=0), Field(description="distance from the crown on the meridian", examples=["60 mm"])
+    ] = None
     width: Annotated[
-        float, Unit("m", gt=0), Field(description="standard deviation about the station", examples=["10 mm"])
-    ]
+        float | None, Unit("m", gt=0), Field(description="standard deviation about the station", examples=["10 mm"])
+    ] = None
     surface: Annotated[
-        Literal["outer", "inner", "rim"], Field(description="the surface", examples=["outer", "inner", "rim"])
+        Literal["outer", "tread", "sidewall", "inner", "rim"],
+        Field(description="the surface; tread is the part that meets the road", examples=["outer", "tread", "inner"]),
     ] = "outer"
     begins: Annotated[
         float | None, Unit("s", ge=0), Field(description="begins at this time of the drive", examples=["300 s"])
@@ -44,12 +52,19 @@ class MissingFlux(Effect):
     ends: Annotated[
         float | None, Unit("s", ge=0), Field(description="ends at this time of the drive", examples=["600 s"])
     ] = None
-    into: Annotated[float, Prior("W/m**2", "flux at the station", 200.0, -1e5, 1e5)] = 0.0
+    into: Annotated[float, Prior("W/m**2", "flux, at the station if there is one", 200.0, -1e5, 1e5)] = 0.0
+
+    @model_validator(mode="after")
+    def _about_a_station_or_everywhere(self) -> Self:
+        if (self.station is None) != (self.width is None):
+            raise ValueError("state both station and width, or neither for the whole surface")
+        return self
 
     @property
     def choice(self) -> dict[str, str]:
         """Where."""
-        where = {"station": f"{self.station!r} m", "width": f"{self.width!r} m"}
+        about = {"station": self.station, "width": self.width}
+        where = {key: f"{value!r} m" for key, value in about.items() if value is not None}
         when = {"begins": self.begins, "ends": self.ends}
         surface = {} if self.surface == "outer" else {"surface": self.surface}
         return where | surface | {key: f"{time!r} s" for key, time in when.items() if time is not None}
@@ -68,5 +83,7 @@ class MissingFlux(Effect):
         """W/m2 at points x (2, n)."""
         if (self.begins is not None and t < self.begins) or (self.ends is not None and t > self.ends):
             return 0.0
+        if self.station is None or self.width is None:
+            return self.into
         s, _ = tyre.places(x)
         return np.asarray(self.into * np.exp(-(((s - self.station) / self.width) ** 2) / 2))
