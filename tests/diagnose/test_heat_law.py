@@ -239,3 +239,23 @@ def test_independent_noise_leaves_the_intervals_nearly_as_they_are() -> None:
     _, plain, wide = exponents_of_scatter(0.0, range(10))
     assert np.all(wide >= plain)
     assert wide.mean() < 1.3 * plain.mean()
+
+
+def test_a_term_that_only_shared_errors_ask_for_is_no_part_of_the_law() -> None:
+    """Without the scatter, errors that the readings of a series share choose a load or a temperature as well."""
+    variables, columns = problem(APART)
+    response = columns @ (variables.hats @ (4.0 * (variables.speed / 11.0) ** 1.5))
+    series = tuple(slice(start, start + len(READ)) for start in range(0, len(columns), len(READ)))
+    terms, false_terms = law_terms(variables), {False: 0, True: 0}
+    for seed in range(6):
+        rng = np.random.default_rng(seed)
+        shared = 3.0 * np.repeat(rng.normal(size=len(series)), len(READ))
+        values = response + shared + rng.normal(size=len(columns))
+        projected = ProjectedData(values, np.zeros((len(columns), 1)), np.ones(1))
+        data, scatter = law_data(projected, columns, SD, variables.hats), SeriesScatter(projected, columns, series)
+        for scattered in (False, True):
+            shown = place_law(data, variables, terms, inside=True, scatter=scatter if scattered else None)
+            assert "speed" in shown.fit.terms
+            false_terms[scattered] += len(set(shown.fit.terms) - {"speed"}) + (shown.fit.switch.kind != "no switch")
+    assert false_terms[False] >= 6
+    assert false_terms[True] <= 2

@@ -107,7 +107,35 @@ class PlaceLaw(Brief):
 def place_law(
     data: LawData, variables: DriveVariables, terms: LawTerms, *, inside: bool, scatter: SeriesScatter | None = None
 ) -> PlaceLaw:
-    """The law of the heat at one place; ``scatter`` widens the intervals of its exponents.
+    """The law of the heat at one place.
+
+    With ``scatter``, readings that are alike in time count less: terms and switch are chosen with all evidence over the
+    inflation of the exponents' variance, and the exponents' intervals are widened.
+    """
+    law = _chosen_law(data, variables, terms, inside=inside)
+    if scatter is None:
+        return law
+    inflation = scatter.inflation(law.fit, law.amplitude, terms, data.hats)
+    chosen = law if inflation <= 1 else _chosen_law(data.over(inflation), variables, terms, inside=inside)
+    fit = fitted_law(data, terms, chosen.fit.terms, chosen.fit.switch, chosen.fit.mean)
+    features = dict(terms.features)
+    fit = scatter.widened(fit, data.amplitude(fit.strength(features))[0], terms, data.hats)
+    amplitude, sd = _amplitude(data, features, fit)
+    fitted = dict(zip(fit.terms, zip(fit.mean, fit.sd, strict=True), strict=True))
+    exponents = tuple(
+        entry if entry.name not in fitted else replace(
+            entry, mean=float(fitted[entry.name][0]), sd=float(fitted[entry.name][1]),
+            narrowed=bool(fitted[entry.name][1] < NARROWED * terms.prior(entry.name)[1]),
+        )
+        for entry in chosen.exponents
+    )  # fmt: skip
+    return replace(
+        chosen, fit=fit, amplitude=amplitude, sd=sd, exponents=exponents, log_evidence=law.log_evidence, terms=terms
+    )
+
+
+def _chosen_law(data: LawData, variables: DriveVariables, terms: LawTerms, *, inside: bool) -> PlaceLaw:
+    """The most probable law.
 
     1. Laws of all terms without a switch are fitted.
     2. Every switch is tried with the exponents of the best of them and with none; kinds far below the best are left.
@@ -148,10 +176,6 @@ def place_law(
         kind = scored[number][1].switch.kind
         kinds[kind] = min(kinds.get(kind, 0.0) + chance, 1.0)
     amplitude, sd = _amplitude(data, features, chosen_fit)
-    if scatter is not None:
-        chosen_fit = scatter.widened(chosen_fit, amplitude, terms, data.hats)
-        scored[0] = top, chosen_fit
-        amplitude, sd = _amplitude(data, features, chosen_fit)
     exponents = _exponents(terms, scored, chances, chosen_fit)
     near = tuple((fit, top - score) for score, fit in scored[1:] if top - score < NEAR)
     whole = top + math.log(sum(math.exp(score - top) for score, _ in scored))

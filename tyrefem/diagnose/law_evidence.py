@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from functools import cached_property
 
 import numpy as np
@@ -40,6 +40,10 @@ class LawData(Brief):
     sd: float
     hats: Array
     base: float = 0.0
+
+    def over(self, inflation: float) -> LawData:
+        """The same readings with this many times their variance."""
+        return replace(self, gram=self.gram / inflation, overlap=self.overlap / inflation)
 
     def statistics(self, strength: Array) -> tuple[float, float]:
         """g and o of a strength (n,) at fine times."""

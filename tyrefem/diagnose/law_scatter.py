@@ -42,10 +42,22 @@ class SeriesScatter(Brief):
 
     def widened(self, fit: LawFit, amplitude: float, terms: LawTerms, hats: Array) -> LawFit:
         """The law with the larger of two sd of every exponent: that of independent noise, and that of the scatter."""
-        count = len(self.series)
-        if not len(fit.mean) or count < 2:
+        if not len(fit.mean) or len(self.series) < 2:
             return fit
-        known = dict(terms.features)
+        scatter, _ = self._variances(fit, amplitude, terms, hats)
+        factor = np.maximum(np.sqrt(scatter[1:]) / fit.sd, 1.0)
+        return replace(fit, covariance=fit.covariance * np.outer(factor, factor))
+
+    def inflation(self, fit: LawFit, amplitude: float, terms: LawTerms, hats: Array) -> float:
+        """Mean ratio of the variance of the scatter to that of independent noise, of ln(amplitude) and exponents."""
+        if len(self.series) < 2:
+            return 1.0
+        scatter, independent = self._variances(fit, amplitude, terms, hats)
+        return max(float(np.mean(scatter / independent)), 1.0)
+
+    def _variances(self, fit: LawFit, amplitude: float, terms: LawTerms, hats: Array) -> tuple[Array, Array]:
+        """Variances of ln(amplitude) and of the exponents: of the scatter, and of independent noise."""
+        known, count = dict(terms.features), len(self.series)
 
         def response(exponents: Array) -> Array:
             return np.asarray(self.columns @ (hats @ (amplitude * fit.strength(known, exponents))))
@@ -59,5 +71,4 @@ class SeriesScatter(Brief):
         prior = np.diag([0.0, *(1 / terms.prior(name)[1] ** 2 for name in fit.terms)])
         inverse = np.linalg.pinv(G.T @ turned + prior)
         scatter = inverse @ (scores.T @ scores) @ inverse * count / (count - 1)
-        factor = np.maximum(np.sqrt(np.maximum(np.diag(scatter)[1:], 0.0)) / fit.sd, 1.0)
-        return replace(fit, covariance=fit.covariance * np.outer(factor, factor))
+        return np.maximum(np.diag(scatter), 0.0), np.diag(inverse)
