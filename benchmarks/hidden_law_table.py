@@ -23,7 +23,8 @@ TABLE = Path("docs/evidence/tables/diagnosis-laws.csv")
 BEGIN, END = "<!-- hidden laws: written by benchmarks/hidden_law_table.py -->", "<!-- end of hidden laws -->"
 #: Deflection of `hidden-effect` at its rated load and pressure, m: the Payne-like loss refers to it.
 RATED_DEFLECTION = 0.027635
-SLOPE = "loss over deflection"
+#: d ln(deflection)/d ln(variable) of `hidden-effect` at 13.9 kN and 6.5 bar: a law of load and pressure says the same.
+OF_DEFLECTION: Mapping[str, float] = {"deflection": 1.0, "load": 0.91, "pressure": -0.80}
 
 
 @dataclass(frozen=True)
@@ -36,12 +37,15 @@ class HiddenLaw:
 
 
 LAWS: Mapping[str, HiddenLaw] = {
-    "payne": HiddenLaw("Payne-like loss: all hysteresis x 2x/(1 + x²), x = D/(0.4 D_rated)", {}),
+    "payne": HiddenLaw(
+        "Payne-like loss: all hysteresis in proportion to x/(1 + x²), x = D/(0.4 D_rated); slope -0.77",
+        {},
+    ),
     "delamination": HiddenLaw(
-        "delamination, carcass at s = 97 mm: speed x deflection², from 300 s on", {"speed": 1.0, "deflection": 2.0}, 300
+        "delamination, carcass at s = 97 mm: speed × deflection², from 300 s on", {"speed": 1.0, "deflection": 2.0}, 300
     ),
     "evaporation": HiddenLaw("evaporation on the tread: -speed^0.8, until 400 s", {"speed": 0.8}, 400.0),
-    "belt-edge": HiddenLaw("belt edge: speed^1.8 x load^0.7, 8 mm x 2.5 mm", {"speed": 1.8, "load": 0.7}),
+    "belt-edge": HiddenLaw("belt edge: speed^1.8 × load^0.7, 8 mm × 2.5 mm", {"speed": 1.8, "load": 0.7}),
 }
 
 
@@ -100,20 +104,24 @@ def _numbers(
     hidden, nothing = LAWS[case], (math.nan, math.nan)
     numbers = [Number(name, value, *values.get(name, nothing)) for name, value in hidden.exponents.items()]
     if case == "payne":
-        numbers.append(_slope(values.get("deflection", nothing), gain, reference))
+        terms = [term for term in OF_DEFLECTION if term in values] or ["deflection"]
+        numbers += [_slope(term, values.get(term, nothing), gain, reference) for term in terms]
     if math.isfinite(hidden.time) and time[0] is not None and time[1] is not None:
         numbers.append(Number("time", hidden.time, time[0], max(time[1], 1.0)))
     return numbers
 
 
-def _slope(exponent: tuple[float, float], gain: tuple[float | None, float | None], reference: float) -> Number:
-    """d ln(loss)/d ln(deflection) at the reference: A p/(1 + A) of a share A (D/D_ref)^p, whatever the base value."""
+def _slope(
+    term: str, exponent: tuple[float, float], gain: tuple[float | None, float | None], reference: float
+) -> Number:
+    """d ln(loss)/d ln(term) at the reference: A p/(1 + A) of a share A (term/reference)^p, whatever the base value."""
     x = reference / (0.4 * RATED_DEFLECTION)
-    hidden = (1 - x**2) / (1 + x**2)
+    hidden = (1 - x**2) / (1 + x**2) * OF_DEFLECTION[term]
+    name = f"slope of the loss over {term}"
     if gain[0] is None or gain[1] is None or math.isnan(exponent[0]):
-        return Number(SLOPE, hidden, math.nan, math.nan)
+        return Number(name, hidden, math.nan, math.nan)
     (p, p_sd), A, A_sd = exponent, gain[0], gain[1]
-    return Number(SLOPE, hidden, A * p / (1 + A), math.hypot(A / (1 + A) * p_sd, p / (1 + A) ** 2 * A_sd))
+    return Number(name, hidden, A * p / (1 + A), math.hypot(A / (1 + A) * p_sd, p / (1 + A) ** 2 * A_sd))
 
 
 @dataclass(frozen=True)
