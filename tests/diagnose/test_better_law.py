@@ -22,12 +22,13 @@ from tyrefem.diagnose.discrepancy import NONE
 from tyrefem.diagnose.forward_model import ForwardModel
 from tyrefem.diagnose.headline import headline
 from tyrefem.diagnose.law_trials import LawTrial, law_trials
+from tyrefem.diagnose.options import Method
 from tyrefem.diagnose.record import record
 from tyrefem.diagnose.robustness import Robustness, UnderDiscrepancy
 from tyrefem.diagnose.sampling import DriveSampling
 from tyrefem.diagnose.set_posteriors import posterior_record
 from tyrefem.diagnose.settings import DiagnosisSettings
-from tyrefem.diagnose.strain_law_study import LEVEL_SD, STRETCHES, by_law
+from tyrefem.diagnose.strain_law_study import COARSE_MESH, LEVEL_SD, STRETCHES, by_law
 from tyrefem.diagnose.unknowns import base_unknowns, with_values
 from tyrefem.diagnose.verdict import NO_GAP, PARTLY, UNEXPLAINED
 from tyrefem.diagnose.words import verdict_words
@@ -35,7 +36,7 @@ from tyrefem.plan.beliefs import diagnosed_beliefs, stored_beliefs
 from tyrefem.reports.diagnosis import page
 
 CROWN_AND_BEAD = np.linspace(0.4, 3.0, STRETCHES)
-TRIAL = LawTrial("barrel", math.log(1.8), np.full(STRETCHES, 50.0), 50.0 * CROWN_AND_BEAD, 40.0, 2.0, 2.5)
+TRIAL = LawTrial("barrel", math.log(1.8), np.full(STRETCHES, 50.0), 50.0 * CROWN_AND_BEAD, 40.0, 6.0, 2.0, 2.5)
 
 
 def test_the_study_by_another_law_has_its_energy_times_an_unknown_factor(tmp_path: Path) -> None:
@@ -56,14 +57,25 @@ def test_heat_by_another_law_is_compared_on_the_same_mesh(tmp_path: Path) -> Non
     owner = study(tmp_path)
     settings = DiagnosisSettings(mesh_size="8 mm")
     model = ForwardModel(owner, (DriveSampling("run", {}, hold_out=False, sensors=()),), settings=settings)
-    arcs, barrel = model.heat_by_law(0, "barrel")
-    np.testing.assert_allclose(model.heat_by_law(0, "arcs"), [arcs, arcs], rtol=1e-9)
+    arcs, barrel = model.heat_by_law(0, "barrel", "8 mm")
+    np.testing.assert_allclose(model.heat_by_law(0, "arcs", "8 mm"), [arcs, arcs], rtol=1e-9)
     # The barrel has half the arcs' energy, and the bead, which the arcs leave out (docs/evidence/strain-laws.md).
     assert 0.3 < barrel.sum() / arcs.sum() < 0.8
     assert barrel[-3:].sum() > arcs[-3:].sum()
     doubled = by_law(owner, "barrel", math.log(2.0))
-    assert np.isnan(model.heat_by_law(0, "given")).all()
+    assert np.isnan(model.heat_by_law(0, "given", "8 mm")).all()
     assert doubled.card.mechanics.strain == "barrel"
+
+
+def test_a_law_that_leaves_most_of_the_deviation_is_not_promising() -> None:
+    assert TRIAL.promising
+    assert not replace(TRIAL, rms=0.9 * TRIAL.stated_rms).promising
+    assert not replace(TRIAL, gain=5.0).promising
+
+
+def test_a_law_by_finite_elements_is_diagnosed_on_a_coarse_mesh() -> None:
+    assert Method().by_law("barrel").settings.mesh_size == COARSE_MESH
+    assert Method().by_law("arcs") == Method()
 
 
 class Laws:
@@ -73,7 +85,7 @@ class Laws:
         if name == "heat_by_law":
             return [np.ones((2, STRETCHES)) * [[2.0], [1.0]]]
         assert name == "change_by_law"
-        assert all(level == pytest.approx(math.log(2.0)) for _, _, level in questions)
+        assert all(level == pytest.approx(math.log(2.0)) for _, _, level, _ in questions)
         return [10.0 * (np.arange(40) < 20) for _ in questions]
 
 

@@ -107,6 +107,20 @@ def test_a_strain_energy_that_is_wrong_by_a_factor_is_followed(hot: float) -> No
         assert low < hot < high
 
 
+def test_an_effect_without_which_held_out_runs_are_predicted_better_is_told_but_not_named() -> None:
+    judgement, members, robust = diagnosed(measured(hot=25.0, off=0.25))
+    assert members == (HOT,)
+    leading = robust.models[0]
+    fit = leading.fits[(HOT,)]
+    for lead, named in ((-3.0, True), (3.0, False)):
+        fits = {(HOT,): replace(fit, held_out=-50.0), (): replace(fit, members=(), held_out=-50.0 + lead)}
+        models = (replace(leading, fits=fits), *robust.models[1:])
+        revision = beside_discrepancies(replace(judgement, verdict=UNEXPLAINED), replace(robust, models=models), SETTINGS)
+        assert (revision.verdict == PARTLY) is named
+        told = "Hot is not named: the held-out runs are predicted better without it."
+        assert (told in revision.doubts) is not named
+
+
 def test_an_effect_that_another_strain_law_does_not_need_is_not_named() -> None:
     # The readings have the bump of the effect; one other law heats just there, another one does not.
     data = measured(hot=25.0, off=0.25)

@@ -247,27 +247,29 @@ class ForwardModel(Brief):
             return np.full(self.drives[number].size, np.nan)
         return self.blocks(number, simulated.grid, simulated.readings)
 
-    def change_by_law(self, number: int, law: str, level: float = 0.0) -> Array:
+    def change_by_law(self, number: int, law: str, level: float = 0.0, mesh: str = "") -> Array:
         """Block means at a drive with another strain law, minus those of the study, at x = 0; NaN if it cannot run.
 
-        ``level``: ln of a factor on the heat by the other law.
+        ``level``: ln of a factor on the heat by the other law. ``mesh``: size of the elements for both; default: those
+        of the fit.
         """
         base = self.base(number)
         try:
+            if mesh and mesh != self.settings.mesh_size:
+                base = fixed_step_run(_meshed(base.study, mesh), every=base.every)
             other = fixed_step_run(by_law(base.study, law, level), every=base.every)
         except InputError:
             return np.full(self.drives[number].size, np.nan)
         return self.blocks(number, other.grid, other.readings) - self.blocks(number, base.grid, base.readings)
 
-    def heat_by_law(self, number: int, law: str) -> Array:
+    def heat_by_law(self, number: int, law: str, mesh: str) -> Array:
         """(2, n) W in equal stretches from crown to bead as the tyre begins to turn: the study's law, another law.
 
-        NaN if the law cannot run.
+        NaN if the law cannot run. ``mesh``: size of the elements.
         """
-        base = self.base(number)
+        driven = _meshed(self.base(number).study, mesh)
         try:
-            other = RollingTyre(by_law(base.study, law, 0.0))
-            return np.array([heat_along(base.tyre), heat_along(other)])
+            return np.array([heat_along(RollingTyre(study)) for study in (driven, by_law(driven, law, 0.0))])
         except InputError:
             return np.full((2, STRETCHES), np.nan)
 
@@ -378,6 +380,11 @@ class ForwardModel(Brief):
             columns = list(alone)
             derivatives = _tangents(base, list(alone.values()))
         return ReadingSensitivities(base, tuple(unknowns), again, columns, derivatives, failed)
+
+
+def _meshed(study: StudyData, size: str) -> StudyData:
+    """The study with another size of the elements; a mesh from a file stays."""
+    return study if study.card.mesh.file is not None else study.replace({"mesh.size": size})
 
 
 def _acting(study: StudyData, values: Values) -> Values:

@@ -10,6 +10,7 @@ from typing import TYPE_CHECKING
 from tyrefem.brief import Brief
 from tyrefem.diagnose.candidates import Candidate
 from tyrefem.diagnose.discrepancy import ENERGY
+from tyrefem.diagnose.discrepancy_record import possible_effects
 from tyrefem.diagnose.draft_effect import EFFECTS, draft_effects
 from tyrefem.diagnose.heat_sources import STATED, UnknownSource
 from tyrefem.diagnose.heat_words import course_words, source_place
@@ -39,6 +40,8 @@ QUESTIONS = ("What is wrong", "How sure", "What to do next")
 CLEAR_GAP = 1.5
 #: Largest number of corrections and of sets of effects in a sentence.
 CORRECTIONS, SETS = 3, 3
+#: Effects that may act beside a discrepancy stand in the first sentence from this probability on.
+LIKELY = 0.5
 
 
 def headline(d: DiagnosisData) -> tuple[str, str, str]:
@@ -165,6 +168,8 @@ def _unexplained(d: DiagnosisData) -> tuple[str, str, str]:
     other = explaining_words(d)
     cause = f"{other[0].lower()}{other[1:].rstrip('.')}" if other else heat_clause(d, sources)
     wrong = f"No effect in the catalogue explains the deviation; {cause}."
+    likely = [f"{key} ({percent(share)})" for key, share in possible_effects(d).items() if share >= LIKELY]
+    wrong += f" Beside it may act: {', '.join(likely)}." if likely else ""
     if d.judgement.doubts:
         sure = f"{_opened(d.judgement.doubts[0])}; {_gap(d)}."
     else:

@@ -14,6 +14,7 @@ from tyrefem.diagnose.discrepancy import Discrepancy, beside_law, with_courses
 from tyrefem.diagnose.evaluations import Evaluations
 from tyrefem.diagnose.residual_tables import rms
 from tyrefem.diagnose.residuals import Residuals
+from tyrefem.diagnose.strain_law_study import mesh_of_law
 from tyrefem.mechanics.strain_laws import strain_laws
 
 Array = NDArray[np.float64]
@@ -21,6 +22,8 @@ Array = NDArray[np.float64]
 COARSE = 2.0
 #: A law is diagnosed in place of the study's if its evidence is ahead by this in the linear model, nats.
 AHEAD = 10.0
+#: It must also bring the rms of measured - computed below this share of what it is by the study's law.
+SMALLER = 0.8
 
 
 @dataclass(frozen=True, eq=False)
@@ -32,7 +35,8 @@ class LawTrial(Brief):
     law : its name. level : ln of the factor that gives it the study's heat.
     stated_heat, heat : (n,) W by the study's law and by this one, in equal stretches from crown to bead.
     gain : ln evidence of no effect by the law minus that by the study's law, in the linear model about x = 0.
-    rms, held_out_rms : K, of measured - computed by the law in the fitted and the held-out runs; NaN without runs.
+    stated_rms : K, of measured - computed by the study's law in the fitted runs.
+    rms, held_out_rms : K, by this law in the fitted and the held-out runs; NaN without runs.
     """
 
     law: str
@@ -40,6 +44,7 @@ class LawTrial(Brief):
     stated_heat: Array
     heat: Array
     gain: float
+    stated_rms: float
     rms: float
     held_out_rms: float
 
@@ -54,8 +59,8 @@ class LawTrial(Brief):
 
     @property
     def promising(self) -> bool:
-        """Whether the law is to be diagnosed in place of the study's."""
-        return self.gain > AHEAD
+        """Whether the law is to be diagnosed in place of the study's: it takes much of the deviation away."""
+        return self.gain > AHEAD and self.rms < SMALLER * self.stated_rms
 
     def to_dict(self) -> dict[str, Any]:
         """Plain data for ``verdict.json``."""
@@ -113,16 +118,17 @@ def law_trials(residuals: Residuals, evaluations: Evaluations) -> tuple[LawTrial
 
 
 def _trial(residuals: Residuals, evaluations: Evaluations, law: str) -> LawTrial | None:
-    (heats,) = evaluations.of("heat_by_law", [(residuals.fitted[0], law)])
+    first, mesh = residuals.fitted[0], mesh_of_law(law, residuals.settings.mesh_size)
+    (heats,) = evaluations.of("heat_by_law", [(first, law, mesh)])
     stated, other = heats
     if not (np.isfinite(heats).all() and stated.sum() > 0 and other.sum() > 0):
         return None
     level = math.log(stated.sum() / other.sum())
     numbers = range(len(residuals.runs))
-    changes = evaluations.of("change_by_law", [(number, law, level) for number in numbers])
+    changes = evaluations.of("change_by_law", [(number, law, level, mesh) for number in numbers])
     if not all(np.isfinite(change).all() for change in changes):
         return None
-    computed = {number: residuals.corrected(number, residuals.computed[number]) + changes[number] for number in numbers}
+    computed = {number: _stated(residuals, number) + changes[number] for number in numbers}
     return LawTrial(
         law,
         level,
@@ -130,9 +136,15 @@ def _trial(residuals: Residuals, evaluations: Evaluations, law: str) -> LawTrial
         np.exp(level) * other,
         _evidence(residuals, beside_law(residuals, law, changes))
         - _evidence(residuals, beside_law(residuals, stated_law(residuals), ())),
+        rms(residuals, {number: _stated(residuals, number) for number in numbers}, residuals.fitted),
         rms(residuals, computed, residuals.fitted),
         rms(residuals, computed, residuals.held_out),
     )
+
+
+def _stated(residuals: Residuals, number: int) -> Array:
+    """Block means of a run by the study as written, degC."""
+    return residuals.corrected(number, residuals.computed[number])
 
 
 def stated_law(residuals: Residuals) -> str:

@@ -17,6 +17,7 @@ from tyrefem.diagnose.forward_selection import ForwardSelection
 from tyrefem.diagnose.selection import Strategy
 from tyrefem.diagnose.sensitivities import Tick
 from tyrefem.diagnose.settings import DEFAULT, DiagnosisSettings
+from tyrefem.diagnose.strain_law_study import mesh_of_law
 from tyrefem.effects import use_effects
 
 #: Name on the command line -> strategy.
@@ -39,6 +40,10 @@ class Method:
     strategy: Strategy = field(default_factory=ForwardSelection)
     settings: DiagnosisSettings = DEFAULT
     calibration: Path | None = None
+
+    def by_law(self, law: str) -> Method:
+        """The same for a study by another strain law, see `mesh_of_law`."""
+        return replace(self, settings=replace(self.settings, mesh_size=mesh_of_law(law, self.settings.mesh_size)))
 
 
 @dataclass(frozen=True)

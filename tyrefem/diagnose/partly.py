@@ -63,8 +63,11 @@ def beside_discrepancies(
             law = min(robustness.counted, key=lambda law: law.named.get(member.key, 0.0))
             reason = f"{member.key} is not named: with {law.words} it is less probable, or of the other sign"
             revision = revision._replace(reasons=(*revision.reasons, reason))
-    if not members or len(members) > settings.largest or not _predicts_held_out(leading, members):
+    if not members or len(members) > settings.largest:
         return revision
+    if not _predicts_held_out(leading, members):
+        keys = " + ".join(member.key for member in members)
+        return revision.doubted(f"{keys} is not named: the held-out runs are predicted better without it")
     smallest = min(robustness.least(member.key) for member in members)
     reason = (
         f"{' + '.join(member.key for member in members)} acts with at least {_percent(smallest)} whatever else is wrong"

@@ -119,7 +119,7 @@ def _look_by_laws(
     if trial is None:
         return stated
     replaced = by_law(study, trial.law, trial.level)
-    other = _look(replaced, table, columns, method, work.by_law(trial.law), law_replaced=True)
+    other = _look(replaced, table, columns, method.by_law(trial.law), work.by_law(trial.law), law_replaced=True)
     return by_better_law(stated, other, trial)
 
 
@@ -179,7 +179,7 @@ def _look(
             work.tick("ranking next experiments")
             further = next_experiment(evaluations.model, ranking.judgement, ranking.fit_of)
         trials: tuple[LawTrial, ...] = ()
-        if not law_replaced and ranking.judgement.verdict in (UNEXPLAINED, PARTLY):
+        if not law_replaced and ranking.judgement.verdict == UNEXPLAINED:
             work.tick("trying other strain laws")
             trials = law_trials(residuals, evaluations)
     return DiagnosisData(
