@@ -115,7 +115,8 @@ def test_an_effect_without_which_held_out_runs_are_predicted_better_is_told_but_
     for lead, named in ((-3.0, True), (3.0, False)):
         fits = {(HOT,): replace(fit, held_out=-50.0), (): replace(fit, members=(), held_out=-50.0 + lead)}
         models = (replace(leading, fits=fits), *robust.models[1:])
-        revision = beside_discrepancies(replace(judgement, verdict=UNEXPLAINED), replace(robust, models=models), SETTINGS)
+        again = replace(judgement, verdict=UNEXPLAINED)
+        revision = beside_discrepancies(again, replace(robust, models=models), SETTINGS)
         assert (revision.verdict == PARTLY) is named
         told = "Hot is not named: the held-out runs are predicted better without it."
         assert (told in revision.doubts) is not named
