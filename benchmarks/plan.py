@@ -426,6 +426,8 @@ def run_layout(name: str, kind: type[Course], given: argparse.Namespace, is_left
             break
         rows.append(planned_case(course, lead, rival))
         write_row(files[0], rows[-1])
+    if given.planned_only:
+        return
     finished = {row["number"] for row in written(files[1])}
     for number in [row["number"] for row in rows if row["verdict"] == CONFOUNDED and row["number"] not in finished]:
         if not is_left():
@@ -445,6 +447,7 @@ def main() -> None:
     parser.add_argument("--data-mesh", default="4 mm", help="Mesh of the synthetic data: triangles, quadratic.")
     parser.add_argument("--minutes", type=float, default=600.0, help="No case begins after this time.")
     parser.add_argument("--linear", action="store_true", help="Verdicts by the linear model: seconds a case.")
+    parser.add_argument("--planned-only", action="store_true", help="The same command without it adds random plans.")
     parser.add_argument("--out", type=Path, default=Path("results/plan"))
     given = parser.parse_args()
     given.out.mkdir(parents=True, exist_ok=True)
