@@ -6,6 +6,7 @@ from typing import TYPE_CHECKING
 
 from tyrefem.diagnose.numbers import percent
 from tyrefem.plan.drives import CandidateDrive, quantity_name
+from tyrefem.plan.information import NAMED
 
 if TYPE_CHECKING:
     from tyrefem.plan.steps import PlanData, PlanStep
@@ -76,4 +77,10 @@ def last_words(plan: PlanData) -> list[str]:
         nothing = "No run within the limits and no further sensor is expected to tell these sets apart."
         return [f"{nothing} Widen the limits."]
     left = plan.doubt - plan.steps[-1].total_gain
-    return [f"Doubt between the sets: {plan.doubt:.2f} nats before, {max(left, 0.0):.2f} nats expected after the plan."]
+    words = [
+        f"Doubt between the sets: {plan.doubt:.2f} nats before, {max(left, 0.0):.2f} nats expected after the plan."
+    ]
+    if plan.steps[-1].right < NAMED:
+        least = f"A name needs {percent(NAMED)}; the true set is expected to have {percent(plan.steps[-1].right)}."
+        words.append(f"{least} Allow more runs or sensors (runs_most, sensors_most), or wider limits.")
+    return words
