@@ -138,7 +138,8 @@ def _confounded(d: DiagnosisData) -> tuple[str, str, str]:
         return _joined([effect_clause(d, member) for member in certain]), f"{sure}{besides(d, certain)}", step
     sets = competing_sets(d)
     described = ", or ".join(_set_words(entry) for entry in sets[:SETS])
-    more = f", or one of {len(sets) - SETS} less probable sets" if len(sets) > SETS else ""
+    rest = len(sets) - SETS
+    more = "" if rest < 1 else ", or a less probable set" if rest == 1 else f", or one of {rest} less probable sets"
     shares = ", ".join(f"{entry.key} {percent(inclusion_probability(d, entry))}" for entry in sets[:SETS])
     wrong = f"An effect is missing, but these sensors and runs cannot show which: {described}{more}."
     both = sum(inclusion_probability(d, entry) for entry in sets[:SETS]) > 1.0

@@ -205,7 +205,7 @@ def _confounded(d: DiagnosisData, closing: str) -> tuple[str, ...]:
         sets = competing_sets(d)
         shown = [f"{entry.key} ({percent(inclusion_probability(d, entry))})" for entry in sets[:4]]
         more = len(sets) - len(shown)
-        shown += [f"one of {more} less probable sets"] if more else []
+        shown += [f"one of {more} less probable sets" if more > 1 else "a less probable set"] if more else []
         first = f"An effect is missing, but these sensors and runs cannot show which: {', or '.join(shown)}."
         if best.members:
             first += f" Most probable: {clauses}."
