@@ -21,6 +21,10 @@ from tyrefem.sizes.rules import Rules
 Array = NDArray[np.float64]
 #: Surface rubber is nowhere thinner, m.
 SKIN = 1.2e-3
+#: Region of the chafer's fabric, and its card.
+FABRIC = "chafer-fabric"
+#: Range of a ``belt_power`` that is solved for: a parabola, as the inflated 295/80R22.5 has it, up to twice that.
+LEAST_POWER, MOST_POWER = 2.0, 4.0
 #: Ends of layers are not nearer to each other than this, m.
 TOGETHER = 2e-3
 
@@ -47,7 +51,10 @@ class Radial:
 
     The first belt's layer goes on as the apex, the second's as the turn-up. ``apex``: region of the apex and share
     of its height that it takes, from the tip on. ``share_end``: where the belts' share of the pressure ends,
-    m along the line; None: the plies' crown is an arc.
+    m along the line; None: the plies' crown is an arc. ``reinforced``: a bead of trucks and aircraft. Its apex is as
+    thick as the bundle where the plies bend round the flange, and fabric wraps it: an inner leg on the plies, from the
+    flange to the toe, and an outer one in the rim strip. ``belt_power``: that number's rule and
+    source. None: solved for, so that the crown has ``crown_radius``. Without a source the crown is an arc.
     """
 
     size: TyreSize
@@ -59,6 +66,8 @@ class Radial:
     title: str
     bead_fill: float
     share_end: float | None = None
+    reinforced: bool = False
+    belt_power: tuple[float | None, str] = (None, "")
 
     def n(self, name: str) -> float:
         """A number by its name, SI."""
@@ -197,9 +206,12 @@ class Radial:
         ]
         if index == 0:
             width = self.n("bead_width")
+            bends = self.reinforced and p["tip"] + TOGETHER < p["flange"] < p["bead"] - TOGETHER
+            full = [(p["flange"], 0.92 * width)] if bends else []
             return [
                 *rows,
                 (p["tip"], thin),
+                *full,
                 (p["bead"], 0.92 * width),
                 ((p["bead"] + p["bottom"]) / 2, width),
                 (p["end"], width),
@@ -270,7 +282,7 @@ class Radial:
             table(
                 "liner",
                 rows["liner"],
-                [{"name": "liner", "to": "rim_start"}, {"name": "chafer"}],
+                [{"name": "liner", "to": "rim_start"}, {"name": FABRIC if self.reinforced else "chafer"}],
                 rules.sources("liner_gauge"),
             ),
             table(self.ply, rows[self.ply], wrap, rules.sources("plies", "ply_gauge")),
@@ -290,10 +302,11 @@ class Radial:
                 rules.sources("undertread_gauge"),
             )
         )
+        wall = self._wall()
+        if self.reinforced:
+            wall = [wall[0], {"name": "chafer", "to": f"-{length(self.n('fabric_height'))}"}, {"name": FABRIC}]
         surface = rules.sources("tread_gauge", "tread_radius", "sidewall_gauge", "chafer_gauge", "chafer_height")
-        layers.append(
-            table("tread", self._surface(rows), [{"name": "tread", "to": "shoulder"}, *self._wall()], surface)
-        )
+        layers.append(table("tread", self._surface(rows), [{"name": "tread", "to": "shoulder"}, *wall], surface))
         return layers
 
     def _surface(self, rows: Mapping[str, list[tuple[float, float]]]) -> list[tuple[float, float]]:
@@ -329,22 +342,65 @@ class Radial:
         self.rules("bend_radius", radius, "mm", source, 3e-3)
 
     def with_belt_share(self) -> Radial:
-        """This radial, or where ``belt_power`` is given the one whose belts carry that share of the pressure up to the
-        edge of the widest; `crown_radius` is then solved for.
+        """This radial, or with a ``belt_power``, given or of its kind, the one whose belts carry that share of the
+        pressure up to the edge of the widest; `crown_radius` is then solved for.
+
+        An arc is drawn where ``crown_radius`` is given, or no line has its kind's ``belt_power``.
 
         Raises
         ------
-        InputError : ``crown_radius`` is given as well; no such line.
+        InputError : both are given; no line has the given ``belt_power``.
         """
-        rules = self.rules
-        if "belt_power" not in rules.given:
-            return self
+        rules, given = self.rules, "belt_power" in self.rules.given
         if "crown_radius" in rules.given:
-            raise InputError(
-                "is solved for where belt_power is given: give one of them", field="parameters.crown_radius"
-            )
-        rules("belt_power", 2.0, "1", "", 1.0, 20.0)
-        widths = [self.n(belt.width) for belt in self.belts if belt.width in rules.numbers]
+            if given:
+                raise InputError(
+                    "is solved for where belt_power is given: give one of them", field="parameters.crown_radius"
+                )
+            return self
+        if not (given or self.belt_power[1]):
+            return self
+        power, words = self.belt_power
+        if power is None and not given:
+            power = self._power_of_crown_radius()
+        rules("belt_power", power or LEAST_POWER, "1", words, 1.0, 20.0)
+        try:
+            belted = self._belted()
+            radius = belted.line.crown_radius
+        except InputError:
+            if given:
+                raise
+            del rules.numbers["belt_power"]
+            return self
+        source = "solved for: the belts' share of the pressure falls with belt_power to the edge of the widest belt"
+        rules("crown_radius", radius, "mm", source)
+        return belted
+
+    def _power_of_crown_radius(self) -> float:
+        """The ``belt_power``, to a hundredth, with which the crown is as flat as the rule of ``crown_radius``.
+
+        The larger it is, the rounder the crown; too small a one has no line.
+        """
+        low, high = LEAST_POWER, MOST_POWER
+        if self._is_rounder(low):
+            return low
+        while high - low > 5e-3:
+            middle = (low + high) / 2
+            low, high = (low, middle) if self._is_rounder(middle) else (middle, high)
+        return round(high, 2)
+
+    def _is_rounder(self, power: float) -> bool:
+        """Whether the crown with a ``belt_power`` is rounder than by ``crown_radius``."""
+        numbers = Rules(self.rules.given, dict(self.rules.numbers))
+        numbers("belt_power", power, "1", "")
+        try:
+            return bool(replace(self, rules=numbers)._belted().line.crown_radius <= self.n("crown_radius"))
+        except InputError:
+            return False
+
+    def _belted(self) -> Radial:
+        """This radial with the belts' share up to the edge of the widest belt."""
+        widths = [self.n(belt.width) for belt in self.belts if belt.width in self.rules.numbers]
         share_end = max(widths, default=0.0) / 2 or self.tread_edge
         belted = replace(self, share_end=share_end)
         # A belt without a width yet gets that of the tread, whose edge moves with the line.
@@ -353,8 +409,6 @@ class Radial:
             belted = replace(self, share_end=share_end)
             if abs(share_end - before) < 1e-8:
                 break
-        source = "solved for: the belts' share of the pressure falls with belt_power to the edge of the widest belt"
-        rules("crown_radius", belted.line.crown_radius, "mm", source)
         return belted
 
     def drawn(self, materials: Mapping[str, Any]) -> Drawn:
@@ -401,6 +455,11 @@ class Radial:
         plies = max(1, int(np.ceil(area / (np.pi * diameter / 4) / height / 0.9)))
         ends = {"ends": f"{area / (np.pi * diameter**2 / 4) / height:.5g} 1/m", "plies": plies}
         return bead_card(base, area / (height * self.n("bead_width")), ends)
+
+    def fabric_card(self) -> dict[str, Any]:
+        """Region and card of the chafer's fabric: its angle holds at the flange's height."""
+        radius = f"{(self.rim.diameter / 2 + self.rim.height) * 1e3:.2f} mm"
+        return {FABRIC: {"base": FABRIC, "cords": {"angle_radius": radius}}}
 
     def belt_card(self, belt: Belt, base: str, **cords: Any) -> dict[str, Any]:
         """Card of a belt: its angle holds at the radius of its middle."""

@@ -83,6 +83,7 @@ def draw(size: TyreSize, rule: Rules) -> Drawn:
     rule("turn_up_height", 0.13 * height, "mm", f"{ESTIMATE}: 0.13 section heights above the wires", 4e-3)
     rule("toe_gauge", 3e-3, "mm", f"{ESTIMATE}: rubber below the wires", 1e-3)
     rule("chafer_height", 0.3 * height, "mm", f"{ESTIMATE}: along the line from the seat", 10e-3)
+    rule("fabric_height", 0.25 * height, "mm", f"{ESTIMATE}: outer leg of the chafer's fabric, along the line", 10e-3)
     belts = (Belt("inner-belts", 2.6e-3), Belt("outer-belts", 2.2e-3))
     radial = Radial(
         size,
@@ -93,6 +94,8 @@ def draw(size: TyreSize, rule: Rules) -> Drawn:
         (("apex", 1.0),),
         f"{size.text} radial aircraft tyre by its size",
         BEAD_FILL,
+        reinforced=True,
+        belt_power=(6.0, f"{ESTIMATE}: many belt plies near the circumference carry an even share to near their edge"),
     )
     radial.add_bend()
     radial = radial.with_belt_share()
@@ -110,4 +113,5 @@ def draw(size: TyreSize, rule: Rules) -> Drawn:
         for belt, count in zip(belts, (first, second), strict=True)
     }
     bead_card = radial.bead_material("aircraft-bead", 1e-3)
-    return radial.drawn(radial_cards("body-plies", ply, belt_cards, "rubber-tread-aircraft", bead_card))
+    materials = radial_cards("body-plies", ply, belt_cards, "rubber-tread-aircraft", bead_card)
+    return radial.drawn(materials | radial.fabric_card())

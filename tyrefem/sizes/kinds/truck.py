@@ -13,6 +13,8 @@ from tyrefem.sizes.rules import Rules
 BEAD_FILL = 0.7
 STANDARD = "ETRTO/ISO 4209-1 (from memory)"
 ESTIMATE = "estimate: ordinary practice"
+#: Up to this series belts and tread are wider for the nominal width (low tyres and wide-base singles).
+LOW_SERIES = 0.6
 
 
 def draw(size: TyreSize, rule: Rules) -> Drawn:
@@ -36,11 +38,15 @@ def draw(size: TyreSize, rule: Rules) -> Drawn:
     )
     design_width(size, rule, rim_width, 0.75)
     pressure = rated(size, rule, 61.0, 850e3, f"850 kPa ({STANDARD}); mean of three sizes, 4 % either way")
+    low = (size.series or 1.0) <= LOW_SERIES + 1e-9
+    tread_share, tread_words = 0.79, "mean of five highway ribs, 0.74 to 0.82"
+    if low:
+        tread_share, tread_words = 0.86, "low tyres and wide-base singles, 0.83 to 0.88"
     rule(
         "tread_width",
-        0.79 * width,
+        tread_share * width,
         "mm",
-        "estimate: 0.79 nominal widths, mean of five highway ribs, 0.74 to 0.82 (makers' data books, from memory)",
+        f"estimate: {tread_share:g} nominal widths, {tread_words} (makers' data books, from memory)",
         0.4 * width,
     )
     rule("crown_radius", 2.4 * width, "mm", f"{ESTIMATE}, 2.4 nominal widths; of the plies' line", 0.1, 20)
@@ -53,12 +59,13 @@ def draw(size: TyreSize, rule: Rules) -> Drawn:
         20,
     )
     rule("cord_angle", 1.5707963268, "deg", "radial body ply", 1.4, 1.5708)
-    for name, share, gauge, words in (
-        ("belt_1", 0.57, 2.0e-3, "transition belt"),
-        ("belt_2", 0.67, 2.2e-3, "first working belt"),
-        ("belt_3", 0.61, 2.2e-3, "second working belt"),
-        ("belt_4", 0.44, 1.8e-3, "protector belt"),
+    for name, usual, broad, gauge, words in (
+        ("belt_1", 0.57, 0.72, 2.0e-3, "transition belt"),
+        ("belt_2", 0.67, 0.82, 2.2e-3, "first working belt"),
+        ("belt_3", 0.61, 0.77, 2.2e-3, "second working belt"),
+        ("belt_4", 0.44, 0.52, 1.8e-3, "protector belt"),
     ):
+        share = broad if low else usual
         rule(f"{name}_width", share * width, "mm", f"{ESTIMATE}, {words}, {share:g} nominal widths", 0.03)
         rule(f"{name}_gauge", gauge, "mm", f"{ESTIMATE}, {words}: steel cord in rubber", 8e-4)
     rule("plies", 1, "1", f"{ESTIMATE}, steel cord", 1, 2)
@@ -98,6 +105,7 @@ def draw(size: TyreSize, rule: Rules) -> Drawn:
     rule("turn_up_height", 0.22 * height, "mm", f"{ESTIMATE}: 0.22 section heights above the wires", 6e-3)
     rule("toe_gauge", 5e-3, "mm", f"{ESTIMATE}: rubber below the wires", 2e-3)
     rule("chafer_height", 0.34 * height, "mm", f"{ESTIMATE}: along the line from the seat", 10e-3)
+    rule("fabric_height", 0.25 * height, "mm", f"{ESTIMATE}: outer leg of the chafer's fabric, along the line", 10e-3)
     belts = (Belt("belt-1", 7e-3), Belt("belt-2", 2.4e-3), Belt("belt-3", 1.6e-3), Belt("belt-4", 0.0))
     radial = Radial(
         size,
@@ -108,6 +116,8 @@ def draw(size: TyreSize, rule: Rules) -> Drawn:
         (("apex-soft", 0.5), ("apex", 0.5)),
         f"{size.text} truck radial by its size",
         BEAD_FILL,
+        reinforced=True,
+        belt_power=(None, "solved for: within 2 to 4, the power with which the crown is as flat as 2.4 nominal widths"),
     )
     radial.add_bend()
     radial = radial.with_belt_share()
@@ -120,4 +130,4 @@ def draw(size: TyreSize, rule: Rules) -> Drawn:
     belt_cards = {belt.region: radial.belt_card(belt, card) for belt, card in zip(belts, cards, strict=True)}
     bead_card = radial.bead_material("truck-bead", 1.6e-3)
     materials = radial_cards("body-ply", ply, belt_cards, "rubber-tread-truck", bead_card)
-    return radial.drawn(materials | {"apex-soft": "rubber-apex-soft"})
+    return radial.drawn(materials | radial.fabric_card() | {"apex-soft": "rubber-apex-soft"})
