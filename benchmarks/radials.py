@@ -152,7 +152,7 @@ def press() -> None:
         flange = max((float(f.pressure(pressed.tyre.places).max()) for f in pressed.tyre.body.flanges), default=0.0)
         rows.append([
             names[tyre], f"{values['pressure_Pa'] / 1e3:.0f}", f"{values['load_N']:.0f}",
-            "drum 2 m" if values["drum_diameter_m"] else "flat", f"{1e3 * values['deflection_m']:.1f}",
+            "drum 2 m" if np.isfinite(values["drum_diameter_m"]) else "flat", f"{1e3 * values['deflection_m']:.1f}",
             f"{values['secant_stiffness_N_m'] / 1e3:.0f}", f"{values['tangent_stiffness_N_m'] / 1e3:.0f}",
             f"{1e3 * values['footprint_length_m']:.0f}", f"{1e3 * values['footprint_width_m']:.0f}",
             f"{1e4 * values['footprint_area_m2']:.0f}", f"{values['mean_contact_pressure_Pa'] / 1e3:.0f}",

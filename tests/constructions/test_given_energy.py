@@ -70,7 +70,7 @@ def test_the_budget_closes_and_the_belt_edge_is_hottest(name):
     hottest = result.extremes.iloc[0]
     edge = next(piece.end for piece in result.study.section.pieces if piece.region == radial.outermost_belt)
     assert abs(hottest["s_m"] - edge) < 0.12 * edge
-    assert 45.0 < hottest["temperature_degC"] < 125.0
+    assert 45.0 < hottest["temperature_degC"] < 130.0
     assert (
         result.readings["belt-edge"].iloc[-1]
         > result.readings["crown-liner" if name != "aircraft" else "crown-inner"].iloc[-1] + 5

@@ -124,7 +124,8 @@ def test_belt_and_plies_together_carry_the_pressure_under_the_belt(power: float)
 @pytest.mark.parametrize(("size", "power"), [("295/80R22.5", "2"), ("46x17R20", "6")])
 def test_the_belts_share_ends_at_the_belts_edge_without_a_jump(size: str, power: str) -> None:
     """Same width on the same rim; the curvature goes on behind the edge, where the arc's jumps to several times its."""
-    arc, drawn = draw_size(size), draw_size(size, {"belt_power": power})
+    radius = {"295/80R22.5": "708 mm", "46x17R20": "648 mm"}[size]
+    arc, drawn = draw_size(size, {"crown_radius": radius}), draw_size(size, {"belt_power": power})
     line, rules = drawn.meridian, drawn.rules
     widest = max(rules[name].value for name in rules.numbers if "belt" in name and name.endswith("_width"))
     assert line.join_s == pytest.approx(widest / 2, abs=1e-6)
@@ -138,3 +139,21 @@ def test_the_belts_share_ends_at_the_belts_edge_without_a_jump(size: str, power:
 
     assert 0.9 < jump(line) < 1.2
     assert jump(arc.meridian) > 4
+
+
+@pytest.mark.parametrize(("size", "power"), [("295/80R22.5", 2.0), ("22x5.5R12 8PR", 6.0)])
+def test_kinds_without_a_cap_ply_have_a_power_of_their_rules(size: str, power: float) -> None:
+    """The truck's is solved for within 2 to 5, the aircraft radial's is 6; passengers have an arc."""
+    drawn = draw_size(size)
+    assert drawn.rules["belt_power"].value == power
+    assert drawn.meridian.belted is not None
+    passenger = draw_size("205/60R15")
+    assert passenger.meridian.belted is None
+    assert "belt_power" not in passenger.rules.numbers
+
+
+def test_the_trucks_power_gives_the_crown_radius_of_its_rule() -> None:
+    """Between 2 and 5 the crown is as flat as 2.4 nominal widths, to the hundredth of the power."""
+    rules = draw_size("315/70R22.5").rules
+    assert 2 < rules["belt_power"].value < 5
+    assert rules["crown_radius"].value == pytest.approx(2.4 * 0.315, rel=0.01)

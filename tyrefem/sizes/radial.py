@@ -23,8 +23,10 @@ Array = NDArray[np.float64]
 SKIN = 1.2e-3
 #: Region of the chafer's fabric, and its card.
 FABRIC = "chafer-fabric"
-#: Range of a ``belt_power`` that is solved for: a parabola, as the inflated 295/80R22.5 has it, up to twice that.
-LEAST_POWER, MOST_POWER = 2.0, 4.0
+#: Range of a ``belt_power`` that is solved for: from a parabola, as the inflated 295/80R22.5 has it.
+LEAST_POWER, MOST_POWER = 2.0, 5.0
+#: A given crown radius that is as near as this to the one of a given ``belt_power`` is that one, as files write it.
+SAME_RADIUS = 1e-3
 #: Ends of layers are not nearer to each other than this, m.
 TOGETHER = 2e-3
 
@@ -349,16 +351,11 @@ class Radial:
 
         Raises
         ------
-        InputError : both are given; no line has the given ``belt_power``.
+        InputError : both are given and do not agree; no line has the given ``belt_power``.
         """
-        rules, given = self.rules, "belt_power" in self.rules.given
-        if "crown_radius" in rules.given:
-            if given:
-                raise InputError(
-                    "is solved for where belt_power is given: give one of them", field="parameters.crown_radius"
-                )
-            return self
-        if not (given or self.belt_power[1]):
+        rules = self.rules
+        given, flatness = "belt_power" in rules.given, "crown_radius" in rules.given
+        if not (given or (self.belt_power[1] and not flatness)):
             return self
         power, words = self.belt_power
         if power is None and not given:
@@ -372,6 +369,10 @@ class Radial:
                 raise
             del rules.numbers["belt_power"]
             return self
+        if flatness and abs(self.n("crown_radius") / radius - 1) > SAME_RADIUS:
+            raise InputError(
+                "is solved for where belt_power is given: give one of them", field="parameters.crown_radius"
+            )
         source = "solved for: the belts' share of the pressure falls with belt_power to the edge of the widest belt"
         rules("crown_radius", radius, "mm", source)
         return belted

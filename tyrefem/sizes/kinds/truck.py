@@ -117,7 +117,7 @@ def draw(size: TyreSize, rule: Rules) -> Drawn:
         f"{size.text} truck radial by its size",
         BEAD_FILL,
         reinforced=True,
-        belt_power=(None, "solved for: within 2 to 4, the power with which the crown is as flat as 2.4 nominal widths"),
+        belt_power=(None, "solved for: within 2 to 5, the power with which the crown is as flat as 2.4 nominal widths"),
     )
     radial.add_bend()
     radial = radial.with_belt_share()
