@@ -16,6 +16,7 @@ from dataclasses import dataclass
 from pathlib import Path
 from typing import Any
 
+from tyrefem.diagnose.numbers import percent
 from tyrefem.output import atomic_path
 
 RECORDS, PAGE = Path("results/missing-heat-laws"), Path("docs/evidence/diagnosis.md")
@@ -189,7 +190,7 @@ class Row:
     def page_cells(self) -> list[str]:
         """A row of the page's table."""
         cells = self.cells()
-        name = f"{self.draft['probability']:.2%}".replace("%", " %") if self.draft else "no"
+        name = percent(self.draft["probability"]) if self.draft else "no"
         before_after = [f"{cells[f'{which} rms before [K]']} → {cells[f'{which} rms after [K]']}"
                         for which in ("fitted", "held-out")]  # fmt: skip
         marks = [f"{n.words}{'' if n.covered else ' (!)'}" for n in self.of_law]
