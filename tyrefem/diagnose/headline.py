@@ -64,6 +64,7 @@ def headline(d: DiagnosisData) -> tuple[str, str, str]:
         )
     elif d.verdict == PARTLY:
         wrong = wrong.replace("This is a part of it: ", "Besides: ", 1)
+        sure = sure.replace("It is ", "The effect is ", 1)
     else:
         wrong = wrong.replace("explains the deviation", "explains the rest", 1)
     return f"{first} {wrong}", f"{law} {sure}", next_step
