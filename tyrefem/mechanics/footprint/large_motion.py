@@ -9,6 +9,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from tyrefem.mechanics.footprint.contact import Pressing
+from tyrefem.mechanics.footprint.folding import FoldingElements
 from tyrefem.mechanics.footprint.footprint import Footprint
 from tyrefem.mechanics.footprint.grid import ContactGrid
 from tyrefem.mechanics.footprint.newton import NewtonStep, SearchEnd, newton_step
@@ -21,14 +22,16 @@ from tyrefem.mechanics.solid.finite_law import FiniteLaw
 Array = NDArray[np.float64]
 Flags = NDArray[np.bool_]
 #: Largest change of a displacement gradient: aimed at in the first Newton step, in later steps, and before damping.
-AHEAD, CORRECTION, WILD = 0.35, 0.7, 2.0
+AHEAD, CORRECTION, WILD = 0.5, 0.7, 2.0
 #: A first Newton step that is larger than aimed at by more than this factor is made smaller.
 LARGE_STEP = 1.6
 #: Damping of the first Newton step to another deflection, and after an unstable step; number of unstable steps after
 #: which the balance fails.
-DAMPING, UNSTABLE = 0.1, 8
+DAMPING, UNSTABLE = 0.03, 8
 #: Least damping after a Newton step whose change of a displacement gradient is below `SMOOTH`; else it is `DAMPING`.
 LEAST_DAMPING, SMOOTH = 0.005, 0.1
+#: After a larger change folding elements are convex.
+CONVEX = 0.1
 #: Damping of the first Newton step where more harmonics refine a balance.
 REFINING = 0.01
 #: After a smaller change the last stiffness is used again.
@@ -86,6 +89,7 @@ class LargeMotion:
     law: FiniteLaw | None = None
     before_rim: float = BEFORE_RIM
     _forces: dict[int, NonlinearForces] = field(default_factory=dict, init=False, repr=False)
+    _folding: FoldingElements = field(default_factory=FoldingElements, init=False, repr=False)
     _touching: list[Touching] = field(default_factory=list, init=False, repr=False)
 
     @functools.cached_property
@@ -158,11 +162,14 @@ class LargeMotion:
         rate = start.rate
         tangent: Tangent | None = None
         unstable, change, now = 0, np.inf, start.load
+        convex = False
         damping = DAMPING if deflection != start.deflection else REFINING
         for count in range(STEPS):
-            tangent = (
-                replace(tangent, forces=outside.forces(u)) if tangent and change <= ALIKE else outside.at(u, np.float32)
-            )
+            if tangent and change <= ALIKE and not convex:
+                tangent = replace(tangent, forces=outside.forces(u))
+            else:
+                tangent, convex = outside.at(u, np.float32), change > CONVEX
+                tangent = self._folding.convex(tangent) if convex else tangent
             gaps, normal_components, touching, _ = self._road(
                 replace(start, motion=u, forces=forces, deflection=deflection)
             )
@@ -183,9 +190,13 @@ class LargeMotion:
                 step = newton_step(touching, closed, tangent, distance, end, rotations, damping=damping)
                 change = self._gradient_change(outside, step.motion)
             while not (step.stable and change < WILD):
-                unstable, damping = unstable + 1, 3 * damping
+                unstable += 1
                 if unstable > UNSTABLE:
                     return None
+                new = step.unstable is not None and self._folding.add(tangent, step.unstable)
+                if not new and (convex or not self._folding):
+                    damping *= 3
+                tangent, convex = self._folding.convex(tangent), True
                 step = newton_step(touching, closed, tangent, distance, end, rotations, damping=damping)
                 change = self._gradient_change(outside, step.motion)
             share = min(1.0, CORRECTION / max(change, 1e-300))

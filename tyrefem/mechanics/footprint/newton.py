@@ -25,13 +25,15 @@ DELAY = 4
 @dataclass(frozen=True, eq=False)
 class NewtonStep:
     """A step (highest + 1, n_dofs), m; its contact forces (k,), N; iterations; ``stable``: the stiffness was positive
-    in all search directions; ``residual`` -g - J x - B' f, N per radian, that the search leaves."""
+    in all search directions; ``residual`` -g - J x - B' f, N per radian, that the search leaves; the ``unstable``
+    direction (highest + 1, n_dofs)."""
 
     motion: Array
     forces: Array
     iterations: int
     stable: bool
     residual: Array
+    unstable: Array | None = None
 
 
 @dataclass(frozen=True)
@@ -194,4 +196,4 @@ def newton_step(
             stiff, stiff_pushed = residual + size / before * stiff, pressed + size / before * stiff_pushed
     forces = np.zeros(len(touching.rows))
     forces[closed] = total
-    return NewtonStep(x, forces, count, stable, residual + damping * damped)
+    return NewtonStep(x, forces, count, stable, residual + damping * damped, None if stable else along)

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import functools
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from typing import Any
 
 import numpy as np
@@ -14,6 +14,7 @@ from tyrefem.mechanics.footprint.harmonics import Harmonics, along_wall
 from tyrefem.mechanics.solid.finite_law import FiniteLaw, GreenLaw, StressResponse
 
 Array = NDArray[np.float64]
+Flags = NDArray[np.bool_]
 
 
 @dataclass(frozen=True, eq=False)
@@ -30,6 +31,15 @@ class Tangent:
         round_wheel = self.outside.round
         forces = round_wheel.forces(self.response.product(round_wheel.gradient(change)))
         return forces + self.outside.support_forces(change) + self.outside.wall_forces(change, self.wall)
+
+    def energies(self, change: Array) -> Array:
+        """(e, m) energy of a change (highest + 1, n_dofs) in every element at every angle, twice, J per radian."""
+        gradient = self.outside.round.gradient(change)
+        return np.asarray((gradient * self.response.product(gradient)).sum(axis=(1, 2)))
+
+    def convex(self, flagged: Flags) -> Tangent:
+        """The tangent without negative energies in some elements at some angles, flags (e, m)."""
+        return replace(self, response=self.response.convex(flagged)) if flagged.any() else self
 
 
 @dataclass(frozen=True, eq=False)

@@ -17,6 +17,7 @@ from tyrefem.mechanics.solid.elements import Indices, Rings
 from tyrefem.mechanics.solid.parts import RegionMaterial
 
 Array = NDArray[np.float64]
+Flags = NDArray[np.bool_]
 #: Index of a tensor's component among the six.
 PLACE = np.array([[0, 3, 4], [3, 1, 5], [4, 5, 2]])
 #: The six components.
@@ -51,6 +52,17 @@ class StressResponse:
         dilatation = np.einsum("ecqm,ecqm->eqm", self.volume, change)
         moments = self.bulk @ (self.functions.transpose(0, 2, 1) @ dilatation)
         return np.asarray(product + self.volume * (self.functions @ moments)[:, None])
+
+    def convex(self, flagged: Flags) -> StressResponse:
+        """The response with |A| instead of A in some elements at some angles, flags (e, m): its eigenvalues become
+        positive."""
+        at = np.broadcast_to(flagged[:, None], (len(flagged), *self.volume.shape[2:])).reshape(len(flagged), -1)
+        element, point = np.nonzero(at)
+        matrices = self.tangent[element, :, :, point].astype(float)
+        values, vectors = np.linalg.eigh(matrices)
+        tangent = self.tangent.copy()
+        tangent[element, :, :, point] = (vectors * np.abs(values)[:, None]) @ vectors.swapaxes(-1, -2)
+        return replace(self, tangent=tangent)
 
 
 class FiniteLaw(Protocol):
