@@ -22,12 +22,12 @@ from tyrefem.mechanics.solid.finite_law import FiniteLaw
 Array = NDArray[np.float64]
 Flags = NDArray[np.bool_]
 #: Largest change of a displacement gradient: aimed at in the first Newton step, in later steps, and before damping.
-AHEAD, CORRECTION, WILD = 0.5, 0.7, 2.0
+AHEAD, CORRECTION, WILD = 0.35, 0.7, 2.0
 #: A first Newton step that is larger than aimed at by more than this factor is made smaller.
 LARGE_STEP = 1.6
 #: Damping of the first Newton step to another deflection, and after an unstable step; number of unstable steps after
 #: which the balance fails.
-DAMPING, UNSTABLE = 0.03, 8
+DAMPING, UNSTABLE = 0.1, 8
 #: Least damping after a Newton step whose change of a displacement gradient is below `SMOOTH`; else it is `DAMPING`.
 LEAST_DAMPING, SMOOTH = 0.005, 0.1
 #: After a larger change folding elements are convex.
@@ -36,8 +36,9 @@ CONVEX = 0.1
 REFINING = 0.01
 #: After a smaller change the last stiffness is used again.
 ALIKE = 0.02
-#: Newton steps. After the last a change and a missed load of this times the tolerance are allowed.
-STEPS, CYCLE = 12, 3.0
+#: Newton steps. After the last, and after two changes below the smaller factor times the tolerance, a change and a
+#: missed load of the larger factor times the tolerance are allowed.
+STEPS, STILL, CYCLE = 12, 0.5, 3.0
 #: After a Newton step the next one is smaller by more than this factor: a loose balance ends one step earlier.
 NEXT = 10.0
 #: In the last step the load changes by less than this times the tolerance. In a looser state it can be 20 % off.
@@ -161,7 +162,7 @@ class LargeMotion:
         closed: Flags | None = None
         rate = start.rate
         tangent: Tangent | None = None
-        unstable, change, now = 0, np.inf, start.load
+        unstable, change, last, now = 0, np.inf, np.inf, start.load
         convex = False
         damping = DAMPING if deflection != start.deflection else REFINING
         for count in range(STEPS):
@@ -204,6 +205,7 @@ class LargeMotion:
             u, forces = u + share * step.motion, forces + share * (step.forces - forces)
             before, closed = closed, touching.closed(after, step.forces, closed)
             last_load, now = now, self._sides * float(normal_components @ forces)
+            last_before = last
             last = share * float(np.abs(step.motion).max()) / max(float(np.abs(u).max()), 1e-300)
             done = last <= (tolerance if tolerance <= LOOSE else NEXT * tolerance) and share == 1
             done &= damping < 2 * DAMPING  # a damped step is short also far from balance
@@ -221,7 +223,8 @@ class LargeMotion:
                 missed = abs(load - now) / load
                 done &= missed <= tolerance
                 # A contact that opens and closes in turn keeps the load from settling.
-                done |= count == STEPS - 1 and share == 1 and max(last, missed) <= CYCLE * tolerance
+                still = count == STEPS - 1 or max(last, last_before) <= STILL * tolerance
+                done |= still and share == 1 and max(last, missed) <= CYCLE * tolerance
                 if not done:  # forces that the search leaves unbalanced do work on the rate: the load without them
                     now -= self._sides * np.pi * self.factors.work(step.residual, rate[0])
                 more = (load - now) / slope
